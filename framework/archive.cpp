@@ -1,0 +1,335 @@
+#include "archive.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <SQLiteCpp/VariadicBind.h>
+
+#include <boost/interprocess/sync/file_lock.hpp>
+#include <chrono>
+#include <cstring>
+#include <ctime>
+#include <fstream>
+
+#include "text.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* database_name = "run.sqlite";
+constexpr const char* lock_name = "lock";
+constexpr const char* format = "1";  ///< raised when a change of the tables keeps older programs from reading them
+constexpr int busy_ms = 60'000;      ///< how long to wait for a process that is just reading or writing
+
+constexpr const char* schema = R"sql(
+CREATE TABLE record(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE operators(kind TEXT NOT NULL, name TEXT NOT NULL, version TEXT NOT NULL, file TEXT NOT NULL);
+CREATE TABLE objectives(position INTEGER PRIMARY KEY, name TEXT NOT NULL, unit TEXT NOT NULL, maximise INTEGER NOT NULL);
+CREATE TABLE individuals(
+  id INTEGER PRIMARY KEY,
+  born INTEGER NOT NULL,                -- generation
+  died INTEGER,                         -- generation whose selection dropped it; null while it lives
+  origin INTEGER NOT NULL,              -- generation of its oldest genes
+  parent INTEGER, mate INTEGER,         -- ids
+  made_by TEXT NOT NULL,
+  genes BLOB NOT NULL,                  -- float32, little-endian
+  status TEXT NOT NULL, reason TEXT, ended_at REAL,
+  spring_evaluations INTEGER NOT NULL);
+CREATE INDEX individuals_by_death ON individuals(died);
+CREATE TABLE scores(
+  individual INTEGER NOT NULL, objective INTEGER NOT NULL, value REAL NOT NULL,
+  PRIMARY KEY(individual, objective)) WITHOUT ROWID;
+CREATE TABLE generations(
+  generation INTEGER PRIMARY KEY, evaluations INTEGER NOT NULL, best REAL, median REAL,
+  diverged INTEGER NOT NULL, invalid INTEGER NOT NULL, spring_evaluations INTEGER NOT NULL, wall_time REAL NOT NULL);
+-- who lived on after each generation, and how old its genes were then
+CREATE VIEW members AS
+  SELECT generation, id AS individual, generation - origin AS age
+  FROM generations JOIN individuals ON born <= generation AND (died IS NULL OR died > generation);
+)sql";
+
+std::string utc_now() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+template <class T>
+void bind_optional(SQLite::Statement& statement, int position, const std::optional<T>& value) {
+  if (value)
+    statement.bind(position, *value);
+  else
+    statement.bind(position);
+}
+
+std::optional<double> optional_double(const SQLite::Column& column) {
+  if (column.isNull()) return std::nullopt;
+  return column.getDouble();
+}
+
+Status status_from(const std::string& text) {
+  for (const Status status : {Status::ok, Status::invalid, Status::diverged})
+    if (text == name(status)) return status;
+  throw ArchiveError("unknown status \"" + text + "\" in the record of the run");
+}
+
+constexpr const char* individual_columns =
+    "id, born, origin, parent, mate, made_by, genes, status, reason, ended_at, spring_evaluations, died";
+
+ArchivedIndividual read_individual(SQLite::Database& database, SQLite::Statement& row) {
+  ArchivedIndividual individual;
+  individual.id = row.getColumn(0).getUInt();
+  individual.born = row.getColumn(1).getUInt();
+  individual.origin = row.getColumn(2).getUInt();
+  for (const int column : {3, 4})
+    if (!row.isColumnNull(column)) individual.parents.push_back(row.getColumn(column).getUInt());
+  individual.made_by = row.getColumn(5).getString();
+  const SQLite::Column genes = row.getColumn(6);
+  individual.genome.resize(static_cast<std::size_t>(genes.getBytes()) / sizeof(float));
+  if (!individual.genome.empty())
+    std::memcpy(individual.genome.data(), genes.getBlob(), individual.genome.size() * sizeof(float));
+  individual.result.status = status_from(row.getColumn(7).getString());
+  if (!row.isColumnNull(8)) individual.result.reason = row.getColumn(8).getString();
+  if (!row.isColumnNull(9)) individual.result.ended_at = row.getColumn(9).getDouble();
+  individual.result.spring_evaluations = static_cast<std::uint64_t>(row.getColumn(10).getInt64());
+  if (!row.isColumnNull(11)) individual.died = row.getColumn(11).getUInt();
+  SQLite::Statement scores(database, "SELECT value FROM scores WHERE individual = ? ORDER BY objective");
+  scores.bind(1, individual.id);
+  while (scores.executeStep()) individual.result.objectives.push_back(scores.getColumn(0).getDouble());
+  return individual;
+}
+
+}  // namespace
+
+/// The open database and, for a process that writes, the lock that keeps others out. The lock goes with the process,
+/// however it ends.
+struct Archive::Files {
+  std::optional<boost::interprocess::file_lock> lock;
+  SQLite::Database database;
+
+  Files(const fs::path& folder, int flags) : database((folder / database_name).string(), flags, busy_ms) {}
+};
+
+namespace {
+
+boost::interprocess::file_lock locked(const fs::path& folder) {
+  const fs::path file = folder / lock_name;
+  if (!std::ofstream(file, std::ios::app)) throw ArchiveError(folder.string() + ": cannot be written");
+  boost::interprocess::file_lock lock(file.c_str());
+  if (!lock.try_lock())
+    throw ArchiveError(folder.string() + ": another evodevo process is writing this run; wait for it or stop it first");
+  return lock;
+}
+
+void require_run(const fs::path& folder) {
+  if (!fs::exists(folder / database_name))
+    throw ArchiveError(folder.string() + ": there is no run here (no " + database_name +
+                       "); give a folder that `evodevo run` has written");
+}
+
+}  // namespace
+
+Archive::Archive(fs::path folder, std::unique_ptr<Files> files)
+    : folder_(std::move(folder)), files_(std::move(files)) {}
+Archive::Archive(Archive&&) noexcept = default;
+Archive::~Archive() = default;
+
+Archive Archive::create(const fs::path& folder, const Experiment& experiment, const std::string& device) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw ArchiveError(folder.string() + ": cannot be made: " + error.message());
+  auto lock = locked(folder);
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.path().filename() != lock_name)
+      throw ArchiveError(folder.string() +
+                         ": is not empty; give another --out, or continue the run in it with `evodevo resume " +
+                         folder.string() + "`");
+  auto files = std::make_unique<Files>(folder, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  files->lock = std::move(lock);
+  SQLite::Database& database = files->database;
+  database.exec("PRAGMA journal_mode = WAL");  // readers and the writer do not wait for each other
+  SQLite::Transaction transaction(database);
+  database.exec(schema);
+  for (const OperatorUse& use : experiment.uses) {
+    SQLite::Statement insert(database, "INSERT INTO operators VALUES(?, ?, ?, ?)");
+    SQLite::bind(insert, use.kind, use.name, use.version, use.file.string());
+    insert.exec();
+  }
+  for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
+    const Objective& objective = experiment.objectives[i];
+    SQLite::Statement insert(database, "INSERT INTO objectives VALUES(?, ?, ?, ?)");
+    SQLite::bind(insert, static_cast<int>(i), objective.name, objective.unit, objective.maximise ? 1 : 0);
+    insert.exec();
+  }
+  Archive archive(folder, std::move(files));
+  archive.set_record("format", format);
+  archive.set_record("evodevo", EVODEVO_VERSION);
+  archive.set_record("created", utc_now());
+  archive.set_record("name", experiment.name);
+  archive.set_record("seed", std::to_string(experiment.seed));
+  archive.set_record("device", device);
+  archive.set_record("experiment", experiment.resolved);
+  transaction.commit();
+  return archive;
+}
+
+Archive Archive::resume(const fs::path& folder) {
+  require_run(folder);
+  auto lock = locked(folder);
+  auto files = std::make_unique<Files>(folder, SQLite::OPEN_READWRITE);
+  files->lock = std::move(lock);
+  Archive archive(folder, std::move(files));
+  if (archive.record("format") != format)
+    throw ArchiveError(folder.string() + ": has format " + archive.record("format") + ", this evodevo reads format " +
+                       format + "; continue it with the evodevo that wrote it");
+  return archive;
+}
+
+Archive Archive::read(const fs::path& folder) {
+  require_run(folder);
+  return Archive(folder, std::make_unique<Files>(folder, SQLite::OPEN_READONLY));
+}
+
+void Archive::commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,
+                     const Summary& summary) {
+  SQLite::Database& database = files_->database;
+  SQLite::Transaction transaction(database);
+  SQLite::Statement insert(database, std::string("INSERT INTO individuals(") + individual_columns +
+                                         ") VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL)");
+  SQLite::Statement insert_score(database, "INSERT INTO scores VALUES(?, ?, ?)");
+  for (const Individual& individual : newborns) {
+    const Result& result = individual.result;
+    const auto parent = [&](std::size_t i) {
+      return i < individual.parents.size() ? std::optional(individual.parents[i]) : std::nullopt;
+    };
+    insert.bind(1, individual.id);
+    insert.bind(2, individual.born);
+    insert.bind(3, individual.origin);
+    bind_optional(insert, 4, parent(0));
+    bind_optional(insert, 5, parent(1));
+    insert.bind(6, individual.made_by);
+    insert.bind(7, individual.genome.data(), static_cast<int>(individual.genome.size() * sizeof(float)));
+    insert.bind(8, name(result.status));
+    if (result.status != Status::ok) insert.bind(9, result.reason);
+    if (result.status == Status::diverged) insert.bind(10, result.ended_at);
+    insert.bind(11, static_cast<std::int64_t>(result.spring_evaluations));
+    insert.exec();
+    insert.reset();
+    insert.clearBindings();
+    for (std::size_t i = 0; i < result.objectives.size(); ++i) {
+      SQLite::bind(insert_score, individual.id, static_cast<int>(i), result.objectives[i]);
+      insert_score.exec();
+      insert_score.reset();
+    }
+  }
+  SQLite::Statement drop(database, "UPDATE individuals SET died = ? WHERE id = ?");
+  for (const std::uint32_t id : dropped) {
+    SQLite::bind(drop, summary.generation, id);
+    drop.exec();
+    drop.reset();
+  }
+  SQLite::Statement add(database, "INSERT INTO generations VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
+  add.bind(1, summary.generation);
+  add.bind(2, summary.evaluations);
+  bind_optional(add, 3, summary.best);
+  bind_optional(add, 4, summary.median);
+  add.bind(5, summary.diverged);
+  add.bind(6, summary.invalid);
+  add.bind(7, static_cast<std::int64_t>(summary.spring_evaluations));
+  add.bind(8, summary.wall_time);
+  add.exec();
+  transaction.commit();
+}
+
+std::string Archive::record(const std::string& key) const {
+  SQLite::Statement query(files_->database, "SELECT value FROM record WHERE key = ?");
+  query.bind(1, key);
+  if (!query.executeStep()) throw ArchiveError(folder_.string() + ": its record has no \"" + key + "\"");
+  return query.getColumn(0).getString();
+}
+
+void Archive::set_record(const std::string& key, const std::string& value) {
+  SQLite::Statement insert(files_->database, "INSERT OR REPLACE INTO record VALUES(?, ?)");
+  SQLite::bind(insert, key, value);
+  insert.exec();
+}
+
+std::vector<OperatorUse> Archive::operators() const {
+  std::vector<OperatorUse> uses;
+  SQLite::Statement query(files_->database, "SELECT kind, name, version, file FROM operators ORDER BY rowid");
+  while (query.executeStep())
+    uses.push_back({query.getColumn(0).getString(), query.getColumn(1).getString(), query.getColumn(2).getString(),
+                    query.getColumn(3).getString()});
+  return uses;
+}
+
+std::vector<Objective> Archive::objectives() const {
+  std::vector<Objective> objectives;
+  SQLite::Statement query(files_->database, "SELECT name, unit, maximise FROM objectives ORDER BY position");
+  while (query.executeStep())
+    objectives.push_back(
+        {query.getColumn(0).getString(), query.getColumn(1).getString(), query.getColumn(2).getInt() != 0});
+  return objectives;
+}
+
+std::vector<Summary> Archive::generations() const {
+  std::vector<Summary> summaries;
+  SQLite::Statement row(files_->database, "SELECT * FROM generations ORDER BY generation");
+  while (row.executeStep())
+    summaries.push_back({.generation = row.getColumn(0).getUInt(),
+                         .evaluations = row.getColumn(1).getInt64(),
+                         .best = optional_double(row.getColumn(2)),
+                         .median = optional_double(row.getColumn(3)),
+                         .diverged = row.getColumn(4).getInt64(),
+                         .invalid = row.getColumn(5).getInt64(),
+                         .spring_evaluations = static_cast<std::uint64_t>(row.getColumn(6).getInt64()),
+                         .wall_time = row.getColumn(7).getDouble()});
+  return summaries;
+}
+
+std::map<std::string, std::int64_t> Archive::statuses() const {
+  std::map<std::string, std::int64_t> counts;
+  for (const Status status : {Status::ok, Status::invalid, Status::diverged}) counts[name(status)] = 0;
+  SQLite::Statement query(files_->database, "SELECT status, count(*) FROM individuals GROUP BY status");
+  while (query.executeStep()) counts[query.getColumn(0).getString()] = query.getColumn(1).getInt64();
+  return counts;
+}
+
+std::vector<Individual> Archive::population() const {
+  std::vector<Individual> population;
+  SQLite::Statement query(files_->database, std::string("SELECT ") + individual_columns +
+                                                " FROM individuals WHERE died IS NULL ORDER BY id");
+  while (query.executeStep()) population.push_back(read_individual(files_->database, query));
+  return population;
+}
+
+std::optional<ArchivedIndividual> Archive::individual(std::uint32_t id) const {
+  SQLite::Statement query(files_->database,
+                          std::string("SELECT ") + individual_columns + " FROM individuals WHERE id = ?");
+  query.bind(1, id);
+  if (!query.executeStep()) return std::nullopt;
+  return read_individual(files_->database, query);
+}
+
+std::vector<std::uint32_t> Archive::best(std::size_t count) const {
+  const bool maximise = objectives().at(0).maximise;
+  std::vector<std::uint32_t> ids;
+  SQLite::Statement query(files_->database,
+                          std::string("SELECT individual FROM scores WHERE objective = 0 ORDER BY value ") +
+                              (maximise ? "DESC" : "ASC") + ", individual LIMIT ?");
+  query.bind(1, static_cast<std::int64_t>(count));
+  while (query.executeStep()) ids.push_back(query.getColumn(0).getUInt());
+  return ids;
+}
+
+Experiment recorded_experiment(const Archive& archive) {
+  Experiment experiment = read_experiment(archive.record("experiment"),
+                                          {.file = (archive.folder() / "record of the run").string(), .overrides = {}});
+  experiment.name = archive.record("name");
+  return experiment;
+}
+
+}  // namespace evodevo

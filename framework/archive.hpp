@@ -1,0 +1,68 @@
+// The record of a run: one folder with one SQLite file. What is committed stays, whatever happens to the process.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "population.hpp"
+
+namespace evodevo {
+
+/// A folder that cannot be written, read, or is in use. what() names folder, cause and remedy.
+struct ArchiveError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// An individual with the generation in which it was dropped.
+struct ArchivedIndividual : Individual {
+  std::optional<std::uint32_t> died;
+};
+
+class Archive {
+ public:
+  /// Starts the record of a run in a new folder. Throws ArchiveError if the folder is there and not empty.
+  static Archive create(const std::filesystem::path& folder, const Experiment& experiment, const std::string& device);
+  /// Opens a record to go on with it; refuses while another process writes it.
+  static Archive resume(const std::filesystem::path& folder);
+  /// Opens a record to read. Does not disturb a process that writes it.
+  static Archive read(const std::filesystem::path& folder);
+
+  Archive(Archive&&) noexcept;
+  ~Archive();
+
+  /// Adds one generation in one transaction: its newborns with their results, who was dropped, and its summary.
+  void commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,
+              const Summary& summary);
+
+  const std::filesystem::path& folder() const { return folder_; }
+  /// An entry of the run's record, such as "seed" or "device". Throws ArchiveError if there is none.
+  std::string record(const std::string& key) const;
+  void set_record(const std::string& key, const std::string& value);
+  std::vector<OperatorUse> operators() const;
+  std::vector<Objective> objectives() const;
+  std::vector<Summary> generations() const;
+  /// Number of individuals by status.
+  std::map<std::string, std::int64_t> statuses() const;
+  /// Those who live on, in the order of birth.
+  std::vector<Individual> population() const;
+  std::optional<ArchivedIndividual> individual(std::uint32_t id) const;
+  /// The ids of the `count` individuals with the best first objective, best first; ties in the order of birth.
+  std::vector<std::uint32_t> best(std::size_t count) const;
+
+ private:
+  struct Files;
+  Archive(std::filesystem::path folder, std::unique_ptr<Files> files);
+
+  std::filesystem::path folder_;
+  std::unique_ptr<Files> files_;
+};
+
+/// The experiment that a run used, read from its record.
+Experiment recorded_experiment(const Archive& archive);
+
+}  // namespace evodevo

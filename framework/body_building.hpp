@@ -1,0 +1,25 @@
+// From an encoding's blueprint to a body that can be simulated.
+#pragma once
+
+#include <string>
+
+#include "evodevo/encoding.hpp"
+#include "simulator.hpp"
+
+namespace evodevo {
+
+/// A finished body, or why there is none.
+struct BuiltBody {
+  Body body;
+  std::string failure;  ///< empty where there is a body
+};
+
+/// Joins the neighbours that the blueprint asks for, leaves out springs of air (and counts them as contacts), drops
+/// masses without springs, keeps the largest piece, and moves the rest places so that the lowest is at z = 0 and the
+/// centre of mass over the origin.
+BuiltBody build_body(Blueprint blueprint);
+
+/// Why this body cannot be simulated with this step: "unstable dt …"; empty where it can.
+std::string step_failure(const Body& body, const Scene& scene, const Stepping& stepping);
+
+}  // namespace evodevo

@@ -1,0 +1,137 @@
+#include "breeding.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <unordered_map>
+
+#include "philox.hpp"
+#include "text.hpp"
+
+namespace evodevo {
+namespace {
+
+Rng stream(const Experiment& experiment, std::uint32_t generation, std::uint32_t individual, std::uint32_t where) {
+  return Rng(philox, {static_cast<std::uint64_t>(experiment.seed), generation, individual, where});
+}
+
+/// Refuses genes that the layout does not allow, so that a faulty operator is found where it errs.
+void check_genome(const Genome& genome, const Layout& layout, const std::string& made_by) {
+  const auto refuse = [&](const std::string& what) {
+    throw std::runtime_error("operator \"" + made_by + "\" made a genome with " + what);
+  };
+  if (genome.size() != layout.genes.size())
+    refuse(std::to_string(genome.size()) + " genes where there are " + std::to_string(layout.genes.size()));
+  for (std::size_t i = 0; i < genome.size(); ++i) {
+    const GeneSpec& spec = layout.genes[i];
+    const bool fits = spec.is_choice() ? genome[i] >= 0 && genome[i] < static_cast<float>(spec.choices) &&
+                                             genome[i] == std::floor(genome[i])
+                                       : genome[i] >= spec.low && genome[i] <= spec.high;
+    if (!fits) refuse("gene " + std::to_string(i) + " = " + to_text(genome[i]) + ", which is not allowed");
+  }
+}
+
+Individual newcomer(const Experiment& experiment, std::uint32_t generation, std::uint32_t id) {
+  Rng rng = stream(experiment, generation, id, place::newborn);
+  Individual individual;
+  individual.id = id;
+  individual.born = individual.origin = generation;
+  individual.made_by = "random";
+  individual.genome = experiment.encoding->random(experiment.layout, rng);
+  check_genome(individual.genome, experiment.layout, "random");
+  return individual;
+}
+
+/// Which variation operators a child goes through: crossovers first, then mutations, counted through both lists. Each
+/// is drawn by its own probability; where none comes, one is drawn in proportion to them, so that no child is a copy.
+std::vector<std::size_t> draw_variation(const Experiment& experiment, Rng& rng) {
+  std::vector<double> probabilities;
+  for (const auto& crossover : experiment.crossovers) probabilities.push_back(crossover.probability);
+  for (const auto& mutation : experiment.mutations) probabilities.push_back(mutation.probability);
+  std::vector<std::size_t> drawn;
+  for (std::size_t i = 0; i < probabilities.size(); ++i)
+    if (rng.chance(probabilities[i])) drawn.push_back(i);
+  if (!drawn.empty()) return drawn;
+  double left = rng.uniform(0, std::accumulate(probabilities.begin(), probabilities.end(), 0.0));
+  std::size_t one = 0;
+  while (one + 1 < probabilities.size() && left >= probabilities[one]) left -= probabilities[one++];
+  return {one};
+}
+
+Individual child(const Experiment& experiment, const Individual& parent, const Individual& mate,
+                 std::uint32_t generation, std::uint32_t id) {
+  Individual individual;
+  individual.id = id;
+  individual.born = generation;
+  individual.origin = parent.origin;
+  individual.parents = {parent.id};
+  individual.genome = parent.genome;
+  Rng choice = stream(experiment, generation, id, place::variation);
+  std::vector<std::string> names;
+  for (const std::size_t i : draw_variation(experiment, choice)) {
+    if (i < experiment.crossovers.size()) {
+      const auto& crossover = experiment.crossovers[i];
+      Rng rng = stream(experiment, generation, id, place::crossover + static_cast<std::uint32_t>(i));
+      Genome other = mate.genome;
+      crossover.op->cross(individual.genome, other, experiment.layout, rng);
+      individual.parents = {parent.id, mate.id};
+      individual.origin = std::min(parent.origin, mate.origin);
+      names.push_back(crossover.name);
+    } else {
+      const std::size_t k = i - experiment.crossovers.size();
+      const auto& mutation = experiment.mutations[k];
+      Rng rng = stream(experiment, generation, id, place::mutation + static_cast<std::uint32_t>(k));
+      mutation.op->mutate(individual.genome, experiment.layout, rng);
+      names.push_back(mutation.name);
+    }
+    check_genome(individual.genome, experiment.layout, names.back());
+  }
+  individual.made_by = joined(names, "+");
+  return individual;
+}
+
+}  // namespace
+
+SelectionTable::SelectionTable(const std::vector<Individual>& individuals, const std::vector<Objective>& objectives,
+                               std::uint32_t generation)
+    : scores_(individuals.size()) {
+  std::unordered_map<std::uint32_t, std::uint32_t> row_of;
+  for (std::size_t i = 0; i < individuals.size(); ++i) {
+    const Individual& individual = individuals[i];
+    row_of[individual.id] = static_cast<std::uint32_t>(i);
+    if (individual.result.status == Status::ok)
+      for (std::size_t o = 0; o < objectives.size(); ++o)
+        scores_[i].push_back(objectives[o].maximise ? individual.result.objectives[o]
+                                                    : -individual.result.objectives[o]);
+    Candidate row;
+    row.scores = scores_[i];
+    row.age = individual.age(generation);
+    if (individual.born == generation && !individual.parents.empty())
+      if (const auto parent = row_of.find(individual.parents.front()); parent != row_of.end())
+        row.challenges = parent->second;
+    rows_.push_back(row);
+  }
+}
+
+std::vector<Individual> breed(const Experiment& experiment, const std::vector<Individual>& population,
+                              std::uint32_t generation, std::uint32_t first_id, std::size_t count) {
+  const std::size_t newcomers =
+      population.empty() ? count : std::min(count, static_cast<std::size_t>(experiment.newcomers));
+  std::vector<Individual> newborns;
+  std::uint32_t id = first_id;
+  if (newcomers < count) {
+    const SelectionTable table(population, experiment.objectives, generation);
+    Rng rng = stream(experiment, generation, 0, place::parents);
+    const auto pairs = experiment.selection->parents(table.rows(), static_cast<std::uint32_t>(count - newcomers), rng);
+    if (pairs.size() != count - newcomers)
+      throw std::runtime_error("selection chose " + std::to_string(pairs.size()) + " pairs of parents where " +
+                               std::to_string(count - newcomers) + " were asked for");
+    for (const auto& [parent, mate] : pairs)
+      newborns.push_back(child(experiment, population.at(parent), population.at(mate), generation, id++));
+  }
+  while (newborns.size() < count) newborns.push_back(newcomer(experiment, generation, id++));
+  return newborns;
+}
+
+}  // namespace evodevo

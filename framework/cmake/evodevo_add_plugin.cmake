@@ -1,0 +1,22 @@
+# evodevo_add_plugin(NAME SOURCES file... VERSION x.y.z LICENSE id)
+#
+# A library of operators that the host loads at run time: one export, nothing left undefined, nothing shared with the
+# host but plain calls. Sources see the version and licence as EVODEVO_PLUGIN_VERSION and EVODEVO_PLUGIN_LICENSE.
+function(evodevo_add_plugin name)
+  cmake_parse_arguments(arg "" "VERSION;LICENSE" "SOURCES" ${ARGN})
+  if(NOT arg_SOURCES OR NOT arg_VERSION OR NOT arg_LICENSE)
+    message(FATAL_ERROR "evodevo_add_plugin(${name}): SOURCES, VERSION and LICENSE are needed")
+  endif()
+  set(target evodevo_plugin_${name})
+  add_library(${target} MODULE ${arg_SOURCES})
+  target_link_libraries(${target} PRIVATE evodevo::sdk)
+  target_compile_definitions(${target} PRIVATE
+    EVODEVO_PLUGIN_VERSION="${arg_VERSION}" EVODEVO_PLUGIN_LICENSE="${arg_LICENSE}")
+  # a unique symbol would pin a class to whichever library was loaded first
+  target_compile_options(${target} PRIVATE -ffp-contract=off $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)
+  target_link_options(${target} PRIVATE -Wl,-z,defs)
+  set_target_properties(${target} PROPERTIES
+    PREFIX "" OUTPUT_NAME ${name} SUFFIX ".evodevo.so"
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
+    LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/evodevo)
+endfunction()

@@ -1,0 +1,145 @@
+// evodevo body and simulate: single bodies out of a run and into a scene.
+#include <chrono>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+
+#include "archive.hpp"
+#include "body_building.hpp"
+#include "body_json.hpp"
+#include "commands/options.hpp"
+#include "text.hpp"
+#include "toml_reader.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace po = boost::program_options;
+
+constexpr double frame_time = 0.01;  ///< between two frames of a trajectory, s
+
+ArchivedIndividual chosen_individual(const Archive& archive, const po::variables_map& given) {
+  const std::string folder = archive.folder().string();
+  if (!given.contains("individual")) {
+    const auto best = archive.best(1);
+    if (best.empty()) throw ArchiveError(folder + ": no individual has a fitness; name one with --individual");
+    return *archive.individual(best.front());
+  }
+  const auto id = given["individual"].as<std::uint32_t>();
+  auto individual = archive.individual(id);
+  if (!individual)
+    throw ArchiveError(folder + ": there is no individual " + std::to_string(id) + "; see `" + program_name() +
+                       " show " + folder + "`");
+  return *individual;
+}
+
+/// Writes a body's motion frame by frame: time, mass, x, y, z, vx, vy, vz in SI units.
+class TrajectoryFile {
+ public:
+  explicit TrajectoryFile(const std::string& file) : stream_(file) {
+    if (!stream_) throw UsageError("--trajectory " + file + ": cannot be written");
+    stream_ << "time,mass,x,y,z,vx,vy,vz\n" << std::setprecision(9);
+  }
+
+  void add(double time, const State& state) {
+    for (std::size_t i = 0; i < state.position.size(); ++i) {
+      const Vec3 &p = state.position[i], &v = state.velocity[i];
+      stream_ << time << ',' << i << ',' << p.x << ',' << p.y << ',' << p.z << ',' << v.x << ',' << v.y << ',' << v.z
+              << '\n';
+    }
+  }
+
+ private:
+  std::ofstream stream_;
+};
+
+State state_as_given(const Body& body, const Experiment& experiment) {
+  State state;
+  for (const Mass& mass : body.masses) state.position.push_back(mass.rest);
+  state.velocity.resize(body.masses.size());
+  state.start_energy = total_energy(body, state, experiment.scene, experiment.stepping.dt);
+  return state;
+}
+
+std::string vector_text(Vec3 v) { return "(" + to_text(v.x) + ", " + to_text(v.y) + ", " + to_text(v.z) + ")"; }
+
+}  // namespace
+
+int body_command(const Arguments& arguments) {
+  CommandLine line{"body DIR [--individual ID] [--matured]", {"DIR"}, {}};
+  line.options.add_options()("individual", po::value<std::uint32_t>(), "its id; default: the best")(
+      "matured", "as it is after the development cycles of its life, not as it is born");
+  const auto given = parse(std::move(line), arguments);
+  if (!given) return 0;
+  const Archive archive = Archive::read((*given)["DIR"].as<std::string>());
+  const Experiment experiment = recorded_experiment(archive);
+  const ArchivedIndividual individual = chosen_individual(archive, *given);
+  const auto simulator = make_simulator(experiment);
+  const Evaluation evaluation(experiment, *simulator);
+  const Newborn newborn{individual.id, individual.born, &individual.genome};
+  std::vector<Life> lives = evaluation.birth({&newborn, 1});
+  if (given->contains("matured")) evaluation.develop(lives, [](double) {});
+  const Life& life = lives.front();
+  if (!life.alive()) {
+    std::cerr << "individual " << individual.id << " has no body to show: " << name(life.result.status) << ", "
+              << life.result.reason << '\n';
+    return 1;
+  }
+  std::cout << body_to_json(life.living.body, life.living.state.position, experiment.world.material_names) << '\n';
+  return 0;
+}
+
+int simulate_command(const Arguments& arguments) {
+  CommandLine line{"simulate BODY.json EXPERIMENT.toml [options]", {"BODY.json", "EXPERIMENT.toml"}, {}};
+  line.options.add_options()("duration", po::value<double>()->default_value(10), "simulated time, s")(
+      "trajectory", po::value<std::string>(), "CSV file for the motion, a frame every 0.01 s");
+  add_experiment_options(line.options);
+  const auto given = parse(std::move(line), arguments);
+  if (!given) return 0;
+  const auto body_file = (*given)["BODY.json"].as<std::string>();
+  const Experiment experiment =
+      read_experiment(experiment_source((*given)["EXPERIMENT.toml"].as<std::string>(), *given));
+  const double duration = (*given)["duration"].as<double>(), dt = experiment.stepping.dt;
+  if (!(duration > 0 && duration <= 1e6))
+    throw UsageError("--duration " + to_text(duration) + ": expected more than 0 and at most 1e6 s");
+  const Body body = read_body(body_file);
+  if (const std::string failure = step_failure(body, experiment.scene, experiment.stepping); !failure.empty())
+    throw ConfigError(body_file + ": " + failure + "; set a smaller simulation.dt");
+  std::optional<TrajectoryFile> trajectory;
+  if (given->contains("trajectory")) trajectory.emplace((*given)["trajectory"].as<std::string>());
+
+  const auto simulator = make_simulator(experiment);
+  State state = state_as_given(body, experiment);
+  const Vec3 start = centre_of_mass(body, state.position);
+  const double length = bounding_box(state.position).longest_side();
+  Task task;
+  task.body = &body;
+  task.state = &state;
+  const std::uint64_t steps = std::max<std::uint64_t>(1, steps_in(duration, dt));
+  const std::uint64_t per_frame = trajectory ? std::max<std::uint64_t>(1, steps_in(frame_time, dt)) : steps;
+  if (trajectory) trajectory->add(0, state);
+  const auto clock_start = std::chrono::steady_clock::now();
+  std::uint64_t spring_evaluations = 0;
+  for (std::uint64_t done = 0; done < steps && task.status == Status::ok; done += per_frame) {
+    simulator->run({&task, 1}, std::min(per_frame, steps - done), {});
+    spring_evaluations += task.spring_evaluations;
+    if (trajectory) trajectory->add(static_cast<double>(state.steps) * dt, state);
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock_start).count();
+
+  std::cout << body.masses.size() << " masses, " << body.springs.size() << " springs on " << simulator->device()
+            << '\n';
+  if (task.status != Status::ok) {
+    std::cout << name(task.status) << " after " << to_text(task.ended_at) << " s: " << task.reason << '\n';
+    return 1;
+  }
+  const Vec3 moved = centre_of_mass(body, state.position) - start;
+  std::cout << "after " << to_text(static_cast<double>(steps) * dt) << " s the centre of mass has moved by "
+            << vector_text(moved) << " m";
+  if (length > 0)
+    std::cout << ", " << to_text(norm({moved.x, moved.y, 0}) / length) << " body lengths along the ground";
+  std::cout << "\nspeed: " << static_cast<double>(spring_evaluations) / seconds << " spring evaluations/s\n";
+  return 0;
+}
+
+}  // namespace evodevo

@@ -1,0 +1,32 @@
+// The sub-commands of `evodevo`.
+#pragma once
+
+#include <atomic>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace evodevo {
+
+using Arguments = std::vector<std::string>;
+
+/// Every command takes what follows its name and returns the exit code: 0 done, 1 the run or simulation failed, 130
+/// interrupted. Bad input is thrown as UsageError, ConfigError or ArchiveError (exit code 2).
+int run_command(const Arguments& arguments);
+int resume_command(const Arguments& arguments);
+int check_command(const Arguments& arguments);
+int show_command(const Arguments& arguments);
+int body_command(const Arguments& arguments);
+int simulate_command(const Arguments& arguments);
+int operators_command(const Arguments& arguments);
+int describe_command(const Arguments& arguments);
+
+/// A command line that does not make sense.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// How the user calls this program, for remedies that can be pasted: "evodevo", or what the launching script says.
+std::string program_name();
+
+}  // namespace evodevo

@@ -1,0 +1,79 @@
+#include "options.hpp"
+
+#include <iostream>
+
+#include "toml_reader.hpp"
+
+namespace evodevo {
+
+namespace po = boost::program_options;
+
+std::optional<po::variables_map> parse(CommandLine line, const Arguments& arguments) {
+  line.options.add_options()("help", "show this text");
+  po::options_description all = line.options;
+  po::positional_options_description positional;
+  for (const std::string& name : line.positional) {
+    all.add_options()(name.c_str(), po::value<std::string>());
+    positional.add(name.c_str(), 1);
+  }
+  po::variables_map given;
+  try {
+    po::store(po::command_line_parser(arguments).options(all).positional(positional).run(), given);
+  } catch (const po::error& error) {
+    throw UsageError(std::string(error.what()) + "; usage: " + program_name() + " " + line.usage);
+  }
+  if (given.contains("help")) {
+    std::cout << "usage: " << program_name() << ' ' << line.usage << '\n' << line.options;
+    return std::nullopt;
+  }
+  for (const std::string& name : line.positional)
+    if (!given.contains(name)) throw UsageError(name + " is missing; usage: " + program_name() + " " + line.usage);
+  return given;
+}
+
+namespace {
+
+struct Shorthand {
+  const char* option;
+  const char* key;
+  const char* text;
+};
+
+constexpr Shorthand shorthands[] = {
+    {"seed", "experiment.seed", "seed of all random numbers"},
+    {"device", "simulation.device", "where to simulate: auto or cpu"},
+    {"threads", "simulation.threads", "threads on the CPU; 0 for all cores"},
+};
+
+}  // namespace
+
+void add_experiment_options(po::options_description& options) {
+  for (const Shorthand& shorthand : shorthands)
+    options.add_options()(shorthand.option, po::value<std::string>(), shorthand.text);
+  options.add_options()("set", po::value<std::vector<std::string>>(),
+                        "key=value for any key of the file, such as experiment.population=20 or fitness.0.window=5; "
+                        "may be repeated");
+}
+
+ExperimentSource experiment_source(const std::string& file, const po::variables_map& given) {
+  ExperimentSource source{file, {}};
+  if (given.contains("set")) {
+    for (const std::string& text : given["set"].as<std::vector<std::string>>()) {
+      const auto equals = text.find('=');
+      if (equals == std::string::npos || equals == 0) throw UsageError("--set " + text + ": expected --set key=value");
+      source.overrides.push_back({text.substr(0, equals), text.substr(equals + 1), "--set " + text});
+    }
+  }
+  for (const Shorthand& shorthand : shorthands) {
+    if (!given.contains(shorthand.option)) continue;
+    const auto value = given[shorthand.option].as<std::string>();
+    source.overrides.push_back({shorthand.key, value, "--" + std::string(shorthand.option) + " " + value});
+  }
+  return source;
+}
+
+std::unique_ptr<Simulator> make_simulator(const Experiment& experiment) {
+  return make_cpu_simulator(experiment.scene, experiment.stepping, static_cast<int>(experiment.threads));
+}
+
+}  // namespace evodevo

@@ -1,0 +1,107 @@
+#include "commands/progress.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <iostream>
+
+#include "commands/commands.hpp"
+
+namespace evodevo {
+namespace {
+
+std::string formatted(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string optional_text(const std::optional<double>& value) { return value ? formatted("%.4g", *value) : "none"; }
+
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<long>(seconds + 0.5);
+  if (whole < 60) return std::to_string(whole) + " s";
+  if (whole < 3600) return std::to_string(whole / 60) + " min " + std::to_string(whole % 60) + " s";
+  return std::to_string(whole / 3600) + " h " + std::to_string(whole % 3600 / 60) + " min";
+}
+
+}  // namespace
+
+ProgressDisplay::ProgressDisplay(const Experiment& experiment, const std::vector<Summary>& past,
+                                 const std::atomic<bool>& stop)
+    : experiment_(experiment),
+      stop_(stop),
+      live_(isatty(STDOUT_FILENO) == 1),
+      start_(std::chrono::steady_clock::now()) {
+  if (past.empty()) return;
+  last_ = past.back();
+  evaluations_before_ = last_.evaluations;
+  for (const Summary& summary : past) diverged_ += summary.diverged;
+}
+
+Observer ProgressDisplay::observer() {
+  return {[this](const Summary& summary) { generation_done(summary); },
+          [this](double done) { generation_progress(done); }};
+}
+
+double ProgressDisplay::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+std::string ProgressDisplay::line(double evaluations) const {
+  const double rate = (evaluations - static_cast<double>(evaluations_before_)) / seconds();
+  const double left = (static_cast<double>(experiment_.evaluations) - evaluations) / rate;
+  std::string text = "generation " + std::to_string(last_.generation) + "  evaluations " +
+                     formatted("%.0f", evaluations) + "/" + std::to_string(experiment_.evaluations) + "  best " +
+                     optional_text(last_.best) + "  median " + optional_text(last_.median) + "  diverged " +
+                     formatted("%.1f %%", last_.evaluations > 0 ? 100.0 * static_cast<double>(diverged_) /
+                                                                      static_cast<double>(last_.evaluations)
+                                                                : 0.0);
+  if (rate > 0) text += "  " + formatted("%.3g", rate) + " evaluations/s  " + duration_text(left) + " left";
+  if (stop_) text += "  (stopping after this generation; Ctrl-C again stops now)";
+  return text;
+}
+
+void ProgressDisplay::show_live(double evaluations) { std::cout << "\r\x1b[K" << line(evaluations) << std::flush; }
+
+void ProgressDisplay::generation_done(const Summary& summary) {
+  last_ = summary;
+  diverged_ += summary.diverged;
+  spring_evaluations_ += summary.spring_evaluations;
+  const auto evaluations = static_cast<double>(summary.evaluations);
+  if (live_)
+    show_live(evaluations);
+  else
+    std::cout << line(evaluations) << std::endl;
+}
+
+void ProgressDisplay::generation_progress(double done) {
+  if (!live_) return;
+  const auto batch = std::min(experiment_.population, experiment_.evaluations - last_.evaluations);
+  show_live(static_cast<double>(last_.evaluations) + done * static_cast<double>(batch));
+}
+
+void ProgressDisplay::finish() {
+  if (live_) std::cout << std::endl;
+}
+
+void print_outcome(const Experiment& experiment, const Archive& archive, const ProgressDisplay& progress) {
+  if (const auto best = archive.best(1); !best.empty()) {
+    const ArchivedIndividual individual = *archive.individual(best.front());
+    std::cout << "best: individual " << individual.id << " of generation " << individual.born;
+    for (std::size_t i = 0; i < experiment.objectives.size(); ++i)
+      std::cout << ", " << experiment.objectives[i].name << ' ' << formatted("%.4g", individual.result.objectives[i])
+                << ' ' << experiment.objectives[i].unit;
+    std::cout << "\n      look at the run: " << program_name() << " show " << archive.folder().string()
+              << "\n      its body:        " << program_name() << " body " << archive.folder().string()
+              << " --individual " << individual.id << '\n';
+  } else {
+    std::cout << "no individual ended with a fitness; see why: " << program_name() << " show "
+              << archive.folder().string() << '\n';
+  }
+  const auto springs = static_cast<double>(progress.spring_evaluations());
+  std::cout << "speed: " << formatted("%.3g", springs / progress.seconds()) << " spring evaluations/s ("
+            << formatted("%.3g", springs) << " in " << duration_text(progress.seconds()) << ")" << std::endl;
+}
+
+}  // namespace evodevo

@@ -1,0 +1,120 @@
+// evodevo run, resume and check.
+#include <csignal>
+#include <iostream>
+
+#include "commands/options.hpp"
+#include "commands/progress.hpp"
+#include "evolution.hpp"
+#include "parallel.hpp"
+#include "text.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+namespace po = boost::program_options;
+
+constexpr int interrupted = 130;
+
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
+
+/// The first Ctrl-C asks for a stop after the generation under way; the second ends the process at once, which loses
+/// nothing that is committed.
+void stop_on_interrupt() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { stop_requested = true; };
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+/// runs/NAME-1, or the first number that no other run has taken. Making the folder takes it.
+fs::path new_run_folder(const std::string& name) {
+  std::error_code error;
+  fs::create_directories("runs", error);
+  for (int number = 1; !error; ++number) {
+    fs::path folder = fs::path("runs") / (name + "-" + std::to_string(number));
+    if (fs::create_directory(folder, error)) return folder;
+  }
+  throw ArchiveError("runs: no folder can be made there: " + error.message() + "; give another place with --out");
+}
+
+std::string resume_command_for(const Archive& archive) {
+  return program_name() + " resume " + archive.folder().string();
+}
+
+/// Evolves until the end or an interruption and says what came out.
+int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive) {
+  std::cout << experiment.name << " on " << simulator.device() << ", "
+            << thread_count(static_cast<int>(experiment.threads)) << " threads; writing " << archive.folder().string()
+            << std::endl;
+  stop_on_interrupt();
+  ProgressDisplay progress(experiment, archive.generations(), stop_requested);
+  try {
+    evolve(experiment, simulator, archive, stop_requested, progress.observer());
+  } catch (const std::exception&) {
+    progress.finish();
+    std::cerr << "the run stopped; what is committed is safe: " << resume_command_for(archive)
+              << " goes on from there\n";
+    throw;
+  }
+  progress.finish();
+  print_outcome(experiment, archive, progress);
+  const std::vector<Summary> generations = archive.generations();
+  if (!generations.empty() && generations.back().evaluations >= experiment.evaluations) return 0;
+  std::cout << "interrupted; to go on: " << resume_command_for(archive) << std::endl;
+  return interrupted;
+}
+
+/// Says what differs from when the run began, where it may change results.
+void warn_of_differences(const Experiment& experiment, const Simulator& simulator, const Archive& archive) {
+  if (const std::string before = archive.record("device"); before != simulator.device())
+    std::cerr << "warning: the run began on " << before << " and goes on on " << simulator.device()
+              << "; results may differ in the last bit\n";
+  for (const OperatorUse& then : archive.operators())
+    for (const OperatorUse& now : experiment.uses)
+      if (then.kind == now.kind && then.name == now.name && then.version != now.version)
+        std::cerr << "warning: the run began with " << then.kind << " operator \"" << then.name << "\" " << then.version
+                  << " and goes on with " << now.version << "\n";
+}
+
+}  // namespace
+
+int run_command(const Arguments& arguments) {
+  CommandLine line{"run EXPERIMENT.toml [options]", {"EXPERIMENT.toml"}, {}};
+  line.options.add_options()("out", po::value<std::string>(), "folder for the run; default: a new one in runs/");
+  add_experiment_options(line.options);
+  const auto given = parse(std::move(line), arguments);
+  if (!given) return 0;
+  const Experiment experiment =
+      read_experiment(experiment_source((*given)["EXPERIMENT.toml"].as<std::string>(), *given));
+  const auto simulator = make_simulator(experiment);
+  const fs::path folder =
+      given->contains("out") ? fs::path((*given)["out"].as<std::string>()) : new_run_folder(experiment.name);
+  Archive archive = Archive::create(folder, experiment, simulator->device());
+  return evolve_and_report(experiment, *simulator, archive);
+}
+
+int resume_command(const Arguments& arguments) {
+  const auto given = parse({"resume DIR", {"DIR"}, {}}, arguments);
+  if (!given) return 0;
+  Archive archive = Archive::resume((*given)["DIR"].as<std::string>());
+  const Experiment experiment = recorded_experiment(archive);
+  const auto simulator = make_simulator(experiment);
+  warn_of_differences(experiment, *simulator, archive);
+  return evolve_and_report(experiment, *simulator, archive);
+}
+
+int check_command(const Arguments& arguments) {
+  CommandLine line{"check EXPERIMENT.toml [options]", {"EXPERIMENT.toml"}, {}};
+  add_experiment_options(line.options);
+  const auto given = parse(std::move(line), arguments);
+  if (!given) return 0;
+  const auto file = (*given)["EXPERIMENT.toml"].as<std::string>();
+  read_experiment(experiment_source(file, *given));
+  std::cout << file << ": ok\n";
+  return 0;
+}
+
+}  // namespace evodevo

@@ -1,0 +1,60 @@
+#include "describe.hpp"
+
+#include "text.hpp"
+
+namespace evodevo {
+namespace {
+
+std::string quoted(std::string_view text) { return '"' + std::string(text) + '"'; }
+
+class Describer final : public Parameters {
+ public:
+  std::vector<ParameterDescription> found;
+
+  void real(double& value, std::string_view name, Range range, std::string_view text) override {
+    add(name, "number", to_text(value), range, text);
+  }
+  void integer(std::int64_t& value, std::string_view name, Range range, std::string_view text) override {
+    add(name, "whole number", std::to_string(value), range, text);
+  }
+  void flag(bool& value, std::string_view name, std::string_view text) override {
+    add(name, "true or false", value ? "true" : "false", {}, text);
+  }
+  void choice(std::string& value, std::string_view name, std::initializer_list<std::string_view> options,
+              std::string_view text) override {
+    add(name, "option", quoted(value), {}, text);
+    std::vector<std::string> names;
+    for (const std::string_view option : options) names.push_back(quoted(option));
+    found.back().allowed = joined(names);
+  }
+  void vector(Vec3& value, std::string_view name, Range range, std::string_view text) override {
+    add(name, "three numbers", "[" + to_text(value.x) + ", " + to_text(value.y) + ", " + to_text(value.z) + "]", range,
+        text);
+  }
+  void counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view text) override {
+    add(name, "three whole numbers",
+        "[" + std::to_string(value[0]) + ", " + std::to_string(value[1]) + ", " + std::to_string(value[2]) + "]", range,
+        text);
+  }
+  void materials(std::vector<std::string>& value, std::string_view name, std::string_view text) override {
+    std::vector<std::string> names;
+    for (const std::string& material : value) names.push_back(quoted(material));
+    add(name, "names of materials", "[" + joined(names) + "]", {}, text);
+  }
+
+ private:
+  void add(std::string_view name, std::string type, std::string fallback, Range range, std::string_view text) {
+    found.push_back({std::string(name), std::move(type), std::move(fallback), to_text(range), std::string(range.unit),
+                     std::string(text)});
+  }
+};
+
+}  // namespace
+
+std::vector<ParameterDescription> describe_parameters(Operator& op) {
+  Describer describer;
+  op.parameters(describer);
+  return std::move(describer.found);
+}
+
+}  // namespace evodevo

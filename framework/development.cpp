@@ -1,0 +1,163 @@
+#include "development.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace evodevo {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
+
+/// Marks `indices` among `count` items. `what` names the items in errors.
+std::vector<bool> marked(const std::vector<std::uint32_t>& indices, std::size_t count, const std::string& what) {
+  std::vector<bool> marks(count, false);
+  for (const std::uint32_t index : indices) {
+    if (index >= count)
+      refuse("removes " + what + " " + std::to_string(index) + " of a body that has " + std::to_string(count));
+    marks[index] = true;
+  }
+  return marks;
+}
+
+std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) {
+  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
+}
+
+std::string pair_text(const NewSpring& spring) {
+  return "joins masses " + std::to_string(spring.a) + " and " + std::to_string(spring.b);
+}
+
+/// One application of edits: the old body on one side, the new one growing on the other.
+class Editor {
+ public:
+  Editor(LivingBody& living, const Edits& edits, const Moment& now)
+      : living_(living),
+        edits_(edits),
+        now_(now),
+        spring_gone_(marked(edits.removed_springs, living.body.springs.size(), "spring")),
+        mass_gone_(marked(edits.removed_masses, living.body.masses.size(), "mass")) {}
+
+  void apply() {
+    const std::vector<NewSpring> arrivals = finished_springs();  // while the old indices hold
+    move_masses();
+    move_springs();
+    refuse_joined_pairs(arrivals);
+    for (const NewSpring& spring : arrivals) add_spring(spring);
+  }
+
+ private:
+  std::size_t old_masses() const { return mass_gone_.size(); }
+
+  /// Where a mass, old or new, is when life goes on.
+  Vec3 place(std::uint32_t mass) const {
+    return mass < old_masses() ? now_.place(mass) : edits_.new_masses[mass - old_masses()].place;
+  }
+
+  void check_end(const NewSpring& spring, std::uint32_t end) const {
+    if (end >= old_masses() + edits_.new_masses.size())
+      refuse(pair_text(spring) + ", but there is no mass " + std::to_string(end));
+    if (end < old_masses() && mass_gone_[end])
+      refuse(pair_text(spring) + ", but mass " + std::to_string(end) + " goes");
+  }
+
+  /// The new springs, checked, each with its rest length.
+  std::vector<NewSpring> finished_springs() const {
+    std::vector<NewSpring> springs = edits_.new_springs;
+    for (NewSpring& spring : springs) {
+      check_end(spring, spring.a);
+      check_end(spring, spring.b);
+      if (spring.a == spring.b) refuse(pair_text(spring) + ", which are one");
+      if (!(spring.material.stiffness > 0) || !std::isfinite(spring.material.stiffness))
+        refuse(pair_text(spring) + " by a spring of stiffness " + std::to_string(spring.material.stiffness));
+      if (!spring.rest_length) spring.rest_length = forceless_length(spring);
+      if (!(*spring.rest_length >= 0) || !std::isfinite(*spring.rest_length))
+        refuse(pair_text(spring) + " by a spring of rest length " + std::to_string(*spring.rest_length));
+    }
+    return springs;
+  }
+
+  double forceless_length(const NewSpring& spring) const {
+    const double distance = norm(place(spring.a) - place(spring.b));
+    return now_.resets ? distance : distance / spring.material.relative_length(now_.time);
+  }
+
+  void move_masses() {
+    std::vector<Mass> masses;
+    State state = living_.state;
+    state.position.clear();
+    state.velocity.clear();
+    const auto add = [&](const Mass& mass, Vec3 position, Vec3 velocity) {
+      new_index_.push_back(static_cast<std::uint32_t>(masses.size()));
+      masses.push_back(mass);
+      state.position.push_back(position);
+      state.velocity.push_back(velocity);
+    };
+    for (std::size_t i = 0; i < old_masses(); ++i) {
+      if (mass_gone_[i])
+        new_index_.push_back(0);  // never looked up: springs to it go, and check_end refuses new ones
+      else
+        add(living_.body.masses[i], living_.state.position[i], living_.state.velocity[i]);
+    }
+    for (const NewMass& mass : edits_.new_masses) {
+      if (!std::isfinite(norm(mass.place)) || !(mass.mass > 0) || !std::isfinite(mass.mass))
+        refuse("adds a mass of " + std::to_string(mass.mass) + " kg at a distance of " +
+               std::to_string(norm(mass.place)) + " m from the origin");
+      add({mass.place, mass.mass, mass.material, 0}, mass.place, {});
+    }
+    living_.body.masses = std::move(masses);
+    living_.state = std::move(state);
+  }
+
+  void move_springs() {
+    std::vector<Spring> springs;
+    std::vector<double> stress;
+    for (std::size_t i = 0; i < living_.body.springs.size(); ++i) {
+      const Spring& spring = living_.body.springs[i];
+      if (spring_gone_[i] || mass_gone_[spring.a] || mass_gone_[spring.b]) continue;
+      springs.push_back({new_index_[spring.a], new_index_[spring.b], spring.rest_length, spring.material});
+      stress.push_back(living_.stress[i]);
+    }
+    mean_stress_ =
+        stress.empty() ? 0 : std::accumulate(stress.begin(), stress.end(), 0.0) / static_cast<double>(stress.size());
+    living_.body.springs = std::move(springs);
+    living_.stress = std::move(stress);
+  }
+
+  std::uint64_t new_key(const NewSpring& spring) const { return pair_key(new_index_[spring.a], new_index_[spring.b]); }
+
+  /// Few springs come and many are there: the few are sorted and the many looked up among them.
+  void refuse_joined_pairs(const std::vector<NewSpring>& arrivals) const {
+    std::vector<std::uint64_t> keys;
+    for (const NewSpring& spring : arrivals) keys.push_back(new_key(spring));
+    std::sort(keys.begin(), keys.end());
+    const auto refuse_pair = [&](std::uint64_t key) {
+      for (auto spring = arrivals.rbegin(); spring != arrivals.rend(); ++spring)
+        if (new_key(*spring) == key) refuse(pair_text(*spring) + ", which are joined already");
+    };
+    if (const auto twin = std::adjacent_find(keys.begin(), keys.end()); twin != keys.end()) refuse_pair(*twin);
+    for (const Spring& spring : living_.body.springs)
+      if (const auto key = pair_key(spring.a, spring.b); std::binary_search(keys.begin(), keys.end(), key))
+        refuse_pair(key);
+  }
+
+  void add_spring(const NewSpring& spring) {
+    living_.body.springs.push_back({new_index_[spring.a], new_index_[spring.b], *spring.rest_length,
+                                    living_.body.material_index(spring.material)});
+    living_.stress.push_back(mean_stress_);
+  }
+
+  LivingBody& living_;
+  const Edits& edits_;
+  const Moment& now_;
+  std::vector<bool> spring_gone_, mass_gone_;
+  std::vector<std::uint32_t> new_index_;  ///< of every old and new mass
+  double mean_stress_ = 0;
+};
+
+}  // namespace
+
+void apply_edits(LivingBody& living, const Edits& edits, const Moment& now) { Editor(living, edits, now).apply(); }
+
+}  // namespace evodevo

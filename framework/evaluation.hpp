@@ -1,0 +1,83 @@
+// From genomes to scores: decode, live, be measured. Works on whole batches.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "development.hpp"
+#include "experiment.hpp"
+
+namespace evodevo {
+
+/// A genome that asks to be evaluated. Its random numbers depend on the run's seed, the generation and the id alone.
+struct Newborn {
+  std::uint32_t id = 0;
+  std::uint32_t generation = 0;
+  const Genome* genome = nullptr;
+};
+
+/// How an evaluation ended.
+struct Result {
+  Status status = Status::ok;
+  std::string reason;              ///< of a status other than ok
+  double ended_at = 0;             ///< simulated time of a divergence, s
+  std::vector<double> objectives;  ///< in Experiment::objectives' order and units; empty unless ok
+  std::uint64_t spring_evaluations = 0;
+};
+
+/// What the body showed at one point of the final evaluation.
+struct Snapshot {
+  Box box;
+  Vec3 centre;
+  double work = 0;  ///< of the muscles since the final evaluation began, J
+};
+
+/// A newborn's whole way.
+struct Life {
+  Newborn newborn;
+  LivingBody living;
+  std::vector<Snapshot> snapshots;
+  Result result;
+
+  bool alive() const { return result.status == Status::ok; }
+};
+
+/// Takes the part of a job that is done, 0 to 1.
+using Progress = std::function<void(double)>;
+
+/// Evaluates batches of genomes for an experiment. Both must outlive it.
+class Evaluation {
+ public:
+  Evaluation(const Experiment& experiment, Simulator& simulator);
+
+  /// Decodes, develops, measures and scores. The results are in the newborns' order and independent of the batch.
+  /// `progress` is called with the part of the simulation that is done, 0 to 1.
+  std::vector<Result> evaluate(std::span<const Newborn> newborns, const Progress& progress) const;
+
+  /// Only decodes: the bodies as they are born.
+  std::vector<Life> birth(std::span<const Newborn> newborns) const;
+  /// Lets bodies live through their development cycles: what comes out is matured.
+  void develop(std::span<Life> lives, const Progress& progress) const;
+
+ private:
+  /// The moments of the final evaluation, in steps from its start, at which some fitness looks.
+  std::vector<std::uint64_t> marks() const;
+  void simulate(std::span<Life> lives, std::uint64_t steps, Recording recording) const;
+  /// The box around the body where it is when life goes on, cut off at the floor.
+  Box bounds(const LivingBody& living) const;
+  void apply_operators(Life& life, int cycle) const;
+  void check_step(Life& life) const;
+  void measure(std::span<Life> lives, const Progress& progress) const;
+  std::uint64_t development_steps() const;
+  bool needs_work(std::uint64_t from, std::uint64_t to) const;
+  void score(Life& life) const;
+  void return_to_rest(Life& life) const;
+
+  const Experiment& experiment_;
+  Simulator& simulator_;
+  std::vector<std::uint64_t> marks_;
+};
+
+}  // namespace evodevo

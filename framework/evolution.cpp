@@ -1,0 +1,95 @@
+#include "evolution.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "breeding.hpp"
+#include "philox.hpp"
+
+namespace evodevo {
+namespace {
+
+void evaluate(std::vector<Individual>& newborns, const Evaluation& evaluation, const Observer& observer) {
+  std::vector<Newborn> batch;
+  for (const Individual& individual : newborns) batch.push_back({individual.id, individual.born, &individual.genome});
+  std::vector<Result> results = evaluation.evaluate(batch, observer.generation_progress);
+  for (std::size_t i = 0; i < newborns.size(); ++i) newborns[i].result = std::move(results[i]);
+}
+
+/// Reduces `everyone` to the survivors, in the order of birth; returns the ids of the others.
+std::vector<std::uint32_t> select(std::vector<Individual>& everyone, const Experiment& experiment,
+                                  std::uint32_t generation) {
+  const auto population = static_cast<std::uint32_t>(experiment.population);
+  const SelectionTable table(everyone, experiment.objectives, generation);
+  Rng rng(philox, {static_cast<std::uint64_t>(experiment.seed), generation, 0, place::survivors});
+  std::vector<std::uint32_t> rows = experiment.selection->survivors(table.rows(), population, rng);
+  std::sort(rows.begin(), rows.end());
+  const bool twice = std::adjacent_find(rows.begin(), rows.end()) != rows.end();
+  if (rows.empty() || rows.size() > population || twice || rows.back() >= everyone.size())
+    throw std::runtime_error("selection must choose 1 to " + std::to_string(population) + " different survivors of " +
+                             std::to_string(everyone.size()));
+  std::vector<Individual> survivors;
+  std::vector<std::uint32_t> dropped;
+  for (std::uint32_t i = 0; i < everyone.size(); ++i) {
+    if (std::binary_search(rows.begin(), rows.end(), i))
+      survivors.push_back(std::move(everyone[i]));
+    else
+      dropped.push_back(everyone[i].id);
+  }
+  everyone = std::move(survivors);
+  return dropped;
+}
+
+void add_best_and_median(Summary& summary, const std::vector<Individual>& population, bool maximise) {
+  std::vector<double> scores;
+  for (const Individual& individual : population)
+    if (individual.result.status == Status::ok) scores.push_back(individual.result.objectives.front());
+  if (scores.empty()) return;
+  std::sort(scores.begin(), scores.end());
+  summary.best = maximise ? scores.back() : scores.front();
+  const std::size_t half = scores.size() / 2;
+  summary.median = scores.size() % 2 == 1 ? scores[half] : (scores[half - 1] + scores[half]) / 2;
+}
+
+Summary summarise(const std::vector<Individual>& newborns, std::uint32_t generation) {
+  Summary summary;
+  summary.generation = generation;
+  for (const Individual& individual : newborns) {
+    summary.diverged += individual.result.status == Status::diverged;
+    summary.invalid += individual.result.status == Status::invalid;
+    summary.spring_evaluations += individual.result.spring_evaluations;
+  }
+  return summary;
+}
+
+}  // namespace
+
+void evolve(const Experiment& experiment, Simulator& simulator, Archive& archive, const std::atomic<bool>& stop,
+            const Observer& observer) {
+  using Clock = std::chrono::steady_clock;
+  const Evaluation evaluation(experiment, simulator);
+  const std::vector<Summary> past = archive.generations();
+  auto generation = static_cast<std::uint32_t>(past.size());
+  std::int64_t evaluations = past.empty() ? 0 : past.back().evaluations;
+  std::vector<Individual> population = archive.population();
+
+  for (; evaluations < experiment.evaluations && !stop; ++generation) {
+    const auto start = Clock::now();
+    const std::int64_t count = std::min(experiment.population, experiment.evaluations - evaluations);
+    // every evaluation takes one id, so ids go on from the evaluations so far
+    std::vector<Individual> newborns = breed(experiment, population, generation,
+                                             static_cast<std::uint32_t>(evaluations), static_cast<std::size_t>(count));
+    evaluate(newborns, evaluation, observer);
+    evaluations += count;
+    Summary summary = summarise(newborns, generation);
+    population.insert(population.end(), newborns.begin(), newborns.end());
+    const std::vector<std::uint32_t> dropped = select(population, experiment, generation);
+    add_best_and_median(summary, population, experiment.objectives.front().maximise);
+    summary.evaluations = evaluations;
+    summary.wall_time = std::chrono::duration<double>(Clock::now() - start).count();
+    archive.commit(newborns, dropped, summary);
+    observer.generation_done(summary);
+  }
+}
+
+}  // namespace evodevo

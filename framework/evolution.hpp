@@ -1,0 +1,23 @@
+// The generation loop.
+#pragma once
+
+#include <atomic>
+#include <functional>
+
+#include "archive.hpp"
+
+namespace evodevo {
+
+/// Who watches a run.
+struct Observer {
+  std::function<void(const Summary&)> generation_done = [](const Summary&) {};
+  /// Part of the generation under way that is simulated, 0 … 1.
+  std::function<void(double)> generation_progress = [](double) {};
+};
+
+/// Evolves from where the archive stands until the experiment's evaluations are spent, or `stop` is set and the
+/// generation under way is committed. An archive continued gives the same as one never interrupted.
+void evolve(const Experiment& experiment, Simulator& simulator, Archive& archive, const std::atomic<bool>& stop,
+            const Observer& observer);
+
+}  // namespace evodevo

@@ -1,0 +1,334 @@
+#include "experiment.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "overrides.hpp"
+#include "philox.hpp"
+#include "stability.hpp"
+#include "text.hpp"
+#include "toml_reader.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+// ---- what each table of the file holds ----
+
+void declare(Parameters& p, Gravity& gravity) {
+  p.real(gravity.acceleration, "acceleration", {0, 1000, "m/s^2"}, "Gravity, downwards.");
+}
+void declare(Parameters& p, Floor& floor) {
+  p.real(floor.stiffness, "stiffness", {0, 1e12, "N/m"}, "Upward force on a mass for each metre below the floor.");
+}
+void declare(Parameters& p, Friction& friction) {
+  p.real(friction.coefficient, "coefficient", {0, 100}, "Coulomb friction between masses and floor.");
+}
+void declare(Parameters& p, Damping& damping) {
+  p.real(damping.rate, "rate", {0, 1e6, "1/s"}, "Uniform damping, v' = -rate v.");
+}
+void declare(Parameters& p, Drag& drag) {
+  p.real(drag.coefficient, "coefficient", {0, 1e6, "kg/m"}, "Drag on each mass, coefficient |v| v.");
+}
+void declare(Parameters& p, Material& material) {
+  p.real(material.stiffness, "stiffness", {0, 1e12, "N/m"}, "Spring constant; 0 is air.");
+  p.real(material.amplitude, "amplitude", {0, 0.9}, "Relative change of length.");
+  p.real(material.frequency, "frequency", {0, 1e6, "Hz"}, "Frequency of the actuation.");
+  p.real(material.phase, "phase", {-100, 100, "rad"}, "Phase of the actuation.");
+}
+void declare(Parameters& p, Experiment& experiment) {
+  p.integer(experiment.seed, "seed", {0, 0x1p53 - 1}, "Seed of all random numbers.");
+  p.integer(experiment.evaluations, "evaluations", {1, 1e9}, "Evaluations in the whole run.");
+  p.integer(experiment.population, "population", {1, 1e6}, "Individuals that live at once.");
+  p.integer(experiment.newcomers, "newcomers", {0, 1e6}, "Random individuals that enter each generation.");
+}
+
+/// Reads the experiment's tables one after the other; each adds its resolved form.
+class Composer {
+ public:
+  Composer(const toml::table& root, const Registry& registry, fs::path folder)
+      : top_(root, ""), registry_(registry), folder_(std::move(folder)) {}
+
+  Experiment compose() {
+    top_.expect({"experiment", "encoding", "mutation", "crossover", "scene", "simulation", "development", "fitness",
+                 "selection", "materials", "plugins"});
+    read_plugins();
+    read_section("experiment", true, [&](TomlReader& t) {
+      declare(t, out_);
+      if (out_.newcomers > out_.population)
+        t.fail("newcomers", "expected at most the population, " + std::to_string(out_.population));
+    });
+    read_materials();
+    read_encoding();
+    read_scene();
+    read_simulation();
+    read_variation("mutation", out_.mutations);
+    read_variation("crossover", out_.crossovers);
+    if (out_.mutations.empty() && out_.crossovers.empty())
+      top_.fail("mutation", "is missing; add a table [[mutation]] or [[crossover]]");
+    read_development();
+    read_fitness();
+    read_section("selection", true, [&](TomlReader& t) { out_.selection = make<Selection>(t); });
+    std::ostringstream text;
+    text << top_.finish() << '\n';
+    out_.resolved = text.str();
+    return std::move(out_);
+  }
+
+ private:
+  /// Lets `read` take what it knows from [name], then refuses the rest.
+  template <class Read>
+  void read_section(std::string_view name, bool required, const Read& read) {
+    const toml::table* table = top_.table(name);
+    if (table == nullptr && required) top_.fail(name, "is missing; add a table [" + std::string(name) + "]");
+    if (table == nullptr) return;
+    TomlReader reader(*table, std::string(name), &out_.world.material_names);
+    read(reader);
+    top_.resolve(name, reader.finish());
+  }
+
+  /// Calls `read` for each table of the array [[name]] of `parent`.
+  template <class Read>
+  void read_array(TomlReader& parent, std::string_view name, const Read& read) {
+    toml::array resolved;
+    const auto tables = parent.tables(name);
+    if (tables.size() > place::most_operators)
+      parent.fail(name, "expected at most " + std::to_string(place::most_operators) + " of them");
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+      TomlReader reader(*tables[i], parent.full_name(name) + "." + std::to_string(i), &out_.world.material_names);
+      read(reader);
+      resolved.push_back(reader.finish());
+    }
+    if (!tables.empty()) parent.resolve(name, std::move(resolved));
+  }
+
+  /// The operator that a table's `name` asks for, with the table's parameters.
+  template <class T>
+  std::unique_ptr<T> make(TomlReader& table) {
+    const std::string name = table.text("name");
+    const AvailableOperator* available = registry_.find(T::kind, name);
+    if (available == nullptr) {
+      std::string message = "no " + std::string(T::kind) + " operator has this name";
+      message += suggestion(name, registry_.names(T::kind));
+      for (const FailedLibrary& failed : registry_.failed())
+        message += "\n  note: not usable: " + failed.file.string() + ": " + failed.reason;
+      table.fail("name", message);
+    }
+    std::unique_ptr<T> op = create<T>(*available);
+    op->parameters(table);
+    out_.uses.push_back({available->entry->kind, name, available->manifest->version, available->file});
+    return op;
+  }
+
+  /// Runs an operator's own code; what it objects to is reported at the operator's name.
+  template <class Call>
+  static auto ask(const TomlReader& table, const Call& call) {
+    try {
+      return call();
+    } catch (const std::exception& error) {
+      table.fail("name", error.what());
+    }
+  }
+
+  void read_plugins() {
+    read_section("plugins", false, [&](TomlReader& t) {
+      toml::array absolute;
+      for (const std::string& path : t.texts("paths")) absolute.push_back((folder_ / path).lexically_normal().string());
+      t.resolve("paths", std::move(absolute));
+    });
+  }
+
+  void read_materials() {
+    auto materials = base_materials();
+    toml::table resolved;
+    if (const toml::table* table = top_.table("materials")) {
+      TomlReader all(*table, "materials");
+      for (auto&& [key, node] : *table) {
+        const std::string name(key.str());
+        TomlReader reader(*all.table(name), "materials." + name);
+        declare(reader, materials[name]);
+        reader.finish();
+      }
+      all.finish();
+    }
+    for (auto& [name, material] : materials) {
+      out_.world.material_names.push_back(name);
+      out_.world.materials.push_back(material);
+      resolved.insert(name, toml::table{{"stiffness", material.stiffness},
+                                        {"amplitude", material.amplitude},
+                                        {"frequency", material.frequency},
+                                        {"phase", material.phase}});
+    }
+    top_.resolve("materials", std::move(resolved));
+  }
+
+  void read_encoding() {
+    out_.world.philox = philox;
+    read_section("encoding", true, [&](TomlReader& t) {
+      t.real(out_.world.mass, "mass", {1e-9, 1e9, "kg"}, "Mass of every point mass.");
+      out_.encoding = make<Encoding>(t);
+      out_.layout = ask(t, [&] { return out_.encoding->layout(out_.world); });
+    });
+  }
+
+  template <class Force>
+  void read_force(TomlReader& scene, std::string_view name, std::optional<Force>& force) {
+    const toml::table* table = scene.table(name);
+    if (table == nullptr) return;
+    TomlReader reader(*table, scene.full_name(name));
+    declare(reader, force.emplace());
+    scene.resolve(name, reader.finish());
+  }
+
+  void read_scene() {
+    read_section("scene", false, [&](TomlReader& t) {
+      t.expect({"gravity", "floor", "friction", "damping", "drag"});
+      read_force(t, "gravity", out_.scene.gravity);
+      read_force(t, "floor", out_.scene.floor);
+      read_force(t, "friction", out_.scene.friction);
+      read_force(t, "damping", out_.scene.damping);
+      read_force(t, "drag", out_.scene.drag);
+      if (out_.scene.friction && !out_.scene.floor)
+        t.fail("friction", "there is nothing to rub on; add [scene.floor] or remove [scene.friction]");
+    });
+  }
+
+  void read_simulation() {
+    static const toml::table defaults;
+    const toml::table* table = top_.table("simulation");
+    TomlReader t(table != nullptr ? *table : defaults, "simulation");
+    std::string method = "paper-euler", precision = "float";
+    t.choice(method, "method", {"paper-euler"}, "Time-stepping method.");
+    t.choice(precision, "precision", {"float", "double"}, "Arithmetic of the simulation.");
+    t.real(out_.stepping.dt, "dt", {1e-7, 0.1, "s"}, "Time step.");
+    t.choice(out_.device, "device", {"auto", "cpu"}, "Where to simulate.");
+    t.integer(out_.threads, "threads", {0, 4096}, "Threads on the CPU; 0 for all cores.");
+    if (precision == "double") out_.stepping.precision = Precision::float64;
+    check_step(t);
+    top_.resolve("simulation", t.finish());
+  }
+
+  /// Refuses a dt that the floor, or a single spring, could not bear.
+  void check_step(const TomlReader& t) const {
+    const double mass = out_.world.mass, dt = out_.stepping.dt;
+    const auto refuse = [&](const std::string& what, double largest) {
+      t.fail("dt", "the step " + to_text(dt) + " s is too long for " + what + " on masses of " + to_text(mass) +
+                       " kg; expected at most " + to_text(largest) + " s");
+    };
+    const double contact = largest_contact_dt(out_.scene, mass);
+    if (dt > contact) refuse("scene.floor.stiffness = " + to_text(out_.scene.floor->stiffness) + " N/m", contact);
+    for (std::size_t i = 0; i < out_.world.materials.size(); ++i) {
+      const Material& material = out_.world.materials[i];
+      const double largest = largest_spring_dt(material, mass);
+      if (dt > largest)
+        refuse("materials." + out_.world.material_names[i] + ".stiffness = " + to_text(material.stiffness) + " N/m",
+               largest);
+    }
+  }
+
+  /// Refuses a duration that is not a whole number of steps.
+  void check_duration(const TomlReader& t, std::string_view name, double duration) const {
+    if (is_whole_number_of_steps(duration, out_.stepping.dt)) return;
+    const double steps = std::max(1.0, std::round(duration / out_.stepping.dt));
+    t.fail(name, to_text(duration) + " s is not a whole number of steps of " + to_text(out_.stepping.dt) +
+                     " s; the nearest that is: " + to_text(steps * out_.stepping.dt) + " s");
+  }
+
+  template <class T>
+  void read_variation(std::string_view name, std::vector<Varied<T>>& list) {
+    read_array(top_, name, [&](TomlReader& t) {
+      Varied<T> varied;
+      t.real(varied.probability, "probability", {0, 1}, "Probability that a child goes through this operator.");
+      varied.op = make<T>(t);
+      varied.name = out_.uses.back().name;
+      list.push_back(std::move(varied));
+    });
+  }
+
+  void read_development() {
+    Development& development = out_.development;
+    read_section("development", false, [&](TomlReader& t) {
+      development.cycles = 100;
+      t.integer(development.cycles, "cycles", {0, place::most_cycles}, "Cycles of simulation and development.");
+      t.real(development.cycle_time, "cycle_time", {out_.stepping.dt, 1e6, "s"}, "Simulated time of one cycle.");
+      t.flag(development.reset, "reset", "Whether the body goes back to its rest places after every cycle.");
+      check_duration(t, "cycle_time", development.cycle_time);
+      read_array(t, "operator", [&](TomlReader& entry) {
+        development.operators.push_back(make<Devo>(entry));
+        development.names.push_back(out_.uses.back().name);
+      });
+    });
+  }
+
+  void read_fitness() {
+    read_array(top_, "fitness", [&](TomlReader& t) {
+      std::unique_ptr<Fitness> fitness = make<Fitness>(t);
+      const Request request = ask(t, [&] { return fitness->observes(); });
+      check_duration(t, "settle", request.settle);
+      check_duration(t, "window", request.window);
+      for (Objective& objective : ask(t, [&] { return fitness->objectives(); })) {
+        const auto same = [&](const Objective& other) { return other.name == objective.name; };
+        if (std::any_of(out_.objectives.begin(), out_.objectives.end(), same))
+          t.fail("name", "there is an objective \"" + objective.name + "\" already");
+        out_.objectives.push_back(std::move(objective));
+      }
+      out_.fitness.push_back(std::move(fitness));
+    });
+    if (out_.fitness.empty()) top_.fail("fitness", "is missing; add a table [[fitness]]");
+  }
+
+  TomlReader top_;
+  const Registry& registry_;
+  fs::path folder_;
+  Experiment out_;
+};
+
+// ---- from file to experiment ----
+
+std::vector<fs::path> plugin_folders(const toml::table& root, const fs::path& folder) {
+  std::vector<fs::path> folders;
+  if (const toml::array* paths = root["plugins"]["paths"].as_array())
+    for (const toml::node& path : *paths)
+      if (const auto text = path.value<std::string>()) folders.push_back(folder / *text);
+  folders.push_back(builtin_plugin_folder());
+  return folders;
+}
+
+Experiment compose(toml::table root, const ExperimentSource& source) {
+  for (const Override& change : source.overrides) apply_override(change, root);
+  const fs::path folder = fs::absolute(source.file).parent_path();
+  const Registry registry(plugin_folders(root, folder));
+  Experiment experiment = Composer(root, registry, folder).compose();
+  experiment.name = fs::path(source.file).stem().string();
+  return experiment;
+}
+
+}  // namespace
+
+Experiment read_experiment(const ExperimentSource& source) { return compose(parse_toml_file(source.file), source); }
+
+Experiment read_experiment(std::string_view text, const ExperimentSource& source) {
+  return compose(parse_toml(text, source.file), source);
+}
+
+std::map<std::string, Material> base_materials() {
+  constexpr double pi = 3.14159265358979323846;
+  return {{"muscle", {5000, 0.14, 1, 0}},
+          {"tissue", {4000, 0, 0, 0}},
+          {"muscle2", {5000, 0.14, 1, pi}},
+          {"bone", {10000, 0, 0, 0}},
+          {"air", {0, 0, 0, 0}}};
+}
+
+std::uint64_t steps_in(double duration, double dt) { return static_cast<std::uint64_t>(std::llround(duration / dt)); }
+
+bool is_whole_number_of_steps(double duration, double dt) {
+  const double steps = duration / dt;
+  return std::abs(steps - std::round(steps)) <= 1e-6 * std::max(1.0, steps);
+}
+
+}  // namespace evodevo

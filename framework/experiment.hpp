@@ -1,0 +1,83 @@
+// An experiment: the settings and operators that a TOML file composes.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "evodevo/plugin.hpp"
+#include "loader.hpp"
+#include "overrides.hpp"
+#include "simulator.hpp"
+
+namespace evodevo {
+
+/// A variation operator and how often a child goes through it.
+template <class T>
+struct Varied {
+  std::unique_ptr<T> op;
+  std::string name;
+  double probability = 0.5;
+};
+
+/// A life's development: `cycles` times {simulate `cycle_time`, apply the operators} (paper, section IV-D).
+struct Development {
+  std::int64_t cycles = 0;
+  double cycle_time = 1;  ///< s
+  bool reset = false;     ///< back to the rest places after every cycle
+  std::vector<std::unique_ptr<Devo>> operators;
+  std::vector<std::string> names;  ///< of the operators, in their order
+};
+
+/// An operator that the experiment uses, for the record.
+struct OperatorUse {
+  std::string kind, name, version;
+  std::filesystem::path file;
+};
+
+struct Experiment {
+  std::string name;  ///< of the file, without folder and ending
+  std::int64_t seed = 1;
+  std::int64_t evaluations = 1000;  ///< in the whole run
+  std::int64_t population = 50;
+  std::int64_t newcomers = 1;  ///< random individuals that enter each generation
+
+  World world;
+  std::unique_ptr<Encoding> encoding;
+  Layout layout;  ///< of the encoding's genes
+  std::vector<Varied<Mutation>> mutations;
+  std::vector<Varied<Crossover>> crossovers;
+  Scene scene;
+  Stepping stepping;
+  std::string device = "auto";
+  std::int64_t threads = 0;  ///< 0: all cores
+  Development development;
+  std::vector<std::unique_ptr<Fitness>> fitness;
+  std::vector<Objective> objectives;  ///< of all fitness operators, in their order
+  std::unique_ptr<Selection> selection;
+
+  std::vector<OperatorUse> uses;
+  std::string resolved;  ///< TOML that reads back as this very experiment, with every default written out
+};
+
+/// Where an experiment comes from.
+struct ExperimentSource {
+  std::string file;                 ///< for messages, and for what paths in it are relative to
+  std::vector<Override> overrides;  ///< applied in order
+};
+
+/// Reads, checks and composes an experiment. Throws ConfigError with the place, the value and the remedy.
+Experiment read_experiment(const ExperimentSource& source);
+/// The same from text, such as the resolved text of a run's record.
+Experiment read_experiment(std::string_view text, const ExperimentSource& source);
+
+/// The five base materials (paper, Table I; the second muscle in counter-phase, as in its source).
+std::map<std::string, Material> base_materials();
+
+/// How many steps a duration takes; `duration` must be a whole number of steps (see is_whole_number_of_steps).
+std::uint64_t steps_in(double duration, double dt);
+bool is_whole_number_of_steps(double duration, double dt);
+
+}  // namespace evodevo

@@ -1,0 +1,64 @@
+// Finds operator libraries, checks that they fit this host, and creates operators from them.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "evodevo/plugin.hpp"
+
+namespace evodevo {
+
+inline constexpr std::array operator_kinds = {Encoding::kind, Mutation::kind, Crossover::kind,
+                                              Devo::kind,     Fitness::kind,  Selection::kind};
+
+/// An operator that some library brings.
+struct AvailableOperator {
+  const OperatorEntry* entry;
+  const PluginManifest* manifest;
+  std::filesystem::path file;
+};
+
+/// A library that cannot be used, and why, with the remedy.
+struct FailedLibrary {
+  std::filesystem::path file;
+  std::string reason;
+};
+
+/// All operators of the libraries in some folders.
+class Registry {
+ public:
+  /// Loads every *.evodevo.so of the folders, in their order; files by name. A library that does not fit is kept in
+  /// failed() and disturbs no other. Libraries stay loaded until the process ends: an object must not outlive its code.
+  explicit Registry(const std::vector<std::filesystem::path>& folders);
+
+  /// Sorted by kind and name.
+  const std::vector<AvailableOperator>& operators() const { return operators_; }
+  const std::vector<FailedLibrary>& failed() const { return failed_; }
+
+  /// The operator, or nullptr.
+  const AvailableOperator* find(std::string_view kind, std::string_view name) const;
+  /// The names of all operators of a kind, sorted.
+  std::vector<std::string> names(std::string_view kind) const;
+
+ private:
+  void load_folder(const std::filesystem::path& folder);
+  void load(const std::filesystem::path& file);
+
+  std::vector<AvailableOperator> operators_;
+  std::vector<FailedLibrary> failed_;
+};
+
+/// A new operator with default parameters. T must be the class of the operator's kind.
+template <class T>
+std::unique_ptr<T> create(const AvailableOperator& available) {
+  return std::unique_ptr<T>(static_cast<T*>(available.entry->create()));
+}
+
+/// Where the operators that come with this program are.
+std::filesystem::path builtin_plugin_folder();
+
+}  // namespace evodevo

@@ -1,0 +1,78 @@
+// The command `evodevo`.
+#include <cstdlib>
+#include <iostream>
+
+#include "archive.hpp"
+#include "commands/commands.hpp"
+#include "text.hpp"
+#include "toml_reader.hpp"
+
+namespace evodevo {
+namespace {
+
+struct Command {
+  const char* name;
+  int (*function)(const Arguments&);
+  const char* usage;
+};
+
+constexpr Command commands[] = {
+    {"run", run_command, "run EXPERIMENT.toml              evolve robots"},
+    {"resume", resume_command, "resume DIR                       go on with a run that was interrupted"},
+    {"show", show_command, "show DIR                         what a run has come to"},
+    {"body", body_command, "body DIR                         a robot of a run, as JSON"},
+    {"simulate", simulate_command, "simulate BODY.json EXPERIMENT.toml   one body in a scene"},
+    {"check", check_command, "check EXPERIMENT.toml            whether an experiment can be run"},
+    {"operators", operators_command, "operators                        the operators that are there"},
+    {"describe", describe_command, "describe OPERATOR                its parameters"},
+};
+
+void print_usage(std::ostream& stream) {
+  stream << "evodevo " EVODEVO_VERSION " evolves soft robots whose bodies develop during their lives\n\n";
+  for (const Command& command : commands) stream << "  " << program_name() << ' ' << command.usage << '\n';
+  stream << "\nEach command explains its options with --help.\n";
+}
+
+int dispatch(const Arguments& arguments) {
+  if (arguments.empty()) {
+    print_usage(std::cerr);
+    return 2;
+  }
+  if (arguments.front() == "--help" || arguments.front() == "help") {
+    print_usage(std::cout);
+    return 0;
+  }
+  std::vector<std::string> names;
+  for (const Command& command : commands) {
+    if (arguments.front() == command.name) return command.function({arguments.begin() + 1, arguments.end()});
+    names.emplace_back(command.name);
+  }
+  throw UsageError("there is no command \"" + arguments.front() + "\"" + suggestion(arguments.front(), names));
+}
+
+}  // namespace
+
+std::string program_name() {
+  const char* name = std::getenv("EVODEVO_COMMAND");
+  return name != nullptr ? name : "evodevo";
+}
+
+}  // namespace evodevo
+
+int main(int argc, char** argv) {
+  const auto complain = [](const std::exception& error, int code) {
+    std::cerr << "evodevo: " << error.what() << '\n';
+    return code;
+  };
+  try {
+    return evodevo::dispatch({argv + 1, argv + argc});
+  } catch (const evodevo::UsageError& error) {
+    return complain(error, 2);
+  } catch (const evodevo::ConfigError& error) {
+    return complain(error, 2);
+  } catch (const evodevo::ArchiveError& error) {
+    return complain(error, 2);
+  } catch (const std::exception& error) {
+    return complain(error, 1);
+  }
+}

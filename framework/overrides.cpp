@@ -1,0 +1,59 @@
+#include "overrides.hpp"
+
+#include <charconv>
+#include <vector>
+
+#include "toml_reader.hpp"
+
+namespace evodevo {
+namespace {
+
+toml::node* child(toml::node& parent, const std::string& key) {
+  if (toml::table* table = parent.as_table()) return table->get(key);
+  toml::array* array = parent.as_array();
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
+  const bool is_index = error == std::errc() && end == key.data() + key.size();
+  return array != nullptr && is_index ? array->get(index) : nullptr;
+}
+
+/// The value of "key=value", as TOML where it is TOML and as a text where it is not. It remembers the option it came
+/// from as its place.
+toml::table parse_override_value(const std::string& value, const std::string& origin) {
+  try {
+    return toml::parse("value = " + value, origin);
+  } catch (const toml::parse_error&) {
+    return parse_toml("value = '''" + value + "'''", origin);
+  }
+}
+
+std::vector<std::string> split_key(const std::string& key) {
+  std::vector<std::string> parts(1);
+  for (const char c : key) {
+    if (c == '.')
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+}  // namespace
+
+void apply_override(const Override& change, toml::table& root) {
+  const std::vector<std::string> keys = split_key(change.key);
+  toml::node* parent = &root;
+  for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
+    toml::table* table = parent->as_table();
+    if (table != nullptr && !table->contains(keys[i]))
+      table->insert(keys[i], std::move(*parse_override_value("{}", change.origin).get_as<toml::table>("value")));
+    parent = child(*parent, keys[i]);
+    if (parent == nullptr) throw ConfigError(change.origin + ": " + change.key + ": there is no item " + keys[i]);
+  }
+  toml::table parsed = parse_override_value(change.value, change.origin);
+  toml::table* table = parent->as_table();
+  if (table == nullptr) throw ConfigError(change.origin + ": " + change.key + ": is not a key of a table");
+  parsed.get("value")->visit([&](auto& value) { table->insert_or_assign(keys.back(), std::move(value)); });
+}
+
+}  // namespace evodevo

@@ -1,0 +1,20 @@
+// Keys of an experiment that are set from outside its file.
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <string>
+
+namespace evodevo {
+
+/// One key of an experiment, set from outside.
+struct Override {
+  std::string key;     ///< "table.key"; items of lists by their number from 0, as in "fitness.0.window"
+  std::string value;   ///< as TOML; what is not TOML is taken as a text
+  std::string origin;  ///< stands for file, line and column in messages, such as "--seed 7"
+};
+
+/// Sets one key. Tables on the way come into being; items of lists have to be there. Throws ConfigError.
+void apply_override(const Override& change, toml::table& root);
+
+}  // namespace evodevo

@@ -1,0 +1,27 @@
+// The counter-based random numbers behind Rng.
+#pragma once
+
+#include "evodevo/rng.hpp"
+
+namespace evodevo {
+
+/// Philox 4x32 with 10 rounds (Salmon et al. 2011), by Random123.
+void philox(const std::uint32_t* counter, const std::uint32_t* key, std::uint32_t* out);
+
+/// Which part of the pipeline a stream of random numbers belongs to. Operators that stand in lists take as many
+/// places as the list is long; the devo operators one for each cycle.
+namespace place {
+inline constexpr std::uint32_t newborn = 1;
+inline constexpr std::uint32_t parents = 2;
+inline constexpr std::uint32_t survivors = 3;
+inline constexpr std::uint32_t variation = 4;  ///< which operators a child goes through
+inline constexpr std::uint32_t crossover = 0x100;
+inline constexpr std::uint32_t mutation = 0x200;
+constexpr std::uint32_t devo(std::size_t op, std::int64_t cycle) {
+  return static_cast<std::uint32_t>(op + 1) << 24 | static_cast<std::uint32_t>(cycle);
+}
+inline constexpr std::int64_t most_cycles = (1 << 24) - 1;
+inline constexpr std::size_t most_operators = 0xff;
+}  // namespace place
+
+}  // namespace evodevo

@@ -1,0 +1,63 @@
+// Development: what changes in a body between two cycles of its life.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "evodevo/genome.hpp"
+#include "evodevo/operator.hpp"
+
+namespace evodevo {
+
+/// A moment in a life: what a devo operator may look at.
+struct Moment {
+  const Body& body;
+  const State& state;
+  std::span<const double> stress;  ///< mean absolute force of every spring over the last cycle, N; springs that came
+                                   ///< since the cycle ended carry the mean of the others
+  int cycle;                       ///< cycles lived so far, from 1
+  int cycles;                      ///< cycles in the whole development
+  double time;                     ///< since birth, s
+  Box bounds;                      ///< of the body now, cut off at the floor where there is one, m
+  double mass;                     ///< of a new mass, kg
+  bool resets;                     ///< whether the body goes back to its rest places before it moves on
+  const Genome& genome;
+  const Layout& layout;
+
+  /// Where a mass is when life goes on, m.
+  Vec3 place(std::uint32_t mass_index) const {
+    return resets ? body.masses[mass_index].rest : state.position[mass_index];
+  }
+};
+
+struct NewMass {
+  Vec3 place;       ///< m; it starts at rest
+  double mass = 0;  ///< kg
+  std::int32_t material = no_material;
+};
+
+struct NewSpring {
+  std::uint32_t a = 0, b = 0;
+  Material material;
+  std::optional<double> rest_length;  ///< m; without it, the one at which the spring is born without force
+};
+
+/// What a devo operator wants changed. All indices are those of the Moment; the masses in `new_masses` follow on from
+/// them. The host applies an operator's edits together after the call and refuses dangling, doubled and air springs.
+struct Edits {
+  std::vector<std::uint32_t> removed_springs;
+  std::vector<std::uint32_t> removed_masses;  ///< their springs go with them
+  std::vector<NewMass> new_masses;
+  std::vector<NewSpring> new_springs;
+};
+
+class Devo : public Operator {
+ public:
+  static constexpr std::string_view kind = "devo";
+
+  virtual void develop(const Moment& now, Edits& edits, Rng& rng) const = 0;
+};
+
+}  // namespace evodevo

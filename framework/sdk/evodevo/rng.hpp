@@ -1,0 +1,84 @@
+// Random numbers that depend on their key alone, not on who drew before.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+namespace evodevo {
+
+/// What a stream of random numbers belongs to. Equal keys give equal streams, on any machine and thread.
+struct StreamKey {
+  std::uint64_t seed = 0;        ///< of the run
+  std::uint32_t generation = 0;  ///< in which the numbers are drawn
+  std::uint32_t individual = 0;  ///< for which they are drawn
+  std::uint32_t place = 0;       ///< the operator's place in the pipeline
+};
+
+/// A counter-based stream (Philox 4x32-10, Salmon et al. 2011, computed by the host). A
+/// std::uniform_random_bit_generator, but the members below give the same numbers with every standard library, which
+/// <random>'s distributions do not.
+class Rng {
+ public:
+  using result_type = std::uint32_t;
+  /// Fills out[4] from a counter[4] and a key[2].
+  using Philox = void (*)(const std::uint32_t* counter, const std::uint32_t* key, std::uint32_t* out);
+
+  Rng(Philox philox, const StreamKey& key)
+      : philox_(philox),
+        key_{static_cast<std::uint32_t>(key.seed), static_cast<std::uint32_t>(key.seed >> 32)},
+        counter_{0, key.generation, key.individual, key.place} {}
+
+  static constexpr result_type min() { return 0; }
+  static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }
+
+  /// 32 random bits.
+  result_type operator()() {
+    if (used_ == 4) {
+      philox_(counter_, key_, block_);
+      ++counter_[0];
+      used_ = 0;
+    }
+    return block_[used_++];
+  }
+
+  /// Uniform in [0, 1), a multiple of 2^-53.
+  double uniform() {
+    const std::uint64_t high = (*this)() >> 5, low = (*this)() >> 6;
+    return static_cast<double>(high << 26 | low) * 0x1p-53;
+  }
+
+  /// Uniform in [low, high).
+  double uniform(double low, double high) { return low + (high - low) * uniform(); }
+
+  /// Uniform among 0 … count-1, without bias; count > 0.
+  std::uint32_t below(std::uint32_t count) {
+    const std::uint32_t uneven = (0u - count) % count;
+    for (;;) {
+      const std::uint64_t product = std::uint64_t{(*this)()} * count;
+      if (static_cast<std::uint32_t>(product) >= uneven) return static_cast<std::uint32_t>(product >> 32);
+    }
+  }
+
+  /// True with the given probability.
+  bool chance(double probability) { return uniform() < probability; }
+
+  /// Puts the items in random order, each order equally likely.
+  template <class Items>
+  void shuffle(Items& items) {
+    for (auto left = static_cast<std::uint32_t>(items.size()); left > 1; --left) {
+      const std::uint32_t other = below(left);
+      if (other != left - 1) std::swap(items[left - 1], items[other]);
+    }
+  }
+
+ private:
+  Philox philox_;
+  std::uint32_t key_[2];
+  std::uint32_t counter_[4];
+  std::uint32_t block_[4] = {};
+  int used_ = 4;
+};
+
+}  // namespace evodevo

@@ -1,0 +1,28 @@
+// Small helpers for messages.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "evodevo/parameters.hpp"
+
+namespace evodevo {
+
+/// A decimal text that reads back as the same number, with no more digits than that takes.
+std::string to_text(double value);
+
+/// "0 to 1" or "at least 0", without the unit; empty where everything is allowed.
+std::string to_text(const Range& range);
+
+/// "a, b, c".
+std::string joined(std::span<const std::string> items, std::string_view separator = ", ");
+
+/// The candidate that `word` was probably meant to be; empty if none is near.
+std::string nearest(std::string_view word, std::span<const std::string> candidates);
+
+/// `; did you mean "x"?` for the nearest candidate, or `; known: a, b, c` where none is near.
+std::string suggestion(std::string_view word, std::span<const std::string> candidates);
+
+}  // namespace evodevo

@@ -1,0 +1,210 @@
+#include "toml_reader.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "text.hpp"
+
+namespace evodevo {
+
+toml::table parse_toml(std::string_view text, const std::string& origin) {
+  try {
+    return toml::parse(text, std::string_view(origin));
+  } catch (const toml::parse_error& error) {
+    throw ConfigError(place_of(error.source()) + ": " + std::string(error.description()));
+  }
+}
+
+toml::table parse_toml_file(const std::string& file) {
+  std::ifstream stream(file);
+  if (!stream) throw ConfigError(file + ": cannot be read: " + std::strerror(errno));
+  if (std::filesystem::is_directory(file)) throw ConfigError(file + ": cannot be read: it is a folder");
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  return parse_toml(text, file);
+}
+
+std::string place_of(const toml::source_region& source) {
+  const std::string file = source.path ? *source.path : "";
+  if (!source.begin || file.starts_with("--")) return file;  // a command-line option has no lines
+  return file + ":" + std::to_string(source.begin.line) + ":" + std::to_string(source.begin.column);
+}
+
+std::string value_text(const toml::node& node) {
+  if (node.is_table()) return "a table";
+  if (const auto* number = node.as_floating_point()) return to_text(number->get());
+  std::ostringstream text;
+  node.visit([&](const auto& n) { text << toml::toml_formatter(n, toml::format_flags::none); });
+  return text.str();
+}
+
+std::string TomlReader::full_name(std::string_view name) const {
+  return path_.empty() ? std::string(name) : path_ + "." + std::string(name);
+}
+
+void TomlReader::fail_at(const toml::node& node, std::string_view name, const std::string& message) const {
+  throw ConfigError(place_of(node.source()) + ": " + full_name(name) + " = " + value_text(node) + ": " + message);
+}
+
+void TomlReader::fail(std::string_view name, const std::string& message) const {
+  if (const toml::node* node = table_.get(name)) fail_at(*node, name, message);
+  throw ConfigError(place_of(table_.source()) + ": " + full_name(name) + ": " + message);
+}
+
+void TomlReader::know(std::string_view name) {
+  if (std::find(known_.begin(), known_.end(), name) == known_.end()) known_.emplace_back(name);
+}
+
+void TomlReader::expect(std::initializer_list<std::string_view> names) {
+  for (const std::string_view name : names) know(name);
+  refuse_unknown_keys();
+}
+
+const toml::node* TomlReader::look_up(std::string_view name) {
+  know(name);
+  return table_.get(name);
+}
+
+double TomlReader::number(const toml::node& node, std::string_view name, Range range, bool whole) const {
+  if (whole && !node.is_integer()) fail_at(node, name, "expected a whole number");
+  if (!node.is_number()) fail_at(node, name, "expected a number");
+  const double value =
+      node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
+  // written so that NaN fails
+  if (!(value >= range.low && value <= range.high) || std::isinf(value)) {
+    const std::string unit = range.unit == "1" ? "" : " " + std::string(range.unit);
+    fail_at(node, name, "expected " + to_text(range) + unit);
+  }
+  return value;
+}
+
+const toml::array& TomlReader::three(const toml::node& node, std::string_view name) const {
+  const toml::array* array = node.as_array();
+  if (array == nullptr || array->size() != 3) fail_at(node, name, "expected a list of three numbers");
+  return *array;
+}
+
+void TomlReader::real(double& value, std::string_view name, Range range, std::string_view) {
+  if (const toml::node* node = look_up(name)) value = number(*node, name, range, false);
+  resolve(name, value);
+}
+
+void TomlReader::integer(std::int64_t& value, std::string_view name, Range range, std::string_view) {
+  if (const toml::node* node = look_up(name)) {
+    number(*node, name, range, true);
+    value = node->value<std::int64_t>().value();
+  }
+  resolve(name, value);
+}
+
+void TomlReader::flag(bool& value, std::string_view name, std::string_view) {
+  if (const toml::node* node = look_up(name)) {
+    if (!node->is_boolean()) fail_at(*node, name, "expected true or false");
+    value = node->value<bool>().value();
+  }
+  resolve(name, value);
+}
+
+void TomlReader::choice(std::string& value, std::string_view name, std::initializer_list<std::string_view> options,
+                        std::string_view) {
+  if (const toml::node* node = look_up(name)) {
+    const std::vector<std::string> names(options.begin(), options.end());
+    if (!node->is_string()) fail_at(*node, name, "expected one of " + joined(names));
+    value = node->value<std::string>().value();
+    if (std::find(names.begin(), names.end(), value) == names.end())
+      fail_at(*node, name, "is not an option" + suggestion(value, names));
+  }
+  resolve(name, value);
+}
+
+void TomlReader::vector(Vec3& value, std::string_view name, Range range, std::string_view) {
+  if (const toml::node* node = look_up(name)) {
+    const toml::array& array = three(*node, name);
+    value = {number(array[0], name, range, false), number(array[1], name, range, false),
+             number(array[2], name, range, false)};
+  }
+  resolve(name, toml::array{value.x, value.y, value.z});
+}
+
+void TomlReader::counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view) {
+  if (const toml::node* node = look_up(name)) {
+    const toml::array& array = three(*node, name);
+    for (std::size_t i = 0; i < 3; ++i) value[i] = static_cast<std::int64_t>(number(array[i], name, range, true));
+  }
+  resolve(name, toml::array{value[0], value[1], value[2]});
+}
+
+void TomlReader::materials(std::vector<std::string>& value, std::string_view name, std::string_view) {
+  if (const auto named = texts(name); !named.empty()) value = named;
+  toml::array resolved;
+  for (const std::string& material : value) {
+    if (std::find(materials_->begin(), materials_->end(), material) == materials_->end())
+      fail(name, "\"" + material + "\" is not a material" + suggestion(material, *materials_));
+    resolved.push_back(material);
+  }
+  resolve(name, std::move(resolved));
+}
+
+std::string TomlReader::text(std::string_view name, const char* fallback) {
+  const toml::node* node = look_up(name);
+  if (node == nullptr && fallback == nullptr) fail(name, "is missing");
+  if (node != nullptr && !node->is_string()) fail_at(*node, name, "expected a text in quotes");
+  const std::string value = node != nullptr ? node->value<std::string>().value() : fallback;
+  resolve(name, value);
+  return value;
+}
+
+std::vector<std::string> TomlReader::texts(std::string_view name) {
+  std::vector<std::string> values;
+  const toml::node* node = look_up(name);
+  if (node == nullptr) return values;
+  if (!node->is_array()) fail_at(*node, name, "expected a list of texts");
+  for (const toml::node& item : *node->as_array()) {
+    if (!item.is_string()) fail_at(*node, name, "expected a list of texts");
+    values.push_back(item.value<std::string>().value());
+  }
+  return values;
+}
+
+const toml::table* TomlReader::table(std::string_view name) {
+  const toml::node* node = look_up(name);
+  if (node != nullptr && !node->is_table()) fail_at(*node, name, "expected a table, [" + full_name(name) + "]");
+  return node != nullptr ? node->as_table() : nullptr;
+}
+
+std::vector<const toml::table*> TomlReader::tables(std::string_view name) {
+  std::vector<const toml::table*> found;
+  const toml::node* node = look_up(name);
+  if (node == nullptr) return found;
+  const std::string remedy = "expected an array of tables, [[" + full_name(name) + "]]";
+  if (!node->is_array()) fail_at(*node, name, remedy);
+  for (const toml::node& item : *node->as_array()) {
+    if (!item.is_table()) fail_at(*node, name, remedy);
+    found.push_back(item.as_table());
+  }
+  return found;
+}
+
+void TomlReader::refuse_unknown_keys() const {
+  for (auto&& [key, node] : table_) {
+    const std::string name(key.str());
+    if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+    const std::string where = path_.empty() ? "an experiment" : "[" + path_ + "]";
+    // a key that an override put there has no place of its own
+    const toml::source_region& source = key.source().path ? key.source() : node.source();
+    throw ConfigError(place_of(source) + ": " + full_name(name) + ": is not a key of " + where +
+                      suggestion(name, known_));
+  }
+}
+
+toml::table TomlReader::finish() {
+  refuse_unknown_keys();
+  return std::move(resolved_);
+}
+
+}  // namespace evodevo

@@ -1,0 +1,176 @@
+#include "cpu/run.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "guard.hpp"
+
+namespace evodevo::cpu {
+namespace {
+
+template <class T>
+World<T> world_of(const Scene& scene, const Stepping& stepping) {
+  const auto as_t = [](double value) { return static_cast<T>(value); };
+  return {.gravity = scene.gravity.has_value(),
+          .floor = scene.floor.has_value(),
+          .friction = scene.friction && scene.floor,
+          .drag = scene.drag.has_value(),
+          .damping = scene.damping.has_value(),
+          .acceleration = as_t(scene.gravity ? scene.gravity->acceleration : 0),
+          .floor_stiffness = as_t(scene.floor ? scene.floor->stiffness : 0),
+          .friction_coefficient = as_t(scene.friction ? scene.friction->coefficient : 0),
+          .drag_coefficient = as_t(scene.drag ? scene.drag->coefficient : 0),
+          .decay = as_t(scene.damping ? std::exp(-scene.damping->rate * stepping.dt) : 1),
+          .dt = as_t(stepping.dt)};
+}
+
+/// The memory behind Actuation, for EnergyGuard::interval steps.
+template <class T>
+class ActuationTables {
+ public:
+  ActuationTables(const Body& body, std::size_t multiple)
+      : materials_(body.materials.size()),
+        padded_(std::max<std::size_t>(1, (materials_ + multiple - 1) / multiple) * multiple),
+        amplitude_(padded_),
+        frequency_(padded_),
+        phase_(padded_),
+        length_(EnergyGuard::interval * padded_),
+        rate_(EnergyGuard::interval * padded_) {
+    for (std::size_t i = 0; i < materials_; ++i) {
+      amplitude_[i] = body.materials[i].amplitude;
+      frequency_[i] = body.materials[i].frequency;
+      phase_[i] = std::remainder(body.materials[i].phase, 2 * 3.14159265358979323846);
+    }
+  }
+
+  Actuation<T> view() {
+    return {materials_, padded_, amplitude_.data(), frequency_.data(), phase_.data(), length_.data(), rate_.data()};
+  }
+
+ private:
+  std::size_t materials_, padded_;
+  Array<double> amplitude_, frequency_, phase_;
+  Array<T> length_, rate_;
+};
+
+/// The memory behind Motion.
+template <class T>
+class MovingBody {
+ public:
+  MovingBody(const Body& body, const State& state, std::size_t lanes, Sums sums)
+      : layout_(body, lanes),
+        mass_(layout_.padded_masses()),
+        inverse_mass_(layout_.padded_masses()),
+        places_(place_stride * layout_.padded_masses()),
+        tension_sum_(sums.tension ? layout_.slots() : 0),
+        power_sum_(sums.power ? layout_.slots() : 0) {
+    for (auto* arrays : {&position_, &velocity_, &force_})
+      for (Array<T>& array : *arrays) array = Array<T>(layout_.padded_masses());
+    floor_force_ = Array<T>(layout_.padded_masses());
+    for (std::size_t i = 0; i < layout_.masses; ++i) {
+      const std::uint32_t from = layout_.mass_at[i];
+      const double mass = body.masses[from].mass;
+      mass_[i] = static_cast<T>(mass);
+      // a mass of 0 kg stays where it is
+      inverse_mass_[i] = static_cast<T>(mass > 0 ? 1 / mass : 0);
+      put(position_, i, state.position[from]);
+      put(velocity_, i, state.velocity[from]);
+      for (std::size_t c = 0; c < 3; ++c) places_[place_stride * i + c] = position_[c][i];
+    }
+  }
+
+  Motion<T> view() {
+    return {.groups = layout_.groups,
+            .first_row = layout_.first_row.data(),
+            .neighbour = layout_.neighbour.data(),
+            .stiffness = layout_.stiffness.data(),
+            .rest_length = layout_.rest_length.data(),
+            .material = layout_.material.data(),
+            .mass = mass_.data(),
+            .inverse_mass = inverse_mass_.data(),
+            .x = position_[0].data(),
+            .y = position_[1].data(),
+            .z = position_[2].data(),
+            .places = places_.data(),
+            .vx = velocity_[0].data(),
+            .vy = velocity_[1].data(),
+            .vz = velocity_[2].data(),
+            .fx = force_[0].data(),
+            .fy = force_[1].data(),
+            .fz = force_[2].data(),
+            .floor_force = floor_force_.data(),
+            .tension_sum = tension_sum_.data(),
+            .power_sum = power_sum_.data()};
+  }
+
+  /// Adds the slots' sums to the springs' and starts them again from zero; in between, float32 stays exact enough.
+  void collect(std::vector<double>& tension, double& energy, double dt) {
+    for (std::size_t i = 0; i < layout_.springs; ++i) {
+      if (tension_sum_.size() > 0) tension[i] += tension_sum_[layout_.slot_of[i]];
+      if (power_sum_.size() > 0) energy += dt * power_sum_[layout_.slot_of[i]];
+    }
+    tension_sum_.clear();
+    power_sum_.clear();
+  }
+
+  void write(State& state) const {
+    for (std::size_t i = 0; i < layout_.masses; ++i) {
+      state.position[layout_.mass_at[i]] = {position_[0][i], position_[1][i], position_[2][i]};
+      state.velocity[layout_.mass_at[i]] = {velocity_[0][i], velocity_[1][i], velocity_[2][i]};
+    }
+  }
+
+ private:
+  static void put(Array<T> (&to)[3], std::size_t i, Vec3 v) {
+    to[0][i] = static_cast<T>(v.x);
+    to[1][i] = static_cast<T>(v.y);
+    to[2][i] = static_cast<T>(v.z);
+  }
+
+  Layout<T> layout_;
+  Array<T> mass_, inverse_mass_, places_, floor_force_, tension_sum_, power_sum_;
+  Array<T> position_[3], velocity_[3], force_[3];
+};
+
+}  // namespace
+
+template <class T>
+void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels<T>& kernels, std::uint64_t steps,
+         Recording recording) {
+  const Body& body = *task.body;
+  State& state = *task.state;
+  const Sums sums{recording.stress, recording.work};
+  const World<T> world = world_of<T>(scene, stepping);
+  const EnergyGuard guard(body, state, scene, stepping);
+  MovingBody<T> moving(body, state, kernels.lanes, sums);
+  ActuationTables<T> tables(body, kernels.table_size);
+  task.stress.assign(recording.stress ? body.springs.size() : 0, 0.0);
+  task.work = 0;
+  task.spring_evaluations = 0;
+
+  for (std::uint64_t done = 0; done < steps && task.status == Status::ok;) {
+    const std::size_t now = std::min<std::uint64_t>(steps - done, EnergyGuard::interval);
+    kernels.actuate(tables.view(), state.steps, now, stepping.dt);
+    kernels.advance(moving.view(), world, tables.view(), now, sums);
+    moving.collect(task.stress, task.work, stepping.dt);
+    done += now;
+    state.steps += now;
+    task.spring_evaluations += now * body.springs.size();
+    kernels.actuate(tables.view(), state.steps, 1, stepping.dt);
+    const Energies e = kernels.energies(moving.view(), tables.view());
+    task.reason = guard.verdict(e.kinetic, e.elastic, e.height, e.finite);
+    if (!task.reason.empty()) {
+      task.status = Status::diverged;
+      task.ended_at = static_cast<double>(state.steps) * stepping.dt;
+      task.stress.clear();
+      task.work = 0;
+    }
+  }
+  if (steps > 0) moving.write(state);  // else not even round it
+  for (double& stress : task.stress) stress /= static_cast<double>(std::max<std::uint64_t>(steps, 1));
+}
+
+template void run(Task&, const Scene&, const Stepping&, const Kernels<float>&, std::uint64_t, Recording);
+template void run(Task&, const Scene&, const Stepping&, const Kernels<double>&, std::uint64_t, Recording);
+
+}  // namespace evodevo::cpu

@@ -1,0 +1,38 @@
+// The simulator on the CPU: one body at a time on each thread.
+#include "simulator.hpp"
+
+#include "cpu/run.hpp"
+#include "parallel.hpp"
+
+namespace evodevo {
+namespace {
+
+template <class T>
+class CpuSimulator final : public Simulator {
+ public:
+  CpuSimulator(const Scene& scene, const Stepping& stepping, int threads)
+      : scene_(scene), stepping_(stepping), threads_(threads), kernels_(cpu::kernels<T>()) {}
+
+  void run(std::span<Task> tasks, std::uint64_t steps, Recording recording) override {
+    parallel_for(tasks.size(), threads_, [&](std::size_t i) {
+      if (tasks[i].status == Status::ok) cpu::run(tasks[i], scene_, stepping_, kernels_, steps, recording);
+    });
+  }
+
+  std::string device() const override { return std::string("cpu, ") + kernels_.instruction_set; }
+
+ private:
+  Scene scene_;
+  Stepping stepping_;
+  int threads_;
+  const cpu::Kernels<T>& kernels_;
+};
+
+}  // namespace
+
+std::unique_ptr<Simulator> make_cpu_simulator(const Scene& scene, const Stepping& stepping, int threads) {
+  if (stepping.precision == Precision::float64) return std::make_unique<CpuSimulator<double>>(scene, stepping, threads);
+  return std::make_unique<CpuSimulator<float>>(scene, stepping, threads);
+}
+
+}  // namespace evodevo

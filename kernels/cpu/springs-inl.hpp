@@ -1,0 +1,60 @@
+// The loop over a body's springs; included once per instruction set.
+#if defined(EVODEVO_CPU_SPRINGS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef EVODEVO_CPU_SPRINGS_INL_HPP
+#undef EVODEVO_CPU_SPRINGS_INL_HPP
+#else
+#define EVODEVO_CPU_SPRINGS_INL_HPP
+#endif
+
+#include "cpu/actuation-inl.hpp"
+#include "cpu/places-inl.hpp"
+#include "cpu/step.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace evodevo::HWY_NAMESPACE {
+
+/// Every mass's sum of spring forces from the masses' places, written to the motion's forces. Adds to the sums that
+/// are on. `lengths` and `rates` are this step's rows of the tables.
+template <bool tension_on, bool power_on, class Table, class T>
+HWY_INLINE void add_spring_forces(const cpu::Motion<T>& motion, std::size_t group, const Table& lengths,
+                                  const Table& rates) {
+  using D = hn::ScalableTag<T>;
+  using V = hn::Vec<D>;
+  const D d;
+  const std::size_t lanes = hn::Lanes(d);
+  const std::size_t at = group * lanes;
+  const Triple<V> own{hn::Load(d, motion.x + at), hn::Load(d, motion.y + at), hn::Load(d, motion.z + at)};
+  Triple<V> force{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  const std::size_t end = motion.first_row[group + 1] * lanes;
+  std::size_t slot = motion.first_row[group] * lanes;
+  Separation<V> next = separation(own, load_places(d, motion.places, motion.neighbour + slot));
+  for (; slot < end; slot += lanes) {
+    const Separation<V> s = next;
+    const V distance = length(s);
+    next = separation(own, load_places(d, motion.places, motion.neighbour + slot + lanes));
+    const cpu::Index<T>* material = motion.material + slot;
+    const V rest_length = hn::Load(d, motion.rest_length + slot);
+    const V factor = spring_factor(distance, hn::Load(d, motion.stiffness + slot), rest_length * lengths.at(material));
+    force.x = multiply_add(factor, s.d.x, force.x);
+    force.y = multiply_add(factor, s.d.y, force.y);
+    force.z = multiply_add(factor, s.d.z, force.z);
+    if constexpr (tension_on) {
+      T* sum = motion.tension_sum + slot;
+      hn::Store(hn::Load(d, sum) + hn::Abs(spring_tension(s, distance, factor)), d, sum);
+    }
+    if constexpr (power_on) {
+      T* sum = motion.power_sum + slot;
+      hn::Store(
+          hn::Load(d, sum) + actuation_power(spring_tension(s, distance, factor), rest_length * rates.at(material)), d,
+          sum);
+    }
+  }
+  hn::Store(force.x, d, motion.fx + at);
+  hn::Store(force.y, d, motion.fy + at);
+  hn::Store(force.z, d, motion.fz + at);
+}
+
+}  // namespace evodevo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

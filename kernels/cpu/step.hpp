@@ -1,0 +1,88 @@
+// The border between code for any processor and code compiled once per instruction set. What crosses it is plain data
+// and raw pointers: an inline function of the standard library that both sides instantiate could end up in the binary
+// with instructions that not every processor has.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "cpu/layout.hpp"
+
+namespace evodevo::cpu {
+
+/// The scene and the step in the arithmetic of the simulation; a force that is off is not computed.
+template <class T>
+struct World {
+  bool gravity, floor, friction, drag, damping;
+  T acceleration;     ///< of gravity, m/s^2
+  T floor_stiffness;  ///< N/m
+  T friction_coefficient;
+  T drag_coefficient;  ///< kg/m
+  T decay;             ///< exp(-damping rate dt)
+  T dt;                ///< s
+};
+
+/// What is added up for each slot during the steps.
+struct Sums {
+  bool tension;  ///< |force|, for stress
+  bool power;    ///< power of actuation
+};
+
+/// One body in motion, as arrays. All arrays of masses are padded to whole groups with masses that nothing moves.
+template <class T>
+struct Motion {
+  // springs, as in Layout
+  std::size_t groups;
+  const std::uint32_t* first_row;
+  const std::uint32_t* neighbour;
+  const T* stiffness;
+  const T* rest_length;
+  const Index<T>* material;
+
+  const T* mass;          ///< kg
+  const T* inverse_mass;  ///< 1/kg; 0 for what never moves
+  T *x, *y, *z;           ///< m
+  T* places;              ///< x, y, z again, place_stride numbers a mass, for neighbours to read
+  T *vx, *vy, *vz;        ///< m/s
+  T *fx, *fy, *fz;        ///< N
+  T* floor_force;         ///< N
+
+  T* tension_sum;  ///< [slots] N; only where Sums asks for it
+  T* power_sum;    ///< [slots] W; only where Sums asks for it
+};
+
+/// Materials in arrays, padded to `padded`, and what they do in each of some steps.
+template <class T>
+struct Actuation {
+  std::size_t materials, padded;
+  const double *amplitude, *frequency, *phase;
+  T* relative_length;  ///< [step][padded] L(t)/L0
+  T* relative_rate;    ///< [step][padded] its rate of change, 1/s
+};
+
+struct Energies {
+  double kinetic, elastic;  ///< J
+  double height;            ///< sum of mass times z, kg m
+  bool finite;              ///< whether all places and velocities are
+};
+
+/// The functions of one instruction set for one precision.
+template <class T>
+struct Kernels {
+  const char* instruction_set;
+  std::size_t lanes;
+  std::size_t table_size;  ///< Actuation::padded is a multiple of this
+
+  /// Fills in the tables for the steps first, first + 1, .. first + steps - 1 since birth.
+  void (*actuate)(const Actuation<T>&, std::uint64_t first, std::size_t steps, double dt);
+  /// Moves the body by `steps` steps whose relative lengths `actuation` holds.
+  void (*advance)(const Motion<T>&, const World<T>&, const Actuation<T>& actuation, std::size_t steps, Sums);
+  /// The energies now, with the relative lengths of the table's row 0.
+  Energies (*energies)(const Motion<T>&, const Actuation<T>& actuation);
+};
+
+/// The functions for the best instruction set that this processor has.
+template <class T>
+const Kernels<T>& kernels();
+
+}  // namespace evodevo::cpu

@@ -1,0 +1,40 @@
+// The energy of a body and the start of its life.
+#include <algorithm>
+
+#include "physics.hpp"
+#include "simulator.hpp"
+
+namespace evodevo {
+namespace {
+
+physics::Triple<double> triple(Vec3 v) { return {v.x, v.y, v.z}; }
+
+}  // namespace
+
+double total_energy(const Body& body, const State& state, const Scene& scene, double dt) {
+  const double time = static_cast<double>(state.steps) * dt;
+  double energy = 0;
+  for (std::size_t i = 0; i < body.masses.size(); ++i) {
+    energy += physics::kinetic_energy(body.masses[i].mass, triple(state.velocity[i]));
+    if (scene.gravity) energy += body.masses[i].mass * scene.gravity->acceleration * state.position[i].z;
+  }
+  for (const Spring& spring : body.springs) {
+    const Material& material = body.materials[spring.material];
+    const auto s = physics::separation(triple(state.position[spring.a]), triple(state.position[spring.b]));
+    energy += physics::elastic_energy(s, material.stiffness, spring.rest_length * material.relative_length(time));
+  }
+  return energy;
+}
+
+State state_at_birth(const Body& body, const Scene& scene) {
+  State state;
+  for (const Mass& mass : body.masses) state.position.push_back(mass.rest);
+  state.velocity.resize(body.masses.size());
+  const Vec3 centre = centre_of_mass(body, state.position);
+  const double lowest = bounding_box(state.position).low.z;
+  for (Vec3& place : state.position) place = place - Vec3{centre.x, centre.y, lowest};
+  state.start_energy = total_energy(body, state, scene, 0);
+  return state;
+}
+
+}  // namespace evodevo

@@ -1,0 +1,135 @@
+// Robots as data: point masses joined by springs. Shared by the simulation core, the host and every plugin.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace evodevo {
+
+/// A place (m), velocity (m/s) or direction (1).
+struct Vec3 {
+  double x = 0, y = 0, z = 0;
+
+  friend Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend Vec3 operator*(double s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
+  friend bool operator==(Vec3 a, Vec3 b) = default;
+};
+
+inline double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline double norm(Vec3 a) { return std::sqrt(dot(a, a)); }
+
+/// An axis-aligned box (m).
+struct Box {
+  Vec3 low, high;
+
+  /// The box's longest side, m.
+  double longest_side() const { return std::max({high.x - low.x, high.y - low.y, high.z - low.z}); }
+};
+
+/// What a spring is made of: L(t) = L0 (1 + amplitude sin(2 pi frequency t + phase)), force stiffness (|d| - L(t)).
+/// Paper, section IV-A and Table I.
+struct Material {
+  double stiffness = 0;  ///< N/m; a spring of stiffness 0 is air and is never created
+  double amplitude = 0;  ///< relative change of length, 1
+  double frequency = 0;  ///< Hz
+  double phase = 0;      ///< rad
+
+  friend bool operator==(const Material&, const Material&) = default;
+
+  /// The material's relative length L(t)/L0 at time t (s). The phase is reduced before the sine.
+  double relative_length(double time) const {
+    const double turns = frequency * time;
+    return 1 + amplitude * std::sin(2 * 3.14159265358979323846 * (turns - std::floor(turns)) + phase);
+  }
+};
+
+/// The material of a spring between a mass of `a` and a mass of `b`: the mean of all four parameters
+/// ("interpolation", paper, section IV-A1).
+inline Material mean(const Material& a, const Material& b) {
+  return {(a.stiffness + b.stiffness) / 2, (a.amplitude + b.amplitude) / 2, (a.frequency + b.frequency) / 2,
+          (a.phase + b.phase) / 2};
+}
+
+/// Mass::material of a mass that has none (encodings that give materials to springs, not to masses).
+inline constexpr std::int32_t no_material = -1;
+
+struct Mass {
+  Vec3 rest;                            ///< place in the undeformed body, m
+  double mass = 0;                      ///< kg
+  std::int32_t material = no_material;  ///< index into Body::materials, or no_material
+  std::uint32_t air_contacts = 0;       ///< neighbours to which a spring of air was left out
+};
+
+struct Spring {
+  std::uint32_t a = 0, b = 0;  ///< indices into Body::masses, a != b
+  double rest_length = 0;      ///< L0, m
+  std::uint32_t material = 0;  ///< index into Body::materials
+};
+
+/// A body without its motion. No two springs join the same pair of masses.
+struct Body {
+  std::vector<Mass> masses;
+  std::vector<Spring> springs;
+  std::vector<Material> materials;
+
+  /// The index of `material` in `materials`; appended if it is new.
+  std::uint32_t material_index(const Material& material) {
+    const auto found = std::find(materials.begin(), materials.end(), material);
+    if (found != materials.end()) return static_cast<std::uint32_t>(found - materials.begin());
+    materials.push_back(material);
+    return static_cast<std::uint32_t>(materials.size() - 1);
+  }
+};
+
+/// The motion of a body: one entry for each of its masses.
+struct State {
+  std::vector<Vec3> position;  ///< m
+  std::vector<Vec3> velocity;  ///< m/s
+  std::uint64_t steps = 0;     ///< time steps since birth; time is steps * dt
+  double start_energy = 0;     ///< height + kinetic + elastic energy at birth, J; the energy guard's yardstick
+};
+
+/// The smallest box around `places`; all zero for none.
+inline Box bounding_box(std::span<const Vec3> places) {
+  if (places.empty()) return {};
+  Box box{places[0], places[0]};
+  for (const Vec3& p : places) {
+    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+  }
+  return box;
+}
+
+/// The centre of mass, m; zero for a body without masses.
+inline Vec3 centre_of_mass(const Body& body, std::span<const Vec3> places) {
+  Vec3 sum;
+  double total = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    sum = sum + body.masses[i].mass * places[i];
+    total += body.masses[i].mass;
+  }
+  return total > 0 ? (1 / total) * sum : Vec3{};
+}
+
+/// How an evaluation ended. Only `ok` carries a fitness.
+enum class Status : std::uint8_t { ok, invalid, diverged };
+
+inline const char* name(Status status) {
+  switch (status) {
+    case Status::ok:
+      return "ok";
+    case Status::invalid:
+      return "invalid";
+    case Status::diverged:
+      return "diverged";
+  }
+  return "?";
+}
+
+}  // namespace evodevo

@@ -1,0 +1,140 @@
+// What is computed: every force, the time step and the energies, as small functions of any arithmetic type T.
+//
+// Scalar code (tests, CUDA threads) includes this file as it is and finds the functions in evodevo::physics. The vector
+// code of the CPU is compiled once per instruction set, so it includes this file once per instruction set as well and
+// finds them in its own namespace, on vectors.
+#if defined(EVODEVO_PHYSICS_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef EVODEVO_PHYSICS_HPP
+#undef EVODEVO_PHYSICS_HPP
+#else
+#define EVODEVO_PHYSICS_HPP
+#endif
+
+#ifdef HWY_TARGET_INCLUDE
+#include "cpu/vectors-inl.hpp"
+HWY_BEFORE_NAMESPACE();
+namespace evodevo::HWY_NAMESPACE {
+#else
+#include "arithmetic.hpp"
+namespace evodevo::physics {
+#endif
+
+template <class T>
+struct Triple {
+  T x, y, z;
+};
+
+/// What two joined masses are to each other.
+template <class T>
+struct Separation {
+  Triple<T> d;  ///< from a to b, m
+  T squared;    ///< |d|^2, m^2; never quite zero
+};
+
+template <class T>
+EVODEVO_HD Separation<T> separation(const Triple<T>& a, const Triple<T>& b) {
+  const Triple<T> d{b.x - a.x, b.y - a.y, b.z - a.z};
+  // added first, it changes no real distance in its last bit and keeps d/|d| finite where two masses coincide
+  return {d, multiply_add(d.z, d.z, multiply_add(d.y, d.y, multiply_add(d.x, d.x, vanishing_square<T>())))};
+}
+
+/// |d|, m; never quite zero.
+template <class T>
+EVODEVO_HD T length(const Separation<T>& s) {
+  return square_root(s.squared);
+}
+
+/// A spring's force on its end a over d: k (|d| - L)/|d|, N/m. Times d it is the force, which is zero, never NaN, where
+/// |d| = 0 (paper, section IV-C; PHYSICS, Forces).
+template <class T>
+EVODEVO_HD T spring_factor(T distance, T stiffness, T spring_length) {
+  return stiffness - stiffness * spring_length / distance;
+}
+
+/// 1/|d|, 1/m; finite.
+template <class T>
+EVODEVO_HD T inverse_length(const Separation<T>& s) {
+  return inverse_square_root(s.squared);
+}
+
+/// The same as spring_factor(), from 1/|d| and the force k L that a length of zero would bring: no division.
+template <class T>
+EVODEVO_HD T spring_factor_by_inverse(T inverse_distance, T stiffness, T rest_force) {
+  return negative_multiply_add(rest_force, inverse_distance, stiffness);
+}
+
+/// The spring's pull k (|d| - L), N; negative where it pushes, zero where |d| = 0.
+template <class T>
+EVODEVO_HD T spring_tension(const Separation<T>& s, T distance, T factor) {
+  return zero_unless_greater(s.squared, vanishing_square<T>(), factor * distance);
+}
+
+/// The power (W) that an actuated spring puts into the body where its own length changes at `rate` (m/s); a brake is 0.
+template <class T>
+EVODEVO_HD T actuation_power(T tension, T rate) {
+  return maximum(negative_multiply_add(tension, rate, constant<T>(0)), constant<T>(0));
+}
+
+/// A spring's elastic energy k (|d| - L)^2 / 2, J.
+template <class T>
+EVODEVO_HD T elastic_energy(const Separation<T>& s, T stiffness, T spring_length) {
+  const T stretch = length(s) - spring_length;
+  return constant<T>(0.5) * stiffness * stretch * stretch;
+}
+
+/// A mass's kinetic energy, J.
+template <class T>
+EVODEVO_HD T kinetic_energy(T mass, const Triple<T>& velocity) {
+  const T squared = multiply_add(velocity.z, velocity.z, multiply_add(velocity.y, velocity.y, velocity.x * velocity.x));
+  return constant<T>(0.5) * mass * squared;
+}
+
+/// The weight of a mass, N along z (paper, section IV-C).
+template <class T>
+EVODEVO_HD T weight(T mass, T acceleration) {
+  return constant<T>(0) - mass * acceleration;
+}
+
+/// The floor's push k max(0, -z), N along z (paper, section IV-C1).
+template <class T>
+EVODEVO_HD T floor_force(T stiffness, T z) {
+  return stiffness * maximum(constant<T>(0) - z, constant<T>(0));
+}
+
+/// What quadratic drag multiplies the velocity by: the force is -coefficient |v| v (PHYSICS, Forces), kg/s.
+template <class T>
+EVODEVO_HD T drag_factor(T coefficient, const Triple<T>& velocity) {
+  const T squared = multiply_add(velocity.z, velocity.z, multiply_add(velocity.y, velocity.y, velocity.x * velocity.x));
+  return constant<T>(0) - coefficient * square_root(squared);
+}
+
+/// The velocity after a step's forces: v + dt F/m. With damping it is multiplied by exp(-rate dt) next; together, the
+/// reading of the paper's equations (section IV-C; PHYSICS, Time stepping) that `paper-euler` names.
+template <class T>
+EVODEVO_HD T advanced_velocity(T velocity, T force, T dt_over_mass) {
+  return multiply_add(force, dt_over_mass, velocity);
+}
+
+/// What Coulomb friction leaves of the tangential velocity: it takes at most `loss` = mu N dt/m (m/s) and never turns
+/// it round, so a mass inside the cone sticks (paper, section IV-C1; PHYSICS, Forces). In [0, 1].
+template <class T>
+EVODEVO_HD T friction_factor(T vx, T vy, T loss) {
+  const T speed = square_root(multiply_add(vy, vy, vx * vx));
+  // without contact exactly 1, and no 0/0 where nothing moves
+  return maximum(speed - loss, constant<T>(0)) / maximum(speed, constant<T>(1e-30));
+}
+
+/// The place after a step: x + dt v, v the new velocity (semi-implicit Euler).
+template <class T>
+EVODEVO_HD T moved(T place, T velocity, T dt) {
+  return multiply_add(dt, velocity, place);
+}
+
+#ifdef HWY_TARGET_INCLUDE
+}  // namespace evodevo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#else
+}  // namespace evodevo::physics
+#endif
+
+#endif  // per-target include guard

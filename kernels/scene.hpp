@@ -1,0 +1,36 @@
+// The forces of the world and how time is stepped. A force that a scene does not hold is not computed.
+#pragma once
+
+#include <optional>
+
+namespace evodevo {
+
+struct Gravity {
+  double acceleration = 9.81;  ///< m/s^2, along -z
+};
+/// The plane z = 0 that pushes a mass below it up with `stiffness` times its depth (paper, section IV-C1).
+struct Floor {
+  double stiffness = 1e6;  ///< N/m
+};
+/// Coulomb friction on the floor.
+struct Friction {
+  double coefficient = 0.5;  ///< 1
+};
+/// Uniform damping v' = -rate v. The paper's factor of 0.99 every 0.5 ms is a rate of -ln(0.99)/0.5 ms.
+struct Damping {
+  double rate = 20.100671707002873;  ///< 1/s
+};
+/// Quadratic drag on every mass: force = -coefficient |v| v.
+struct Drag {
+  double coefficient = 1.0;  ///< kg/m
+};
+
+struct Scene {
+  std::optional<Gravity> gravity;
+  std::optional<Floor> floor;
+  std::optional<Friction> friction;  ///< acts only where there is a floor
+  std::optional<Damping> damping;
+  std::optional<Drag> drag;
+};
+
+}  // namespace evodevo

@@ -1,0 +1,67 @@
+// The simulation core's interface: batches of bodies in, moved bodies out.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "evodevo/body.hpp"
+#include "scene.hpp"
+
+namespace evodevo {
+
+enum class Method { paper_euler };
+enum class Precision { float32, float64 };
+
+struct Stepping {
+  Method method = Method::paper_euler;
+  Precision precision = Precision::float32;
+  double dt = 0.0005;  ///< s; paper, Table II
+};
+
+/// What is recorded beside the motion; what is not asked for costs nothing.
+struct Recording {
+  bool stress = false;  ///< every spring's mean absolute force
+  bool work = false;    ///< the work that the muscles do
+};
+
+/// One body's share of a batch. `body` and `state` are given; the rest is the answer.
+struct Task {
+  const Body* body = nullptr;
+  State* state = nullptr;  ///< moved in place
+
+  Status status = Status::ok;  ///< ok or diverged; a task that does not come in as ok is left alone
+  double ended_at = 0;         ///< time of a divergence since birth, s; found to within 100 steps
+  std::string reason;          ///< of a divergence
+  std::vector<double> stress;  ///< per spring, N; empty unless recorded
+  double work = 0;             ///< positive work of the muscles on the body, J; 0 unless recorded
+  std::uint64_t spring_evaluations = 0;
+};
+
+/// Moves bodies through a scene. A body's answer is the same bits alone, in any batch, and for any number of threads.
+class Simulator {
+ public:
+  virtual ~Simulator() = default;
+
+  /// Moves every task's body by `steps` time steps. A body that diverges stops there and disturbs no other.
+  virtual void run(std::span<Task> tasks, std::uint64_t steps, Recording recording) = 0;
+
+  /// The device and the instruction set in words, for example "cpu, AVX-512". Results may differ in the last bit
+  /// between devices, never on one.
+  virtual std::string device() const = 0;
+};
+
+/// A simulator on `threads` cores (0: all of them) with the best instruction set that this processor has.
+std::unique_ptr<Simulator> make_cpu_simulator(const Scene& scene, const Stepping& stepping, int threads);
+
+/// Sets `state` to the start of a life: the rest places moved so that the lowest mass is at z = 0 and the centre of
+/// mass over the origin, at rest, at t = 0; `start_energy` for the scene.
+State state_at_birth(const Body& body, const Scene& scene);
+
+/// The kinetic, elastic and, with gravity, height energy (above z = 0) of a body, J: `State::start_energy` for a body
+/// that does not start by state_at_birth().
+double total_energy(const Body& body, const State& state, const Scene& scene, double dt);
+
+}  // namespace evodevo

@@ -1,0 +1,17 @@
+// What the encodings share: the check that a body can come of the chosen materials.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "evodevo/encoding.hpp"
+
+inline bool is_air(const evodevo::Material& material) { return !(material.stiffness > 0); }
+
+/// Why no body can be made of these of the world's materials; empty where one can.
+inline std::string why_no_body(const evodevo::World& world, const std::vector<std::int32_t>& chosen) {
+  const bool solid = std::any_of(chosen.begin(), chosen.end(), [&](auto i) { return !is_air(world.materials[i]); });
+  return solid ? "" : "all materials to choose from are air";
+}

@@ -1,0 +1,36 @@
+// "A direct encoding where each spring held its own material" (paper, section II).
+#include "evodevo/plugin.hpp"
+#include "lattice_encoding.hpp"
+
+namespace {
+
+/// One gene for each spring of a lattice, in groups by the spring's first mass.
+class Direct final : public LatticeEncoding {
+ public:
+  evodevo::Layout layout(const evodevo::World& world) const override {
+    const evodevo::Lattice lattice = this->lattice();
+    evodevo::Layout layout;
+    for (std::size_t first = 0, last = 0; first < lattice.springs.size(); first = last) {
+      while (last < lattice.springs.size() && lattice.springs[last].a == lattice.springs[first].a) ++last;
+      layout.add_group(static_cast<std::uint32_t>(last - first), choice(world));
+    }
+    return layout;
+  }
+
+  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::World& world) const override {
+    const auto materials = chosen(world);
+    if (auto reason = why_no_body(world, materials); !reason.empty()) return {{}, 0, reason};
+    const evodevo::Lattice lattice = this->lattice();
+    evodevo::Blueprint blueprint{masses(lattice, world), 0, {}};
+    for (std::size_t s = 0; s < lattice.springs.size(); ++s)
+      join(blueprint.body, lattice.springs[s], world.materials[materials[static_cast<std::size_t>(genome[s])]]);
+    return blueprint;
+  }
+};
+
+}  // namespace
+
+EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
+               evodevo::operator_entry<Direct>("direct",
+                                               "Every spring of a block of voxels has its own material (paper, "
+                                               "section II)."))

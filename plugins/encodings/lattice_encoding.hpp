@@ -1,0 +1,55 @@
+// What the two encodings on a lattice of voxels share (paper, section II: the authors' earlier encodings).
+#pragma once
+
+#include "chosen.hpp"
+#include "evodevo/encoding.hpp"
+#include "evodevo/lattice.hpp"
+
+/// A lattice whose corners are masses without a material; its springs have theirs from the genes.
+class LatticeEncoding : public evodevo::Encoding {
+ public:
+  void parameters(evodevo::Parameters& p) override {
+    p.counts(size_, "size", {1, 32, "1"}, "Voxels along x, y and z.");
+    p.real(edge_, "edge", {0.001, 100, "m"}, "Edge of a voxel.");
+    p.materials(materials_, "materials", "Materials to choose from; an empty list stands for all.");
+  }
+
+ protected:
+  evodevo::Lattice lattice() const {
+    return evodevo::make_lattice({static_cast<std::uint32_t>(size_[0]), static_cast<std::uint32_t>(size_[1]),
+                                  static_cast<std::uint32_t>(size_[2])},
+                                 edge_);
+  }
+
+  std::vector<std::int32_t> chosen(const evodevo::World& world) const { return world.material_indices(materials_); }
+
+  /// A gene that chooses a material. At least one option, since a gene of none would be a real one.
+  evodevo::GeneSpec choice(const evodevo::World& world) const {
+    return {0, 0, std::max(1u, static_cast<std::uint32_t>(chosen(world).size()))};
+  }
+
+  /// The lattice's masses around the origin, not joined yet.
+  evodevo::Body masses(const evodevo::Lattice& lattice, const evodevo::World& world) const {
+    evodevo::Body body;
+    body.materials = world.materials;
+    const evodevo::Vec3 centre = 0.5 * lattice.corners.back();
+    for (const evodevo::Vec3& corner : lattice.corners) body.masses.push_back({corner - centre, world.mass});
+    return body;
+  }
+
+  /// Makes the lattice's spring of the material, or counts the contact where that is air.
+  static void join(evodevo::Body& body, const evodevo::LatticeSpring& spring, const evodevo::Material& material) {
+    evodevo::Mass &a = body.masses[spring.a], &b = body.masses[spring.b];
+    if (is_air(material)) {
+      ++a.air_contacts;
+      ++b.air_contacts;
+    } else {
+      body.springs.push_back({spring.a, spring.b, norm(b.rest - a.rest), body.material_index(material)});
+    }
+  }
+
+ private:
+  std::array<std::int64_t, 3> size_ = {4, 4, 4};
+  double edge_ = 0.1;
+  std::vector<std::string> materials_;
+};

@@ -1,0 +1,30 @@
+// The price of moving, for a front of two objectives with a distance (paper, section IV-F: "multiple criteria").
+#include "evodevo/plugin.hpp"
+
+namespace {
+
+/// Settling and window should be those of the fitness beside it, so that both judge the same seconds.
+class ActuationWork final : public evodevo::Fitness {
+ public:
+  void parameters(evodevo::Parameters& p) override {
+    p.real(settle_, "settle", {0, 3600, "s"}, "Time in which the body settles before work counts.");
+    p.real(window_, "window", {0.001, 3600, "s"}, "Time in which work counts.");
+  }
+
+  evodevo::Request observes() const override { return {settle_, window_, true}; }
+
+  std::vector<evodevo::Objective> objectives() const override { return {{"actuation-work", "J", false}}; }
+
+  std::vector<double> score(const evodevo::Observation& observation) const override { return {observation.work}; }
+
+ private:
+  double settle_ = 10;
+  double window_ = 10;
+};
+
+}  // namespace
+
+EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
+               evodevo::operator_entry<ActuationWork>("actuation-work",
+                                                      "The work that the muscles do on the body, the less the better "
+                                                      "(each spring's positive part)."))

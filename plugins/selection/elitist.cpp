@@ -1,0 +1,42 @@
+// The plain choice: the best live on, and the better of a few breed.
+#include "evodevo/plugin.hpp"
+#include "rows.hpp"
+
+namespace {
+
+using evodevo::Candidate;
+
+/// Best is who has the highest first score; further scores, then youth, break ties.
+class Elitist final : public evodevo::Selection {
+ public:
+  void parameters(evodevo::Parameters& p) override {
+    p.integer(tournament_, "tournament", {1, 1000, "1"}, "Rows drawn for each parent, the best of which breeds.");
+  }
+
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
+                                                               evodevo::Rng& rng) const override {
+    return draw_pairs(rows, count, rng, [&](std::uint32_t size, evodevo::Rng& random) {
+      std::uint32_t best = random.below(size);
+      for (std::int64_t i = 1; i < tournament_; ++i) best = std::min(best, random.below(size));
+      return best;
+    });
+  }
+
+  std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
+                                       evodevo::Rng&) const override {
+    auto living = best_first(rows);
+    living.resize(std::min<std::size_t>(living.size(), population));
+    return living;
+  }
+
+ private:
+  std::int64_t tournament_ = 2;
+};
+
+}  // namespace
+
+EVODEVO_PLUGIN(
+    EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
+    evodevo::operator_entry<Elitist>("elitist",
+                                     "The best live on, and the winners of small tournaments breed (Goldberg "
+                                     "& Deb 1991)."))

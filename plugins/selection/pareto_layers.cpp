@@ -1,0 +1,94 @@
+// "A solution is considered better if it belongs to a higher layer, or if belongs to the same layer with higher
+// fitness. [...] During replacement, all solutions on the Pareto Front are exempt" (paper, section IV-F).
+#include "evodevo/pareto.hpp"
+#include "evodevo/plugin.hpp"
+#include "rows.hpp"
+
+namespace {
+
+using evodevo::Candidate;
+using evodevo::Point;
+
+/// The paper's replacement, with the choices that it leaves open. A child challenges its parent, of several children
+/// the best one; a row without a parent challenges the worst; fitness is the first objective. The front lives on, its
+/// most crowded rows excepted where it would exceed the population. Losers live on only where places are free, failed
+/// rows only after all others.
+class ParetoLayers final : public evodevo::Selection {
+ public:
+  void parameters(evodevo::Parameters& p) override {
+    p.flag(age_, "age", "Whether youth is an objective beside those of the fitness.");
+  }
+
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
+                                                               evodevo::Rng& rng) const override {
+    return draw_pairs(rows, count, rng, draw_any);
+  }
+
+  std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
+                                       evodevo::Rng&) const override {
+    const auto order = best_first(rows);
+    const auto sorted = in_order(rows, order);
+    const auto points = age_ ? evodevo::scores_and_youth(sorted) : scores(sorted);
+    const auto layer = evodevo::pareto_layers(points);
+
+    // ranks from the best on: within a layer the rows are in order of fitness already
+    std::vector<std::uint32_t> ranked(rows.size());
+    std::iota(ranked.begin(), ranked.end(), 0u);
+    std::stable_sort(ranked.begin(), ranked.end(), [&](auto a, auto b) { return layer[a] < layer[b]; });
+    const auto lost = losers(sorted, parent_places(rows, order), layer, ranked);
+
+    std::vector<std::uint32_t> front, winners, others, failed;
+    for (const std::uint32_t i : ranked)
+      (layer[i] == 0 ? front : !sorted[i].ok() ? failed : lost[i] ? others : winners).push_back(i);
+    std::vector<std::uint32_t> living = evodevo::least_crowded(points, front, population);
+    for (const auto* group : {&winners, &others, &failed}) living.insert(living.end(), group->begin(), group->end());
+    living.resize(std::min<std::size_t>(living.size(), population));
+    for (std::uint32_t& i : living) i = order[i];
+    return living;
+  }
+
+ private:
+  static std::vector<Point> scores(const std::vector<Candidate>& rows) {
+    std::vector<Point> points;
+    for (const Candidate& row : rows) points.emplace_back(row.scores.begin(), row.scores.end());
+    return points;
+  }
+
+  /// For every row of the sorted table where its parent is in that table; rows.size() for none.
+  static std::vector<std::size_t> parent_places(std::span<const Candidate> rows,
+                                                const std::vector<std::uint32_t>& order) {
+    std::vector<std::size_t> place_of(rows.size()), parents;
+    for (std::size_t i = 0; i < order.size(); ++i) place_of[order[i]] = i;
+    for (const std::uint32_t row : order)
+      parents.push_back(rows[row].challenges ? place_of[*rows[row].challenges] : rows.size());
+    return parents;
+  }
+
+  /// Who lost a contest: a parent to the best of its children, or a child that was not better or not the best.
+  static std::vector<bool> losers(const std::vector<Candidate>& rows, const std::vector<std::size_t>& parents,
+                                  const std::vector<std::uint32_t>& layer, const std::vector<std::uint32_t>& ranked) {
+    const auto better = [&](std::size_t a, std::size_t b) {
+      if (layer[a] != layer[b]) return layer[a] < layer[b];
+      return rows[a].ok() && rows[a].scores[0] > rows[b].scores[0];
+    };
+    std::vector<bool> lost(rows.size(), false), replaced(rows.size(), false);
+    for (const std::uint32_t child : ranked) {
+      const std::size_t parent = parents[child];
+      if (parent == rows.size()) continue;
+      const bool wins = !replaced[parent] && better(child, parent);
+      (wins ? replaced[parent] : lost[child]) = true;
+      if (wins) lost[parent] = true;
+    }
+    return lost;
+  }
+
+  bool age_ = true;
+};
+
+}  // namespace
+
+EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
+               evodevo::operator_entry<ParetoLayers>("pareto-layers",
+                                                     "A child takes its parent's place if it lies in a higher Pareto "
+                                                     "layer, or in the same one with higher fitness (paper, section "
+                                                     "IV-F)."))

@@ -1,0 +1,54 @@
+// What the selection operators share: an order of the rows that does not depend on the order of birth, and parents.
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "evodevo/selection.hpp"
+
+/// The rows from best to worst: by their scores, the first score first, then the younger ones, then the first born.
+/// Failed rows come last. Working in this order makes a result independent of births but for exact ties.
+inline std::vector<std::uint32_t> best_first(std::span<const evodevo::Candidate> rows) {
+  std::vector<std::uint32_t> order(rows.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+    const auto &a = rows[i].scores, &b = rows[j].scores;
+    if (!std::equal(a.begin(), a.end(), b.begin(), b.end()))
+      return std::lexicographical_compare(b.begin(), b.end(), a.begin(), a.end());
+    return rows[i].age < rows[j].age;
+  });
+  return order;
+}
+
+/// The rows in the given order.
+inline std::vector<evodevo::Candidate> in_order(std::span<const evodevo::Candidate> rows,
+                                                const std::vector<std::uint32_t>& order) {
+  std::vector<evodevo::Candidate> sorted;
+  for (const std::uint32_t i : order) sorted.push_back(rows[i]);
+  return sorted;
+}
+
+/// `count` pairs of rows that did not fail, or of all rows where all failed. `draw(n, rng)` chooses among the best n
+/// rows, 0 the best. The mate is another row than the parent where there is one to choose.
+template <class Draw>
+std::vector<std::pair<std::uint32_t, std::uint32_t>> draw_pairs(std::span<const evodevo::Candidate> rows,
+                                                                std::uint32_t count, evodevo::Rng& rng,
+                                                                const Draw& draw) {
+  auto pool = best_first(rows);
+  if (pool.empty()) return {};
+  if (rows[pool.front()].ok()) std::erase_if(pool, [&](std::uint32_t i) { return !rows[i].ok(); });
+  const auto size = static_cast<std::uint32_t>(pool.size());
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t parent = draw(size, rng);
+    std::uint32_t mate = size > 1 ? draw(size - 1, rng) : parent;
+    if (size > 1 && mate >= parent) ++mate;  // any but the parent
+    pairs.emplace_back(pool[parent], pool[mate]);
+  }
+  return pairs;
+}
+
+/// The draw in which all rows have the same chance.
+inline std::uint32_t draw_any(std::uint32_t rows, evodevo::Rng& rng) { return rng.below(rows); }

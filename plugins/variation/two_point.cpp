@@ -1,0 +1,24 @@
+// Two-point crossover, which the paper's section VII plans for its neural networks.
+#include "evodevo/plugin.hpp"
+
+namespace {
+
+/// Cuts both genomes before, after or between two genes, at two different places, and swaps what lies between.
+class TwoPoint final : public evodevo::Crossover {
+ public:
+  void cross(evodevo::Genome& one, evodevo::Genome& other, const evodevo::Layout&, evodevo::Rng& rng) const override {
+    if (one.empty()) return;
+    const auto genes = static_cast<std::uint32_t>(one.size());
+    std::uint32_t begin = rng.below(genes + 1), end = rng.below(genes);
+    if (end >= begin) ++end;  // any of the cuts but `begin`
+    if (begin > end) std::swap(begin, end);
+    std::swap_ranges(one.begin() + begin, one.begin() + end, other.begin() + begin);
+  }
+};
+
+}  // namespace
+
+EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
+               evodevo::operator_entry<TwoPoint>("two-point",
+                                                 "Swaps the genes between two random cuts (De Jong 1975; paper, "
+                                                 "section VII)."))

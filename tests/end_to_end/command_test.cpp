@@ -1,0 +1,233 @@
+// The commands as a user types them: output, exit codes, and what they leave behind.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "archive.hpp"
+#include "support/experiments.hpp"
+#include "support/process.hpp"
+#include "support/scratch.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Finished;
+using ::testing::HasSubstr;
+using testing::small_experiment;
+
+Finished evodevo(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), EVODEVO_PROGRAM);
+  return testing::run(arguments);
+}
+
+/// A finished run of the small experiment.
+class Command : public ::testing::Test {
+ protected:
+  testing::Scratch scratch_;
+  std::string file_ = scratch_.write("small.toml", small_experiment);
+  std::string folder_ = (scratch_ / "run").string();
+
+  void run_small() {
+    const Finished finished = evodevo({"run", file_, "--out", folder_});
+    ASSERT_EQ(finished.exit_code, 0) << finished.output;
+  }
+};
+
+TEST_F(Command, RunSaysWhereOnWhatAndHowFast) {
+  const Finished finished = evodevo({"run", file_, "--out", folder_});
+  EXPECT_EQ(finished.exit_code, 0) << finished.output;
+  EXPECT_THAT(finished.output, HasSubstr("small on cpu"));
+  EXPECT_THAT(finished.output, HasSubstr("writing " + folder_));
+  EXPECT_THAT(finished.output, HasSubstr("generation 3  evaluations 24/24"));
+  EXPECT_THAT(finished.output, HasSubstr("best: individual"));
+  EXPECT_THAT(finished.output, HasSubstr("spring evaluations/s"));
+}
+
+TEST_F(Command, ShowAgreesWithTheArchive) {
+  run_small();
+  const Finished shown = evodevo({"show", folder_, "--json"});
+  ASSERT_EQ(shown.exit_code, 0) << shown.output;
+  const auto json = nlohmann::json::parse(shown.output);
+  ASSERT_EQ(json.at("generations").size(), 4u);
+  double best = -1e300;
+  std::int64_t failed = 0;
+  for (const auto& generation : json.at("generations")) {
+    for (const char* key : {"generation", "evaluations", "best", "median", "diverged", "invalid"})
+      ASSERT_TRUE(generation.contains(key)) << key;
+    failed += generation.at("diverged").get<int>() + generation.at("invalid").get<int>();
+    if (!generation.at("best").is_null()) best = std::max(best, generation.at("best").get<double>());
+  }
+  EXPECT_EQ(json.at("generations").back().at("evaluations"), 24);
+  const auto& champion = json.at("best");
+  EXPECT_EQ(champion.at("status"), "ok");
+  EXPECT_EQ(champion.at("objectives").at("distance").get<double>(), best);
+  for (const char* key : {"individual", "generation", "age", "parents"}) EXPECT_TRUE(champion.contains(key)) << key;
+  EXPECT_EQ(json.at("statuses").at("ok").get<int>() + failed, 24);
+
+  const Finished text = evodevo({"show", folder_});
+  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_THAT(text.output, HasSubstr("24 evaluations"));
+  EXPECT_THAT(text.output, HasSubstr("best individuals\n  " + champion.at("individual").dump() + ": distance"));
+  EXPECT_THAT(text.output, ::testing::Not(HasSubstr("nan")));
+}
+
+TEST_F(Command, FailedBodiesNeverReachAReportAsNumbers) {
+  // gravity and drag that no step of this length follows: everything that has a body diverges
+  const Finished finished = evodevo({"run", file_, "--out", folder_, "--set", "scene.drag.coefficient=1e6", "--set",
+                                     "scene.gravity.acceleration=1000"});
+  EXPECT_EQ(finished.exit_code, 0) << finished.output;
+  EXPECT_THAT(finished.output, HasSubstr("best none  median none"));
+  EXPECT_THAT(finished.output, HasSubstr("no individual ended with a fitness"));
+  const auto json = nlohmann::json::parse(evodevo({"show", folder_, "--json"}).output);
+  EXPECT_TRUE(json.at("best").is_null());
+  EXPECT_TRUE(json.at("generations")[0].at("best").is_null());
+  EXPECT_TRUE(json.at("generations")[0].at("median").is_null());
+  EXPECT_GT(json.at("statuses").at("diverged").get<int>(), 0);
+  EXPECT_EQ(json.at("statuses").at("ok"), 0);
+  EXPECT_EQ(evodevo({"show", folder_}).exit_code, 0);
+  EXPECT_EQ(evodevo({"body", folder_}).exit_code, 2);
+}
+
+TEST_F(Command, FailedBodiesLoseToAnyFiniteOne) {
+  // bone that a pair of masses bears, and a block of bone does not
+  for (const std::string selection : {"age-fitness-pareto", "pareto-layers", "elitist"}) {
+    const std::string folder = folder_ + selection;
+    const Finished finished = evodevo({"run", file_, "--out", folder, "--set", "materials.bone.stiffness=1e6", "--set",
+                                       "experiment.evaluations=90", "--set", "experiment.newcomers=3", "--set",
+                                       "selection.name=" + selection});
+    ASSERT_EQ(finished.exit_code, 0) << finished.output;
+    const Archive archive = Archive::read(folder);
+    ASSERT_GT(archive.statuses().at("invalid"), 3) << "there must be something to lose";
+    EXPECT_EQ(archive.individual(archive.best(1).at(0))->result.status, Status::ok);
+    const auto population = archive.population();
+    ASSERT_GT(archive.statuses().at("ok"), static_cast<std::int64_t>(population.size()));
+    for (const Individual& individual : population) EXPECT_EQ(individual.result.status, Status::ok) << selection;
+  }
+}
+
+TEST_F(Command, BodyComesOutAndGoesIntoAScene) {
+  run_small();
+  const Finished body = evodevo({"body", folder_});
+  ASSERT_EQ(body.exit_code, 0) << body.output;
+  const auto json = nlohmann::json::parse(body.output);
+  ASSERT_FALSE(json.at("masses").empty());
+  EXPECT_EQ(json.at("masses")[0].at("position").size(), 3u);
+  EXPECT_EQ(json.at("masses")[0].at("mass"), 0.2);
+  for (const char* key : {"a", "b", "rest_length", "material"}) EXPECT_TRUE(json.at("springs")[0].contains(key)) << key;
+  EXPECT_EQ(json.at("materials")[0].at("name"), "air");
+  EXPECT_EQ(evodevo({"body", folder_, "--individual", "999"}).exit_code, 2);
+
+  const std::string body_file = scratch_.write("body.json", body.output);
+  const std::string csv = (scratch_ / "t.csv").string();
+  const Finished moved = evodevo({"simulate", body_file, file_, "--duration", "0.2", "--trajectory", csv});
+  ASSERT_EQ(moved.exit_code, 0) << moved.output;
+  std::ifstream stream(csv);
+  std::string line;
+  std::getline(stream, line);
+  EXPECT_EQ(line, "time,mass,x,y,z,vx,vy,vz");
+  std::size_t rows = 0;
+  while (std::getline(stream, line)) ++rows;
+  EXPECT_EQ(rows, 21 * json.at("masses").size());
+}
+
+TEST_F(Command, AMaturedBodyHasDeveloped) {
+  run_small();
+  const auto springs = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"body", folder_});
+    return nlohmann::json::parse(evodevo(more).output).at("springs");
+  };
+  const auto born = springs({}), matured = springs({"--matured"});
+  EXPECT_NE(born, matured);
+  EXPECT_EQ(born.size(), matured.size()) << "as many springs come as go";
+  EXPECT_EQ(matured, springs({"--matured"})) << "a life can be lived again";
+}
+
+TEST_F(Command, ATrajectoryIsAFall) {
+  const std::string body = scratch_.write("one.json", R"({
+    "masses": [{"position": [0, 0, 5], "mass": 1}, {"position": [1, 0, 5], "mass": 1}],
+    "springs": [{"a": 0, "b": 1, "rest_length": 1, "material": 0}],
+    "materials": [{"stiffness": 100, "amplitude": 0, "frequency": 0, "phase": 0}]})");
+  const std::string csv = (scratch_ / "t.csv").string();
+  const Finished finished = evodevo({"simulate", body, file_, "--set", "scene={gravity={}}", "--set",
+                                     "simulation.precision=double", "--duration", "0.5", "--trajectory", csv});
+  ASSERT_EQ(finished.exit_code, 0) << finished.output;
+  std::ifstream stream(csv);
+  std::string line, last;
+  while (std::getline(stream, line)) last = line;
+  double time = 0, mass = 0, x = 0, y = 0, z = 0;
+  ASSERT_EQ(std::sscanf(last.c_str(), "%lf,%lf,%lf,%lf,%lf", &time, &mass, &x, &y, &z), 5);
+  EXPECT_NEAR(time, 0.5, 1e-9);
+  EXPECT_NEAR(z, 5 - 9.81 / 2 * 0.25, 2e-3);
+  EXPECT_NEAR(x, 1, 1e-9);
+}
+
+TEST_F(Command, BadInputEndsWithTwoAndLeavesNothing) {
+  const std::string bad = scratch_.write("bad.toml", "[experiment]\nseed = \"x\"\n");
+  for (const char* command : {"run", "check"}) {
+    const Finished finished = evodevo({command, bad});
+    EXPECT_EQ(finished.exit_code, 2);
+    EXPECT_EQ(finished.output, "evodevo: " + bad + ":2:8: experiment.seed = \"x\": expected a whole number\n");
+  }
+  EXPECT_FALSE(fs::exists("runs/bad-1"));
+  const Finished out = evodevo({"run", file_, "--out", folder_, "--threads", "-1"});
+  EXPECT_EQ(out.exit_code, 2);
+  EXPECT_EQ(out.output, "evodevo: --threads -1: simulation.threads = -1: expected 0 to 4096\n");
+  EXPECT_FALSE(fs::exists(folder_));
+  EXPECT_EQ(evodevo({"run", file_, "--device", "gpu"}).output,
+            "evodevo: --device gpu: simulation.device = \"gpu\": is not an option; did you mean \"cpu\"?\n");
+}
+
+TEST_F(Command, UsageErrors) {
+  EXPECT_EQ(evodevo({}).exit_code, 2);
+  EXPECT_EQ(evodevo({"rum"}).output, "evodevo: there is no command \"rum\"; did you mean \"run\"?\n");
+  EXPECT_EQ(evodevo({"run"}).output,
+            "evodevo: EXPERIMENT.toml is missing; usage: evodevo run EXPERIMENT.toml [options]\n");
+  EXPECT_EQ(evodevo({"run", file_, "--sead", "3"}).exit_code, 2);
+  EXPECT_EQ(evodevo({"run", file_, "--set", "seed"}).output, "evodevo: --set seed: expected --set key=value\n");
+  EXPECT_EQ(evodevo({"check", file_}).output, file_ + ": ok\n");
+  EXPECT_EQ(evodevo({"run", "--help"}).exit_code, 0);
+}
+
+TEST_F(Command, FaultyBodiesAreRefusedByPlace) {
+  const auto refusal = [&](const std::string& json) {
+    const std::string file = scratch_.write("faulty.json", json);
+    const Finished finished = evodevo({"simulate", file, file_});
+    EXPECT_EQ(finished.exit_code, 2);
+    return finished.output.substr(("evodevo: " + file).size());
+  };
+  const std::string masses = R"("masses": [{"position": [0,0,0], "mass": 1}, {"position": [1,0,0], "mass": 1}])";
+  const std::string materials = R"("materials": [{"stiffness": 1, "amplitude": 0, "frequency": 0, "phase": 0}])";
+  EXPECT_THAT(refusal("{"), HasSubstr(": is not JSON: "));
+  EXPECT_EQ(refusal("{}"), ": \"materials\" is missing\n");
+  EXPECT_EQ(refusal("{" + materials + R"(, "masses": [{"position": [0,0], "mass": 1}], "springs": []})"),
+            ": masses[0].position: expected three numbers\n");
+  EXPECT_EQ(
+      refusal("{" + materials + R"(, "masses": [{"position": [0,0,0], "mass": -1}], "springs": []})").substr(0, 40),
+      ": masses[0].mass: -1 is out of range; ex");
+  EXPECT_EQ(
+      refusal("{" + materials + "," + masses + R"(, "springs": [{"a": 0, "b": 2, "rest_length": 1, "material": 0}]})"),
+      ": springs[0].b: 2 is not an index below 2\n");
+  EXPECT_EQ(refusal("{" + materials + "," + masses + R"(, "springs": [{"a": 0, "b": 1, "rest_length": 1, "material": 0},
+                    {"a": 1, "b": 0, "rest_length": 1, "material": 0}]})"),
+            ": springs[1]: masses 1 and 0 are joined already\n");
+}
+
+TEST_F(Command, OperatorsDescribeThemselves) {
+  const auto json = nlohmann::json::parse(evodevo({"operators", "--kind", "devo", "--json"}).output);
+  ASSERT_EQ(json.size(), 2u);
+  EXPECT_EQ(json[1].at("name"), "spring-turnover");
+  EXPECT_EQ(json[1].at("parameters")[0].at("default"), "125");
+  const Finished described = evodevo({"describe", "spring-turnover"});
+  EXPECT_EQ(described.exit_code, 0);
+  EXPECT_THAT(described.output, HasSubstr("springs = 125"));
+  EXPECT_EQ(evodevo({"describe", "spring-turnove"}).output,
+            "evodevo: no operator is called \"spring-turnove\"; did you mean \"spring-turnover\"?\n");
+  EXPECT_EQ(evodevo({"operators", "--kind", "devos"}).output,
+            "evodevo: --kind devos: is not a kind of operator; did you mean \"devo\"?\n");
+}
+
+}  // namespace
+}  // namespace evodevo

@@ -1,0 +1,107 @@
+// Every experiment that comes with the project runs, and the robots of the first one walk.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "archive.hpp"
+#include "support/process.hpp"
+#include "support/scratch.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string experiment_file(const std::string& name) { return std::string(EVODEVO_EXPERIMENTS) + "/" + name; }
+
+TEST(Experiments, EachRunsForTwoGenerationsWhenShrunk) {
+  const testing::Scratch scratch;
+  int count = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(EVODEVO_EXPERIMENTS)) {
+    if (entry.path().extension() != ".toml") continue;
+    ++count;
+    SCOPED_TRACE(entry.path());
+    std::vector<std::string> command = {EVODEVO_PROGRAM, "run", entry.path(), "--out",
+                                        (scratch / entry.path().stem().string()).string()};
+    std::vector<std::string> shrunk = {"experiment.population=8", "experiment.evaluations=16", "encoding.points=60",
+                                       "fitness.0.settle=0.1", "fitness.0.window=0.1"};
+    const bool develops = read_experiment({entry.path(), {}}).development.cycles > 0;
+    if (develops) shrunk.insert(shrunk.end(), {"development.cycles=2", "development.cycle_time=0.1"});
+    for (const std::string& set : shrunk) command.insert(command.end(), {"--set", set});
+    const testing::Finished finished = testing::run(command);
+    ASSERT_EQ(finished.exit_code, 0) << finished.output;
+    const Archive archive = Archive::read(scratch / entry.path().stem().string());
+    EXPECT_EQ(archive.generations().size(), 2u);
+    EXPECT_GT(archive.statuses().at("ok"), 0);
+  }
+  EXPECT_EQ(count, 5);
+}
+
+/// PHYSICS and paper: what paper.toml must hold, value by value.
+TEST(Experiments, PaperHoldsThePapersValues) {
+  const Experiment paper = read_experiment({experiment_file("paper.toml"), {}});
+  EXPECT_EQ(paper.development.cycles, 100);
+  EXPECT_EQ(paper.development.cycle_time, 1);
+  EXPECT_EQ(paper.stepping.dt, 0.0005);
+  EXPECT_EQ(paper.scene.floor->stiffness, 1e6);
+  EXPECT_EQ(paper.scene.friction->coefficient, 0.5);
+  EXPECT_EQ(paper.scene.gravity->acceleration, 9.81);
+  EXPECT_NEAR(std::exp(-paper.scene.damping->rate * 0.0005), 0.99, 1e-12);
+  EXPECT_EQ(paper.evaluations, 10000);
+  const Request request = paper.fitness.at(0)->observes();
+  EXPECT_EQ(request.settle, 3);
+  EXPECT_EQ(request.window, 10);
+  EXPECT_EQ(paper.layout.genes.size(), 100u + 650u + 208u) << "a 3-25-25-8 network";
+  for (const char* line : {"springs = 125", "neighbours = 25", "threshold = 20", "points = 1000"})
+    EXPECT_NE(paper.resolved.find(line), std::string::npos) << line;
+}
+
+TEST(Experiments, EvoAndEvoDevoDifferInDevelopmentAlone) {
+  const auto lines = [](const std::string& name) {
+    std::string text = read_experiment({experiment_file(name), {}}).resolved;
+    return text.substr(text.find("[encoding]"));  // [development] is before it, in alphabetical order
+  };
+  EXPECT_EQ(lines("evo.toml"), lines("evo-devo.toml"));
+  EXPECT_EQ(read_experiment({experiment_file("evo.toml"), {}}).development.cycles, 0);
+  EXPECT_GT(read_experiment({experiment_file("evo-devo.toml"), {}}).development.cycles, 0);
+}
+
+TEST(Experiments, EveryWalkerButThePapersSettlesTenSeconds) {
+  for (const char* name : {"quickstart.toml", "evo.toml", "evo-devo.toml"})
+    EXPECT_EQ(read_experiment({experiment_file(name), {}}).fitness.at(0)->observes().settle, 10) << name;
+  const Experiment swimmer = read_experiment({experiment_file("swimmer.toml"), {}});
+  EXPECT_EQ(swimmer.fitness.at(0)->observes().settle, 0);
+  EXPECT_TRUE(swimmer.scene.drag.has_value());
+  EXPECT_FALSE(swimmer.scene.floor || swimmer.scene.damping);
+}
+
+/// The distance of one genome's life in an experiment.
+double distance(const Experiment& experiment, const Individual& individual) {
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  const Newborn newborn{individual.id, individual.born, &individual.genome};
+  const Result result = Evaluation(experiment, *simulator).evaluate({&newborn, 1}, [](double) {}).front();
+  EXPECT_EQ(result.status, Status::ok) << result.reason;
+  return result.status == Status::ok ? result.objectives.front() : 0;
+}
+
+TEST(Experiments, QuickstartLearnsToWalkAndDoesNotFall) {
+  const testing::Scratch scratch;
+  const std::string folder = (scratch / "run").string();
+  const testing::Finished finished =
+      testing::run({EVODEVO_PROGRAM, "run", experiment_file("quickstart.toml"), "--out", folder});
+  ASSERT_EQ(finished.exit_code, 0) << finished.output;
+  const Archive archive = Archive::read(folder);
+  const std::vector<Summary> generations = archive.generations();
+  EXPECT_GT(generations.back().best.value(), 1.5 * generations.front().best.value());
+
+  const Individual champion = archive.individual(archive.best(1).at(0)).value();
+  const Experiment experiment = recorded_experiment(archive);
+  EXPECT_EQ(distance(experiment, champion), champion.result.objectives.front()) << "the same bits when lived again";
+  const Experiment off = read_experiment(experiment.resolved, {"off.toml",
+                                                               {{"materials.muscle.amplitude", "0", "muscles off"},
+                                                                {"materials.muscle2.amplitude", "0", "muscles off"}}});
+  EXPECT_LT(std::abs(distance(off, champion)), 0.2 * champion.result.objectives.front());
+}
+
+}  // namespace
+}  // namespace evodevo

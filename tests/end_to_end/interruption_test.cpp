@@ -1,0 +1,151 @@
+// Whatever happens to a run, what is committed stays and the end is the same.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "archive.hpp"
+#include "support/experiments.hpp"
+#include "support/process.hpp"
+#include "support/scratch.hpp"
+
+namespace evodevo {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::Process;
+
+/// Thirteen generations, each some tens of milliseconds long.
+class Interruption : public ::testing::Test {
+ protected:
+  testing::Scratch scratch_;
+  std::string file_ = scratch_.write("small.toml", testing::small_experiment);
+
+  std::vector<std::string> run_command(const std::string& folder) const {
+    return {EVODEVO_PROGRAM,
+            "run",
+            file_,
+            "--out",
+            (scratch_ / folder).string(),
+            "--set",
+            "experiment.evaluations=75",
+            "--set",
+            "fitness.0.window=1",
+            "--set",
+            "fitness.1.window=1"};
+  }
+  std::vector<std::string> resume_command(const std::string& folder) const {
+    return {EVODEVO_PROGRAM, "resume", (scratch_ / folder).string()};
+  }
+};
+
+/// Every individual's genes, way and fate, and every generation's figures but the wall time, must be the same.
+void expect_same_runs(const Archive& a, const Archive& b) {
+  const auto generations_a = a.generations(), generations_b = b.generations();
+  ASSERT_EQ(generations_a.size(), generations_b.size());
+  for (std::size_t i = 0; i < generations_a.size(); ++i) {
+    EXPECT_EQ(generations_a[i].evaluations, generations_b[i].evaluations);
+    EXPECT_EQ(generations_a[i].best, generations_b[i].best);
+    EXPECT_EQ(generations_a[i].median, generations_b[i].median);
+    EXPECT_EQ(generations_a[i].diverged, generations_b[i].diverged);
+    EXPECT_EQ(generations_a[i].invalid, generations_b[i].invalid);
+    EXPECT_EQ(generations_a[i].spring_evaluations, generations_b[i].spring_evaluations);
+  }
+  std::uint32_t id = 0;
+  for (; a.individual(id); ++id) {
+    const ArchivedIndividual one = *a.individual(id);
+    ASSERT_TRUE(b.individual(id).has_value());
+    const ArchivedIndividual other = *b.individual(id);
+    EXPECT_EQ(one.genome, other.genome);
+    EXPECT_EQ(one.born, other.born);
+    EXPECT_EQ(one.died, other.died);
+    EXPECT_EQ(one.origin, other.origin);
+    EXPECT_EQ(one.parents, other.parents);
+    EXPECT_EQ(one.made_by, other.made_by);
+    EXPECT_EQ(one.result.status, other.result.status);
+    EXPECT_EQ(one.result.reason, other.result.reason);
+    EXPECT_EQ(one.result.objectives, other.result.objectives);
+  }
+  EXPECT_FALSE(b.individual(id).has_value());
+  EXPECT_EQ(id, 75u);
+}
+
+TEST_F(Interruption, KilledAtAnyLineAndResumedEndsTheSame) {
+  ASSERT_EQ(testing::run(run_command("straight")).exit_code, 0);
+  const Archive straight = Archive::read(scratch_ / "straight");
+  std::random_device seed;
+  const auto seed_used = seed();
+  std::mt19937 random(seed_used);
+  SCOPED_TRACE("seed " + std::to_string(seed_used));
+  for (const std::string folder : {"a", "b", "c"}) {
+    std::vector<std::string> command = run_command(folder);
+    for (int kills = 0; kills < 3; ++kills) {
+      Process process(command);
+      // the first line says where the run goes; from then on there is something to resume
+      const int lines = 1 + static_cast<int>(random() % 5);
+      for (int i = 0; i < lines; ++i) process.read_line();
+      process.send(SIGKILL);
+      process.wait();
+      command = resume_command(folder);
+    }
+    const testing::Finished finished = testing::run(command);
+    ASSERT_EQ(finished.exit_code, 0) << finished.output;
+    expect_same_runs(straight, Archive::read(scratch_ / folder));
+  }
+}
+
+TEST_F(Interruption, CtrlCCommitsAndSaysHowToGoOn) {
+  ASSERT_EQ(testing::run(run_command("straight")).exit_code, 0);
+  Process process(run_command("stopped"));
+  process.read_line();
+  process.read_line();
+  process.send(SIGINT);
+  EXPECT_EQ(process.wait(), 130) << process.output();
+  const std::string folder = (scratch_ / "stopped").string();
+  EXPECT_THAT(process.output(), HasSubstr("interrupted; to go on: evodevo resume " + folder));
+  const std::size_t done = Archive::read(folder).generations().size();
+  EXPECT_GE(done, 1u);
+  EXPECT_LT(done, 13u);
+  EXPECT_EQ(testing::run(resume_command("stopped")).exit_code, 0);
+  expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(folder));
+}
+
+TEST_F(Interruption, ASecondProcessOnOneFolderIsRefused) {
+  const std::string folder = (scratch_ / "run").string();
+  Process first(run_command("run"));
+  first.read_line();
+  const testing::Finished second = testing::run(resume_command("run"));
+  EXPECT_EQ(second.exit_code, 2);
+  EXPECT_EQ(second.output,
+            "evodevo: " + folder + ": another evodevo process is writing this run; wait for it or stop it first\n");
+  EXPECT_EQ(testing::run({EVODEVO_PROGRAM, "show", folder}).exit_code, 0) << "looking is allowed";
+  EXPECT_EQ(first.wait(), 0) << "and disturbs nobody";
+}
+
+TEST_F(Interruption, AFinishedRunHasNothingToResume) {
+  ASSERT_EQ(testing::run(run_command("run")).exit_code, 0);
+  const std::size_t before = Archive::read(scratch_ / "run").generations().size();
+  EXPECT_EQ(testing::run(resume_command("run")).exit_code, 0);
+  EXPECT_EQ(Archive::read(scratch_ / "run").generations().size(), before);
+}
+
+TEST_F(Interruption, ThreadsDoNotChangeARun) {
+  ASSERT_EQ(testing::run(run_command("two")).exit_code, 0);
+  std::vector<std::string> one_thread = run_command("one");
+  one_thread.insert(one_thread.end(), {"--threads", "1"});
+  ASSERT_EQ(testing::run(one_thread).exit_code, 0);
+  expect_same_runs(Archive::read(scratch_ / "two"), Archive::read(scratch_ / "one"));
+}
+
+TEST_F(Interruption, TwoRunsAtOnceTakeFoldersOfTheirOwn) {
+  // without --out each makes a folder in runs/ of the current folder
+  const std::string command = "cd '" + (scratch_ / "").string() + "' && exec " + EVODEVO_PROGRAM + " run small.toml";
+  Process one({"sh", "-c", command}), two({"sh", "-c", command});
+  EXPECT_EQ(one.wait(), 0) << one.output();
+  EXPECT_EQ(two.wait(), 0) << two.output();
+  for (const char* name : {"runs/small-1", "runs/small-2"})
+    EXPECT_EQ(Archive::read(scratch_ / name).generations().size(), 4u) << name;
+}
+
+}  // namespace
+}  // namespace evodevo

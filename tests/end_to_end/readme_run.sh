@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Types the README's first command in a clean copy of the working tree, as a newcomer would. The second command,
+# tools/test, is what continuous integration types in a clean clone.
+#
+#   readme_run.sh SOURCE_FOLDER
+set -euo pipefail
+source=$1
+command='tools/evodevo run experiments/quickstart.toml'
+grep -qxF "$command" "$source/README.md" || { echo "README.md does not name the command: $command"; exit 1; }
+
+if ! git -C "$source" rev-parse --git-dir >/dev/null 2>&1; then
+  echo "skipped: this is not a git checkout, so there is no telling what belongs to it"
+  exit 77
+fi
+copy=$(mktemp -d)
+trap 'rm -rf "$copy"' EXIT
+# a file that is deleted but not committed is listed and not there
+(cd "$source" && git ls-files -co --exclude-standard -z | while IFS= read -r -d '' file; do
+  [ -e "$file" ] && printf '%s\0' "$file"
+done | tar --null --files-from=- -cf -) | tar -xf - -C "$copy"
+
+cd "$copy"
+unset EVODEVO_PRESET EVODEVO_COMMAND
+output=$(bash -c "$command" 2>&1) || { echo "$output"; exit 1; }
+echo "$output" | tail -n 8
+grep -q '^quickstart on cpu\|^quickstart on cuda' <<<"$output" || { echo "it does not say which device it uses"; exit 1; }
+[ -e runs/quickstart-1/run.sqlite ] || { echo "it left no run behind"; exit 1; }
+
+# from now on there is nothing to build
+started=$(date +%s%N)
+tools/evodevo show runs/quickstart-1 >/dev/null
+echo "a later call took $((($(date +%s%N) - started) / 1000000)) ms"

@@ -1,0 +1,117 @@
+// The archive: what goes in comes out, and nobody writes over anybody.
+#include "archive.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <functional>
+
+#include "support/experiments.hpp"
+#include "support/scratch.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ArchiveTest : public ::testing::Test {
+ protected:
+  std::string refusal(const std::function<void()>& call) {
+    try {
+      call();
+    } catch (const ArchiveError& error) {
+      return error.what();
+    }
+    return "no refusal";
+  }
+
+  testing::Scratch scratch_;
+  fs::path folder_ = scratch_ / "run";
+  Experiment experiment_ = testing::read(testing::small_experiment);
+};
+
+TEST_F(ArchiveTest, GivesBackWhatWasCommitted) {
+  Individual ok;
+  ok.id = 4;
+  ok.born = 2;
+  ok.origin = 1;
+  ok.parents = {1, 3};
+  ok.made_by = "two-point";
+  ok.genome = {0.25f, 3};
+  ok.result.objectives = {0.1 + 0.2, -1e-300};
+  ok.result.spring_evaluations = 12345678901;
+  Individual diverged = ok;
+  diverged.id = 5;
+  diverged.parents = {};
+  diverged.result = {Status::diverged, "non-finite", 1.5, {}, 7};
+  const Summary summary{.generation = 2,
+                        .evaluations = 6,
+                        .best = 0.3,
+                        .median = std::nullopt,
+                        .diverged = 1,
+                        .invalid = 0,
+                        .spring_evaluations = 9,
+                        .wall_time = 0.5};
+  {
+    Archive archive = Archive::create(folder_, experiment_, "a device");
+    archive.commit({ok, diverged}, {5}, summary);
+  }
+  const Archive archive = Archive::read(folder_);
+  EXPECT_EQ(archive.record("seed"), "7");
+  EXPECT_EQ(archive.record("device"), "a device");
+  EXPECT_EQ(recorded_experiment(archive).resolved, experiment_.resolved);
+  ASSERT_EQ(archive.population().size(), 1u);
+  const Individual back = archive.population().front();
+  EXPECT_EQ(back.id, 4u);
+  EXPECT_EQ(back.born, 2u);
+  EXPECT_EQ(back.origin, 1u);
+  EXPECT_EQ(back.parents, ok.parents);
+  EXPECT_EQ(back.made_by, ok.made_by);
+  EXPECT_EQ(back.genome, ok.genome);
+  EXPECT_EQ(back.result.objectives, ok.result.objectives) << "to the last bit";
+  EXPECT_EQ(back.result.spring_evaluations, ok.result.spring_evaluations);
+  const ArchivedIndividual dead = archive.individual(5).value();
+  EXPECT_EQ(dead.died, 2u);
+  EXPECT_EQ(dead.result.status, Status::diverged);
+  EXPECT_EQ(dead.result.reason, "non-finite");
+  EXPECT_EQ(dead.result.ended_at, 1.5);
+  EXPECT_TRUE(dead.result.objectives.empty());
+  EXPECT_FALSE(archive.individual(6).has_value());
+  ASSERT_EQ(archive.generations().size(), 1u);
+  EXPECT_EQ(archive.generations()[0].best, 0.3);
+  EXPECT_FALSE(archive.generations()[0].median.has_value());
+  EXPECT_EQ(archive.best(9), std::vector<std::uint32_t>{4}) << "the diverged one has no place among the best";
+  EXPECT_EQ(archive.statuses().at("diverged"), 1);
+}
+
+TEST_F(ArchiveTest, NeverWritesOverARun) {
+  { Archive::create(folder_, experiment_, "cpu"); }
+  EXPECT_EQ(refusal([&] { Archive::create(folder_, experiment_, "cpu"); }),
+            folder_.string() + ": is not empty; give another --out, or continue the run in it with `evodevo resume " +
+                folder_.string() + "`");
+}
+
+TEST_F(ArchiveTest, NeverTouchesAFolderOfOtherThings) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "thesis.txt") << "years of work";
+  EXPECT_NE(refusal([&] { Archive::create(folder_, experiment_, "cpu"); }), "no refusal");
+  EXPECT_EQ(fs::file_size(folder_ / "thesis.txt"), 13u);
+}
+
+TEST_F(ArchiveTest, SaysWhereThereIsNoRun) {
+  EXPECT_EQ(refusal([&] { Archive::read(folder_); }),
+            folder_.string() + ": there is no run here (no run.sqlite); give a folder that `evodevo run` has written");
+  EXPECT_EQ(refusal([&] { Archive::resume(folder_); }), refusal([&] { Archive::read(folder_); }));
+  EXPECT_FALSE(fs::exists(folder_)) << "looking leaves nothing behind";
+}
+
+TEST_F(ArchiveTest, ReadsWhileAnotherWrites) {
+  Archive writer = Archive::create(folder_, experiment_, "cpu");
+  const Archive reader = Archive::read(folder_);
+  EXPECT_EQ(reader.generations().size(), 0u);
+  writer.commit({}, {}, {.generation = 0, .evaluations = 0});
+  EXPECT_EQ(reader.generations().size(), 1u);
+}
+
+}  // namespace
+}  // namespace evodevo

@@ -1,0 +1,88 @@
+// From blueprints to bodies.
+#include "body_building.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace evodevo {
+namespace {
+
+/// Masses of the world's material 0 (bone) or 1 (air) at the given places along x.
+Blueprint row(const std::vector<std::pair<double, std::int32_t>>& masses, std::uint32_t neighbours) {
+  Blueprint blueprint;
+  blueprint.body.materials = {{10000, 0, 0, 0}, {}};
+  for (const auto& [x, material] : masses) blueprint.body.masses.push_back({{x, 0, 3}, 0.2, material, 0});
+  blueprint.neighbours = neighbours;
+  return blueprint;
+}
+
+TEST(BodyBuilding, JoinsNeighboursByTheMeanOfTheirMaterials) {
+  const BuiltBody built = build_body(row({{0, 0}, {1, 1}, {3, 0}}, 1));
+  ASSERT_EQ(built.failure, "");
+  ASSERT_EQ(built.body.springs.size(), 2u);
+  EXPECT_EQ(built.body.springs[1].rest_length, 2);
+  EXPECT_EQ(built.body.materials.at(built.body.springs[0].material).stiffness, 5000);
+}
+
+TEST(BodyBuilding, LeavesOutAirAndCountsIt) {
+  // 1 and 2 are air and neighbours of each other; both still hang on bone
+  const BuiltBody built = build_body(row({{0, 0}, {1, 1}, {2, 1}, {3, 0}}, 3));
+  ASSERT_EQ(built.failure, "");
+  EXPECT_EQ(built.body.springs.size(), 5u);
+  EXPECT_EQ(built.body.masses[0].air_contacts, 0u);
+  EXPECT_EQ(built.body.masses[1].air_contacts, 1u);
+  EXPECT_EQ(built.body.masses[2].air_contacts, 1u);
+}
+
+TEST(BodyBuilding, KeepsTheLargestPieceAndDropsLooseMasses) {
+  Blueprint blueprint = row({{0, 0}, {1, 0}, {10, 0}, {11, 0}, {12, 0}, {99, 0}}, 0);
+  blueprint.body.springs = {{0, 1, 1, 0}, {3, 2, 1, 0}, {4, 3, 1, 0}};
+  const BuiltBody built = build_body(std::move(blueprint));
+  ASSERT_EQ(built.body.masses.size(), 3u);
+  ASSERT_EQ(built.body.springs.size(), 2u);
+  EXPECT_EQ(built.body.springs[0].a, 1u);
+  EXPECT_EQ(built.body.springs[0].b, 0u);
+  EXPECT_EQ(built.body.springs[1].a, 2u);
+}
+
+TEST(BodyBuilding, StandsOnTheFloorOverTheOrigin) {
+  const BuiltBody built = build_body(row({{4, 0}, {6, 0}}, 1));
+  EXPECT_EQ(built.body.masses[0].rest, (Vec3{-1, 0, 0}));
+  EXPECT_EQ(built.body.masses[1].rest, (Vec3{1, 0, 0}));
+}
+
+TEST(BodyBuilding, SaysWhyThereIsNoBody) {
+  EXPECT_EQ(build_body(row({}, 3)).failure, "no body: no masses");
+  EXPECT_EQ(build_body(row({{0, 0}}, 3)).failure, "no springs");
+  EXPECT_EQ(build_body(row({{0, 1}, {1, 1}, {2, 1}}, 2)).failure, "no springs") << "all air";
+  EXPECT_EQ(build_body(row({{0, 0}, {std::numeric_limits<double>::quiet_NaN(), 0}}, 1)).failure,
+            "no body: a place that is not finite");
+  Blueprint failed;
+  failed.failure = "nothing but air";
+  EXPECT_EQ(build_body(failed).failure, "no body: nothing but air");
+}
+
+TEST(BodyBuilding, CoincidentMassesMakeABody) {
+  const BuiltBody built = build_body(row({{1, 0}, {1, 0}, {1, 0}}, 2));
+  EXPECT_EQ(built.failure, "");
+  EXPECT_EQ(built.body.springs.size(), 3u);
+}
+
+TEST(BodyBuilding, ABodyThatAloneExceedsTheStepIsTold) {
+  // one mass with n springs of 10,000 N/m that lead away on one line: omega^2 is about n k / m
+  Blueprint blueprint;
+  blueprint.body.materials = {{10000, 0, 0, 0}};
+  for (int i = 0; i < 400; ++i) blueprint.body.masses.push_back({{i == 0 ? 0.0 : 1.0, 0, 1e-3 * i}, 0.2, 0, 0});
+  for (std::uint32_t i = 1; i < 400; ++i) blueprint.body.springs.push_back({0, i, 1, 0});
+  const BuiltBody built = build_body(std::move(blueprint));
+  EXPECT_EQ(step_failure(built.body, {}, {.dt = 0.0005}), "unstable dt: 0.0005 s is too long for the body's springs");
+  EXPECT_EQ(step_failure(built.body, {}, {.dt = 0.0002}), "");
+  Scene floor;
+  floor.floor = Floor{1e8};
+  EXPECT_EQ(step_failure(built.body, floor, {.dt = 0.0002}),
+            "unstable dt: 0.0002 s is too long for the body's lightest mass on this floor");
+}
+
+}  // namespace
+}  // namespace evodevo

@@ -1,0 +1,122 @@
+// Newborns and the table that selection sees.
+#include "breeding.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+
+#include "support/experiments.hpp"
+
+namespace evodevo {
+namespace {
+
+Individual scored(std::uint32_t id, std::uint32_t origin, std::vector<double> objectives) {
+  Individual individual;
+  individual.id = id;
+  individual.origin = origin;
+  individual.genome = {1, 1};
+  individual.result.status = objectives.empty() ? Status::diverged : Status::ok;
+  individual.result.objectives = std::move(objectives);
+  return individual;
+}
+
+TEST(SelectionTable, TurnsScoresAndCountsAges) {
+  std::vector<Individual> everyone = {scored(3, 0, {2, 5}), scored(8, 4, {})};
+  everyone.push_back(scored(9, 0, {1, 1}));
+  everyone.back().born = 6;
+  everyone.back().parents = {8, 3};
+  everyone.push_back(scored(10, 6, {1, 1}));
+  everyone.back().born = 6;
+  const SelectionTable table(everyone, {{"distance", "", true}, {"work", "", false}}, 6);
+  const auto rows = table.rows();
+  EXPECT_EQ(rows[0].scores[0], 2);
+  EXPECT_EQ(rows[0].scores[1], -5) << "less work is better";
+  EXPECT_EQ(rows[0].age, 6u);
+  EXPECT_EQ(rows[1].age, 2u);
+  EXPECT_FALSE(rows[1].ok());
+  EXPECT_FALSE(rows[0].challenges.has_value());
+  EXPECT_EQ(rows[2].challenges, 1u);
+  EXPECT_FALSE(rows[3].challenges.has_value()) << "a newcomer";
+}
+
+TEST(Breeding, TheFirstGenerationIsRandom) {
+  const Experiment experiment = testing::read(testing::small_experiment);
+  const std::vector<Individual> newborns = breed(experiment, {}, 0, 0, 6);
+  ASSERT_EQ(newborns.size(), 6u);
+  for (const Individual& individual : newborns) EXPECT_EQ(individual.made_by, "random");
+  EXPECT_EQ(newborns[5].id, 5u);
+}
+
+TEST(Breeding, ChildrenKnowTheirParentsAndTheOldestGenesAge) {
+  const Experiment experiment = testing::read(testing::small_experiment, {{"encoding.size", "[4, 4, 4]", ""}});
+  std::vector<Individual> population = breed(experiment, {}, 0, 0, 6);
+  for (Individual& individual : population) {
+    individual.result.objectives = {1.0 + individual.id, 1};
+    individual.origin = individual.id;
+  }
+  const std::vector<Individual> newborns = breed(experiment, population, 9, 100, 40);
+  ASSERT_EQ(newborns.size(), 40u);
+  std::set<std::string> made_by;
+  for (const Individual& child : newborns) {
+    made_by.insert(child.made_by);
+    EXPECT_EQ(child.born, 9u);
+    if (child.parents.empty()) {
+      EXPECT_EQ(child.made_by, "random");
+      EXPECT_EQ(child.origin, 9u);
+      continue;
+    }
+    const bool crossed = child.made_by.find("two-point") != std::string::npos;
+    ASSERT_EQ(child.parents.size(), crossed ? 2u : 1u);
+    EXPECT_EQ(child.origin, *std::min_element(child.parents.begin(), child.parents.end()));
+  }
+  EXPECT_EQ(newborns.back().parents.size(), 0u) << "one newcomer, as the experiment asks";
+  EXPECT_EQ(made_by, (std::set<std::string>{"random", "reset-weight", "two-point", "two-point+reset-weight"}));
+}
+
+TEST(Breeding, DependsOnSeedGenerationAndIdAlone) {
+  const Experiment experiment = testing::read(testing::small_experiment, {{"encoding.size", "[4, 4, 4]", ""}});
+  const auto genomes = [](const std::vector<Individual>& individuals) {
+    std::vector<Genome> list;
+    for (const Individual& individual : individuals) list.push_back(individual.genome);
+    return list;
+  };
+  EXPECT_EQ(genomes(breed(experiment, {}, 2, 7, 4)), genomes(breed(experiment, {}, 2, 7, 4)));
+  EXPECT_EQ(breed(experiment, {}, 2, 7, 4)[3].genome, breed(experiment, {}, 2, 10, 1)[0].genome);
+  EXPECT_NE(breed(experiment, {}, 2, 7, 1)[0].genome, breed(experiment, {}, 3, 7, 1)[0].genome);
+  const Experiment other =
+      testing::read(testing::small_experiment, {{"encoding.size", "[4, 4, 4]", ""}, {"experiment.seed", "8", ""}});
+  EXPECT_NE(breed(experiment, {}, 2, 7, 1)[0].genome, breed(other, {}, 2, 7, 1)[0].genome);
+}
+
+TEST(Breeding, WithProbabilitiesOfZeroAChildStillGoesThroughOneOperator) {
+  const Experiment experiment = testing::read(
+      testing::small_experiment, {{"mutation.0.probability", "0", ""}, {"crossover.0.probability", "0", ""}});
+  std::vector<Individual> population = breed(experiment, {}, 0, 0, 2);
+  for (Individual& individual : population) individual.result.objectives = {1, 1};
+  for (const Individual& child : breed(experiment, population, 1, 2, 6)) EXPECT_NE(child.made_by, "");
+}
+
+/// Leaves a gene that is not a number.
+struct Poison final : Mutation {
+  void mutate(Genome& genome, const Layout&, Rng&) const override {
+    genome[0] = std::numeric_limits<float>::quiet_NaN();
+  }
+};
+
+TEST(Breeding, AnOperatorThatLeavesTheLayoutIsNamed) {
+  Experiment experiment = testing::read(testing::small_experiment,
+                                        {{"crossover.0.probability", "0", ""}, {"mutation.0.probability", "1", ""}});
+  experiment.mutations[0].op = std::make_unique<Poison>();
+  std::vector<Individual> population = breed(experiment, {}, 0, 0, 2);
+  for (Individual& individual : population) individual.result.objectives = {1, 1};
+  try {
+    breed(experiment, population, 1, 2, 2);
+    FAIL() << "the fault went unnoticed";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "operator \"reset-weight\" made a genome with gene 0 = nan, which is not allowed");
+  }
+}
+
+}  // namespace
+}  // namespace evodevo

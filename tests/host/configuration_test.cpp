@@ -1,0 +1,208 @@
+// Every complaint about an experiment, by its exact text.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "support/experiments.hpp"
+#include "toml_reader.hpp"
+
+namespace evodevo {
+namespace {
+
+using testing::small_experiment;
+
+/// The message that reading `text` ends with.
+std::string complaint(const std::string& text, std::vector<Override> overrides = {}) {
+  try {
+    testing::read(text, std::move(overrides));
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no complaint";
+}
+
+/// The small experiment with its first `from` replaced.
+std::string with(const std::string& from, const std::string& to) {
+  std::string text = small_experiment;
+  const auto at = text.find(from);
+  if (at == std::string::npos) throw std::logic_error("the small experiment has no " + from);
+  return text.replace(at, from.size(), to);
+}
+
+TEST(Configuration, TheSmallExperimentIsRead) {
+  const Experiment experiment = testing::read(small_experiment);
+  EXPECT_EQ(experiment.seed, 7);
+  EXPECT_EQ(experiment.evaluations, 24);
+  EXPECT_EQ(experiment.name, "test");
+  EXPECT_EQ(experiment.layout.genes.size(), 2u);
+  EXPECT_EQ(experiment.mutations.at(0).probability, 0.8);
+  EXPECT_TRUE(experiment.scene.floor.has_value());
+  EXPECT_FALSE(experiment.scene.drag.has_value());
+  EXPECT_EQ(experiment.development.cycles, 2);
+  ASSERT_EQ(experiment.objectives.size(), 2u);
+  EXPECT_EQ(experiment.objectives[0].name, "distance");
+  EXPECT_FALSE(experiment.objectives[1].maximise);
+}
+
+TEST(Configuration, ResolvedTextReadsBackAsItself) {
+  const Experiment experiment = testing::read(small_experiment, {{"simulation.dt", "0.00025", "--set"}});
+  EXPECT_NE(experiment.resolved.find("min"), 0u);
+  const Experiment again = testing::read(experiment.resolved);
+  EXPECT_EQ(again.resolved, experiment.resolved);
+  EXPECT_EQ(again.stepping.dt, 0.00025);
+  EXPECT_EQ(again.seed, experiment.seed);
+  EXPECT_EQ(again.world.materials, experiment.world.materials);
+}
+
+TEST(Configuration, ResolvedTextHoldsEveryDefault) {
+  const std::string resolved = testing::read(small_experiment).resolved;
+  for (const char* key :
+       {"stiffness = 1000000", "coefficient = 0.5", "rate = 20.1", "acceleration = 9.8", "dt = 0.0005",
+        "precision = 'float'", "method = 'paper-euler'", "reset = false", "mass = 0.2"})
+    EXPECT_NE(resolved.find(key), std::string::npos) << key << " is not in\n" << resolved;
+}
+
+TEST(Configuration, UnknownKeys) {
+  EXPECT_EQ(complaint(with("evaluations", "evalutions")),
+            "test.toml:4:1: experiment.evalutions: is not a key of [experiment]; did you mean \"evaluations\"?");
+  EXPECT_EQ(complaint(with("[selection]", "[sellection]")),
+            "test.toml:47:2: sellection: is not a key of an experiment; did you mean \"selection\"?");
+  EXPECT_EQ(
+      complaint(small_experiment + "\n[wind]\n"),
+      "test.toml:50:2: wind: is not a key of an experiment; known: experiment, encoding, mutation, crossover, scene, "
+      "simulation, development, fitness, selection, materials, plugins");
+  EXPECT_EQ(complaint(with("[scene.floor]", "[scene.flor]")),
+            "test.toml:22:8: scene.flor: is not a key of [scene]; did you mean \"floor\"?");
+  EXPECT_EQ(complaint(with("edge = 0.5", "edgy = 0.5")),
+            "test.toml:11:1: encoding.edgy: is not a key of [encoding]; did you mean \"edge\"?");
+  EXPECT_EQ(complaint(with("springs = 2", "spring = 2")),
+            "test.toml:35:1: development.operator.0.spring: is not a key of [development.operator.0]; did you mean "
+            "\"springs\"?");
+}
+
+TEST(Configuration, WrongTypes) {
+  EXPECT_EQ(complaint(with("seed = 7", "seed = \"7\"")),
+            "test.toml:3:8: experiment.seed = \"7\": expected a whole number");
+  EXPECT_EQ(complaint(with("seed = 7", "seed = 7.5")), "test.toml:3:8: experiment.seed = 7.5: expected a whole number");
+  EXPECT_EQ(complaint(with("edge = 0.5", "edge = true")), "test.toml:11:8: encoding.edge = true: expected a number");
+  EXPECT_EQ(complaint(with("size = [2, 1, 1]", "size = [2, 1]")),
+            "test.toml:10:8: encoding.size = [ 2, 1 ]: expected a list of three numbers");
+  EXPECT_EQ(complaint(with("cycles = 2", "reset = 1")),
+            "test.toml:30:9: development.reset = 1: expected true or false");
+  EXPECT_EQ(complaint(with("[scene.gravity]\n[scene.floor]", "[scene]\nfloor = 3\n[scene.gravity]")),
+            "test.toml:22:9: scene.floor = 3: expected a table, [scene.floor]");
+  EXPECT_EQ(complaint(with("[[mutation]]", "[mutation]")),
+            "test.toml:13:1: mutation = a table: expected an array of tables, [[mutation]]");
+  EXPECT_EQ(complaint(with("name = \"voxel\"", "name = 1")),
+            "test.toml:9:8: encoding.name = 1: expected a text in quotes");
+}
+
+TEST(Configuration, OutOfRange) {
+  EXPECT_EQ(complaint(with("evaluations = 24", "evaluations = 0")),
+            "test.toml:4:15: experiment.evaluations = 0: expected 1 to 1e+09");
+  EXPECT_EQ(complaint(with("edge = 0.5", "edge = -1")).substr(0, 41), "test.toml:11:8: encoding.edge = -1: expec");
+  EXPECT_EQ(complaint(with("probability = 0.8", "probability = 1.1")),
+            "test.toml:15:15: mutation.0.probability = 1.1: expected 0 to 1");
+  EXPECT_EQ(complaint(with("probability = 0.8", "probability = nan")),
+            "test.toml:15:15: mutation.0.probability = nan: expected 0 to 1");
+  EXPECT_EQ(complaint(with("[simulation]", "[simulation]\ndt = 0.2")),
+            "test.toml:27:6: simulation.dt = 0.2: expected 1e-07 to 0.1 s");
+  EXPECT_EQ(complaint(with("newcomers = 1", "newcomers = 7")),
+            "test.toml:6:13: experiment.newcomers = 7: expected at most the population, 6");
+  EXPECT_EQ(complaint(with("[simulation]", "[simulation]\ndevice = \"tpu\"")),
+            "test.toml:27:10: simulation.device = \"tpu\": is not an option; did you mean \"cpu\"?");
+}
+
+TEST(Configuration, UnknownOperators) {
+  EXPECT_EQ(complaint(with("\"voxel\"", "\"voxels\"")),
+            "test.toml:9:8: encoding.name = \"voxels\": no encoding operator has this name; did you mean \"voxel\"?");
+  EXPECT_EQ(complaint(with("\"two-point\"", "\"blend\"")),
+            "test.toml:18:8: crossover.0.name = \"blend\": no crossover operator has this name; known: swap-neuron, "
+            "two-point");
+}
+
+TEST(Configuration, UnknownMaterials) {
+  EXPECT_EQ(
+      complaint(with("edge = 0.5", "materials = [\"muscle\", \"bones\"]")),
+      "test.toml:11:13: encoding.materials = [ \"muscle\", \"bones\" ]: \"bones\" is not a material; did you mean "
+      "\"bone\"?");
+}
+
+TEST(Configuration, MaterialsOfOnesOwn) {
+  const std::string own =
+      small_experiment + "\n[materials.rubber]\nstiffness = 800\n[materials.muscle]\namplitude = 0\n";
+  const Experiment experiment = testing::read(own);
+  const auto index = experiment.world.material_indices({"rubber", "muscle"});
+  ASSERT_EQ(index.size(), 2u);
+  EXPECT_EQ(experiment.world.materials[static_cast<std::size_t>(index[0])], (Material{5000, 0, 1, 0}));
+  EXPECT_EQ(experiment.world.materials[static_cast<std::size_t>(index[1])], (Material{800, 0, 0, 0}));
+  EXPECT_EQ(complaint(small_experiment + "\n[materials.rubber]\nstifness = 800\n"),
+            "test.toml:51:1: materials.rubber.stifness: is not a key of [materials.rubber]; did you mean "
+            "\"stiffness\"?");
+}
+
+TEST(Configuration, MissingParts) {
+  EXPECT_EQ(complaint(""), "test.toml:1:1: experiment: is missing; add a table [experiment]");
+  EXPECT_EQ(complaint(with("name = \"voxel\"", "")), "test.toml:8:1: encoding.name: is missing");
+  EXPECT_EQ(complaint("[experiment]\n[encoding]\nname = 'voxel'\n"),
+            "test.toml:1:1: mutation: is missing; add a table [[mutation]] or [[crossover]]");
+  EXPECT_EQ(complaint("[experiment]\n[encoding]\nname = 'voxel'\n[[mutation]]\nname = 'reset-weight'\n"),
+            "test.toml:1:1: fitness: is missing; add a table [[fitness]]");
+}
+
+TEST(Configuration, ContradictoryParts) {
+  EXPECT_EQ(complaint(with("[scene.floor]", "")),
+            "test.toml:23:1: scene.friction = a table: there is nothing to rub on; add [scene.floor] or remove "
+            "[scene.friction]");
+  EXPECT_EQ(complaint(with("\"actuation-work\"", "\"distance\"")),
+            "test.toml:43:8: fitness.1.name = \"distance\": there is an objective \"distance\" already");
+}
+
+TEST(Configuration, StepsThatTheSceneOrAMaterialCannotBear) {
+  EXPECT_EQ(complaint(with("[simulation]", "[simulation]\ndt = 0.001")),
+            "test.toml:27:6: simulation.dt = 0.001: the step 0.001 s is too long for scene.floor.stiffness = 1e+06 "
+            "N/m on masses of 0.2 kg; expected at most 0.0005366563145999495 s");
+  EXPECT_EQ(complaint(with("[simulation]", "[materials.bone]\nstiffness = 1e7\n[simulation]\ndt = 0.0005")),
+            "test.toml:29:6: simulation.dt = 0.0005: the step 0.0005 s is too long for materials.bone.stiffness = "
+            "1e+07 N/m on masses of 0.2 kg; expected at most 0.0002 s");
+  EXPECT_EQ(complaint(with("cycle_time = 0.05", "cycle_time = 0.0507")),
+            "test.toml:31:14: development.cycle_time = 0.0507: 0.0507 s is not a whole number of steps of 0.0005 s; "
+            "the nearest that is: 0.0505 s");
+}
+
+TEST(Configuration, SyntaxAndFiles) {
+  EXPECT_EQ(complaint(with("seed = 7", "seed = ")).substr(0, 14), "test.toml:3:8:");
+  const auto from_file = [](const std::string& file) -> std::string {
+    try {
+      read_experiment(ExperimentSource{file, {}});
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "no complaint";
+  };
+  EXPECT_EQ(from_file("no/such/file.toml"), "no/such/file.toml: cannot be read: No such file or directory");
+  EXPECT_EQ(from_file("/"), "/: cannot be read: it is a folder");
+}
+
+TEST(Configuration, Overrides) {
+  const auto read = [](const std::string& key, const std::string& value) {
+    return testing::read(small_experiment, {{key, value, "--set " + key + "=" + value}});
+  };
+  EXPECT_EQ(read("experiment.population", "9").population, 9);
+  EXPECT_EQ(read("mutation.0.probability", "0.25").mutations[0].probability, 0.25);
+  EXPECT_EQ(read("selection.name", "elitist").uses.back().name, "elitist") << "a text needs no quotes";
+  EXPECT_EQ(read("scene.drag.coefficient", "2").scene.drag->coefficient, 2) << "a table may come into being";
+
+  EXPECT_EQ(complaint(small_experiment, {{"experiment.population", "-1", "--set experiment.population=-1"}}),
+            "--set experiment.population=-1: experiment.population = -1: expected 1 to 1e+06");
+  EXPECT_EQ(complaint(small_experiment, {{"experiment.size", "3", "--set experiment.size=3"}}),
+            "--set experiment.size=3: experiment.size: is not a key of [experiment]; known: seed, evaluations, "
+            "population, newcomers");
+  EXPECT_EQ(complaint(small_experiment, {{"fitness.7.window", "3", "--set fitness.7.window=3"}}),
+            "--set fitness.7.window=3: fitness.7.window: there is no item 7");
+  EXPECT_EQ(complaint(small_experiment, {{"fitness.0", "3", "--set fitness.0=3"}}),
+            "--set fitness.0=3: fitness.0: is not a key of a table");
+}
+
+}  // namespace
+}  // namespace evodevo

@@ -1,0 +1,129 @@
+// What apply_edits does to a body, and what it refuses.
+#include "development.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "philox.hpp"
+
+namespace evodevo {
+namespace {
+
+const Material bone{10000, 0, 0, 0};
+const Material muscle{5000, 0.14, 1, 0};
+
+/// Four masses on a line, 1 m apart, joined one after the other; mass i moves at i m/s.
+struct Line {
+  LivingBody living;
+  Genome genome;
+  Layout layout;
+
+  Line() {
+    for (int i = 0; i < 4; ++i) {
+      living.body.masses.push_back({{static_cast<double>(i), 0, 0}, 0.2, 0, 0});
+      living.state.position.push_back({static_cast<double>(i), 0, 5});
+      living.state.velocity.push_back({0, 0, static_cast<double>(i)});
+    }
+    living.body.materials = {bone};
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      living.body.springs.push_back({i, i + 1, 1, 0});
+      living.stress.push_back(10.0 * (i + 1));
+    }
+  }
+
+  Moment moment(bool resets = false) const {
+    return {living.body, living.state, living.stress, 1, 2, 0.25, {}, 0.2, resets, genome, layout};
+  }
+
+  void apply(const Edits& edits, bool resets = false) { apply_edits(living, edits, moment(resets)); }
+
+  std::string refusal(const Edits& edits) {
+    try {
+      apply(edits);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+};
+
+TEST(Development, ASpringGoesAndOneComes) {
+  Line line;
+  line.apply({.removed_springs = {1}, .new_springs = {{0, 3, muscle, std::nullopt}}});
+  const Body& body = line.living.body;
+  ASSERT_EQ(body.springs.size(), 3u);
+  EXPECT_EQ(body.springs[1].a, 2u);
+  EXPECT_EQ(body.springs[1].b, 3u);
+  EXPECT_EQ(body.springs[2].a, 0u);
+  EXPECT_EQ(body.springs[2].b, 3u);
+  EXPECT_EQ(body.materials.at(body.springs[2].material), muscle);
+  // born without force: L(t) = 3 m at t = 0.25 s, when a muscle of 1 Hz is longest
+  EXPECT_NEAR(body.springs[2].rest_length, 3 / 1.14, 1e-12);
+  EXPECT_EQ(line.living.stress, (std::vector<double>{10, 30, 20})) << "a newcomer carries the mean";
+}
+
+TEST(Development, WithResetANewSpringIsAsLongAsTheRestPlacesAreApart) {
+  Line line;
+  line.living.state.position[3] = {100, 0, 0};
+  line.apply({.new_springs = {{0, 3, muscle, std::nullopt}}}, true);
+  EXPECT_EQ(line.living.body.springs.back().rest_length, 3);
+}
+
+TEST(Development, AGivenRestLengthIsKept) {
+  Line line;
+  line.apply({.new_springs = {{0, 3, bone, 0.5}}});
+  EXPECT_EQ(line.living.body.springs.back().rest_length, 0.5);
+}
+
+TEST(Development, AMassGoesWithItsSpringsAndOneComes) {
+  Line line;
+  line.apply({.removed_masses = {1},
+              .new_masses = {{{9, 0, 1}, 0.3, 0}},
+              .new_springs = {{4, 3, bone, std::nullopt}, {0, 2, bone, std::nullopt}}});
+  const LivingBody& living = line.living;
+  ASSERT_EQ(living.body.masses.size(), 4u);
+  EXPECT_EQ(living.body.masses[3].mass, 0.3);
+  EXPECT_EQ(living.body.masses[3].rest, (Vec3{9, 0, 1}));
+  EXPECT_EQ(living.state.position[3], (Vec3{9, 0, 1}));
+  EXPECT_EQ(living.state.velocity[3], (Vec3{0, 0, 0})) << "it starts at rest";
+  EXPECT_EQ(living.state.velocity[1], (Vec3{0, 0, 2})) << "the others keep their motion";
+  ASSERT_EQ(living.body.springs.size(), 3u);
+  EXPECT_EQ(living.body.springs[0].a, 1u) << "old mass 2 is mass 1 now";
+  EXPECT_EQ(living.body.springs[0].b, 2u);
+  EXPECT_EQ(living.body.springs[1].a, 3u);
+  EXPECT_EQ(living.body.springs[1].b, 2u);
+  EXPECT_NEAR(living.body.springs[1].rest_length, norm(Vec3{6, 0, -4}), 1e-12);
+}
+
+TEST(Development, NothingChangesNothing) {
+  Line line, same;
+  line.apply({});
+  EXPECT_EQ(line.living.state.position, same.living.state.position);
+  EXPECT_EQ(line.living.stress, same.living.stress);
+  EXPECT_EQ(line.living.body.springs.size(), 3u);
+}
+
+TEST(Development, FaultyEditsAreRefused) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto join = [](std::uint32_t a, std::uint32_t b) { return NewSpring{a, b, bone, std::nullopt}; };
+  EXPECT_EQ(Line().refusal({.removed_springs = {3}}), "removes spring 3 of a body that has 3");
+  EXPECT_EQ(Line().refusal({.removed_masses = {4}}), "removes mass 4 of a body that has 4");
+  EXPECT_EQ(Line().refusal({.new_springs = {join(0, 4)}}), "joins masses 0 and 4, but there is no mass 4");
+  EXPECT_EQ(Line().refusal({.removed_masses = {2}, .new_springs = {join(0, 2)}}),
+            "joins masses 0 and 2, but mass 2 goes");
+  EXPECT_EQ(Line().refusal({.new_springs = {join(2, 2)}}), "joins masses 2 and 2, which are one");
+  EXPECT_EQ(Line().refusal({.new_springs = {join(1, 0)}}), "joins masses 1 and 0, which are joined already");
+  EXPECT_EQ(Line().refusal({.new_springs = {join(0, 2), join(2, 0)}}),
+            "joins masses 2 and 0, which are joined already");
+  EXPECT_EQ(Line().refusal({.removed_springs = {0}, .new_springs = {join(0, 1)}}), "accepted");
+  EXPECT_EQ(Line().refusal({.new_springs = {{0, 2, Material{}, std::nullopt}}}),
+            "joins masses 0 and 2 by a spring of stiffness 0.000000");
+  EXPECT_EQ(Line().refusal({.new_springs = {{0, 2, bone, nan}}}),
+            "joins masses 0 and 2 by a spring of rest length nan");
+  EXPECT_EQ(Line().refusal({.new_masses = {{{nan, 0, 0}, 0.2, 0}}}),
+            "adds a mass of 0.200000 kg at a distance of nan m from the origin");
+}
+
+}  // namespace
+}  // namespace evodevo

@@ -1,0 +1,230 @@
+// Evaluations: independent of company and threads, honest about failures.
+#include "evaluation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "breeding.hpp"
+#include "support/experiments.hpp"
+
+namespace evodevo {
+namespace {
+
+const Progress unwatched = [](double) {};
+
+std::vector<Result> evaluate(const Experiment& experiment, const std::vector<Individual>& individuals,
+                             int threads = 1) {
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, threads);
+  std::vector<Newborn> newborns;
+  for (const Individual& individual : individuals)
+    newborns.push_back({individual.id, individual.born, &individual.genome});
+  return Evaluation(experiment, *simulator).evaluate(newborns, unwatched);
+}
+
+void expect_equal(const Result& a, const Result& b) {
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.reason, b.reason);
+  EXPECT_EQ(a.objectives, b.objectives);
+  EXPECT_EQ(a.spring_evaluations, b.spring_evaluations);
+}
+
+TEST(Evaluation, DoesNotDependOnThreadsOrCompanyOrOrder) {
+  Experiment experiment = testing::read(testing::small_experiment);
+  std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 24);
+  const std::vector<Result> together = evaluate(experiment, individuals);
+  const auto ok =
+      std::count_if(together.begin(), together.end(), [](const Result& r) { return r.status == Status::ok; });
+  ASSERT_GE(ok, 8) << "there must be something to compare";
+
+  experiment.threads = 8;
+  const std::vector<Result> threaded = evaluate(experiment, individuals, 8);
+  for (std::size_t i = 0; i < together.size(); ++i) {
+    expect_equal(together[i], threaded[i]);
+    expect_equal(together[i], evaluate(experiment, {individuals[i]}).front());
+  }
+  std::reverse(individuals.begin(), individuals.end());
+  std::vector<Result> reversed = evaluate(experiment, individuals);
+  std::reverse(reversed.begin(), reversed.end());
+  for (std::size_t i = 0; i < together.size(); ++i) expect_equal(together[i], reversed[i]);
+}
+
+TEST(Evaluation, DevelopmentDependsOnTheIndividualsOwnNumbers) {
+  const Experiment experiment = testing::read(testing::small_experiment, {{"encoding.size", "[3, 2, 2]", ""}});
+  std::vector<Individual> twins = breed(experiment, {}, 0, 0, 1);
+  twins.push_back(twins.front());
+  twins.back().id = 1;
+  const std::vector<Result> results = evaluate(experiment, twins);
+  ASSERT_EQ(results[0].status, Status::ok);
+  EXPECT_NE(results[0].objectives, results[1].objectives) << "springs come at random places";
+}
+
+TEST(Evaluation, CountsEverySpringOfEveryStep) {
+  const Experiment experiment = testing::read(testing::small_experiment);
+  const Individual full{.genome = {1, 1}};  // both voxels of bone: 12 masses, 28 + 28 - 6 springs
+  const Result result = evaluate(experiment, {full}).front();
+  ASSERT_EQ(result.status, Status::ok) << result.reason;
+  EXPECT_EQ(result.spring_evaluations, 50u * (2 * 100 + 100 + 200));
+}
+
+TEST(Evaluation, ABodyWithoutMusclesDoesNoWork) {
+  const Experiment experiment = testing::read(testing::small_experiment);
+  const auto works = [&](float material) {
+    return evaluate(experiment, {{.genome = {material, material}}})[0].objectives;
+  };
+  EXPECT_EQ(works(1)[1], 0) << "bone";
+  EXPECT_GT(works(2)[1], 0) << "muscle";
+}
+
+TEST(Evaluation, AllAirIsInvalidAndDisturbsNobody) {
+  const Experiment experiment = testing::read(testing::small_experiment);
+  const Individual air{.id = 0, .genome = {0, 0}}, bone{.id = 1, .genome = {1, 1}};
+  const std::vector<Result> results = evaluate(experiment, {air, bone});
+  EXPECT_EQ(results[0].status, Status::invalid);
+  EXPECT_NE(results[0].reason, "");
+  EXPECT_TRUE(results[0].objectives.empty());
+  expect_equal(results[1], evaluate(experiment, {bone}).front());
+}
+
+/// Drag that a step of this length cannot bear: a force that grows with the square of the speed overshoots.
+TEST(Evaluation, ADivergedBodyIsToldWithTimeAndReason) {
+  const Experiment experiment = testing::read(
+      testing::small_experiment, {{"scene.drag.coefficient", "1e6", ""}, {"scene.gravity.acceleration", "1000", ""}});
+  const Result result = evaluate(experiment, {{.genome = {2, 2}}}).front();
+  EXPECT_EQ(result.status, Status::diverged);
+  EXPECT_GT(result.ended_at, 0);
+  EXPECT_LE(result.ended_at, 0.25);
+  EXPECT_NE(result.reason, "");
+  EXPECT_TRUE(result.objectives.empty());
+}
+
+/// A fitness that answers with what it is given.
+class Constant final : public Fitness {
+ public:
+  explicit Constant(double value) : value_(value) {}
+  Request observes() const override { return {.settle = 0, .window = 0.01}; }
+  std::vector<Objective> objectives() const override { return {{"constant", "1", true}}; }
+  std::vector<double> score(const Observation&) const override { return {value_}; }
+
+ private:
+  double value_;
+};
+
+TEST(Evaluation, AFitnessThatIsNotANumberIsNoFitness) {
+  Experiment experiment = testing::read(testing::small_experiment);
+  for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    experiment.fitness.clear();
+    experiment.fitness.push_back(std::make_unique<Constant>(value));
+    experiment.objectives = experiment.fitness[0]->objectives();
+    const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
+    EXPECT_EQ(result.status, Status::invalid);
+    EXPECT_EQ(result.reason, "fitness not finite: constant");
+    EXPECT_TRUE(result.objectives.empty());
+  }
+}
+
+/// Watches the window that it asked for.
+class Watcher final : public Fitness {
+ public:
+  Watcher(Request request, Observation& seen) : request_(request), seen_(seen) {}
+  Request observes() const override { return request_; }
+  std::vector<Objective> objectives() const override { return {{"seen", "1", true}}; }
+  std::vector<double> score(const Observation& observation) const override {
+    seen_ = observation;
+    return {0};
+  }
+
+ private:
+  Request request_;
+  Observation& seen_;
+};
+
+TEST(Evaluation, EveryFitnessSeesItsOwnWindow) {
+  Experiment experiment = testing::read(testing::small_experiment);
+  experiment.development = {};
+  experiment.scene = {};
+  experiment.scene.gravity = Gravity{};  // nothing but a fall: z = -g t^2 / 2
+  Observation early, late, whole;
+  const auto observe = [&](Request request, Observation& seen) {
+    experiment.fitness.push_back(std::make_unique<Watcher>(request, seen));
+  };
+  experiment.fitness.clear();
+  observe({.settle = 0.1, .window = 0.2}, early);
+  observe({.settle = 0.2, .window = 0.3}, late);
+  observe({.settle = 0, .window = 0.5, .work = true}, whole);
+  experiment.objectives = {{"a", "", true}, {"b", "", true}, {"c", "", true}};
+  ASSERT_EQ(evaluate(experiment, {{.genome = {2, 2}}}).front().status, Status::ok);
+  const auto fallen = [](const Observation& seen) { return seen.centre_before.z - seen.centre_after.z; };
+  EXPECT_NEAR(fallen(early), 9.81 / 2 * (0.3 * 0.3 - 0.1 * 0.1), 2e-3);
+  EXPECT_NEAR(fallen(late), 9.81 / 2 * (0.5 * 0.5 - 0.2 * 0.2), 2e-3);
+  EXPECT_NEAR(fallen(whole), 9.81 / 2 * 0.25, 2e-3);
+  EXPECT_EQ(early.work, 0) << "nobody asked for it in this window alone";
+  EXPECT_GT(whole.work, 0);
+  EXPECT_NEAR(whole.box.longest_side(), 1, 1e-6) << "two voxels of half a metre";
+}
+
+/// Removes every spring.
+struct Destroyer final : Devo {
+  void develop(const Moment& now, Edits& edits, Rng&) const override {
+    for (std::uint32_t i = 0; i < now.body.springs.size(); ++i) edits.removed_springs.push_back(i);
+  }
+};
+
+/// Joins a mass to itself.
+struct Faulty final : Devo {
+  void develop(const Moment&, Edits& edits, Rng&) const override {
+    edits.new_springs.push_back({0, 0, {1, 0, 0, 0}, {}});
+  }
+};
+
+TEST(Evaluation, ABodyThatDevelopmentEmptiesIsInvalid) {
+  Experiment experiment = testing::read(testing::small_experiment);
+  experiment.development.operators[0] = std::make_unique<Destroyer>();
+  const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
+  EXPECT_EQ(result.status, Status::invalid);
+  EXPECT_EQ(result.reason, "no springs");
+}
+
+TEST(Evaluation, AFaultyOperatorIsNamed) {
+  Experiment experiment = testing::read(testing::small_experiment);
+  experiment.development.operators[0] = std::make_unique<Faulty>();
+  try {
+    evaluate(experiment, {{.id = 5, .genome = {1, 1}}});
+    FAIL() << "the fault went unnoticed";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(),
+                 "devo operator \"spring-turnover\", individual 5, cycle 1: joins masses 0 and 0, which are one");
+  }
+}
+
+/// Keeps where the body was when development looked.
+class Place final : public Devo {
+ public:
+  explicit Place(std::vector<double>& heights) : heights_(heights) {}
+  void develop(const Moment& now, Edits&, Rng&) const override { heights_.push_back(now.state.position[0].z); }
+
+ private:
+  std::vector<double>& heights_;
+};
+
+TEST(Evaluation, ResetPutsTheBodyBackAfterEveryCycle) {
+  const auto heights = [](bool reset) {
+    Experiment experiment = testing::read(testing::small_experiment);
+    experiment.scene = {};
+    experiment.scene.gravity = Gravity{};
+    experiment.development.reset = reset;
+    std::vector<double> seen;
+    experiment.development.operators[0] = std::make_unique<Place>(seen);
+    EXPECT_EQ(evaluate(experiment, {{.genome = {1, 1}}}).front().status, Status::ok);
+    return seen;
+  };
+  const auto kept = heights(false), reset = heights(true);
+  ASSERT_EQ(kept.size(), 2u);
+  ASSERT_EQ(reset.size(), 2u);
+  EXPECT_NEAR(kept[1], 4 * kept[0], 0.02 * -kept[0]) << "falls on";
+  EXPECT_NEAR(reset[1], reset[0], 1e-6) << "falls anew";
+}
+
+}  // namespace
+}  // namespace evodevo

@@ -1,0 +1,317 @@
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "evodevo/lattice.hpp"
+#include "support.hpp"
+
+namespace evodevo::test {
+namespace {
+
+/// Everything that an encoding decides, for comparisons.
+std::vector<double> digest(const Blueprint& blueprint) {
+  std::vector<double> digest{static_cast<double>(blueprint.neighbours)};
+  for (const Mass& m : blueprint.body.masses)
+    digest.insert(digest.end(), {m.rest.x, m.rest.y, m.rest.z, m.mass, static_cast<double>(m.material)});
+  for (const Spring& s : blueprint.body.springs)
+    digest.insert(digest.end(), {double(s.a), double(s.b), s.rest_length, double(s.material)});
+  for (const Material& m : blueprint.body.materials) digest.push_back(m.stiffness + m.phase);
+  return digest;
+}
+
+void expect_groups_cover_genes_once(const Layout& layout) {
+  std::uint32_t next = 0;
+  for (const GeneGroup& group : layout.groups) {
+    EXPECT_EQ(group.first, next);
+    EXPECT_GT(group.count, 0u);
+    next += group.count;
+  }
+  EXPECT_EQ(next, layout.genes.size());
+}
+
+class AnyEncoding : public testing::TestWithParam<const char*> {};
+
+TEST_P(AnyEncoding, SameGenomeSameBodyOnAnyThread) {
+  const auto encoding = make<Encoding>(GetParam());
+  const Layout layout = encoding->layout(world());
+  Rng rng = stream(1);
+  const Genome one = encoding->random(layout, rng), other = encoding->random(layout, rng);
+  const auto body = from_eight_threads([&] { return digest(encoding->decode(one, world())); });
+  EXPECT_NE(body, digest(encoding->decode(other, world())));
+}
+
+TEST_P(AnyEncoding, RandomGenomesGiveBodiesThatBeginWithTheWorldsMaterials) {
+  const auto encoding = make<Encoding>(GetParam());
+  const Layout layout = encoding->layout(world());
+  expect_groups_cover_genes_once(layout);
+  Rng rng = stream(2);
+  for (int i = 0; i < 5; ++i) {
+    const Genome genome = encoding->random(layout, rng);
+    ASSERT_EQ(genome.size(), layout.genes.size());
+    const Blueprint blueprint = encoding->decode(genome, world());
+    EXPECT_EQ(blueprint.failure, "");
+    ASSERT_GE(blueprint.body.materials.size(), 5u);
+    for (std::size_t m = 0; m < 5; ++m) EXPECT_EQ(blueprint.body.materials[m], world().materials[m]);
+    for (const Mass& mass : blueprint.body.masses) EXPECT_EQ(mass.mass, 0.2);
+  }
+}
+
+TEST_P(AnyEncoding, AirAloneIsNoBody) {
+  const auto encoding = make<Encoding>(GetParam(), "materials = ['air']");
+  Rng rng = stream(3);
+  const Genome genome = encoding->random(encoding->layout(world()), rng);
+  EXPECT_EQ(encoding->decode(genome, world()).failure, "all materials to choose from are air");
+}
+
+INSTANTIATE_TEST_SUITE_P(Encodings, AnyEncoding, testing::Values("neural", "voxel", "direct"));
+
+// neural -------------------------------------------------------------------------------------------------------------
+
+TEST(Neural, HasThePapersGenes) {
+  const Layout layout = make<Encoding>("neural")->layout(world());
+  // 25 neurons of 1 + 3, 25 of 1 + 25, 3 + 5 of 1 + 25
+  ASSERT_EQ(layout.genes.size(), 958u);
+  ASSERT_EQ(layout.groups.size(), 58u);
+  for (std::size_t n = 0; n < 58; ++n) EXPECT_EQ(layout.groups[n].count, n < 25 ? 4u : 26u);
+  for (const GeneSpec& gene : layout.genes) {
+    EXPECT_FALSE(gene.is_choice());
+    EXPECT_EQ(gene.low, -1);
+    EXPECT_EQ(gene.high, 1);
+  }
+}
+
+TEST(Neural, OneOutputForEachMaterialToChooseFrom) {
+  const auto encoding = make<Encoding>("neural", "materials = ['tissue', 'bone']");
+  const Layout layout = encoding->layout(world());
+  EXPECT_EQ(layout.genes.size(), 958u - 3 * 26);
+  std::map<std::int32_t, int> seen;
+  Rng rng = stream(1);
+  for (int i = 0; i < 20; ++i)
+    for (const Mass& mass : encoding->decode(encoding->random(layout, rng), world()).body.masses) ++seen[mass.material];
+  EXPECT_THAT(seen, testing::ElementsAre(testing::Key(bone), testing::Key(tissue)));
+}
+
+TEST(Neural, BiasesOfTheOutputsAloneSetPlaceAndMaterial) {
+  const auto encoding = make<Encoding>("neural", "side = 3.0\nneighbours = 7\npoints = 10");
+  const Layout layout = encoding->layout(world());
+  Genome genome(layout.genes.size(), 0);
+  const auto bias = [&](std::size_t output) -> float& { return genome[layout.groups[50 + output].first]; };
+  bias(0) = 0.5f;
+  bias(1) = -1;
+  bias(3 + muscle) = 0.25f;
+  const Blueprint blueprint = encoding->decode(genome, world());
+  EXPECT_EQ(blueprint.neighbours, 7u);
+  ASSERT_EQ(blueprint.body.masses.size(), 10u);
+  for (const Mass& mass : blueprint.body.masses) {
+    EXPECT_DOUBLE_EQ(mass.rest.x, 1.5 * std::tanh(0.5));
+    EXPECT_DOUBLE_EQ(mass.rest.y, 1.5 * std::tanh(-1.0));
+    EXPECT_EQ(mass.rest.z, 0);
+    EXPECT_EQ(mass.material, muscle);
+  }
+}
+
+/// A network of six hidden neurons that lets the points through: x = relu(x) - relu(-x).
+std::vector<Vec3> points_of(const std::string& toml) {
+  const auto encoding = make<Encoding>("neural", "hidden = 6\n" + toml);
+  const Layout layout = encoding->layout(world());
+  Genome genome(layout.genes.size(), 0);
+  const auto weight = [&](std::size_t neuron, std::size_t input) -> float& {
+    return genome[layout.groups[neuron].first + 1 + input];
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    weight(2 * axis, axis) = 1;
+    weight(2 * axis + 1, axis) = -1;
+    weight(6 + 2 * axis, 2 * axis) = weight(6 + 2 * axis + 1, 2 * axis + 1) = 1;
+    weight(12 + axis, 2 * axis) = 1;
+    weight(12 + axis, 2 * axis + 1) = -1;
+  }
+  std::vector<Vec3> points;
+  for (const Mass& mass : encoding->decode(genome, world()).body.masses)
+    points.push_back({std::atanh(mass.rest.x), std::atanh(mass.rest.y), std::atanh(mass.rest.z)});
+  return points;
+}
+
+TEST(Neural, PointsAreUniformInTheBall) {
+  const auto points = points_of("points = 20000");
+  ASSERT_EQ(points.size(), 20000u);
+  Vec3 mean;
+  std::size_t inner = 0;
+  for (const Vec3& point : points) {
+    EXPECT_LE(norm(point), 1 + 1e-9);
+    mean = mean + (1.0 / 20000) * point;
+    inner += norm(point) < 0.5;
+  }
+  // an eighth of the volume; five standard deviations
+  EXPECT_NEAR(static_cast<double>(inner) / 20000, 1.0 / 8, 0.012);
+  EXPECT_LT(norm(mean), 0.02);
+}
+
+TEST(Neural, PointsDependOnTheirSeedAlone) {
+  EXPECT_EQ(points_of("points_seed = 5"), points_of("points_seed = 5"));
+  EXPECT_NE(points_of("points_seed = 5"), points_of("points_seed = 6"));
+  // a shorter list is the beginning of a longer one
+  EXPECT_EQ(points_of("points = 100")[99], points_of("")[99]);
+}
+
+/// The outputs of the paper's network for one point, written out.
+std::vector<double> network(const Genome& genome, const Layout& layout, Vec3 point) {
+  std::vector<double> values{point.x, point.y, point.z};
+  std::size_t group = 0;
+  for (const std::size_t neurons : {25, 25, 8}) {
+    std::vector<double> next;
+    for (std::size_t n = 0; n < neurons; ++n, ++group) {
+      const float* gene = &genome[layout.groups[group].first];
+      double sum = gene[0];
+      for (std::size_t i = 0; i < values.size(); ++i) sum += gene[1 + i] * values[i];
+      next.push_back(neurons == 25 ? std::max(0.0, sum) : sum);
+    }
+    values = next;
+  }
+  return values;
+}
+
+TEST(Neural, IsThePapersNetwork) {
+  const auto encoding = make<Encoding>("neural");
+  const Layout layout = encoding->layout(world());
+  const auto points = points_of("");
+  Rng rng = stream(4);
+  for (int trial = 0; trial < 3; ++trial) {
+    const Genome genome = encoding->random(layout, rng);
+    const Body body = encoding->decode(genome, world()).body;
+    ASSERT_EQ(body.masses.size(), points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const auto outputs = network(genome, layout, points[i]);
+      EXPECT_NEAR(body.masses[i].rest.x, std::tanh(outputs[0]), 1e-9);
+      EXPECT_NEAR(body.masses[i].rest.y, std::tanh(outputs[1]), 1e-9);
+      EXPECT_NEAR(body.masses[i].rest.z, std::tanh(outputs[2]), 1e-9);
+      const double greatest = *std::max_element(outputs.begin() + 3, outputs.end());
+      EXPECT_NEAR(outputs[3 + static_cast<std::size_t>(body.masses[i].material)], greatest, 1e-9);
+    }
+  }
+}
+
+TEST(Neural, PlacesStayInTheCubeWhateverTheGenes) {
+  const auto encoding = make<Encoding>("neural");
+  for (const float value : {-1.0f, 1.0f, 1e30f}) {
+    const Blueprint blueprint = encoding->decode(Genome(958, value), world());
+    for (const Mass& mass : blueprint.body.masses)
+      for (const double place : {mass.rest.x, mass.rest.y, mass.rest.z}) EXPECT_LE(std::abs(place), 1);
+  }
+}
+
+TEST(Neural, GenesThatAreNoNumbersAreNoBody) {
+  const auto encoding = make<Encoding>("neural");
+  for (const float value : {std::nanf(""), std::numeric_limits<float>::infinity()}) {
+    Genome genome(958, 0.5f);
+    genome[500] = value;
+    EXPECT_EQ(encoding->decode(genome, world()).failure, "a gene is not finite");
+  }
+}
+
+// lattices -----------------------------------------------------------------------------------------------------------
+
+Genome choices(std::initializer_list<std::int32_t> options) { return Genome(options.begin(), options.end()); }
+
+/// How many springs there are of each material.
+std::map<double, int> stiffnesses(const Body& body) {
+  std::map<double, int> count;
+  for (const Spring& spring : body.springs) ++count[body.materials[spring.material].stiffness];
+  return count;
+}
+
+TEST(Voxel, OneVoxelIsACubeOfTwentyEightSprings) {
+  const auto encoding = make<Encoding>("voxel", "size = [1, 1, 1]\nedge = 0.5");
+  const Layout layout = encoding->layout(world());
+  ASSERT_EQ(layout.genes.size(), 1u);
+  EXPECT_EQ(layout.genes[0].choices, 5u);
+  const Body body = encoding->decode(choices({muscle}), world()).body;
+  ASSERT_EQ(body.masses.size(), 8u);
+  for (const Mass& mass : body.masses) {
+    for (const double place : {mass.rest.x, mass.rest.y, mass.rest.z}) EXPECT_DOUBLE_EQ(std::abs(place), 0.25);
+    EXPECT_EQ(mass.material, no_material);
+    EXPECT_EQ(mass.air_contacts, 0u);
+  }
+  std::map<long, int> lengths;  // in tenths of a millimetre
+  for (const Spring& spring : body.springs) {
+    ++lengths[std::lround(spring.rest_length * 1e4)];
+    EXPECT_DOUBLE_EQ(spring.rest_length, norm(body.masses[spring.a].rest - body.masses[spring.b].rest));
+    EXPECT_EQ(spring.material, static_cast<std::uint32_t>(muscle));
+  }
+  EXPECT_EQ(lengths, (std::map<long, int>{{5000, 12}, {7071, 12}, {8660, 4}}));
+}
+
+TEST(Voxel, SharedSpringsTakeTheMean) {
+  const auto encoding = make<Encoding>("voxel", "size = [2, 1, 1]");
+  const Body body = encoding->decode(choices({muscle2, bone}), world()).body;
+  EXPECT_EQ(body.masses.size(), 12u);
+  // the six springs of the face between them belong to both
+  EXPECT_EQ(stiffnesses(body), (std::map<double, int>{{5000, 22}, {7500, 6}, {10000, 22}}));
+  for (const Spring& spring : body.springs) {
+    const Material& material = body.materials[spring.material];
+    if (material.stiffness != 7500) continue;
+    EXPECT_EQ(material, mean(world().materials[muscle2], world().materials[bone]));
+    EXPECT_EQ(body.masses[spring.a].rest.x, 0);
+    EXPECT_EQ(body.masses[spring.b].rest.x, 0);
+  }
+}
+
+TEST(Voxel, VoxelsOfAirAreAbsent) {
+  const auto encoding = make<Encoding>("voxel", "size = [2, 1, 1]");
+  const Body body = encoding->decode(choices({muscle, air}), world()).body;
+  EXPECT_EQ(stiffnesses(body), (std::map<double, int>{{5000, 28}}));
+  for (const Mass& mass : body.masses) {
+    // a corner of air alone has 7 contacts; one of the shared face those with the 4 far corners
+    const unsigned expected = mass.rest.x < -0.05 ? 0 : mass.rest.x < 0.05 ? 4 : 7;
+    EXPECT_EQ(mass.air_contacts, expected);
+  }
+  EXPECT_TRUE(encoding->decode(choices({air, air}), world()).body.springs.empty());
+}
+
+TEST(Voxel, UniformBodiesNeedNoNewMaterial) {
+  const auto encoding = make<Encoding>("voxel", "size = [3, 3, 3]");
+  for (const std::int32_t material : {bone, muscle, muscle2, tissue})
+    EXPECT_EQ(encoding->decode(Genome(27, static_cast<float>(material)), world()).body.materials.size(), 5u);
+}
+
+TEST(Voxel, OptionsAreTheChosenMaterials) {
+  const auto encoding = make<Encoding>("voxel", "size = [2, 1, 1]\nmaterials = ['air', 'tissue', 'bone']");
+  EXPECT_EQ(encoding->layout(world()).genes[1].choices, 3u);
+  // in the order of the world: air, bone, tissue
+  EXPECT_EQ(stiffnesses(encoding->decode(choices({1, 2}), world()).body),
+            (std::map<double, int>{{4000, 22}, {7000, 6}, {10000, 22}}));
+}
+
+TEST(Direct, EverySpringHasAGene) {
+  const Layout one = make<Encoding>("direct", "size = [1, 1, 1]")->layout(world());
+  EXPECT_EQ(one.genes.size(), 28u);
+  std::vector<std::uint32_t> counts;
+  for (const GeneGroup& group : one.groups) counts.push_back(group.count);
+  EXPECT_THAT(counts, testing::ElementsAre(7, 6, 5, 4, 3, 2, 1));
+  EXPECT_EQ(make<Encoding>("direct", "size = [2, 1, 1]")->layout(world()).genes.size(), 50u);
+  // the paper's benchmark body, section V-A
+  EXPECT_EQ(make<Encoding>("direct", "size = [10, 10, 10]")->layout(world()).genes.size(), 14230u);
+}
+
+TEST(Direct, GenesStandInTheOrderOfTheSprings) {
+  const auto encoding = make<Encoding>("direct", "size = [1, 1, 1]");
+  Genome genome(28, tissue);
+  genome[0] = bone;      // masses 0 and 1
+  genome[6] = muscle;    // masses 0 and 7
+  genome[27] = muscle2;  // masses 6 and 7
+  genome[7] = air;       // masses 1 and 2
+  const Body body = encoding->decode(genome, world()).body;
+  ASSERT_EQ(body.springs.size(), 27u);
+  for (const Spring& spring : body.springs) {
+    const std::pair<std::uint32_t, std::uint32_t> ends = std::minmax(spring.a, spring.b);
+    std::uint32_t expected = tissue;
+    if (ends == std::pair{0u, 1u}) expected = bone;
+    if (ends == std::pair{0u, 7u}) expected = muscle;
+    if (ends == std::pair{6u, 7u}) expected = muscle2;
+    EXPECT_EQ(spring.material, expected) << spring.a << " " << spring.b;
+    EXPECT_NE(ends, (std::pair{1u, 2u}));
+  }
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(body.masses[i].air_contacts, i == 1 || i == 2 ? 1u : 0u);
+}
+
+}  // namespace
+}  // namespace evodevo::test

@@ -1,0 +1,85 @@
+// A moment in a life, for tests of devo operators.
+#pragma once
+
+#include <set>
+#include <utility>
+
+#include "development.hpp"
+#include "support.hpp"
+
+namespace evodevo::test {
+
+/// A living body and all else that a moment refers to.
+struct Life {
+  LivingBody living;
+  double time = 3.3;
+  Box bounds = {{-2, -2, 0}, {2, 2, 2}};
+  double mass = 0.35;  // other than that of the body's masses
+  bool resets = false;
+  Genome genome;
+  Layout layout;
+
+  Moment now() const {
+    return {living.body, living.state, living.stress, 3, 100, time, bounds, mass, resets, genome, layout};
+  }
+
+  void add_mass(Vec3 rest, std::int32_t material) {
+    living.body.masses.push_back({rest, 0.2, material, 0});
+    // where it is now is not where it rests
+    living.state.position.push_back(1.25 * rest);
+    living.state.velocity.push_back({});
+  }
+  void add_spring(std::uint32_t a, std::uint32_t b, std::uint32_t material, double stress) {
+    const double length = norm(living.body.masses[a].rest - living.body.masses[b].rest);
+    living.body.springs.push_back({a, b, length, material});
+    living.stress.push_back(stress);
+  }
+};
+
+/// `masses` masses at random places, with the world's materials in turn.
+inline Life life_of_masses(std::uint32_t masses, bool with_materials = true) {
+  Life life;
+  life.living.body.materials = world().materials;
+  Rng rng = stream(99);
+  for (std::uint32_t i = 0; i < masses; ++i)
+    life.add_mass({rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0, 1)},
+                  with_materials ? static_cast<std::int32_t>(i % 5) : no_material);
+  return life;
+}
+
+using Pair = std::pair<std::uint32_t, std::uint32_t>;
+inline Pair ordered(std::uint32_t a, std::uint32_t b) { return std::minmax(a, b); }
+
+/// Which masses springs join.
+inline std::set<Pair> joined(const Body& body) {
+  std::set<Pair> pairs;
+  for (const Spring& spring : body.springs) pairs.insert(ordered(spring.a, spring.b));
+  return pairs;
+}
+
+inline Edits develop(const Devo& devo, const Life& life, std::uint64_t seed) {
+  Edits edits;
+  Rng rng = stream(seed);
+  devo.develop(life.now(), edits, rng);
+  return edits;
+}
+
+/// Everything in the edits, for comparisons.
+inline std::vector<double> digest(const Edits& edits) {
+  std::vector<double> digest(edits.removed_springs.begin(), edits.removed_springs.end());
+  digest.insert(digest.end(), edits.removed_masses.begin(), edits.removed_masses.end());
+  for (const NewMass& m : edits.new_masses)
+    digest.insert(digest.end(), {m.place.x, m.place.y, m.place.z, m.mass, static_cast<double>(m.material)});
+  for (const NewSpring& s : edits.new_springs)
+    digest.insert(digest.end(), {double(s.a), double(s.b), s.material.stiffness, s.material.phase});
+  return digest;
+}
+
+/// The life after the edits, which the host checks as it applies them.
+inline LivingBody after(const Life& life, const Edits& edits) {
+  Life changed = life;
+  apply_edits(changed.living, edits, changed.now());
+  return changed.living;
+}
+
+}  // namespace evodevo::test

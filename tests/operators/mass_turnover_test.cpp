@@ -1,0 +1,210 @@
+#include "life.hpp"
+
+namespace evodevo::test {
+namespace {
+
+constexpr std::uint32_t masses = 100;
+
+/// A ring in which every mass is joined to the ten on either side, but for the springs from mass 0 to 1, 2 and 3.
+/// Mass 0 has 17 springs, masses 1, 2 and 3 have 19, all others 20.
+Life ring(bool with_materials = true) {
+  Life life = life_of_masses(masses, with_materials);
+  for (std::uint32_t i = 0; i < masses; ++i)
+    for (std::uint32_t step = 1; step <= 10; ++step)
+      if (i != 0 || step > 3) life.add_spring(i, (i + step) % masses, bone, 1);
+  return life;
+}
+
+bool within(const Vec3& place, const Box& box) {
+  return place.x >= box.low.x && place.y >= box.low.y && place.z >= box.low.z && place.x <= box.high.x &&
+         place.y <= box.high.y && place.z <= box.high.z;
+}
+
+TEST(MassTurnover, MassesOfFewSpringsGo) {
+  const auto devo = make<Devo>("mass-turnover");
+  const Life life = ring();
+  const Edits edits = develop(*devo, life, 1);
+  // the neighbours of those that go fall below the threshold, but they were judged before
+  EXPECT_THAT(edits.removed_masses, testing::UnorderedElementsAre(0, 1, 2, 3));
+  EXPECT_EQ(edits.removed_masses[0], 0u) << "fewest springs first";
+  EXPECT_EQ(edits.new_masses.size(), 4u);
+  EXPECT_TRUE(edits.removed_springs.empty());
+  EXPECT_EQ(after(life, edits).body.masses.size(), masses);
+}
+
+TEST(MassTurnover, ThresholdIsTheFewestSpringsThatStay) {
+  const Life life = ring();
+  EXPECT_TRUE(digest(develop(*make<Devo>("mass-turnover", "threshold = 17"), life, 1)).empty());
+  EXPECT_THAT(develop(*make<Devo>("mass-turnover", "threshold = 18"), life, 1).removed_masses, testing::ElementsAre(0));
+  EXPECT_EQ(develop(*make<Devo>("mass-turnover", "threshold = 21"), life, 1).removed_masses.size(), 10u);
+}
+
+TEST(MassTurnover, LimitTakesTheFewestSpringsFirstAndTiesAtRandom) {
+  const auto devo = make<Devo>("mass-turnover", "limit = 2");
+  const Life life = ring();
+  std::vector<int> second(masses, 0);
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    const auto gone = develop(*devo, life, seed).removed_masses;
+    ASSERT_EQ(gone.size(), 2u);
+    EXPECT_EQ(gone[0], 0u);
+    ++second[gone[1]];
+  }
+  for (const std::uint32_t mass : {1, 2, 3}) EXPECT_NEAR(second[mass], 100, 45);
+  EXPECT_TRUE(digest(develop(*make<Devo>("mass-turnover", "limit = 0"), life, 1)).empty());
+}
+
+TEST(MassTurnover, ContactsThroughAirCount) {
+  Life life = ring();
+  life.living.body.masses[0].air_contacts = 3;
+  life.living.body.masses[2].air_contacts = 1;
+  EXPECT_THAT(develop(*make<Devo>("mass-turnover"), life, 1).removed_masses, testing::UnorderedElementsAre(1, 3));
+}
+
+TEST(MassTurnover, NewMassesLieInBoundsAndApart) {
+  const auto devo = make<Devo>("mass-turnover", "threshold = 21\nmin_distance = 0.25");
+  for (const bool resets : {false, true}) {
+    Life life = ring();
+    life.resets = resets;
+    const Moment now = life.now();
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      const Edits edits = develop(*devo, life, seed);
+      ASSERT_FALSE(edits.new_masses.empty());
+      std::vector<Vec3> places;
+      const std::set<std::uint32_t> gone(edits.removed_masses.begin(), edits.removed_masses.end());
+      for (std::uint32_t i = 0; i < masses; ++i)
+        if (!gone.contains(i)) places.push_back(now.place(i));
+      for (const NewMass& mass : edits.new_masses) {
+        EXPECT_TRUE(within(mass.place, life.bounds));
+        EXPECT_EQ(mass.mass, 0.35);
+        for (const Vec3& other : places) EXPECT_GE(norm(mass.place - other), 0.25);
+        places.push_back(mass.place);
+      }
+    }
+  }
+}
+
+TEST(MassTurnover, PlacesFillTheBounds) {
+  const auto devo = make<Devo>("mass-turnover");
+  Life life = ring();
+  life.bounds = {{10, 20, 30}, {11, 22, 33}};
+  Vec3 low = life.bounds.high, high = life.bounds.low;
+  for (std::uint64_t seed = 0; seed < 100; ++seed)
+    for (const NewMass& mass : develop(*devo, life, seed).new_masses) {
+      low = {std::min(low.x, mass.place.x), std::min(low.y, mass.place.y), std::min(low.z, mass.place.z)};
+      high = {std::max(high.x, mass.place.x), std::max(high.y, mass.place.y), std::max(high.z, mass.place.z)};
+    }
+  EXPECT_LT(norm(low - life.bounds.low), 0.15);
+  EXPECT_LT(norm(high - life.bounds.high), 0.15);
+}
+
+TEST(MassTurnover, WithoutAFreePlaceTheMassStays) {
+  const Life life = ring();
+  EXPECT_TRUE(digest(develop(*make<Devo>("mass-turnover", "min_distance = 50.0"), life, 1)).empty());
+
+  // room for one new mass: the box's diagonal is shorter than the distance
+  Life narrow = life;
+  narrow.bounds = {{10, 10, 10}, {11, 11, 11}};
+  const Edits edits = develop(*make<Devo>("mass-turnover", "min_distance = 2.0\nsprings = 1000"), narrow, 1);
+  EXPECT_THAT(edits.removed_masses, testing::ElementsAre(0));
+  EXPECT_EQ(edits.new_masses.size(), 1u);
+  EXPECT_EQ(edits.new_springs.size(), masses - 1) << "those that were to go but stay are partners too";
+}
+
+TEST(MassTurnover, OnlyMassesThatStayTakeUpRoom) {
+  const auto devo = make<Devo>("mass-turnover", "threshold = 18\nmin_distance = 0.01");
+  Life life = ring();
+  const Vec3 place_of_the_gone = life.living.state.position[0], place_of_another = life.living.state.position[50];
+  life.bounds = {place_of_the_gone, place_of_the_gone};
+  EXPECT_THAT(develop(*devo, life, 1).removed_masses, testing::ElementsAre(0));
+  life.bounds = {place_of_another, place_of_another};
+  EXPECT_TRUE(develop(*devo, life, 1).removed_masses.empty());
+}
+
+TEST(MassTurnover, NewMassesAreJoinedToDifferentMassesThatStay) {
+  const auto devo = make<Devo>("mass-turnover");
+  const Life life = ring();
+  std::set<std::uint32_t> partners_of_all;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Edits edits = develop(*devo, life, seed);
+    EXPECT_EQ(edits.new_springs.size(), 4u * 25);
+    std::vector<std::set<std::uint32_t>> partners(4);
+    for (const NewSpring& spring : edits.new_springs) {
+      const auto [old, fresh] = ordered(spring.a, spring.b);
+      ASSERT_GE(fresh, masses);
+      ASSERT_GE(old, 4u) << "masses 0 to 3 go";
+      ASSERT_LT(old, masses);
+      partners.at(fresh - masses).insert(old);
+      partners_of_all.insert(old);
+    }
+    for (const auto& own : partners) EXPECT_EQ(own.size(), 25u);
+    after(life, edits);  // throws if the host would refuse
+  }
+  EXPECT_EQ(partners_of_all.size(), masses - 4);
+}
+
+TEST(MassTurnover, NewSpringsAreBornWithoutForce) {
+  const Life life = ring();
+  const LivingBody grown = after(life, develop(*make<Devo>("mass-turnover"), life, 1));
+  ASSERT_GE(grown.body.springs.size(), 100u);
+  for (std::size_t s = grown.body.springs.size() - 100; s < grown.body.springs.size(); ++s) {
+    const Spring& spring = grown.body.springs[s];
+    EXPECT_NEAR(spring.rest_length * grown.body.materials[spring.material].relative_length(life.time),
+                norm(grown.state.position[spring.a] - grown.state.position[spring.b]), 1e-12);
+  }
+}
+
+TEST(MassTurnover, MaterialsAreThoseOfTheBodyButNotAir) {
+  const auto devo = make<Devo>("mass-turnover");
+  const Life life = ring();
+  const auto materials = world().materials;
+  std::set<std::int32_t> seen;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const Edits edits = develop(*devo, life, seed);
+    for (const NewMass& mass : edits.new_masses) seen.insert(mass.material);
+    for (const NewSpring& spring : edits.new_springs) {
+      const auto [old, fresh] = ordered(spring.a, spring.b);
+      EXPECT_EQ(spring.material, mean(materials[life.living.body.masses[old].material],
+                                      materials[edits.new_masses[fresh - masses].material]));
+    }
+  }
+  EXPECT_THAT(seen, testing::ElementsAre(bone, muscle, muscle2, tissue));
+}
+
+TEST(MassTurnover, WithoutMaterialsOfMassesSpringsTakeThoseOfOthers) {
+  Life life = ring(false);
+  for (Spring& spring : life.living.body.springs) spring.material = spring.a % 2 ? muscle : tissue;
+  std::set<double> seen;
+  const Edits edits = develop(*make<Devo>("mass-turnover"), life, 1);
+  for (const NewMass& mass : edits.new_masses) EXPECT_EQ(mass.material, no_material);
+  for (const NewSpring& spring : edits.new_springs) seen.insert(spring.material.stiffness);
+  EXPECT_EQ(seen, (std::set<double>{4000, 5000}));
+}
+
+TEST(MassTurnover, HalfOfASmallBodyStays) {
+  const auto devo = make<Devo>("mass-turnover");
+  Life life = life_of_masses(7, false);
+  for (std::uint32_t a = 0; a < 7; ++a)
+    for (std::uint32_t b = a + 1; b < 7; ++b) life.add_spring(a, b, bone, 1);
+  const Edits edits = develop(*devo, life, 1);
+  EXPECT_EQ(edits.removed_masses.size(), 3u);
+  EXPECT_EQ(edits.new_masses.size(), 3u);
+  EXPECT_EQ(edits.new_springs.size(), 3u * 4);  // fewer than 25, for there are no more to join to
+  EXPECT_EQ(after(life, edits).body.springs.size(), 6u + 12);
+}
+
+TEST(MassTurnover, DegenerateBodiesStayAsTheyAre) {
+  const auto devo = make<Devo>("mass-turnover");
+  EXPECT_TRUE(digest(develop(*devo, Life{}, 1)).empty());
+  EXPECT_TRUE(digest(develop(*devo, life_of_masses(1), 1)).empty());
+  EXPECT_TRUE(digest(develop(*devo, life_of_masses(5), 1)).empty());
+}
+
+TEST(MassTurnover, DependsOnItsKeyAlone) {
+  const auto devo = make<Devo>("mass-turnover");
+  const Life life = ring();
+  const auto edits = from_eight_threads([&] { return digest(develop(*devo, life, 1)); });
+  EXPECT_NE(edits, digest(develop(*devo, life, 2)));
+}
+
+}  // namespace
+}  // namespace evodevo::test

@@ -1,0 +1,59 @@
+// Operators out of their libraries, for tests.
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <future>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "loader.hpp"
+#include "philox.hpp"
+#include "toml_reader.hpp"
+
+namespace evodevo::test {
+
+inline const Registry& registry() {
+  static const Registry registry({builtin_plugin_folder()});
+  return registry;
+}
+
+/// The paper's materials, in the order of the alphabet.
+inline World world() {
+  const double pi = 3.14159265358979323846;
+  return {{"air", "bone", "muscle", "muscle2", "tissue"},
+          {{0, 0, 0, 0}, {10000, 0, 0, 0}, {5000, 0.14, 1, 0}, {5000, 0.14, 1, pi}, {4000, 0, 0, 0}},
+          0.2,
+          philox};
+}
+enum : std::int32_t { air, bone, muscle, muscle2, tissue };
+
+/// The operator with the parameters that `toml` sets.
+template <class T>
+std::unique_ptr<T> make(const std::string& name, const std::string& toml = "") {
+  const AvailableOperator* available = registry().find(T::kind, name);
+  if (available == nullptr) throw std::runtime_error("no " + std::string(T::kind) + " named " + name);
+  auto op = create<T>(*available);
+  const toml::table table = parse_toml(toml, "test.toml");
+  const std::vector<std::string> materials = world().material_names;
+  TomlReader reader(table, "test", &materials);
+  op->parameters(reader);
+  reader.finish();
+  return op;
+}
+
+inline Rng stream(std::uint64_t seed) { return Rng(philox, {seed, 1, 2, 3}); }
+
+/// The result of `call`, after checking that eight calls at once give the same.
+template <class Call>
+auto from_eight_threads(const Call& call) {
+  const auto alone = call();
+  std::vector<std::future<decltype(call())>> others;
+  for (int i = 0; i < 8; ++i) others.push_back(std::async(std::launch::async, call));
+  for (auto& other : others) EXPECT_EQ(other.get(), alone);
+  return alone;
+}
+
+}  // namespace evodevo::test

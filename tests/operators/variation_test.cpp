@@ -1,0 +1,226 @@
+#include <map>
+#include <set>
+
+#include "support.hpp"
+
+namespace evodevo::test {
+namespace {
+
+/// Two real genes, a group of three choices of 4, two real genes of another range.
+Layout mixed_layout() {
+  Layout layout;
+  layout.add_group(2, {-1, 1});
+  layout.add_group(3, {0, 0, 4});
+  layout.add_group(2, {2, 3});
+  return layout;
+}
+
+void expect_within(const Genome& genome, const Layout& layout) {
+  ASSERT_EQ(genome.size(), layout.genes.size());
+  for (std::size_t i = 0; i < genome.size(); ++i) {
+    const GeneSpec& spec = layout.genes[i];
+    if (spec.is_choice()) {
+      EXPECT_EQ(genome[i], std::floor(genome[i]));
+      EXPECT_GE(genome[i], 0);
+      EXPECT_LT(genome[i], static_cast<float>(spec.choices));
+    } else {
+      EXPECT_GE(genome[i], spec.low);
+      EXPECT_LE(genome[i], spec.high);
+    }
+  }
+}
+
+std::vector<std::size_t> differences(const Genome& a, const Genome& b) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (a[i] != b[i]) places.push_back(i);
+  return places;
+}
+
+// reset-weight -------------------------------------------------------------------------------------------------------
+
+TEST(ResetWeight, ChangesExactlyOneGeneAndEveryGeneAlike) {
+  const auto mutation = make<Mutation>("reset-weight");
+  const Layout layout = mixed_layout();
+  Rng rng = stream(1);
+  const Genome parent = random_genome(layout, rng);
+  std::vector<int> hits(parent.size(), 0);
+  for (int i = 0; i < 7000; ++i) {
+    Genome child = parent;
+    mutation->mutate(child, layout, rng);
+    expect_within(child, layout);
+    const auto changed = differences(parent, child);
+    ASSERT_EQ(changed.size(), 1u);
+    ++hits[changed[0]];
+  }
+  // 1,000 expected, five standard deviations are 150
+  for (const int count : hits) EXPECT_NEAR(count, 1000, 150);
+}
+
+TEST(ResetWeight, ReachesAllValues) {
+  const auto mutation = make<Mutation>("reset-weight");
+  const Layout layout = mixed_layout();
+  Rng rng = stream(2);
+  Genome genome = random_genome(layout, rng);
+  std::map<float, int> options;
+  double low = 1, high = -1, sum = 0;
+  constexpr int rounds = 14000;
+  for (int i = 0; i < rounds; ++i) {
+    mutation->mutate(genome, layout, rng);
+    ++options[genome[3]];
+    low = std::min<double>(low, genome[0]);
+    high = std::max<double>(high, genome[0]);
+    sum += genome[5];
+  }
+  ASSERT_EQ(options.size(), 4u);
+  for (const auto& [option, count] : options) EXPECT_NEAR(count, rounds / 4, rounds / 20) << option;
+  EXPECT_LT(low, -0.99);
+  EXPECT_GT(high, 0.99);
+  EXPECT_NEAR(sum / rounds, 2.5, 0.1);
+}
+
+TEST(ResetWeight, ChangesAsManyDifferentGenesAsItIsTold) {
+  const Layout layout = mixed_layout();
+  Rng rng = stream(3);
+  const Genome parent = random_genome(layout, rng);
+  for (const auto& [genes, expected] : {std::pair{2, 2u}, {6, 6u}, {7, 7u}, {100, 7u}}) {
+    const auto mutation = make<Mutation>("reset-weight", "genes = " + std::to_string(genes));
+    for (int i = 0; i < 50; ++i) {
+      Genome child = parent;
+      mutation->mutate(child, layout, rng);
+      EXPECT_EQ(differences(parent, child).size(), expected);
+    }
+  }
+}
+
+TEST(ResetWeight, LeavesNoChoiceAndNoGenesAlone) {
+  const auto mutation = make<Mutation>("reset-weight");
+  Rng rng = stream(4);
+  Layout layout;
+  Genome genome;
+  mutation->mutate(genome, layout, rng);
+  EXPECT_TRUE(genome.empty());
+  layout.add_group(1, {0, 0, 1});
+  genome = {0};
+  mutation->mutate(genome, layout, rng);
+  EXPECT_EQ(genome, Genome{0});
+}
+
+TEST(ResetWeight, DependsOnItsKeyAlone) {
+  const auto mutation = make<Mutation>("reset-weight");
+  Layout layout;
+  layout.add_group(1000, {-1, 1});
+  const auto child = [&](std::uint64_t seed) {
+    Rng rng = stream(seed);
+    Genome genome(1000, 0);
+    mutation->mutate(genome, layout, rng);
+    return genome;
+  };
+  const Genome one = from_eight_threads([&] { return child(1); });
+  EXPECT_NE(one, child(2));
+}
+
+// crossovers ---------------------------------------------------------------------------------------------------------
+
+class AnyCrossover : public testing::TestWithParam<const char*> {};
+
+TEST_P(AnyCrossover, TwinsHaveTwins) {
+  const auto crossover = make<Crossover>(GetParam());
+  const Layout layout = mixed_layout();
+  Rng rng = stream(1);
+  const Genome parent = random_genome(layout, rng);
+  for (int i = 0; i < 100; ++i) {
+    Genome one = parent, other = parent;
+    crossover->cross(one, other, layout, rng);
+    EXPECT_EQ(one, parent);
+    EXPECT_EQ(other, parent);
+  }
+}
+
+TEST_P(AnyCrossover, ExchangesGenesPlaceByPlace) {
+  const auto crossover = make<Crossover>(GetParam());
+  const Layout layout = mixed_layout();
+  Rng rng = stream(2);
+  const Genome mother{0, 0, 0, 0, 0, 2, 2}, father{1, 1, 1, 1, 1, 3, 3};
+  std::vector<int> exchanged(mother.size(), 0);
+  for (int i = 0; i < 300; ++i) {
+    Genome one = mother, other = father;
+    crossover->cross(one, other, layout, rng);
+    EXPECT_FALSE(differences(mother, one).empty());
+    for (std::size_t g = 0; g < mother.size(); ++g) {
+      EXPECT_EQ(one[g] + other[g], mother[g] + father[g]);
+      EXPECT_TRUE(one[g] == mother[g] || one[g] == father[g]);
+      exchanged[g] += one[g] == father[g];
+    }
+  }
+  for (const int count : exchanged) {
+    EXPECT_GT(count, 50);
+    EXPECT_LT(count, 250);
+  }
+}
+
+TEST_P(AnyCrossover, NothingComesOfNothing) {
+  Genome one, other;
+  Rng rng = stream(3);
+  make<Crossover>(GetParam())->cross(one, other, {}, rng);
+  EXPECT_TRUE(one.empty() && other.empty());
+}
+
+TEST_P(AnyCrossover, DependsOnItsKeyAlone) {
+  const auto crossover = make<Crossover>(GetParam());
+  Layout layout;
+  for (int i = 0; i < 100; ++i) layout.add_group(10, {-1, 1});
+  const auto child = [&](std::uint64_t seed) {
+    Rng rng = stream(seed);
+    Genome one(1000, 0), other(1000, 1);
+    crossover->cross(one, other, layout, rng);
+    return one;
+  };
+  const Genome one = from_eight_threads([&] { return child(1); });
+  EXPECT_NE(one, child(2));
+}
+
+INSTANTIATE_TEST_SUITE_P(Crossovers, AnyCrossover, testing::Values("swap-neuron", "two-point"));
+
+/// For each set of exchanged genes how often it came.
+std::map<std::vector<std::size_t>, int> exchanges(const Crossover& crossover, const Layout& layout, int rounds) {
+  std::map<std::vector<std::size_t>, int> seen;
+  Rng rng = stream(4);
+  const Genome mother(layout.genes.size(), 0), father(layout.genes.size(), 1);
+  for (int i = 0; i < rounds; ++i) {
+    Genome one = mother, other = father;
+    crossover.cross(one, other, layout, rng);
+    ++seen[differences(mother, one)];
+  }
+  return seen;
+}
+
+TEST(SwapNeuron, SwapsOneWholeGroup) {
+  const auto seen = exchanges(*make<Crossover>("swap-neuron"), mixed_layout(), 3000);
+  ASSERT_EQ(seen.size(), 3u);
+  for (const auto& group : {std::vector<std::size_t>{0, 1}, {2, 3, 4}, {5, 6}}) {
+    ASSERT_TRUE(seen.contains(group));
+    EXPECT_NEAR(seen.at(group), 1000, 130);
+  }
+}
+
+TEST(TwoPoint, SwapsEverySegmentAlikeOften) {
+  Layout layout;
+  layout.add_group(4, {0, 1});
+  const auto seen = exchanges(*make<Crossover>("two-point"), layout, 10000);
+  ASSERT_EQ(seen.size(), 10u);  // pairs among the five places to cut
+  for (const auto& [genes, count] : seen) {
+    EXPECT_EQ(genes.back() - genes.front() + 1, genes.size()) << "not one segment";
+    EXPECT_NEAR(count, 1000, 150);
+  }
+}
+
+TEST(TwoPoint, WorksOnOneGene) {
+  Layout layout;
+  layout.add_group(1, {0, 1});
+  const auto seen = exchanges(*make<Crossover>("two-point"), layout, 20);
+  EXPECT_THAT(seen, testing::ElementsAre(std::pair(std::vector<std::size_t>{0}, 20)));
+}
+
+}  // namespace
+}  // namespace evodevo::test

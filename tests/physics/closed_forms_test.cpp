@@ -1,0 +1,197 @@
+// The simulator against solutions on paper.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support.hpp"
+
+namespace evodevo::test {
+namespace {
+
+constexpr double g = 9.81;
+
+class ClosedForm : public testing::TestWithParam<Precision> {
+ protected:
+  Stepping stepping(double dt = 0.0005) const { return {Method::paper_euler, GetParam(), dt}; }
+  double rounding() const { return tolerance(GetParam()); }
+};
+
+INSTANTIATE_TEST_SUITE_P(Precisions, ClosedForm, testing::Values(Precision::float32, Precision::float64),
+                         [](const auto& instance) { return name_of(instance.param); });
+
+Scene gravity_only() { return {Gravity{}, {}, {}, {}, {}}; }
+Scene gravity_and_floor() { return {Gravity{}, Floor{}, {}, {}, {}}; }
+
+State moving(const Body& body, const Scene& scene, Vec3 velocity) {
+  State state = resting(body, scene);
+  for (Vec3& v : state.velocity) v = velocity;
+  state.start_energy = total_energy(body, state, scene, 0);
+  return state;
+}
+
+TEST_P(ClosedForm, FreeFallIsThatOfSemiImplicitEuler) {
+  const Body body = single_mass(0.2, {1, 2, 100});
+  const std::uint64_t n = 2000;
+  const Answer a = simulate(body, moving(body, gravity_only(), {3, 0, 4}), gravity_only(), stepping(), n);
+  const double t = 1, dt = 0.0005;
+  EXPECT_EQ(a.task.status, Status::ok);
+  EXPECT_NEAR(a.state.velocity[0].z, 4 - g * t, 30 * rounding());
+  // x <- x + dt v with the new v falls g t dt / 2 further than g t^2 / 2
+  EXPECT_NEAR(a.state.position[0].z, 100 + 4 * t - g * t * (t + dt) / 2, 1000 * rounding());
+  EXPECT_NEAR(a.state.position[0].x, 1 + 3 * t, 100 * rounding());
+  EXPECT_DOUBLE_EQ(a.state.position[0].y, 2);
+}
+
+TEST_P(ClosedForm, FallingFarIsNoDivergence) {
+  const Body body = single_mass(0.2);
+  const Answer a = simulate(body, state_at_birth(body, gravity_only()), gravity_only(), stepping(), 20000);
+  EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+  EXPECT_NEAR(a.state.velocity[0].z, -98.1, 0.02);
+}
+
+TEST_P(ClosedForm, ASpringSwingsWithItsDiscretePeriod) {
+  const double k = 4000, mass = 0.2, dt = 0.0005, stretch = 0.01;
+  const Body body = pair_of_masses(mass, {k, 0, 0, 0}, 1 + stretch);
+  const double theta = std::acos(1 - k / mass * dt * dt);  // cos = 1 - (omega dt)^2 / 2 with omega^2 = 2 k / m
+  for (const std::uint64_t n : {1u, 10u, 63u, 500u}) {
+    const Answer a = simulate(body, resting(body, {}), {}, stepping(dt), n);
+    const double expected = stretch * std::cos((static_cast<double>(n) + 0.5) * theta) / std::cos(theta / 2);
+    EXPECT_NEAR(a.state.position[1].x - a.state.position[0].x, 1 + expected, 2 * rounding()) << n << " steps";
+  }
+  // and that period is the continuous one but for (omega dt)^2 / 24
+  EXPECT_NEAR(theta / dt, std::sqrt(2 * k / mass), 2e-3 * std::sqrt(2 * k / mass));
+}
+
+TEST_P(ClosedForm, ADrivenSpringFollowsItsEquation) {
+  const double k = 500, mass = 0.2, dt = 0.0001, amplitude = 0.1, frequency = 2, phase = 0.7;
+  const Body body = pair_of_masses(mass, {k, amplitude, frequency, phase});
+  const double omega = std::sqrt(2 * k / mass), drive = 2 * pi * frequency;
+  const double c = amplitude * omega * omega / (omega * omega - drive * drive);
+  const Answer a = simulate(body, resting(body, {}), {}, stepping(dt), 7000);
+  const double t = 0.7;
+  const double stretch = c * (std::sin(drive * t + phase) - std::sin(phase) * std::cos(omega * t) -
+                              drive / omega * std::cos(phase) * std::sin(omega * t));
+  EXPECT_NEAR(a.state.position[1].x - a.state.position[0].x, 1 + stretch, 1e-3);  // first order in dt
+}
+
+TEST_P(ClosedForm, LateTimesKeepTheirPhase) {
+  // after 10^6 periods of the drive the spring is driven as at its birth
+  const Body body = pair_of_masses(0.2, {500, 0.1, 2, 0.3});
+  State late = resting(body, {});
+  late.steps = 1000000000;  // times 0.0005 s
+  const Answer young = simulate(body, resting(body, {}), {}, stepping(), 500);
+  const Answer old = simulate(body, late, {}, stepping(), 500);
+  EXPECT_LT(largest_difference(young.state, old.state), GetParam() == Precision::float32 ? 1e-6 : 1e-8);
+  EXPECT_EQ(old.state.steps, 1000000500u);
+}
+
+TEST_P(ClosedForm, DragEndsInTheTerminalVelocity) {
+  const Scene scene{Gravity{}, {}, {}, {}, Drag{0.8}};
+  const Body body = single_mass(0.2);
+  const Answer a = simulate(body, resting(body, scene), scene, stepping(), 6000);
+  EXPECT_NEAR(a.state.velocity[0].z, -std::sqrt(0.2 * g / 0.8), 10 * rounding());
+}
+
+TEST_P(ClosedForm, DragPointsAgainstTheVelocity) {
+  const Scene scene{{}, {}, {}, {}, Drag{0.5}};
+  const Body body = single_mass(0.2);
+  const Answer a = simulate(body, moving(body, scene, {3, -4, 12}), scene, stepping(), 2000);
+  const Vec3 v = a.state.velocity[0];
+  EXPECT_NEAR(norm(v), 13 / (1 + 13 * 0.5 / 0.2), 1e-3);  // v0 / (1 + v0 c t / m), first order in dt
+  EXPECT_NEAR(v.y / v.x, -4.0 / 3, 100 * rounding());
+  EXPECT_NEAR(v.z / v.x, 4, 100 * rounding());
+}
+
+TEST_P(ClosedForm, DampingIsAnExactDecay) {
+  const Scene scene{{}, {}, {}, Damping{3}, {}};
+  const Body body = single_mass(0.2);
+  for (const double dt : {0.0005, 0.002}) {
+    const auto steps = static_cast<std::uint64_t>(std::lround(0.5 / dt));
+    const Answer a = simulate(body, moving(body, scene, {1, 2, -2}), scene, stepping(dt), steps);
+    EXPECT_NEAR(norm(a.state.velocity[0]), 3 * std::exp(-1.5), 10 * rounding()) << "dt " << dt;
+  }
+}
+
+TEST_P(ClosedForm, AMassAtRestSinksByItsWeightOverTheFloorsStiffness) {
+  const Scene scene{Gravity{}, Floor{2e4}, {}, Damping{}, {}};
+  const Body body = single_mass(0.2);
+  const Answer a = simulate(body, state_at_birth(body, scene), scene, stepping(), 6000);
+  EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+  EXPECT_NEAR(a.state.position[0].z, -0.2 * g / 2e4, 1e-9);
+}
+
+TEST_P(ClosedForm, ABlockAtRestStandsOnItsLowerMasses) {
+  const Body body = block(2, {10000, 0, 0, 0});
+  const Answer a = simulate(body, state_at_birth(body, walking_scene()), walking_scene(), stepping(), 10000);
+  EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+  double push = 0;
+  for (const Vec3& x : a.state.position) push += 1e6 * std::max(0.0, -x.z);
+  EXPECT_NEAR(push, 27 * 0.2 * g, 1e-3 * 27 * 0.2 * g);
+}
+
+TEST_P(ClosedForm, ASlidingMassStopsAfterItsStoppingDistance) {
+  const Scene scene{Gravity{}, Floor{}, Friction{0.4}, {}, {}};
+  const Body body = single_mass(0.2, {0, 0, -0.2 * g / 1e6});
+  const double v = 1.5;
+  const Answer a = simulate(body, moving(body, scene, {0.6 * v, 0.8 * v, 0}), scene, stepping(), 2000);
+  const double distance = v * v / (2 * 0.4 * g);
+  EXPECT_NEAR(a.state.position[0].x, 0.6 * distance, v * 0.0005);
+  EXPECT_NEAR(a.state.position[0].y, 0.8 * distance, v * 0.0005);
+  EXPECT_EQ(a.state.velocity[0].x, 0);
+  EXPECT_EQ(a.state.velocity[0].y, 0);
+}
+
+TEST_P(ClosedForm, ASlidingBlockStopsAfterItsStoppingDistance) {
+  const Scene scene{Gravity{}, Floor{}, Friction{0.5}, {}, {}};
+  const Body body = block(2, {10000, 0, 0, 0});
+  State start = simulate(body, state_at_birth(body, walking_scene()), walking_scene(), stepping(), 6000).state;
+  const double from = centre_of_mass(body, start.position).x, v = 1;
+  for (Vec3& velocity : start.velocity) velocity = {v, 0, 0};
+  start.start_energy = total_energy(body, start, scene, 0);
+  const Answer a = simulate(body, start, scene, stepping(), 3000);
+  EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+  const double distance = v * v / (2 * 0.5 * g);
+  EXPECT_NEAR(centre_of_mass(body, a.state.position).x - from, distance, 0.05 * distance);
+}
+
+/// A mass on the floor, drawn along x by a spring with `force` newtons; a mass of 0 kg holds the other end.
+Body drawn_mass(double force) {
+  const double k = 100;
+  Body body = pair_of_masses(0.2, {k, 0, 0, 0}, 1 + force / k);
+  for (Mass& mass : body.masses) mass.rest.z = -0.2 * g / 1e6;
+  body.masses[1].mass = 0;
+  return body;
+}
+
+TEST_P(ClosedForm, FrictionHoldsInsideTheConeAndOnlyThere) {
+  const Scene scene{Gravity{}, Floor{}, Friction{0.5}, {}, {}};
+  const double cone = 0.5 * 0.2 * g;
+  const Body held = drawn_mass(0.99 * cone), slipping = drawn_mass(1.01 * cone);
+  const Answer a = simulate(held, resting(held, scene), scene, stepping(), 2000);
+  EXPECT_EQ(a.state.position[0].x, 0);
+  EXPECT_EQ(a.state.velocity[0].x, 0);
+  const Answer b = simulate(slipping, resting(slipping, scene), scene, stepping(), 200);
+  EXPECT_GT(b.state.position[0].x, 1e-5);
+  EXPECT_EQ(b.state.position[1].x,
+            static_cast<double>(GetParam() == Precision::float32 ? static_cast<float>(slipping.masses[1].rest.x)
+                                                                 : slipping.masses[1].rest.x));
+}
+
+TEST_P(ClosedForm, FrictionNeedsAFloor) {
+  const Scene scene{Gravity{}, {}, Friction{0.5}, {}, {}};
+  const Body body = single_mass(0.2, {0, 0, -1});
+  const Answer a = simulate(body, moving(body, scene, {1, 0, 0}), scene, stepping(), 100);
+  EXPECT_EQ(a.state.velocity[0].x, 1);
+}
+
+TEST_P(ClosedForm, ALossFreeBounceComesBackAsHigh) {
+  const Body body = single_mass(0.2, {0, 0, 0.05});
+  const Answer a = simulate(body, resting(body, gravity_and_floor()), gravity_and_floor(), stepping(0.0001), 40000);
+  EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+  const double height = a.state.position[0].z + std::pow(norm(a.state.velocity[0]), 2) / (2 * g);
+  EXPECT_GT(height, 0.03);
+  EXPECT_LT(height, 0.08);
+}
+
+}  // namespace
+}  // namespace evodevo::test

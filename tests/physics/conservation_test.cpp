@@ -1,0 +1,84 @@
+// What internal forces must keep.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support.hpp"
+
+namespace evodevo::test {
+namespace {
+
+struct Momentum {
+  Vec3 linear, angular;  ///< kg m/s, kg m^2/s
+  double scale = 0;      ///< sum of |m v|
+};
+
+Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+
+Momentum momentum(const Body& body, const State& state) {
+  Momentum sum;
+  for (std::size_t i = 0; i < body.masses.size(); ++i) {
+    const Vec3 p = body.masses[i].mass * state.velocity[i];
+    sum.linear = sum.linear + p;
+    sum.angular = sum.angular + cross(state.position[i], p);
+    sum.scale += norm(p);
+  }
+  return sum;
+}
+
+class Conservation : public testing::TestWithParam<Precision> {};
+
+INSTANTIATE_TEST_SUITE_P(Precisions, Conservation, testing::Values(Precision::float32, Precision::float64),
+                         [](const auto& instance) { return name_of(instance.param); });
+
+TEST_P(Conservation, InternalForcesKeepLinearAndAngularMomentum) {
+  const Body body = random_body(150, 12, 5, 3);
+  State start = resting(body, {});
+  for (std::size_t i = 0; i < start.velocity.size(); ++i) start.velocity[i] = cross({0, 0.4, 1}, start.position[i]);
+  const Momentum before = momentum(body, start);
+  start.start_energy = total_energy(body, start, {}, 0);
+  const Answer a = simulate(body, start, {}, {Method::paper_euler, GetParam(), 0.0005}, 2000);
+  ASSERT_EQ(a.task.status, Status::ok) << a.task.reason;
+  const Momentum after = momentum(body, a.state);
+  const double error = GetParam() == Precision::float32 ? 2e-5 : 1e-13;
+  EXPECT_LT(norm(after.linear - before.linear), error * after.scale);
+  EXPECT_LT(norm(after.angular - before.angular), 2 * error * after.scale);
+  EXPECT_GT(largest_difference(start, a.state), 0.1);  // it did move
+}
+
+TEST_P(Conservation, TheEnergyOfAnUndampedBodyStaysInBounds) {
+  Body body = random_body(60, 10, 5, 4);
+  for (Material& material : body.materials) material.amplitude = 0;
+  State state = resting(body, {});
+  for (std::size_t i = 0; i < state.velocity.size(); ++i)
+    state.velocity[i] = {std::sin(3.0 * static_cast<double>(i)), 0, 0};
+  const double energy = state.start_energy = total_energy(body, state, {}, 0);
+  for (int second = 0; second < 20; ++second) {
+    const Answer a = simulate(body, state, {}, {Method::paper_euler, GetParam(), 0.0005}, 2000);
+    ASSERT_EQ(a.task.status, Status::ok) << a.task.reason;
+    state = a.state;
+    EXPECT_NEAR(total_energy(body, state, {}, 0.0005), energy, 0.05 * energy);
+  }
+}
+
+TEST_P(Conservation, ABodyAtRestWithoutMusclesStaysAtRestAndIsNeverFlagged) {
+  const Body body = block(3, {5000, 0, 0, 0});
+  const Answer a = simulate(body, state_at_birth(body, {}), {}, {Method::paper_euler, GetParam(), 0.0005}, 20000);
+  EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+  EXPECT_LT(largest_difference(a.state, state_at_birth(body, {})), tolerance(GetParam()));
+}
+
+TEST_P(Conservation, AFlatBodyOnTheFloorIsNeverFlagged) {
+  const Scene scene{Gravity{}, Floor{}, {}, {}, {}};
+  Body body = random_body(50, 8, 2, 5);
+  for (Material& material : body.materials) material.amplitude = 0;
+  for (Mass& mass : body.masses) mass.rest.z = 0, mass.mass = 0.2;
+  for (Spring& s : body.springs) s.rest_length = norm(body.masses[s.b].rest - body.masses[s.a].rest);
+  EXPECT_NEAR(state_at_birth(body, scene).start_energy, 0, 1e-20);
+  const Answer a = simulate(body, state_at_birth(body, scene), scene, {Method::paper_euler, GetParam(), 0.0005}, 4000);
+  EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+}
+
+}  // namespace
+}  // namespace evodevo::test

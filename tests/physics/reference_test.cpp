@@ -1,0 +1,105 @@
+// The simulator against a plain second program, on every instruction set that this processor has.
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <cmath>
+#include <optional>
+#include <tuple>
+
+#include "support.hpp"
+
+namespace evodevo::test {
+namespace {
+
+/// Lets the simulators made during its life use one instruction set only.
+class OnlyTarget {
+ public:
+  explicit OnlyTarget(std::int64_t target) { hwy::SetSupportedTargetsForTest(target); }
+  ~OnlyTarget() { hwy::SetSupportedTargetsForTest(0); }
+};
+
+struct Set {
+  std::int64_t target;
+  const char* name;    ///< as a test is called
+  const char* device;  ///< as Simulator::device() says
+};
+
+constexpr Set avx512{HWY_AVX3, "avx512", "cpu, AVX-512"};
+constexpr Set avx2{HWY_AVX2, "avx2", "cpu, AVX2"};
+constexpr Set sse4{HWY_SSE4, "sse4", "cpu, SSE4"};
+constexpr Set scalar{HWY_SCALAR, "scalar", "cpu, no vectors"};
+
+bool is_there(const Set& set) { return set.target == HWY_SCALAR || (hwy::SupportedTargets() & set.target) != 0; }
+
+using Case = std::tuple<Set, Precision, std::uint32_t>;  // the last: materials
+
+std::string name_of_case(const testing::TestParamInfo<Case>& info) {
+  const auto& [set, precision, materials] = info.param;
+  return std::string(set.name) + "_" + name_of(precision) + "_" + std::to_string(materials);
+}
+
+class AgainstReference : public testing::TestWithParam<Case> {};
+
+// sixteen materials fit into registers, forty do not
+INSTANTIATE_TEST_SUITE_P(Sets, AgainstReference,
+                         testing::Combine(testing::Values(avx512, avx2, sse4, scalar),
+                                          testing::Values(Precision::float32, Precision::float64),
+                                          testing::Values(16u, 40u)),
+                         name_of_case);
+
+/// `body` in motion: turning, as its muscles begin to work.
+State turning(const Body& body, const Scene& scene) {
+  State state = state_at_birth(body, scene);
+  for (std::size_t i = 0; i < state.velocity.size(); ++i)
+    state.velocity[i] = {-0.5 * state.position[i].y, 0.5 * state.position[i].x, -0.2};
+  state.steps = 300;
+  state.start_energy = total_energy(body, state, scene, 0.0005);
+  return state;
+}
+
+TEST_P(AgainstReference, RandomBodiesInAllForcesAgreeToRounding) {
+  const auto& [set, precision, materials] = GetParam();
+  if (!is_there(set)) GTEST_SKIP() << "this processor has no " << set.name;
+  const OnlyTarget only(set.target);
+  const Stepping stepping{Method::paper_euler, precision, 0.0005};
+  ASSERT_EQ(make_cpu_simulator({}, stepping, 1)->device(), set.device);
+  const bool single = precision == Precision::float32;
+  for (const std::uint32_t masses : {37u, 150u}) {
+    const Body body = random_body(masses, 9, materials, masses);
+    for (const Scene& scene : {Scene{}, walking_scene(), full_scene(), Scene{{}, {}, {}, {}, Drag{0.5}}}) {
+      const std::uint64_t steps = 250;
+      const State start = turning(body, scene);
+      const Answer a = simulate(body, start, scene, stepping, steps, {.stress = true, .work = true});
+      ASSERT_EQ(a.task.status, Status::ok) << a.task.reason;
+      EXPECT_EQ(a.task.spring_evaluations, steps * body.springs.size());
+      const Reference r = reference(body, start, scene, stepping.dt, steps);
+      ASSERT_GT(largest_difference(start, r.state), 0.02);
+      // the stiff floor multiplies what rounding does to the moment of a contact
+      const double error = single ? (scene.floor ? 3e-3 : 2e-5) : 1e-11;
+      EXPECT_LT(largest_difference(a.state, r.state), error);
+      EXPECT_NEAR(a.task.work, r.work, (single ? 2e-3 : 1e-10) * r.work);
+      for (std::size_t i = 0; i < body.springs.size(); ++i)
+        ASSERT_NEAR(a.task.stress[i], r.stress[i], single ? (scene.floor ? 1 : 0.02) : 1e-7) << "spring " << i;
+    }
+  }
+}
+
+TEST(InstructionSets, ThoseThatFuseMultiplyAndAddAgreeToTheBit) {
+  if (!is_there(avx512) || !is_there(avx2)) GTEST_SKIP() << "this processor has no AVX-512";
+  for (const Precision precision : {Precision::float32, Precision::float64}) {
+    const Body body = random_body(150, 12, 14, 8);
+    const Stepping stepping{Method::paper_euler, precision, 0.0005};
+    std::optional<Answer> first;
+    for (const Set& set : {avx512, avx2}) {
+      const OnlyTarget only(set.target);
+      const Answer a =
+          simulate(body, state_at_birth(body, full_scene()), full_scene(), stepping, 3000, {.stress = true});
+      if (!first) first = a;
+      EXPECT_TRUE(same_bits(first->state, a.state)) << name_of(precision);
+      EXPECT_EQ(first->task.stress, a.task.stress);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace evodevo::test

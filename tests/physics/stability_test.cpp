@@ -1,0 +1,95 @@
+// The largest stable step against dense eigenvalues and against what the simulator does.
+#include "stability.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+
+#include "support.hpp"
+
+namespace evodevo::test {
+namespace {
+
+/// The highest angular frequency of a body at its rest places, 1/s.
+double highest_frequency(const Body& body) {
+  const auto n = static_cast<Eigen::Index>(3 * body.masses.size());
+  Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n, n);
+  for (const Spring& s : body.springs) {
+    const Vec3 d = body.masses[s.b].rest - body.masses[s.a].rest;
+    const Eigen::Vector3d e = Eigen::Vector3d(d.x, d.y, d.z) / norm(d);
+    const Eigen::Matrix3d block = body.materials[s.material].stiffness * e * e.transpose();
+    const double ma = body.masses[s.a].mass, mb = body.masses[s.b].mass;
+    k.block<3, 3>(3 * s.a, 3 * s.a) += block / ma;
+    k.block<3, 3>(3 * s.b, 3 * s.b) += block / mb;
+    k.block<3, 3>(3 * s.a, 3 * s.b) -= block / std::sqrt(ma * mb);
+    k.block<3, 3>(3 * s.b, 3 * s.a) -= block / std::sqrt(ma * mb);
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(k, Eigen::EigenvaluesOnly);
+  return std::sqrt(solver.eigenvalues().maxCoeff());
+}
+
+Stepping at(double dt) { return {Method::paper_euler, Precision::float64, dt}; }
+
+TEST(Stability, TheLimitOfRandomBodiesIsThatOfTheirHighestFrequency) {
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    const Body body =
+        random_body(static_cast<std::uint32_t>(3 + 12 * seed), static_cast<std::uint32_t>(2 + seed), 5, seed);
+    const double limit = 2 / highest_frequency(body);
+    EXPECT_TRUE(is_stable(body, at(0.985 * limit))) << seed;  // the stated margin is one percent
+    EXPECT_FALSE(is_stable(body, at(1.0005 * limit))) << seed;
+  }
+}
+
+TEST(Stability, TheLimitOfAChainIsThatOfItsHighestFrequency) {
+  // hard for an iteration: the highest frequencies lie close together
+  Body body;
+  body.materials = {{1000, 0, 0, 0}};
+  for (std::uint32_t i = 0; i < 100; ++i) body.masses.push_back({{0.1 * i, 0, 0}, 0.2});
+  for (std::uint32_t i = 1; i < 100; ++i) body.springs.push_back({i - 1, i, 0.1, 0});
+  const double limit = 2 / highest_frequency(body);
+  EXPECT_TRUE(is_stable(body, at(0.985 * limit)));
+  EXPECT_FALSE(is_stable(body, at(1.005 * limit)));
+}
+
+TEST(Stability, OneSpringIsStableUpToItsLimitAndNotBeyond) {
+  const Material material{5000, 0, 0, 0};
+  const Body body = pair_of_masses(0.2, material, 1.001);
+  const double limit = largest_spring_dt(material, 0.2);
+  EXPECT_NEAR(limit, 2 / highest_frequency(body), 1e-12);
+  EXPECT_TRUE(is_stable(body, at(0.9999 * limit)));
+  EXPECT_FALSE(is_stable(body, at(1.0001 * limit)));
+  // and so it turns out
+  State start = resting(body, {});
+  start.start_energy *= 100;  // near the limit the true energy swings by a factor of 50 around a conserved one
+  EXPECT_EQ(simulate(body, start, {}, at(0.99 * limit), 50000).task.status, Status::ok);
+  EXPECT_EQ(simulate(body, start, {}, at(1.01 * limit), 1000).task.status, Status::diverged);
+}
+
+TEST(Stability, DegenerateBodiesHaveAnAnswer) {
+  EXPECT_TRUE(is_stable({}, at(1)));
+  EXPECT_TRUE(is_stable(single_mass(0.2), at(1)));
+  const Body coincident = pair_of_masses(0.2, {5000, 0, 0, 0}, 0);
+  const double limit = largest_spring_dt({5000, 0, 0, 0}, 0.2);
+  EXPECT_TRUE(is_stable(coincident, at(0.98 * limit)));
+  EXPECT_FALSE(is_stable(coincident, at(1.01 * limit)));
+}
+
+TEST(Stability, AFixedMassAddsNothing) {
+  // one end held: omega^2 = k / m, half of that between two free ends
+  Body body = pair_of_masses(0.2, {5000, 0, 0, 0});
+  body.masses[0].mass = 0;
+  const double limit = 2 / std::sqrt(5000 / 0.2);
+  EXPECT_TRUE(is_stable(body, at(0.985 * limit)));
+  EXPECT_FALSE(is_stable(body, at(1.001 * limit)));
+}
+
+TEST(Stability, ScenesAndMaterialsHaveTheirOwnLimits) {
+  EXPECT_DOUBLE_EQ(largest_contact_dt(walking_scene(), 0.2), 1.2 * std::sqrt(0.2 / 1e6));
+  EXPECT_EQ(largest_contact_dt({}, 0.2), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(largest_spring_dt({0, 0, 0, 0}, 0.2), std::numeric_limits<double>::infinity());
+}
+
+}  // namespace
+}  // namespace evodevo::test

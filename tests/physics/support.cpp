@@ -1,0 +1,135 @@
+#include "support.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "evodevo/lattice.hpp"
+#include "neighbours.hpp"
+
+namespace evodevo::test {
+
+Body single_mass(double mass, Vec3 place) {
+  Body body;
+  body.masses.push_back({place, mass});
+  return body;
+}
+
+Body pair_of_masses(double mass, const Material& material, double distance) {
+  Body body;
+  body.materials = {material};
+  body.masses = {{{0, 0, 0}, mass}, {{distance, 0, 0}, mass}};
+  body.springs = {{0, 1, 1.0, 0}};
+  return body;
+}
+
+Body random_body(std::uint32_t masses, std::uint32_t neighbours, std::uint32_t materials, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  const Material muscle{5000, 0.14, 1, 0}, tissue{4000, 0, 0, 0};
+  Body body;
+  body.materials = {muscle, tissue, {5000, 0.14, 1, pi}, {10000, 0, 0, 0}, mean(muscle, tissue)};
+  while (body.materials.size() < materials)
+    body.materials.push_back({3000 + 5000 * unit(), 0.2 * unit(), 3 * unit(), 7 * unit()});
+  body.materials.resize(materials);
+  std::vector<Vec3> places;
+  while (places.size() < masses) {
+    const double x = 2 * unit() - 1, y = 2 * unit() - 1, z = 2 * unit() - 1;
+    if (x * x + y * y + z * z <= 1) places.push_back({x, y, z});
+  }
+  for (const Vec3& place : places) body.masses.push_back({place, 0.1 + 0.2 * unit()});
+  for (const auto& [a, b] : nearest_pairs(places, neighbours))
+    body.springs.push_back(
+        {a, b, norm(places[b] - places[a]), static_cast<std::uint32_t>(body.springs.size() % materials)});
+  return body;
+}
+
+Body block(std::uint32_t n, const Material& material) {
+  const Lattice lattice = make_lattice({n, n, n}, 0.1);
+  Body body;
+  body.materials = {material};
+  for (const Vec3& corner : lattice.corners) body.masses.push_back({corner, 0.2});
+  for (const LatticeSpring& s : lattice.springs)
+    body.springs.push_back({s.a, s.b, norm(lattice.corners[s.b] - lattice.corners[s.a]), 0});
+  return body;
+}
+
+Scene full_scene() { return {Gravity{}, Floor{}, Friction{}, Damping{}, Drag{0.05}}; }
+Scene walking_scene() { return {Gravity{}, Floor{}, Friction{}, Damping{}, std::nullopt}; }
+
+State resting(const Body& body, const Scene& scene) {
+  State state;
+  for (const Mass& mass : body.masses) state.position.push_back(mass.rest);
+  state.velocity.resize(body.masses.size());
+  state.start_energy = total_energy(body, state, scene, 0);
+  return state;
+}
+
+Answer simulate(const Body& body, State state, const Scene& scene, const Stepping& stepping, std::uint64_t steps,
+                Recording recording) {
+  Answer answer{{}, std::move(state)};
+  answer.task.body = &body;
+  answer.task.state = &answer.state;
+  make_cpu_simulator(scene, stepping, 1)->run({&answer.task, 1}, steps, recording);
+  answer.task.state = nullptr;  // the state moves with the answer
+  return answer;
+}
+
+Reference reference(const Body& body, State state, const Scene& scene, double dt, std::uint64_t steps) {
+  Reference result;
+  result.stress.resize(body.springs.size());
+  for (std::uint64_t step = 0; step < steps; ++step) {
+    const double t = static_cast<double>(state.steps) * dt;
+    std::vector<Vec3> force(body.masses.size());
+    for (std::size_t i = 0; i < body.springs.size(); ++i) {
+      const Spring& s = body.springs[i];
+      const Material& m = body.materials[s.material];
+      const Vec3 d = state.position[s.b] - state.position[s.a];
+      const double angle = 2 * pi * m.frequency * t + m.phase;
+      const double pull = m.stiffness * (norm(d) - s.rest_length * (1 + m.amplitude * std::sin(angle)));
+      const double rate = s.rest_length * m.amplitude * 2 * pi * m.frequency * std::cos(angle);
+      if (norm(d) == 0) continue;
+      force[s.a] = force[s.a] + (pull / norm(d)) * d;
+      force[s.b] = force[s.b] - (pull / norm(d)) * d;
+      result.stress[i] += std::abs(pull) / static_cast<double>(steps);
+      result.work += std::max(0.0, -pull * rate) * dt;
+    }
+    for (std::size_t i = 0; i < body.masses.size(); ++i) {
+      const double mass = body.masses[i].mass;
+      Vec3& x = state.position[i];
+      Vec3& v = state.velocity[i];
+      double floor = 0;
+      if (scene.gravity) force[i].z -= mass * scene.gravity->acceleration;
+      if (scene.floor && x.z < 0) floor = -scene.floor->stiffness * x.z;
+      force[i].z += floor;
+      if (scene.drag) force[i] = force[i] - scene.drag->coefficient * norm(v) * v;
+      v = v + (dt / mass) * force[i];
+      if (scene.damping) v = std::exp(-scene.damping->rate * dt) * v;
+      const double speed = std::hypot(v.x, v.y);
+      if (scene.friction && speed > 0) {
+        const double left = std::max(0.0, speed - scene.friction->coefficient * floor * dt / mass) / speed;
+        v = {left * v.x, left * v.y, v.z};
+      }
+      x = x + dt * v;
+    }
+    ++state.steps;
+  }
+  result.state = std::move(state);
+  return result;
+}
+
+double largest_difference(const State& a, const State& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.position.size(); ++i) largest = std::max(largest, norm(a.position[i] - b.position[i]));
+  return largest;
+}
+
+bool same_bits(const State& a, const State& b) {
+  const auto same = [](const std::vector<Vec3>& u, const std::vector<Vec3>& v) {
+    return u.size() == v.size() && (u.empty() || std::memcmp(u.data(), v.data(), u.size() * sizeof(Vec3)) == 0);
+  };
+  return a.steps == b.steps && same(a.position, b.position) && same(a.velocity, b.velocity);
+}
+
+}  // namespace evodevo::test

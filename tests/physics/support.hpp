@@ -1,0 +1,65 @@
+// Bodies, scenes and a second simulator for the tests of the physics.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "evodevo/body.hpp"
+#include "scene.hpp"
+#include "simulator.hpp"
+
+namespace evodevo::test {
+
+inline constexpr double pi = 3.14159265358979323846;
+
+/// What a test of each precision tells apart: a little more than rounding brings in a few hundred steps.
+inline double tolerance(Precision precision) { return precision == Precision::float32 ? 2e-5 : 1e-12; }
+inline std::string name_of(Precision precision) { return precision == Precision::float32 ? "float32" : "float64"; }
+
+/// One mass at `place`.
+Body single_mass(double mass, Vec3 place = {});
+
+/// Two masses of `mass` kg along x, `distance` apart, and a spring of rest length 1 between them.
+Body pair_of_masses(double mass, const Material& material, double distance = 1);
+
+/// Random points in the unit ball joined to their nearest neighbours, with masses from 0.1 to 0.3 kg; spring i is of
+/// material i modulo `materials`, the first five of which are the paper's and a mean of two of them.
+Body random_body(std::uint32_t masses, std::uint32_t neighbours, std::uint32_t materials, std::uint64_t seed);
+
+/// A lattice of n x n x n voxels with edges of 0.1 m and masses of 0.2 kg.
+Body block(std::uint32_t n, const Material& material);
+
+/// All forces at once.
+Scene full_scene();
+/// Gravity, floor, friction and damping.
+Scene walking_scene();
+
+/// A body in a state of its own: at its rest places, at rest, its energy set.
+State resting(const Body& body, const Scene& scene);
+
+struct Answer {
+  Task task;
+  State state;
+};
+
+/// One body simulated alone on one thread.
+Answer simulate(const Body& body, State state, const Scene& scene, const Stepping& stepping, std::uint64_t steps,
+                Recording recording = {});
+
+/// The same by a plain program in double precision that shares no code with the simulator: one spring after the other,
+/// its force added at both ends.
+struct Reference {
+  State state;
+  std::vector<double> stress;  ///< N
+  double work = 0;             ///< J
+};
+Reference reference(const Body& body, State state, const Scene& scene, double dt, std::uint64_t steps);
+
+/// The largest distance between the places of two states, m.
+double largest_difference(const State& a, const State& b);
+
+/// Whether two states are equal to the bit.
+bool same_bits(const State& a, const State& b);
+
+}  // namespace evodevo::test

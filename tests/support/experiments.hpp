@@ -1,0 +1,65 @@
+// Small experiments for tests.
+#pragma once
+
+#include <string>
+
+#include "experiment.hpp"
+
+namespace evodevo::testing {
+
+/// A complete experiment of small voxel robots with development and two objectives; an evaluation takes milliseconds.
+inline const std::string small_experiment = R"(
+[experiment]
+seed = 7
+evaluations = 24
+population = 6
+newcomers = 1
+
+[encoding]
+name = "voxel"
+size = [2, 1, 1]
+edge = 0.5
+
+[[mutation]]
+name = "reset-weight"
+probability = 0.8
+
+[[crossover]]
+name = "two-point"
+probability = 0.5
+
+[scene.gravity]
+[scene.floor]
+[scene.friction]
+[scene.damping]
+
+[simulation]
+threads = 2
+
+[development]
+cycles = 2
+cycle_time = 0.05
+
+[[development.operator]]
+name = "spring-turnover"
+springs = 2
+
+[[fitness]]
+name = "distance"
+settle = 0.05
+window = 0.1
+
+[[fitness]]
+name = "actuation-work"
+settle = 0.05
+window = 0.1
+
+[selection]
+name = "age-fitness-pareto"
+)";
+
+inline Experiment read(const std::string& text, std::vector<Override> overrides = {}) {
+  return read_experiment(text, {"test.toml", std::move(overrides)});
+}
+
+}  // namespace evodevo::testing

@@ -1,0 +1,45 @@
+// Child processes for tests: their output line by line, their exit code, and signals.
+#pragma once
+
+#include <sys/types.h>
+
+#include <csignal>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evodevo::testing {
+
+/// A running command whose standard output and error come through one pipe.
+class Process {
+ public:
+  /// Starts `arguments[0]`, looked up in PATH. Throws std::system_error.
+  explicit Process(const std::vector<std::string>& arguments);
+  ~Process();  ///< kills it if it still runs
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  /// The next line without its end; nothing when the output has ended. Waits.
+  std::optional<std::string> read_line();
+  void send(int signal);
+  /// Reads the output to its end and waits. The exit code, or 128 + the signal that ended it.
+  int wait();
+  /// All output so far.
+  const std::string& output() const { return output_; }
+
+ private:
+  pid_t child_ = -1;
+  int pipe_ = -1;
+  std::string output_;
+  std::size_t read_ = 0;  ///< how much of output_ has gone out through read_line
+};
+
+struct Finished {
+  int exit_code;
+  std::string output;
+};
+
+/// Runs a command to its end.
+Finished run(const std::vector<std::string>& arguments);
+
+}  // namespace evodevo::testing
