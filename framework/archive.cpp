@@ -124,6 +124,14 @@ boost::interprocess::file_lock locked(const fs::path& folder) {
   return lock;
 }
 
+void require_empty(const fs::path& folder) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.path().filename() != lock_name)
+      throw ArchiveError(folder.string() +
+                         ": is not empty; give another --out, or continue the run in it with `evodevo resume " +
+                         folder.string() + "`");
+}
+
 void require_run(const fs::path& folder) {
   if (!fs::exists(folder / database_name))
     throw ArchiveError(folder.string() + ": there is no run here (no " + database_name +
@@ -141,12 +149,9 @@ Archive Archive::create(const fs::path& folder, const Experiment& experiment, co
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw ArchiveError(folder.string() + ": cannot be made: " + error.message());
+  require_empty(folder);  // before the lock, which leaves a file behind, and again when nobody else can write
   auto lock = locked(folder);
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (entry.path().filename() != lock_name)
-      throw ArchiveError(folder.string() +
-                         ": is not empty; give another --out, or continue the run in it with `evodevo resume " +
-                         folder.string() + "`");
+  require_empty(folder);
   auto files = std::make_unique<Files>(folder, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   files->lock = std::move(lock);
   SQLite::Database& database = files->database;
@@ -181,16 +186,23 @@ Archive Archive::resume(const fs::path& folder) {
   auto lock = locked(folder);
   auto files = std::make_unique<Files>(folder, SQLite::OPEN_READWRITE);
   files->lock = std::move(lock);
-  Archive archive(folder, std::move(files));
-  if (archive.record("format") != format)
-    throw ArchiveError(folder.string() + ": has format " + archive.record("format") + ", this evodevo reads format " +
-                       format + "; continue it with the evodevo that wrote it");
-  return archive;
+  return opened(folder, std::move(files));
 }
 
 Archive Archive::read(const fs::path& folder) {
   require_run(folder);
-  return Archive(folder, std::make_unique<Files>(folder, SQLite::OPEN_READONLY));
+  return opened(folder, std::make_unique<Files>(folder, SQLite::OPEN_READONLY));
+}
+
+Archive Archive::opened(const fs::path& folder, std::unique_ptr<Files> files) {
+  // everything up to the first generation is one transaction
+  if (!files->database.tableExists("record"))
+    throw ArchiveError(folder.string() + ": the run in it ended before it began; remove the folder and run anew");
+  Archive archive(folder, std::move(files));
+  if (archive.record("format") != format)
+    throw ArchiveError(folder.string() + ": has format " + archive.record("format") + ", this evodevo reads format " +
+                       format + "; use the evodevo that wrote it, " + archive.record("evodevo"));
+  return archive;
 }
 
 void Archive::commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,

@@ -57,6 +57,8 @@ class Archive {
  private:
   struct Files;
   Archive(std::filesystem::path folder, std::unique_ptr<Files> files);
+  /// Checks that what was opened is a run that this program reads.
+  static Archive opened(const std::filesystem::path& folder, std::unique_ptr<Files> files);
 
   std::filesystem::path folder_;
   std::unique_ptr<Files> files_;

@@ -45,7 +45,7 @@ EVODEVO_HD T length(const Separation<T>& s) {
 }
 
 /// A spring's force on its end a over d: k (|d| - L)/|d|, N/m. Times d it is the force, which is zero, never NaN, where
-/// |d| = 0 (paper, section IV-C; PHYSICS, Forces).
+/// |d| = 0 (paper, section IV-C; README, What is simulated).
 template <class T>
 EVODEVO_HD T spring_factor(T distance, T stiffness, T spring_length) {
   return stiffness - stiffness * spring_length / distance;
@@ -101,7 +101,7 @@ EVODEVO_HD T floor_force(T stiffness, T z) {
   return stiffness * maximum(constant<T>(0) - z, constant<T>(0));
 }
 
-/// What quadratic drag multiplies the velocity by: the force is -coefficient |v| v (PHYSICS, Forces), kg/s.
+/// What quadratic drag multiplies the velocity by: the force is -coefficient |v| v (README, What is simulated), kg/s.
 template <class T>
 EVODEVO_HD T drag_factor(T coefficient, const Triple<T>& velocity) {
   const T squared = multiply_add(velocity.z, velocity.z, multiply_add(velocity.y, velocity.y, velocity.x * velocity.x));
@@ -109,14 +109,14 @@ EVODEVO_HD T drag_factor(T coefficient, const Triple<T>& velocity) {
 }
 
 /// The velocity after a step's forces: v + dt F/m. With damping it is multiplied by exp(-rate dt) next; together, the
-/// reading of the paper's equations (section IV-C; PHYSICS, Time stepping) that `paper-euler` names.
+/// reading of the paper's equations (section IV-C; README, What is simulated) that `paper-euler` names.
 template <class T>
 EVODEVO_HD T advanced_velocity(T velocity, T force, T dt_over_mass) {
   return multiply_add(force, dt_over_mass, velocity);
 }
 
 /// What Coulomb friction leaves of the tangential velocity: it takes at most `loss` = mu N dt/m (m/s) and never turns
-/// it round, so a mass inside the cone sticks (paper, section IV-C1; PHYSICS, Forces). In [0, 1].
+/// it round, so a mass inside the cone sticks (paper, section IV-C1; README, What is simulated). In [0, 1].
 template <class T>
 EVODEVO_HD T friction_factor(T vx, T vy, T loss) {
   const T speed = square_root(multiply_add(vy, vy, vx * vx));

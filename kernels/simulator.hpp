@@ -35,12 +35,13 @@ struct Task {
   Status status = Status::ok;  ///< ok or diverged; a task that does not come in as ok is left alone
   double ended_at = 0;         ///< time of a divergence since birth, s; found to within 100 steps
   std::string reason;          ///< of a divergence
-  std::vector<double> stress;  ///< per spring, N; empty unless recorded
+  std::vector<double> stress;  ///< per spring, N; empty unless recorded, and after a divergence
   double work = 0;             ///< positive work of the muscles on the body, J; 0 unless recorded
   std::uint64_t spring_evaluations = 0;
 };
 
-/// Moves bodies through a scene. A body's answer is the same bits alone, in any batch, and for any number of threads.
+/// Moves bodies through a scene; a mass of 0 kg stays where it is. A body's answer is the same bits alone, in any
+/// batch, and for any number of threads.
 class Simulator {
  public:
   virtual ~Simulator() = default;

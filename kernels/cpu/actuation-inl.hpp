@@ -89,7 +89,8 @@ void actuate(const cpu::Actuation<T>& actuation, std::uint64_t first, std::size_
       const auto angle = full_turn * (turns - hn::Floor(turns)) + hn::Load(d, actuation.phase + m);
       const std::size_t entry = step * actuation.padded + m;
       store_as(d, hn::Set(d, 1.0) + amplitude * hn::Sin(d, angle), actuation.relative_length + entry);
-      store_as(d, full_turn * frequency * amplitude * hn::Cos(d, angle), actuation.relative_rate + entry);
+      if (actuation.relative_rate != nullptr)
+        store_as(d, full_turn * frequency * amplitude * hn::Cos(d, angle), actuation.relative_rate + entry);
     }
   }
 }

@@ -52,7 +52,7 @@ Layout<T>::Layout(const Body& body, std::size_t lanes_)
   // the first mass of a group has the most springs
   for (std::size_t g = 0; g < groups; ++g) first_row[g + 1] = first_row[g] + incidence.valence(mass_at[g * lanes]);
 
-  neighbour = Array<std::uint32_t>(slots() + lanes);
+  neighbour = Array<std::uint32_t>(slots() + lanes);  // the loop over rows reads one ahead
   stiffness = Array<T>(slots());
   rest_length = Array<T>(slots());
   material = Array<Index<T>>(slots());

@@ -31,7 +31,7 @@ struct Layout {
   std::vector<std::uint32_t> mass_at;    ///< [masses] index into Body::masses of the mass at each place
   std::vector<std::uint32_t> slot_of;    ///< [springs] one slot of each spring
   std::vector<std::uint32_t> first_row;  ///< [groups + 1] the rows of group g are first_row[g] .. first_row[g + 1] - 1
-  Array<std::uint32_t> neighbour;        ///< [slots] place_stride times the place of the mass at the other end
+  Array<std::uint32_t> neighbour;        ///< [slots + lanes] place_stride times the place of the mass at the other end
   Array<T> stiffness;                    ///< [slots] N/m
   Array<T> rest_length;                  ///< [slots] m
   Array<Index<T>> material;              ///< [slots] index into Body::materials

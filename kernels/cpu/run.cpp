@@ -28,14 +28,14 @@ World<T> world_of(const Scene& scene, const Stepping& stepping) {
 template <class T>
 class ActuationTables {
  public:
-  ActuationTables(const Body& body, std::size_t multiple)
+  ActuationTables(const Body& body, std::size_t multiple, Sums sums)
       : materials_(body.materials.size()),
         padded_(std::max<std::size_t>(1, (materials_ + multiple - 1) / multiple) * multiple),
         amplitude_(padded_),
         frequency_(padded_),
         phase_(padded_),
         length_(EnergyGuard::interval * padded_),
-        rate_(EnergyGuard::interval * padded_) {
+        rate_(sums.power ? EnergyGuard::interval * padded_ : 0) {
     for (std::size_t i = 0; i < materials_; ++i) {
       amplitude_[i] = body.materials[i].amplitude;
       frequency_[i] = body.materials[i].frequency;
@@ -44,7 +44,13 @@ class ActuationTables {
   }
 
   Actuation<T> view() {
-    return {materials_, padded_, amplitude_.data(), frequency_.data(), phase_.data(), length_.data(), rate_.data()};
+    return {.materials = materials_,
+            .padded = padded_,
+            .amplitude = amplitude_.data(),
+            .frequency = frequency_.data(),
+            .phase = phase_.data(),
+            .relative_length = length_.data(),
+            .relative_rate = rate_.size() > 0 ? rate_.data() : nullptr};
   }
 
  private:
@@ -143,7 +149,7 @@ void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels
   const World<T> world = world_of<T>(scene, stepping);
   const EnergyGuard guard(body, state, scene, stepping);
   MovingBody<T> moving(body, state, kernels.lanes, sums);
-  ActuationTables<T> tables(body, kernels.table_size);
+  ActuationTables<T> tables(body, kernels.table_size, sums);
   task.stress.assign(recording.stress ? body.springs.size() : 0, 0.0);
   task.work = 0;
   task.spring_evaluations = 0;

@@ -13,8 +13,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
-/// Every mass's sum of spring forces from the masses' places, written to the motion's forces. Adds to the sums that
-/// are on. `lengths` and `rates` are this step's rows of the tables.
+/// Writes the sums of the spring forces on a group's masses to the motion's forces, and adds to the sums that are on.
+/// `lengths` and `rates` are this step's rows of the tables; without power_on, `rates` is not read.
 template <bool tension_on, bool power_on, class Table, class T>
 HWY_INLINE void add_spring_forces(const cpu::Motion<T>& motion, std::size_t group, const Table& lengths,
                                   const Table& rates) {
@@ -27,6 +27,7 @@ HWY_INLINE void add_spring_forces(const cpu::Motion<T>& motion, std::size_t grou
   Triple<V> force{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
   const std::size_t end = motion.first_row[group + 1] * lanes;
   std::size_t slot = motion.first_row[group] * lanes;
+  // one row ahead: the next row's places are on their way while this row waits for its root and its division
   Separation<V> next = separation(own, load_places(d, motion.places, motion.neighbour + slot));
   for (; slot < end; slot += lanes) {
     const Separation<V> s = next;

@@ -16,23 +16,24 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
+/// The time step of paper-euler: all forces from the places, velocities from the forces, places from the velocities.
 template <class Table, bool tension_on, bool power_on, class T>
 void advance_with(const cpu::Motion<T>& motion, const cpu::World<T>& world, const cpu::Actuation<T>& actuation,
                   std::size_t steps) {
-  const std::size_t lanes = hn::Lanes(hn::ScalableTag<T>());
-  const Range all{0, motion.groups * lanes};
+  const std::size_t masses = motion.groups * hn::Lanes(hn::ScalableTag<T>());
   for (std::size_t step = 0; step < steps; ++step) {
-    const Table lengths(actuation.relative_length + step * actuation.padded);
-    const Table rates(actuation.relative_rate + step * actuation.padded);
+    const std::size_t row = step * actuation.padded;
+    const Table lengths(actuation.relative_length + row);
+    const Table rates(power_on ? actuation.relative_rate + row : actuation.relative_length + row);
     for (std::size_t group = 0; group < motion.groups; ++group)
       add_spring_forces<tension_on, power_on>(motion, group, lengths, rates);
-    if (world.gravity) add_gravity(motion, world, all);
-    if (world.floor) add_floor(motion, world, all);
-    if (world.drag) add_drag(motion, world, all);
-    advance_velocities(motion, world, all);
-    if (world.damping) damp(motion, world, all);
-    if (world.friction) rub(motion, world, all);
-    move(motion, world.dt, all);
+    if (world.gravity) add_gravity(motion, world, masses);
+    if (world.floor) add_floor(motion, world, masses);
+    if (world.drag) add_drag(motion, world, masses);
+    advance_velocities(motion, world, masses);
+    if (world.damping) damp(motion, world, masses);
+    if (world.friction) rub(motion, world, masses);
+    move(motion, world.dt, masses);
   }
 }
 

@@ -57,7 +57,7 @@ struct Actuation {
   std::size_t materials, padded;
   const double *amplitude, *frequency, *phase;
   T* relative_length;  ///< [step][padded] L(t)/L0
-  T* relative_rate;    ///< [step][padded] its rate of change, 1/s
+  T* relative_rate;    ///< [step][padded] its rate of change, 1/s; null where Sums::power is off
 };
 
 struct Energies {

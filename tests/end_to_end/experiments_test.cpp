@@ -37,7 +37,7 @@ TEST(Experiments, EachRunsForTwoGenerationsWhenShrunk) {
   EXPECT_EQ(count, 5);
 }
 
-/// PHYSICS and paper: what paper.toml must hold, value by value.
+/// What the paper gives, value by value.
 TEST(Experiments, PaperHoldsThePapersValues) {
   const Experiment paper = read_experiment({experiment_file("paper.toml"), {}});
   EXPECT_EQ(paper.development.cycles, 100);

@@ -96,6 +96,7 @@ TEST_F(ArchiveTest, NeverTouchesAFolderOfOtherThings) {
   std::ofstream(folder_ / "thesis.txt") << "years of work";
   EXPECT_NE(refusal([&] { Archive::create(folder_, experiment_, "cpu"); }), "no refusal");
   EXPECT_EQ(fs::file_size(folder_ / "thesis.txt"), 13u);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1) << "nothing was added";
 }
 
 TEST_F(ArchiveTest, SaysWhereThereIsNoRun) {
@@ -103,6 +104,19 @@ TEST_F(ArchiveTest, SaysWhereThereIsNoRun) {
             folder_.string() + ": there is no run here (no run.sqlite); give a folder that `evodevo run` has written");
   EXPECT_EQ(refusal([&] { Archive::resume(folder_); }), refusal([&] { Archive::read(folder_); }));
   EXPECT_FALSE(fs::exists(folder_)) << "looking leaves nothing behind";
+}
+
+TEST_F(ArchiveTest, ARunThatEndedBeforeItBeganIsTold) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "run.sqlite").close();  // what is left where the first transaction was not committed
+  EXPECT_EQ(refusal([&] { Archive::resume(folder_); }),
+            folder_.string() + ": the run in it ended before it began; remove the folder and run anew");
+}
+
+TEST_F(ArchiveTest, AnotherFormatIsRefused) {
+  { Archive::create(folder_, experiment_, "cpu").set_record("format", "99"); }
+  EXPECT_EQ(refusal([&] { Archive::read(folder_); }),
+            folder_.string() + ": has format 99, this evodevo reads format 1; use the evodevo that wrote it, 0.1.0");
 }
 
 TEST_F(ArchiveTest, ReadsWhileAnotherWrites) {
