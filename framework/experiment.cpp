@@ -205,7 +205,7 @@ class Composer {
     t.choice(method, "method", {"paper-euler"}, "Time-stepping method.");
     t.choice(precision, "precision", {"float", "double"}, "Arithmetic of the simulation.");
     t.real(out_.stepping.dt, "dt", {1e-7, 0.1, "s"}, "Time step.");
-    t.choice(out_.device, "device", {"auto", "cpu"}, "Where to simulate.");
+    t.choice(out_.device, "device", {"auto", "cpu", "cuda"}, "Where to simulate; auto: on a GPU where there is one.");
     t.integer(out_.threads, "threads", {0, 4096}, "Threads on the CPU; 0 for all cores.");
     if (precision == "double") out_.stepping.precision = Precision::float64;
     check_step(t);

@@ -3,6 +3,9 @@
 #include <iostream>
 
 #include "toml_reader.hpp"
+#ifdef EVODEVO_CUDA
+#include "cuda/cuda_simulator.hpp"
+#endif
 
 namespace evodevo {
 
@@ -41,7 +44,7 @@ struct Shorthand {
 
 constexpr Shorthand shorthands[] = {
     {"seed", "experiment.seed", "seed of all random numbers"},
-    {"device", "simulation.device", "where to simulate: auto or cpu"},
+    {"device", "simulation.device", "where to simulate: auto, cpu or cuda"},
     {"threads", "simulation.threads", "threads on the CPU; 0 for all cores"},
 };
 
@@ -73,6 +76,16 @@ ExperimentSource experiment_source(const std::string& file, const po::variables_
 }
 
 std::unique_ptr<Simulator> make_simulator(const Experiment& experiment) {
+  if (experiment.device != "cpu") {
+#ifdef EVODEVO_CUDA
+    const std::string obstacle = why_cuda_is_unusable();
+    if (obstacle.empty()) return make_cuda_simulator(experiment.scene, experiment.stepping);
+#else
+    const std::string obstacle = "this evodevo was built without CUDA; build it where the CUDA toolkit is";
+#endif
+    if (experiment.device == "cuda")
+      throw ConfigError("simulation.device = \"cuda\": " + obstacle + ", or set simulation.device to \"cpu\"");
+  }
   return make_cpu_simulator(experiment.scene, experiment.stepping, static_cast<int>(experiment.threads));
 }
 

@@ -23,7 +23,7 @@ void add_experiment_options(boost::program_options::options_description& options
 /// The experiment that `file` and the options above name.
 ExperimentSource experiment_source(const std::string& file, const boost::program_options::variables_map& given);
 
-/// The simulator for the experiment's device and threads.
+/// The simulator for the experiment's device and threads. Throws ConfigError where CUDA is asked for and not to be had.
 std::unique_ptr<Simulator> make_simulator(const Experiment& experiment);
 
 }  // namespace evodevo

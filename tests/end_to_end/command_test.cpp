@@ -37,7 +37,7 @@ class Command : public ::testing::Test {
 };
 
 TEST_F(Command, RunSaysWhereOnWhatAndHowFast) {
-  const Finished finished = evodevo({"run", file_, "--out", folder_});
+  const Finished finished = evodevo({"run", file_, "--out", folder_, "--device", "cpu"});
   EXPECT_EQ(finished.exit_code, 0) << finished.output;
   EXPECT_THAT(finished.output, HasSubstr("small on cpu"));
   EXPECT_THAT(finished.output, HasSubstr("writing " + folder_));

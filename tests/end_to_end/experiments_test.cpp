@@ -88,7 +88,7 @@ TEST(Experiments, QuickstartLearnsToWalkAndDoesNotFall) {
   const testing::Scratch scratch;
   const std::string folder = (scratch / "run").string();
   const testing::Finished finished =
-      testing::run({EVODEVO_PROGRAM, "run", experiment_file("quickstart.toml"), "--out", folder});
+      testing::run({EVODEVO_PROGRAM, "run", experiment_file("quickstart.toml"), "--out", folder, "--device", "cpu"});
   ASSERT_EQ(finished.exit_code, 0) << finished.output;
   const Archive archive = Archive::read(folder);
   const std::vector<Summary> generations = archive.generations();
