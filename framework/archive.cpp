@@ -19,7 +19,10 @@ namespace fs = std::filesystem;
 constexpr const char* database_name = "run.sqlite";
 constexpr const char* lock_name = "lock";
 constexpr const char* format = "1";  ///< raised when a change of the tables keeps older programs from reading them
-constexpr int busy_ms = 60'000;      ///< how long to wait for a process that is just reading or writing
+/// Readers and the writer do not wait for each other; but a folder that nobody may write cannot be read like this.
+constexpr const char* wait_for_nobody = "PRAGMA journal_mode = WAL";
+constexpr const char* rest_in_one_file = "PRAGMA journal_mode = DELETE";
+constexpr int busy_ms = 60'000;  ///< how long to wait for a process that is just reading or writing
 
 constexpr const char* schema = R"sql(
 CREATE TABLE record(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -111,6 +114,18 @@ struct Archive::Files {
   SQLite::Database database;
 
   Files(const fs::path& folder, int flags) : database((folder / database_name).string(), flags, busy_ms) {}
+  Files(const Files&) = delete;
+  Files& operator=(const Files&) = delete;
+
+  /// A writer leaves one file behind that can be read from anywhere. Where a reader is at work it stays as it is.
+  ~Files() {
+    if (!lock) return;
+    try {
+      database.setBusyTimeout(0);
+      database.exec(rest_in_one_file);
+    } catch (const SQLite::Exception&) {
+    }
+  }
 };
 
 namespace {
@@ -127,15 +142,14 @@ boost::interprocess::file_lock locked(const fs::path& folder) {
 void require_empty(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
     if (entry.path().filename() != lock_name)
-      throw ArchiveError(folder.string() +
-                         ": is not empty; give another --out, or continue the run in it with `evodevo resume " +
-                         folder.string() + "`");
+      throw ArchiveError(folder.string() + ": is not empty; give another --out, or continue the run in it with `" +
+                         program_name() + " resume " + folder.string() + "`");
 }
 
 void require_run(const fs::path& folder) {
   if (!fs::exists(folder / database_name))
-    throw ArchiveError(folder.string() + ": there is no run here (no " + database_name +
-                       "); give a folder that `evodevo run` has written");
+    throw ArchiveError(folder.string() + ": there is no run here (no " + database_name + "); give a folder that `" +
+                       program_name() + " run` has written");
 }
 
 }  // namespace
@@ -155,7 +169,7 @@ Archive Archive::create(const fs::path& folder, const Experiment& experiment, co
   auto files = std::make_unique<Files>(folder, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   files->lock = std::move(lock);
   SQLite::Database& database = files->database;
-  database.exec("PRAGMA journal_mode = WAL");  // readers and the writer do not wait for each other
+  database.exec(wait_for_nobody);
   SQLite::Transaction transaction(database);
   database.exec(schema);
   for (const OperatorUse& use : experiment.uses) {
@@ -184,17 +198,19 @@ Archive Archive::create(const fs::path& folder, const Experiment& experiment, co
 Archive Archive::resume(const fs::path& folder) {
   require_run(folder);
   auto lock = locked(folder);
-  auto files = std::make_unique<Files>(folder, SQLite::OPEN_READWRITE);
-  files->lock = std::move(lock);
-  return opened(folder, std::move(files));
+  Archive archive = opened(folder, SQLite::OPEN_READWRITE);
+  archive.files_->lock = std::move(lock);
+  archive.files_->database.exec(wait_for_nobody);
+  return archive;
 }
 
 Archive Archive::read(const fs::path& folder) {
   require_run(folder);
-  return opened(folder, std::make_unique<Files>(folder, SQLite::OPEN_READONLY));
+  return opened(folder, SQLite::OPEN_READONLY);
 }
 
-Archive Archive::opened(const fs::path& folder, std::unique_ptr<Files> files) {
+Archive Archive::opened(const fs::path& folder, int flags) try {
+  auto files = std::make_unique<Files>(folder, flags);
   // everything up to the first generation is one transaction
   if (!files->database.tableExists("record"))
     throw ArchiveError(folder.string() + ": the run in it ended before it began; remove the folder and run anew");
@@ -203,6 +219,8 @@ Archive Archive::opened(const fs::path& folder, std::unique_ptr<Files> files) {
     throw ArchiveError(folder.string() + ": has format " + archive.record("format") + ", this evodevo reads format " +
                        format + "; use the evodevo that wrote it, " + archive.record("evodevo"));
   return archive;
+} catch (const SQLite::Exception& error) {
+  throw ArchiveError((folder / database_name).string() + ": cannot be read: " + error.what());
 }
 
 void Archive::commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,

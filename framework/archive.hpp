@@ -57,8 +57,8 @@ class Archive {
  private:
   struct Files;
   Archive(std::filesystem::path folder, std::unique_ptr<Files> files);
-  /// Checks that what was opened is a run that this program reads.
-  static Archive opened(const std::filesystem::path& folder, std::unique_ptr<Files> files);
+  /// Opens the database with SQLite's `flags` and checks that it is a run that this program reads.
+  static Archive opened(const std::filesystem::path& folder, int flags);
 
   std::filesystem::path folder_;
   std::unique_ptr<Files> files_;

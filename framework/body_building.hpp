@@ -1,6 +1,7 @@
 // From an encoding's blueprint to a body that can be simulated.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "evodevo/encoding.hpp"
@@ -19,7 +20,7 @@ struct BuiltBody {
 /// centre of mass over the origin.
 BuiltBody build_body(Blueprint blueprint);
 
-/// Why this body cannot be simulated with this step: "unstable dt …"; empty where it can.
-std::string step_failure(const Body& body, const Scene& scene, const Stepping& stepping);
+/// Why this body, its masses at `places`, cannot be simulated with this step: "unstable dt: …"; empty where it can.
+std::string step_failure(const Body& body, std::span<const Vec3> places, const Scene& scene, const Stepping& stepping);
 
 }  // namespace evodevo

@@ -1,6 +1,9 @@
 #include "body_json.hpp"
 
+#include <cerrno>
 #include <cmath>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -33,6 +36,7 @@ class BodyReader {
         mass.material = static_cast<std::int32_t>(index(item, at, "material", body.materials.size()));
       body.masses.push_back(mass);
     });
+    if (body.masses.empty()) fail("masses", "a body has at least one");
     std::set<std::pair<std::uint32_t, std::uint32_t>> joined;
     each(root, "springs", [&](const Json& item, const std::string& at) {
       const Spring spring{index(item, at, "a", body.masses.size()), index(item, at, "b", body.masses.size()),
@@ -54,7 +58,8 @@ class BodyReader {
 
   Json parse() const {
     std::ifstream stream(file_);
-    if (!stream) fail("", "cannot be read");
+    if (!stream) fail("", std::string("cannot be read: ") + std::strerror(errno));
+    if (std::filesystem::is_directory(file_)) fail("", "cannot be read: it is a folder");
     try {
       return Json::parse(stream);
     } catch (const Json::exception& error) {

@@ -115,7 +115,8 @@ void Evaluation::apply_operators(Life& life, int cycle) const {
 
 void Evaluation::check_step(Life& life) const {
   if (life.living.body.springs.empty()) return end(life, Status::invalid, "no springs");
-  std::string failure = step_failure(life.living.body, experiment_.scene, experiment_.stepping);
+  std::string failure =
+      step_failure(life.living.body, life.living.state.position, experiment_.scene, experiment_.stepping);
   if (!failure.empty()) end(life, Status::invalid, std::move(failure));
 }
 

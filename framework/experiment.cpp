@@ -47,11 +47,14 @@ void declare(Parameters& p, Experiment& experiment) {
   p.integer(experiment.newcomers, "newcomers", {0, 1e6}, "Random individuals that enter each generation.");
 }
 
+/// The folder that paths in the experiment are relative to.
+fs::path folder_of(const ExperimentSource& source) { return fs::absolute(source.file).parent_path(); }
+
 /// Reads the experiment's tables one after the other; each adds its resolved form.
 class Composer {
  public:
-  Composer(const toml::table& root, const Registry& registry, fs::path folder)
-      : top_(root, ""), registry_(registry), folder_(std::move(folder)) {}
+  Composer(const toml::table& root, const Registry& registry, const ExperimentSource& source)
+      : top_(root, ""), registry_(registry), source_(source) {}
 
   Experiment compose() {
     top_.expect({"experiment", "encoding", "mutation", "crossover", "scene", "simulation", "development", "fitness",
@@ -68,8 +71,7 @@ class Composer {
     read_simulation();
     read_variation("mutation", out_.mutations);
     read_variation("crossover", out_.crossovers);
-    if (out_.mutations.empty() && out_.crossovers.empty())
-      top_.fail("mutation", "is missing; add a table [[mutation]] or [[crossover]]");
+    check_variation();
     read_development();
     read_fitness();
     read_section("selection", true, [&](TomlReader& t) { out_.selection = make<Selection>(t); });
@@ -114,8 +116,7 @@ class Composer {
     if (available == nullptr) {
       std::string message = "no " + std::string(T::kind) + " operator has this name";
       message += suggestion(name, registry_.names(T::kind));
-      for (const FailedLibrary& failed : registry_.failed())
-        message += "\n  note: not usable: " + failed.file.string() + ": " + failed.reason;
+      for (const std::string& warning : out_.warnings) message += "\n  " + warning;
       table.fail("name", message);
     }
     std::unique_ptr<T> op = create<T>(*available);
@@ -137,9 +138,15 @@ class Composer {
   void read_plugins() {
     read_section("plugins", false, [&](TomlReader& t) {
       toml::array absolute;
-      for (const std::string& path : t.texts("paths")) absolute.push_back((folder_ / path).lexically_normal().string());
+      for (const std::string& path : t.texts("paths")) {
+        const fs::path folder = (folder_of(source_) / path).lexically_normal();
+        if (!fs::is_directory(folder)) t.fail("paths", folder.string() + " is no folder");
+        absolute.push_back(folder.string());
+      }
       t.resolve("paths", std::move(absolute));
     });
+    for (const FailedLibrary& failed : registry_.failed())
+      out_.warnings.push_back("not usable: " + failed.file.string() + ": " + failed.reason);
   }
 
   void read_materials() {
@@ -149,6 +156,7 @@ class Composer {
       TomlReader all(*table, "materials");
       for (auto&& [key, node] : *table) {
         const std::string name(key.str());
+        if (!materials.contains(name)) warn_of_near_material(name);
         TomlReader reader(*all.table(name), "materials." + name);
         declare(reader, materials[name]);
         reader.finish();
@@ -164,6 +172,14 @@ class Composer {
                                         {"phase", material.phase}});
     }
     top_.resolve("materials", std::move(resolved));
+  }
+
+  /// A misspelt base material would come into being beside the one that was meant.
+  void warn_of_near_material(const std::string& name) {
+    std::vector<std::string> known;
+    for (const auto& [known_name, material] : base_materials()) known.push_back(known_name);
+    if (const std::string near = nearest(name, known); !near.empty())
+      out_.warnings.push_back("[materials." + name + "] is a new material beside \"" + near + "\"");
   }
 
   void read_encoding() {
@@ -198,7 +214,7 @@ class Composer {
   }
 
   void read_simulation() {
-    static const toml::table defaults;
+    const toml::table defaults = parse_toml("", source_.file);
     const toml::table* table = top_.table("simulation");
     TomlReader t(table != nullptr ? *table : defaults, "simulation");
     std::string method = "paper-euler", precision = "float";
@@ -236,6 +252,15 @@ class Composer {
     const double steps = std::max(1.0, std::round(duration / out_.stepping.dt));
     t.fail(name, to_text(duration) + " s is not a whole number of steps of " + to_text(out_.stepping.dt) +
                      " s; the nearest that is: " + to_text(steps * out_.stepping.dt) + " s");
+  }
+
+  void check_variation() const {
+    if (out_.mutations.empty() && out_.crossovers.empty())
+      top_.fail("mutation", "is missing; add a table [[mutation]] or [[crossover]]");
+    double sum = 0;
+    for (const auto& mutation : out_.mutations) sum += mutation.probability;
+    for (const auto& crossover : out_.crossovers) sum += crossover.probability;
+    if (sum == 0) top_.fail("mutation", "no operator has a probability above 0, so that no child would differ");
   }
 
   template <class T>
@@ -283,26 +308,25 @@ class Composer {
 
   TomlReader top_;
   const Registry& registry_;
-  fs::path folder_;
+  const ExperimentSource& source_;
   Experiment out_;
 };
 
 // ---- from file to experiment ----
 
+/// The program's own folder first, so that no other library can take the name of a built-in operator.
 std::vector<fs::path> plugin_folders(const toml::table& root, const fs::path& folder) {
-  std::vector<fs::path> folders;
+  std::vector<fs::path> folders = {builtin_plugin_folder()};
   if (const toml::array* paths = root["plugins"]["paths"].as_array())
     for (const toml::node& path : *paths)
       if (const auto text = path.value<std::string>()) folders.push_back(folder / *text);
-  folders.push_back(builtin_plugin_folder());
   return folders;
 }
 
 Experiment compose(toml::table root, const ExperimentSource& source) {
   for (const Override& change : source.overrides) apply_override(change, root);
-  const fs::path folder = fs::absolute(source.file).parent_path();
-  const Registry registry(plugin_folders(root, folder));
-  Experiment experiment = Composer(root, registry, folder).compose();
+  const Registry registry(plugin_folders(root, folder_of(source)));
+  Experiment experiment = Composer(root, registry, source).compose();
   experiment.name = fs::path(source.file).stem().string();
   return experiment;
 }

@@ -59,7 +59,8 @@ struct Experiment {
   std::unique_ptr<Selection> selection;
 
   std::vector<OperatorUse> uses;
-  std::string resolved;  ///< TOML that reads back as this very experiment, with every default written out
+  std::vector<std::string> warnings;  ///< what does not keep it from running, but may not be meant
+  std::string resolved;               ///< TOML that reads back as this very experiment, with every default written out
 };
 
 /// Where an experiment comes from.

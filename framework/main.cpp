@@ -1,5 +1,4 @@
 // The command `evodevo`.
-#include <cstdlib>
 #include <iostream>
 
 #include "archive.hpp"
@@ -51,11 +50,6 @@ int dispatch(const Arguments& arguments) {
 }
 
 }  // namespace
-
-std::string program_name() {
-  const char* name = std::getenv("EVODEVO_COMMAND");
-  return name != nullptr ? name : "evodevo";
-}
 
 }  // namespace evodevo
 

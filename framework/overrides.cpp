@@ -21,10 +21,11 @@ toml::node* child(toml::node& parent, const std::string& key) {
 /// from as its place.
 toml::table parse_override_value(const std::string& value, const std::string& origin) {
   try {
-    return toml::parse("value = " + value, origin);
+    toml::table parsed = toml::parse("value = " + value, origin);
+    if (parsed.size() == 1) return parsed;  // more than one: it goes on in a second line
   } catch (const toml::parse_error&) {
-    return parse_toml("value = '''" + value + "'''", origin);
   }
+  return parse_toml("value = '''" + value + "'''", origin);
 }
 
 std::vector<std::string> split_key(const std::string& key) {
@@ -36,6 +37,20 @@ std::vector<std::string> split_key(const std::string& key) {
       parts.back() += c;
   }
   return parts;
+}
+
+/// Sets a key of a table, or an item of a list; the item behind the last one is added.
+template <class Value>
+void set(toml::node& parent, const std::string& key, Value&& value, const Override& change) {
+  if (toml::table* table = parent.as_table()) {
+    table->insert_or_assign(key, std::forward<Value>(value));
+  } else if (toml::array* array = parent.as_array(); array != nullptr && key == std::to_string(array->size())) {
+    array->push_back(std::forward<Value>(value));
+  } else if (child(parent, key) != nullptr) {
+    array->replace(array->cbegin() + std::stol(key), std::forward<Value>(value));
+  } else {
+    throw ConfigError(change.origin + ": " + change.key + ": there is no item " + key);
+  }
 }
 
 }  // namespace
@@ -51,9 +66,7 @@ void apply_override(const Override& change, toml::table& root) {
     if (parent == nullptr) throw ConfigError(change.origin + ": " + change.key + ": there is no item " + keys[i]);
   }
   toml::table parsed = parse_override_value(change.value, change.origin);
-  toml::table* table = parent->as_table();
-  if (table == nullptr) throw ConfigError(change.origin + ": " + change.key + ": is not a key of a table");
-  parsed.get("value")->visit([&](auto& value) { table->insert_or_assign(keys.back(), std::move(value)); });
+  parsed.get("value")->visit([&](auto& value) { set(*parent, keys.back(), std::move(value), change); });
 }
 
 }  // namespace evodevo

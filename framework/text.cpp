@@ -4,12 +4,20 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <numeric>
 
 namespace evodevo {
 
+std::string program_name() {
+  const char* name = std::getenv("EVODEVO_COMMAND");
+  return name != nullptr ? name : "evodevo";
+}
+
 std::string to_text(double value) {
   std::array<char, 32> buffer;
+  const bool whole = value == std::floor(value) && std::abs(value) < 1e15;
+  if (whole) return std::to_string(static_cast<long long>(value));
   // six digits do for what people write; more only where the number has more
   for (int digits = 6;; ++digits) {
     char* const end =

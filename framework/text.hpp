@@ -10,6 +10,9 @@
 
 namespace evodevo {
 
+/// How the user calls this program, for remedies that can be pasted: "evodevo", or what the launching script says.
+std::string program_name();
+
 /// A decimal text that reads back as the same number, with no more digits than that takes.
 std::string to_text(double value);
 

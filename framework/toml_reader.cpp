@@ -37,6 +37,9 @@ std::string place_of(const toml::source_region& source) {
 
 std::string value_text(const toml::node& node) {
   if (node.is_table()) return "a table";
+  const toml::array* array = node.as_array();
+  if (array != nullptr && std::any_of(array->begin(), array->end(), [](const auto& item) { return item.is_table(); }))
+    return "a list with tables";
   if (const auto* number = node.as_floating_point()) return to_text(number->get());
   std::ostringstream text;
   node.visit([&](const auto& n) { text << toml::toml_formatter(n, toml::format_flags::none); });
@@ -145,6 +148,7 @@ void TomlReader::materials(std::vector<std::string>& value, std::string_view nam
   for (const std::string& material : value) {
     if (std::find(materials_->begin(), materials_->end(), material) == materials_->end())
       fail(name, "\"" + material + "\" is not a material" + suggestion(material, *materials_));
+    if (std::count(value.begin(), value.end(), material) > 1) fail(name, "names \"" + material + "\" twice");
     resolved.push_back(material);
   }
   resolve(name, std::move(resolved));

@@ -57,6 +57,12 @@ EVODEVO_HD T inverse_length(const Separation<T>& s) {
   return inverse_square_root(s.squared);
 }
 
+/// |d| from 1/|d|, m; exactly zero where the masses coincide, and with it the tension.
+template <class T>
+EVODEVO_HD T length_by_inverse(const Separation<T>& s, T inverse_distance) {
+  return (s.squared - vanishing_square<T>()) * inverse_distance;
+}
+
 /// The same as spring_factor(), from 1/|d| and the force k L that a length of zero would bring: no division.
 template <class T>
 EVODEVO_HD T spring_factor_by_inverse(T inverse_distance, T stiffness, T rest_force) {

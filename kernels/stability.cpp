@@ -10,14 +10,15 @@
 namespace evodevo {
 namespace {
 
-/// The mass-weighted stiffness matrix A = M^-1/2 K M^-1/2 of a body at its rest places, 1/s^2; K is the sum of k e e^T
+/// The mass-weighted stiffness matrix A = M^-1/2 K M^-1/2 of a body, 1/s^2; K is the sum of k e e^T
 /// over the springs, e a spring's direction. Its eigenvalues are the squares of the body's angular frequencies.
 class StiffnessMatrix {
  public:
-  explicit StiffnessMatrix(const Body& body) : size_(3 * static_cast<Eigen::Index>(body.masses.size())) {
+  StiffnessMatrix(const Body& body, std::span<const Vec3> places)
+      : size_(3 * static_cast<Eigen::Index>(body.masses.size())) {
     for (const Mass& mass : body.masses) weight_.push_back(mass.mass > 0 ? 1 / std::sqrt(mass.mass) : 0);
     for (const Spring& spring : body.springs) {
-      const Vec3 d = body.masses[spring.b].rest - body.masses[spring.a].rest;
+      const Vec3 d = places[spring.b] - places[spring.a];
       const double length = norm(d);
       const double stiffness = body.materials[spring.material].stiffness;
       const Eigen::Vector3d direction = Eigen::Vector3d(d.x, d.y, d.z).normalized();  // of zero: zero
@@ -114,8 +115,8 @@ double largest_spring_dt(const Material& material, double mass) {
   return 2 / std::sqrt(2 * material.stiffness / mass);
 }
 
-bool is_stable(const Body& body, const Stepping& stepping) {
-  const StiffnessMatrix matrix(body);
+bool is_stable(const Body& body, std::span<const Vec3> places, const Stepping& stepping) {
+  const StiffnessMatrix matrix(body, places);
   const double limit = 4 / (stepping.dt * stepping.dt);  // of the square of the angular frequency
   return matrix.bound() <= limit || largest_eigenvalue_is_within(matrix, limit);
 }

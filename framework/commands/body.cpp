@@ -3,6 +3,8 @@
 #include <fstream>
 #include <iomanip>
 #include <iostream>
+#include <limits>
+#include <sstream>
 
 #include "archive.hpp"
 #include "body_building.hpp"
@@ -25,8 +27,9 @@ ArchivedIndividual chosen_individual(const Archive& archive, const po::variables
     if (best.empty()) throw ArchiveError(folder + ": no individual has a fitness; name one with --individual");
     return *archive.individual(best.front());
   }
-  const auto id = given["individual"].as<std::uint32_t>();
-  auto individual = archive.individual(id);
+  const auto id = given["individual"].as<std::int64_t>();
+  const bool is_id = id >= 0 && id <= std::numeric_limits<std::uint32_t>::max();
+  auto individual = is_id ? archive.individual(static_cast<std::uint32_t>(id)) : std::nullopt;
   if (!individual)
     throw ArchiveError(folder + ": there is no individual " + std::to_string(id) + "; see `" + program_name() +
                        " show " + folder + "`");
@@ -61,14 +64,23 @@ State state_as_given(const Body& body, const Experiment& experiment) {
   return state;
 }
 
-std::string vector_text(Vec3 v) { return "(" + to_text(v.x) + ", " + to_text(v.y) + ", " + to_text(v.z) + ")"; }
+std::string short_text(double value) {
+  std::ostringstream text;
+  text << std::setprecision(4) << value;
+  return text.str();
+}
+
+std::string vector_text(Vec3 v) {
+  return "(" + short_text(v.x) + ", " + short_text(v.y) + ", " + short_text(v.z) + ")";
+}
 
 }  // namespace
 
 int body_command(const Arguments& arguments) {
   CommandLine line{"body DIR [--individual ID] [--matured]", {"DIR"}, {}};
-  line.options.add_options()("individual", po::value<std::uint32_t>(), "its id; default: the best")(
-      "matured", "as it is after the development cycles of its life, not as it is born");
+  line.options.add_options()("individual", po::value<std::int64_t>(), "its id; default: the best")(
+      "matured",
+      "as it is after the development cycles of its life, in the pose that it is in then, not as it is born");
   const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
   const Archive archive = Archive::read((*given)["DIR"].as<std::string>());
@@ -92,7 +104,8 @@ int body_command(const Arguments& arguments) {
 int simulate_command(const Arguments& arguments) {
   CommandLine line{"simulate BODY.json EXPERIMENT.toml [options]", {"BODY.json", "EXPERIMENT.toml"}, {}};
   line.options.add_options()("duration", po::value<double>()->default_value(10), "simulated time, s")(
-      "trajectory", po::value<std::string>(), "CSV file for the motion, a frame every 0.01 s");
+      "trajectory", po::value<std::string>(),
+      "CSV file for the motion, a frame every 0.01 s or the nearest whole number of steps");
   add_experiment_options(line.options);
   const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
@@ -103,13 +116,13 @@ int simulate_command(const Arguments& arguments) {
   if (!(duration > 0 && duration <= 1e6))
     throw UsageError("--duration " + to_text(duration) + ": expected more than 0 and at most 1e6 s");
   const Body body = read_body(body_file);
-  if (const std::string failure = step_failure(body, experiment.scene, experiment.stepping); !failure.empty())
-    throw ConfigError(body_file + ": " + failure + "; set a smaller simulation.dt");
+  const auto simulator = make_simulator(experiment);
+  State state = state_as_given(body, experiment);
+  const std::string failure = step_failure(body, state.position, experiment.scene, experiment.stepping);
+  if (!failure.empty()) throw ConfigError(body_file + ": " + failure + "; set a smaller simulation.dt");
   std::optional<TrajectoryFile> trajectory;
   if (given->contains("trajectory")) trajectory.emplace((*given)["trajectory"].as<std::string>());
 
-  const auto simulator = make_simulator(experiment);
-  State state = state_as_given(body, experiment);
   const Vec3 start = centre_of_mass(body, state.position);
   const double length = bounding_box(state.position).longest_side();
   Task task;
@@ -118,14 +131,15 @@ int simulate_command(const Arguments& arguments) {
   const std::uint64_t steps = std::max<std::uint64_t>(1, steps_in(duration, dt));
   const std::uint64_t per_frame = trajectory ? std::max<std::uint64_t>(1, steps_in(frame_time, dt)) : steps;
   if (trajectory) trajectory->add(0, state);
-  const auto clock_start = std::chrono::steady_clock::now();
+  double seconds = 0;
   std::uint64_t spring_evaluations = 0;
   for (std::uint64_t done = 0; done < steps && task.status == Status::ok; done += per_frame) {
+    const auto clock_start = std::chrono::steady_clock::now();
     simulator->run({&task, 1}, std::min(per_frame, steps - done), {});
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - clock_start).count();
     spring_evaluations += task.spring_evaluations;
-    if (trajectory) trajectory->add(static_cast<double>(state.steps) * dt, state);
+    if (trajectory && task.status == Status::ok) trajectory->add(static_cast<double>(state.steps) * dt, state);
   }
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock_start).count();
 
   std::cout << body.masses.size() << " masses, " << body.springs.size() << " springs on " << simulator->device()
             << '\n';
@@ -137,8 +151,9 @@ int simulate_command(const Arguments& arguments) {
   std::cout << "after " << to_text(static_cast<double>(steps) * dt) << " s the centre of mass has moved by "
             << vector_text(moved) << " m";
   if (length > 0)
-    std::cout << ", " << to_text(norm({moved.x, moved.y, 0}) / length) << " body lengths along the ground";
-  std::cout << "\nspeed: " << static_cast<double>(spring_evaluations) / seconds << " spring evaluations/s\n";
+    std::cout << ", " << short_text(norm({moved.x, moved.y, 0}) / length) << " body lengths along the ground";
+  std::cout << "\nspeed: " << short_text(static_cast<double>(spring_evaluations) / seconds)
+            << " spring evaluations/s\n";
   return 0;
 }
 

@@ -26,7 +26,4 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// How the user calls this program, for remedies that can be pasted: "evodevo", or what the launching script says.
-std::string program_name();
-
 }  // namespace evodevo

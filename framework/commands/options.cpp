@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "text.hpp"
 #include "toml_reader.hpp"
 #ifdef EVODEVO_CUDA
 #include "cuda/cuda_simulator.hpp"

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <iostream>
 
-#include "commands/commands.hpp"
+#include "text.hpp"
 
 namespace evodevo {
 namespace {

@@ -67,6 +67,10 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
   return interrupted;
 }
 
+void print_warnings(const Experiment& experiment) {
+  for (const std::string& warning : experiment.warnings) std::cerr << "warning: " << warning << '\n';
+}
+
 /// Says what differs from when the run began, where it may change results.
 void warn_of_differences(const Experiment& experiment, const Simulator& simulator, const Archive& archive) {
   if (const std::string before = archive.record("device"); before != simulator.device())
@@ -89,6 +93,7 @@ int run_command(const Arguments& arguments) {
   if (!given) return 0;
   const Experiment experiment =
       read_experiment(experiment_source((*given)["EXPERIMENT.toml"].as<std::string>(), *given));
+  print_warnings(experiment);
   const auto simulator = make_simulator(experiment);
   const fs::path folder =
       given->contains("out") ? fs::path((*given)["out"].as<std::string>()) : new_run_folder(experiment.name);
@@ -112,7 +117,7 @@ int check_command(const Arguments& arguments) {
   const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
   const auto file = (*given)["EXPERIMENT.toml"].as<std::string>();
-  read_experiment(experiment_source(file, *given));
+  print_warnings(read_experiment(experiment_source(file, *given)));
   std::cout << file << ": ok\n";
   return 0;
 }

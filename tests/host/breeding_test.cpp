@@ -89,12 +89,16 @@ TEST(Breeding, DependsOnSeedGenerationAndIdAlone) {
   EXPECT_NE(breed(experiment, {}, 2, 7, 1)[0].genome, breed(other, {}, 2, 7, 1)[0].genome);
 }
 
-TEST(Breeding, WithProbabilitiesOfZeroAChildStillGoesThroughOneOperator) {
+TEST(Breeding, WithSmallProbabilitiesAChildStillGoesThroughOneOperator) {
   const Experiment experiment = testing::read(
-      testing::small_experiment, {{"mutation.0.probability", "0", ""}, {"crossover.0.probability", "0", ""}});
+      testing::small_experiment, {{"mutation.0.probability", "1e-9", ""}, {"crossover.0.probability", "0", ""}});
   std::vector<Individual> population = breed(experiment, {}, 0, 0, 2);
   for (Individual& individual : population) individual.result.objectives = {1, 1};
-  for (const Individual& child : breed(experiment, population, 1, 2, 6)) EXPECT_NE(child.made_by, "");
+  for (const Individual& child : breed(experiment, population, 1, 2, 6)) {
+    if (!child.parents.empty()) {
+      EXPECT_EQ(child.made_by, "reset-weight") << "the only one with a chance";
+    }
+  }
 }
 
 /// Leaves a gene that is not a number.
