@@ -20,6 +20,9 @@
 #include "parallel.hpp"
 #include "scene.hpp"
 #include "simulator.hpp"
+#ifdef EVODEVO_CUDA
+#include "cuda/cuda_simulator.hpp"
+#endif
 
 namespace {
 
@@ -98,19 +101,35 @@ void limit_instructions(const std::string& name) {
   hwy::SetSupportedTargetsForTest(limit->second);
 }
 
+std::unique_ptr<Simulator> make_simulator(const Settings& settings) {
+#ifdef EVODEVO_CUDA
+  if (settings.device == "cuda") return make_cuda_simulator(walking_scene(), stepping_of(settings));
+#endif
+  return make_cpu_simulator(walking_scene(), stepping_of(settings), settings.threads);
+}
+
+/// The time that a device took for the steps alone, s; for the CPU, which has nothing to copy, none.
+std::optional<double> device_seconds([[maybe_unused]] const Simulator& simulator) {
+#ifdef EVODEVO_CUDA
+  if (const auto* cuda = dynamic_cast<const CudaSimulator*>(&simulator)) return cuda->device_seconds();
+#endif
+  return std::nullopt;
+}
+
 /// A batch of equal bodies and the time that it takes to move it.
 class Batch {
  public:
   Batch(const Settings& settings, const Body& body)
-      : body_(body),
-        simulator_(make_cpu_simulator(walking_scene(), stepping_of(settings), settings.threads)),
-        states_(settings.bodies),
-        steps_(settings.steps) {}
+      : body_(body), simulator_(make_simulator(settings)), states_(settings.bodies), steps_(settings.steps) {}
 
   std::string device() const { return simulator_->device(); }
 
   /// Spring evaluations per second of one run from birth.
-  double rate(Recording recording) {
+  struct Rate {
+    double whole;   ///< of the whole call
+    double device;  ///< of the device's own time; the same on the CPU
+  };
+  Rate rate(Recording recording) {
     std::vector<Task> tasks(states_.size());
     for (std::size_t i = 0; i < tasks.size(); ++i) {
       states_[i] = state_at_birth(body_, walking_scene());
@@ -125,7 +144,7 @@ class Batch {
       if (task.status != Status::ok) throw std::runtime_error("a body has diverged: " + task.reason);
       evaluations += static_cast<double>(task.spring_evaluations);
     }
-    return evaluations / seconds.count();
+    return {evaluations / seconds.count(), evaluations / device_seconds(*simulator_).value_or(seconds.count())};
   }
 
  private:
@@ -144,17 +163,23 @@ ordered_json measure(const Settings& settings) {
   limit_instructions(settings.instructions);
   const Body body = body_named(settings);
   Batch batch(settings, body);
-  batch.rate({});  // warm-up
-  std::vector<double> plain, stress, work;
+  // warm-up; compiles the kernels of a GPU
+  batch.rate({});
+  batch.rate({.stress = true});
+  batch.rate({.work = true});
+  std::vector<double> whole, plain, stress, work;
   // in turn, so that whatever else the machine does meets all of them
   for (int run = 0; run < settings.runs; ++run) {
-    plain.push_back(batch.rate({}));
-    stress.push_back(batch.rate({.stress = true}));
-    work.push_back(batch.rate({.work = true}));
+    const Batch::Rate rate = batch.rate({});
+    whole.push_back(rate.whole);
+    plain.push_back(rate.device);
+    stress.push_back(batch.rate({.stress = true}).device);
+    work.push_back(batch.rate({.work = true}).device);
   }
   const int cores = std::min<int>(thread_count(settings.threads), static_cast<int>(settings.bodies));
   return {{"spring_evaluations_per_second", median(plain)},
           {"spring_evaluations_per_second_and_core", median(plain) / cores},
+          {"spring_evaluations_per_second_with_copies", median(whole)},
           {"rate_with_stress", median(stress) / median(plain)},
           {"rate_with_work", median(work) / median(plain)},
           {"device", batch.device()},
@@ -177,7 +202,7 @@ std::optional<Settings> parse(int argc, char** argv) {
   Settings s;
   po::options_description options("Spring evaluations per second; one is one spring in one step. Options");
   options.add_options()("help", "this text");
-  options.add_options()("device", po::value(&s.device)->default_value("cpu"), "cpu");
+  options.add_options()("device", po::value(&s.device)->default_value("cpu"), "cpu | cuda");
   options.add_options()("body", po::value(&s.body)->default_value("knn1000"), "cube10 | knn1000");
   options.add_options()("masses", po::value(&s.masses)->default_value(1000), "masses of knn1000");
   options.add_options()("bodies", po::value(&s.bodies)->default_value(8), "bodies in the batch");
@@ -195,7 +220,12 @@ std::optional<Settings> parse(int argc, char** argv) {
     std::cout << options;
     return std::nullopt;
   }
-  if (s.device != "cpu") throw std::invalid_argument("unknown device \"" + s.device + "\": cpu");
+  if (s.device != "cpu" && s.device != "cuda")
+    throw std::invalid_argument("unknown device \"" + s.device + "\": cpu or cuda");
+#ifndef EVODEVO_CUDA
+  if (s.device == "cuda")
+    throw std::invalid_argument("this program was built without CUDA; configure with -DEVODEVO_CUDA=ON");
+#endif
   if (s.bodies < 1 || s.steps < 1 || s.runs < 1 || s.masses < 2)
     throw std::invalid_argument("bodies, steps and runs must be at least 1, masses at least 2");
   return s;

@@ -1,0 +1,51 @@
+// From what the device wrote down about a body to the task's answer.
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+
+#include "cuda/formats.hpp"
+#include "guard.hpp"
+#include "simulator.hpp"
+
+namespace evodevo::cuda {
+
+/// Fills in a task's status, reason, work and times. `largest_force`: the end of the range of forces, N.
+inline void read_answer(const Answer& answer, const EnergyGuard& guard, double largest_force, double dt,
+                        Recording recording, Task& task) {
+  task.state->steps += answer.steps;
+  task.spring_evaluations = answer.steps * task.body->springs.size();
+  task.work = recording.work ? answer.work : 0;
+  if (!answer.diverged) return;
+  task.status = Status::diverged;
+  task.ended_at = static_cast<double>(task.state->steps) * dt;
+  task.work = 0;
+  task.stress.clear();
+  task.reason = guard.verdict(answer.kinetic, answer.elastic, answer.moment, answer.finite != 0);
+  if (task.reason.empty()) {
+    char text[96];
+    std::snprintf(text, sizeof text, "force range: the force of a spring grew beyond %.3g N", largest_force);
+    task.reason = text;
+  }
+}
+
+/// The actuator of a material whose stiffness is given in units of `resolution` (N).
+inline Actuator actuator_of(const Material& material, double resolution) {
+  constexpr double pi = 3.14159265358979323846;
+  return {material.stiffness / resolution, material.amplitude, material.frequency,
+          std::remainder(material.phase, 2 * pi) / pi};
+}
+
+template <class T>
+World<T> world_of(const Scene& scene, double dt) {
+  const auto as_t = [](double value) { return static_cast<T>(value); };
+  return {.acceleration = as_t(scene.gravity ? scene.gravity->acceleration : 0),
+          .floor_stiffness = as_t(scene.floor ? scene.floor->stiffness : 0),
+          .friction_dt = as_t(scene.friction ? scene.friction->coefficient : 0) * as_t(dt),
+          .drag_coefficient = as_t(scene.drag ? scene.drag->coefficient : 0),
+          .decay = as_t(scene.damping ? std::exp(-scene.damping->rate * dt) : 1),
+          .dt = as_t(dt),
+          .exact_dt = dt};
+}
+
+}  // namespace evodevo::cuda

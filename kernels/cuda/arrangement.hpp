@@ -1,0 +1,66 @@
+// Which thread computes which spring, and when: the layout of a body on the chip.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cuda/row_order.hpp"
+#include "evodevo/body.hpp"
+
+namespace evodevo::cuda {
+
+/// A place for each mass of `body`: by falling number of springs, so that neighbouring lanes have about as many each.
+std::vector<std::uint32_t> places_by_valence(const Body& body);
+
+/// The sizes that a kernel is compiled for and a body is arranged to.
+struct Shape {
+  unsigned warps = 0;   ///< of the block
+  unsigned rows = 0;    ///< springs of a thread in one chunk; unrolled
+  unsigned chunks = 0;  ///< of a warp
+  unsigned masses_per_thread = 0;
+
+  friend auto operator<=>(const Shape&, const Shape&) = default;
+  std::size_t slots() const { return std::size_t{32} * warps * chunks * rows; }
+};
+
+/// A body's masses and springs in the block's order. Masses lie in groups of 32, one to a lane and a bank of shared
+/// memory. A spring is in a row of the group of the mass that owns it, in that mass's lane; all lanes of a row add to
+/// different banks as far as possible. The rows of all groups, one after the other, are dealt out evenly to the warps.
+/// No result depends on the arrangement but the order in which energies and work are added up.
+struct Arrangement {
+  static constexpr std::uint32_t none = 0xffffffff;
+
+  /// What lies in one lane of one row.
+  struct Slot {
+    std::uint32_t spring = none;  ///< index into Body::springs, or none
+    std::uint32_t other = 0;      ///< place of the mass at the other end; in an empty slot, one beyond all groups
+  };
+
+  /// Arranges `body` for a block of at most `largest_block` warps.
+  Arrangement(const Body& body, unsigned largest_block);
+
+  Shape shape;
+  std::uint32_t groups = 0;
+  std::vector<std::uint32_t> place_of;      ///< [masses] the place of each mass
+  std::vector<Slot> slots;                  ///< [warps][chunks][rows][32]
+  std::vector<std::uint32_t> slot_of;       ///< [springs]
+  std::vector<std::uint32_t> first_group;   ///< [warps] the group that each warp begins with
+  std::vector<std::uint32_t> turns;         ///< [warps][chunks] bit r: the next group begins after row r
+  std::vector<std::int32_t> magic_numbers;  ///< [places] how many a place's force sum has to begin with
+
+  /// How many times a warp's access to 32 masses takes, on average; 1 where no two are in one bank.
+  double passes_per_row() const;
+
+ private:
+  /// The springs that the masses of a group own.
+  struct Group {
+    std::size_t rows = 0;
+    std::vector<Link> links;
+    std::vector<Slot> slots;  ///< of each link
+  };
+
+  void lay(std::vector<Group>& members);
+  void fill_empty_slots();
+};
+
+}  // namespace evodevo::cuda

@@ -1,0 +1,134 @@
+#include "cuda/compiler.hpp"
+
+#include <nvrtc.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "cuda/cache.hpp"
+
+namespace evodevo::cuda {
+namespace {
+
+void check(nvrtcResult result, const char* what) {
+  if (result != NVRTC_SUCCESS)
+    throw std::runtime_error(std::string("CUDA's run-time compiler: ") + what +
+                             " failed: " + nvrtcGetErrorString(result));
+}
+
+// what the sources include of the standard library, which the run-time compiler does not bring
+constexpr EmbeddedSource standard_headers[] = {
+    {"cmath", "namespace std { using ::fma; using ::sqrt; }\n"},
+    {"cstdint",
+     "#pragma once\n"
+     "namespace std { using int32_t = int; using uint32_t = unsigned int; using uint64_t = unsigned long long; }\n"}};
+
+/// The compiler's names for what to make: machine code for a chip that it knows, else code that the driver compiles.
+struct Target {
+  std::string option;
+  bool machine_code;
+};
+
+Target target_for(const std::string& architecture) {
+  int count = 0;
+  check(nvrtcGetNumSupportedArchs(&count), "asking for its architectures");
+  std::vector<int> known(static_cast<std::size_t>(count));
+  check(nvrtcGetSupportedArchs(known.data()), "asking for its architectures");
+  const int wanted = std::stoi(architecture.substr(architecture.find('_') + 1));
+  if (std::find(known.begin(), known.end(), wanted) != known.end()) return {"-arch=" + architecture, true};
+  const auto [oldest, newest] = std::minmax_element(known.begin(), known.end());
+  if (wanted < *oldest)
+    throw std::runtime_error("CUDA: the GPU is too old: it is " + architecture + ", and this program needs sm_" +
+                             std::to_string(*oldest) + " or newer");
+  return {"-arch=compute_" + std::to_string(*newest), false};
+}
+
+std::string compiler_version() {
+  int major = 0, minor = 0;
+  check(nvrtcVersion(&major, &minor), "asking for its version");
+  return std::to_string(major) + "." + std::to_string(minor);
+}
+
+std::string_view source_named(std::string_view name) {
+  for (const EmbeddedSource& source : embedded_sources())
+    if (source.name == name) return source.text;
+  throw std::logic_error("no embedded source " + std::string(name));
+}
+
+/// Everything that machine code depends on.
+std::string key_of(std::string_view name, const std::vector<std::string>& options) {
+  std::string text = compiler_version() + '\n' + std::string(name) + '\n';
+  for (const std::string& option : options) text += option + '\n';
+  for (const EmbeddedSource& source : embedded_sources()) text.append(source.text);
+  for (const EmbeddedSource& source : standard_headers) text.append(source.text);
+  return digest(text);
+}
+
+class Program {
+ public:
+  explicit Program(std::string_view name) {
+    std::vector<std::string> names, texts;
+    for (const EmbeddedSource& source : embedded_sources())
+      names.emplace_back(source.name), texts.emplace_back(source.text);
+    for (const EmbeddedSource& source : standard_headers)
+      names.emplace_back(source.name), texts.emplace_back(source.text);
+    std::vector<const char*> name_pointers, text_pointers;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      name_pointers.push_back(names[i].c_str());
+      text_pointers.push_back(texts[i].c_str());
+    }
+    check(nvrtcCreateProgram(&program_, std::string(source_named(name)).c_str(), std::string(name).c_str(),
+                             static_cast<int>(names.size()), text_pointers.data(), name_pointers.data()),
+          "reading a kernel");
+  }
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+  ~Program() { nvrtcDestroyProgram(&program_); }
+
+  void compile(const std::vector<std::string>& options) {
+    std::vector<const char*> pointers;
+    for (const std::string& option : options) pointers.push_back(option.c_str());
+    const nvrtcResult result = nvrtcCompileProgram(program_, static_cast<int>(pointers.size()), pointers.data());
+    if (result == NVRTC_ERROR_COMPILATION) throw std::logic_error("a kernel does not compile:\n" + log());
+    check(result, "compiling a kernel");
+  }
+
+  std::vector<char> code(bool machine_code) const {
+    std::size_t size = 0;
+    check(machine_code ? nvrtcGetCUBINSize(program_, &size) : nvrtcGetPTXSize(program_, &size), "reading the code");
+    std::vector<char> result(size);
+    check(machine_code ? nvrtcGetCUBIN(program_, result.data()) : nvrtcGetPTX(program_, result.data()),
+          "reading the code");
+    return result;
+  }
+
+ private:
+  std::string log() const {
+    std::size_t size = 0;
+    check(nvrtcGetProgramLogSize(program_, &size), "reading its messages");
+    std::string text(size, '\0');
+    check(nvrtcGetProgramLog(program_, text.data()), "reading its messages");
+    return text;
+  }
+
+  nvrtcProgram program_ = nullptr;
+};
+
+}  // namespace
+
+std::vector<char> compile(std::string_view name, const std::vector<std::string>& definitions,
+                          const std::string& architecture) {
+  const Target target = target_for(architecture);
+  // contraction would make a result depend on which features are compiled in
+  std::vector<std::string> options{target.option, "-std=c++20", "-fmad=false", "-ftz=true"};
+  for (const std::string& definition : definitions) options.push_back("-D" + definition);
+  const std::string key = key_of(name, options);
+  if (std::optional<std::vector<char>> code = load(key)) return *std::move(code);
+  Program program(name);
+  program.compile(options);
+  std::vector<char> code = program.code(target.machine_code);
+  store(key, code);
+  return code;
+}
+
+}  // namespace evodevo::cuda

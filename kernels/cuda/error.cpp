@@ -1,0 +1,40 @@
+#include "cuda/error.hpp"
+
+#include <stdexcept>
+
+namespace evodevo::cuda {
+namespace {
+
+const char* remedy(cudaError_t result) {
+  switch (result) {
+    case cudaErrorInsufficientDriver:
+      return "; install a newer NVIDIA driver";
+    case cudaErrorNoDevice:
+      return "; check that nvidia-smi lists a GPU and that CUDA_VISIBLE_DEVICES does not hide it";
+    case cudaErrorMemoryAllocation:
+      return "; end other programs that use the GPU (nvidia-smi lists them), or evaluate fewer bodies at once";
+    case cudaErrorNoKernelImageForDevice:
+    case cudaErrorUnsupportedPtxVersion:
+      return "; this GPU and the CUDA toolkit that the program was built with do not fit: build with a newer toolkit, "
+             "or install a newer driver";
+    case cudaErrorDevicesUnavailable:
+      return "; another program holds the GPU exclusively (nvidia-smi lists it)";
+    case cudaErrorIllegalAddress:
+    case cudaErrorLaunchFailure:
+      return "; this is an error in evodevo or in the hardware: please report it with the experiment's file; nothing "
+             "more can be computed on the device in this process";
+    default:
+      return "";
+  }
+}
+
+}  // namespace
+
+void check(cudaError_t result, const std::string& what) {
+  if (result == cudaSuccess) return;
+  cudaGetLastError();  // a failure that is not sticky must not be found again by the next call
+  throw std::runtime_error("CUDA: " + what + " failed: " + cudaGetErrorString(result) + " (" +
+                           cudaGetErrorName(result) + ")" + remedy(result));
+}
+
+}  // namespace evodevo::cuda

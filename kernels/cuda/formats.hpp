@@ -1,0 +1,132 @@
+// What the host and the device say to each other: plain structures that both compilers lay out alike.
+#pragma once
+
+#include <cstdint>
+
+#include "cuda/fixed_point.hpp"
+
+namespace evodevo::cuda {
+
+inline constexpr unsigned lanes = 32;            ///< threads of a warp, banks of shared memory
+inline constexpr unsigned guard_interval = 100;  ///< steps between two checks of a body
+
+/// Masses lie in shared memory in groups of 32, one to a bank: six planes of 32 numbers, the places x, y, z and the
+/// forces x, y, z. All six are then at a constant distance of each other, whatever the size of the body.
+template <class T>
+inline constexpr unsigned plane_bytes = lanes * sizeof(T);
+template <class T>
+inline constexpr unsigned group_bytes = 6 * plane_bytes<T>;
+
+/// A spring as its owner's thread sees it.
+template <class T>
+struct alignas(2 * sizeof(T)) Record {
+  T rest_length;  ///< m
+  typename FixedPoint<T>::Integer
+      packed;  ///< low 16 bits: offset of the other mass; next 16 bits: of the table's entry
+};
+
+/// What a material does in one step; stiffness and force in units of the body's force resolution.
+template <class T>
+struct alignas(2 * sizeof(T)) Entry {
+  T stiffness;   ///< k, 1/m
+  T rest_force;  ///< k L(t)/L0, 1/m
+};
+
+/// A material over time.
+struct Actuator {
+  double stiffness;  ///< as in Entry
+  double amplitude;  ///< 1
+  double frequency;  ///< Hz
+  double phase;      ///< in half turns
+};
+
+/// The scene and the step in the arithmetic of the simulation.
+template <class T>
+struct World {
+  T acceleration;      ///< of gravity, m/s^2
+  T floor_stiffness;   ///< N/m
+  T friction_dt;       ///< friction coefficient times dt, s
+  T drag_coefficient;  ///< kg/m
+  T decay;             ///< exp(-damping rate dt)
+  T dt;                ///< s
+  double exact_dt;     ///< s
+};
+
+/// How a body's run ended and its energies then.
+struct Answer {
+  std::uint64_t steps;  ///< that were made
+  double kinetic;       ///< J
+  double elastic;       ///< J
+  double moment;        ///< sum of mass times z, kg m
+  double work;          ///< J
+  std::uint32_t diverged, finite, out_of_range, unused;
+};
+
+/// A body in motion, one entry for each place; places that hold no mass weigh nothing and never move.
+template <class T>
+struct Motion {
+  T *x, *y, *z;     ///< m
+  T *vx, *vy, *vz;  ///< m/s
+};
+
+/// A body whose state stays on the chip: resident.cu.
+template <class T>
+struct ResidentBody {
+  using Integer = typename FixedPoint<T>::Integer;
+  const Record<T>* records;          ///< [warps][chunks][rows][lanes]
+  const std::uint32_t* first_group;  ///< [warps] whose masses a warp's first row belongs to
+  const std::uint32_t* turns;        ///< [warps][chunks] bit r: the next group begins after row r
+  const Actuator* actuators;         ///< [entries]; entry 0 is no material
+  const T* mass;                     ///< [places] kg
+  const T* inverse_mass;             ///< [places] 1/kg, 0 for what never moves
+  const Integer* start;              ///< [places] what a force sum starts from, so that the magic numbers cancel
+  Motion<T> motion;                  ///< [places]
+  double* stress;                    ///< [slots] sum of |force|, N
+  Answer* answer;
+  std::uint64_t first_step;  ///< since birth
+  double energy_bound;       ///< J
+  double resolution;         ///< N, a power of two
+  T largest_force;           ///< units of the resolution; a larger one leaves the range
+  std::uint32_t groups, chunks, entries;
+  std::uint32_t table_steps;    ///< steps that the table in shared memory holds
+  std::uint32_t table_offset;   ///< bytes from the beginning of shared memory
+  std::uint32_t rate_offset;    ///< likewise, of the rates, where work is recorded
+  std::uint32_t record_offset;  ///< likewise, of the records
+};
+
+/// A spring at one of its ends.
+template <class T>
+struct alignas(4 * sizeof(T)) Joint {
+  T rest_length;        ///< m
+  std::uint32_t other;  ///< the mass at the other end
+  std::uint32_t entry;  ///< of the table
+  std::uint32_t owned;  ///< whether this end counts for what is summed once per spring
+};
+
+template <class T>
+struct alignas(4 * sizeof(T)) Point {
+  T x, y, z, unused;
+};
+
+/// A body that is too large for the chip: streamed.cu. Its masses lie by falling number of springs, so that those of a
+/// group have about as many.
+template <class T>
+struct StreamedBody {
+  const std::uint32_t* first_row;  ///< [groups of 32 masses + 1]
+  const Joint<T>* joints;          ///< [rows][lanes]; a mass's joints are in the rows of its group, in its lane
+  const Actuator* actuators;       ///< [entries]; stiffness in N/m
+  const T* mass;                   ///< [masses] kg
+  const T* inverse_mass;           ///< [masses] 1/kg, 0 for what never moves
+  Point<T>* places;                ///< [2][masses] m; a step reads one half and writes the other
+  Point<T>* velocities;            ///< [masses] m/s
+  Entry<T>* table;                 ///< [guard_interval][entries]
+  T* rates;                        ///< [guard_interval][entries] rate of L/L0, 1/s; where work is recorded
+  double* stress;                  ///< [rows][lanes] sum of |force|, N, at owned joints
+  double* power;                   ///< [masses] sum of power, W; where work is recorded
+  Answer* answer;
+  std::uint64_t first_step;  ///< since birth
+  double energy_bound;       ///< J
+  std::uint32_t masses, entries;
+};
+
+}  // namespace evodevo::cuda

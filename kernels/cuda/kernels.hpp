@@ -1,0 +1,28 @@
+// The kernels that a simulator needs, loaded onto the device.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace evodevo::cuda {
+
+/// Kernels of one device, each loaded when it is first asked for and kept.
+class KernelStore {
+ public:
+  explicit KernelStore(std::string architecture) : architecture_(std::move(architecture)) {}
+  KernelStore(const KernelStore&) = delete;
+  KernelStore& operator=(const KernelStore&) = delete;
+  ~KernelStore();
+
+  /// The kernel `function` of the embedded source `source`.
+  cudaKernel_t get(const std::string& source, const std::string& function, const std::vector<std::string>& definitions);
+
+ private:
+  std::string architecture_;
+  std::map<std::string, cudaLibrary_t> libraries_;
+};
+
+}  // namespace evodevo::cuda

@@ -1,0 +1,76 @@
+// What both kernels share: the features that they are compiled for, the materials in time and the step of one mass.
+#pragma once
+
+#include "cuda/formats.hpp"
+#include "physics.hpp"
+
+namespace evodevo::cuda {
+
+using Number = EVODEVO_NUMBER;
+constexpr bool actuation = EVODEVO_ACTUATION;
+constexpr bool gravity = EVODEVO_GRAVITY;
+constexpr bool floor_on = EVODEVO_FLOOR;
+constexpr bool friction = EVODEVO_FRICTION;
+constexpr bool damping = EVODEVO_DAMPING;
+constexpr bool drag = EVODEVO_DRAG;
+constexpr bool stress = EVODEVO_STRESS;
+constexpr bool work = EVODEVO_WORK;
+
+using Place = physics::Triple<Number>;
+
+/// A material in one step.
+struct Actuated {
+  Entry<Number> entry;
+  Number rate;  // of L/L0, 1/s
+};
+
+/// A material in the step `step` since birth. The phase is reduced in double precision, so that late times lose no
+/// digits.
+__device__ __forceinline__ Actuated actuated(const Actuator& actuator, std::uint64_t step, double dt) {
+  double length = 1, rate = 0;
+  if constexpr (actuation) {
+    const double turns = actuator.frequency * (static_cast<double>(step) * dt);
+    const double half_turns = 2 * (turns - floor(turns)) + actuator.phase;
+    length += actuator.amplitude * sinpi(half_turns);
+    if constexpr (work) rate = 2 * 3.14159265358979323846 * actuator.frequency * actuator.amplitude * cospi(half_turns);
+  }
+  return {{static_cast<Number>(actuator.stiffness), static_cast<Number>(actuator.stiffness * length)},
+          static_cast<Number>(rate)};
+}
+
+/// All other forces, and the step of one mass.
+__device__ __forceinline__ void move(const World<Number>& world, Place& place, Place& v, Place force, Number mass,
+                                     Number inverse_mass) {
+  if constexpr (gravity) force.z += physics::weight(mass, world.acceleration);
+  Number push = 0;
+  if constexpr (floor_on) {
+    push = physics::floor_force(world.floor_stiffness, place.z);
+    force.z += push;
+  }
+  if constexpr (drag) {
+    const Number factor = physics::drag_factor(world.drag_coefficient, v);
+    force.x = physics::multiply_add(factor, v.x, force.x);
+    force.y = physics::multiply_add(factor, v.y, force.y);
+    force.z = physics::multiply_add(factor, v.z, force.z);
+  }
+  const Number dt_over_mass = world.dt * inverse_mass;
+  v.x = physics::advanced_velocity(v.x, force.x, dt_over_mass);
+  v.y = physics::advanced_velocity(v.y, force.y, dt_over_mass);
+  v.z = physics::advanced_velocity(v.z, force.z, dt_over_mass);
+  if constexpr (damping) {
+    v.x *= world.decay;
+    v.y *= world.decay;
+    v.z *= world.decay;
+  }
+  // of a mass off the floor friction takes nothing, and most are
+  if (friction && push > 0) {
+    const Number kept = physics::friction_factor(v.x, v.y, world.friction_dt * push * inverse_mass);
+    v.x *= kept;
+    v.y *= kept;
+  }
+  place.x = physics::moved(place.x, v.x, world.dt);
+  place.y = physics::moved(place.y, v.y, world.dt);
+  place.z = physics::moved(place.z, v.z, world.dt);
+}
+
+}  // namespace evodevo::cuda

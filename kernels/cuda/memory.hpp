@@ -1,0 +1,75 @@
+// Memory on the device and its image on the host.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <cstddef>
+#include <utility>
+
+#include "cuda/error.hpp"
+
+namespace evodevo::cuda {
+
+/// Memory of the device together with as much on the host that copies go to and come from.
+class MirroredMemory {
+ public:
+  MirroredMemory() = default;
+  MirroredMemory(const MirroredMemory&) = delete;
+  MirroredMemory& operator=(const MirroredMemory&) = delete;
+  ~MirroredMemory() { release(); }
+
+  /// Makes room for at least `size` bytes; what was there is lost.
+  void resize(std::size_t size) {
+    if (size <= size_) return;
+    release();
+    check(cudaMalloc(&device_, size), "taking " + std::to_string(size >> 20) + " MiB of the GPU's memory");
+    check(cudaMallocHost(&host_, size), "taking " + std::to_string(size >> 20) + " MiB of the host's memory");
+    size_ = size;
+  }
+
+  std::byte* device() const { return static_cast<std::byte*>(device_); }
+  std::byte* host() const { return static_cast<std::byte*>(host_); }
+  std::size_t size() const { return size_; }
+
+ private:
+  void release() {
+    cudaFree(device_);
+    cudaFreeHost(host_);
+    device_ = host_ = nullptr;
+    size_ = 0;
+  }
+
+  void* device_ = nullptr;
+  void* host_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+/// The order in which the device works off what it is given.
+class Stream {
+ public:
+  Stream() { check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "opening a stream"); }
+  Stream(Stream&& other) noexcept : stream_(std::exchange(other.stream_, nullptr)) {}
+  Stream& operator=(Stream&&) = delete;
+  ~Stream() {
+    if (stream_) cudaStreamDestroy(stream_);
+  }
+  operator cudaStream_t() const { return stream_; }
+
+ private:
+  cudaStream_t stream_ = nullptr;
+};
+
+/// A moment in a stream.
+class Event {
+ public:
+  Event() { check(cudaEventCreate(&event_), "making an event"); }
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+  ~Event() { cudaEventDestroy(event_); }
+  operator cudaEvent_t() const { return event_; }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+}  // namespace evodevo::cuda

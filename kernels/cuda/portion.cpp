@@ -1,0 +1,195 @@
+#include "cuda/portion.hpp"
+
+#include <algorithm>
+
+#include "parallel.hpp"
+
+namespace evodevo::cuda {
+namespace {
+
+/// Room for one body's description of either kind.
+template <class T>
+constexpr std::size_t header_bytes = (std::max(sizeof(ResidentBody<T>), sizeof(StreamedBody<T>)) + 31) / 32 * 32;
+
+template <class... Arguments>
+void launch(cudaKernel_t kernel, dim3 grid, unsigned threads, std::size_t shared_bytes, cudaStream_t stream,
+            Arguments... arguments) {
+  void* pointers[] = {&arguments...};
+  check(cudaLaunchKernel(reinterpret_cast<const void*>(kernel), grid, dim3(threads), pointers, shared_bytes, stream),
+        "starting a kernel");
+}
+
+}  // namespace
+
+template <class T>
+Plan<T>::Plan(Task& task_, const Scene& scene, const Stepping& stepping, const Features& features,
+              std::size_t shared_bytes)
+    : task(&task_), guard(*task_.body, *task_.state, scene, stepping), body([&]() -> decltype(body) {
+        if (auto resident = Resident<T>::arrange(task_, features, shared_bytes)) return *std::move(resident);
+        return Streamed<T>(task_, features);
+      }()) {}
+
+template <class T>
+Sizes Plan<T>::sizes() const {
+  return std::visit([](const auto& b) { return b.sizes(); }, body);
+}
+
+template <class T>
+std::size_t Portion<T>::bytes_for(const Sizes& sizes, std::size_t bodies) {
+  return sizes.total() + bodies * header_bytes<T>;
+}
+
+template <class T>
+Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MirroredMemory& memory)
+    : plans_(plans), run_(run), memory_(memory), world_(world_of<T>(run.scene, run.stepping.dt)) {
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    sizes_ += plans[i].sizes();
+    if (const auto* resident = std::get_if<Resident<T>>(&plans[i].body))
+      resident_[{resident->features(), resident->form(), resident->threads()}].push_back(i);
+    else
+      streamed_.push_back(i);
+  }
+  memory_.resize(bytes_for(sizes_, plans.size()));
+  // descriptions, then inputs, then states, then sums
+  const auto regions = [&](std::byte* base) {
+    std::byte* input = base + plans.size() * header_bytes<T>;
+    return Regions{input, input + sizes_.input, input + sizes_.input + sizes_.state};
+  };
+  Regions host = regions(memory_.host()), device = regions(memory_.device());
+  for (const Plan<T>& plan : plans) {
+    host_.push_back(host);
+    device_.push_back(device);
+    host = host.behind(plan.sizes());
+    device = device.behind(plan.sizes());
+  }
+}
+
+template <class T>
+void Portion<T>::pack() {
+  // resident bodies by launch, then streamed ones; all descriptions take the same room
+  std::vector<std::size_t> order;
+  for (const auto& [launch, bodies] : resident_) order.insert(order.end(), bodies.begin(), bodies.end());
+  auto* resident = reinterpret_cast<ResidentBody<T>*>(memory_.host());
+  auto* streamed = reinterpret_cast<StreamedBody<T>*>(memory_.host() + order.size() * header_bytes<T>);
+  parallel_for(plans_.size(), 0, [&](std::size_t i) {
+    if (i < order.size()) {
+      const std::size_t at = order[i];
+      resident[i] = std::get<Resident<T>>(plans_[at].body).pack(host_[at], device_[at], plans_[at].guard);
+    } else {
+      const std::size_t at = streamed_[i - order.size()];
+      streamed[i - order.size()] =
+          std::get<Streamed<T>>(plans_[at].body).pack(host_[at], device_[at], plans_[at].guard);
+    }
+  });
+}
+
+template <class T>
+void Portion<T>::upload(cudaStream_t stream) {
+  const std::size_t headers = plans_.size() * header_bytes<T>;
+  check(cudaMemcpyAsync(memory_.device(), memory_.host(), headers + sizes_.input + sizes_.state, cudaMemcpyHostToDevice,
+                        stream),
+        "copying bodies to the GPU");
+  check(cudaMemsetAsync(device_.front().sums, 0, sizes_.sums, stream), "clearing the GPU's memory");
+}
+
+template <class T>
+void Portion<T>::launch_resident(KernelStore& kernels, std::span<const Stream> streams) {
+  const Event ready;
+  check(cudaEventRecord(ready, streams[0]), "recording an event");
+  const auto* bodies = reinterpret_cast<const ResidentBody<T>*>(memory_.device());
+  std::vector<std::pair<Launch, const ResidentBody<T>*>> launches;
+  for (const auto& [key, members] : resident_) {
+    launches.emplace_back(key, bodies);
+    bodies += members.size();
+  }
+  // the longest first, so that short ones fill the gaps at the end
+  std::sort(launches.begin(), launches.end(), [](const auto& a, const auto& b) {
+    return a.first.threads * a.first.form.rows > b.first.threads * b.first.form.rows;
+  });
+  std::size_t next = 0;
+  for (const auto& [key, first] : launches) {
+    const std::vector<std::size_t>& members = resident_.at(key);
+    std::size_t shared_bytes = 0;
+    for (const std::size_t i : members)
+      shared_bytes = std::max(shared_bytes, std::get<Resident<T>>(plans_[i].body).chip_bytes());
+    const cudaKernel_t kernel =
+        kernels.get("cuda/resident.cu", "evodevo_run_resident", definitions(key.features, key.form));
+    check(cudaFuncSetAttribute(reinterpret_cast<const void*>(kernel), cudaFuncAttributeMaxDynamicSharedMemorySize,
+                               static_cast<int>(shared_bytes)),
+          "asking for " + std::to_string(shared_bytes) + " bytes of shared memory");
+    const cudaStream_t stream = streams[next++ % streams.size()];
+    check(cudaStreamWaitEvent(stream, ready), "waiting for an event");
+    launch(kernel, dim3(static_cast<unsigned>(members.size())), key.threads, shared_bytes, stream, world_, first,
+           run_.steps);
+    const Event done;
+    check(cudaEventRecord(done, stream), "recording an event");
+    check(cudaStreamWaitEvent(streams[0], done), "waiting for an event");
+  }
+}
+
+template <class T>
+void Portion<T>::launch_streamed(KernelStore& kernels, cudaStream_t stream) {
+  if (streamed_.empty()) return;
+  constexpr unsigned step_threads = 128;
+  Features features = run_.features;
+  unsigned masses = 1;
+  for (const std::size_t i : streamed_) {
+    masses = std::max(masses, std::get<Streamed<T>>(plans_[i].body).masses());
+    for (const Material& material : plans_[i].task->body->materials)
+      features.actuation = features.actuation || material.amplitude != 0;
+  }
+  const auto kernel = [&](const char* name) { return kernels.get("cuda/streamed.cu", name, definitions(features)); };
+  const cudaKernel_t fill = kernel("evodevo_fill_tables"), step = kernel("evodevo_step_streamed"),
+                     check_bodies = kernel("evodevo_check_streamed");
+  const auto* bodies =
+      reinterpret_cast<const StreamedBody<T>*>(memory_.device() + (plans_.size() - streamed_.size()) * header_bytes<T>);
+  const auto count = static_cast<unsigned>(streamed_.size());
+  const dim3 over_masses((masses + step_threads - 1) / step_threads, count);
+  for (std::uint64_t done = 0; done < run_.steps;) {
+    const auto now = static_cast<unsigned>(std::min<std::uint64_t>(run_.steps - done, guard_interval));
+    launch(fill, dim3(count), 256, 0, stream, world_, bodies, done, now);
+    for (unsigned i = 0; i < now; ++i)
+      launch(step, over_masses, step_threads, 0, stream, world_, bodies, i, static_cast<unsigned>((done + i) % 2));
+    done += now;
+    launch(fill, dim3(count), 256, 0, stream, world_, bodies, done, 1u);
+    launch(check_bodies, dim3(count), check_threads, 0, stream, world_, bodies, now, static_cast<unsigned>(done % 2));
+  }
+}
+
+template <class T>
+void Portion<T>::download(cudaStream_t stream) {
+  check(cudaMemcpyAsync(host_.front().state, device_.front().state, sizes_.state + sizes_.sums, cudaMemcpyDeviceToHost,
+                        stream),
+        "copying bodies from the GPU");
+  check(cudaStreamSynchronize(stream), "simulating on the GPU");
+}
+
+template <class T>
+double Portion<T>::simulate(KernelStore& kernels, std::span<const Stream> streams) {
+  const Event begin, end;
+  pack();
+  upload(streams[0]);
+  check(cudaEventRecord(begin, streams[0]), "recording an event");
+  launch_resident(kernels, streams);
+  launch_streamed(kernels, streams[0]);
+  check(cudaEventRecord(end, streams[0]), "recording an event");
+  download(streams[0]);
+  parallel_for(plans_.size(), 0, [&](std::size_t i) {
+    Plan<T>& plan = plans_[i];
+    std::visit(
+        [&](const auto& body) {
+          body.unpack(host_[i], plan.guard, run_.steps, run_.stepping.dt, run_.recording, *plan.task);
+        },
+        plan.body);
+  });
+  float milliseconds = 0;
+  check(cudaEventElapsedTime(&milliseconds, begin, end), "reading a time");
+  return milliseconds / 1000.0;
+}
+
+template struct Plan<float>;
+template struct Plan<double>;
+template class Portion<float>;
+template class Portion<double>;
+
+}  // namespace evodevo::cuda

@@ -1,0 +1,79 @@
+// As many bodies as the device holds at once, from the host's memory to the device's and back.
+#pragma once
+
+#include <map>
+#include <span>
+#include <tuple>
+#include <variant>
+#include <vector>
+
+#include "cuda/features.hpp"
+#include "cuda/kernels.hpp"
+#include "cuda/memory.hpp"
+#include "cuda/resident.hpp"
+#include "cuda/streamed.hpp"
+
+namespace evodevo::cuda {
+
+/// A task and how its body is simulated.
+template <class T>
+struct Plan {
+  Plan(Task& task, const Scene& scene, const Stepping& stepping, const Features& features, std::size_t shared_bytes);
+
+  Sizes sizes() const;
+
+  Task* task;
+  EnergyGuard guard;
+  std::variant<Streamed<T>, Resident<T>> body;
+};
+
+/// What all bodies of a run have in common.
+struct Run {
+  Scene scene;
+  Stepping stepping;
+  Recording recording;
+  std::uint64_t steps;
+  Features features;
+};
+
+/// Simulates bodies that fit the device together.
+template <class T>
+class Portion {
+ public:
+  Portion(std::span<Plan<T>> plans, const Run& run, MirroredMemory& memory);
+
+  /// Bytes of the device's memory that bodies of these sizes need.
+  static std::size_t bytes_for(const Sizes& sizes, std::size_t bodies);
+
+  /// Makes all steps and fills in the answers; returns the time of the kernels, s.
+  double simulate(KernelStore& kernels, std::span<const Stream> streams);
+
+ private:
+  /// Resident bodies that one launch handles.
+  struct Launch {
+    Features features;
+    ResidentForm form;
+    unsigned threads;
+    auto operator<=>(const Launch&) const = default;
+  };
+
+  void pack();
+  void upload(cudaStream_t stream);
+  void launch_resident(KernelStore& kernels, std::span<const Stream> streams);
+  void launch_streamed(KernelStore& kernels, cudaStream_t stream);
+  void download(cudaStream_t stream);
+
+  std::span<Plan<T>> plans_;
+  Run run_;
+  MirroredMemory& memory_;
+  World<T> world_;
+  Sizes sizes_;
+  std::vector<Regions> host_, device_;  // of each plan
+  std::map<Launch, std::vector<std::size_t>> resident_;
+  std::vector<std::size_t> streamed_;
+};
+
+extern template class Portion<float>;
+extern template class Portion<double>;
+
+}  // namespace evodevo::cuda

@@ -1,0 +1,212 @@
+#include "cuda/resident.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evodevo::cuda {
+namespace {
+
+constexpr std::size_t longest_table = 50;        // steps; refilling costs a little each time
+constexpr std::size_t table_bytes = 8 << 10;     // that a table should not exceed
+constexpr std::size_t reserved_bytes = 1 << 10;  // of shared memory, by the kernel and the system
+constexpr std::size_t largest_offset = 0xffff;
+
+std::size_t aligned(std::size_t size) { return (size + 15) / 16 * 16; }
+
+template <class T>
+std::size_t offset_of_place(std::uint32_t place) {
+  return place / lanes * group_bytes<T> + place % lanes * sizeof(T);
+}
+
+template <class T>
+std::size_t masses_bytes(std::size_t groups) {
+  return (groups + 1) * group_bytes<T>;  // and one that empty slots lead to
+}
+
+}  // namespace
+
+template <class T>
+ForceRange force_range(const Body& body, const State& state) {
+  double largest = 0;
+  std::vector<std::uint32_t> valence(body.masses.size());
+  for (const Spring& spring : body.springs) {
+    const Material& material = body.materials[spring.material];
+    const double stretched = spring.rest_length * (1 + std::abs(material.amplitude));
+    const double strain = norm(state.position[spring.b] - state.position[spring.a]) - spring.rest_length;
+    largest = std::max(largest, std::abs(material.stiffness) * std::max(stretched, 2 * std::abs(strain)));
+    ++valence[spring.a], ++valence[spring.b];
+  }
+  ForceRange range;
+  const std::uint32_t terms = valence.empty() ? 1 : std::max(1u, *std::max_element(valence.begin(), valence.end()));
+  // one percent for the rounding of the force itself
+  const double units = 0.99 * std::min(FixedPoint<T>::largest_term, FixedPoint<T>::largest_sum / terms);
+  if (largest > 0 && std::isfinite(largest)) range.resolution = std::exp2(std::ceil(std::log2(largest / units)));
+  range.largest = units * range.resolution;
+  return range;
+}
+
+template ForceRange force_range<float>(const Body&, const State&);
+template ForceRange force_range<double>(const Body&, const State&);
+
+template <class T>
+std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features& features, std::size_t shared_bytes) {
+  // before the work of arranging it: whether the masses and one step's table fit
+  const std::size_t entries = task.body->materials.size() + 1;
+  const std::size_t least = masses_bytes<T>((task.body->masses.size() + lanes - 1) / lanes) +
+                            entries * (sizeof(Entry<T>) + sizeof(T)) + reserved_bytes;
+  if (least > shared_bytes || entries * sizeof(Entry<T>) > largest_offset) return std::nullopt;
+  Resident resident(task, features);
+  if (!resident.fit(shared_bytes - reserved_bytes)) return std::nullopt;
+  resident.reserve();
+  return resident;
+}
+
+template <class T>
+Resident<T>::Resident(const Task& task, const Features& features)
+    : task_(&task),
+      features_(features),
+      arrangement_(*task.body, largest_block(features.float64)),
+      range_(force_range<T>(*task.body, *task.state)) {
+  for (const Spring& spring : task.body->springs)
+    features_.actuation = features_.actuation || task.body->materials[spring.material].amplitude != 0;
+}
+
+/// Divides up shared memory; false where it is too small.
+template <class T>
+bool Resident<T>::fit(std::size_t shared_bytes) {
+  const std::size_t entries = task_->body->materials.size() + 1;
+  const std::size_t row = entries * (sizeof(Entry<T>) + (features_.work ? sizeof(T) : 0));
+  const std::size_t masses = masses_bytes<T>(arrangement_.groups);
+  const std::size_t records = arrangement_.shape.slots() * sizeof(Record<T>);
+  const std::size_t steps = features_.actuation ? std::clamp<std::size_t>(table_bytes / row, 1, longest_table) : 1;
+  records_on_chip_ = aligned(masses) + aligned(steps * row) + 32 + records <= shared_bytes;
+  chip_.table_steps = static_cast<std::uint32_t>(steps);
+  chip_.table_offset = aligned(masses);
+  chip_.rate_offset = aligned(chip_.table_offset + steps * entries * sizeof(Entry<T>));
+  chip_.record_offset = aligned(chip_.rate_offset + (features_.work ? steps * entries * sizeof(T) : 0));
+  chip_.size = chip_.record_offset + (records_on_chip_ ? records : 0);
+  return chip_.size <= shared_bytes;
+}
+
+template <class T>
+void Resident<T>::reserve() {
+  const std::size_t places = lanes * arrangement_.groups;
+  Extent input, state, sums;
+  records_ = input.add<Record<T>>(arrangement_.slots.size());
+  first_group_ = input.add<std::uint32_t>(arrangement_.first_group.size());
+  turns_ = input.add<std::uint32_t>(arrangement_.turns.size());
+  actuators_ = input.add<Actuator>(task_->body->materials.size() + 1);
+  mass_ = input.add<T>(places);
+  inverse_mass_ = input.add<T>(places);
+  start_ = input.add<typename FixedPoint<T>::Integer>(places);
+  for (Section<T>& plane : motion_) plane = state.add<T>(places);
+  answer_ = state.add<Answer>(1);
+  stress_ = sums.add<double>(features_.stress ? arrangement_.slots.size() : 0);
+  sizes_ = {input.size(), state.size(), sums.size()};
+}
+
+template <class T>
+ResidentForm Resident<T>::form() const {
+  const Shape& shape = arrangement_.shape;
+  return {.rows = shape.rows,
+          .masses_per_thread = shape.masses_per_thread,
+          .chunked = shape.chunks > 1,
+          .records_on_chip = records_on_chip_,
+          .turning = shape.chunks > 1 || std::any_of(arrangement_.turns.begin(), arrangement_.turns.end(),
+                                                     [](std::uint32_t turns) { return turns != 0; }),
+          .wide_offsets = masses_bytes<T>(arrangement_.groups) > largest_offset};
+}
+
+template <class T>
+void Resident<T>::pack_records(Record<T>* to) const {
+  using Integer = typename FixedPoint<T>::Integer;
+  const unsigned unit = form().wide_offsets ? sizeof(T) : 1;
+  for (const Arrangement::Slot& slot : arrangement_.slots) {
+    const auto other = static_cast<Integer>(offset_of_place<T>(slot.other) / unit);
+    if (slot.spring == Arrangement::none) {
+      *to++ = {T(0), other};
+      continue;
+    }
+    const Spring& spring = task_->body->springs[slot.spring];
+    const auto entry = static_cast<Integer>((spring.material + 1) * sizeof(Entry<T>));
+    *to++ = {static_cast<T>(spring.rest_length), other | entry << 16};
+  }
+}
+
+template <class T>
+void Resident<T>::pack_masses(const Regions& host) const {
+  const std::size_t places = lanes * arrangement_.groups;
+  std::fill_n(mass_.in(host.input), places, T(0));
+  std::fill_n(inverse_mass_.in(host.input), places, T(0));
+  for (const Section<T>& plane : motion_) std::fill_n(plane.in(host.state), places, T(0));
+  for (std::size_t i = 0; i < task_->body->masses.size(); ++i) {
+    const std::uint32_t place = arrangement_.place_of[i];
+    const double mass = task_->body->masses[i].mass;
+    mass_.in(host.input)[place] = static_cast<T>(mass);
+    // a mass of 0 kg stays where it is
+    inverse_mass_.in(host.input)[place] = static_cast<T>(mass > 0 ? 1 / mass : 0);
+    const Vec3 x = task_->state->position[i], v = task_->state->velocity[i];
+    const double numbers[] = {x.x, x.y, x.z, v.x, v.y, v.z};
+    for (std::size_t c = 0; c < 6; ++c) motion_[c].in(host.state)[place] = static_cast<T>(numbers[c]);
+  }
+}
+
+template <class T>
+ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, const EnergyGuard& guard) const {
+  using Integer = typename FixedPoint<T>::Integer;
+  pack_records(records_.in(host.input));
+  pack_masses(host);
+  std::copy(arrangement_.first_group.begin(), arrangement_.first_group.end(), first_group_.in(host.input));
+  std::copy(arrangement_.turns.begin(), arrangement_.turns.end(), turns_.in(host.input));
+  std::transform(arrangement_.magic_numbers.begin(), arrangement_.magic_numbers.end(), start_.in(host.input),
+                 [](std::int32_t count) { return static_cast<Integer>(count) * FixedPoint<T>::magic_bits; });
+  actuators_.in(host.input)[0] = {};
+  std::transform(task_->body->materials.begin(), task_->body->materials.end(), actuators_.in(host.input) + 1,
+                 [&](const Material& material) { return actuator_of(material, range_.resolution); });
+  *answer_.in(host.state) = {};
+  return {.records = records_.in(device.input),
+          .first_group = first_group_.in(device.input),
+          .turns = turns_.in(device.input),
+          .actuators = actuators_.in(device.input),
+          .mass = mass_.in(device.input),
+          .inverse_mass = inverse_mass_.in(device.input),
+          .start = start_.in(device.input),
+          .motion = {motion_[0].in(device.state), motion_[1].in(device.state), motion_[2].in(device.state),
+                     motion_[3].in(device.state), motion_[4].in(device.state), motion_[5].in(device.state)},
+          .stress = stress_.in(device.sums),
+          .answer = answer_.in(device.state),
+          .first_step = task_->state->steps,
+          .energy_bound = guard.bound(),
+          .resolution = range_.resolution,
+          .largest_force = static_cast<T>(range_.largest / range_.resolution),
+          .groups = arrangement_.groups,
+          .chunks = arrangement_.shape.chunks,
+          .entries = static_cast<std::uint32_t>(task_->body->materials.size() + 1),
+          .table_steps = chip_.table_steps,
+          .table_offset = static_cast<std::uint32_t>(chip_.table_offset),
+          .rate_offset = static_cast<std::uint32_t>(chip_.rate_offset),
+          .record_offset = static_cast<std::uint32_t>(chip_.record_offset)};
+}
+
+template <class T>
+void Resident<T>::unpack(const Regions& host, const EnergyGuard& guard, std::uint64_t steps, double dt,
+                         Recording recording, Task& task) const {
+  read_answer(*answer_.in(host.state), guard, range_.largest, dt, recording, task);
+  const auto at = [&](std::size_t plane, std::uint32_t place) -> double {
+    return motion_[plane].in(host.state)[place];
+  };
+  for (std::size_t i = 0; i < task.body->masses.size(); ++i) {
+    const std::uint32_t place = arrangement_.place_of[i];
+    task.state->position[i] = {at(0, place), at(1, place), at(2, place)};
+    task.state->velocity[i] = {at(3, place), at(4, place), at(5, place)};
+  }
+  if (!recording.stress || task.status != Status::ok) return;
+  task.stress.resize(task.body->springs.size());
+  for (std::size_t i = 0; i < task.stress.size(); ++i)
+    task.stress[i] = stress_.in(host.sums)[arrangement_.slot_of[i]] / static_cast<double>(steps);
+}
+
+template class Resident<float>;
+template class Resident<double>;
+
+}  // namespace evodevo::cuda

@@ -1,0 +1,385 @@
+// A body's whole run in one thread block, its state on the chip from the first step to the last.
+//
+// Each lane of a warp owns a mass and goes through the springs that the mass owns, one spring per row: it adds up the
+// force in registers and adds the opposite to the mass at the other end by an atomic on integers in shared memory. So
+// each spring is computed once, and no sum depends on an order. The host compiles this file at run time, once for each
+// combination of the features below that a scene and a body ask for; what is off leaves no instruction.
+#include "cuda/check.cuh"
+#include "cuda/mass_step.cuh"
+
+namespace evodevo::cuda {
+
+constexpr unsigned rows = EVODEVO_ROWS;                    // in a row, unrolled
+constexpr unsigned masses_per_thread = EVODEVO_MASSES;     // that a thread moves
+constexpr bool chunked = EVODEVO_CHUNKED;                  // more than one times `rows` for each warp
+constexpr bool records_on_chip = EVODEVO_RECORDS_ON_CHIP;  // else they are streamed from memory
+constexpr bool turning = EVODEVO_TURNING;                  // some warps' rows belong to more than one group
+constexpr unsigned offset_shift = EVODEVO_OFFSET_SHIFT;    // what offsets of masses are shifted by
+using Body = ResidentBody<Number>;
+using Fixed = FixedPoint<Number>;
+using Integer = Fixed::Integer;
+constexpr unsigned plane = plane_bytes<Number>;
+constexpr unsigned group_size = group_bytes<Number>;
+
+extern __shared__ __align__(16) unsigned char chip[];
+
+template <class T>
+__device__ __forceinline__ T& on_chip(unsigned offset) {
+  return *reinterpret_cast<T*>(chip + offset);
+}
+
+__device__ __forceinline__ Place place_at(unsigned offset) {
+  return {on_chip<Number>(offset), on_chip<Number>(offset + plane), on_chip<Number>(offset + 2 * plane)};
+}
+
+__device__ __forceinline__ unsigned offset_of_place(unsigned place) {
+  return place / lanes * group_size + place % lanes * static_cast<unsigned>(sizeof(Number));
+}
+
+__device__ __forceinline__ Integer bits(float value) { return __float_as_uint(value); }
+__device__ __forceinline__ Integer bits(double value) { return static_cast<Integer>(__double_as_longlong(value)); }
+
+/// A spring and the mass at its other end, read ahead of their use.
+struct Spring {
+  Number rest_length;
+  unsigned other;        // offset
+  unsigned table_entry;  // offset from the table's beginning
+  Entry<Number> entry;
+  Place place;
+
+  __device__ __forceinline__ Spring(const Record<Number>& record, unsigned table)
+      : rest_length(record.rest_length),
+        other((static_cast<unsigned>(record.packed) & 0xffffu) << offset_shift),
+        table_entry(static_cast<unsigned>(record.packed) >> 16),
+        entry(on_chip<Entry<Number>>(table + table_entry)),
+        place(place_at(other)) {}
+};
+
+/// The mass whose springs a thread goes through, and the force on it so far.
+struct Owner {
+  unsigned offset;
+  Place place;
+  Integer fx, fy, fz;
+
+  __device__ __forceinline__ explicit Owner(unsigned offset_)
+      : offset(offset_), place(place_at(offset_)), fx(0), fy(0), fz(0) {}
+
+  __device__ __forceinline__ void hand_in() const {
+    atomicAdd(&on_chip<Integer>(offset + 3 * plane), fx);
+    atomicAdd(&on_chip<Integer>(offset + 4 * plane), fy);
+    atomicAdd(&on_chip<Integer>(offset + 5 * plane), fz);
+  }
+};
+
+/// What a thread adds up over its springs in some steps.
+struct Sums {
+  Number tension[stress && !chunked ? rows : 1] = {};  // sum of |force| of the spring in each row, units
+  Number power = 0;                                    // of all, units m/s
+  Number largest = 0;                                  // |force|, units
+};
+
+/// What a thread adds up between two checks.
+struct Totals {
+  double power = 0;    // units m/s
+  Number largest = 0;  // |force|, units
+};
+
+/// Where a thread's springs lie.
+struct Share {
+  const Record<Number>* records;  // of the warp's first row
+  unsigned owner;                 // offset of the mass that it begins with
+  unsigned first_slot;
+  unsigned warp;
+  unsigned chunks;
+};
+
+__device__ __forceinline__ Share share_of(const Body& body) {
+  Share share;
+  share.warp = threadIdx.x / lanes;
+  share.chunks = chunked ? body.chunks : 1;
+  share.first_slot = share.warp * share.chunks * rows * lanes + threadIdx.x % lanes;
+  share.owner = offset_of_place(body.first_group[share.warp] * lanes + threadIdx.x % lanes);
+  share.records = (records_on_chip ? &on_chip<Record<Number>>(body.record_offset) : body.records) + share.first_slot;
+  return share;
+}
+
+/// Adds one spring's force to both of its ends.
+__device__ __forceinline__ void add_force(const Spring& spring, Owner& owner, unsigned rates, Sums& sums,
+                                          Number& tension_sum) {
+  const auto s = physics::separation(owner.place, spring.place);
+  const Number inverse = physics::inverse_length(s);
+  const Number factor =
+      physics::spring_factor_by_inverse(inverse, spring.entry.stiffness, spring.entry.rest_force * spring.rest_length);
+  const Number tension = factor * physics::length_by_inverse(s, inverse);
+  sums.largest = fmax(sums.largest, fabs(tension));
+  if constexpr (stress) tension_sum += fabs(tension);
+  if constexpr (work) {
+    const Number rate = on_chip<Number>(rates + spring.table_entry / 2) * spring.rest_length;
+    sums.power += physics::actuation_power(tension, rate);
+  }
+  const Integer x = bits(physics::multiply_add(-factor, s.d.x, Fixed::magic));
+  const Integer y = bits(physics::multiply_add(-factor, s.d.y, Fixed::magic));
+  const Integer z = bits(physics::multiply_add(-factor, s.d.z, Fixed::magic));
+  atomicAdd(&on_chip<Integer>(spring.other + 3 * plane), x);
+  atomicAdd(&on_chip<Integer>(spring.other + 4 * plane), y);
+  atomicAdd(&on_chip<Integer>(spring.other + 5 * plane), z);
+  owner.fx -= x;
+  owner.fy -= y;
+  owner.fz -= z;
+}
+
+/// Adds the forces of `rows` rows. The next row's reads are issued before this row's atomics, which the compiler may
+/// not pass.
+__device__ __forceinline__ void add_forces(const Record<Number>* records, unsigned turns, unsigned table,
+                                           unsigned rates, Owner& owner, Sums& sums, double* stress_sums,
+                                           double resolution) {
+  Record<Number> record = records[rows > 1 ? lanes : 0];
+  Spring next(records[0], table);
+#pragma unroll
+  for (unsigned row = 0; row < rows; ++row) {
+    const Spring spring = next;
+    if (row + 1 < rows) next = Spring(record, table);
+    if (row + 2 < rows) record = records[(row + 2) * lanes];
+    if constexpr (stress && chunked) {
+      Number tension = 0;
+      add_force(spring, owner, rates, sums, tension);
+      stress_sums[row * lanes] += resolution * tension;
+    } else {
+      add_force(spring, owner, rates, sums, sums.tension[stress ? row : 0]);
+    }
+    if (turning && (turns >> row & 1)) {
+      owner.hand_in();
+      owner = Owner(owner.offset + group_size);
+    }
+  }
+}
+
+__device__ __forceinline__ void add_spring_forces(const Body& body, const Share& share, unsigned turns, unsigned table,
+                                                  unsigned rates, Sums& sums) {
+  Owner owner(share.owner);
+  if constexpr (chunked) {
+    for (unsigned chunk = 0; chunk < share.chunks; ++chunk)
+      add_forces(share.records + chunk * rows * lanes, body.turns[share.warp * share.chunks + chunk], table, rates,
+                 owner, sums, stress ? body.stress + share.first_slot + chunk * rows * lanes : nullptr,
+                 body.resolution);
+  } else {
+    add_forces(share.records, turns, table, rates, owner, sums, nullptr, 0);
+  }
+  owner.hand_in();
+}
+
+/// The masses that a thread moves: those at place threadIdx.x, threadIdx.x + blockDim.x, ..
+struct Movers {
+  Place velocity[masses_per_thread];
+};
+
+template <class Function>
+__device__ __forceinline__ void for_each_mover(const Body& body, const Function& function) {
+#pragma unroll
+  for (unsigned i = 0; i < masses_per_thread; ++i) {
+    const unsigned place = threadIdx.x + i * blockDim.x;
+    if (place < body.groups * lanes) function(i, place, offset_of_place(place));
+  }
+}
+
+__device__ __forceinline__ void set_force(unsigned offset, Integer value) {
+  on_chip<Integer>(offset + 3 * plane) = value;
+  on_chip<Integer>(offset + 4 * plane) = value;
+  on_chip<Integer>(offset + 5 * plane) = value;
+}
+
+__device__ __forceinline__ void set_place(unsigned offset, Place place) {
+  on_chip<Number>(offset) = place.x;
+  on_chip<Number>(offset + plane) = place.y;
+  on_chip<Number>(offset + 2 * plane) = place.z;
+}
+
+/// The sum of the spring forces at a mass, N; made ready for the next step's sum.
+__device__ __forceinline__ Place take_force(unsigned offset, Integer start, Number resolution) {
+  const auto newtons = [&](unsigned at) {
+    return static_cast<Number>(static_cast<Fixed::Signed>(on_chip<Integer>(at))) * resolution;
+  };
+  const Place force{newtons(offset + 3 * plane), newtons(offset + 4 * plane), newtons(offset + 5 * plane)};
+  set_force(offset, start);
+  return force;
+}
+
+__device__ __forceinline__ void move_masses(const Body& body, const World<Number>& world, Number resolution,
+                                            Movers& movers) {
+  for_each_mover(body, [&](unsigned i, unsigned place_index, unsigned offset) {
+    const Place force = take_force(offset, __ldg(body.start + place_index), resolution);
+    Place place = place_at(offset);
+    move(world, place, movers.velocity[i], force, gravity ? __ldg(body.mass + place_index) : 0,
+         __ldg(body.inverse_mass + place_index));
+    set_place(offset, place);
+  });
+}
+
+/// Brings the body onto the chip.
+__device__ __forceinline__ void load(const Body& body, Movers& movers) {
+  const Motion<Number>& m = body.motion;
+  for_each_mover(body, [&](unsigned i, unsigned place, unsigned offset) {
+    set_place(offset, {m.x[place], m.y[place], m.z[place]});
+    movers.velocity[i] = {m.vx[place], m.vy[place], m.vz[place]};
+    set_force(offset, body.start[place]);
+  });
+  // the masses that empty slots lead to
+  if (threadIdx.x < lanes) {
+    const unsigned offset = offset_of_place(body.groups * lanes + threadIdx.x);
+    set_place(offset, {0, 0, 0});
+    set_force(offset, 0);
+  }
+  if constexpr (records_on_chip) {
+    Record<Number>* records = &on_chip<Record<Number>>(body.record_offset);
+    const unsigned count = blockDim.x * rows * (chunked ? body.chunks : 1);
+    for (unsigned i = threadIdx.x; i < count; i += blockDim.x) records[i] = body.records[i];
+  }
+}
+
+__device__ __forceinline__ void store(const Body& body, const Movers& movers) {
+  const Motion<Number>& m = body.motion;
+  for_each_mover(body, [&](unsigned i, unsigned place, unsigned offset) {
+    const Place at = place_at(offset);
+    m.x[place] = at.x;
+    m.y[place] = at.y;
+    m.z[place] = at.z;
+    m.vx[place] = movers.velocity[i].x;
+    m.vy[place] = movers.velocity[i].y;
+    m.vz[place] = movers.velocity[i].z;
+  });
+}
+
+/// Fills in the table for `count` steps from `step` since birth on.
+__device__ __noinline__ void fill_table(const Body& body, std::uint64_t step, unsigned count, double dt) {
+  for (unsigned i = threadIdx.x; i < count * body.entries; i += blockDim.x) {
+    const Actuator actuator = body.actuators[i % body.entries];
+    const Actuated now = actuated(actuator, step + i / body.entries, dt);
+    on_chip<Entry<Number>>(body.table_offset + i * sizeof(Entry<Number>)) = now.entry;
+    if constexpr (work) on_chip<Number>(body.rate_offset + i * sizeof(Number)) = now.rate;
+  }
+}
+
+/// The elastic energy of a thread's springs, units m. The table's first row holds the lengths of now.
+__device__ double elastic_energy(const Body& body, const Share& share) {
+  double sum = 0;
+  unsigned offset = share.owner;
+  for (unsigned chunk = 0; chunk < share.chunks; ++chunk) {
+    const unsigned turns = body.turns[share.warp * share.chunks + chunk];
+    for (unsigned row = 0; row < rows; ++row) {
+      const Spring spring(share.records[(chunk * rows + row) * lanes], body.table_offset);
+      const auto s = physics::separation(place_at(offset), spring.place);
+      // an empty slot has no stiffness
+      const Number relative = spring.entry.rest_force / physics::maximum(spring.entry.stiffness, Number(1e-30));
+      sum += physics::elastic_energy(s, spring.entry.stiffness, spring.rest_length * relative);
+      if (turns >> row & 1) offset += group_size;
+    }
+  }
+  return sum;
+}
+
+/// A thread's part of what a check looks at; by value, because what a called function takes by reference leaves the
+/// registers for good.
+struct Check {
+  double kinetic = 0;     // J
+  double moment = 0;      // kg m
+  Number not_finite = 0;  // 0 where all places and velocities are finite
+  Totals totals;
+};
+
+__device__ __forceinline__ Check check_of(const Body& body, const Movers& movers, const Totals& totals) {
+  Check check;
+  check.totals = totals;
+  for_each_mover(body, [&](unsigned i, unsigned place_index, unsigned offset) {
+    const Place place = place_at(offset), v = movers.velocity[i];
+    const Number mass = body.mass[place_index];
+    check.kinetic += physics::kinetic_energy(mass, v);
+    check.moment += static_cast<double>(mass) * place.z;
+    check.not_finite += not_finite(place, v);
+  });
+  return check;
+}
+
+/// Writes down the body's energies after `steps` steps and says whether it has diverged; the same for all threads.
+__device__ __noinline__ bool has_diverged(const Body& body, const World<Number>& world, Check check,
+                                          std::uint64_t steps) {
+  double sums[] = {check.kinetic, check.moment, elastic_energy(body, share_of(body)), check.totals.power};
+  block_sum(sums);
+  const bool finite = !__syncthreads_or(check.not_finite != 0);
+  const bool out_of_range = __syncthreads_or(!(check.totals.largest <= body.largest_force));
+  bool diverged = !finite || out_of_range;
+  if (threadIdx.x == 0) {
+    const auto [kinetic, moment, elastic, power] = sums;
+    const double elastic_joules = body.resolution * elastic;
+    diverged = diverged || gained_energy(kinetic + elastic_joules, moment, body.energy_bound, world);
+    *body.answer = {
+        steps,    kinetic, elastic_joules, moment, body.answer->work + world.exact_dt * body.resolution * power,
+        diverged, finite,  out_of_range,   0};
+  }
+  return __syncthreads_or(diverged);
+}
+
+/// Adds the sums of some steps to the body's.
+__device__ __forceinline__ void collect(const Body& body, unsigned first_slot, const Sums& sums, Totals& totals) {
+  totals.largest = fmax(totals.largest, sums.largest);
+  if constexpr (work) totals.power += sums.power;
+  if constexpr (stress && !chunked) {
+    double* to = body.stress + first_slot;
+    double before[rows];  // read all at once, because a read must wait for the write before it
+#pragma unroll
+    for (unsigned row = 0; row < rows; ++row) before[row] = to[row * lanes];
+#pragma unroll
+    for (unsigned row = 0; row < rows; ++row) to[row * lanes] = before[row] + body.resolution * sums.tension[row];
+  }
+}
+
+/// Makes `count` steps, whose lengths are in the table. The sums live no longer than this, so that no call of a
+/// function drives them out of the registers.
+__device__ __forceinline__ void advance(const Body& body, const World<Number>& world, const Share& share,
+                                        unsigned turns, unsigned count, Movers& movers, Totals& totals) {
+  const Number resolution = static_cast<Number>(body.resolution);
+  const unsigned row_bytes = actuation ? body.entries * sizeof(Entry<Number>) : 0;
+  unsigned table = body.table_offset, rates = work ? body.rate_offset : 0;
+  Sums sums;
+  for (unsigned step = 0; step < count; ++step) {
+    add_spring_forces(body, share, turns, table, rates, sums);
+    __syncthreads();
+    move_masses(body, world, resolution, movers);
+    __syncthreads();
+    table += row_bytes;
+    rates += row_bytes / 2;
+  }
+  collect(body, share.first_slot, sums, totals);
+}
+
+extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)
+    evodevo_run_resident(const World<Number> world, const Body* bodies, std::uint64_t steps) {
+  const Body& body = bodies[blockIdx.x];
+  const Share share = share_of(body);
+  const unsigned turns = turning && !chunked ? body.turns[share.warp] : 0;
+  Movers movers;
+  Totals totals;
+  load(body, movers);
+  fill_table(body, body.first_step, 1, world.exact_dt);
+  __syncthreads();
+  for (std::uint64_t done = 0; done < steps;) {
+    const unsigned until_check =
+        static_cast<unsigned>(min(steps - done, static_cast<std::uint64_t>(guard_interval) - done % guard_interval));
+    const unsigned now = actuation ? min(until_check, body.table_steps) : until_check;
+    if constexpr (actuation) {
+      fill_table(body, body.first_step + done, now, world.exact_dt);
+      __syncthreads();
+    }
+    advance(body, world, share, turns, now, movers, totals);
+    done += now;
+    if (now < until_check) continue;
+    if constexpr (actuation) {
+      fill_table(body, body.first_step + done, 1, world.exact_dt);
+      __syncthreads();
+    }
+    if (has_diverged(body, world, check_of(body, movers, totals), done)) break;
+    totals = Totals();
+  }
+  store(body, movers);
+}
+
+}  // namespace evodevo::cuda

@@ -1,0 +1,78 @@
+// A body whose state stays on the chip: its memory and what resident.cu is told about it.
+#pragma once
+
+#include <optional>
+
+#include "cuda/answers.hpp"
+#include "cuda/arrangement.hpp"
+#include "cuda/features.hpp"
+#include "cuda/formats.hpp"
+#include "cuda/packing.hpp"
+
+namespace evodevo::cuda {
+
+/// Shared memory of a block.
+struct ChipMemory {
+  std::size_t table_offset = 0, rate_offset = 0, record_offset = 0, size = 0;
+  std::uint32_t table_steps = 1;
+};
+
+/// Forces as integers: how large they may be and how fine they are.
+struct ForceRange {
+  double resolution = 1;  ///< N, a power of two
+  double largest = 0;     ///< N; no spring's force may be larger
+};
+
+/// The range for a body: up to the force at which its strongest spring is twice as long as it wants to be, or twice
+/// what a spring's force is now.
+template <class T>
+ForceRange force_range(const Body& body, const State& state);
+
+template <class T>
+class Resident {
+ public:
+  /// The body of `task` on a chip whose blocks have up to `shared_bytes`; nothing where it does not fit.
+  static std::optional<Resident> arrange(const Task& task, const Features& features, std::size_t shared_bytes);
+
+  Features features() const { return features_; }
+  ResidentForm form() const;
+  unsigned threads() const { return 32 * arrangement_.shape.warps; }
+  std::size_t chip_bytes() const { return chip_.size; }
+  Sizes sizes() const { return sizes_; }
+
+  /// Writes the body into its part of the host's regions; `device` is where these will be on the device.
+  ResidentBody<T> pack(const Regions& host, const Regions& device, const EnergyGuard& guard) const;
+
+  /// Reads the task's answer.
+  void unpack(const Regions& host, const EnergyGuard& guard, std::uint64_t steps, double dt, Recording recording,
+              Task& task) const;
+
+ private:
+  Resident(const Task& task, const Features& features);
+  bool fit(std::size_t shared_bytes);
+  void reserve();
+  void pack_records(Record<T>* to) const;
+  void pack_masses(const Regions& host) const;
+
+  const Task* task_;
+  Features features_;
+  Arrangement arrangement_;
+  ForceRange range_;
+  ChipMemory chip_;
+  bool records_on_chip_ = true;
+
+  Sizes sizes_;
+  Section<Record<T>> records_;
+  Section<std::uint32_t> first_group_, turns_;
+  Section<Actuator> actuators_;
+  Section<T> mass_, inverse_mass_;
+  Section<typename FixedPoint<T>::Integer> start_;
+  Section<T> motion_[6];
+  Section<Answer> answer_;
+  Section<double> stress_;
+};
+
+extern template class Resident<float>;
+extern template class Resident<double>;
+
+}  // namespace evodevo::cuda

@@ -1,0 +1,118 @@
+#include "cuda/streamed.hpp"
+
+#include <algorithm>
+
+#include "cuda/arrangement.hpp"
+
+namespace evodevo::cuda {
+
+template <class T>
+Streamed<T>::Streamed(const Task& task, const Features& features)
+    : task_(&task), place_of_(places_by_valence(*task.body)), first_row_(1), owned_joint_(task.body->springs.size()) {
+  const Body& body = *task.body;
+  std::vector<std::uint32_t> valence(body.masses.size());
+  for (const Spring& spring : body.springs) ++valence[place_of_[spring.a]], ++valence[place_of_[spring.b]];
+  // the first mass of a group has the most springs
+  for (std::size_t i = 0; i < valence.size(); i += lanes) first_row_.push_back(first_row_.back() + valence[i]);
+
+  const std::size_t entries = body.materials.size() + 1;
+  Extent input, state, sums;
+  rows_ = input.add<std::uint32_t>(first_row_.size());
+  joints_ = input.add<Joint<T>>(joints());
+  actuators_ = input.add<Actuator>(entries);
+  mass_ = input.add<T>(body.masses.size());
+  inverse_mass_ = input.add<T>(body.masses.size());
+  places_ = state.add<Point<T>>(2 * body.masses.size());
+  velocities_ = state.add<Point<T>>(body.masses.size());
+  answer_ = state.add<Answer>(1);
+  table_ = sums.add<Entry<T>>(guard_interval * entries);
+  rates_ = sums.add<T>(features.work ? guard_interval * entries : 0);
+  stress_ = sums.add<double>(features.stress ? joints() : 0);
+  power_ = sums.add<double>(features.work ? body.masses.size() : 0);
+  sizes_ = {input.size(), state.size(), sums.size()};
+
+  std::vector<std::uint32_t> next(body.masses.size());
+  for (std::size_t i = 0; i < owned_joint_.size(); ++i) {
+    const std::uint32_t a = place_of_[body.springs[i].a];
+    owned_joint_[i] = joint_at(a, next[a]++);
+    ++next[place_of_[body.springs[i].b]];
+  }
+}
+
+template <class T>
+void Streamed<T>::pack_joints(const Regions& host) const {
+  Joint<T>* to = joints_.in(host.input);
+  // an empty joint leads to its own mass and has entry 0, no material
+  for (std::uint32_t place = 0; place < lanes * (first_row_.size() - 1); ++place)
+    for (std::uint32_t row = 0; row < first_row_[place / lanes + 1] - first_row_[place / lanes]; ++row)
+      to[joint_at(place, row)] = {T(0), std::min(place, masses() - 1), 0, 0};
+  std::vector<std::uint32_t> next(masses());
+  for (const Spring& spring : task_->body->springs) {
+    const std::uint32_t a = place_of_[spring.a], b = place_of_[spring.b];
+    const auto length = static_cast<T>(spring.rest_length);
+    to[joint_at(a, next[a]++)] = {length, b, spring.material + 1, 1};
+    to[joint_at(b, next[b]++)] = {length, a, spring.material + 1, 0};
+  }
+}
+
+template <class T>
+StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, const EnergyGuard& guard) const {
+  const Body& body = *task_->body;
+  std::copy(first_row_.begin(), first_row_.end(), rows_.in(host.input));
+  pack_joints(host);
+  actuators_.in(host.input)[0] = {};
+  std::transform(body.materials.begin(), body.materials.end(), actuators_.in(host.input) + 1,
+                 [](const Material& material) { return actuator_of(material, 1); });
+  const auto point = [](Vec3 v) {
+    return Point<T>{static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z), T(0)};
+  };
+  for (std::size_t i = 0; i < body.masses.size(); ++i) {
+    const std::uint32_t place = place_of_[i];
+    const double mass = body.masses[i].mass;
+    mass_.in(host.input)[place] = static_cast<T>(mass);
+    // a mass of 0 kg stays where it is
+    inverse_mass_.in(host.input)[place] = static_cast<T>(mass > 0 ? 1 / mass : 0);
+    places_.in(host.state)[place] = point(task_->state->position[i]);
+    velocities_.in(host.state)[place] = point(task_->state->velocity[i]);
+  }
+  *answer_.in(host.state) = {};
+  return {.first_row = rows_.in(device.input),
+          .joints = joints_.in(device.input),
+          .actuators = actuators_.in(device.input),
+          .mass = mass_.in(device.input),
+          .inverse_mass = inverse_mass_.in(device.input),
+          .places = places_.in(device.state),
+          .velocities = velocities_.in(device.state),
+          .table = table_.in(device.sums),
+          .rates = rates_.in(device.sums),
+          .stress = stress_.in(device.sums),
+          .power = power_.in(device.sums),
+          .answer = answer_.in(device.state),
+          .first_step = task_->state->steps,
+          .energy_bound = guard.bound(),
+          .masses = masses(),
+          .entries = static_cast<std::uint32_t>(body.materials.size() + 1)};
+}
+
+template <class T>
+void Streamed<T>::unpack(const Regions& host, const EnergyGuard& guard, std::uint64_t steps, double dt,
+                         Recording recording, Task& task) const {
+  const Answer& answer = *answer_.in(host.state);
+  read_answer(answer, guard, 0, dt, recording, task);
+  const Point<T>* places = places_.in(host.state) + answer.steps % 2 * masses();
+  const Point<T>* velocities = velocities_.in(host.state);
+  for (std::size_t i = 0; i < masses(); ++i) {
+    const Point<T>&x = places[place_of_[i]], &v = velocities[place_of_[i]];
+    task.state->position[i] = {x.x, x.y, x.z};
+    task.state->velocity[i] = {v.x, v.y, v.z};
+  }
+  if (!recording.stress || task.status != Status::ok) return;
+  task.stress.resize(task.body->springs.size());
+  for (std::size_t i = 0; i < task.stress.size(); ++i)
+    task.stress[i] = stress_.in(host.sums)[owned_joint_[i]] / static_cast<double>(steps);
+}
+
+template class Streamed<float>;
+template class Streamed<double>;
+
+}  // namespace evodevo::cuda

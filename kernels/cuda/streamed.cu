@@ -1,0 +1,105 @@
+// Bodies that are too large for the chip: their state lies in the device's memory, and every step is one launch over
+// the masses of all of them. Each mass gathers the forces of its springs in a fixed order, so each spring is computed
+// twice.
+#include "cuda/check.cuh"
+#include "cuda/mass_step.cuh"
+
+namespace evodevo::cuda {
+
+using Body = StreamedBody<Number>;
+
+__device__ __forceinline__ Place triple(const Point<Number>& p) { return {p.x, p.y, p.z}; }
+
+/// The sum of the spring forces at a mass, N. Adds to the sums of stress and power.
+__device__ __forceinline__ Place spring_forces(const Body& body, unsigned mass, const Point<Number>* places,
+                                               unsigned row) {
+  const Entry<Number>* table = body.table + row * body.entries;
+  const Place own = triple(places[mass]);
+  Place force{0, 0, 0};
+  Number power = 0;
+  const unsigned end = body.first_row[mass / lanes + 1] * lanes;
+  for (unsigned i = body.first_row[mass / lanes] * lanes + mass % lanes; i < end; i += lanes) {
+    const Joint<Number> joint = body.joints[i];
+    const Entry<Number> entry = table[joint.entry];
+    const auto s = physics::separation(own, triple(places[joint.other]));
+    const Number inverse = physics::inverse_length(s);
+    const Number factor =
+        physics::spring_factor_by_inverse(inverse, entry.stiffness, entry.rest_force * joint.rest_length);
+    if ((stress || work) && joint.owned) {
+      const Number tension = factor * physics::length_by_inverse(s, inverse);
+      if constexpr (stress) body.stress[i] += fabs(tension);
+      if constexpr (work)
+        power += physics::actuation_power(tension, body.rates[row * body.entries + joint.entry] * joint.rest_length);
+    }
+    force.x = physics::multiply_add(factor, s.d.x, force.x);
+    force.y = physics::multiply_add(factor, s.d.y, force.y);
+    force.z = physics::multiply_add(factor, s.d.z, force.z);
+  }
+  if constexpr (work) body.power[mass] += power;
+  return force;
+}
+
+/// Fills in the tables for `count` steps, the first of them `done` steps after the run's beginning.
+extern "C" __global__ void evodevo_fill_tables(const World<Number> world, const Body* bodies, std::uint64_t done,
+                                               unsigned count) {
+  const Body& body = bodies[blockIdx.x];
+  for (unsigned i = threadIdx.x; i < count * body.entries; i += blockDim.x) {
+    const Actuated now =
+        actuated(body.actuators[i % body.entries], body.first_step + done + i / body.entries, world.exact_dt);
+    body.table[i] = now.entry;
+    if constexpr (work) body.rates[i] = now.rate;
+  }
+}
+
+/// Makes the step whose lengths are in the tables' row `row`; `half` of the places is read, the other is written.
+extern "C" __global__ void evodevo_step_streamed(const World<Number> world, const Body* bodies, unsigned row,
+                                                 unsigned half) {
+  const Body& body = bodies[blockIdx.y];
+  const unsigned mass = blockIdx.x * blockDim.x + threadIdx.x;
+  if (mass >= body.masses || body.answer->diverged) return;
+  const Point<Number>* from = body.places + half * body.masses;
+  Place place = triple(from[mass]), velocity = triple(body.velocities[mass]);
+  const Place force = spring_forces(body, mass, from, row);
+  move(world, place, velocity, force, body.mass[mass], body.inverse_mass[mass]);
+  body.places[(1 - half) * body.masses + mass] = {place.x, place.y, place.z, 0};
+  body.velocities[mass] = {velocity.x, velocity.y, velocity.z, 0};
+}
+
+/// Writes down every body's energies, `now` steps after the last check, and stops the ones that have diverged. The
+/// tables' row 0 holds the lengths of now.
+extern "C" __global__ void __launch_bounds__(EVODEVO_CHECK_THREADS)
+    evodevo_check_streamed(const World<Number> world, const Body* bodies, unsigned now, unsigned half) {
+  const Body& body = bodies[blockIdx.x];
+  if (body.answer->diverged) return;
+  const Point<Number>* places = body.places + half * body.masses;
+  double kinetic = 0, moment = 0, elastic = 0, power = 0;
+  Number broken = 0;
+  for (unsigned mass = threadIdx.x; mass < body.masses; mass += EVODEVO_CHECK_THREADS) {
+    const Place place = triple(places[mass]), v = triple(body.velocities[mass]);
+    kinetic += physics::kinetic_energy(body.mass[mass], v);
+    moment += static_cast<double>(body.mass[mass]) * place.z;
+    broken += not_finite(place, v);
+    if constexpr (work) {
+      power += body.power[mass];
+      body.power[mass] = 0;
+    }
+    const unsigned end = body.first_row[mass / lanes + 1] * lanes;
+    for (unsigned i = body.first_row[mass / lanes] * lanes + mass % lanes; i < end; i += lanes) {
+      const Joint<Number> joint = body.joints[i];
+      if (!joint.owned) continue;
+      const Entry<Number> entry = body.table[joint.entry];
+      const Number relative = entry.rest_force / physics::maximum(entry.stiffness, Number(1e-30));
+      const auto s = physics::separation(place, triple(places[joint.other]));
+      elastic += physics::elastic_energy(s, entry.stiffness, joint.rest_length * relative);
+    }
+  }
+  double sums[] = {kinetic, moment, elastic, power};
+  block_sum(sums);
+  const bool finite = !__syncthreads_or(broken != 0);
+  if (threadIdx.x > 0) return;
+  const bool diverged = !finite || gained_energy(sums[0] + sums[2], sums[1], body.energy_bound, world);
+  const double work_done = body.answer->work + world.exact_dt * sums[3];
+  *body.answer = {body.answer->steps + now, sums[0], sums[2], sums[1], work_done, diverged, finite, 0, 0};
+}
+
+}  // namespace evodevo::cuda

@@ -1,0 +1,54 @@
+// A body that is too large for the chip: its memory and what streamed.cu is told about it.
+#pragma once
+
+#include "cuda/answers.hpp"
+#include "cuda/features.hpp"
+#include "cuda/formats.hpp"
+#include "cuda/packing.hpp"
+
+namespace evodevo::cuda {
+
+template <class T>
+class Streamed {
+ public:
+  Streamed(const Task& task, const Features& features);
+
+  Sizes sizes() const { return sizes_; }
+  std::uint32_t masses() const { return static_cast<std::uint32_t>(task_->body->masses.size()); }
+
+  /// Writes the body into its part of the host's regions; `device` is where these will be on the device.
+  StreamedBody<T> pack(const Regions& host, const Regions& device, const EnergyGuard& guard) const;
+
+  /// Reads the task's answer.
+  void unpack(const Regions& host, const EnergyGuard& guard, std::uint64_t steps, double dt, Recording recording,
+              Task& task) const;
+
+ private:
+  void pack_joints(const Regions& host) const;
+  /// Where the `row`-th joint of the mass at `place` lies.
+  std::uint32_t joint_at(std::uint32_t place, std::uint32_t row) const {
+    return lanes * (first_row_[place / lanes] + row) + place % lanes;
+  }
+  std::size_t joints() const { return std::size_t{lanes} * first_row_.back(); }
+
+  const Task* task_;
+  Sizes sizes_;
+  std::vector<std::uint32_t> place_of_;     ///< [masses] by falling number of springs
+  std::vector<std::uint32_t> first_row_;    ///< [groups of 32 masses + 1]
+  std::vector<std::uint32_t> owned_joint_;  ///< [springs] the one at end a, where the spring's stress is summed
+
+  Section<std::uint32_t> rows_;
+  Section<Joint<T>> joints_;
+  Section<Actuator> actuators_;
+  Section<T> mass_, inverse_mass_;
+  Section<Point<T>> places_, velocities_;
+  Section<Answer> answer_;
+  Section<Entry<T>> table_;
+  Section<T> rates_;
+  Section<double> stress_, power_;
+};
+
+extern template class Streamed<float>;
+extern template class Streamed<double>;
+
+}  // namespace evodevo::cuda

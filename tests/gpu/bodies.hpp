@@ -1,0 +1,92 @@
+// Bodies and scenes that the tests of the CUDA simulator move.
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "evodevo/body.hpp"
+#include "neighbours.hpp"
+#include "scene.hpp"
+#include "simulator.hpp"
+
+namespace evodevo::testing_gpu {
+
+inline constexpr double pi = 3.14159265358979323846;
+
+/// Numbers that are the same with every standard library.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : generator_(seed) {}
+  /// In [-1, 1).
+  double next() { return static_cast<double>(generator_() >> 11) * 0x1p-52 - 1; }
+  Vec3 vector() { return {next(), next(), next()}; }
+
+ private:
+  std::mt19937_64 generator_;
+};
+
+/// The paper's materials (Table I) without air.
+inline std::vector<Material> paper_materials() {
+  return {{5000, 0.14, 1, 0}, {4000, 0, 0, 0}, {5000, 0.14, 1, pi}, {10000, 0, 0, 0}};
+}
+
+/// `masses` random points in a cube of side 2 m, each joined to its `neighbours` nearest, of masses from 0.15 kg to
+/// 0.25 kg, all materials.
+inline Body random_body(std::uint32_t masses, std::uint32_t neighbours, std::uint64_t seed,
+                        std::vector<Material> materials = paper_materials()) {
+  Random random(seed);
+  Body body;
+  body.materials = std::move(materials);
+  std::vector<Vec3> places;
+  for (std::uint32_t i = 0; i < masses; ++i) {
+    places.push_back(random.vector());
+    body.masses.push_back({places.back(), 0.2 + 0.05 * random.next()});
+  }
+  for (const auto& [a, b] : nearest_pairs(places, neighbours)) {
+    const auto material = static_cast<std::uint32_t>(body.springs.size() % body.materials.size());
+    body.springs.push_back({a, b, norm(places[b] - places[a]), material});
+  }
+  return body;
+}
+
+/// A body at birth with random velocities of up to 0.5 m/s along each axis.
+inline State moving_state(const Body& body, const Scene& scene, std::uint64_t seed) {
+  Random random(seed);
+  State state = state_at_birth(body, scene);
+  for (Vec3& velocity : state.velocity) velocity = 0.5 * random.vector();
+  state.start_energy = total_energy(body, state, scene, 0.0005);
+  return state;
+}
+
+inline Scene walking_scene() { return {Gravity{}, Floor{}, Friction{}, Damping{}, std::nullopt}; }
+
+/// A body's run and its answer.
+struct Robot {
+  Robot(const Body& body_, const State& state_) : body(&body_), state(state_) {}
+  Task task() { return {.body = body, .state = &state}; }
+
+  const Body* body;
+  State state;
+  Task answer;
+};
+
+/// Moves all bodies in one batch.
+inline void simulate(Simulator& simulator, std::vector<Robot*> runs, std::uint64_t steps, Recording recording = {}) {
+  std::vector<Task> tasks;
+  for (Robot* run : runs) tasks.push_back(run->task());
+  simulator.run(tasks, steps, recording);
+  for (std::size_t i = 0; i < runs.size(); ++i) runs[i]->answer = tasks[i];
+}
+
+/// The largest distance between the places of a mass in two runs, m.
+inline double distance(const State& a, const State& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.position.size(); ++i) {
+    const double d = norm(a.position[i] - b.position[i]);
+    if (!(d <= largest)) largest = d;
+  }
+  return largest;
+}
+
+}  // namespace evodevo::testing_gpu

@@ -1,0 +1,92 @@
+// Kernels compile without a GPU, and are compiled once.
+#include "cuda/compiler.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "cuda/cache.hpp"
+#include "cuda/features.hpp"
+
+namespace evodevo::cuda {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A cache of the test's own.
+class Compiler : public testing::Test {
+ protected:
+  Compiler() : cache_(fs::temp_directory_path() / ("evodevo-cache-" + std::to_string(::getpid()))) {
+    ::setenv("XDG_CACHE_HOME", cache_.c_str(), 1);
+  }
+  ~Compiler() override { fs::remove_all(cache_); }
+
+  std::vector<fs::path> files() const {
+    std::vector<fs::path> found;
+    for (const auto& entry : fs::recursive_directory_iterator(cache_))
+      if (entry.is_regular_file()) found.push_back(entry.path());
+    return found;
+  }
+
+  fs::path cache_;
+};
+
+const Features every_feature{.gravity = true,
+                             .floor = true,
+                             .friction = true,
+                             .damping = true,
+                             .drag = true,
+                             .actuation = true,
+                             .stress = true,
+                             .work = true};
+
+TEST_F(Compiler, CompilesEveryFormForHopper) {
+  const ResidentForm forms[] = {{.rows = 15, .masses_per_thread = 1, .chunked = false, .records_on_chip = true},
+                                {.rows = 8, .masses_per_thread = 5, .chunked = true, .wide_offsets = true}};
+  for (const bool float64 : {false, true}) {
+    for (Features features : {Features{}, every_feature}) {
+      features.float64 = float64;
+      for (const ResidentForm& form : forms)
+        EXPECT_FALSE(compile("cuda/resident.cu", definitions(features, form), "sm_90").empty());
+      EXPECT_FALSE(compile("cuda/streamed.cu", definitions(features), "sm_90").empty());
+    }
+  }
+}
+
+TEST_F(Compiler, ReadsTheCache) {
+  const auto compiled = compile("cuda/streamed.cu", definitions(every_feature), "sm_90");
+  ASSERT_EQ(files().size(), 1u);
+  const auto written = fs::last_write_time(files().front());
+  EXPECT_EQ(compile("cuda/streamed.cu", definitions(every_feature), "sm_90"), compiled);
+  EXPECT_EQ(fs::last_write_time(files().front()), written);
+  compile("cuda/streamed.cu", definitions(Features{}), "sm_90");
+  EXPECT_EQ(files().size(), 2u);
+}
+
+TEST_F(Compiler, DoesNotTrustADamagedCache) {
+  store("key", {'a', 'b', 'c'});
+  EXPECT_EQ(load("key"), (std::vector<char>{'a', 'b', 'c'}));
+  std::ofstream(files().front(), std::ios::app) << 'd';
+  EXPECT_EQ(load("key"), std::nullopt);
+}
+
+TEST_F(Compiler, WorksWithoutACache) {
+  ::setenv("XDG_CACHE_HOME", "/proc/none", 1);
+  EXPECT_FALSE(compile("cuda/streamed.cu", definitions(Features{}), "sm_90").empty());
+}
+
+TEST_F(Compiler, NamesAnArchitectureThatIsTooOld) {
+  try {
+    compile("cuda/streamed.cu", definitions(Features{}), "sm_30");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("sm_30"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace evodevo::cuda

@@ -1,0 +1,96 @@
+// A body's answer is the same bits wherever and however often it is computed.
+#include "gpu.hpp"
+
+namespace evodevo::testing_gpu {
+namespace {
+
+class Determinism : public testing::TestWithParam<Precision> {};
+
+void expect_same_bits(const Robot& a, const Robot& b) {
+  EXPECT_EQ(a.answer.status, b.answer.status);
+  EXPECT_EQ(a.state.position, b.state.position);
+  EXPECT_EQ(a.state.velocity, b.state.velocity);
+  EXPECT_EQ(a.answer.stress, b.answer.stress);
+  EXPECT_EQ(a.answer.work, b.answer.work);
+}
+
+TEST_P(Determinism, AloneInAnySlotAndAgain) {
+  EVODEVO_NEEDS_GPU();
+  const Scene scene = walking_scene();
+  const Recording all{.stress = true, .work = true};
+  const auto simulator = make_cuda_simulator(scene, stepping(GetParam()));
+  std::vector<Body> bodies;
+  for (std::uint32_t i = 0; i < 60; ++i) bodies.push_back(random_body(20 + 13 * i, 15, i));
+  std::vector<State> starts;
+  for (std::size_t i = 0; i < bodies.size(); ++i) starts.push_back(moving_state(bodies[i], scene, i));
+
+  std::vector<Robot> forwards, backwards, again;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    forwards.emplace_back(bodies[i], starts[i]);
+    backwards.emplace_back(bodies[i], starts[i]);
+    again.emplace_back(bodies[i], starts[i]);
+  }
+  std::vector<Robot*> in_order, reversed, repeated;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    in_order.push_back(&forwards[i]);
+    reversed.insert(reversed.begin(), &backwards[i]);
+    repeated.push_back(&again[i]);
+  }
+  simulate(*simulator, in_order, 500, all);
+  simulate(*simulator, reversed, 500, all);
+  simulate(*make_cuda_simulator(scene, stepping(GetParam())), repeated, 500, all);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    expect_same_bits(forwards[i], backwards[i]);
+    expect_same_bits(forwards[i], again[i]);
+  }
+  for (const std::size_t i : {0u, 31u, 59u}) {
+    Robot alone(bodies[i], starts[i]);
+    simulate(*simulator, {&alone}, 500, all);
+    expect_same_bits(forwards[i], alone);
+  }
+}
+
+TEST_P(Determinism, InPortions) {
+  EVODEVO_NEEDS_GPU();
+  const Scene scene = walking_scene();
+  const Body small = random_body(100, 15, 3), large = random_body(1500, 20, 4);
+  const auto enough = make_cuda_simulator(scene, stepping(GetParam()));
+  const auto scarce = make_cuda_simulator(scene, stepping(GetParam()), 100'000);
+  for (const Body* body : {&small, &large}) {
+    std::vector<Robot> together(5, Robot(*body, state_at_birth(*body, scene))), apart = together;
+    simulate(*enough, {&together[0], &together[1], &together[2], &together[3], &together[4]}, 200, {.stress = true});
+    simulate(*scarce, {&apart[0], &apart[1], &apart[2], &apart[3], &apart[4]}, 200, {.stress = true});
+    for (std::size_t i = 0; i < together.size(); ++i) expect_same_bits(together[i], apart[i]);
+  }
+}
+
+TEST_P(Determinism, InOneRunOrInTwo) {
+  EVODEVO_NEEDS_GPU();
+  const Scene scene = walking_scene();
+  const Body body = random_body(200, 15, 3);
+  const auto simulator = make_cuda_simulator(scene, stepping(GetParam()));
+  Robot once(body, state_at_birth(body, scene)), twice(body, state_at_birth(body, scene));
+  simulate(*simulator, {&once}, 430);
+  simulate(*simulator, {&twice}, 130);
+  simulate(*simulator, {&twice}, 300);
+  EXPECT_EQ(once.state.steps, twice.state.steps);
+  EXPECT_EQ(once.state.position, twice.state.position);
+}
+
+TEST_P(Determinism, InternalForcesLeaveTheMomentumAlone) {
+  EVODEVO_NEEDS_GPU();
+  Body body = random_body(200, 15, 5);
+  for (Mass& mass : body.masses) mass.mass = 0.25;
+  const auto simulator = make_cuda_simulator(Scene{}, stepping(GetParam()));
+  Robot run(body, state_at_birth(body, {}));
+  simulate(*simulator, {&run}, 1000);
+  Vec3 momentum;
+  for (const Vec3& velocity : run.state.velocity) momentum = momentum + 0.25 * velocity;
+  EXPECT_LT(norm(momentum), GetParam() == Precision::float32 ? 1e-4 : 1e-12);
+}
+
+INSTANTIATE_TEST_SUITE_P(Gpu, Determinism, testing::Values(Precision::float32, Precision::float64),
+                         [](const auto& test) { return std::string(name(test.param)); });
+
+}  // namespace
+}  // namespace evodevo::testing_gpu

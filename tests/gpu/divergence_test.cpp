@@ -1,0 +1,77 @@
+// Bodies that gain energy from nothing are stopped, and no other body notices.
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "gpu.hpp"
+
+namespace evodevo::testing_gpu {
+namespace {
+
+class Divergence : public testing::TestWithParam<Precision> {};
+
+/// A body that its stiffness tears apart at the step of 0.5 ms.
+Body unstable_body() { return random_body(100, 15, 1, {{2e7, 0, 0, 0}}); }
+
+TEST_P(Divergence, StopsOneBodyAlone) {
+  EVODEVO_NEEDS_GPU();
+  const Scene scene = walking_scene();
+  const Body bad = unstable_body(), good = random_body(100, 15, 2);
+  const State bad_start = moving_state(bad, scene, 3), good_start = moving_state(good, scene, 4);
+  const auto simulator = make_cuda_simulator(scene, stepping(GetParam()));
+  Robot alone(good, good_start), beside(good, good_start), diverging(bad, bad_start);
+  simulate(*simulator, {&alone}, 1000, {.stress = true});
+  simulate(*simulator, {&diverging, &beside}, 1000, {.stress = true});
+  EXPECT_EQ(diverging.answer.status, Status::diverged);
+  EXPECT_FALSE(diverging.answer.reason.empty());
+  EXPECT_GT(diverging.answer.ended_at, 0);
+  EXPECT_LT(diverging.answer.ended_at, 0.5);
+  EXPECT_EQ(diverging.state.steps % 100, 0u);
+  EXPECT_TRUE(diverging.answer.stress.empty());
+  EXPECT_EQ(beside.answer.status, Status::ok) << beside.answer.reason;
+  EXPECT_EQ(beside.state.position, alone.state.position);
+  EXPECT_EQ(beside.answer.stress, alone.answer.stress);
+}
+
+TEST_P(Divergence, EndsWhenAndWhyTheCpuSaysSo) {
+  EVODEVO_NEEDS_GPU();
+  const Scene scene = walking_scene();
+  const Body body = unstable_body();
+  Robot cpu(body, moving_state(body, scene, 3)), gpu(body, moving_state(body, scene, 3));
+  simulate(*make_cpu_simulator(scene, stepping(GetParam()), 1), {&cpu}, 1000);
+  simulate(*make_cuda_simulator(scene, stepping(GetParam())), {&gpu}, 1000);
+  EXPECT_EQ(gpu.answer.status, cpu.answer.status);
+  EXPECT_EQ(gpu.answer.ended_at, cpu.answer.ended_at);
+}
+
+TEST_P(Divergence, NotANumber) {
+  EVODEVO_NEEDS_GPU();
+  const Scene scene = walking_scene();
+  const Body body = random_body(50, 10, 2);
+  State start = state_at_birth(body, scene);
+  start.velocity[7].y = std::numeric_limits<double>::quiet_NaN();
+  Robot run(body, start);
+  simulate(*make_cuda_simulator(scene, stepping(GetParam())), {&run}, 300);
+  EXPECT_EQ(run.answer.status, Status::diverged);
+  EXPECT_EQ(run.answer.ended_at, 0.05);
+  EXPECT_THAT(run.answer.reason, testing::HasSubstr("non-finite"));
+}
+
+TEST_P(Divergence, ForceRange) {
+  EVODEVO_NEEDS_GPU();
+  // one mass flies off so fast that its springs are stretched to many times their length
+  Body body = random_body(50, 10, 2);
+  State start = state_at_birth(body, {});
+  start.velocity[7] = {5000, 0, 0};
+  start.start_energy = 1e300;
+  Robot run(body, start);
+  simulate(*make_cuda_simulator(Scene{}, stepping(GetParam())), {&run}, 300);
+  EXPECT_EQ(run.answer.status, Status::diverged);
+  EXPECT_THAT(run.answer.reason, testing::HasSubstr("force range"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Gpu, Divergence, testing::Values(Precision::float32, Precision::float64),
+                         [](const auto& test) { return std::string(name(test.param)); });
+
+}  // namespace
+}  // namespace evodevo::testing_gpu

@@ -1,0 +1,118 @@
+// Bodies of every size take the way through the device that suits them; odd ones are bodies too.
+#include "gpu.hpp"
+
+namespace evodevo::testing_gpu {
+namespace {
+
+class Forms : public testing::TestWithParam<Precision> {
+ protected:
+  /// Moves a body for 0.05 s on both devices and compares places, stress and work.
+  void compare(const Body& body, const State& start) {
+    const Scene scene = walking_scene();
+    const Recording all{.stress = true, .work = true};
+    const bool single = GetParam() == Precision::float32;
+    Robot cpu(body, start), gpu(body, start);
+    simulate(*make_cpu_simulator(scene, stepping(GetParam()), 0), {&cpu}, 110, all);
+    simulate(*make_cuda_simulator(scene, stepping(GetParam())), {&gpu}, 110, all);
+    EXPECT_EQ(cpu.answer.status, gpu.answer.status) << cpu.answer.reason << " / " << gpu.answer.reason;
+    EXPECT_EQ(cpu.state.steps, gpu.state.steps);
+    EXPECT_EQ(cpu.answer.spring_evaluations, gpu.answer.spring_evaluations);
+    EXPECT_LE(distance(cpu.state, gpu.state), single ? 3e-3 : 3e-9);
+    ASSERT_EQ(cpu.answer.stress.size(), gpu.answer.stress.size());
+    for (std::size_t i = 0; i < cpu.answer.stress.size(); ++i)
+      ASSERT_NEAR(cpu.answer.stress[i], gpu.answer.stress[i], (single ? 5e-2 : 5e-8) * (1 + cpu.answer.stress[i])) << i;
+    EXPECT_NEAR(cpu.answer.work, gpu.answer.work, (single ? 1e-3 : 1e-9) * (1e-3 + cpu.answer.work));
+  }
+  void compare(const Body& body) { compare(body, moving_state(body, walking_scene(), 11)); }
+};
+
+TEST_P(Forms, NoMasses) {
+  EVODEVO_NEEDS_GPU();
+  compare({});
+}
+
+TEST_P(Forms, OneMass) {
+  EVODEVO_NEEDS_GPU();
+  Body body;
+  body.masses = {{{0, 0, 0}, 0.2}};
+  compare(body);
+}
+
+TEST_P(Forms, CoincidentMassesFeelNoForce) {
+  EVODEVO_NEEDS_GPU();
+  Body body;
+  body.materials = paper_materials();
+  body.masses = {{{0, 0, 0}, 0.2}, {{0, 0, 0}, 0.2}};
+  body.springs = {{0, 1, 0.1, 0}};
+  compare(body, state_at_birth(body, walking_scene()));
+}
+
+TEST_P(Forms, MassesOfNoWeightStayWhereTheyAre) {
+  EVODEVO_NEEDS_GPU();
+  Body body = random_body(100, 10, 6);
+  body.masses[3].mass = body.masses[50].mass = 0;
+  State start = state_at_birth(body, walking_scene());
+  compare(body, start);
+}
+
+TEST_P(Forms, MassesOfManySprings) {
+  EVODEVO_NEEDS_GPU();
+  Random random(3);
+  Body body;
+  body.materials = paper_materials();
+  for (std::uint32_t i = 0; i < 700; ++i) {
+    body.masses.push_back({random.vector(), 0.2});
+    if (i > 0) body.springs.push_back({0, i, norm(body.masses[i].rest - body.masses[0].rest), i % 4});
+  }
+  body.masses[0].mass = 50;
+  compare(body);
+}
+
+TEST_P(Forms, HundredsOfMaterials) {
+  EVODEVO_NEEDS_GPU();
+  std::vector<Material> materials;
+  for (int i = 0; i < 700; ++i) materials.push_back({4000 + 5.0 * i, 0.0002 * i, 1, 0.01 * i});
+  compare(random_body(200, 20, 4, materials));
+}
+
+TEST_P(Forms, Chain) {
+  EVODEVO_NEEDS_GPU();
+  Body body;
+  body.materials = paper_materials();
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    body.masses.push_back({{0.05 * i, 0, 0}, 0.2});
+    if (i > 0) body.springs.push_back({i - 1, i, 0.05, i % 4});
+  }
+  compare(body);
+}
+
+TEST_P(Forms, Masses64) {
+  EVODEVO_NEEDS_GPU();
+  compare(random_body(64, 25, 5));
+}
+
+TEST_P(Forms, Masses1000) {
+  EVODEVO_NEEDS_GPU();
+  compare(random_body(1000, 25, 5));
+}
+
+TEST_P(Forms, Masses2000SpringsStreamed) {
+  EVODEVO_NEEDS_GPU();
+  compare(random_body(2000, 25, 5));
+}
+
+TEST_P(Forms, Masses4000OffsetsBeyond16Bits) {
+  EVODEVO_NEEDS_GPU();
+  compare(random_body(4000, 12, 5));
+}
+
+TEST_P(Forms, Masses20000BeyondTheChip) {
+  EVODEVO_NEEDS_GPU();
+  compare(random_body(20000, 12, 5));
+}
+
+INSTANTIATE_TEST_SUITE_P(Gpu, Forms, testing::Values(Precision::float32, Precision::float64),
+                         [](const auto& test) { return std::string(name(test.param)); });
+
+}  // namespace
+}  // namespace evodevo::testing_gpu
