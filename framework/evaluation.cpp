@@ -68,6 +68,7 @@ void Evaluation::develop(std::span<Life> lives, const Progress& progress) const 
       if (!lives[i].alive()) return;
       apply_operators(lives[i], cycle);
       if (development.reset) return_to_rest(lives[i]);
+      if (!development.operators.empty()) check_step(lives[i]);
     });
     progress(static_cast<double>(cycle) / static_cast<double>(development.cycles));
   }
@@ -110,7 +111,6 @@ void Evaluation::apply_operators(Life& life, int cycle) const {
                                error.what());
     }
   }
-  if (!development.operators.empty()) check_step(life);
 }
 
 void Evaluation::check_step(Life& life) const {

@@ -75,7 +75,7 @@ void print_warnings(const Experiment& experiment) {
 void warn_of_differences(const Experiment& experiment, const Simulator& simulator, const Archive& archive) {
   if (const std::string before = archive.record("device"); before != simulator.device())
     std::cerr << "warning: the run began on " << before << " and goes on on " << simulator.device()
-              << "; results may differ in the last bit\n";
+              << "; results may differ, at first in the last bit\n";
   for (const OperatorUse& then : archive.operators())
     for (const OperatorUse& now : experiment.uses)
       if (then.kind == now.kind && then.name == now.name && then.version != now.version)

@@ -129,6 +129,14 @@ TEST_F(Interruption, AFinishedRunHasNothingToResume) {
   EXPECT_EQ(Archive::read(scratch_ / "run").generations().size(), before);
 }
 
+TEST_F(Interruption, GoingOnElsewhereWarns) {
+  ASSERT_EQ(testing::run(run_command("run")).exit_code, 0);
+  { Archive::resume(scratch_ / "run").set_record("device", "cpu, an older one"); }
+  const testing::Finished resumed = testing::run(resume_command("run"));
+  EXPECT_EQ(resumed.exit_code, 0);
+  EXPECT_THAT(resumed.output, HasSubstr("warning: the run began on cpu, an older one and goes on on "));
+}
+
 TEST_F(Interruption, ThreadsDoNotChangeARun) {
   ASSERT_EQ(testing::run(run_command("two")).exit_code, 0);
   std::vector<std::string> one_thread = run_command("one");
