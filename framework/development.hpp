@@ -1,7 +1,10 @@
 // Applies what devo operators want changed.
 #pragma once
 
+#include <memory>
+
 #include "evodevo/devo.hpp"
+#include "simulator.hpp"
 
 namespace evodevo {
 
@@ -9,7 +12,8 @@ namespace evodevo {
 struct LivingBody {
   Body body;
   State state;
-  std::vector<double> stress;  ///< of the last cycle, per spring, N
+  std::vector<double> stress;                                ///< of the last cycle, per spring, N
+  std::shared_ptr<const Preparation> preparation = nullptr;  ///< what the simulator keeps from cycle to cycle
 };
 
 /// Applies one operator's edits, all of them together. `now` is the moment that the operator saw; it refers to

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <numeric>
 
 #include "body_building.hpp"
 #include "parallel.hpp"
@@ -9,6 +11,9 @@
 
 namespace evodevo {
 namespace {
+
+// what is left of a batch for each of several cohorts should still be worth a device's while
+constexpr std::size_t smallest_cohort = 64;
 
 void end(Life& life, Status status, std::string reason, double ended_at = 0) {
   life.result.status = status;
@@ -24,9 +29,29 @@ std::pair<std::uint64_t, std::uint64_t> window_steps(const Request& request, dou
 }  // namespace
 
 Evaluation::Evaluation(const Experiment& experiment, Simulator& simulator)
-    : experiment_(experiment), simulator_(simulator), marks_(marks()) {}
+    : experiment_(experiment), simulator_(simulator), marks_(marks()), workers_(static_cast<int>(experiment.threads)) {}
 
 std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, const Progress& progress) const {
+  const std::size_t cohorts =
+      std::clamp<std::size_t>(newborns.size() / smallest_cohort, 1, static_cast<std::size_t>(simulator_.concurrency()));
+  std::vector<Result> results(newborns.size());
+  std::mutex progress_mutex;
+  std::vector<double> done(cohorts, 0.0);
+  on_own_threads(cohorts, [&](std::size_t i) {
+    // the first cohort comes first all the way, so that its last, long simulation goes on while others develop
+    const Turn turn(static_cast<int>(i));
+    const std::size_t begin = i * newborns.size() / cohorts, end = (i + 1) * newborns.size() / cohorts;
+    std::vector<Result> of_cohort = evaluate_cohort(newborns.subspan(begin, end - begin), [&](double part) {
+      const std::lock_guard lock(progress_mutex);
+      done[i] = part;
+      progress(std::accumulate(done.begin(), done.end(), 0.0) / static_cast<double>(cohorts));
+    });
+    std::move(of_cohort.begin(), of_cohort.end(), results.begin() + static_cast<std::ptrdiff_t>(begin));
+  });
+  return results;
+}
+
+std::vector<Result> Evaluation::evaluate_cohort(std::span<const Newborn> newborns, const Progress& progress) const {
   const auto development = static_cast<double>(development_steps()), measurement = static_cast<double>(marks_.back());
   const double share = development / std::max(1.0, development + measurement);
   std::vector<Life> lives = birth(newborns);
@@ -41,8 +66,9 @@ std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, cons
 }
 
 std::vector<Life> Evaluation::birth(std::span<const Newborn> newborns) const {
+  const BusyClock::Span span(decode_);
   std::vector<Life> lives(newborns.size());
-  parallel_for(lives.size(), static_cast<int>(experiment_.threads), [&](std::size_t i) {
+  workers_.for_each(lives.size(), [&](std::size_t i) {
     Life& life = lives[i];
     life.newborn = newborns[i];
     BuiltBody built = build_body(experiment_.encoding->decode(*life.newborn.genome, experiment_.world));
@@ -64,7 +90,8 @@ void Evaluation::develop(std::span<Life> lives, const Progress& progress) const 
   const std::uint64_t steps = steps_in(development.cycle_time, experiment_.stepping.dt);
   for (int cycle = 1; cycle <= development.cycles; ++cycle) {
     simulate(lives, steps, {.stress = !development.operators.empty()});
-    parallel_for(lives.size(), static_cast<int>(experiment_.threads), [&](std::size_t i) {
+    const BusyClock::Span span(develop_);
+    workers_.for_each(lives.size(), [&](std::size_t i) {
       if (!lives[i].alive()) return;
       apply_operators(lives[i], cycle);
       if (development.reset) return_to_rest(lives[i]);
@@ -129,6 +156,7 @@ void Evaluation::return_to_rest(Life& life) const {
 }
 
 void Evaluation::simulate(std::span<Life> lives, std::uint64_t steps, Recording recording) const {
+  const BusyClock::Span span(simulate_);
   std::vector<Task> tasks;
   std::vector<Life*> alive;
   for (Life& life : lives) {
@@ -137,12 +165,14 @@ void Evaluation::simulate(std::span<Life> lives, std::uint64_t steps, Recording 
     Task& task = tasks.emplace_back();
     task.body = &life.living.body;
     task.state = &life.living.state;
+    task.preparation = std::move(life.living.preparation);
   }
   simulator_.run(tasks, steps, recording);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     Life& life = *alive[i];
     life.result.spring_evaluations += tasks[i].spring_evaluations;
     life.living.stress = std::move(tasks[i].stress);
+    life.living.preparation = std::move(tasks[i].preparation);
     if (recording.work) life.snapshots.back().work += tasks[i].work;
     if (tasks[i].status != Status::ok) end(life, tasks[i].status, std::move(tasks[i].reason), tasks[i].ended_at);
   }

@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "busy_clock.hpp"
 #include "development.hpp"
 #include "experiment.hpp"
+#include "parallel.hpp"
 
 namespace evodevo {
 
@@ -47,13 +49,19 @@ struct Life {
 /// Takes the part of a job that is done, 0 to 1.
 using Progress = std::function<void(double)>;
 
-/// Evaluates batches of genomes for an experiment. Both must outlive it.
+/// The time in which evaluations were in a phase, s. Phases overlap: while some bodies move, others develop.
+struct PhaseTimes {
+  double decode = 0, simulate = 0, develop = 0;
+};
+
+/// Evaluates batches of genomes for an experiment. A batch goes through life in as many cohorts as the simulator wants
+/// to have at once. Experiment and simulator must outlive it.
 class Evaluation {
  public:
   Evaluation(const Experiment& experiment, Simulator& simulator);
 
   /// Decodes, develops, measures and scores. The results are in the newborns' order and independent of the batch.
-  /// `progress` is called with the part of the simulation that is done, 0 to 1.
+  /// `progress` is called with the part of the simulation that is done, 0 to 1, by one thread at a time.
   std::vector<Result> evaluate(std::span<const Newborn> newborns, const Progress& progress) const;
 
   /// Only decodes: the bodies as they are born.
@@ -61,7 +69,10 @@ class Evaluation {
   /// Lets bodies live through their development cycles: what comes out is matured.
   void develop(std::span<Life> lives, const Progress& progress) const;
 
+  PhaseTimes phase_times() const { return {decode_.seconds(), simulate_.seconds(), develop_.seconds()}; }
+
  private:
+  std::vector<Result> evaluate_cohort(std::span<const Newborn> newborns, const Progress& progress) const;
   /// The moments of the final evaluation, in steps from its start, at which some fitness looks.
   std::vector<std::uint64_t> marks() const;
   void simulate(std::span<Life> lives, std::uint64_t steps, Recording recording) const;
@@ -78,6 +89,8 @@ class Evaluation {
   const Experiment& experiment_;
   Simulator& simulator_;
   std::vector<std::uint64_t> marks_;
+  mutable Workers workers_;
+  mutable BusyClock decode_, simulate_, develop_;
 };
 
 }  // namespace evodevo

@@ -64,9 +64,14 @@ Summary summarise(const std::vector<Individual>& newborns, std::uint32_t generat
 
 }  // namespace
 
-void evolve(const Experiment& experiment, Simulator& simulator, Archive& archive, const std::atomic<bool>& stop,
-            const Observer& observer) {
+TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& archive, const std::atomic<bool>& stop,
+                 const Observer& observer) {
   using Clock = std::chrono::steady_clock;
+  const auto seconds_since = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  const auto begin = Clock::now();
+  TimeSpent time;
   const Evaluation evaluation(experiment, simulator);
   const std::vector<Summary> past = archive.generations();
   auto generation = static_cast<std::uint32_t>(past.size());
@@ -86,10 +91,15 @@ void evolve(const Experiment& experiment, Simulator& simulator, Archive& archive
     const std::vector<std::uint32_t> dropped = select(population, experiment, generation);
     add_best_and_median(summary, population, experiment.objectives.front().maximise);
     summary.evaluations = evaluations;
-    summary.wall_time = std::chrono::duration<double>(Clock::now() - start).count();
+    summary.wall_time = seconds_since(start);
+    const auto commit = Clock::now();
     archive.commit(newborns, dropped, summary);
+    time.archive += seconds_since(commit);
     observer.generation_done(summary);
   }
+  time.whole = seconds_since(begin);
+  time.evaluation = evaluation.phase_times();
+  return time;
 }
 
 }  // namespace evodevo

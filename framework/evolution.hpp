@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "archive.hpp"
+#include "evaluation.hpp"
 
 namespace evodevo {
 
@@ -15,9 +16,15 @@ struct Observer {
   std::function<void(double)> generation_progress = [](double) {};
 };
 
+/// Where a run's time went, s. Phases overlap, so they may add up to more than the whole.
+struct TimeSpent {
+  double whole = 0, archive = 0;
+  PhaseTimes evaluation;
+};
+
 /// Evolves from where the archive stands until the experiment's evaluations are spent, or `stop` is set and the
 /// generation under way is committed. An archive continued gives the same as one never interrupted.
-void evolve(const Experiment& experiment, Simulator& simulator, Archive& archive, const std::atomic<bool>& stop,
-            const Observer& observer);
+TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& archive, const std::atomic<bool>& stop,
+                 const Observer& observer);
 
 }  // namespace evodevo

@@ -1,10 +1,11 @@
-// A loop over independent items on several threads.
+// Loops over independent items on several threads.
 #pragma once
 
 #include <algorithm>
-#include <atomic>
+#include <condition_variable>
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -12,37 +13,59 @@
 namespace evodevo {
 
 /// The number of threads that `threads` stands for: itself, or all cores where it is 0.
-inline int thread_count(int threads) {
-  if (threads > 0) return threads;
-  const unsigned cores = std::thread::hardware_concurrency();
-  return cores > 0 ? static_cast<int>(cores) : 1;
-}
+int thread_count(int threads);
 
-/// Calls body(i) for every i < count on up to `threads` threads (0: all cores), in no particular order.
-/// The first exception is thrown again here after all threads have stopped.
-template <class Body>
-void parallel_for(std::size_t count, int threads, const Body& body) {
-  std::atomic<std::size_t> next{0};
-  std::exception_ptr failure;
-  std::mutex failure_mutex;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < count; i = next++) {
-      try {
-        body(i);
-      } catch (...) {
-        const std::lock_guard lock(failure_mutex);
-        if (!failure) failure = std::current_exception();
-        next = count;
-      }
-    }
+/// Threads that wait for loops to share out. Loops of several callers run at the same time; the items of a caller whose
+/// turn is earlier come first.
+class Workers {
+ public:
+  /// `threads` threads; 0: one for each core.
+  explicit Workers(int threads);
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+  ~Workers();
+
+  /// Calls body(i) for every i < count, in no particular order, and returns when all calls have. After an exception no
+  /// further call begins, and it is thrown again here. `body` must not call for_each() of the same workers.
+  void for_each(std::size_t count, const std::function<void(std::size_t)>& body);
+
+ private:
+  struct Loop {
+    const std::function<void(std::size_t)>& body;
+    std::size_t count;
+    int turn;
+    std::size_t next = 0, under_way = 0;
+    std::exception_ptr failure;
+
+    bool done() const { return next == count && under_way == 0; }
   };
-  {
-    const std::size_t helpers = std::min(count, static_cast<std::size_t>(thread_count(threads)));
-    std::vector<std::jthread> pool;
-    for (std::size_t t = 1; t < helpers; ++t) pool.emplace_back(work);
-    work();
-  }
-  if (failure) std::rethrow_exception(failure);
-}
+
+  void work();
+  /// The loop of the earliest turn that has items left; none if no loop has.
+  Loop* next_loop();
+
+  std::mutex mutex_;
+  std::condition_variable work_comes_, loop_done_;
+  std::vector<Loop*> loops_;  ///< with items left
+  bool ending_ = false;
+  std::vector<std::jthread> threads_;
+};
+
+/// Until its end, the loops of this thread have the turn `turn`; without one they have turn 0, the earliest.
+class Turn {
+ public:
+  explicit Turn(int turn);
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+  ~Turn();
+  static int of_this_thread();
+
+ private:
+  int before_;
+};
+
+/// Calls body(i) for every i < count, each on a thread of its own. The first exception is thrown again here after all
+/// calls have ended.
+void on_own_threads(std::size_t count, const std::function<void(std::size_t)>& body);
 
 }  // namespace evodevo

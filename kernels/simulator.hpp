@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,10 +28,18 @@ struct Recording {
   bool work = false;    ///< the work that the muscles do
 };
 
+/// What a simulator has worked out about a body's masses and springs and need not work out again while they stay.
+class Preparation {
+ public:
+  virtual ~Preparation() = default;
+};
+
 /// One body's share of a batch. `body` and `state` are given; the rest is the answer.
 struct Task {
   const Body* body = nullptr;
   State* state = nullptr;  ///< moved in place
+  /// Of the body's last run, or none; afterwards of this one. One that no longer fits the body is not used.
+  std::shared_ptr<const Preparation> preparation;
 
   Status status = Status::ok;  ///< ok or diverged; a task that does not come in as ok is left alone
   double ended_at = 0;         ///< time of a divergence since birth, s; found to within 100 steps
@@ -40,6 +49,12 @@ struct Task {
   std::uint64_t spring_evaluations = 0;
 };
 
+/// How a device of its own, such as a GPU, was used since its simulator was made.
+struct DeviceUse {
+  double busy = 0;           ///< time in which it had something to do, s
+  std::size_t portions = 1;  ///< that a batch had to be divided into, at most, for the device's memory
+};
+
 /// Moves bodies through a scene; a mass of 0 kg stays where it is. A body's answer is the same bits alone, in any
 /// batch, and for any number of threads.
 class Simulator {
@@ -47,7 +62,14 @@ class Simulator {
   virtual ~Simulator() = default;
 
   /// Moves every task's body by `steps` time steps. A body that diverges stops there and disturbs no other.
+  /// May be called from several threads at once.
   virtual void run(std::span<Task> tasks, std::uint64_t steps, Recording recording) = 0;
+
+  /// How many calls of run() at once keep the device busy: while the bodies of one move, those of others are prepared.
+  virtual int concurrency() const { return 1; }
+
+  /// Nothing where the device is the host's own processor.
+  virtual std::optional<DeviceUse> device_use() const { return std::nullopt; }
 
   /// The device and the instruction set in words, for example "cpu, AVX-512". Results may differ in the last bit
   /// between devices, never on one.

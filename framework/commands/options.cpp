@@ -80,7 +80,8 @@ std::unique_ptr<Simulator> make_simulator(const Experiment& experiment) {
   if (experiment.device != "cpu") {
 #ifdef EVODEVO_CUDA
     const std::string obstacle = why_cuda_is_unusable();
-    if (obstacle.empty()) return make_cuda_simulator(experiment.scene, experiment.stepping);
+    if (obstacle.empty())
+      return make_cuda_simulator(experiment.scene, experiment.stepping, static_cast<int>(experiment.threads));
 #else
     const std::string obstacle = "this evodevo was built without CUDA; build it where the CUDA toolkit is";
 #endif

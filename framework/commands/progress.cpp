@@ -104,4 +104,17 @@ void print_outcome(const Experiment& experiment, const Archive& archive, const P
             << formatted("%.3g", springs) << " in " << duration_text(progress.seconds()) << ")" << std::endl;
 }
 
+void print_time_spent(const TimeSpent& time, const Simulator& simulator) {
+  if (!(time.whole > 0)) return;
+  const auto share = [&](double seconds) { return formatted("%.0f %%", 100 * seconds / time.whole); };
+  std::cout << "time:  simulate " << share(time.evaluation.simulate) << ", develop " << share(time.evaluation.develop)
+            << ", decode " << share(time.evaluation.decode) << ", archive " << share(time.archive);
+  if (const std::optional<DeviceUse> device = simulator.device_use()) {
+    std::cout << "; device idle " << share(time.whole - device->busy);
+    if (device->portions > 1)
+      std::cout << ", a batch in up to " << device->portions << " portions for lack of device memory";
+  }
+  std::cout << std::endl;
+}
+
 }  // namespace evodevo

@@ -41,4 +41,7 @@ class ProgressDisplay {
 /// Prints the best robot, where everything is, and the speed.
 void print_outcome(const Experiment& experiment, const Archive& archive, const ProgressDisplay& progress);
 
+/// Prints where the time of this process went.
+void print_time_spent(const TimeSpent& time, const Simulator& simulator);
+
 }  // namespace evodevo

@@ -51,8 +51,9 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
             << std::endl;
   stop_on_interrupt();
   ProgressDisplay progress(experiment, archive.generations(), stop_requested);
+  TimeSpent time;
   try {
-    evolve(experiment, simulator, archive, stop_requested, progress.observer());
+    time = evolve(experiment, simulator, archive, stop_requested, progress.observer());
   } catch (const std::exception&) {
     progress.finish();
     std::cerr << "the run stopped; what is committed is safe: " << resume_command_for(archive)
@@ -61,6 +62,7 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
   }
   progress.finish();
   print_outcome(experiment, archive, progress);
+  print_time_spent(time, simulator);
   const std::vector<Summary> generations = archive.generations();
   if (!generations.empty() && generations.back().evaluations >= experiment.evaluations) return 0;
   std::cout << "interrupted; to go on: " << resume_command_for(archive) << std::endl;

@@ -11,10 +11,10 @@ template <class T>
 class CpuSimulator final : public Simulator {
  public:
   CpuSimulator(const Scene& scene, const Stepping& stepping, int threads)
-      : scene_(scene), stepping_(stepping), threads_(threads), kernels_(cpu::kernels<T>()) {}
+      : scene_(scene), stepping_(stepping), workers_(threads), kernels_(cpu::kernels<T>()) {}
 
   void run(std::span<Task> tasks, std::uint64_t steps, Recording recording) override {
-    parallel_for(tasks.size(), threads_, [&](std::size_t i) {
+    workers_.for_each(tasks.size(), [&](std::size_t i) {
       if (tasks[i].status == Status::ok) cpu::run(tasks[i], scene_, stepping_, kernels_, steps, recording);
     });
   }
@@ -24,7 +24,7 @@ class CpuSimulator final : public Simulator {
  private:
   Scene scene_;
   Stepping stepping_;
-  int threads_;
+  Workers workers_;
   const cpu::Kernels<T>& kernels_;
 };
 

@@ -9,8 +9,9 @@
 namespace evodevo::cuda {
 namespace {
 
-// few, because each is a kernel to compile
-constexpr unsigned unrolled_rows[] = {4, 8, 12, 14, 15, 16, 20, 24};
+// few, because each pair is a kernel to compile and to start; no other size of block would let more warps be resident
+constexpr unsigned unrolled_rows[] = {4, 8, 12, 15, 16, 20, 24};
+constexpr unsigned blocks[] = {1, 2, 3, 4, 5, 6, 8, 10, 16, 32};
 constexpr unsigned rows_of_a_chunk = 8;
 constexpr unsigned resident_warps = 32;  // of a multiprocessor at 64 registers a thread
 
@@ -22,17 +23,20 @@ Shape shape_for(std::size_t rows, std::uint32_t groups, unsigned largest_block) 
   Shape best;
   std::size_t best_cost = ~std::size_t{0};
   for (const unsigned unrolled : unrolled_rows) {
-    // two masses for each thread where the block may be so large
-    const unsigned warps = std::max({1u, divided(rows, unrolled), std::min(divided(groups, 2), largest_block)});
+    const unsigned warps = std::max(1u, divided(rows, unrolled));
     if (warps > largest_block) continue;
-    const unsigned resident = resident_warps / warps * warps;
+    // two masses for each thread where the block may be so large
+    const unsigned block = *std::lower_bound(std::begin(blocks), std::end(blocks),
+                                             std::max(warps, std::min(divided(groups, 2), largest_block)));
+    const unsigned resident = resident_warps / block * warps;
     const std::size_t cost = std::size_t{unrolled} * warps * (3 * resident_warps - resident);
     if (cost >= best_cost) continue;
-    best = {warps, unrolled, 1, 0};
+    best = {block, warps, unrolled, 1, 0};
     best_cost = cost;
   }
-  if (best.warps == 0) best = {largest_block, rows_of_a_chunk, divided(rows, rows_of_a_chunk * largest_block), 0};
-  best.masses_per_thread = std::max(1u, divided(groups, best.warps));
+  if (best.warps == 0)
+    best = {largest_block, largest_block, rows_of_a_chunk, divided(rows, rows_of_a_chunk * largest_block), 0};
+  best.masses_per_thread = std::max(1u, divided(groups, best.block));
   return best;
 }
 
@@ -48,29 +52,96 @@ std::vector<std::uint32_t> places_by_valence(const Body& body) {
   return place;
 }
 
+/// A place below `places` for each mass of `body`: its earlier one where the mass was there before, else one that is
+/// left.
+std::vector<std::uint32_t> places_after(const Body& body, std::uint32_t places,
+                                        std::span<const std::uint32_t> earlier_place,
+                                        std::span<const Vec3> earlier_rest) {
+  std::vector<std::uint32_t> place_of;
+  std::vector<bool> taken(places, false);
+  auto next = earlier_rest.begin();
+  for (const Mass& mass : body.masses) {
+    const auto found = std::find(next, earlier_rest.end(), mass.rest);
+    place_of.push_back(
+        found == earlier_rest.end() ? open : earlier_place[static_cast<std::size_t>(found - earlier_rest.begin())]);
+    if (found != earlier_rest.end()) next = found + 1;
+    // a body that has become smaller has fewer places
+    if (place_of.back() >= places) place_of.back() = open;
+    if (place_of.back() != open) taken[place_of.back()] = true;
+  }
+  std::uint32_t free = 0;
+  for (std::uint32_t& place : place_of) {
+    if (place != open) continue;
+    while (taken[free]) ++free;
+    place = free++;
+  }
+  return place_of;
+}
+
 Arrangement::Arrangement(const Body& body, unsigned largest_block)
+    : groups(divided(body.masses.size(), 32)), place_of(places_by_valence(body)) {
+  const std::vector<std::uint32_t> all_open(body.springs.size(), open);
+  arrange(body, largest_block, {all_open, all_open});
+}
+
+Arrangement::Arrangement(const Body& body, unsigned largest_block, const Arrangement& earlier,
+                         std::span<const Vec3> earlier_rest)
     : groups(divided(body.masses.size(), 32)),
-      place_of(places_by_valence(body)),
-      slot_of(body.springs.size()),
-      magic_numbers(32 * groups) {
-  const std::vector<std::uint8_t> owned_by_b = choose_owners(body, place_of, groups);
+      place_of(places_after(body, 32 * groups, earlier.place_of, earlier_rest)) {
+  Settled settled;
+  const std::vector<std::uint32_t> group_of_row = earlier.groups_of_rows();
+  std::size_t next = 0;  // of the earlier springs
+  for (const Spring& spring : body.springs) {
+    const std::uint32_t a = place_of[spring.a], b = place_of[spring.b];
+    const auto was_here = [&](std::uint32_t slot) {
+      const std::uint32_t owner = 32 * group_of_row[slot / 32] + slot % 32, other = earlier.slots[slot].other;
+      return (owner == a && other == b) || (owner == b && other == a);
+    };
+    const auto found =
+        std::find_if(earlier.slot_of.begin() + static_cast<std::ptrdiff_t>(next), earlier.slot_of.end(), was_here);
+    if (found == earlier.slot_of.end()) {
+      settled.owner.push_back(open);
+      settled.row.push_back(open);
+      continue;
+    }
+    next = static_cast<std::size_t>(found - earlier.slot_of.begin()) + 1;
+    const std::uint32_t group = group_of_row[*found / 32];
+    settled.owner.push_back(32 * group + *found % 32);
+    settled.row.push_back(*found / 32 - earlier.first_row[group]);
+  }
+  arrange(body, largest_block, std::move(settled));
+}
+
+std::vector<std::uint32_t> Arrangement::groups_of_rows() const {
+  std::vector<std::uint32_t> group(rows());
+  for (std::uint32_t g = 0; g < groups; ++g)
+    std::fill(group.begin() + first_row[g], group.begin() + first_row[g + 1], g);
+  return group;
+}
+
+void Arrangement::arrange(const Body& body, unsigned largest_block, Settled settled) {
+  const std::vector<std::uint32_t> settled_owner = settled.owner;
+  choose_owners(body, place_of, groups, settled.owner);
+  slot_of.resize(body.springs.size());
+  magic_numbers.assign(32 * groups, 0);
   std::vector<Group> members(groups);
   std::vector<std::uint32_t> owned(32 * groups);
   for (std::uint32_t i = 0; i < body.springs.size(); ++i) {
-    std::uint32_t owner = place_of[body.springs[i].a], other = place_of[body.springs[i].b];
-    if (owned_by_b[i]) std::swap(owner, other);
+    const std::uint32_t owner = settled.owner[i];
+    const std::uint32_t other = place_of[body.springs[i].a] + place_of[body.springs[i].b] - owner;
     Group& group = members[owner / 32];
-    group.links.push_back({static_cast<std::uint8_t>(owner % 32), static_cast<std::uint8_t>(other % 32)});
+    group.links.push_back({static_cast<std::uint8_t>(owner % 32), static_cast<std::uint8_t>(other % 32),
+                           owner == settled_owner[i] ? settled.row[i] : open});
     group.slots.push_back({i, other});
     group.rows = std::max<std::size_t>(group.rows, ++owned[owner]);
     --magic_numbers[other];
   }
-  std::size_t rows = 0;
-  for (const Group& group : members) rows += group.rows;
-  shape = shape_for(rows, groups, largest_block);
+  std::size_t needed = 0;
+  for (const Group& group : members) needed += group.rows;
+  shape = shape_for(needed, groups, largest_block);
   // rows that are left over stay empty, with the last group that has any
   const auto last = std::find_if(members.rbegin(), members.rend(), [](const Group& g) { return g.rows > 0; });
-  if (groups > 0) (last == members.rend() ? members.front() : *last).rows += shape.slots() / 32 - rows;
+  if (groups > 0) (last == members.rend() ? members.front() : *last).rows += shape.slots() / 32 - needed;
   lay(members);
   fill_empty_slots();
 }
@@ -78,12 +149,14 @@ Arrangement::Arrangement(const Body& body, unsigned largest_block)
 /// Gives every spring its slot and every row its group.
 void Arrangement::lay(std::vector<Group>& members) {
   slots.resize(shape.slots());
-  turns.assign(std::size_t{shape.warps} * shape.chunks, 0);
-  first_group.assign(shape.warps, 0);
+  turns.assign(std::size_t{shape.block} * shape.chunks, 0);
+  first_group.assign(shape.block, 0);
+  first_row.assign(groups + 1, static_cast<std::uint32_t>(rows()));
   const std::size_t rows_of_warp = std::size_t{shape.chunks} * shape.rows;
   std::size_t row = 0;
   for (std::uint32_t g = 0; g < groups && members[g].rows > 0; ++g) {
     Group& group = members[g];
+    first_row[g] = static_cast<std::uint32_t>(row);
     choose_rows(group.links, group.rows);
     for (std::size_t i = 0; i < group.links.size(); ++i) {
       const std::size_t slot = 32 * (row + group.links[i].row) + group.links[i].lane;
@@ -101,14 +174,14 @@ void Arrangement::lay(std::vector<Group>& members) {
 
 /// Empty slots lead to banks that their row leaves free.
 void Arrangement::fill_empty_slots() {
-  for (std::size_t row = 0; row < slots.size(); row += 32) {
+  for (auto row = slots.begin(); row != slots.end(); row += 32) {
     std::uint32_t busy = 0, bank = 0;
-    for (std::size_t lane = 0; lane < 32; ++lane)
-      if (slots[row + lane].spring != none) busy |= 1u << slots[row + lane].other % 32;
-    for (std::size_t lane = 0; lane < 32; ++lane) {
-      if (slots[row + lane].spring != none) continue;
+    for (auto slot = row; slot != row + 32; ++slot)
+      if (slot->spring != none) busy |= 1u << slot->other % 32;
+    for (auto slot = row; slot != row + 32; ++slot) {
+      if (slot->spring != none) continue;
       while (busy >> bank & 1) ++bank;
-      slots[row + lane].other = 32 * groups + bank++;
+      slot->other = 32 * groups + bank++;
     }
   }
 }

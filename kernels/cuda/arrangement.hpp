@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "cuda/row_order.hpp"
@@ -14,7 +15,8 @@ std::vector<std::uint32_t> places_by_valence(const Body& body);
 
 /// The sizes that a kernel is compiled for and a body is arranged to.
 struct Shape {
-  unsigned warps = 0;   ///< of the block
+  unsigned block = 0;   ///< warps of the block
+  unsigned warps = 0;   ///< of them that have springs
   unsigned rows = 0;    ///< springs of a thread in one chunk; unrolled
   unsigned chunks = 0;  ///< of a warp
   unsigned masses_per_thread = 0;
@@ -39,19 +41,33 @@ struct Arrangement {
   /// Arranges `body` for a block of at most `largest_block` warps.
   Arrangement(const Body& body, unsigned largest_block);
 
+  /// Arranges what has become of a body whose masses had the rest places `earlier_rest` and whose arrangement was
+  /// `earlier`. Masses and springs that stay are in the same order as before; most keep their places, owners and rows,
+  /// which saves most of the work. Any other body is arranged as well.
+  Arrangement(const Body& body, unsigned largest_block, const Arrangement& earlier, std::span<const Vec3> earlier_rest);
+
   Shape shape;
   std::uint32_t groups = 0;
-  std::vector<std::uint32_t> place_of;      ///< [masses] the place of each mass
-  std::vector<Slot> slots;                  ///< [warps][chunks][rows][32]
-  std::vector<std::uint32_t> slot_of;       ///< [springs]
-  std::vector<std::uint32_t> first_group;   ///< [warps] the group that each warp begins with
-  std::vector<std::uint32_t> turns;         ///< [warps][chunks] bit r: the next group begins after row r
+  std::vector<std::uint32_t> place_of;   ///< [masses] the place of each mass
+  std::vector<Slot> slots;               ///< [warps][chunks][rows][32]
+  std::vector<std::uint32_t> slot_of;    ///< [springs]
+  std::vector<std::uint32_t> first_row;  ///< [groups + 1] the rows of group g are first_row[g] .. first_row[g + 1] - 1
+  std::vector<std::uint32_t> first_group;   ///< [block] the group that each warp begins with
+  std::vector<std::uint32_t> turns;         ///< [block][chunks] bit r: the next group begins after row r
   std::vector<std::int32_t> magic_numbers;  ///< [places] how many a place's force sum has to begin with
+
+  /// The rows of all warps.
+  std::size_t rows() const { return slots.size() / 32; }
 
   /// How many times a warp's access to 32 masses takes, on average; 1 where no two are in one bank.
   double passes_per_row() const;
 
  private:
+  /// What is settled of a body's springs.
+  struct Settled {
+    std::vector<std::uint32_t> owner;  ///< [springs] the owner's place, or open
+    std::vector<std::uint32_t> row;    ///< [springs] of the owner's group, or open
+  };
   /// The springs that the masses of a group own.
   struct Group {
     std::size_t rows = 0;
@@ -59,6 +75,9 @@ struct Arrangement {
     std::vector<Slot> slots;  ///< of each link
   };
 
+  /// [rows] the group that each row belongs to.
+  std::vector<std::uint32_t> groups_of_rows() const;
+  void arrange(const Body& body, unsigned largest_block, Settled settled);
   void lay(std::vector<Group>& members);
   void fill_empty_slots();
 };

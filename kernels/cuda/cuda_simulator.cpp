@@ -16,37 +16,98 @@ namespace {
 
 static_assert(cuda::guard_interval == EnergyGuard::interval);
 
-constexpr std::size_t most_streams = 8;
+constexpr std::size_t most_streams = 8;  // of one batch
+constexpr int batches_at_once = 8;       // one moves, others are prepared, read out or on their way
 // of the free memory, which other programs want to use too
 constexpr double share_of_memory = 0.8;
+
+/// What a batch has of the device to itself.
+struct Lane {
+  Lane() : streams(most_streams) {}
+
+  std::vector<cuda::Stream> streams;
+  cuda::MirroredMemory memory;
+};
+
+/// Lanes that are made when they are needed and used again.
+class Lanes {
+ public:
+  /// A lane until its end.
+  class Loan {
+   public:
+    explicit Loan(Lanes& lanes) : lanes_(lanes), lane_(lanes.take()) {}
+    Loan(const Loan&) = delete;
+    Loan& operator=(const Loan&) = delete;
+    ~Loan() { lanes_.give_back(std::move(lane_)); }
+    Lane* operator->() const { return lane_.get(); }
+
+   private:
+    Lanes& lanes_;
+    std::unique_ptr<Lane> lane_;
+  };
+
+ private:
+  std::unique_ptr<Lane> take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return std::make_unique<Lane>();
+    std::unique_ptr<Lane> lane = std::move(free_.back());
+    free_.pop_back();
+    return lane;
+  }
+  void give_back(std::unique_ptr<Lane> lane) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(lane));
+  }
+
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Lane>> free_;
+};
 
 template <class T>
 class DeviceSimulator final : public CudaSimulator {
  public:
-  DeviceSimulator(const Scene& scene, const Stepping& stepping, std::size_t memory)
+  DeviceSimulator(const Scene& scene, const Stepping& stepping, int threads, std::size_t memory)
       : scene_(scene),
         stepping_(stepping),
         largest_portion_(memory),
         device_(cuda::current_device()),
         kernels_(device_.architecture),
-        streams_(most_streams) {}
+        workers_(threads) {}
 
   void run(std::span<Task> tasks, std::uint64_t steps, Recording recording) override {
-    const std::lock_guard lock(mutex_);
-    const cuda::Run run{scene_, stepping_, recording, steps, cuda::features_of(scene_, stepping_.precision, recording)};
-    device_seconds_ = 0;
+    const cuda::Run run{scene_,
+                        stepping_,
+                        recording,
+                        steps,
+                        cuda::features_of(scene_, stepping_.precision, recording),
+                        device_.shared_bytes};
     std::vector<cuda::Plan<T>> plans = plan(begin(tasks, run), run);
-    for (std::span<cuda::Plan<T>> left = plans; !left.empty();) {
-      const std::size_t count = portion_from(left);
-      cuda::Portion<T> portion(left.first(count), run, memory_);
-      device_seconds_ += portion.simulate(kernels_, streams_);
-      left = left.subspan(count);
+    const Lanes::Loan lane(lanes_);
+    double seconds = 0;
+    std::size_t portions = 0;
+    for (std::span<cuda::Plan<T>> left = plans; !left.empty(); ++portions) {
+      cuda::Portion<T> portion = next_portion(left, run, lane->memory);
+      seconds += portion.simulate(kernels_, lane->streams, workers_, busy_);
+      left = left.subspan(portion.bodies());
     }
+    const std::lock_guard lock(mutex_);
+    device_seconds_ = seconds;
+    most_portions_ = std::max(most_portions_, portions);
   }
+
+  int concurrency() const override { return batches_at_once; }
 
   std::string device() const override { return "cuda, " + device_.name + ", " + device_.architecture; }
 
-  double device_seconds() const override { return device_seconds_; }
+  std::optional<DeviceUse> device_use() const override {
+    const std::lock_guard lock(mutex_);
+    return DeviceUse{busy_.seconds(), most_portions_};
+  }
+
+  double device_seconds() const override {
+    const std::lock_guard lock(mutex_);
+    return device_seconds_;
+  }
 
  private:
   /// Empties the answers and gives the tasks that need the device; bodies without masses only grow older.
@@ -66,45 +127,49 @@ class DeviceSimulator final : public CudaSimulator {
     return live;
   }
 
-  std::vector<cuda::Plan<T>> plan(const std::vector<Task*>& tasks, const cuda::Run& run) const {
+  std::vector<cuda::Plan<T>> plan(const std::vector<Task*>& tasks, const cuda::Run& run) {
     std::vector<std::optional<cuda::Plan<T>>> planned(tasks.size());
-    parallel_for(tasks.size(), 0, [&](std::size_t i) {
-      planned[i].emplace(*tasks[i], scene_, stepping_, run.features, device_.shared_bytes);
-    });
+    workers_.for_each(tasks.size(), [&](std::size_t i) { planned[i].emplace(*tasks[i], run); });
     std::vector<cuda::Plan<T>> plans;
     for (auto& one : planned) plans.push_back(*std::move(one));
     return plans;
   }
 
-  /// How many of the next plans the device's memory holds together.
-  std::size_t portion_from(std::span<const cuda::Plan<T>> plans) const {
-    const auto free = static_cast<double>(cuda::free_memory() + memory_.size());
+  /// As many of the next plans as the device's memory holds together, and that memory. One batch at a time looks how
+  /// much is free and takes it.
+  cuda::Portion<T> next_portion(std::span<cuda::Plan<T>> plans, const cuda::Run& run, cuda::MirroredMemory& memory) {
+    const std::lock_guard lock(mutex_);
+    const auto free = static_cast<double>(cuda::free_memory() + memory.size());
     const std::size_t budget = std::min(largest_portion_, static_cast<std::size_t>(share_of_memory * free));
     cuda::Sizes sizes;
-    for (std::size_t count = 0; count < plans.size(); ++count) {
+    std::size_t count = 0;
+    for (; count < plans.size(); ++count) {
       sizes += plans[count].sizes();
-      if (cuda::Portion<T>::bytes_for(sizes, count + 1) > budget) return std::max<std::size_t>(count, 1);
+      if (cuda::Portion<T>::bytes_for(sizes, count + 1) > budget) break;
     }
-    return plans.size();
+    return {plans.first(std::max<std::size_t>(count, 1)), run, memory};
   }
 
   Scene scene_;
   Stepping stepping_;
   std::size_t largest_portion_;  // bytes
   cuda::Device device_;
-  std::mutex mutex_;
   cuda::KernelStore kernels_;
-  std::vector<cuda::Stream> streams_;
-  cuda::MirroredMemory memory_;
+  Workers workers_;
+  Lanes lanes_;
+  BusyClock busy_;
+  mutable std::mutex mutex_;
   double device_seconds_ = 0;
+  std::size_t most_portions_ = 1;
 };
 
 }  // namespace
 
-std::unique_ptr<CudaSimulator> make_cuda_simulator(const Scene& scene, const Stepping& stepping, std::size_t memory) {
+std::unique_ptr<CudaSimulator> make_cuda_simulator(const Scene& scene, const Stepping& stepping, int threads,
+                                                   std::size_t memory) {
   if (stepping.precision == Precision::float64)
-    return std::make_unique<DeviceSimulator<double>>(scene, stepping, memory);
-  return std::make_unique<DeviceSimulator<float>>(scene, stepping, memory);
+    return std::make_unique<DeviceSimulator<double>>(scene, stepping, threads, memory);
+  return std::make_unique<DeviceSimulator<float>>(scene, stepping, threads, memory);
 }
 
 }  // namespace evodevo

@@ -2,6 +2,7 @@
 
 #include <cuda_runtime_api.h>
 
+#include <cstdlib>
 #include <stdexcept>
 
 #include "cuda/cuda_simulator.hpp"
@@ -27,6 +28,8 @@ void check_driver() {
 }  // namespace
 
 Device current_device() {
+  // hardware queues; with the usual 8, launches for bodies of different forms would wait for each other
+  setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0);
   check_driver();
   int count = 0, device = 0;
   check(cudaGetDeviceCount(&count), "looking for a GPU");

@@ -74,8 +74,8 @@ template <class T>
 struct ResidentBody {
   using Integer = typename FixedPoint<T>::Integer;
   const Record<T>* records;          ///< [warps][chunks][rows][lanes]
-  const std::uint32_t* first_group;  ///< [warps] whose masses a warp's first row belongs to
-  const std::uint32_t* turns;        ///< [warps][chunks] bit r: the next group begins after row r
+  const std::uint32_t* first_group;  ///< [block's warps] whose masses a warp's first row belongs to
+  const std::uint32_t* turns;        ///< [block's warps][chunks] bit r: the next group begins after row r
   const Actuator* actuators;         ///< [entries]; entry 0 is no material
   const T* mass;                     ///< [places] kg
   const T* inverse_mass;             ///< [places] 1/kg, 0 for what never moves
@@ -83,15 +83,15 @@ struct ResidentBody {
   Motion<T> motion;                  ///< [places]
   double* stress;                    ///< [slots] sum of |force|, N
   Answer* answer;
-  std::uint64_t first_step;  ///< since birth
-  double energy_bound;       ///< J
-  double resolution;         ///< N, a power of two
-  T largest_force;           ///< units of the resolution; a larger one leaves the range
-  std::uint32_t groups, chunks, entries;
-  std::uint32_t table_steps;    ///< steps that the table in shared memory holds
-  std::uint32_t table_offset;   ///< bytes from the beginning of shared memory
-  std::uint32_t rate_offset;    ///< likewise, of the rates, where work is recorded
-  std::uint32_t record_offset;  ///< likewise, of the records
+  std::uint64_t first_step;                      ///< since birth
+  double energy_bound;                           ///< J
+  double resolution;                             ///< N, a power of two
+  T largest_force;                               ///< units of the resolution; a larger one leaves the range
+  std::uint32_t groups, warps, chunks, entries;  ///< warps: that have springs
+  std::uint32_t table_steps;                     ///< steps that the table in shared memory holds
+  std::uint32_t table_offset;                    ///< bytes from the beginning of shared memory
+  std::uint32_t rate_offset;                     ///< likewise, of the rates, where work is recorded
+  std::uint32_t record_offset;                   ///< likewise, of the records
 };
 
 /// A spring at one of its ends.

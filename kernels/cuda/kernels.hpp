@@ -3,13 +3,16 @@
 
 #include <cuda_runtime_api.h>
 
+#include <future>
 #include <map>
+#include <mutex>
 #include <string>
 #include <vector>
 
 namespace evodevo::cuda {
 
-/// Kernels of one device, each loaded when it is first asked for and kept.
+/// Kernels of one device, each compiled and loaded when it is first asked for, and kept. May be used from several
+/// threads, which compile different kernels at the same time.
 class KernelStore {
  public:
   explicit KernelStore(std::string architecture) : architecture_(std::move(architecture)) {}
@@ -22,7 +25,8 @@ class KernelStore {
 
  private:
   std::string architecture_;
-  std::map<std::string, cudaLibrary_t> libraries_;
+  std::mutex mutex_;
+  std::map<std::string, std::shared_future<cudaLibrary_t>> libraries_;
 };
 
 }  // namespace evodevo::cuda

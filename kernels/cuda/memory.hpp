@@ -21,6 +21,9 @@ class MirroredMemory {
   /// Makes room for at least `size` bytes; what was there is lost.
   void resize(std::size_t size) {
     if (size <= size_) return;
+    // bodies grow by little, and taking memory makes the device wait
+    constexpr std::size_t piece = std::size_t{32} << 20;
+    size = (size + piece - 1) / piece * piece;
     release();
     check(cudaMalloc(&device_, size), "taking " + std::to_string(size >> 20) + " MiB of the GPU's memory");
     check(cudaMallocHost(&host_, size), "taking " + std::to_string(size >> 20) + " MiB of the host's memory");
@@ -62,7 +65,10 @@ class Stream {
 /// A moment in a stream.
 class Event {
  public:
-  Event() { check(cudaEventCreate(&event_), "making an event"); }
+  /// A thread that waits for a `blocking` event sleeps; else it keeps asking.
+  explicit Event(bool blocking = false) {
+    check(cudaEventCreateWithFlags(&event_, blocking ? cudaEventBlockingSync : cudaEventDefault), "making an event");
+  }
   Event(const Event&) = delete;
   Event& operator=(const Event&) = delete;
   ~Event() { cudaEventDestroy(event_); }

@@ -6,7 +6,7 @@
 namespace evodevo::cuda {
 namespace {
 
-constexpr int passes = 4;    // more take longer than they gain
+constexpr int passes = 4;    // over springs without an owner; more take longer than they gain
 constexpr int penalty = 16;  // for each spring above a mass's even share, in springs of a bank
 
 /// How many springs each mass owns, and how many of each group's lead to each bank.
@@ -33,34 +33,41 @@ class Loads {
 
 }  // namespace
 
-std::vector<std::uint8_t> choose_owners(const Body& body, std::span<const std::uint32_t> place_of,
-                                        std::uint32_t groups) {
-  struct Ends {
-    std::uint32_t owner, other;
-  };
+void choose_owners(const Body& body, std::span<const std::uint32_t> place_of, std::uint32_t groups,
+                   std::span<std::uint32_t> owner) {
   Loads loads(groups, body.masses.size(), body.springs.size());
-  std::vector<Ends> ends(body.springs.size());
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    Ends& e = ends[i] = {place_of[body.springs[i].a], place_of[body.springs[i].b]};
-    if (loads.cost_of_adding(e.other, e.owner) < loads.cost_of_adding(e.owner, e.other)) std::swap(e.owner, e.other);
-    loads.add(e.owner, e.other, 1);
+  std::vector<std::uint32_t> other(owner.size());
+  const auto turn_over_where_cheaper = [&](std::size_t i) {
+    const bool cheaper = loads.cost_of_adding(other[i], owner[i]) < loads.cost_of_adding(owner[i], other[i]);
+    if (cheaper) std::swap(owner[i], other[i]);
+    return cheaper;
+  };
+  std::vector<std::size_t> undecided;
+  for (std::size_t i = 0; i < owner.size(); ++i) {
+    const std::uint32_t a = place_of[body.springs[i].a], b = place_of[body.springs[i].b];
+    if (owner[i] == open) {
+      undecided.push_back(i);
+      owner[i] = a;
+    } else {
+      loads.add(owner[i], a + b - owner[i], 1);
+    }
+    other[i] = a + b - owner[i];
+  }
+  for (const std::size_t i : undecided) {
+    turn_over_where_cheaper(i);
+    loads.add(owner[i], other[i], 1);
   }
   // a spring changes hands where that is cheaper
+  const int last_pass = 2 * undecided.size() < owner.size() ? 1 : passes;
   bool changed = true;
-  for (int pass = 0; pass < passes && changed; ++pass) {
+  for (int pass = 0; pass < last_pass && changed; ++pass) {
     changed = false;
-    for (Ends& e : ends) {
-      loads.add(e.owner, e.other, -1);
-      if (loads.cost_of_adding(e.other, e.owner) < loads.cost_of_adding(e.owner, e.other)) {
-        std::swap(e.owner, e.other);
-        changed = true;
-      }
-      loads.add(e.owner, e.other, 1);
+    for (std::size_t i = 0; i < owner.size(); ++i) {
+      loads.add(owner[i], other[i], -1);
+      changed |= turn_over_where_cheaper(i);
+      loads.add(owner[i], other[i], 1);
     }
   }
-  std::vector<std::uint8_t> owned_by_b(ends.size());
-  for (std::size_t i = 0; i < ends.size(); ++i) owned_by_b[i] = ends[i].owner != place_of[body.springs[i].a];
-  return owned_by_b;
 }
 
 }  // namespace evodevo::cuda

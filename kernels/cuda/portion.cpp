@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "parallel.hpp"
-
 namespace evodevo::cuda {
 namespace {
 
@@ -22,11 +20,10 @@ void launch(cudaKernel_t kernel, dim3 grid, unsigned threads, std::size_t shared
 }  // namespace
 
 template <class T>
-Plan<T>::Plan(Task& task_, const Scene& scene, const Stepping& stepping, const Features& features,
-              std::size_t shared_bytes)
-    : task(&task_), guard(*task_.body, *task_.state, scene, stepping), body([&]() -> decltype(body) {
-        if (auto resident = Resident<T>::arrange(task_, features, shared_bytes)) return *std::move(resident);
-        return Streamed<T>(task_, features);
+Plan<T>::Plan(Task& task_, const Run& run)
+    : task(&task_), guard(*task_.body, *task_.state, run.scene, run.stepping), body([&]() -> decltype(body) {
+        if (auto resident = Resident<T>::arrange(task_, run.features, run.shared_bytes)) return *std::move(resident);
+        return Streamed<T>(task_, run.features);
       }()) {}
 
 template <class T>
@@ -65,13 +62,13 @@ Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MirroredMemory& me
 }
 
 template <class T>
-void Portion<T>::pack() {
+void Portion<T>::pack(Workers& workers) {
   // resident bodies by launch, then streamed ones; all descriptions take the same room
   std::vector<std::size_t> order;
   for (const auto& [launch, bodies] : resident_) order.insert(order.end(), bodies.begin(), bodies.end());
   auto* resident = reinterpret_cast<ResidentBody<T>*>(memory_.host());
   auto* streamed = reinterpret_cast<StreamedBody<T>*>(memory_.host() + order.size() * header_bytes<T>);
-  parallel_for(plans_.size(), 0, [&](std::size_t i) {
+  workers.for_each(plans_.size(), [&](std::size_t i) {
     if (i < order.size()) {
       const std::size_t at = order[i];
       resident[i] = std::get<Resident<T>>(plans_[at].body).pack(host_[at], device_[at], plans_[at].guard);
@@ -93,34 +90,43 @@ void Portion<T>::upload(cudaStream_t stream) {
 }
 
 template <class T>
-void Portion<T>::launch_resident(KernelStore& kernels, std::span<const Stream> streams) {
-  const Event ready;
-  check(cudaEventRecord(ready, streams[0]), "recording an event");
+std::vector<typename Portion<T>::ReadyLaunch> Portion<T>::ready_launches(KernelStore& kernels, Workers& workers) const {
   const auto* bodies = reinterpret_cast<const ResidentBody<T>*>(memory_.device());
-  std::vector<std::pair<Launch, const ResidentBody<T>*>> launches;
-  for (const auto& [key, members] : resident_) {
-    launches.emplace_back(key, bodies);
+  std::vector<ReadyLaunch> launches;
+  for (const auto& [launch, members] : resident_) {
+    launches.push_back({launch, nullptr, members, bodies});
     bodies += members.size();
   }
-  // the longest first, so that short ones fill the gaps at the end
-  std::sort(launches.begin(), launches.end(), [](const auto& a, const auto& b) {
-    return a.first.threads * a.first.form.rows > b.first.threads * b.first.form.rows;
+  // those that have never run are compiled on all cores
+  workers.for_each(launches.size(), [&](std::size_t i) {
+    const Launch& launch = launches[i].launch;
+    launches[i].kernel =
+        kernels.get("cuda/resident.cu", "evodevo_run_resident", definitions(launch.features, launch.form));
   });
+  // the longest first, so that short ones fill the gaps at the end
+  std::sort(launches.begin(), launches.end(), [](const ReadyLaunch& a, const ReadyLaunch& b) {
+    return a.launch.threads * a.launch.form.rows > b.launch.threads * b.launch.form.rows;
+  });
+  return launches;
+}
+
+template <class T>
+void Portion<T>::launch_resident(KernelStore& kernels, std::span<const Stream> streams, Workers& workers) {
+  const Event ready;
+  check(cudaEventRecord(ready, streams[0]), "recording an event");
   std::size_t next = 0;
-  for (const auto& [key, first] : launches) {
-    const std::vector<std::size_t>& members = resident_.at(key);
+  for (const ReadyLaunch& one : ready_launches(kernels, workers)) {
     std::size_t shared_bytes = 0;
-    for (const std::size_t i : members)
+    for (const std::size_t i : one.members)
       shared_bytes = std::max(shared_bytes, std::get<Resident<T>>(plans_[i].body).chip_bytes());
-    const cudaKernel_t kernel =
-        kernels.get("cuda/resident.cu", "evodevo_run_resident", definitions(key.features, key.form));
-    check(cudaFuncSetAttribute(reinterpret_cast<const void*>(kernel), cudaFuncAttributeMaxDynamicSharedMemorySize,
-                               static_cast<int>(shared_bytes)),
-          "asking for " + std::to_string(shared_bytes) + " bytes of shared memory");
+    // always the most, because other threads may be about to start the same kernel
+    check(cudaFuncSetAttribute(reinterpret_cast<const void*>(one.kernel), cudaFuncAttributeMaxDynamicSharedMemorySize,
+                               static_cast<int>(Resident<T>::largest_chip(run_.shared_bytes))),
+          "asking for shared memory");
     const cudaStream_t stream = streams[next++ % streams.size()];
     check(cudaStreamWaitEvent(stream, ready), "waiting for an event");
-    launch(kernel, dim3(static_cast<unsigned>(members.size())), key.threads, shared_bytes, stream, world_, first,
-           run_.steps);
+    launch(one.kernel, dim3(static_cast<unsigned>(one.members.size())), one.launch.threads, shared_bytes, stream,
+           world_, one.bodies, run_.steps);
     const Event done;
     check(cudaEventRecord(done, stream), "recording an event");
     check(cudaStreamWaitEvent(streams[0], done), "waiting for an event");
@@ -161,20 +167,26 @@ void Portion<T>::download(cudaStream_t stream) {
   check(cudaMemcpyAsync(host_.front().state, device_.front().state, sizes_.state + sizes_.sums, cudaMemcpyDeviceToHost,
                         stream),
         "copying bodies from the GPU");
-  check(cudaStreamSynchronize(stream), "simulating on the GPU");
+  // asleep, because other batches need the core
+  const Event done(true);
+  check(cudaEventRecord(done, stream), "recording an event");
+  check(cudaEventSynchronize(done), "simulating on the GPU");
 }
 
 template <class T>
-double Portion<T>::simulate(KernelStore& kernels, std::span<const Stream> streams) {
+double Portion<T>::simulate(KernelStore& kernels, std::span<const Stream> streams, Workers& workers, BusyClock& busy) {
   const Event begin, end;
-  pack();
-  upload(streams[0]);
-  check(cudaEventRecord(begin, streams[0]), "recording an event");
-  launch_resident(kernels, streams);
-  launch_streamed(kernels, streams[0]);
-  check(cudaEventRecord(end, streams[0]), "recording an event");
-  download(streams[0]);
-  parallel_for(plans_.size(), 0, [&](std::size_t i) {
+  pack(workers);
+  {
+    const BusyClock::Span span(busy);
+    upload(streams[0]);
+    check(cudaEventRecord(begin, streams[0]), "recording an event");
+    launch_resident(kernels, streams, workers);
+    launch_streamed(kernels, streams[0]);
+    check(cudaEventRecord(end, streams[0]), "recording an event");
+    download(streams[0]);
+  }
+  workers.for_each(plans_.size(), [&](std::size_t i) {
     Plan<T>& plan = plans_[i];
     std::visit(
         [&](const auto& body) {

@@ -7,25 +7,15 @@
 #include <variant>
 #include <vector>
 
+#include "busy_clock.hpp"
 #include "cuda/features.hpp"
 #include "cuda/kernels.hpp"
 #include "cuda/memory.hpp"
 #include "cuda/resident.hpp"
 #include "cuda/streamed.hpp"
+#include "parallel.hpp"
 
 namespace evodevo::cuda {
-
-/// A task and how its body is simulated.
-template <class T>
-struct Plan {
-  Plan(Task& task, const Scene& scene, const Stepping& stepping, const Features& features, std::size_t shared_bytes);
-
-  Sizes sizes() const;
-
-  Task* task;
-  EnergyGuard guard;
-  std::variant<Streamed<T>, Resident<T>> body;
-};
 
 /// What all bodies of a run have in common.
 struct Run {
@@ -34,6 +24,19 @@ struct Run {
   Recording recording;
   std::uint64_t steps;
   Features features;
+  std::size_t shared_bytes;  ///< of the chip that one block can have
+};
+
+/// A task and how its body is simulated.
+template <class T>
+struct Plan {
+  Plan(Task& task, const Run& run);
+
+  Sizes sizes() const;
+
+  Task* task;
+  EnergyGuard guard;
+  std::variant<Streamed<T>, Resident<T>> body;
 };
 
 /// Simulates bodies that fit the device together.
@@ -42,11 +45,13 @@ class Portion {
  public:
   Portion(std::span<Plan<T>> plans, const Run& run, MirroredMemory& memory);
 
+  std::size_t bodies() const { return plans_.size(); }
+
   /// Bytes of the device's memory that bodies of these sizes need.
   static std::size_t bytes_for(const Sizes& sizes, std::size_t bodies);
 
-  /// Makes all steps and fills in the answers; returns the time of the kernels, s.
-  double simulate(KernelStore& kernels, std::span<const Stream> streams);
+  /// Makes all steps and fills in the answers; returns the time of the kernels, s. `busy` runs while the device works.
+  double simulate(KernelStore& kernels, std::span<const Stream> streams, Workers& workers, BusyClock& busy);
 
  private:
   /// Resident bodies that one launch handles.
@@ -56,10 +61,17 @@ class Portion {
     unsigned threads;
     auto operator<=>(const Launch&) const = default;
   };
+  struct ReadyLaunch {
+    Launch launch;
+    cudaKernel_t kernel;
+    std::span<const std::size_t> members;
+    const ResidentBody<T>* bodies;  ///< on the device
+  };
 
-  void pack();
+  void pack(Workers& workers);
   void upload(cudaStream_t stream);
-  void launch_resident(KernelStore& kernels, std::span<const Stream> streams);
+  std::vector<ReadyLaunch> ready_launches(KernelStore& kernels, Workers& workers) const;
+  void launch_resident(KernelStore& kernels, std::span<const Stream> streams, Workers& workers);
   void launch_streamed(KernelStore& kernels, cudaStream_t stream);
   void download(cudaStream_t stream);
 

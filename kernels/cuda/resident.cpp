@@ -25,6 +25,31 @@ std::size_t masses_bytes(std::size_t groups) {
 
 }  // namespace
 
+ArrangedBody::ArrangedBody(const Body& body, Arrangement arrangement_, unsigned largest_block)
+    : arrangement(std::move(arrangement_)), largest_block_(largest_block) {
+  rest_.reserve(body.masses.size());
+  for (const Mass& mass : body.masses) rest_.push_back(mass.rest);
+  ends_.reserve(body.springs.size());
+  for (const Spring& spring : body.springs) ends_.emplace_back(spring.a, spring.b);
+}
+
+bool ArrangedBody::fits(const Body& body) const {
+  return body.masses.size() == rest_.size() &&
+         std::equal(body.springs.begin(), body.springs.end(), ends_.begin(), ends_.end(),
+                    [](const Spring& spring, const auto& ends) { return std::pair(spring.a, spring.b) == ends; });
+}
+
+std::shared_ptr<const ArrangedBody> ArrangedBody::of(const Body& body, unsigned largest_block,
+                                                     const std::shared_ptr<const Preparation>& earlier) {
+  const auto before = std::dynamic_pointer_cast<const ArrangedBody>(earlier);
+  if (before && before->largest_block_ == largest_block) {
+    if (before->fits(body)) return before;
+    return std::make_shared<const ArrangedBody>(
+        body, Arrangement(body, largest_block, before->arrangement, before->rest_), largest_block);
+  }
+  return std::make_shared<const ArrangedBody>(body, Arrangement(body, largest_block), largest_block);
+}
+
 template <class T>
 ForceRange force_range(const Body& body, const State& state) {
   double largest = 0;
@@ -49,14 +74,19 @@ template ForceRange force_range<float>(const Body&, const State&);
 template ForceRange force_range<double>(const Body&, const State&);
 
 template <class T>
+std::size_t Resident<T>::largest_chip(std::size_t shared_bytes) {
+  return shared_bytes - reserved_bytes;
+}
+
+template <class T>
 std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features& features, std::size_t shared_bytes) {
   // before the work of arranging it: whether the masses and one step's table fit
   const std::size_t entries = task.body->materials.size() + 1;
-  const std::size_t least = masses_bytes<T>((task.body->masses.size() + lanes - 1) / lanes) +
-                            entries * (sizeof(Entry<T>) + sizeof(T)) + reserved_bytes;
-  if (least > shared_bytes || entries * sizeof(Entry<T>) > largest_offset) return std::nullopt;
+  const std::size_t least =
+      masses_bytes<T>((task.body->masses.size() + lanes - 1) / lanes) + entries * (sizeof(Entry<T>) + sizeof(T));
+  if (least > largest_chip(shared_bytes) || entries * sizeof(Entry<T>) > largest_offset) return std::nullopt;
   Resident resident(task, features);
-  if (!resident.fit(shared_bytes - reserved_bytes)) return std::nullopt;
+  if (!resident.fit(largest_chip(shared_bytes))) return std::nullopt;
   resident.reserve();
   return resident;
 }
@@ -65,7 +95,7 @@ template <class T>
 Resident<T>::Resident(const Task& task, const Features& features)
     : task_(&task),
       features_(features),
-      arrangement_(*task.body, largest_block(features.float64)),
+      arranged_(ArrangedBody::of(*task.body, largest_block(features.float64), task.preparation)),
       range_(force_range<T>(*task.body, *task.state)) {
   for (const Spring& spring : task.body->springs)
     features_.actuation = features_.actuation || task.body->materials[spring.material].amplitude != 0;
@@ -76,8 +106,8 @@ template <class T>
 bool Resident<T>::fit(std::size_t shared_bytes) {
   const std::size_t entries = task_->body->materials.size() + 1;
   const std::size_t row = entries * (sizeof(Entry<T>) + (features_.work ? sizeof(T) : 0));
-  const std::size_t masses = masses_bytes<T>(arrangement_.groups);
-  const std::size_t records = arrangement_.shape.slots() * sizeof(Record<T>);
+  const std::size_t masses = masses_bytes<T>(arrangement().groups);
+  const std::size_t records = arrangement().shape.slots() * sizeof(Record<T>);
   const std::size_t steps = features_.actuation ? std::clamp<std::size_t>(table_bytes / row, 1, longest_table) : 1;
   records_on_chip_ = aligned(masses) + aligned(steps * row) + 32 + records <= shared_bytes;
   chip_.table_steps = static_cast<std::uint32_t>(steps);
@@ -90,38 +120,38 @@ bool Resident<T>::fit(std::size_t shared_bytes) {
 
 template <class T>
 void Resident<T>::reserve() {
-  const std::size_t places = lanes * arrangement_.groups;
+  const std::size_t places = lanes * arrangement().groups;
   Extent input, state, sums;
-  records_ = input.add<Record<T>>(arrangement_.slots.size());
-  first_group_ = input.add<std::uint32_t>(arrangement_.first_group.size());
-  turns_ = input.add<std::uint32_t>(arrangement_.turns.size());
+  records_ = input.add<Record<T>>(arrangement().slots.size());
+  first_group_ = input.add<std::uint32_t>(arrangement().first_group.size());
+  turns_ = input.add<std::uint32_t>(arrangement().turns.size());
   actuators_ = input.add<Actuator>(task_->body->materials.size() + 1);
   mass_ = input.add<T>(places);
   inverse_mass_ = input.add<T>(places);
   start_ = input.add<typename FixedPoint<T>::Integer>(places);
   for (Section<T>& plane : motion_) plane = state.add<T>(places);
   answer_ = state.add<Answer>(1);
-  stress_ = sums.add<double>(features_.stress ? arrangement_.slots.size() : 0);
+  stress_ = sums.add<double>(features_.stress ? arrangement().slots.size() : 0);
   sizes_ = {input.size(), state.size(), sums.size()};
 }
 
 template <class T>
 ResidentForm Resident<T>::form() const {
-  const Shape& shape = arrangement_.shape;
+  const Shape& shape = arrangement().shape;
   return {.rows = shape.rows,
           .masses_per_thread = shape.masses_per_thread,
           .chunked = shape.chunks > 1,
           .records_on_chip = records_on_chip_,
-          .turning = shape.chunks > 1 || std::any_of(arrangement_.turns.begin(), arrangement_.turns.end(),
+          .turning = shape.chunks > 1 || std::any_of(arrangement().turns.begin(), arrangement().turns.end(),
                                                      [](std::uint32_t turns) { return turns != 0; }),
-          .wide_offsets = masses_bytes<T>(arrangement_.groups) > largest_offset};
+          .wide_offsets = masses_bytes<T>(arrangement().groups) > largest_offset};
 }
 
 template <class T>
 void Resident<T>::pack_records(Record<T>* to) const {
   using Integer = typename FixedPoint<T>::Integer;
   const unsigned unit = form().wide_offsets ? sizeof(T) : 1;
-  for (const Arrangement::Slot& slot : arrangement_.slots) {
+  for (const Arrangement::Slot& slot : arrangement().slots) {
     const auto other = static_cast<Integer>(offset_of_place<T>(slot.other) / unit);
     if (slot.spring == Arrangement::none) {
       *to++ = {T(0), other};
@@ -135,12 +165,12 @@ void Resident<T>::pack_records(Record<T>* to) const {
 
 template <class T>
 void Resident<T>::pack_masses(const Regions& host) const {
-  const std::size_t places = lanes * arrangement_.groups;
+  const std::size_t places = lanes * arrangement().groups;
   std::fill_n(mass_.in(host.input), places, T(0));
   std::fill_n(inverse_mass_.in(host.input), places, T(0));
   for (const Section<T>& plane : motion_) std::fill_n(plane.in(host.state), places, T(0));
   for (std::size_t i = 0; i < task_->body->masses.size(); ++i) {
-    const std::uint32_t place = arrangement_.place_of[i];
+    const std::uint32_t place = arrangement().place_of[i];
     const double mass = task_->body->masses[i].mass;
     mass_.in(host.input)[place] = static_cast<T>(mass);
     // a mass of 0 kg stays where it is
@@ -156,9 +186,9 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
   using Integer = typename FixedPoint<T>::Integer;
   pack_records(records_.in(host.input));
   pack_masses(host);
-  std::copy(arrangement_.first_group.begin(), arrangement_.first_group.end(), first_group_.in(host.input));
-  std::copy(arrangement_.turns.begin(), arrangement_.turns.end(), turns_.in(host.input));
-  std::transform(arrangement_.magic_numbers.begin(), arrangement_.magic_numbers.end(), start_.in(host.input),
+  std::copy(arrangement().first_group.begin(), arrangement().first_group.end(), first_group_.in(host.input));
+  std::copy(arrangement().turns.begin(), arrangement().turns.end(), turns_.in(host.input));
+  std::transform(arrangement().magic_numbers.begin(), arrangement().magic_numbers.end(), start_.in(host.input),
                  [](std::int32_t count) { return static_cast<Integer>(count) * FixedPoint<T>::magic_bits; });
   actuators_.in(host.input)[0] = {};
   std::transform(task_->body->materials.begin(), task_->body->materials.end(), actuators_.in(host.input) + 1,
@@ -179,8 +209,9 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
           .energy_bound = guard.bound(),
           .resolution = range_.resolution,
           .largest_force = static_cast<T>(range_.largest / range_.resolution),
-          .groups = arrangement_.groups,
-          .chunks = arrangement_.shape.chunks,
+          .groups = arrangement().groups,
+          .warps = arrangement().shape.warps,
+          .chunks = arrangement().shape.chunks,
           .entries = static_cast<std::uint32_t>(task_->body->materials.size() + 1),
           .table_steps = chip_.table_steps,
           .table_offset = static_cast<std::uint32_t>(chip_.table_offset),
@@ -192,18 +223,19 @@ template <class T>
 void Resident<T>::unpack(const Regions& host, const EnergyGuard& guard, std::uint64_t steps, double dt,
                          Recording recording, Task& task) const {
   read_answer(*answer_.in(host.state), guard, range_.largest, dt, recording, task);
+  task.preparation = arranged_;
   const auto at = [&](std::size_t plane, std::uint32_t place) -> double {
     return motion_[plane].in(host.state)[place];
   };
   for (std::size_t i = 0; i < task.body->masses.size(); ++i) {
-    const std::uint32_t place = arrangement_.place_of[i];
+    const std::uint32_t place = arrangement().place_of[i];
     task.state->position[i] = {at(0, place), at(1, place), at(2, place)};
     task.state->velocity[i] = {at(3, place), at(4, place), at(5, place)};
   }
   if (!recording.stress || task.status != Status::ok) return;
   task.stress.resize(task.body->springs.size());
   for (std::size_t i = 0; i < task.stress.size(); ++i)
-    task.stress[i] = stress_.in(host.sums)[arrangement_.slot_of[i]] / static_cast<double>(steps);
+    task.stress[i] = stress_.in(host.sums)[arrangement().slot_of[i]] / static_cast<double>(steps);
 }
 
 template class Resident<float>;

@@ -90,14 +90,15 @@ struct Share {
   unsigned owner;                 // offset of the mass that it begins with
   unsigned first_slot;
   unsigned warp;
-  unsigned chunks;
+  unsigned chunks;  // 0: the warp has no springs
 };
 
 __device__ __forceinline__ Share share_of(const Body& body) {
   Share share;
   share.warp = threadIdx.x / lanes;
-  share.chunks = chunked ? body.chunks : 1;
-  share.first_slot = share.warp * share.chunks * rows * lanes + threadIdx.x % lanes;
+  const unsigned chunks = chunked ? body.chunks : 1;
+  share.chunks = share.warp < body.warps ? chunks : 0;
+  share.first_slot = share.warp * chunks * rows * lanes + threadIdx.x % lanes;
   share.owner = offset_of_place(body.first_group[share.warp] * lanes + threadIdx.x % lanes);
   share.records = (records_on_chip ? &on_chip<Record<Number>>(body.record_offset) : body.records) + share.first_slot;
   return share;
@@ -156,6 +157,7 @@ __device__ __forceinline__ void add_forces(const Record<Number>* records, unsign
 
 __device__ __forceinline__ void add_spring_forces(const Body& body, const Share& share, unsigned turns, unsigned table,
                                                   unsigned rates, Sums& sums) {
+  if (share.chunks == 0) return;
   Owner owner(share.owner);
   if constexpr (chunked) {
     for (unsigned chunk = 0; chunk < share.chunks; ++chunk)
@@ -231,7 +233,7 @@ __device__ __forceinline__ void load(const Body& body, Movers& movers) {
   }
   if constexpr (records_on_chip) {
     Record<Number>* records = &on_chip<Record<Number>>(body.record_offset);
-    const unsigned count = blockDim.x * rows * (chunked ? body.chunks : 1);
+    const unsigned count = body.warps * lanes * rows * (chunked ? body.chunks : 1);
     for (unsigned i = threadIdx.x; i < count; i += blockDim.x) records[i] = body.records[i];
   }
 }
@@ -319,11 +321,12 @@ __device__ __noinline__ bool has_diverged(const Body& body, const World<Number>&
 }
 
 /// Adds the sums of some steps to the body's.
-__device__ __forceinline__ void collect(const Body& body, unsigned first_slot, const Sums& sums, Totals& totals) {
+__device__ __forceinline__ void collect(const Body& body, const Share& share, const Sums& sums, Totals& totals) {
+  if (share.chunks == 0) return;
   totals.largest = fmax(totals.largest, sums.largest);
   if constexpr (work) totals.power += sums.power;
   if constexpr (stress && !chunked) {
-    double* to = body.stress + first_slot;
+    double* to = body.stress + share.first_slot;
     double before[rows];  // read all at once, because a read must wait for the write before it
 #pragma unroll
     for (unsigned row = 0; row < rows; ++row) before[row] = to[row * lanes];
@@ -348,7 +351,7 @@ __device__ __forceinline__ void advance(const Body& body, const World<Number>& w
     table += row_bytes;
     rates += row_bytes / 2;
   }
-  collect(body, share.first_slot, sums, totals);
+  collect(body, share, sums, totals);
 }
 
 extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)

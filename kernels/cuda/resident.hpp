@@ -1,7 +1,10 @@
 // A body whose state stays on the chip: its memory and what resident.cu is told about it.
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "cuda/answers.hpp"
 #include "cuda/arrangement.hpp"
@@ -28,15 +31,37 @@ struct ForceRange {
 template <class T>
 ForceRange force_range(const Body& body, const State& state);
 
+/// A body's arrangement, which depends on nothing but how many masses there are and which of them are joined.
+class ArrangedBody final : public Preparation {
+ public:
+  ArrangedBody(const Body& body, Arrangement arrangement, unsigned largest_block);
+
+  /// The arrangement in `earlier` if it is one for `body`, else one that keeps as much of it as possible.
+  static std::shared_ptr<const ArrangedBody> of(const Body& body, unsigned largest_block,
+                                                const std::shared_ptr<const Preparation>& earlier);
+
+  const Arrangement arrangement;
+
+ private:
+  bool fits(const Body& body) const;
+
+  std::vector<Vec3> rest_;                                     ///< of each mass
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> ends_;  ///< of each spring
+  unsigned largest_block_;
+};
+
 template <class T>
 class Resident {
  public:
   /// The body of `task` on a chip whose blocks have up to `shared_bytes`; nothing where it does not fit.
   static std::optional<Resident> arrange(const Task& task, const Features& features, std::size_t shared_bytes);
 
+  /// Bytes of `shared_bytes` that a body can have; the kernel and the system have the rest.
+  static std::size_t largest_chip(std::size_t shared_bytes);
+
   Features features() const { return features_; }
   ResidentForm form() const;
-  unsigned threads() const { return 32 * arrangement_.shape.warps; }
+  unsigned threads() const { return 32 * arrangement().shape.block; }
   std::size_t chip_bytes() const { return chip_.size; }
   Sizes sizes() const { return sizes_; }
 
@@ -54,9 +79,11 @@ class Resident {
   void pack_records(Record<T>* to) const;
   void pack_masses(const Regions& host) const;
 
+  const Arrangement& arrangement() const { return arranged_->arrangement; }
+
   const Task* task_;
   Features features_;
-  Arrangement arrangement_;
+  std::shared_ptr<const ArrangedBody> arranged_;
   ForceRange range_;
   ChipMemory chip_;
   bool records_on_chip_ = true;

@@ -19,6 +19,14 @@ class Colouring {
     for (auto& of_vertex : edge_) of_vertex.fill(-1);
   }
 
+  /// Leaves link `i` in its row; false if its lane or its bank has another there.
+  bool keep(int i) {
+    const Link& link = links_[i];
+    const bool fits = (free_[link.lane] & free_[32 + link.bank]) >> link.row & 1;
+    if (fits) set(i, link.row);
+    return fits;
+  }
+
   /// Gives link `i` a row in which neither its lane nor its bank has another; false if one of them is full.
   bool place(int i) {
     const int lane = links_[i].lane, bank = 32 + links_[i].bank;
@@ -98,8 +106,10 @@ void choose_rows(std::span<Link> links, std::size_t rows) {
     return;
   }
   Colouring colouring(links, rows);
-  std::vector<int> left;
+  std::vector<int> unplaced, left;
   for (int i = 0; i < static_cast<int>(links.size()); ++i)
+    if (links[i].row >= rows || !colouring.keep(i)) unplaced.push_back(i);
+  for (const int i : unplaced)
     if (!colouring.place(i)) left.push_back(i);
   for (const int i : left) colouring.squeeze(i);
 }

@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <span>
 
+#include "cuda/ownership.hpp"
+
 namespace evodevo::cuda {
 
 /// A spring of a group: the lane of its owner, the bank of the other mass.
 struct Link {
   std::uint8_t lane, bank;
-  std::uint32_t row = 0;  ///< the answer
+  std::uint32_t row = open;  ///< the answer; one that is given stays if it can
 };
 
 /// Deals out the springs of a group to `rows` rows, so that no row has two springs of one lane and, as far as possible,

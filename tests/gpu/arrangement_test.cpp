@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
 #include <set>
 
 #include "bodies.hpp"
@@ -15,16 +16,18 @@ using testing_gpu::random_body;
 
 /// Checks that every spring is in one slot, in the lane of one of its ends and leading to the other, and that the rows
 /// of each warp belong to the groups that it is told.
-void expect_sound(const Body& body, unsigned largest_block) {
-  const Arrangement a(body, largest_block);
-  ASSERT_LE(a.shape.warps, largest_block);
+void expect_sound(const Arrangement& a, const Body& body, unsigned largest_block) {
+  ASSERT_LE(a.shape.block, largest_block);
+  ASSERT_LE(a.shape.warps, a.shape.block);
   ASSERT_EQ(a.slots.size(), a.shape.slots());
-  ASSERT_GE(32 * a.shape.warps * a.shape.masses_per_thread, body.masses.size());
+  ASSERT_GE(32 * a.shape.block * a.shape.masses_per_thread, body.masses.size());
   std::vector<int> seen(body.springs.size()), terms(32 * a.groups);
   const std::size_t rows_of_warp = a.shape.chunks * a.shape.rows;
   std::uint32_t group = 0;
   for (std::size_t row = 0; row < a.slots.size() / 32; ++row) {
     if (row % rows_of_warp == 0) group = a.first_group[row / rows_of_warp];
+    EXPECT_GE(row, a.first_row[group]);
+    EXPECT_LT(row, a.first_row[group + 1]);
     for (std::uint32_t lane = 0; lane < 32; ++lane) {
       const Arrangement::Slot& slot = a.slots[32 * row + lane];
       const std::uint32_t owner = 32 * group + lane;
@@ -44,6 +47,78 @@ void expect_sound(const Body& body, unsigned largest_block) {
   }
   EXPECT_EQ(seen, std::vector<int>(body.springs.size(), 1));
   for (std::size_t place = 0; place < terms.size(); ++place) EXPECT_EQ(terms[place], a.magic_numbers[place]) << place;
+}
+
+void expect_sound(const Body& body, unsigned largest_block) {
+  expect_sound(Arrangement(body, largest_block), body, largest_block);
+}
+
+std::vector<Vec3> rest_places(const Body& body) {
+  std::vector<Vec3> places;
+  for (const Mass& mass : body.masses) places.push_back(mass.rest);
+  return places;
+}
+
+/// Takes `masses` random masses and `springs` random springs away and appends as many, the way the host applies edits.
+void turn_over(Body& body, std::uint32_t masses, std::uint32_t springs, std::mt19937& random) {
+  const auto below = [&](std::size_t n) {
+    return std::uniform_int_distribution<std::uint32_t>(0, static_cast<std::uint32_t>(n - 1))(random);
+  };
+  for (; springs > 0; --springs) {
+    body.springs.erase(body.springs.begin() + below(body.springs.size()));
+    const std::uint32_t a = below(body.masses.size());
+    body.springs.push_back(
+        {a, (a + 1 + below(body.masses.size() - 1)) % static_cast<std::uint32_t>(body.masses.size()), 0.5, 0});
+  }
+  for (; masses > 0; --masses) {
+    const std::uint32_t gone = below(body.masses.size());
+    std::erase_if(body.springs, [&](const Spring& s) { return s.a == gone || s.b == gone; });
+    for (Spring& s : body.springs) s.a -= s.a > gone, s.b -= s.b > gone;
+    body.masses.erase(body.masses.begin() + gone);
+    body.masses.push_back({{random() * 1e-9, 0, 0}, 0.2});
+    const auto newest = static_cast<std::uint32_t>(body.masses.size() - 1);
+    for (std::uint32_t i = 0; i < 25; ++i) body.springs.push_back({40 * i % newest, newest, 0.5, 0});
+  }
+}
+
+TEST(Rearrangement, StaysSoundAndKeepsBanksApartThroughALife) {
+  Body body = random_body(1000, 25, 5);
+  std::mt19937 random(1);
+  Arrangement arrangement(body, 32);
+  for (int cycle = 0; cycle < 10; ++cycle) {
+    const std::vector<Vec3> rest = rest_places(body);
+    turn_over(body, 5, 125, random);
+    arrangement = Arrangement(body, 32, arrangement, rest);
+    expect_sound(arrangement, body, 32);
+  }
+  EXPECT_LT(arrangement.passes_per_row(), 1.25);
+}
+
+TEST(Rearrangement, KeepsWhatStays) {
+  Body body = random_body(1000, 25, 5);
+  const Arrangement before(body, 32);
+  const std::vector<Vec3> rest = rest_places(body);
+  const Body old = body;
+  body.springs.erase(body.springs.begin() + 100);
+  const Arrangement after(body, 32, before, rest);
+  EXPECT_EQ(after.place_of, before.place_of);
+  std::size_t moved = 0;
+  for (std::uint32_t i = 0; i < body.springs.size(); ++i) moved += after.slot_of[i] != before.slot_of[i + (i >= 100)];
+  EXPECT_LT(moved, body.springs.size() / 10);
+}
+
+TEST(Rearrangement, HoldsBodiesThatHaveLittleInCommonWithBefore) {
+  const Body body = random_body(1000, 25, 5);
+  const Arrangement before(body, 32);
+  for (const Body& other : {random_body(1000, 25, 6), random_body(100, 25, 7), random_body(2000, 25, 8)})
+    expect_sound(Arrangement(other, 32, before, rest_places(body)), other, 32);
+  Body larger = body;
+  for (int i = 0; i < 100; ++i) larger.masses.push_back({{9, 9, 9.0 + i}, 0.2});
+  expect_sound(Arrangement(larger, 32, before, rest_places(body)), larger, 32);
+  Body smaller = body;
+  smaller.masses.resize(500);
+  std::erase_if(smaller.springs, [](const Spring& s) { return s.a >= 500 || s.b >= 500; });
+  expect_sound(Arrangement(smaller, 32, before, rest_places(body)), smaller, 32);
 }
 
 TEST(Arrangement, HoldsEverySpringOnce) {

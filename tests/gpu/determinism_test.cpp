@@ -55,7 +55,7 @@ TEST_P(Determinism, InPortions) {
   const Scene scene = walking_scene();
   const Body small = random_body(100, 15, 3), large = random_body(1500, 20, 4);
   const auto enough = make_cuda_simulator(scene, stepping(GetParam()));
-  const auto scarce = make_cuda_simulator(scene, stepping(GetParam()), 100'000);
+  const auto scarce = make_cuda_simulator(scene, stepping(GetParam()), 0, 100'000);
   for (const Body* body : {&small, &large}) {
     std::vector<Robot> together(5, Robot(*body, state_at_birth(*body, scene))), apart = together;
     simulate(*enough, {&together[0], &together[1], &together[2], &together[3], &together[4]}, 200, {.stress = true});

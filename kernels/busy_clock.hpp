@@ -1,0 +1,48 @@
+// How long something was under way on any thread.
+#pragma once
+
+#include <chrono>
+#include <mutex>
+
+namespace evodevo {
+
+/// Measures the time in which at least one span is open; spans of several threads may overlap.
+class BusyClock {
+ public:
+  class Span {
+   public:
+    explicit Span(BusyClock& clock) : clock_(clock) { clock_.open(); }
+    Span(const Span&) = delete;
+    Span& operator=(const Span&) = delete;
+    ~Span() { clock_.close(); }
+
+   private:
+    BusyClock& clock_;
+  };
+
+  /// The time in closed spans and open ones so far, s.
+  double seconds() const {
+    const std::lock_guard lock(mutex_);
+    const auto now = open_ > 0 ? Clock::now() - since_ : Clock::duration::zero();
+    return std::chrono::duration<double>(total_ + now).count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void open() {
+    const std::lock_guard lock(mutex_);
+    if (open_++ == 0) since_ = Clock::now();
+  }
+  void close() {
+    const std::lock_guard lock(mutex_);
+    if (--open_ == 0) total_ += Clock::now() - since_;
+  }
+
+  mutable std::mutex mutex_;
+  int open_ = 0;
+  Clock::time_point since_;
+  Clock::duration total_{};
+};
+
+}  // namespace evodevo
