@@ -194,12 +194,15 @@ class CudaNeighbourSearch final : public NeighbourSearch {
 
   void find(std::span<const PointCloud> clouds, const Use& use) override {
     std::vector<Job> jobs;
+    std::vector<std::size_t> without_pairs;
     for (std::size_t i = 0; i < clouds.size(); ++i) {
       if (clouds[i].places.size() < 2 || clouds[i].k == 0)
-        use(i, {});
+        without_pairs.push_back(i);
       else
         jobs.push_back({i, clouds[i]});
     }
+    parallel_for(without_pairs.size(), threads_, [&](std::size_t i) { use(without_pairs[i], {}); });
+    if (jobs.empty()) return;
     std::unique_ptr<Workspace> workspace = take_workspace();
     for (std::span<const Job> left = jobs; !left.empty();) {
       const std::size_t count = portion_from(left);
