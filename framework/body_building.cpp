@@ -1,8 +1,11 @@
 #include "body_building.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
-#include "neighbours.hpp"
+#include "parallel.hpp"
 #include "stability.hpp"
 #include "text.hpp"
 
@@ -20,14 +23,21 @@ void leave_out_air(Body& body) {
   });
 }
 
-void join_neighbours(Body& body, std::uint32_t neighbours) {
+std::vector<Vec3> rest_places(const Body& body) {
   std::vector<Vec3> places;
+  places.reserve(body.masses.size());
   for (const Mass& mass : body.masses) places.push_back(mass.rest);
-  for (const auto& [a, b] : nearest_pairs(places, neighbours)) {
+  return places;
+}
+
+void join(Body& body, std::span<const IndexPair> pairs) {
+  body.springs.reserve(body.springs.size() + pairs.size());
+  for (const auto& [a, b] : pairs) {
+    const Mass &mass_a = body.masses[a], &mass_b = body.masses[b];
     // by value: the list of materials may grow
-    const Material of_a = body.materials.at(static_cast<std::size_t>(body.masses[a].material));
-    const Material of_b = body.materials.at(static_cast<std::size_t>(body.masses[b].material));
-    body.springs.push_back({a, b, norm(places[a] - places[b]), body.material_index(mean(of_a, of_b))});
+    const Material of_a = body.materials.at(static_cast<std::size_t>(mass_a.material));
+    const Material of_b = body.materials.at(static_cast<std::size_t>(mass_b.material));
+    body.springs.push_back({a, b, norm(mass_a.rest - mass_b.rest), body.material_index(mean(of_a, of_b))});
   }
 }
 
@@ -68,8 +78,7 @@ void keep_largest_piece(Body& body) {
 }
 
 void place_on_origin(Body& body) {
-  std::vector<Vec3> places;
-  for (const Mass& mass : body.masses) places.push_back(mass.rest);
+  const std::vector<Vec3> places = rest_places(body);
   const Vec3 centre = centre_of_mass(body, places);
   const Vec3 shift{centre.x, centre.y, bounding_box(places).low.z};
   for (Mass& mass : body.masses) mass.rest = mass.rest - shift;
@@ -77,20 +86,48 @@ void place_on_origin(Body& body) {
 
 bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-}  // namespace
+/// Why a blueprint cannot become a body; empty where it may.
+std::string blueprint_failure(const Blueprint& blueprint) {
+  const std::vector<Mass>& masses = blueprint.body.masses;
+  if (!blueprint.failure.empty()) return "no body: " + blueprint.failure;
+  if (masses.empty()) return "no body: no masses";
+  if (!std::all_of(masses.begin(), masses.end(), [](const Mass& mass) { return is_finite(mass.rest); }))
+    return "no body: a place that is not finite";
+  return "";
+}
 
-BuiltBody build_body(Blueprint blueprint) {
-  Body& body = blueprint.body;
-  if (!blueprint.failure.empty()) return {{}, "no body: " + blueprint.failure};
-  if (body.masses.empty()) return {{}, "no body: no masses"};
-  for (const Mass& mass : body.masses)
-    if (!is_finite(mass.rest)) return {{}, "no body: a place that is not finite"};
-  if (blueprint.neighbours > 0) join_neighbours(body, blueprint.neighbours);
+/// What is left to do once neighbours are joined.
+BuiltBody finish(Body body) {
   leave_out_air(body);
   if (body.springs.empty()) return {{}, "no springs"};
   keep_largest_piece(body);
   place_on_origin(body);
   return {std::move(body), ""};
+}
+
+}  // namespace
+
+BuiltBody build_body(Blueprint blueprint) {
+  if (std::string failure = blueprint_failure(blueprint); !failure.empty()) return {{}, std::move(failure)};
+  join(blueprint.body, nearest_pairs(rest_places(blueprint.body), blueprint.neighbours));
+  return finish(std::move(blueprint.body));
+}
+
+std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, int threads) {
+  std::vector<BuiltBody> built(blueprints.size());
+  std::vector<std::vector<Vec3>> places(blueprints.size());
+  parallel_for(blueprints.size(), threads, [&](std::size_t i) {
+    built[i].failure = blueprint_failure(blueprints[i]);
+    if (built[i].failure.empty()) places[i] = rest_places(blueprints[i].body);
+  });
+  std::vector<PointCloud> clouds;
+  for (std::size_t i = 0; i < blueprints.size(); ++i) clouds.push_back({places[i], blueprints[i].neighbours});
+  search.find(clouds, [&](std::size_t i, std::span<const IndexPair> pairs) {
+    if (!built[i].failure.empty()) return;
+    join(blueprints[i].body, pairs);
+    built[i] = finish(std::move(blueprints[i].body));
+  });
+  return built;
 }
 
 std::string step_failure(const Body& body, std::span<const Vec3> places, const Scene& scene, const Stepping& stepping) {

@@ -3,8 +3,10 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "evodevo/encoding.hpp"
+#include "neighbours.hpp"
 #include "simulator.hpp"
 
 namespace evodevo {
@@ -19,6 +21,9 @@ struct BuiltBody {
 /// masses without springs, keeps the largest piece, and moves the rest places so that the lowest is at z = 0 and the
 /// centre of mass over the origin.
 BuiltBody build_body(Blueprint blueprint);
+
+/// The same for a population, whose neighbours are searched for together; on `threads` cores (0: all).
+std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, int threads);
 
 /// Why this body, its masses at `places`, cannot be simulated with this step: "unstable dt: …"; empty where it can.
 std::string step_failure(const Body& body, std::span<const Vec3> places, const Scene& scene, const Stepping& stepping);

@@ -4,6 +4,8 @@
 #include <limits>
 #include <nanoflann.hpp>
 
+#include "parallel.hpp"
+
 namespace evodevo {
 namespace {
 
@@ -27,7 +29,9 @@ class NearestOthers {
  public:
   using DistanceType = double;
 
-  NearestOthers(std::uint32_t self, std::size_t capacity) : self_(self), capacity_(capacity) {}
+  NearestOthers(std::uint32_t self, std::size_t capacity) : self_(self), capacity_(capacity) {
+    found_.reserve(capacity);
+  }
 
   std::size_t size() const { return found_.size(); }
   bool full() const { return found_.size() == capacity_; }
@@ -58,10 +62,22 @@ class NearestOthers {
 using Tree =
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Points>, Points, 3, std::uint32_t>;
 
+class CpuNeighbourSearch final : public NeighbourSearch {
+ public:
+  explicit CpuNeighbourSearch(int threads) : threads_(threads) {}
+
+  void find(std::span<const PointCloud> clouds, const Use& use) override {
+    parallel_for(clouds.size(), threads_, [&](std::size_t i) { use(i, nearest_pairs(clouds[i].places, clouds[i].k)); });
+  }
+
+ private:
+  int threads_;
+};
+
 }  // namespace
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> nearest_pairs(std::span<const Vec3> places, std::uint32_t k) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+std::vector<IndexPair> nearest_pairs(std::span<const Vec3> places, std::uint32_t k) {
+  std::vector<IndexPair> pairs;
   if (places.size() < 2 || k == 0) return pairs;
   const Points points{places};
   const Tree tree(3, points);
@@ -73,6 +89,10 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> nearest_pairs(std::span<con
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   return pairs;
+}
+
+std::unique_ptr<NeighbourSearch> make_cpu_neighbour_search(int threads) {
+  return std::make_unique<CpuNeighbourSearch>(threads);
 }
 
 }  // namespace evodevo

@@ -1,7 +1,10 @@
 // k-nearest neighbours.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -10,8 +13,33 @@
 
 namespace evodevo {
 
+/// The indices of two places, the lower first.
+using IndexPair = std::pair<std::uint32_t, std::uint32_t>;
+
 /// Every pair (i, j), i < j, in which one place is among the k nearest of the other; ties go to the lower index.
-/// Sorted, each pair once. k >= the number of places joins all.
-std::vector<std::pair<std::uint32_t, std::uint32_t>> nearest_pairs(std::span<const Vec3> places, std::uint32_t k);
+/// Sorted, each pair once. k >= the number of places joins all. Distances must be finite when squared.
+std::vector<IndexPair> nearest_pairs(std::span<const Vec3> places, std::uint32_t k);
+
+/// The places of one body and how many nearest ones each of them is joined to.
+struct PointCloud {
+  std::span<const Vec3> places;
+  std::uint32_t k = 0;
+};
+
+/// Finds the neighbours in all bodies of a population. Several threads may search at once.
+class NeighbourSearch {
+ public:
+  virtual ~NeighbourSearch() = default;
+
+  /// Takes a cloud's index and its pairs, which are there only during the call.
+  using Use = std::function<void(std::size_t, std::span<const IndexPair>)>;
+
+  /// Calls use(i, nearest_pairs of clouds[i]) once for every cloud, in no particular order and on several threads. The
+  /// first exception that it throws is thrown again here.
+  virtual void find(std::span<const PointCloud> clouds, const Use& use) = 0;
+};
+
+/// A search on `threads` cores (0: all of them).
+std::unique_ptr<NeighbourSearch> make_cpu_neighbour_search(int threads);
 
 }  // namespace evodevo

@@ -1,6 +1,6 @@
 # The CUDA part of the simulation core. Kernels are compiled at run time; their sources become part of the program.
-set(embedded cuda/resident.cu cuda/streamed.cu cuda/check.cuh cuda/mass_step.cuh cuda/formats.hpp cuda/fixed_point.hpp physics.hpp
-  arithmetic.hpp)
+set(embedded cuda/resident.cu cuda/streamed.cu cuda/neighbours.cu cuda/check.cuh cuda/mass_step.cuh cuda/formats.hpp
+  cuda/fixed_point.hpp cuda/point_clouds.hpp physics.hpp arithmetic.hpp)
 list(TRANSFORM embedded PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE embedded_files)
 set(embedded_sources ${CMAKE_CURRENT_BINARY_DIR}/embedded_sources.cpp)
 add_custom_command(
@@ -15,6 +15,7 @@ target_sources(evodevo_kernels PRIVATE
   cuda/arrangement.cpp
   cuda/cache.cpp
   cuda/compiler.cpp
+  cuda/cuda_neighbours.cpp
   cuda/cuda_simulator.cpp
   cuda/device.cpp
   cuda/error.cpp

@@ -57,6 +57,8 @@ TEST_F(Compiler, CompilesEveryFormForHopper) {
   }
 }
 
+TEST_F(Compiler, CompilesTheSearchForNeighbours) { EXPECT_FALSE(compile("cuda/neighbours.cu", {}, "sm_90").empty()); }
+
 TEST_F(Compiler, ReadsTheCache) {
   const auto compiled = compile("cuda/streamed.cu", definitions(every_feature), "sm_90");
   ASSERT_EQ(files().size(), 1u);

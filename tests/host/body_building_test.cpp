@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <tuple>
 
 namespace evodevo {
 namespace {
@@ -67,6 +68,31 @@ TEST(BodyBuilding, CoincidentMassesMakeABody) {
   const BuiltBody built = build_body(row({{1, 0}, {1, 0}, {1, 0}}, 2));
   EXPECT_EQ(built.failure, "");
   EXPECT_EQ(built.body.springs.size(), 3u);
+}
+
+TEST(BodyBuilding, APopulationIsBuiltAsEachBodyAlone) {
+  std::vector<Blueprint> blueprints{row({{0, 0}, {1, 1}, {3, 0}, {3.5, 0}}, 2), row({}, 3),
+                                    row({{0, 1}, {1, 1}, {2, 1}}, 2), row({{0, 0}, {1, 0}, {10, 0}, {10.5, 0}}, 1)};
+  // a body that comes with springs of its own
+  blueprints.push_back(row({{0, 0}, {1, 0}, {5, 0}}, 0));
+  blueprints.back().body.springs = {{1, 2, 4, 0}};
+  for (const int threads : {1, 3}) {
+    const std::vector<BuiltBody> together = build_bodies(blueprints, *make_cpu_neighbour_search(threads), threads);
+    ASSERT_EQ(together.size(), blueprints.size());
+    for (std::size_t i = 0; i < blueprints.size(); ++i) {
+      const BuiltBody alone = build_body(blueprints[i]);
+      EXPECT_EQ(together[i].failure, alone.failure) << i;
+      EXPECT_EQ(together[i].body.materials, alone.body.materials) << i;
+      ASSERT_EQ(together[i].body.masses.size(), alone.body.masses.size()) << i;
+      for (std::size_t m = 0; m < alone.body.masses.size(); ++m)
+        EXPECT_EQ(together[i].body.masses[m].rest, alone.body.masses[m].rest) << i;
+      ASSERT_EQ(together[i].body.springs.size(), alone.body.springs.size()) << i;
+      for (std::size_t s = 0; s < alone.body.springs.size(); ++s) {
+        const Spring &a = together[i].body.springs[s], &b = alone.body.springs[s];
+        EXPECT_EQ(std::tie(a.a, a.b, a.rest_length, a.material), std::tie(b.a, b.b, b.rest_length, b.material)) << i;
+      }
+    }
+  }
 }
 
 TEST(BodyBuilding, ABodyThatAloneExceedsTheStepIsTold) {

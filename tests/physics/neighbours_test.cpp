@@ -6,16 +6,17 @@
 #include <algorithm>
 #include <random>
 #include <set>
+#include <stdexcept>
 
 #include "evodevo/lattice.hpp"
 
 namespace evodevo {
 namespace {
 
-using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+using Pairs = std::vector<IndexPair>;
 
 Pairs brute_force(const std::vector<Vec3>& places, std::uint32_t k) {
-  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  std::set<IndexPair> pairs;
   const auto n = static_cast<std::uint32_t>(places.size());
   for (std::uint32_t i = 0; i < n; ++i) {
     std::vector<std::pair<double, std::uint32_t>> others;
@@ -70,6 +71,28 @@ TEST(Neighbours, NothingToJoin) {
   EXPECT_TRUE(nearest_pairs({}, 3).empty());
   EXPECT_TRUE(nearest_pairs(random_places(1, 1), 3).empty());
   EXPECT_TRUE(nearest_pairs(random_places(9, 1), 0).empty());
+}
+
+TEST(Neighbours, OfAPopulation) {
+  std::vector<std::vector<Vec3>> places;
+  for (const std::uint32_t n : {0u, 40u, 1u, 7u, 90u}) places.push_back(random_places(n, n));
+  std::vector<PointCloud> clouds;
+  for (std::uint32_t i = 0; i < places.size(); ++i) clouds.push_back({places[i], i});
+  for (const int threads : {1, 3}) {
+    std::vector<std::vector<Pairs>> found(clouds.size());
+    make_cpu_neighbour_search(threads)->find(clouds, [&](std::size_t i, std::span<const IndexPair> pairs) {
+      found[i].push_back({pairs.begin(), pairs.end()});
+    });
+    for (std::uint32_t i = 0; i < clouds.size(); ++i)
+      EXPECT_EQ(found[i], std::vector<Pairs>{brute_force(places[i], i)}) << i;
+  }
+}
+
+TEST(Neighbours, PassesOnWhatTheCallerThrows) {
+  const std::vector<Vec3> places = random_places(9, 1);
+  const std::vector<PointCloud> clouds{{places, 2}, {places, 3}};
+  EXPECT_THROW(make_cpu_neighbour_search(2)->find(clouds, [](std::size_t, auto) { throw std::range_error("no"); }),
+               std::range_error);
 }
 
 }  // namespace

@@ -1,0 +1,253 @@
+// The search on a GPU: clouds in portions, each in a workspace that no other thread uses.
+#include "cuda/cuda_neighbours.hpp"
+
+#include <algorithm>
+#include <mutex>
+
+#include "cuda/device.hpp"
+#include "cuda/kernels.hpp"
+#include "cuda/launch.hpp"
+#include "cuda/memory.hpp"
+#include "cuda/packing.hpp"
+#include "cuda/point_clouds.hpp"
+#include "parallel.hpp"
+
+namespace evodevo {
+namespace {
+
+using cuda::DeviceCloud;
+using cuda::DevicePair;
+
+static_assert(sizeof(IndexPair) == sizeof(DevicePair));
+
+constexpr const char* source = "cuda/neighbours.cu";
+
+/// A cloud that has neighbours to find, and its index among all.
+struct Job {
+  std::size_t index;
+  PointCloud cloud;
+
+  std::size_t points() const { return cloud.places.size(); }
+  std::size_t neighbours() const { return std::min<std::size_t>(cloud.k, points() - 1); }
+  /// There are no more: every point brings as many, and each pair of points is one pair.
+  std::size_t most_pairs() const { return std::min(points() * neighbours(), points() * (points() - 1) / 2); }
+};
+
+/// The arrays of a portion: the first four come from the host, the last two belong to the device.
+struct Arrays {
+  explicit Arrays(std::span<const Job> jobs) {
+    for (const Job& job : jobs) points += job.points();
+    clouds = extent.add<DeviceCloud>(jobs.size());
+    for (cuda::Section<double>& axis : axes) axis = extent.add<double>(points);
+    input = extent.size();
+    reach = extent.add<cuda::Reach>(points);
+    first_pair = extent.add<std::uint64_t>(points);
+  }
+
+  std::size_t points = 0, input = 0;  // input: bytes
+  cuda::Extent extent;
+  cuda::Section<DeviceCloud> clouds;
+  cuda::Section<double> axes[3];
+  cuda::Section<cuda::Reach> reach;
+  cuda::Section<std::uint64_t> first_pair;
+};
+
+struct Kernels {
+  explicit Kernels(cuda::KernelStore& store)
+      : find_reach(store.get(source, "evodevo_find_reach", {})),
+        count_pairs(store.get(source, "evodevo_count_pairs", {})),
+        place_pairs(store.get(source, "evodevo_place_pairs", {})),
+        write_pairs(store.get(source, "evodevo_write_pairs", {})) {}
+
+  cudaKernel_t find_reach, count_pairs, place_pairs, write_pairs;
+};
+
+/// What one thread at a time searches with.
+struct Workspace {
+  cuda::Stream stream;
+  cuda::MirroredMemory arrays, pairs;
+};
+
+/// Clouds that are searched together.
+class Portion {
+ public:
+  Portion(std::span<const Job> jobs, const Kernels& kernels, Workspace& workspace, int threads)
+      : jobs_(jobs), kernels_(kernels), workspace_(workspace), threads_(threads), arrays_(jobs) {
+    std::size_t most_pairs = 0;
+    for (const Job& job : jobs) most_pairs += job.most_pairs();
+    workspace.arrays.resize(arrays_.extent.size());
+    workspace.pairs.resize(most_pairs * sizeof(DevicePair));
+  }
+
+  /// Bytes of memory that a cloud takes.
+  static std::size_t bytes_for(const Job& job) {
+    return sizeof(DeviceCloud) + job.points() * (sizeof(Vec3) + sizeof(cuda::Reach) + sizeof(std::uint64_t)) +
+           job.most_pairs() * sizeof(DevicePair);
+  }
+
+  void find(const NeighbourSearch::Use& use) {
+    pack();
+    count();
+    write();
+    const auto* pairs = reinterpret_cast<const IndexPair*>(workspace_.pairs.host());
+    parallel_for(jobs_.size(), threads_, [&](std::size_t i) {
+      use(jobs_[i].index, {pairs + clouds()[i].first_pair, clouds()[i].pairs});
+    });
+  }
+
+ private:
+  DeviceCloud* clouds() const { return arrays_.clouds.in(workspace_.arrays.host()); }
+
+  void pack() {
+    std::uint32_t first_point = 0;
+    for (std::size_t i = 0; i < jobs_.size(); ++i) {
+      clouds()[i] = {.first_point = first_point,
+                     .points = static_cast<std::uint32_t>(jobs_[i].points()),
+                     .neighbours = static_cast<std::uint32_t>(jobs_[i].neighbours())};
+      first_point += clouds()[i].points;
+    }
+    std::byte* host = workspace_.arrays.host();
+    parallel_for(jobs_.size(), threads_, [&](std::size_t i) {
+      const std::span<const Vec3> places = jobs_[i].cloud.places;
+      double* const to[] = {arrays_.axes[0].in(host) + clouds()[i].first_point,
+                            arrays_.axes[1].in(host) + clouds()[i].first_point,
+                            arrays_.axes[2].in(host) + clouds()[i].first_point};
+      for (std::size_t p = 0; p < places.size(); ++p)
+        to[0][p] = places[p].x, to[1][p] = places[p].y, to[2][p] = places[p].z;
+      // rounding keeps the order, so that no distance within the box comes out larger
+      const Box box = bounding_box(places);
+      clouds()[i].largest_square = dot(box.high - box.low, box.high - box.low);
+    });
+  }
+
+  /// What the kernels are told.
+  cuda::DeviceClouds description() const {
+    std::byte* device = workspace_.arrays.device();
+    return {.clouds = arrays_.clouds.in(device),
+            .x = arrays_.axes[0].in(device),
+            .y = arrays_.axes[1].in(device),
+            .z = arrays_.axes[2].in(device),
+            .reach = arrays_.reach.in(device),
+            .first_pair = arrays_.first_pair.in(device),
+            .count = static_cast<std::uint32_t>(jobs_.size()),
+            .points = static_cast<std::uint32_t>(arrays_.points)};
+  }
+
+  /// The blocks that have a warp for each of `items`.
+  static dim3 blocks_for(std::size_t items) {
+    constexpr std::size_t warps = cuda::search_threads / 32;
+    return dim3(static_cast<unsigned>((items + warps - 1) / warps));
+  }
+
+  template <class... Arguments>
+  void launch(cudaKernel_t kernel, std::size_t warps, Arguments... arguments) {
+    cuda::launch(kernel, blocks_for(warps), cuda::search_threads, 0, workspace_.stream, description(), arguments...);
+  }
+
+  void copy_clouds(cudaMemcpyKind direction) {
+    const cuda::MirroredMemory& memory = workspace_.arrays;
+    const bool up = direction == cudaMemcpyHostToDevice;
+    cuda::check(cudaMemcpyAsync(arrays_.clouds.in(up ? memory.device() : memory.host()),
+                                arrays_.clouds.in(up ? memory.host() : memory.device()),
+                                jobs_.size() * sizeof(DeviceCloud), direction, workspace_.stream),
+                "copying point clouds");
+  }
+
+  /// Finds every point's neighbours and the number of pairs of every cloud.
+  void count() {
+    cuda::check(cudaMemcpyAsync(workspace_.arrays.device(), workspace_.arrays.host(), arrays_.input,
+                                cudaMemcpyHostToDevice, workspace_.stream),
+                "copying points to the GPU");
+    launch(kernels_.find_reach, arrays_.points);
+    launch(kernels_.count_pairs, arrays_.points);
+    launch(kernels_.place_pairs, jobs_.size());
+    copy_clouds(cudaMemcpyDeviceToHost);
+    cuda::check(cudaStreamSynchronize(workspace_.stream), "finding neighbours on the GPU");
+  }
+
+  /// Brings all pairs to the host, one cloud behind the other.
+  void write() {
+    std::uint64_t pairs = 0;
+    for (std::size_t i = 0; i < jobs_.size(); ++i) {
+      clouds()[i].first_pair = pairs;
+      pairs += clouds()[i].pairs;
+    }
+    copy_clouds(cudaMemcpyHostToDevice);
+    launch(kernels_.write_pairs, arrays_.points, reinterpret_cast<DevicePair*>(workspace_.pairs.device()));
+    cuda::check(cudaMemcpyAsync(workspace_.pairs.host(), workspace_.pairs.device(), pairs * sizeof(DevicePair),
+                                cudaMemcpyDeviceToHost, workspace_.stream),
+                "copying pairs from the GPU");
+    cuda::check(cudaStreamSynchronize(workspace_.stream), "finding neighbours on the GPU");
+  }
+
+  std::span<const Job> jobs_;
+  const Kernels& kernels_;
+  Workspace& workspace_;
+  int threads_;
+  Arrays arrays_;
+};
+
+class CudaNeighbourSearch final : public NeighbourSearch {
+ public:
+  CudaNeighbourSearch(int threads, std::size_t memory)
+      : threads_(threads), largest_portion_(memory), store_(cuda::current_device().architecture), kernels_(store_) {}
+
+  void find(std::span<const PointCloud> clouds, const Use& use) override {
+    std::vector<Job> jobs;
+    std::vector<std::size_t> without_pairs;
+    for (std::size_t i = 0; i < clouds.size(); ++i) {
+      if (clouds[i].places.size() < 2 || clouds[i].k == 0)
+        without_pairs.push_back(i);
+      else
+        jobs.push_back({i, clouds[i]});
+    }
+    parallel_for(without_pairs.size(), threads_, [&](std::size_t i) { use(without_pairs[i], {}); });
+    if (jobs.empty()) return;
+    std::unique_ptr<Workspace> workspace = take_workspace();
+    for (std::span<const Job> left = jobs; !left.empty();) {
+      const std::size_t count = portion_from(left);
+      Portion(left.first(count), kernels_, *workspace, threads_).find(use);
+      left = left.subspan(count);
+    }
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(workspace));
+  }
+
+ private:
+  std::unique_ptr<Workspace> take_workspace() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!idle_.empty()) {
+        std::unique_ptr<Workspace> workspace = std::move(idle_.back());
+        idle_.pop_back();
+        return workspace;
+      }
+    }
+    return std::make_unique<Workspace>();
+  }
+
+  /// How many of the next jobs are done together.
+  std::size_t portion_from(std::span<const Job> jobs) const {
+    std::size_t bytes = 0;
+    for (std::size_t count = 0; count < jobs.size(); ++count) {
+      bytes += Portion::bytes_for(jobs[count]);
+      if (bytes > largest_portion_) return std::max<std::size_t>(count, 1);
+    }
+    return jobs.size();
+  }
+
+  int threads_;
+  std::size_t largest_portion_;  // bytes
+  cuda::KernelStore store_;
+  Kernels kernels_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Workspace>> idle_;
+};
+
+}  // namespace
+
+std::unique_ptr<NeighbourSearch> make_cuda_neighbour_search(int threads, std::size_t memory) {
+  return std::make_unique<CudaNeighbourSearch>(threads, memory);
+}
+
+}  // namespace evodevo
