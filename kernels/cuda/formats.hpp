@@ -82,6 +82,7 @@ struct ResidentBody {
   const Integer* start;              ///< [places] what a force sum starts from, so that the magic numbers cancel
   Motion<T> motion;                  ///< [places]
   double* stress;                    ///< [slots] sum of |force|, N
+  T* recent_stress;                  ///< [slots] of it what is not yet in `stress`, units; where chunked
   Answer* answer;
   std::uint64_t first_step;  ///< since birth
   double energy_bound;       ///< J

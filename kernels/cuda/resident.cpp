@@ -102,6 +102,7 @@ void Resident<T>::reserve() {
   for (Section<T>& plane : motion_) plane = state.add<T>(places);
   answer_ = state.add<Answer>(1);
   stress_ = sums.add<double>(features_.stress ? arrangement_.slots.size() : 0);
+  recent_stress_ = sums.add<T>(features_.stress && form().chunked ? arrangement_.slots.size() : 0);
   sizes_ = {input.size(), state.size(), sums.size()};
 }
 
@@ -174,6 +175,7 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
           .motion = {motion_[0].in(device.state), motion_[1].in(device.state), motion_[2].in(device.state),
                      motion_[3].in(device.state), motion_[4].in(device.state), motion_[5].in(device.state)},
           .stress = stress_.in(device.sums),
+          .recent_stress = recent_stress_.in(device.sums),
           .answer = answer_.in(device.state),
           .first_step = task_->state->steps,
           .energy_bound = guard.bound(),

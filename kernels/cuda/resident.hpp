@@ -70,6 +70,7 @@ class Resident {
   Section<T> motion_[6];
   Section<Answer> answer_;
   Section<double> stress_;
+  Section<T> recent_stress_;
 };
 
 extern template class Resident<float>;
