@@ -113,10 +113,10 @@ BuiltBody build_body(Blueprint blueprint) {
   return finish(std::move(blueprint.body));
 }
 
-std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, int threads) {
+std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, Workers& workers) {
   std::vector<BuiltBody> built(blueprints.size());
   std::vector<std::vector<Vec3>> places(blueprints.size());
-  parallel_for(blueprints.size(), threads, [&](std::size_t i) {
+  workers.for_each(blueprints.size(), [&](std::size_t i) {
     built[i].failure = blueprint_failure(blueprints[i]);
     if (built[i].failure.empty()) places[i] = rest_places(blueprints[i].body);
   });

@@ -7,6 +7,7 @@
 
 #include "evodevo/encoding.hpp"
 #include "neighbours.hpp"
+#include "parallel.hpp"
 #include "simulator.hpp"
 
 namespace evodevo {
@@ -22,8 +23,8 @@ struct BuiltBody {
 /// centre of mass over the origin.
 BuiltBody build_body(Blueprint blueprint);
 
-/// The same for a population, whose neighbours are searched for together; on `threads` cores (0: all).
-std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, int threads);
+/// The same for a population, whose neighbours are searched for together.
+std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, Workers& workers);
 
 /// Why this body, its masses at `places`, cannot be simulated with this step: "unstable dt: …"; empty where it can.
 std::string step_failure(const Body& body, std::span<const Vec3> places, const Scene& scene, const Stepping& stepping);

@@ -113,6 +113,8 @@ class Editor {
   void move_springs() {
     std::vector<Spring> springs;
     std::vector<double> stress;
+    springs.reserve(living_.body.springs.size() + edits_.new_springs.size());
+    stress.reserve(springs.capacity());
     for (std::size_t i = 0; i < living_.body.springs.size(); ++i) {
       const Spring& spring = living_.body.springs[i];
       if (spring_gone_[i] || mass_gone_[spring.a] || mass_gone_[spring.b]) continue;
@@ -137,9 +139,14 @@ class Editor {
         if (new_key(*spring) == key) refuse(pair_text(*spring) + ", which are joined already");
     };
     if (const auto twin = std::adjacent_find(keys.begin(), keys.end()); twin != keys.end()) refuse_pair(*twin);
-    for (const Spring& spring : living_.body.springs)
+    std::vector<bool> gets_spring(living_.body.masses.size(), false);
+    for (const NewSpring& spring : arrivals)
+      gets_spring[new_index_[spring.a]] = gets_spring[new_index_[spring.b]] = true;
+    for (const Spring& spring : living_.body.springs) {
+      if (!gets_spring[spring.a] || !gets_spring[spring.b]) continue;
       if (const auto key = pair_key(spring.a, spring.b); std::binary_search(keys.begin(), keys.end(), key))
         refuse_pair(key);
+    }
   }
 
   void add_spring(const NewSpring& spring) {

@@ -67,13 +67,17 @@ std::vector<Result> Evaluation::evaluate_cohort(std::span<const Newborn> newborn
 
 std::vector<Life> Evaluation::birth(std::span<const Newborn> newborns) const {
   const BusyClock::Span span(decode_);
+  std::vector<Blueprint> blueprints(newborns.size());
+  workers_.for_each(newborns.size(), [&](std::size_t i) {
+    blueprints[i] = experiment_.encoding->decode(*newborns[i].genome, experiment_.world);
+  });
+  std::vector<BuiltBody> built = build_bodies(std::move(blueprints), simulator_.neighbours(), workers_);
   std::vector<Life> lives(newborns.size());
   workers_.for_each(lives.size(), [&](std::size_t i) {
     Life& life = lives[i];
     life.newborn = newborns[i];
-    BuiltBody built = build_body(experiment_.encoding->decode(*life.newborn.genome, experiment_.world));
-    if (!built.failure.empty()) return end(life, Status::invalid, std::move(built.failure));
-    life.living.body = std::move(built.body);
+    if (!built[i].failure.empty()) return end(life, Status::invalid, std::move(built[i].failure));
+    life.living.body = std::move(built[i].body);
     life.living.state = state_at_birth(life.living.body, experiment_.scene);
     check_step(life);
   });

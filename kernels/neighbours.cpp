@@ -64,14 +64,14 @@ using Tree =
 
 class CpuNeighbourSearch final : public NeighbourSearch {
  public:
-  explicit CpuNeighbourSearch(int threads) : threads_(threads) {}
+  explicit CpuNeighbourSearch(int threads) : workers_(threads) {}
 
   void find(std::span<const PointCloud> clouds, const Use& use) override {
-    parallel_for(clouds.size(), threads_, [&](std::size_t i) { use(i, nearest_pairs(clouds[i].places, clouds[i].k)); });
+    workers_.for_each(clouds.size(), [&](std::size_t i) { use(i, nearest_pairs(clouds[i].places, clouds[i].k)); });
   }
 
  private:
-  int threads_;
+  Workers workers_;
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "evodevo/body.hpp"
+#include "neighbours.hpp"
 #include "scene.hpp"
 
 namespace evodevo {
@@ -64,6 +65,9 @@ class Simulator {
   /// Moves every task's body by `steps` time steps. A body that diverges stops there and disturbs no other.
   /// May be called from several threads at once.
   virtual void run(std::span<Task> tasks, std::uint64_t steps, Recording recording) = 0;
+
+  /// A search for neighbours on the same device.
+  virtual NeighbourSearch& neighbours() = 0;
 
   /// How many calls of run() at once keep the device busy: while the bodies of one move, those of others are prepared.
   virtual int concurrency() const { return 1; }

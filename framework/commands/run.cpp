@@ -1,4 +1,6 @@
 // evodevo run, resume and check.
+#include "commands/run.hpp"
+
 #include <csignal>
 #include <iostream>
 
@@ -44,29 +46,13 @@ std::string resume_command_for(const Archive& archive) {
   return program_name() + " resume " + archive.folder().string();
 }
 
-/// Evolves until the end or an interruption and says what came out.
-int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive) {
-  std::cout << experiment.name << " on " << simulator.device() << ", "
-            << thread_count(static_cast<int>(experiment.threads)) << " threads; writing " << archive.folder().string()
-            << std::endl;
-  stop_on_interrupt();
-  ProgressDisplay progress(experiment, archive.generations(), stop_requested);
-  TimeSpent time;
-  try {
-    time = evolve(experiment, simulator, archive, stop_requested, progress.observer());
-  } catch (const std::exception&) {
-    progress.finish();
-    std::cerr << "the run stopped; what is committed is safe: " << resume_command_for(archive)
-              << " goes on from there\n";
-    throw;
-  }
-  progress.finish();
-  print_outcome(experiment, archive, progress);
-  print_time_spent(time, simulator);
+/// What a failure leaves behind.
+std::string state_of(const Archive& archive) {
   const std::vector<Summary> generations = archive.generations();
-  if (!generations.empty() && generations.back().evaluations >= experiment.evaluations) return 0;
-  std::cout << "interrupted; to go on: " << resume_command_for(archive) << std::endl;
-  return interrupted;
+  return (generations.empty()
+              ? "no generation is complete; "
+              : "the run is complete up to generation " + std::to_string(generations.back().generation) + "; ") +
+         resume_command_for(archive) + " goes on from there";
 }
 
 void print_warnings(const Experiment& experiment) {
@@ -86,6 +72,28 @@ void warn_of_differences(const Experiment& experiment, const Simulator& simulato
 }
 
 }  // namespace
+
+int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive) {
+  std::cout << experiment.name << " on " << simulator.device() << ", "
+            << thread_count(static_cast<int>(experiment.threads)) << " threads; writing " << archive.folder().string()
+            << std::endl;
+  stop_on_interrupt();
+  ProgressDisplay progress(experiment, archive.generations(), stop_requested);
+  TimeSpent time;
+  try {
+    time = evolve(experiment, simulator, archive, stop_requested, progress.observer());
+  } catch (const std::exception& error) {
+    progress.finish();
+    throw std::runtime_error(std::string(error.what()) + "\n" + state_of(archive));
+  }
+  progress.finish();
+  print_outcome(experiment, archive, progress);
+  print_time_spent(time, simulator);
+  const std::vector<Summary> generations = archive.generations();
+  if (!generations.empty() && generations.back().evaluations >= experiment.evaluations) return 0;
+  std::cout << "interrupted; to go on: " << resume_command_for(archive) << std::endl;
+  return interrupted;
+}
 
 int run_command(const Arguments& arguments) {
   CommandLine line{"run EXPERIMENT.toml [options]", {"EXPERIMENT.toml"}, {}};

@@ -11,7 +11,7 @@ template <class T>
 class CpuSimulator final : public Simulator {
  public:
   CpuSimulator(const Scene& scene, const Stepping& stepping, int threads)
-      : scene_(scene), stepping_(stepping), workers_(threads), kernels_(cpu::kernels<T>()) {}
+      : scene_(scene), stepping_(stepping), workers_(threads), neighbours_(make_cpu_neighbour_search(threads)), kernels_(cpu::kernels<T>()) {}
 
   void run(std::span<Task> tasks, std::uint64_t steps, Recording recording) override {
     workers_.for_each(tasks.size(), [&](std::size_t i) {
@@ -19,12 +19,15 @@ class CpuSimulator final : public Simulator {
     });
   }
 
+  NeighbourSearch& neighbours() override { return *neighbours_; }
+
   std::string device() const override { return std::string("cpu, ") + kernels_.instruction_set; }
 
  private:
   Scene scene_;
   Stepping stepping_;
   Workers workers_;
+  std::unique_ptr<NeighbourSearch> neighbours_;
   const cpu::Kernels<T>& kernels_;
 };
 

@@ -4,15 +4,14 @@
 #include <array>
 #include <numeric>
 
+#include "cuda/formats.hpp"
 #include "cuda/ownership.hpp"
 
 namespace evodevo::cuda {
 namespace {
 
-// few, because each pair is a kernel to compile and to start; no other size of block would let more warps be resident
-constexpr unsigned unrolled_rows[] = {4, 8, 12, 15, 16, 20, 24};
+// no other size would let more warps be resident
 constexpr unsigned blocks[] = {1, 2, 3, 4, 5, 6, 8, 10, 16, 32};
-constexpr unsigned rows_of_a_chunk = 8;
 constexpr unsigned resident_warps = 32;  // of a multiprocessor at 64 registers a thread
 
 unsigned divided(std::size_t a, std::size_t b) { return static_cast<unsigned>((a + b - 1) / b); }

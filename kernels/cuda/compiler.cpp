@@ -49,10 +49,11 @@ std::string compiler_version() {
   return std::to_string(major) + "." + std::to_string(minor);
 }
 
-std::string_view source_named(std::string_view name) {
-  for (const EmbeddedSource& source : embedded_sources())
-    if (source.name == name) return source.text;
-  throw std::logic_error("no embedded source " + std::string(name));
+/// The compiler's options. Contraction would make a result depend on which features are compiled in.
+std::vector<std::string> options_for(const Target& target, const std::vector<std::string>& definitions) {
+  std::vector<std::string> options{target.option, "-std=c++20", "-fmad=false", "-ftz=true"};
+  for (const std::string& definition : definitions) options.push_back("-D" + definition);
+  return options;
 }
 
 /// Everything that machine code depends on.
@@ -66,19 +67,21 @@ std::string key_of(std::string_view name, const std::vector<std::string>& option
 
 class Program {
  public:
-  explicit Program(std::string_view name) {
+  Program(const std::vector<EmbeddedSource>& sources, std::string_view name) {
     std::vector<std::string> names, texts;
-    for (const EmbeddedSource& source : embedded_sources())
-      names.emplace_back(source.name), texts.emplace_back(source.text);
+    const char* main = nullptr;
+    for (const EmbeddedSource& source : sources) names.emplace_back(source.name), texts.emplace_back(source.text);
     for (const EmbeddedSource& source : standard_headers)
       names.emplace_back(source.name), texts.emplace_back(source.text);
     std::vector<const char*> name_pointers, text_pointers;
     for (std::size_t i = 0; i < names.size(); ++i) {
       name_pointers.push_back(names[i].c_str());
       text_pointers.push_back(texts[i].c_str());
+      if (names[i] == name) main = texts[i].c_str();
     }
-    check(nvrtcCreateProgram(&program_, std::string(source_named(name)).c_str(), std::string(name).c_str(),
-                             static_cast<int>(names.size()), text_pointers.data(), name_pointers.data()),
+    if (main == nullptr) throw std::logic_error("no embedded source " + std::string(name));
+    check(nvrtcCreateProgram(&program_, main, std::string(name).c_str(), static_cast<int>(names.size()),
+                             text_pointers.data(), name_pointers.data()),
           "reading a kernel");
   }
   Program(const Program&) = delete;
@@ -119,16 +122,19 @@ class Program {
 std::vector<char> compile(std::string_view name, const std::vector<std::string>& definitions,
                           const std::string& architecture) {
   const Target target = target_for(architecture);
-  // contraction would make a result depend on which features are compiled in
-  std::vector<std::string> options{target.option, "-std=c++20", "-fmad=false", "-ftz=true"};
-  for (const std::string& definition : definitions) options.push_back("-D" + definition);
-  const std::string key = key_of(name, options);
+  const std::string key = key_of(name, options_for(target, definitions));
   if (std::optional<std::vector<char>> code = load(key)) return *std::move(code);
-  Program program(name);
-  program.compile(options);
-  std::vector<char> code = program.code(target.machine_code);
+  std::vector<char> code = compile(embedded_sources(), name, definitions, architecture);
   store(key, code);
   return code;
+}
+
+std::vector<char> compile(const std::vector<EmbeddedSource>& sources, std::string_view name,
+                          const std::vector<std::string>& definitions, const std::string& architecture) {
+  const Target target = target_for(architecture);
+  Program program(sources, name);
+  program.compile(options_for(target, definitions));
+  return program.code(target.machine_code);
 }
 
 }  // namespace evodevo::cuda

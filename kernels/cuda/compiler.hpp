@@ -23,4 +23,8 @@ const std::vector<EmbeddedSource>& embedded_sources();
 std::vector<char> compile(std::string_view name, const std::vector<std::string>& definitions,
                           const std::string& architecture);
 
+/// The same from other sources than the embedded ones, past the cache.
+std::vector<char> compile(const std::vector<EmbeddedSource>& sources, std::string_view name,
+                          const std::vector<std::string>& definitions, const std::string& architecture);
+
 }  // namespace evodevo::cuda

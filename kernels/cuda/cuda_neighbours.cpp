@@ -71,8 +71,8 @@ struct Workspace {
 /// Clouds that are searched together.
 class Portion {
  public:
-  Portion(std::span<const Job> jobs, const Kernels& kernels, Workspace& workspace, int threads)
-      : jobs_(jobs), kernels_(kernels), workspace_(workspace), threads_(threads), arrays_(jobs) {
+  Portion(std::span<const Job> jobs, const Kernels& kernels, Workspace& workspace, Workers& workers)
+      : jobs_(jobs), kernels_(kernels), workspace_(workspace), workers_(workers), arrays_(jobs) {
     std::size_t most_pairs = 0;
     for (const Job& job : jobs) most_pairs += job.most_pairs();
     workspace.arrays.resize(arrays_.extent.size());
@@ -90,7 +90,7 @@ class Portion {
     count();
     write();
     const auto* pairs = reinterpret_cast<const IndexPair*>(workspace_.pairs.host());
-    parallel_for(jobs_.size(), threads_, [&](std::size_t i) {
+    workers_.for_each(jobs_.size(), [&](std::size_t i) {
       use(jobs_[i].index, {pairs + clouds()[i].first_pair, clouds()[i].pairs});
     });
   }
@@ -107,7 +107,7 @@ class Portion {
       first_point += clouds()[i].points;
     }
     std::byte* host = workspace_.arrays.host();
-    parallel_for(jobs_.size(), threads_, [&](std::size_t i) {
+    workers_.for_each(jobs_.size(), [&](std::size_t i) {
       const std::span<const Vec3> places = jobs_[i].cloud.places;
       double* const to[] = {arrays_.axes[0].in(host) + clouds()[i].first_point,
                             arrays_.axes[1].in(host) + clouds()[i].first_point,
@@ -183,14 +183,14 @@ class Portion {
   std::span<const Job> jobs_;
   const Kernels& kernels_;
   Workspace& workspace_;
-  int threads_;
+  Workers& workers_;
   Arrays arrays_;
 };
 
 class CudaNeighbourSearch final : public NeighbourSearch {
  public:
   CudaNeighbourSearch(int threads, std::size_t memory)
-      : threads_(threads), largest_portion_(memory), store_(cuda::current_device().architecture), kernels_(store_) {}
+      : workers_(threads), largest_portion_(memory), store_(cuda::current_device().architecture), kernels_(store_) {}
 
   void find(std::span<const PointCloud> clouds, const Use& use) override {
     std::vector<Job> jobs;
@@ -201,12 +201,12 @@ class CudaNeighbourSearch final : public NeighbourSearch {
       else
         jobs.push_back({i, clouds[i]});
     }
-    parallel_for(without_pairs.size(), threads_, [&](std::size_t i) { use(without_pairs[i], {}); });
+    workers_.for_each(without_pairs.size(), [&](std::size_t i) { use(without_pairs[i], {}); });
     if (jobs.empty()) return;
     std::unique_ptr<Workspace> workspace = take_workspace();
     for (std::span<const Job> left = jobs; !left.empty();) {
       const std::size_t count = portion_from(left);
-      Portion(left.first(count), kernels_, *workspace, threads_).find(use);
+      Portion(left.first(count), kernels_, *workspace, workers_).find(use);
       left = left.subspan(count);
     }
     const std::lock_guard lock(mutex_);
@@ -236,7 +236,7 @@ class CudaNeighbourSearch final : public NeighbourSearch {
     return jobs.size();
   }
 
-  int threads_;
+  Workers workers_;
   std::size_t largest_portion_;  // bytes
   cuda::KernelStore store_;
   Kernels kernels_;

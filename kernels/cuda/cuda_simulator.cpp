@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "cuda/cuda_neighbours.hpp"
 #include "cuda/device.hpp"
 #include "cuda/portion.hpp"
 #include "guard.hpp"
@@ -16,7 +17,7 @@ namespace {
 
 static_assert(cuda::guard_interval == EnergyGuard::interval);
 
-constexpr std::size_t most_streams = 8;  // of one batch
+constexpr std::size_t most_streams = 4;  // of one batch; with all batches as many as the device has queues
 constexpr int batches_at_once = 8;       // one moves, others are prepared, read out or on their way
 // of the free memory, which other programs want to use too
 constexpr double share_of_memory = 0.8;
@@ -72,7 +73,8 @@ class DeviceSimulator final : public CudaSimulator {
         largest_portion_(memory),
         device_(cuda::current_device()),
         kernels_(device_.architecture),
-        workers_(threads) {}
+        workers_(threads),
+        neighbours_(make_cuda_neighbour_search(threads)) {}
 
   void run(std::span<Task> tasks, std::uint64_t steps, Recording recording) override {
     const cuda::Run run{scene_,
@@ -94,6 +96,8 @@ class DeviceSimulator final : public CudaSimulator {
     device_seconds_ = seconds;
     most_portions_ = std::max(most_portions_, portions);
   }
+
+  NeighbourSearch& neighbours() override { return *neighbours_; }
 
   int concurrency() const override { return batches_at_once; }
 
@@ -156,6 +160,7 @@ class DeviceSimulator final : public CudaSimulator {
   cuda::Device device_;
   cuda::KernelStore kernels_;
   Workers workers_;
+  std::unique_ptr<NeighbourSearch> neighbours_;
   Lanes lanes_;
   BusyClock busy_;
   mutable std::mutex mutex_;

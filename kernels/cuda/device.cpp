@@ -19,13 +19,18 @@ void check_driver() {
   int driver = 0, runtime = 0;
   check(cudaDriverGetVersion(&driver), "asking for the driver's version");
   check(cudaRuntimeGetVersion(&runtime), "asking for the runtime's version");
-  if (driver == 0) throw std::runtime_error("CUDA: no NVIDIA driver is installed; install one");
-  if (driver / 1000 < runtime / 1000)
-    throw std::runtime_error("CUDA: the NVIDIA driver is too old: it knows CUDA " + version(driver) +
-                             ", this program needs " + version(runtime / 1000 * 1000) + "; install a newer driver");
+  if (const std::string obstacle = driver_obstacle(driver, runtime); !obstacle.empty())
+    throw std::runtime_error(obstacle);
 }
 
 }  // namespace
+
+std::string driver_obstacle(int driver, int runtime) {
+  if (driver == 0) return "CUDA: no NVIDIA driver is installed; install one";
+  if (driver / 1000 >= runtime / 1000) return {};
+  return "CUDA: the NVIDIA driver is too old: it knows CUDA " + version(driver) + ", this program needs " +
+         version(runtime / 1000 * 1000) + "; install a newer driver";
+}
 
 Device current_device() {
   // hardware queues; with the usual 8, launches for bodies of different forms would wait for each other

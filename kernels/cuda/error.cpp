@@ -12,14 +12,24 @@ const char* remedy(cudaError_t result) {
     case cudaErrorNoDevice:
       return "; check that nvidia-smi lists a GPU and that CUDA_VISIBLE_DEVICES does not hide it";
     case cudaErrorMemoryAllocation:
-      return "; end other programs that use the GPU (nvidia-smi lists them), or evaluate fewer bodies at once";
+      return "; end other programs that use that memory (nvidia-smi lists those on the GPU), or evaluate fewer bodies "
+             "at once";
     case cudaErrorNoKernelImageForDevice:
     case cudaErrorUnsupportedPtxVersion:
       return "; this GPU and the CUDA toolkit that the program was built with do not fit: build with a newer toolkit, "
              "or install a newer driver";
     case cudaErrorDevicesUnavailable:
       return "; another program holds the GPU exclusively (nvidia-smi lists it)";
+    case cudaErrorSystemDriverMismatch:
+      return "; the driver was updated while it ran: restart the machine";
+    case cudaErrorSystemNotReady:
+      return "; the machine needs NVIDIA's fabric manager: start the service nvidia-fabricmanager";
+    case cudaErrorECCUncorrectable:
+      return "; the GPU's memory is damaged: reset the GPU (nvidia-smi --gpu-reset) or use another one";
     case cudaErrorIllegalAddress:
+    case cudaErrorIllegalInstruction:
+    case cudaErrorMisalignedAddress:
+    case cudaErrorHardwareStackError:
     case cudaErrorLaunchFailure:
       return "; this is an error in evodevo or in the hardware: please report it with the experiment's file; nothing "
              "more can be computed on the device in this process";

@@ -34,11 +34,9 @@ std::vector<std::string> definitions(const Features& features, const ResidentFor
     return std::string("EVODEVO_") + name + "=" + std::to_string(value);
   };
   std::vector<std::string> all = definitions(features);
-  all.push_back(number("ROWS", form.rows));
   all.push_back(number("MASSES", form.masses_per_thread));
   all.push_back(number("CHUNKED", form.chunked));
   all.push_back(number("RECORDS_ON_CHIP", form.records_on_chip));
-  all.push_back(number("TURNING", form.turning));
   all.push_back(number("OFFSET_SHIFT", form.wide_offsets ? (features.float64 ? 3 : 2) : 0));
   all.push_back(number("MAX_THREADS", 32 * largest_block(features.float64)));
   return all;

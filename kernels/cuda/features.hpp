@@ -23,10 +23,9 @@ Features features_of(const Scene& scene, Precision precision, Recording recordin
 
 /// What of a body's layout is compiled into the kernel that keeps it on the chip.
 struct ResidentForm {
-  unsigned rows = 0, masses_per_thread = 0;
+  unsigned masses_per_thread = 0;
   bool chunked = false;          ///< more than one chunk of rows for each warp
   bool records_on_chip = false;  ///< springs in shared memory, else streamed from the device's
-  bool turning = false;          ///< some warps' rows belong to more than one group of masses
   bool wide_offsets = false;     ///< masses beyond the first 64 KiB
 
   friend auto operator<=>(const ResidentForm&, const ResidentForm&) = default;

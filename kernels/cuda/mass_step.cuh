@@ -18,24 +18,26 @@ constexpr bool work = EVODEVO_WORK;
 
 using Place = physics::Triple<Number>;
 
-/// A material in one step.
-struct Actuated {
-  Entry<Number> entry;
-  Number rate;  // of L/L0, 1/s
-};
+/// Where in its cycle a material is in the step `step` since birth, half turns. It is reduced in double precision, so
+/// that late times lose no digits.
+__device__ __forceinline__ double half_turns(const Actuator& actuator, std::uint64_t step, double dt) {
+  const double turns = actuator.frequency * (static_cast<double>(step) * dt);
+  return 2 * (turns - floor(turns)) + actuator.phase;
+}
 
-/// A material in the step `step` since birth. The phase is reduced in double precision, so that late times lose no
-/// digits.
-__device__ __forceinline__ Actuated actuated(const Actuator& actuator, std::uint64_t step, double dt) {
-  double length = 1, rate = 0;
-  if constexpr (actuation) {
-    const double turns = actuator.frequency * (static_cast<double>(step) * dt);
-    const double half_turns = 2 * (turns - floor(turns)) + actuator.phase;
-    length += actuator.amplitude * sinpi(half_turns);
-    if constexpr (work) rate = 2 * 3.14159265358979323846 * actuator.frequency * actuator.amplitude * cospi(half_turns);
-  }
-  return {{static_cast<Number>(actuator.stiffness), static_cast<Number>(actuator.stiffness * length)},
-          static_cast<Number>(rate)};
+/// A material in a step.
+__device__ __forceinline__ Entry<Number> entry_of(const Actuator& actuator, std::uint64_t step, double dt) {
+  double length = 1;  // L/L0
+  if constexpr (actuation) length += actuator.amplitude * sinpi(half_turns(actuator, step, dt));
+  return {static_cast<Number>(actuator.stiffness), static_cast<Number>(actuator.stiffness * length)};
+}
+
+/// The rate of L/L0 in a step, 1/s.
+__device__ __forceinline__ Number length_rate(const Actuator& actuator, std::uint64_t step, double dt) {
+  double rate = 0;
+  if constexpr (actuation)
+    rate = 2 * 3.14159265358979323846 * actuator.frequency * actuator.amplitude * cospi(half_turns(actuator, step, dt));
+  return static_cast<Number>(rate);
 }
 
 /// All other forces, and the step of one mass.
@@ -62,11 +64,13 @@ __device__ __forceinline__ void move(const World<Number>& world, Place& place, P
     v.y *= world.decay;
     v.z *= world.decay;
   }
-  // of a mass off the floor friction takes nothing, and most are
-  if (friction && push > 0) {
-    const Number kept = physics::friction_factor(v.x, v.y, world.friction_dt * push * inverse_mass);
-    v.x *= kept;
-    v.y *= kept;
+  if constexpr (friction) {
+    // of a mass off the floor it takes nothing, and most are
+    if (push > 0) {
+      const Number kept = physics::friction_factor(v.x, v.y, world.friction_dt * push * inverse_mass);
+      v.x *= kept;
+      v.y *= kept;
+    }
   }
   place.x = physics::moved(place.x, v.x, world.dt);
   place.y = physics::moved(place.y, v.y, world.dt);

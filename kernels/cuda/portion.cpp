@@ -2,20 +2,14 @@
 
 #include <algorithm>
 
+#include "cuda/launch.hpp"
+
 namespace evodevo::cuda {
 namespace {
 
 /// Room for one body's description of either kind.
 template <class T>
 constexpr std::size_t header_bytes = (std::max(sizeof(ResidentBody<T>), sizeof(StreamedBody<T>)) + 31) / 32 * 32;
-
-template <class... Arguments>
-void launch(cudaKernel_t kernel, dim3 grid, unsigned threads, std::size_t shared_bytes, cudaStream_t stream,
-            Arguments... arguments) {
-  void* pointers[] = {&arguments...};
-  check(cudaLaunchKernel(reinterpret_cast<const void*>(kernel), grid, dim3(threads), pointers, shared_bytes, stream),
-        "starting a kernel");
-}
 
 }  // namespace
 
@@ -46,6 +40,10 @@ Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MirroredMemory& me
     else
       streamed_.push_back(i);
   }
+  for (auto& [launch, members] : resident_)
+    std::stable_sort(members.begin(), members.end(), [&](std::size_t a, std::size_t b) {
+      return std::get<Resident<T>>(plans[a].body).slots() > std::get<Resident<T>>(plans[b].body).slots();
+    });
   memory_.resize(bytes_for(sizes_, plans.size()));
   // descriptions, then inputs, then states, then sums
   const auto regions = [&](std::byte* base) {
@@ -103,10 +101,9 @@ std::vector<typename Portion<T>::ReadyLaunch> Portion<T>::ready_launches(KernelS
     launches[i].kernel =
         kernels.get("cuda/resident.cu", "evodevo_run_resident", definitions(launch.features, launch.form));
   });
-  // the longest first, so that short ones fill the gaps at the end
-  std::sort(launches.begin(), launches.end(), [](const ReadyLaunch& a, const ReadyLaunch& b) {
-    return a.launch.threads * a.launch.form.rows > b.launch.threads * b.launch.form.rows;
-  });
+  // the largest first, so that small ones fill the gaps at the end
+  std::sort(launches.begin(), launches.end(),
+            [](const ReadyLaunch& a, const ReadyLaunch& b) { return a.launch.threads > b.launch.threads; });
   return launches;
 }
 

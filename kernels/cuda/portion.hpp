@@ -80,8 +80,8 @@ class Portion {
   MirroredMemory& memory_;
   World<T> world_;
   Sizes sizes_;
-  std::vector<Regions> host_, device_;  // of each plan
-  std::map<Launch, std::vector<std::size_t>> resident_;
+  std::vector<Regions> host_, device_;                   // of each plan
+  std::map<Launch, std::vector<std::size_t>> resident_;  ///< the largest bodies first
   std::vector<std::size_t> streamed_;
 };
 

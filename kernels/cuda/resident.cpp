@@ -132,18 +132,16 @@ void Resident<T>::reserve() {
   for (Section<T>& plane : motion_) plane = state.add<T>(places);
   answer_ = state.add<Answer>(1);
   stress_ = sums.add<double>(features_.stress ? arrangement().slots.size() : 0);
+  recent_stress_ = sums.add<T>(features_.stress && form().chunked ? arrangement().slots.size() : 0);
   sizes_ = {input.size(), state.size(), sums.size()};
 }
 
 template <class T>
 ResidentForm Resident<T>::form() const {
   const Shape& shape = arrangement().shape;
-  return {.rows = shape.rows,
-          .masses_per_thread = shape.masses_per_thread,
+  return {.masses_per_thread = shape.masses_per_thread,
           .chunked = shape.chunks > 1,
           .records_on_chip = records_on_chip_,
-          .turning = shape.chunks > 1 || std::any_of(arrangement().turns.begin(), arrangement().turns.end(),
-                                                     [](std::uint32_t turns) { return turns != 0; }),
           .wide_offsets = masses_bytes<T>(arrangement().groups) > largest_offset};
 }
 
@@ -204,6 +202,7 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
           .motion = {motion_[0].in(device.state), motion_[1].in(device.state), motion_[2].in(device.state),
                      motion_[3].in(device.state), motion_[4].in(device.state), motion_[5].in(device.state)},
           .stress = stress_.in(device.sums),
+          .recent_stress = recent_stress_.in(device.sums),
           .answer = answer_.in(device.state),
           .first_step = task_->state->steps,
           .energy_bound = guard.bound(),
@@ -212,6 +211,7 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
           .groups = arrangement().groups,
           .warps = arrangement().shape.warps,
           .chunks = arrangement().shape.chunks,
+          .rows = arrangement().shape.rows,
           .entries = static_cast<std::uint32_t>(task_->body->materials.size() + 1),
           .table_steps = chip_.table_steps,
           .table_offset = static_cast<std::uint32_t>(chip_.table_offset),

@@ -9,11 +9,9 @@
 
 namespace evodevo::cuda {
 
-constexpr unsigned rows = EVODEVO_ROWS;                    // in a row, unrolled
 constexpr unsigned masses_per_thread = EVODEVO_MASSES;     // that a thread moves
-constexpr bool chunked = EVODEVO_CHUNKED;                  // more than one times `rows` for each warp
+constexpr bool chunked = EVODEVO_CHUNKED;                  // more rows for each warp than can be unrolled
 constexpr bool records_on_chip = EVODEVO_RECORDS_ON_CHIP;  // else they are streamed from memory
-constexpr bool turning = EVODEVO_TURNING;                  // some warps' rows belong to more than one group
 constexpr unsigned offset_shift = EVODEVO_OFFSET_SHIFT;    // what offsets of masses are shifted by
 using Body = ResidentBody<Number>;
 using Fixed = FixedPoint<Number>;
@@ -26,6 +24,13 @@ extern __shared__ __align__(16) unsigned char chip[];
 template <class T>
 __device__ __forceinline__ T& on_chip(unsigned offset) {
   return *reinterpret_cast<T*>(chip + offset);
+}
+
+/// A pointer to the device's memory, said to the compiler, which otherwise cannot know that it is not to shared memory.
+template <class T>
+__device__ __forceinline__ T* in_memory(T* pointer) {
+  __builtin_assume(__isGlobal(pointer));
+  return pointer;
 }
 
 __device__ __forceinline__ Place place_at(unsigned offset) {
@@ -72,10 +77,11 @@ struct Owner {
 };
 
 /// What a thread adds up over its springs in some steps.
+template <unsigned rows>
 struct Sums {
-  Number tension[stress && !chunked ? rows : 1] = {};  // sum of |force| of the spring in each row, units
-  Number power = 0;                                    // of all, units m/s
-  Number largest = 0;                                  // |force|, units
+  Number largest = 0;            // |force|, units
+  Number row_stress[rows] = {};  // sum of |force| of the spring in each row of its only chunk, units
+  Number power = 0;              // of all, units m/s
 };
 
 /// What a thread adds up between two checks.
@@ -86,36 +92,46 @@ struct Totals {
 
 /// Where a thread's springs lie.
 struct Share {
-  const Record<Number>* records;  // of the warp's first row
+  const Record<Number>* records;  // of all slots
   unsigned owner;                 // offset of the mass that it begins with
   unsigned first_slot;
-  unsigned warp;
-  unsigned chunks;  // 0: the warp has no springs
+  unsigned slots;              // of the warp in one chunk
+  unsigned chunks;             // 0: the warp has no springs
+  const std::uint32_t* turns;  // of the warp's chunks
+
+  __device__ __forceinline__ unsigned slot(unsigned chunk) const { return first_slot + chunk * slots; }
 };
 
 __device__ __forceinline__ Share share_of(const Body& body) {
   Share share;
-  share.warp = threadIdx.x / lanes;
-  const unsigned chunks = chunked ? body.chunks : 1;
-  share.chunks = share.warp < body.warps ? chunks : 0;
-  share.first_slot = share.warp * chunks * rows * lanes + threadIdx.x % lanes;
-  share.owner = offset_of_place(body.first_group[share.warp] * lanes + threadIdx.x % lanes);
-  share.records = (records_on_chip ? &on_chip<Record<Number>>(body.record_offset) : body.records) + share.first_slot;
+  const unsigned warp = threadIdx.x / lanes, chunks = chunked ? body.chunks : 1;
+  share.slots = body.rows * lanes;
+  share.chunks = warp < body.warps ? chunks : 0;
+  share.first_slot = warp * chunks * share.slots + threadIdx.x % lanes;
+  share.turns = body.turns + warp * chunks;
+  share.owner = offset_of_place(body.first_group[warp] * lanes + threadIdx.x % lanes);
+  share.records = records_on_chip ? &on_chip<Record<Number>>(body.record_offset) : in_memory(body.records);
   return share;
 }
 
-/// Adds one spring's force to both of its ends.
-__device__ __forceinline__ void add_force(const Spring& spring, Owner& owner, unsigned rates, Sums& sums,
-                                          Number& tension_sum) {
+/// Where the lengths of one step lie in shared memory, and the rates at which they change.
+struct Lengths {
+  unsigned table;
+  unsigned rates = 0;
+};
+
+/// Adds one spring's force to both of its ends; returns its size, units.
+template <unsigned rows>
+__device__ __forceinline__ Number add_force(const Spring& spring, Owner& owner, const Lengths& lengths,
+                                            Sums<rows>& sums) {
   const auto s = physics::separation(owner.place, spring.place);
   const Number inverse = physics::inverse_length(s);
   const Number factor =
       physics::spring_factor_by_inverse(inverse, spring.entry.stiffness, spring.entry.rest_force * spring.rest_length);
   const Number tension = factor * physics::length_by_inverse(s, inverse);
   sums.largest = fmax(sums.largest, fabs(tension));
-  if constexpr (stress) tension_sum += fabs(tension);
   if constexpr (work) {
-    const Number rate = on_chip<Number>(rates + spring.table_entry / 2) * spring.rest_length;
+    const Number rate = on_chip<Number>(lengths.rates + spring.table_entry / 2) * spring.rest_length;
     sums.power += physics::actuation_power(tension, rate);
   }
   const Integer x = bits(physics::multiply_add(-factor, s.d.x, Fixed::magic));
@@ -127,45 +143,47 @@ __device__ __forceinline__ void add_force(const Spring& spring, Owner& owner, un
   owner.fx -= x;
   owner.fy -= y;
   owner.fz -= z;
+  return fabs(tension);
 }
 
-/// Adds the forces of `rows` rows. The next row's reads are issued before this row's atomics, which the compiler may
-/// not pass.
-__device__ __forceinline__ void add_forces(const Record<Number>* records, unsigned turns, unsigned table,
-                                           unsigned rates, Owner& owner, Sums& sums, double* stress_sums,
-                                           double resolution) {
+/// Adds the forces of `rows` rows, the first of which is at `slot`. The next row's reads are issued before this row's
+/// atomics, which the compiler may not pass.
+template <unsigned rows>
+__device__ __forceinline__ void add_forces(const Body& body, const Share& share, unsigned slot, unsigned turns,
+                                           const Lengths& lengths, Owner& owner, Sums<rows>& sums) {
+  const Record<Number>* records = share.records + slot;
   Record<Number> record = records[rows > 1 ? lanes : 0];
-  Spring next(records[0], table);
+  Spring next(records[0], lengths.table);
 #pragma unroll
   for (unsigned row = 0; row < rows; ++row) {
     const Spring spring = next;
-    if (row + 1 < rows) next = Spring(record, table);
+    if (row + 1 < rows) next = Spring(record, lengths.table);
     if (row + 2 < rows) record = records[(row + 2) * lanes];
-    if constexpr (stress && chunked) {
-      Number tension = 0;
-      add_force(spring, owner, rates, sums, tension);
-      stress_sums[row * lanes] += resolution * tension;
-    } else {
-      add_force(spring, owner, rates, sums, sums.tension[stress ? row : 0]);
+    const Number force = add_force(spring, owner, lengths, sums);
+    if constexpr (stress) {
+      // no thread waits for the sum in memory, which has no other writer and so no order
+      if constexpr (chunked)
+        atomicAdd(in_memory(body.recent_stress) + slot + row * lanes, force);
+      else
+        sums.row_stress[row] += force;
     }
-    if (turning && (turns >> row & 1)) {
+    if (turns >> row & 1) {
       owner.hand_in();
       owner = Owner(owner.offset + group_size);
     }
   }
 }
 
-__device__ __forceinline__ void add_spring_forces(const Body& body, const Share& share, unsigned turns, unsigned table,
-                                                  unsigned rates, Sums& sums) {
+template <unsigned rows>
+__device__ __forceinline__ void add_spring_forces(const Body& body, const Share& share, unsigned turns,
+                                                  const Lengths& lengths, Sums<rows>& sums) {
   if (share.chunks == 0) return;
   Owner owner(share.owner);
   if constexpr (chunked) {
     for (unsigned chunk = 0; chunk < share.chunks; ++chunk)
-      add_forces(share.records + chunk * rows * lanes, body.turns[share.warp * share.chunks + chunk], table, rates,
-                 owner, sums, stress ? body.stress + share.first_slot + chunk * rows * lanes : nullptr,
-                 body.resolution);
+      add_forces(body, share, share.slot(chunk), share.turns[chunk], lengths, owner, sums);
   } else {
-    add_forces(share.records, turns, table, rates, owner, sums, nullptr, 0);
+    add_forces(body, share, share.first_slot, turns, lengths, owner, sums);
   }
   owner.hand_in();
 }
@@ -211,8 +229,9 @@ __device__ __forceinline__ void move_masses(const Body& body, const World<Number
   for_each_mover(body, [&](unsigned i, unsigned place_index, unsigned offset) {
     const Place force = take_force(offset, __ldg(body.start + place_index), resolution);
     Place place = place_at(offset);
-    move(world, place, movers.velocity[i], force, gravity ? __ldg(body.mass + place_index) : 0,
-         __ldg(body.inverse_mass + place_index));
+    Number mass = 0;
+    if constexpr (gravity) mass = __ldg(body.mass + place_index);
+    move(world, place, movers.velocity[i], force, mass, __ldg(body.inverse_mass + place_index));
     set_place(offset, place);
   });
 }
@@ -233,7 +252,7 @@ __device__ __forceinline__ void load(const Body& body, Movers& movers) {
   }
   if constexpr (records_on_chip) {
     Record<Number>* records = &on_chip<Record<Number>>(body.record_offset);
-    const unsigned count = body.warps * lanes * rows * (chunked ? body.chunks : 1);
+    const unsigned count = body.warps * lanes * body.rows * (chunked ? body.chunks : 1);
     for (unsigned i = threadIdx.x; i < count; i += blockDim.x) records[i] = body.records[i];
   }
 }
@@ -255,9 +274,9 @@ __device__ __forceinline__ void store(const Body& body, const Movers& movers) {
 __device__ __noinline__ void fill_table(const Body& body, std::uint64_t step, unsigned count, double dt) {
   for (unsigned i = threadIdx.x; i < count * body.entries; i += blockDim.x) {
     const Actuator actuator = body.actuators[i % body.entries];
-    const Actuated now = actuated(actuator, step + i / body.entries, dt);
-    on_chip<Entry<Number>>(body.table_offset + i * sizeof(Entry<Number>)) = now.entry;
-    if constexpr (work) on_chip<Number>(body.rate_offset + i * sizeof(Number)) = now.rate;
+    const std::uint64_t now = step + i / body.entries;
+    on_chip<Entry<Number>>(body.table_offset + i * sizeof(Entry<Number>)) = entry_of(actuator, now, dt);
+    if constexpr (work) on_chip<Number>(body.rate_offset + i * sizeof(Number)) = length_rate(actuator, now, dt);
   }
 }
 
@@ -266,9 +285,9 @@ __device__ double elastic_energy(const Body& body, const Share& share) {
   double sum = 0;
   unsigned offset = share.owner;
   for (unsigned chunk = 0; chunk < share.chunks; ++chunk) {
-    const unsigned turns = body.turns[share.warp * share.chunks + chunk];
-    for (unsigned row = 0; row < rows; ++row) {
-      const Spring spring(share.records[(chunk * rows + row) * lanes], body.table_offset);
+    const unsigned turns = share.turns[chunk];
+    for (unsigned row = 0; row < body.rows; ++row) {
+      const Spring spring(share.records[share.slot(chunk) + row * lanes], body.table_offset);
       const auto s = physics::separation(place_at(offset), spring.place);
       // an empty slot has no stiffness
       const Number relative = spring.entry.rest_force / physics::maximum(spring.entry.stiffness, Number(1e-30));
@@ -295,7 +314,7 @@ __device__ __forceinline__ Check check_of(const Body& body, const Movers& movers
     const Place place = place_at(offset), v = movers.velocity[i];
     const Number mass = body.mass[place_index];
     check.kinetic += physics::kinetic_energy(mass, v);
-    check.moment += static_cast<double>(mass) * place.z;
+    if constexpr (gravity) check.moment += static_cast<double>(mass) * place.z;
     check.not_finite += not_finite(place, v);
   });
   return check;
@@ -304,61 +323,101 @@ __device__ __forceinline__ Check check_of(const Body& body, const Movers& movers
 /// Writes down the body's energies after `steps` steps and says whether it has diverged; the same for all threads.
 __device__ __noinline__ bool has_diverged(const Body& body, const World<Number>& world, Check check,
                                           std::uint64_t steps) {
-  double sums[] = {check.kinetic, check.moment, elastic_energy(body, share_of(body)), check.totals.power};
-  block_sum(sums);
+  __shared__ double of_warps[4][lanes];
   const bool finite = !__syncthreads_or(check.not_finite != 0);
   const bool out_of_range = __syncthreads_or(!(check.totals.largest <= body.largest_force));
+  const double kinetic = block_sum(check.kinetic, of_warps[0]);
+  const double elastic = body.resolution * block_sum(elastic_energy(body, share_of(body)), of_warps[1]);
+  double bound = body.energy_bound;
+  Answer& answer = *body.answer;
+  if constexpr (gravity) {
+    const double moment = block_sum(check.moment, of_warps[2]);
+    bound += fallen_energy(moment, world);
+    if (threadIdx.x == 0) answer.moment = moment;
+  }
+  if constexpr (work) {
+    const double power = block_sum(check.totals.power, of_warps[3]);
+    if (threadIdx.x == 0) answer.work += world.exact_dt * body.resolution * power;
+  }
   bool diverged = !finite || out_of_range;
   if (threadIdx.x == 0) {
-    const auto [kinetic, moment, elastic, power] = sums;
-    const double elastic_joules = body.resolution * elastic;
-    diverged = diverged || gained_energy(kinetic + elastic_joules, moment, body.energy_bound, world);
-    *body.answer = {
-        steps,    kinetic, elastic_joules, moment, body.answer->work + world.exact_dt * body.resolution * power,
-        diverged, finite,  out_of_range,   0};
+    diverged = diverged || !(kinetic + elastic <= bound);
+    answer.steps = steps;
+    answer.kinetic = kinetic;
+    answer.elastic = elastic;
+    answer.diverged = diverged;
+    answer.finite = finite;
+    answer.out_of_range = out_of_range;
   }
   return __syncthreads_or(diverged);
 }
 
 /// Adds the sums of some steps to the body's.
-__device__ __forceinline__ void collect(const Body& body, const Share& share, const Sums& sums, Totals& totals) {
+template <unsigned rows>
+__device__ __forceinline__ void collect(const Body& body, const Share& share, const Sums<rows>& sums, Totals& totals) {
   if (share.chunks == 0) return;
   totals.largest = fmax(totals.largest, sums.largest);
   if constexpr (work) totals.power += sums.power;
-  if constexpr (stress && !chunked) {
-    double* to = body.stress + share.first_slot;
-    double before[rows];  // read all at once, because a read must wait for the write before it
+  if constexpr (stress) {
+    for (unsigned chunk = 0; chunk < share.chunks; ++chunk) {
+      double* to = body.stress + share.slot(chunk);
+      Number* recent = body.recent_stress + share.slot(chunk);
+      double before[rows];  // read all at once, because a read must wait for the write before it
+      Number forces[rows];
 #pragma unroll
-    for (unsigned row = 0; row < rows; ++row) before[row] = to[row * lanes];
+      for (unsigned row = 0; row < rows; ++row) {
+        before[row] = to[row * lanes];
+        forces[row] = chunked ? __ldcg(recent + row * lanes) : sums.row_stress[row];
+      }
 #pragma unroll
-    for (unsigned row = 0; row < rows; ++row) to[row * lanes] = before[row] + body.resolution * sums.tension[row];
+      for (unsigned row = 0; row < rows; ++row) {
+        to[row * lanes] = before[row] + body.resolution * forces[row];
+        if constexpr (chunked) recent[row * lanes] = 0;
+      }
+    }
   }
 }
 
 /// Makes `count` steps, whose lengths are in the table. The sums live no longer than this, so that no call of a
 /// function drives them out of the registers.
+template <unsigned rows>
 __device__ __forceinline__ void advance(const Body& body, const World<Number>& world, const Share& share,
                                         unsigned turns, unsigned count, Movers& movers, Totals& totals) {
   const Number resolution = static_cast<Number>(body.resolution);
-  const unsigned row_bytes = actuation ? body.entries * sizeof(Entry<Number>) : 0;
-  unsigned table = body.table_offset, rates = work ? body.rate_offset : 0;
-  Sums sums;
+  const unsigned row_bytes = body.entries * sizeof(Entry<Number>);
+  Lengths lengths{body.table_offset};
+  if constexpr (work) lengths.rates = body.rate_offset;
+  Sums<rows> sums;
   for (unsigned step = 0; step < count; ++step) {
-    add_spring_forces(body, share, turns, table, rates, sums);
+    add_spring_forces(body, share, turns, lengths, sums);
     __syncthreads();
     move_masses(body, world, resolution, movers);
     __syncthreads();
-    table += row_bytes;
-    rates += row_bytes / 2;
+    if constexpr (actuation) lengths.table += row_bytes;
+    if constexpr (actuation && work) lengths.rates += row_bytes / 2;
   }
   collect(body, share, sums, totals);
+}
+
+/// The same with as many unrolled rows as the body has.
+template <unsigned choice = 0>
+__device__ __forceinline__ void advance_rows(const Body& body, const World<Number>& world, const Share& share,
+                                             unsigned turns, unsigned count, Movers& movers, Totals& totals) {
+  if constexpr (chunked) {
+    advance<rows_of_a_chunk>(body, world, share, turns, count, movers, totals);
+  } else if constexpr (choice < sizeof(unrolled_rows) / sizeof(unsigned)) {
+    if (body.rows == unrolled_rows[choice])
+      advance<unrolled_rows[choice]>(body, world, share, turns, count, movers, totals);
+    else
+      advance_rows<choice + 1>(body, world, share, turns, count, movers, totals);
+  }
 }
 
 extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)
     evodevo_run_resident(const World<Number> world, const Body* bodies, std::uint64_t steps) {
   const Body& body = bodies[blockIdx.x];
   const Share share = share_of(body);
-  const unsigned turns = turning && !chunked ? body.turns[share.warp] : 0;
+  const unsigned turns = chunked ? 0 : *share.turns;
   Movers movers;
   Totals totals;
   load(body, movers);
@@ -367,12 +426,13 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)
   for (std::uint64_t done = 0; done < steps;) {
     const unsigned until_check =
         static_cast<unsigned>(min(steps - done, static_cast<std::uint64_t>(guard_interval) - done % guard_interval));
-    const unsigned now = actuation ? min(until_check, body.table_steps) : until_check;
+    unsigned now = until_check;
     if constexpr (actuation) {
+      now = min(until_check, body.table_steps);
       fill_table(body, body.first_step + done, now, world.exact_dt);
       __syncthreads();
     }
-    advance(body, world, share, turns, now, movers, totals);
+    advance_rows(body, world, share, turns, now, movers, totals);
     done += now;
     if (now < until_check) continue;
     if constexpr (actuation) {

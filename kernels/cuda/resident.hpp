@@ -62,6 +62,7 @@ class Resident {
   Features features() const { return features_; }
   ResidentForm form() const;
   unsigned threads() const { return 32 * arrangement().shape.block; }
+  std::size_t slots() const { return arrangement().slots.size(); }
   std::size_t chip_bytes() const { return chip_.size; }
   Sizes sizes() const { return sizes_; }
 
@@ -97,6 +98,7 @@ class Resident {
   Section<T> motion_[6];
   Section<Answer> answer_;
   Section<double> stress_;
+  Section<T> recent_stress_;
 };
 
 extern template class Resident<float>;

@@ -25,7 +25,7 @@ __device__ __forceinline__ Place spring_forces(const Body& body, unsigned mass, 
     const Number inverse = physics::inverse_length(s);
     const Number factor =
         physics::spring_factor_by_inverse(inverse, entry.stiffness, entry.rest_force * joint.rest_length);
-    if ((stress || work) && joint.owned) {
+    if (joint.owned) {
       const Number tension = factor * physics::length_by_inverse(s, inverse);
       if constexpr (stress) body.stress[i] += fabs(tension);
       if constexpr (work)
@@ -44,10 +44,10 @@ extern "C" __global__ void evodevo_fill_tables(const World<Number> world, const 
                                                unsigned count) {
   const Body& body = bodies[blockIdx.x];
   for (unsigned i = threadIdx.x; i < count * body.entries; i += blockDim.x) {
-    const Actuated now =
-        actuated(body.actuators[i % body.entries], body.first_step + done + i / body.entries, world.exact_dt);
-    body.table[i] = now.entry;
-    if constexpr (work) body.rates[i] = now.rate;
+    const Actuator actuator = body.actuators[i % body.entries];
+    const std::uint64_t step = body.first_step + done + i / body.entries;
+    body.table[i] = entry_of(actuator, step, world.exact_dt);
+    if constexpr (work) body.rates[i] = length_rate(actuator, step, world.exact_dt);
   }
 }
 
@@ -72,12 +72,14 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_CHECK_THREADS)
   const Body& body = bodies[blockIdx.x];
   if (body.answer->diverged) return;
   const Point<Number>* places = body.places + half * body.masses;
-  double kinetic = 0, moment = 0, elastic = 0, power = 0;
+  double kinetic = 0, elastic = 0;
+  double moment = 0;  // kg m
+  double power = 0;   // W
   Number broken = 0;
   for (unsigned mass = threadIdx.x; mass < body.masses; mass += EVODEVO_CHECK_THREADS) {
     const Place place = triple(places[mass]), v = triple(body.velocities[mass]);
     kinetic += physics::kinetic_energy(body.mass[mass], v);
-    moment += static_cast<double>(body.mass[mass]) * place.z;
+    if constexpr (gravity) moment += static_cast<double>(body.mass[mass]) * place.z;
     broken += not_finite(place, v);
     if constexpr (work) {
       power += body.power[mass];
@@ -93,13 +95,27 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_CHECK_THREADS)
       elastic += physics::elastic_energy(s, entry.stiffness, joint.rest_length * relative);
     }
   }
-  double sums[] = {kinetic, moment, elastic, power};
-  block_sum(sums);
   const bool finite = !__syncthreads_or(broken != 0);
+  __shared__ double of_warps[4][lanes];
+  kinetic = block_sum(kinetic, of_warps[0]);
+  elastic = block_sum(elastic, of_warps[1]);
+  double bound = body.energy_bound;
+  Answer& answer = *body.answer;
+  if constexpr (gravity) {
+    moment = block_sum(moment, of_warps[2]);
+    bound += fallen_energy(moment, world);
+    if (threadIdx.x == 0) answer.moment = moment;
+  }
+  if constexpr (work) {
+    power = block_sum(power, of_warps[3]);
+    if (threadIdx.x == 0) answer.work += world.exact_dt * power;
+  }
   if (threadIdx.x > 0) return;
-  const bool diverged = !finite || gained_energy(sums[0] + sums[2], sums[1], body.energy_bound, world);
-  const double work_done = body.answer->work + world.exact_dt * sums[3];
-  *body.answer = {body.answer->steps + now, sums[0], sums[2], sums[1], work_done, diverged, finite, 0, 0};
+  answer.steps += now;
+  answer.kinetic = kinetic;
+  answer.elastic = elastic;
+  answer.diverged = !finite || !(kinetic + elastic <= bound);
+  answer.finite = finite;
 }
 
 }  // namespace evodevo::cuda

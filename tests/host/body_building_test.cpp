@@ -77,7 +77,8 @@ TEST(BodyBuilding, APopulationIsBuiltAsEachBodyAlone) {
   blueprints.push_back(row({{0, 0}, {1, 0}, {5, 0}}, 0));
   blueprints.back().body.springs = {{1, 2, 4, 0}};
   for (const int threads : {1, 3}) {
-    const std::vector<BuiltBody> together = build_bodies(blueprints, *make_cpu_neighbour_search(threads), threads);
+    Workers workers(threads);
+    const std::vector<BuiltBody> together = build_bodies(blueprints, *make_cpu_neighbour_search(threads), workers);
     ASSERT_EQ(together.size(), blueprints.size());
     for (std::size_t i = 0; i < blueprints.size(); ++i) {
       const BuiltBody alone = build_body(blueprints[i]);

@@ -52,8 +52,9 @@ double median(std::vector<double> values) {
 
 nlohmann::ordered_json measure_neighbours(const NeighbourSettings& settings) {
   Population population(settings.bodies);
-  parallel_for(population.size(), settings.threads,
-               [&](std::size_t i) { population[i] = random_ball(settings.masses, i); });
+  Workers(settings.threads).for_each(population.size(), [&](std::size_t i) {
+    population[i] = random_ball(settings.masses, i);
+  });
   Clouds clouds;
   for (const std::vector<Vec3>& places : population) clouds.push_back({places, settings.neighbours});
   const auto cpu = make_cpu_neighbour_search(settings.threads), cuda = make_cuda_neighbour_search(settings.threads);

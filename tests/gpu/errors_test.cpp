@@ -1,0 +1,71 @@
+// Failures of driver and device say what happened and what to do.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <stdexcept>
+
+#include "cuda/cuda_simulator.hpp"
+#include "cuda/device.hpp"
+#include "cuda/error.hpp"
+
+namespace evodevo::cuda {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::string message(cudaError_t result) {
+  try {
+    check(result, "copying bodies to the GPU");
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Errors, SuccessIsNone) { EXPECT_EQ(message(cudaSuccess), ""); }
+
+TEST(Errors, NameWhatWasTriedTheRuntimesWordsAndTheRemedy) {
+  const std::pair<cudaError_t, const char*> remedies[] = {
+      {cudaErrorInsufficientDriver, "install a newer NVIDIA driver"},
+      {cudaErrorNoDevice, "CUDA_VISIBLE_DEVICES"},
+      {cudaErrorMemoryAllocation, "evaluate fewer bodies"},
+      {cudaErrorNoKernelImageForDevice, "build with a newer toolkit"},
+      {cudaErrorDevicesUnavailable, "holds the GPU exclusively"},
+      {cudaErrorSystemDriverMismatch, "restart the machine"},
+      {cudaErrorSystemNotReady, "nvidia-fabricmanager"},
+      {cudaErrorECCUncorrectable, "reset the GPU"},
+      {cudaErrorIllegalAddress, "please report it"},
+      {cudaErrorLaunchFailure, "please report it"}};
+  for (const auto& [error, remedy] : remedies)
+    EXPECT_THAT(message(error),
+                AllOf(StartsWith("CUDA: copying bodies to the GPU failed: "), HasSubstr(cudaGetErrorString(error)),
+                      HasSubstr(cudaGetErrorName(error)), HasSubstr(std::string("; ")), HasSubstr(remedy)));
+}
+
+TEST(Errors, AFailureWithoutARemedyIsNamedAllTheSame) {
+  EXPECT_THAT(message(cudaErrorInvalidValue), HasSubstr(cudaGetErrorName(cudaErrorInvalidValue)));
+}
+
+TEST(Driver, OfTheSameMajorVersionOrANewerOneWillDo) {
+  EXPECT_EQ(driver_obstacle(13000, 13000), "");
+  EXPECT_EQ(driver_obstacle(12040, 12080), "") << "minor versions are compatible";
+  EXPECT_EQ(driver_obstacle(13010, 12080), "");
+}
+
+TEST(Driver, ThatIsMissingOrTooOldIsNamed) {
+  EXPECT_EQ(driver_obstacle(0, 13000), "CUDA: no NVIDIA driver is installed; install one");
+  EXPECT_EQ(driver_obstacle(12080, 13010),
+            "CUDA: the NVIDIA driver is too old: it knows CUDA 12.8, this program needs 13.0; install a newer driver");
+}
+
+/// A process of its own under CTest: what is visible is settled by the first call.
+TEST(Device, ThatIsHiddenIsMissed) {
+  ::setenv("CUDA_VISIBLE_DEVICES", "-1", 1);
+  EXPECT_THAT(why_cuda_is_unusable(), testing::AnyOf(HasSubstr("CUDA_VISIBLE_DEVICES"), HasSubstr("NVIDIA driver")));
+}
+
+}  // namespace
+}  // namespace evodevo::cuda

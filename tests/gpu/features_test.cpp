@@ -1,0 +1,234 @@
+// What a scene does not ask for leaves no instruction: with a feature off, a kernel is the same machine code as one
+// that is written without it.
+#include "cuda/features.hpp"
+
+#include <elf.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstring>
+#include <regex>
+#include <span>
+#include <stdexcept>
+
+#include "cuda/compiler.hpp"
+
+namespace evodevo::cuda {
+namespace {
+
+/// A feature and what is there for it alone.
+struct Subject {
+  const char* name;
+  bool Features::*on;
+  std::vector<const char*> constants;     ///< compile-time switches, in mass_step.cuh
+  std::vector<const char*> declarations;  ///< members and variables
+  std::vector<const char*> functions;     ///< of the kernels and of physics.hpp
+};
+
+const std::vector<Subject> subjects{
+    {"gravity", &Features::gravity, {"gravity"}, {"moment"}, {"weight", "fallen_energy"}},
+    // friction needs the floor's push
+    {"floor", &Features::floor, {"floor_on", "friction"}, {"push"}, {"floor_force", "friction_factor"}},
+    {"friction", &Features::friction, {"friction"}, {}, {"friction_factor"}},
+    {"damping", &Features::damping, {"damping"}, {}, {}},
+    {"drag", &Features::drag, {"drag"}, {}, {"drag_factor"}},
+    {"actuation", &Features::actuation, {"actuation"}, {}, {"half_turns"}},
+    {"stress", &Features::stress, {"stress"}, {"row_stress"}, {}},
+    {"work", &Features::work, {"work"}, {"power", "rates"}, {"length_rate", "actuation_power"}},
+};
+
+Features every_feature() {
+  Features all;
+  for (const Subject& subject : subjects) all.*subject.on = true;
+  return all;
+}
+
+Features without(const Subject& subject) {
+  Features features = every_feature();
+  features.*subject.on = false;
+  features.friction = features.friction && features.floor;
+  return features;
+}
+
+/// The sources of the kernels, from which code is taken out.
+class Sources {
+ public:
+  Sources() {
+    // comments name what they explain
+    for (const EmbeddedSource& source : embedded_sources()) {
+      names_.emplace_back(source.name);
+      texts_.push_back(std::regex_replace(std::string(source.text), std::regex(" *//[^\n]*"), ""));
+    }
+  }
+
+  /// Takes out a feature; throws where there is none, or where anything of it is left.
+  void remove(const Subject& subject) {
+    for (const char* constant : subject.constants) {
+      // another constant takes its place, because the compiler numbers them and puts the numbers into instructions
+      replace_all("constexpr bool " + std::string(constant) + " = \\w+;",
+                  "constexpr bool no_" + std::string(constant) + " = true;");
+      if (remove_statements(constant) == 0) throw std::runtime_error("nothing is for " + std::string(constant));
+    }
+    for (const char* function : subject.functions) remove_function(function);
+    for (const char* name : subject.declarations)
+      replace_all("\n *\\w+ " + std::string(name) + "(\\[\\w+\\])?( = [^;\n]*)?;(?=\n)", "");
+    for (const auto& names : {subject.constants, subject.declarations, subject.functions})
+      for (const char* name : names) expect_gone(name);
+  }
+
+  std::vector<EmbeddedSource> all() const {
+    std::vector<EmbeddedSource> sources;
+    for (std::size_t i = 0; i < texts_.size(); ++i) sources.push_back({names_[i], texts_[i]});
+    return sources;
+  }
+
+ private:
+  /// The end of what begins with the bracket at `begin`.
+  static std::size_t closing(const std::string& text, std::size_t begin) {
+    const char open = text[begin], close = open == '(' ? ')' : '}';
+    int depth = 0;
+    for (std::size_t i = begin; i < text.size(); ++i) {
+      depth += (text[i] == open) - (text[i] == close);
+      if (depth == 0) return i + 1;
+    }
+    throw std::runtime_error("a bracket is not closed");
+  }
+
+  /// Replaces whatever an expression finds in the kernels.
+  void replace_all(const std::string& expression, const std::string& replacement) {
+    bool found = false;
+    for (std::size_t i = 0; i < texts_.size(); ++i) {
+      if (names_[i] == formats) continue;
+      const std::string replaced = std::regex_replace(texts_[i], std::regex(expression), replacement);
+      found = found || replaced != texts_[i];
+      texts_[i] = replaced;
+    }
+    if (!found) throw std::runtime_error("nothing to remove: " + expression);
+  }
+
+  /// Takes out the statements that are compiled only where `constant` holds; returns how many there were.
+  int remove_statements(const std::string& constant) {
+    const std::regex condition("\n *if constexpr \\((\\w+ && )*" + constant + "( && \\w+)*\\)");
+    int count = 0;
+    for (std::string& text : texts_) {
+      for (std::smatch match; std::regex_search(text, match, condition); ++count) {
+        const auto begin = static_cast<std::size_t>(match.position());
+        std::size_t end = text.find_first_not_of(" \n", begin + static_cast<std::size_t>(match.length()));
+        end = text[end] == '{' ? closing(text, end) : text.find(';', end) + 1;
+        if (text.compare(text.find_first_not_of(" \n", end), 4, "else") == 0)
+          throw std::runtime_error("an alternative to " + constant);
+        text.erase(begin, end - begin);
+      }
+    }
+    return count;
+  }
+
+  /// Takes out the definition of a function: from the empty line before it to its closing brace.
+  void remove_function(const std::string& name) {
+    const std::regex head("\n *\n(template <class T>\n)?[\\w ]+ " + name + "\\([^{;]*\\) \\{");
+    for (std::string& text : texts_) {
+      std::smatch match;
+      if (!std::regex_search(text, match, head)) continue;
+      const auto begin = static_cast<std::size_t>(match.position());
+      text.erase(begin, closing(text, begin + static_cast<std::size_t>(match.length()) - 1) - begin);
+      return;
+    }
+    throw std::runtime_error("no function " + name);
+  }
+
+  void expect_gone(const std::string& name) const {
+    for (std::size_t i = 0; i < texts_.size(); ++i)
+      if (names_[i] != formats && std::regex_search(texts_[i], std::regex("\\b" + name + "\\b")))
+        throw std::runtime_error(names_[i] + " still has " + name);
+  }
+
+  /// What the host sends, whatever a kernel reads of it.
+  static constexpr const char* formats = "cuda/formats.hpp";
+
+  std::vector<std::string> names_, texts_;
+};
+
+/// All instructions in an ELF file of machine code: its sections .text.*, one behind the other.
+std::string instructions(const std::vector<char>& file) {
+  const auto read = [&]<class T>(T& value, std::size_t offset) { std::memcpy(&value, &file.at(offset), sizeof value); };
+  Elf64_Ehdr header;
+  read(header, 0);
+  std::vector<Elf64_Shdr> sections(header.e_shnum);
+  for (std::size_t i = 0; i < sections.size(); ++i) read(sections[i], header.e_shoff + i * header.e_shentsize);
+  std::string code;
+  for (const Elf64_Shdr& section : sections) {
+    const std::string name = &file.at(sections.at(header.e_shstrndx).sh_offset + section.sh_name);
+    if (name.starts_with(".text.")) code.append(&file.at(section.sh_offset), section.sh_size);
+  }
+  return code;
+}
+
+/// How many instructions there are but those that only fill up a section: 16 bytes each since Volta, the low twelve
+/// bits name the operation.
+int count(const std::string& instructions) {
+  int count = 0;
+  for (std::size_t i = 0; i < instructions.size(); i += 16) {
+    std::uint16_t bits;
+    std::memcpy(&bits, &instructions[i], sizeof bits);
+    constexpr std::uint16_t nop = 0x918;
+    count += (bits & 0xfff) != nop;
+  }
+  return count;
+}
+
+/// A kernel in one of its forms.
+struct Form {
+  const char* name;
+  const char* source;
+  ResidentForm layout;
+  bool float64 = false;
+
+  std::vector<std::string> definitions(Features features) const {
+    features.float64 = float64;
+    return layout.rows == 0 ? cuda::definitions(features) : cuda::definitions(features, layout);
+  }
+  friend void PrintTo(const Form& form, std::ostream* stream) { *stream << form.name; }
+};
+
+const std::vector<Form> forms{
+    {"resident", "cuda/resident.cu", {.masses_per_thread = 1, .records_on_chip = true}},
+    {"resident, springs streamed", "cuda/resident.cu", {.masses_per_thread = 5, .chunked = true, .wide_offsets = true}},
+    {"streamed", "cuda/streamed.cu", {}},
+    {"resident, float64", "cuda/resident.cu", {.masses_per_thread = 2, .records_on_chip = true}, true},
+};
+
+class FeatureCode : public testing::TestWithParam<Form> {
+ protected:
+  std::string code(const Sources& sources, const Features& features) const {
+    return instructions(compile(sources.all(), GetParam().source, GetParam().definitions(features), "sm_90"));
+  }
+};
+
+TEST_P(FeatureCode, IsNotThereWhereTheFeatureIsOff) {
+  const int all = count(code({}, every_feature()));
+  std::printf("%s: %d instructions with every feature\n", GetParam().name, all);
+  for (const Subject& subject : subjects) {
+    Sources sources;
+    sources.remove(subject);
+    const std::string off = code({}, without(subject));
+    std::printf("  without %-9s %5d fewer\n", subject.name, all - count(off));
+    EXPECT_NE(count(off), all) << subject.name << " is not compiled at all";
+    EXPECT_TRUE(off == code(sources, every_feature())) << subject.name << " leaves something where it is off";
+  }
+}
+
+TEST_P(FeatureCode, IsNotThereWhereAllAreOff) {
+  Sources sources;
+  for (const Subject& subject : subjects)
+    if (subject.on != &Features::friction) sources.remove(subject);  // gone with the floor
+  const std::string bare = code({}, {});
+  std::printf("%s: %d instructions without any\n", GetParam().name, count(bare));
+  EXPECT_TRUE(bare == code(sources, every_feature()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Cuda, FeatureCode, testing::ValuesIn(forms), [](const auto& test) {
+  return std::regex_replace(std::string(test.param.name), std::regex("\\W+"), "_");
+});
+
+}  // namespace
+}  // namespace evodevo::cuda

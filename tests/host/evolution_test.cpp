@@ -1,0 +1,86 @@
+// Runs that fail in the middle: what is committed stays, and resuming ends as if nothing had happened.
+#include "evolution.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "commands/run.hpp"
+#include "support/experiments.hpp"
+#include "support/scratch.hpp"
+
+namespace evodevo {
+namespace {
+
+using ::testing::EndsWith;
+using ::testing::StartsWith;
+
+/// A simulator whose device is lost at some time.
+class Breaking final : public Simulator {
+ public:
+  Breaking(const Experiment& experiment, std::function<bool()> lost)
+      : simulator_(make_cpu_simulator(experiment.scene, experiment.stepping, 1)), lost_(std::move(lost)) {}
+
+  void run(std::span<Task> tasks, std::uint64_t steps, Recording recording) override {
+    if (lost_()) throw std::runtime_error("CUDA: simulating on the GPU failed");
+    simulator_->run(tasks, steps, recording);
+  }
+  NeighbourSearch& neighbours() override { return simulator_->neighbours(); }
+  std::string device() const override { return simulator_->device(); }
+
+ private:
+  std::unique_ptr<Simulator> simulator_;
+  std::function<bool()> lost_;
+};
+
+class LostDevice : public ::testing::Test {
+ protected:
+  /// What the run in the folder `name` says where the device is lost after `generations`.
+  std::string failure(const std::string& name, std::size_t generations) {
+    Archive archive = Archive::create(scratch_ / name, experiment_, "test");
+    Breaking simulator(experiment_, [&] { return archive.generations().size() == generations; });
+    try {
+      evolve_and_report(experiment_, simulator, archive);
+    } catch (const std::runtime_error& error) {
+      EXPECT_EQ(archive.generations().size(), generations);
+      return error.what();
+    }
+    return "no failure";
+  }
+
+  int finish(Archive archive) {
+    Breaking simulator(experiment_, [] { return false; });
+    return evolve_and_report(experiment_, simulator, archive);
+  }
+
+  testing::Scratch scratch_;
+  Experiment experiment_ = testing::read(testing::small_experiment);
+};
+
+TEST_F(LostDevice, SaysWhatIsCompleteAndHowToGoOn) {
+  const std::string said = failure("run", 3);
+  EXPECT_THAT(said, StartsWith("CUDA: simulating on the GPU failed\nthe run is complete up to generation 2; "));
+  EXPECT_THAT(said, EndsWith(" resume " + (scratch_ / "run").string() + " goes on from there"));
+}
+
+TEST_F(LostDevice, BeforeAnythingIsCompleteSaysSo) {
+  EXPECT_THAT(failure("run", 0), StartsWith("CUDA: simulating on the GPU failed\nno generation is complete; "));
+}
+
+TEST_F(LostDevice, ResumedEndsAsIfItHadNotBeen) {
+  failure("broken", 3);
+  EXPECT_EQ(finish(Archive::resume(scratch_ / "broken")), 0);
+  EXPECT_EQ(finish(Archive::create(scratch_ / "whole", experiment_, "test")), 0);
+  const Archive broken = Archive::read(scratch_ / "broken"), whole = Archive::read(scratch_ / "whole");
+  ASSERT_EQ(broken.generations().size(), whole.generations().size());
+  for (std::uint32_t id = 0; id < experiment_.evaluations; ++id) {
+    ASSERT_TRUE(broken.individual(id) && whole.individual(id)) << id;
+    EXPECT_EQ(broken.individual(id)->genome, whole.individual(id)->genome) << id;
+    EXPECT_EQ(broken.individual(id)->result.objectives, whole.individual(id)->result.objectives) << id;
+    EXPECT_EQ(broken.individual(id)->died, whole.individual(id)->died) << id;
+  }
+}
+
+}  // namespace
+}  // namespace evodevo
