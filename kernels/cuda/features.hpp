@@ -28,6 +28,7 @@ struct ResidentForm {
   bool records_on_chip = false;  ///< springs in shared memory, else streamed from the device's
   bool turning = false;          ///< some warps' rows belong to more than one group of masses
   bool wide_offsets = false;     ///< masses beyond the first 64 KiB
+  bool wide_table = false;       ///< materials beyond the first 64 KiB of the table
 
   friend auto operator<=>(const ResidentForm&, const ResidentForm&) = default;
 };

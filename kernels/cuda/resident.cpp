@@ -54,7 +54,7 @@ std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features
   const std::size_t entries = task.body->materials.size() + 1;
   const std::size_t least = masses_bytes<T>((task.body->masses.size() + lanes - 1) / lanes) +
                             entries * (sizeof(Entry<T>) + sizeof(T)) + reserved_bytes;
-  if (least > shared_bytes || entries * sizeof(Entry<T>) > largest_offset) return std::nullopt;
+  if (least > shared_bytes || entries * sizeof(Entry<T>) > largest_offset * sizeof(T)) return std::nullopt;
   Resident resident(task, features);
   if (!resident.fit(shared_bytes - reserved_bytes)) return std::nullopt;
   resident.reserve();
@@ -115,13 +115,16 @@ ResidentForm Resident<T>::form() const {
           .records_on_chip = records_on_chip_,
           .turning = shape.chunks > 1 || std::any_of(arrangement_.turns.begin(), arrangement_.turns.end(),
                                                      [](std::uint32_t turns) { return turns != 0; }),
-          .wide_offsets = masses_bytes<T>(arrangement_.groups) > largest_offset};
+          .wide_offsets = masses_bytes<T>(arrangement_.groups) > largest_offset,
+          .wide_table = (task_->body->materials.size() + 1) * sizeof(Entry<T>) > largest_offset};
 }
 
 template <class T>
 void Resident<T>::pack_records(Record<T>* to) const {
   using Integer = typename FixedPoint<T>::Integer;
-  const unsigned unit = form().wide_offsets ? sizeof(T) : 1;
+  const ResidentForm packed = form();
+  const unsigned unit = packed.wide_offsets ? sizeof(T) : 1;
+  const unsigned entry_size = sizeof(Entry<T>) / (packed.wide_table ? sizeof(T) : 1);
   for (const Arrangement::Slot& slot : arrangement_.slots) {
     const auto other = static_cast<Integer>(offset_of_place<T>(slot.other) / unit);
     if (slot.spring == Arrangement::none) {
@@ -129,7 +132,7 @@ void Resident<T>::pack_records(Record<T>* to) const {
       continue;
     }
     const Spring& spring = task_->body->springs[slot.spring];
-    const auto entry = static_cast<Integer>((spring.material + 1) * sizeof(Entry<T>));
+    const auto entry = static_cast<Integer>((spring.material + 1) * entry_size);
     *to++ = {static_cast<T>(spring.rest_length), other | entry << 16};
   }
 }

@@ -15,6 +15,7 @@ constexpr bool chunked = EVODEVO_CHUNKED;                  // more than one time
 constexpr bool records_on_chip = EVODEVO_RECORDS_ON_CHIP;  // else they are streamed from memory
 constexpr bool turning = EVODEVO_TURNING;                  // some warps' rows belong to more than one group
 constexpr unsigned offset_shift = EVODEVO_OFFSET_SHIFT;    // what offsets of masses are shifted by
+constexpr unsigned entry_shift = EVODEVO_ENTRY_SHIFT;      // what offsets of the table's entries are shifted by
 using Body = ResidentBody<Number>;
 using Fixed = FixedPoint<Number>;
 using Integer = Fixed::Integer;
@@ -57,7 +58,7 @@ struct Spring {
   __device__ __forceinline__ Spring(const Record<Number>& record, unsigned table)
       : rest_length(record.rest_length),
         other((static_cast<unsigned>(record.packed) & 0xffffu) << offset_shift),
-        table_entry(static_cast<unsigned>(record.packed) >> 16),
+        table_entry((static_cast<unsigned>(record.packed) >> 16) << entry_shift),
         entry(on_chip<Entry<Number>>(table + table_entry)),
         place(place_at(other)) {}
 };
