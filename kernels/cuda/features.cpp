@@ -37,7 +37,9 @@ std::vector<std::string> definitions(const Features& features, const ResidentFor
   all.push_back(number("MASSES", form.masses_per_thread));
   all.push_back(number("CHUNKED", form.chunked));
   all.push_back(number("RECORDS_ON_CHIP", form.records_on_chip));
-  all.push_back(number("OFFSET_SHIFT", form.wide_offsets ? (features.float64 ? 3 : 2) : 0));
+  const unsigned shift = features.float64 ? 3 : 2;  // from numbers to bytes
+  all.push_back(number("OFFSET_SHIFT", form.wide_offsets ? shift : 0));
+  all.push_back(number("ENTRY_SHIFT", form.wide_table ? shift : 0));
   all.push_back(number("MAX_THREADS", 32 * largest_block(features.float64)));
   return all;
 }

@@ -27,6 +27,7 @@ struct ResidentForm {
   bool chunked = false;          ///< more than one chunk of rows for each warp
   bool records_on_chip = false;  ///< springs in shared memory, else streamed from the device's
   bool wide_offsets = false;     ///< masses beyond the first 64 KiB
+  bool wide_table = false;       ///< materials beyond the first 64 KiB of the table
 
   friend auto operator<=>(const ResidentForm&, const ResidentForm&) = default;
 };

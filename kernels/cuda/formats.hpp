@@ -27,7 +27,7 @@ template <class T>
 struct alignas(2 * sizeof(T)) Record {
   T rest_length;  ///< m
   typename FixedPoint<T>::Integer
-      packed;  ///< low 16 bits: offset of the other mass; next 16 bits: of the table's entry
+      packed;  ///< low 16 bits: offset of the other mass; next 16 bits: of the table's entry; each in bytes or numbers
 };
 
 /// What a material does in one step; stiffness and force in units of the body's force resolution.

@@ -84,7 +84,7 @@ std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features
   const std::size_t entries = task.body->materials.size() + 1;
   const std::size_t least =
       masses_bytes<T>((task.body->masses.size() + lanes - 1) / lanes) + entries * (sizeof(Entry<T>) + sizeof(T));
-  if (least > largest_chip(shared_bytes) || entries * sizeof(Entry<T>) > largest_offset) return std::nullopt;
+  if (least > largest_chip(shared_bytes) || entries * sizeof(Entry<T>) > largest_offset * sizeof(T)) return std::nullopt;
   Resident resident(task, features);
   if (!resident.fit(largest_chip(shared_bytes))) return std::nullopt;
   resident.reserve();
@@ -142,13 +142,16 @@ ResidentForm Resident<T>::form() const {
   return {.masses_per_thread = shape.masses_per_thread,
           .chunked = shape.chunks > 1,
           .records_on_chip = records_on_chip_,
-          .wide_offsets = masses_bytes<T>(arrangement().groups) > largest_offset};
+          .wide_offsets = masses_bytes<T>(arrangement().groups) > largest_offset,
+          .wide_table = (task_->body->materials.size() + 1) * sizeof(Entry<T>) > largest_offset};
 }
 
 template <class T>
 void Resident<T>::pack_records(Record<T>* to) const {
   using Integer = typename FixedPoint<T>::Integer;
-  const unsigned unit = form().wide_offsets ? sizeof(T) : 1;
+  const ResidentForm packed = form();
+  const unsigned unit = packed.wide_offsets ? sizeof(T) : 1;
+  const unsigned entry_size = sizeof(Entry<T>) / (packed.wide_table ? sizeof(T) : 1);
   for (const Arrangement::Slot& slot : arrangement().slots) {
     const auto other = static_cast<Integer>(offset_of_place<T>(slot.other) / unit);
     if (slot.spring == Arrangement::none) {
@@ -156,7 +159,7 @@ void Resident<T>::pack_records(Record<T>* to) const {
       continue;
     }
     const Spring& spring = task_->body->springs[slot.spring];
-    const auto entry = static_cast<Integer>((spring.material + 1) * sizeof(Entry<T>));
+    const auto entry = static_cast<Integer>((spring.material + 1) * entry_size);
     *to++ = {static_cast<T>(spring.rest_length), other | entry << 16};
   }
 }

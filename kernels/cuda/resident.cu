@@ -13,6 +13,7 @@ constexpr unsigned masses_per_thread = EVODEVO_MASSES;     // that a thread move
 constexpr bool chunked = EVODEVO_CHUNKED;                  // more rows for each warp than can be unrolled
 constexpr bool records_on_chip = EVODEVO_RECORDS_ON_CHIP;  // else they are streamed from memory
 constexpr unsigned offset_shift = EVODEVO_OFFSET_SHIFT;    // what offsets of masses are shifted by
+constexpr unsigned entry_shift = EVODEVO_ENTRY_SHIFT;      // what offsets of the table's entries are shifted by
 using Body = ResidentBody<Number>;
 using Fixed = FixedPoint<Number>;
 using Integer = Fixed::Integer;
@@ -55,7 +56,7 @@ struct Spring {
   __device__ __forceinline__ Spring(const Record<Number>& record, unsigned table)
       : rest_length(record.rest_length),
         other((static_cast<unsigned>(record.packed) & 0xffffu) << offset_shift),
-        table_entry(static_cast<unsigned>(record.packed) >> 16),
+        table_entry((static_cast<unsigned>(record.packed) >> 16) << entry_shift),
         entry(on_chip<Entry<Number>>(table + table_entry)),
         place(place_at(other)) {}
 };

@@ -57,7 +57,9 @@ class Sources {
     // comments name what they explain
     for (const EmbeddedSource& source : embedded_sources()) {
       names_.emplace_back(source.name);
-      texts_.push_back(std::regex_replace(std::string(source.text), std::regex(" *//[^\n]*"), ""));
+      std::string text = std::regex_replace(std::string(source.text), std::regex(" *//[^\n]*"), "");
+      // one number of rows stands for all, which are the same code at another length
+      texts_.push_back(std::regex_replace(text, std::regex("unrolled_rows\\[\\] = \\{[^}]*\\}"), "unrolled_rows[] = {15}"));
     }
   }
 
@@ -185,7 +187,7 @@ struct Form {
 
   std::vector<std::string> definitions(Features features) const {
     features.float64 = float64;
-    return layout.rows == 0 ? cuda::definitions(features) : cuda::definitions(features, layout);
+    return layout.masses_per_thread == 0 ? cuda::definitions(features) : cuda::definitions(features, layout);
   }
   friend void PrintTo(const Form& form, std::ostream* stream) { *stream << form.name; }
 };

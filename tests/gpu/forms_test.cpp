@@ -68,11 +68,41 @@ TEST_P(Forms, MassesOfManySprings) {
   compare(body);
 }
 
-TEST_P(Forms, HundredsOfMaterials) {
+/// Materials of stiffness 4,000 to 9,000 N/m, amplitude up to 0.14, all phases.
+std::vector<Material> materials(int count) {
+  std::vector<Material> all;
+  for (int i = 0; i < count; ++i) {
+    const double part = static_cast<double>(i) / count;
+    all.push_back({4000 + 5000 * part, 0.14 * part, i % 2 == 0 ? 1.0 : 0.5, 2 * pi * part});
+  }
+  return all;
+}
+
+TEST_P(Forms, Materials16) {
   EVODEVO_NEEDS_GPU();
-  std::vector<Material> materials;
-  for (int i = 0; i < 700; ++i) materials.push_back({4000 + 5.0 * i, 0.0002 * i, 1, 0.01 * i});
-  compare(random_body(200, 20, 4, materials));
+  compare(random_body(500, 25, 4, materials(16)));
+}
+
+TEST_P(Forms, Materials200) {
+  EVODEVO_NEEDS_GPU();
+  compare(random_body(500, 25, 4, materials(200)));
+}
+
+TEST_P(Forms, Materials5000ATableOfOneStep) {
+  EVODEVO_NEEDS_GPU();
+  compare(random_body(500, 25, 4, materials(5000)));
+}
+
+TEST_P(Forms, EverySpringItsOwnMaterial) {
+  EVODEVO_NEEDS_GPU();
+  const Body body = random_body(1000, 25, 4);
+  compare(random_body(1000, 25, 4, materials(static_cast<int>(body.springs.size()))));
+}
+
+TEST_P(Forms, EverySpringItsOwnMaterialBeyondTheChip) {
+  EVODEVO_NEEDS_GPU();
+  const Body body = random_body(3000, 25, 4);
+  compare(random_body(3000, 25, 4, materials(static_cast<int>(body.springs.size()))));
 }
 
 TEST_P(Forms, Chain) {

@@ -1,0 +1,64 @@
+// What a body that stays on the chip is told.
+#include "cuda/resident.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "bodies.hpp"
+
+namespace evodevo::cuda {
+namespace {
+
+constexpr std::size_t shared_bytes = 227 << 10;  // of an H200
+const Stepping stepping{Method::paper_euler, Precision::float32, 0.0005};
+const Features features{.gravity = true, .floor = true, .friction = true, .damping = true};
+
+/// A body of 1,000 masses and 25 neighbours whose springs have `materials` materials in turn; 0: each its own.
+Body body_of(std::size_t materials) {
+  Body body = testing_gpu::random_body(1000, 25, 1);
+  if (materials == 0) materials = body.springs.size();
+  body.materials.clear();
+  for (std::size_t i = 0; i < materials; ++i) body.materials.push_back({4000 + static_cast<double>(i), 0.1, 1, 0});
+  for (std::size_t i = 0; i < body.springs.size(); ++i)
+    body.springs[i].material = static_cast<std::uint32_t>(i % materials);
+  return body;
+}
+
+TEST(Resident, RecordsLeadToTheirMaterials) {
+  for (const std::size_t materials : {15, 200, 5000, 9000, 0}) {
+    const Body body = body_of(materials);
+    State state = state_at_birth(body, testing_gpu::walking_scene());
+    const Task task{.body = &body, .state = &state};
+    const auto resident = Resident<float>::arrange(task, features, shared_bytes);
+    ASSERT_TRUE(resident) << materials;
+    const bool wide = body.materials.size() > 8190;  // of 8 bytes in 64 KiB, beside that of empty slots
+    EXPECT_EQ(resident->form().wide_table, wide) << materials;
+
+    std::vector<std::byte> input(resident->sizes().input), motion(resident->sizes().state);
+    const Regions regions{input.data(), motion.data(), nullptr};
+    const auto packed =
+        resident->pack(regions, regions, EnergyGuard(body, state, testing_gpu::walking_scene(), stepping));
+    std::size_t springs = 0;
+    const std::size_t slots = std::size_t{resident->threads()} * packed.chunks * resident->form().rows;
+    for (std::size_t i = 0; i < slots; ++i) {
+      const std::size_t entry = (packed.records[i].packed >> 16) * (wide ? sizeof(float) : 1) / sizeof(Entry<float>);
+      if (entry == 0) continue;
+      ++springs;
+      if (materials > 0) continue;
+      EXPECT_EQ(packed.records[i].rest_length, static_cast<float>(body.springs[entry - 1].rest_length));
+    }
+    EXPECT_EQ(springs, body.springs.size());
+  }
+}
+
+TEST(Resident, LeavesToTheDevicesMemoryWhatTheChipCannotHold) {
+  const Body body = body_of(0);  // in float64 its table alone is as large as the chip
+  State state = state_at_birth(body, testing_gpu::walking_scene());
+  const Task task{.body = &body, .state = &state};
+  EXPECT_FALSE(Resident<double>::arrange(task, features, shared_bytes));
+  EXPECT_FALSE(Resident<float>::arrange(task, features, shared_bytes / 2));
+}
+
+}  // namespace
+}  // namespace evodevo::cuda
