@@ -49,35 +49,40 @@ std::string compiler_version() {
   return std::to_string(major) + "." + std::to_string(minor);
 }
 
-std::string_view source_named(std::string_view name) {
-  for (const EmbeddedSource& source : embedded_sources())
+/// All that a kernel can include.
+std::vector<EmbeddedSource> sources_with(std::span<const EmbeddedSource> more) {
+  std::vector<EmbeddedSource> sources = embedded_sources();
+  sources.insert(sources.end(), std::begin(standard_headers), std::end(standard_headers));
+  sources.insert(sources.end(), more.begin(), more.end());
+  return sources;
+}
+
+std::string_view source_named(std::string_view name, const std::vector<EmbeddedSource>& sources) {
+  for (const EmbeddedSource& source : sources)
     if (source.name == name) return source.text;
   throw std::logic_error("no embedded source " + std::string(name));
 }
 
 /// Everything that machine code depends on.
-std::string key_of(std::string_view name, const std::vector<std::string>& options) {
+std::string key_of(std::string_view name, const std::vector<std::string>& options,
+                   const std::vector<EmbeddedSource>& sources) {
   std::string text = compiler_version() + '\n' + std::string(name) + '\n';
   for (const std::string& option : options) text += option + '\n';
-  for (const EmbeddedSource& source : embedded_sources()) text.append(source.text);
-  for (const EmbeddedSource& source : standard_headers) text.append(source.text);
+  for (const EmbeddedSource& source : sources) text.append(source.text);
   return digest(text);
 }
 
 class Program {
  public:
-  explicit Program(std::string_view name) {
+  Program(std::string_view name, const std::vector<EmbeddedSource>& sources) {
     std::vector<std::string> names, texts;
-    for (const EmbeddedSource& source : embedded_sources())
-      names.emplace_back(source.name), texts.emplace_back(source.text);
-    for (const EmbeddedSource& source : standard_headers)
-      names.emplace_back(source.name), texts.emplace_back(source.text);
+    for (const EmbeddedSource& source : sources) names.emplace_back(source.name), texts.emplace_back(source.text);
     std::vector<const char*> name_pointers, text_pointers;
     for (std::size_t i = 0; i < names.size(); ++i) {
       name_pointers.push_back(names[i].c_str());
       text_pointers.push_back(texts[i].c_str());
     }
-    check(nvrtcCreateProgram(&program_, std::string(source_named(name)).c_str(), std::string(name).c_str(),
+    check(nvrtcCreateProgram(&program_, std::string(source_named(name, sources)).c_str(), std::string(name).c_str(),
                              static_cast<int>(names.size()), text_pointers.data(), name_pointers.data()),
           "reading a kernel");
   }
@@ -117,14 +122,15 @@ class Program {
 }  // namespace
 
 std::vector<char> compile(std::string_view name, const std::vector<std::string>& definitions,
-                          const std::string& architecture) {
+                          const std::string& architecture, std::span<const EmbeddedSource> more) {
   const Target target = target_for(architecture);
   // contraction would make a result depend on which features are compiled in
   std::vector<std::string> options{target.option, "-std=c++20", "-fmad=false", "-ftz=true"};
   for (const std::string& definition : definitions) options.push_back("-D" + definition);
-  const std::string key = key_of(name, options);
+  const std::vector<EmbeddedSource> sources = sources_with(more);
+  const std::string key = key_of(name, options, sources);
   if (std::optional<std::vector<char>> code = load(key)) return *std::move(code);
-  Program program(name);
+  Program program(name, sources);
   program.compile(options);
   std::vector<char> code = program.code(target.machine_code);
   store(key, code);

@@ -1,6 +1,5 @@
 #include "cuda/kernels.hpp"
 
-#include "cuda/compiler.hpp"
 #include "cuda/error.hpp"
 
 namespace evodevo::cuda {
@@ -15,7 +14,7 @@ cudaKernel_t KernelStore::get(const std::string& source, const std::string& func
   for (const std::string& definition : definitions) key += ' ' + definition;
   auto found = libraries_.find(key);
   if (found == libraries_.end()) {
-    const std::vector<char> code = compile(source, definitions, architecture_);
+    const std::vector<char> code = compile(source, definitions, architecture_, more_);
     cudaLibrary_t library = nullptr;
     check(cudaLibraryLoadData(&library, code.data(), nullptr, nullptr, 0, nullptr, nullptr, 0),
           "loading a kernel of " + source);

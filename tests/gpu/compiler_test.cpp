@@ -11,6 +11,9 @@
 
 #include "cuda/cache.hpp"
 #include "cuda/features.hpp"
+#include "paper/paper_simulator.hpp"
+#include "paper/sources.hpp"
+#include "paper/stress_methods.hpp"
 
 namespace evodevo::cuda {
 namespace {
@@ -55,6 +58,19 @@ TEST_F(Compiler, CompilesEveryFormForHopper) {
       EXPECT_FALSE(compile("cuda/streamed.cu", definitions(features), "sm_90").empty());
     }
   }
+}
+
+TEST_F(Compiler, CompilesThePapersMethods) {
+  const Scene scene{Gravity{}, Floor{}, Friction{}, Damping{}, Drag{}};
+  const benchmark::PaperMethod plain{.threads = 1024};
+  EXPECT_FALSE(
+      compile("paper/global_memory.cu", benchmark::definitions(plain, scene), "sm_90", benchmark::paper_sources())
+          .empty());
+  for (const auto& [name, method] : benchmark::stress_methods(plain))
+    EXPECT_FALSE(
+        compile("paper/shared_memory.cu", benchmark::definitions(method, scene), "sm_90", benchmark::paper_sources())
+            .empty())
+        << name;
 }
 
 TEST_F(Compiler, ReadsTheCache) {
