@@ -1,5 +1,5 @@
-# Writes the files of the list SOURCES (relative to ROOT) as constants of the C++ file OUTPUT, the answer of FUNCTION, which
-# HEADER declares: cmake -DROOT= -DSOURCES= -DHEADER= -DFUNCTION= -DOUTPUT= -P
+# Writes the files of the list SOURCES (relative to ROOT) as constants of the C++ file OUTPUT: what FUNCTION, which
+# HEADER declares, gives. cmake -DROOT= -DSOURCES= -DHEADER= -DFUNCTION= -DOUTPUT= -P
 set(entries "")
 foreach(name IN LISTS SOURCES)
   file(READ ${ROOT}/${name} text)

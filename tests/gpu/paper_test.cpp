@@ -102,8 +102,8 @@ TEST(PaperStress, SkipShiftFindsWhatIsStressed) {
   const RecordedStress stress = recorded(body, {.stress = StressMethod::skip_shift, .skip = 1}, 2000);
   const Robot ours = simulated(body, walking_scene(), 2000, {.stress = true});
   const std::vector<double> most(stress.most.begin(), stress.most.end());
-  const double chance = 125.0 / static_cast<double>(body.springs.size());
-  EXPECT_GT(benchmark::share_found(ours.answer.stress, most, 125), 5 * chance);
+  // chance finds 0.02
+  EXPECT_GT(benchmark::share_found(ours.answer.stress, most, 125), 0.3);
 }
 
 }  // namespace

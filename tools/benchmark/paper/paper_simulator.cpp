@@ -23,10 +23,6 @@ void launch(cudaKernel_t kernel, dim3 grid, unsigned threads, std::size_t shared
       "starting a kernel");
 }
 
-const char* source_of(MassMemory memory) {
-  return memory == MassMemory::shared ? "paper/shared_memory.cu" : "paper/global_memory.cu";
-}
-
 std::size_t shared_bytes_of(const PaperLayout& layout) { return 6 * sizeof(float) * layout.most_masses; }
 
 }  // namespace
@@ -47,7 +43,6 @@ PaperSimulator::PaperSimulator(std::span<const Body> bodies, std::uint32_t copie
       method_(method),
       layout_(bodies, copies, scene, method.order),
       world_(cuda::world_of<float>(scene, dt)),
-      definitions_(definitions(method, scene)),
       kernels_(cuda::current_device().architecture, paper_sources()),
       body_table_(layout_.bodies),
       springs_(layout_.springs),
@@ -65,16 +60,34 @@ PaperSimulator::PaperSimulator(std::span<const Body> bodies, std::uint32_t copie
              inverse_mass_.data(), places_.data(),  velocities_.data(),
              forces_.data(),       table_.data(),   stress_.data(),
              least_.data(),        most_.data(),    static_cast<std::uint32_t>(layout_.actuators.size())} {
-  if (method.memory == MassMemory::global) return;
+  load_kernels(scene);
+}
+
+void PaperSimulator::load_kernels(const Scene& scene) {
+  const bool shared = method_.memory == MassMemory::shared;
+  const auto kernel = [&](const char* name) {
+    return kernels_.get(shared ? "paper/shared_memory.cu" : "paper/global_memory.cu", name,
+                        definitions(method_, scene));
+  };
+  fill_table_ = kernel("evodevo_paper_table");
+  if (!shared) {
+    add_forces_ = kernel("evodevo_paper_springs");
+    move_masses_ = kernel("evodevo_paper_masses");
+    return;
+  }
+  step_ = kernel("evodevo_paper_step");
   const std::size_t needed = shared_bytes_of(layout_), available = cuda::current_device().shared_bytes;
   if (needed > available)
     throw std::runtime_error(
         "the paper's method keeps a body's masses in shared memory: " + std::to_string(layout_.most_masses) + " need " +
         std::to_string(needed) + " of " + std::to_string(available) + " bytes; choose a smaller body");
-  const cudaKernel_t step = kernels_.get(source_of(method.memory), "evodevo_paper_step", definitions_);
-  cuda::check(cudaFuncSetAttribute(reinterpret_cast<const void*>(step), cudaFuncAttributeMaxDynamicSharedMemorySize,
+  cuda::check(cudaFuncSetAttribute(reinterpret_cast<const void*>(step_), cudaFuncAttributeMaxDynamicSharedMemorySize,
                                    static_cast<int>(needed)),
               "asking for " + std::to_string(needed) + " bytes of shared memory");
+  // as many blocks at once as there is room for
+  cuda::check(cudaFuncSetAttribute(reinterpret_cast<const void*>(step_), cudaFuncAttributePreferredSharedMemoryCarveout,
+                                   cudaSharedmemCarveoutMaxShared),
+              "asking for shared memory");
 }
 
 void PaperSimulator::restart() {
@@ -105,26 +118,23 @@ double PaperSimulator::run(std::uint64_t steps) {
 }
 
 void PaperSimulator::launch_table(unsigned count) {
-  const cudaKernel_t fill = kernels_.get(source_of(method_.memory), "evodevo_paper_table", definitions_);
-  launch(fill, dim3(1), 1024, 0, stream_, world_, static_cast<const cuda::Actuator*>(actuators_.data()), batch_.entries,
-         steps_, count, table_.data());
+  launch(fill_table_, dim3(1), 1024, 0, stream_, world_, static_cast<const cuda::Actuator*>(actuators_.data()),
+         batch_.entries, steps_, count, table_.data());
 }
 
 void PaperSimulator::launch_step(unsigned row) {
-  const auto kernel = [&](const char* name) { return kernels_.get(source_of(method_.memory), name, definitions_); };
   const auto bodies = static_cast<unsigned>(layout_.bodies.size());
   const unsigned threads = method_.threads;
+  const auto over = [&](std::uint32_t count) { return dim3((count + threads - 1) / threads, bodies); };
   ++steps_;
-  if (method_.memory == MassMemory::shared) {
-    const bool tallies = method_.stress == StressMethod::skip_shift && steps_ % method_.skip == 0;
-    launch(kernel("evodevo_paper_step"), dim3(bodies), threads, shared_bytes_of(layout_), stream_, world_, batch_, row,
-           tallies ? static_cast<unsigned>(steps_ / method_.skip) : 0u);
+  if (method_.memory == MassMemory::global) {
+    launch(add_forces_, over(layout_.most_springs), threads, 0, stream_, batch_, row);
+    launch(move_masses_, over(layout_.most_masses), threads, 0, stream_, world_, batch_);
     return;
   }
-  launch(kernel("evodevo_paper_springs"), dim3((layout_.most_springs + threads - 1) / threads, bodies), threads, 0,
-         stream_, batch_, row);
-  launch(kernel("evodevo_paper_masses"), dim3((layout_.most_masses + threads - 1) / threads, bodies), threads, 0,
-         stream_, world_, batch_);
+  const bool tallies = method_.stress == StressMethod::skip_shift && steps_ % method_.skip == 0;
+  launch(step_, dim3(bodies), threads, shared_bytes_of(layout_), stream_, world_, batch_, row,
+         tallies ? static_cast<unsigned>(steps_ / method_.skip) : 0u);
 }
 
 State PaperSimulator::state(std::size_t body) const {

@@ -60,6 +60,7 @@ class PaperSimulator {
   RecordedStress stress(std::size_t body) const;
 
  private:
+  void load_kernels(const Scene& scene);
   void launch_table(unsigned count);
   void launch_step(unsigned row);
 
@@ -68,10 +69,12 @@ class PaperSimulator {
   PaperMethod method_;
   PaperLayout layout_;
   cuda::World<float> world_;
-  std::vector<std::string> definitions_;
   std::uint64_t steps_ = 0;  // since birth
 
   cuda::KernelStore kernels_;
+  cudaKernel_t fill_table_ = nullptr;
+  cudaKernel_t add_forces_ = nullptr, move_masses_ = nullptr;  // of global memory's method
+  cudaKernel_t step_ = nullptr;                                // of shared memory's
   cuda::Stream stream_;
   DeviceArray<PaperBody> body_table_;
   DeviceArray<PaperSpring> springs_;
