@@ -83,7 +83,7 @@ __device__ __forceinline__ Extremes add_forces(const PaperBatch& batch, const Pa
 
 /// The extremes of the whole block; for thread 0.
 __device__ __forceinline__ Extremes of_block(Extremes extremes) {
-  __shared__ Extremes of_warp[cuda::lanes];
+  __shared__ std::uint64_t least_of_warp[cuda::lanes], most_of_warp[cuda::lanes];
   const unsigned lane = threadIdx.x % cuda::lanes, warp = threadIdx.x / cuda::lanes;
   const auto reduce_lanes = [&] {
     for (unsigned distance = cuda::lanes / 2; distance > 0; distance /= 2) {
@@ -92,10 +92,14 @@ __device__ __forceinline__ Extremes of_block(Extremes extremes) {
     }
   };
   reduce_lanes();
-  if (lane == 0) of_warp[warp] = extremes;
+  if (lane == 0) {
+    least_of_warp[warp] = extremes.least;
+    most_of_warp[warp] = extremes.most;
+  }
   __syncthreads();
   if (warp > 0) return extremes;
-  extremes = lane < blockDim.x / cuda::lanes ? of_warp[lane] : Extremes();
+  extremes = Extremes();
+  if (lane < blockDim.x / cuda::lanes) extremes = {least_of_warp[lane], most_of_warp[lane]};
   reduce_lanes();
   return extremes;
 }
