@@ -56,11 +56,19 @@ std::vector<std::string> options_for(const Target& target, const std::vector<std
   return options;
 }
 
+/// The embedded sources and `more`.
+std::vector<EmbeddedSource> embedded_with(std::span<const EmbeddedSource> more) {
+  std::vector<EmbeddedSource> sources = embedded_sources();
+  sources.insert(sources.end(), more.begin(), more.end());
+  return sources;
+}
+
 /// Everything that machine code depends on.
-std::string key_of(std::string_view name, const std::vector<std::string>& options) {
+std::string key_of(std::string_view name, const std::vector<std::string>& options,
+                   const std::vector<EmbeddedSource>& sources) {
   std::string text = compiler_version() + '\n' + std::string(name) + '\n';
   for (const std::string& option : options) text += option + '\n';
-  for (const EmbeddedSource& source : embedded_sources()) text.append(source.text);
+  for (const EmbeddedSource& source : sources) text.append(source.text);
   for (const EmbeddedSource& source : standard_headers) text.append(source.text);
   return digest(text);
 }
@@ -120,11 +128,12 @@ class Program {
 }  // namespace
 
 std::vector<char> compile(std::string_view name, const std::vector<std::string>& definitions,
-                          const std::string& architecture) {
+                          const std::string& architecture, std::span<const EmbeddedSource> more) {
   const Target target = target_for(architecture);
-  const std::string key = key_of(name, options_for(target, definitions));
+  const std::vector<EmbeddedSource> sources = embedded_with(more);
+  const std::string key = key_of(name, options_for(target, definitions), sources);
   if (std::optional<std::vector<char>> code = load(key)) return *std::move(code);
-  std::vector<char> code = compile(embedded_sources(), name, definitions, architecture);
+  std::vector<char> code = compile(sources, name, definitions, architecture);
   store(key, code);
   return code;
 }

@@ -1,15 +1,22 @@
 # The CUDA part of the simulation core. Kernels are compiled at run time; their sources become part of the program.
 set(embedded cuda/resident.cu cuda/streamed.cu cuda/neighbours.cu cuda/check.cuh cuda/mass_step.cuh cuda/formats.hpp
   cuda/fixed_point.hpp cuda/point_clouds.hpp physics.hpp arithmetic.hpp)
-list(TRANSFORM embedded PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE embedded_files)
 set(embedded_sources ${CMAKE_CURRENT_BINARY_DIR}/embedded_sources.cpp)
-add_custom_command(
-  OUTPUT ${embedded_sources}
-  COMMAND ${CMAKE_COMMAND} -DROOT=${CMAKE_CURRENT_SOURCE_DIR} "-DSOURCES=${embedded}" -DOUTPUT=${embedded_sources}
-    -P ${CMAKE_CURRENT_SOURCE_DIR}/cuda/embed.cmake
-  DEPENDS ${embedded_files} cuda/embed.cmake
-  COMMENT "Embedding the kernels' sources"
-  VERBATIM)
+
+# evodevo_embed(OUTPUT HEADER FUNCTION SOURCES...): the sources, relative to here, as what FUNCTION of HEADER gives
+function(evodevo_embed output header function)
+  set(script ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/embed.cmake)
+  list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE files)
+  add_custom_command(
+    OUTPUT ${output}
+    COMMAND ${CMAKE_COMMAND} -DROOT=${CMAKE_CURRENT_SOURCE_DIR} "-DSOURCES=${ARGN}" -DHEADER=${header}
+      -DFUNCTION=${function} -DOUTPUT=${output} -P ${script}
+    DEPENDS ${files} ${script}
+    COMMENT "Embedding the kernels' sources"
+    VERBATIM)
+endfunction()
+
+evodevo_embed(${embedded_sources} cuda/compiler.hpp evodevo::cuda::embedded_sources ${embedded})
 
 target_sources(evodevo_kernels PRIVATE
   cuda/arrangement.cpp

@@ -2,7 +2,6 @@
 
 #include <exception>
 
-#include "cuda/compiler.hpp"
 #include "cuda/error.hpp"
 
 namespace evodevo::cuda {
@@ -10,8 +9,8 @@ namespace evodevo::cuda {
 namespace {
 
 cudaLibrary_t load_library(const std::string& source, const std::vector<std::string>& definitions,
-                           const std::string& architecture) {
-  const std::vector<char> code = compile(source, definitions, architecture);
+                           const std::string& architecture, std::span<const EmbeddedSource> more) {
+  const std::vector<char> code = compile(source, definitions, architecture, more);
   cudaLibrary_t library = nullptr;
   check(cudaLibraryLoadData(&library, code.data(), nullptr, nullptr, 0, nullptr, nullptr, 0),
         "loading a kernel of " + source);
@@ -39,7 +38,7 @@ cudaKernel_t KernelStore::get(const std::string& source, const std::string& func
     std::shared_future<cudaLibrary_t>& entry = libraries_[key];
     // deferred: the first who waits for it loads it, outside the lock; all others wait for that
     if (!entry.valid())
-      entry = std::async(std::launch::deferred, load_library, source, definitions, architecture_).share();
+      entry = std::async(std::launch::deferred, load_library, source, definitions, architecture_, more_).share();
     library = entry;
   }
   cudaKernel_t kernel = nullptr;

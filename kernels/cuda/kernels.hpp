@@ -6,8 +6,11 @@
 #include <future>
 #include <map>
 #include <mutex>
+#include <span>
 #include <string>
 #include <vector>
+
+#include "cuda/compiler.hpp"
 
 namespace evodevo::cuda {
 
@@ -15,16 +18,19 @@ namespace evodevo::cuda {
 /// threads, which compile different kernels at the same time.
 class KernelStore {
  public:
-  explicit KernelStore(std::string architecture) : architecture_(std::move(architecture)) {}
+  /// `more`: sources beside the embedded ones; they must outlive the store.
+  explicit KernelStore(std::string architecture, std::span<const EmbeddedSource> more = {})
+      : architecture_(std::move(architecture)), more_(more) {}
   KernelStore(const KernelStore&) = delete;
   KernelStore& operator=(const KernelStore&) = delete;
   ~KernelStore();
 
-  /// The kernel `function` of the embedded source `source`.
+  /// The kernel `function` of the source `source`.
   cudaKernel_t get(const std::string& source, const std::string& function, const std::vector<std::string>& definitions);
 
  private:
   std::string architecture_;
+  std::span<const EmbeddedSource> more_;
   std::mutex mutex_;
   std::map<std::string, std::shared_future<cudaLibrary_t>> libraries_;
 };

@@ -84,7 +84,8 @@ std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features
   const std::size_t entries = task.body->materials.size() + 1;
   const std::size_t least =
       masses_bytes<T>((task.body->masses.size() + lanes - 1) / lanes) + entries * (sizeof(Entry<T>) + sizeof(T));
-  if (least > largest_chip(shared_bytes) || entries * sizeof(Entry<T>) > largest_offset * sizeof(T)) return std::nullopt;
+  if (least > largest_chip(shared_bytes) || entries * sizeof(Entry<T>) > largest_offset * sizeof(T))
+    return std::nullopt;
   Resident resident(task, features);
   if (!resident.fit(largest_chip(shared_bytes))) return std::nullopt;
   resident.reserve();

@@ -11,6 +11,9 @@
 
 #include "cuda/cache.hpp"
 #include "cuda/features.hpp"
+#include "paper/paper_simulator.hpp"
+#include "paper/sources.hpp"
+#include "paper/stress_methods.hpp"
 
 namespace evodevo::cuda {
 namespace {
@@ -45,9 +48,8 @@ const Features every_feature{.gravity = true,
                              .work = true};
 
 TEST_F(Compiler, CompilesEveryFormForHopper) {
-  const ResidentForm forms[] = {
-      {.masses_per_thread = 1, .chunked = false, .records_on_chip = true},
-      {.masses_per_thread = 5, .chunked = true, .wide_offsets = true, .wide_table = true}};
+  const ResidentForm forms[] = {{.masses_per_thread = 1, .chunked = false, .records_on_chip = true},
+                                {.masses_per_thread = 5, .chunked = true, .wide_offsets = true, .wide_table = true}};
   for (const bool float64 : {false, true}) {
     for (Features features : {Features{}, every_feature}) {
       features.float64 = float64;
@@ -59,6 +61,18 @@ TEST_F(Compiler, CompilesEveryFormForHopper) {
 }
 
 TEST_F(Compiler, CompilesTheSearchForNeighbours) { EXPECT_FALSE(compile("cuda/neighbours.cu", {}, "sm_90").empty()); }
+
+TEST_F(Compiler, CompilesThePapersMethods) {
+  const Scene scene{Gravity{}, Floor{}, Friction{}, Damping{}, Drag{}};
+  const benchmark::PaperMethod plain{.threads = 1024};
+  const auto compiles = [&](const char* source, const benchmark::PaperMethod& method) {
+    return !compile(source, benchmark::definitions(method, scene), "sm_90", benchmark::paper_sources()).empty();
+  };
+  EXPECT_TRUE(compiles("paper/global_memory.cu", plain));
+  EXPECT_TRUE(compiles("paper/shared_memory.cu", plain));
+  for (const auto& [name, method] : benchmark::stress_methods(plain))
+    EXPECT_TRUE(compiles("paper/shared_memory.cu", method)) << name;
+}
 
 TEST_F(Compiler, ReadsTheCache) {
   const auto compiled = compile("cuda/streamed.cu", definitions(every_feature), "sm_90");

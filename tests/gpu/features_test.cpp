@@ -59,7 +59,8 @@ class Sources {
       names_.emplace_back(source.name);
       std::string text = std::regex_replace(std::string(source.text), std::regex(" *//[^\n]*"), "");
       // one number of rows stands for all, which are the same code at another length
-      texts_.push_back(std::regex_replace(text, std::regex("unrolled_rows\\[\\] = \\{[^}]*\\}"), "unrolled_rows[] = {15}"));
+      texts_.push_back(
+          std::regex_replace(text, std::regex("unrolled_rows\\[\\] = \\{[^}]*\\}"), "unrolled_rows[] = {15}"));
     }
   }
 

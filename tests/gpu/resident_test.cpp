@@ -40,8 +40,7 @@ TEST(Resident, RecordsLeadToTheirMaterials) {
     const auto packed =
         resident->pack(regions, regions, EnergyGuard(body, state, testing_gpu::walking_scene(), stepping));
     std::size_t springs = 0;
-    const std::size_t slots = std::size_t{resident->threads()} * packed.chunks * resident->form().rows;
-    for (std::size_t i = 0; i < slots; ++i) {
+    for (std::size_t i = 0; i < resident->slots(); ++i) {
       const std::size_t entry = (packed.records[i].packed >> 16) * (wide ? sizeof(float) : 1) / sizeof(Entry<float>);
       if (entry == 0) continue;
       ++springs;

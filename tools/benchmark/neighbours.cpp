@@ -1,32 +1,21 @@
-#include "benchmark/neighbours.hpp"
-
-#include <algorithm>
-#include <chrono>
-#include <random>
-#include <stdexcept>
-#include <vector>
-
-#include "cuda/cuda_neighbours.hpp"
+// The search for nearest neighbours on the GPU beside the same on the CPU.
 #include "neighbours.hpp"
+
+#include <chrono>
+#include <stdexcept>
+
+#include "batch.hpp"
+#include "bodies.hpp"
+#include "cuda/cuda_neighbours.hpp"
 #include "parallel.hpp"
+#include "studies.hpp"
 
 namespace evodevo::benchmark {
 namespace {
 
-using Population = std::vector<std::vector<Vec3>>;
-using Clouds = std::vector<PointCloud>;
+constexpr std::uint32_t neighbours_of_each = 25;
 
-/// Points that are uniform in the unit ball.
-std::vector<Vec3> random_ball(std::uint32_t points, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  const auto coordinate = [&] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
-  std::vector<Vec3> places;
-  while (places.size() < points) {
-    const double x = coordinate(), y = coordinate(), z = coordinate();
-    if (dot({x, y, z}, {x, y, z}) <= 1) places.push_back({x, y, z});
-  }
-  return places;
-}
+using Clouds = std::vector<PointCloud>;
 
 /// The time that a search takes for all clouds, s.
 double seconds(NeighbourSearch& search, const Clouds& clouds) {
@@ -43,20 +32,15 @@ std::vector<std::vector<IndexPair>> all_pairs(NeighbourSearch& search, const Clo
   return pairs;
 }
 
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
 }  // namespace
 
-nlohmann::ordered_json measure_neighbours(const NeighbourSettings& settings) {
-  Population population(settings.bodies);
+Report neighbours(const Settings& settings) {
+  std::vector<std::vector<Vec3>> population(settings.bodies);
   Workers(settings.threads).for_each(population.size(), [&](std::size_t i) {
-    population[i] = random_ball(settings.masses, i);
+    population[i] = points_in_ball(settings.masses, i);
   });
   Clouds clouds;
-  for (const std::vector<Vec3>& places : population) clouds.push_back({places, settings.neighbours});
+  for (const std::vector<Vec3>& places : population) clouds.push_back({places, neighbours_of_each});
   const auto cpu = make_cpu_neighbour_search(settings.threads), cuda = make_cuda_neighbour_search(settings.threads);
   if (all_pairs(*cpu, clouds) != all_pairs(*cuda, clouds))
     throw std::runtime_error("CPU and GPU do not find the same neighbours");
@@ -68,14 +52,18 @@ nlohmann::ordered_json measure_neighbours(const NeighbourSettings& settings) {
     cuda_seconds.push_back(seconds(*cuda, clouds));
     ratios.push_back(cpu_seconds.back() / cuda_seconds.back());
   }
-  return {{"cpu_seconds", median(cpu_seconds)},
-          {"cuda_seconds", median(cuda_seconds)},
-          {"times_faster", median(ratios)},
-          {"bodies", settings.bodies},
+  return {{"study", "Nearest neighbours"},
+          {"command", settings.command},
+          {"points", "random in a ball"},
           {"masses", settings.masses},
-          {"neighbours", settings.neighbours},
+          {"neighbours", neighbours_of_each},
+          {"bodies", settings.bodies},
           {"threads", thread_count(settings.threads)},
-          {"runs", settings.runs}};
+          {"runs", settings.runs},
+          {"note", "Both find the same; copies are included."},
+          {"rows", Report::array({{{"cpu_seconds", median(cpu_seconds)},
+                                   {"cuda_seconds", median(cuda_seconds)},
+                                   {"times_faster", median(ratios)}}})}};
 }
 
 }  // namespace evodevo::benchmark

@@ -1,0 +1,42 @@
+// The benchmark's command line.
+#include "settings.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <vector>
+
+namespace evodevo::benchmark {
+namespace {
+
+using testing::HasSubstr;
+
+std::optional<Settings> parsed(std::vector<const char*> arguments) {
+  arguments.insert(arguments.begin(), "evodevo-bench");
+  return parse(static_cast<int>(arguments.size()), arguments.data());
+}
+
+std::string complaint(const std::vector<const char*>& arguments) {
+  try {
+    parsed(arguments);
+    return "";
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+}
+
+TEST(Settings, NameTheCommandThatRepeatsThem) {
+  EXPECT_EQ(parsed({"--json", "--body", "cube10", "--runs=3"})->command, "tools/bench --body cube10 --runs=3");
+}
+
+TEST(Settings, RefuseWhatCannotBeMeasured) {
+  EXPECT_THAT(complaint({"--study", "speeed"}), HasSubstr("\"speeed\" is none of speed, features"));
+  EXPECT_THAT(complaint({"--study", "baselines"}), HasSubstr("--device cuda"));
+  EXPECT_THAT(complaint({"--robots", "some.toml"}), HasSubstr("--study tallies"));
+  EXPECT_THAT(complaint({"--bodies", "0"}), HasSubstr("bodies from 1 to 65535"));
+  EXPECT_EQ(complaint({"--study", "features"}), "");
+}
+
+}  // namespace
+}  // namespace evodevo::benchmark

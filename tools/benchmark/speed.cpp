@@ -1,0 +1,40 @@
+#include <algorithm>
+
+#include "batch.hpp"
+#include "parallel.hpp"
+#include "studies.hpp"
+
+namespace evodevo::benchmark {
+
+Report speed(const Settings& settings) {
+  const NamedBody body = body_named(settings.body, settings.masses, settings.materials);
+  Batch batch(settings, body.body, walking_scene());
+  // warm-up; compiles the kernels of a GPU
+  batch.rate();
+  batch.rate({.stress = true});
+  batch.rate({.work = true});
+  std::vector<double> whole, plain, stress, work;
+  // in turn, so that whatever else the machine does meets all of them
+  for (int run = 0; run < settings.runs; ++run) {
+    const Rate rate = batch.rate();
+    whole.push_back(rate.whole);
+    plain.push_back(rate.device);
+    stress.push_back(batch.rate({.stress = true}).device / rate.device);
+    work.push_back(batch.rate({.work = true}).device / rate.device);
+  }
+  Report report = conditions(settings, "Speed", batch.device(), body);
+  Report row = {{"spring_evaluations_per_second", median(plain)}};
+  if (settings.device == "cpu") {
+    const int cores = std::min<int>(thread_count(settings.threads), static_cast<int>(settings.bodies));
+    report["threads"] = cores;
+    row["per_second_and_core"] = median(plain) / cores;
+  } else {
+    row["per_second_with_copies"] = median(whole);
+  }
+  row["rate_with_stress"] = median(stress);
+  row["rate_with_work"] = median(work);
+  report["rows"] = Report::array({row});
+  return report;
+}
+
+}  // namespace evodevo::benchmark
