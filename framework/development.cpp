@@ -11,12 +11,13 @@ namespace {
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
 
 /// Marks `indices` among `count` items. `what` names the items in errors.
-std::vector<bool> marked(const std::vector<std::uint32_t>& indices, std::size_t count, const std::string& what) {
-  std::vector<bool> marks(count, false);
+std::vector<std::uint8_t> marked(const std::vector<std::uint32_t>& indices, std::size_t count,
+                                 const std::string& what) {
+  std::vector<std::uint8_t> marks(count, 0);
   for (const std::uint32_t index : indices) {
     if (index >= count)
       refuse("removes " + what + " " + std::to_string(index) + " of a body that has " + std::to_string(count));
-    marks[index] = true;
+    marks[index] = 1;
   }
   return marks;
 }
@@ -139,9 +140,8 @@ class Editor {
         if (new_key(*spring) == key) refuse(pair_text(*spring) + ", which are joined already");
     };
     if (const auto twin = std::adjacent_find(keys.begin(), keys.end()); twin != keys.end()) refuse_pair(*twin);
-    std::vector<bool> gets_spring(living_.body.masses.size(), false);
-    for (const NewSpring& spring : arrivals)
-      gets_spring[new_index_[spring.a]] = gets_spring[new_index_[spring.b]] = true;
+    std::vector<std::uint8_t> gets_spring(living_.body.masses.size(), 0);
+    for (const NewSpring& spring : arrivals) gets_spring[new_index_[spring.a]] = gets_spring[new_index_[spring.b]] = 1;
     for (const Spring& spring : living_.body.springs) {
       if (!gets_spring[spring.a] || !gets_spring[spring.b]) continue;
       if (const auto key = pair_key(spring.a, spring.b); std::binary_search(keys.begin(), keys.end(), key))
@@ -158,13 +158,18 @@ class Editor {
   LivingBody& living_;
   const Edits& edits_;
   const Moment& now_;
-  std::vector<bool> spring_gone_, mass_gone_;
+  std::vector<std::uint8_t> spring_gone_, mass_gone_;
   std::vector<std::uint32_t> new_index_;  ///< of every old and new mass
   double mean_stress_ = 0;
 };
 
 }  // namespace
 
-void apply_edits(LivingBody& living, const Edits& edits, const Moment& now) { Editor(living, edits, now).apply(); }
+void apply_edits(LivingBody& living, const Edits& edits, const Moment& now) {
+  if (edits.removed_springs.empty() && edits.removed_masses.empty() && edits.new_masses.empty() &&
+      edits.new_springs.empty())
+    return;
+  Editor(living, edits, now).apply();
+}
 
 }  // namespace evodevo

@@ -4,14 +4,15 @@
 #include <array>
 #include <numeric>
 
-#include "cuda/formats.hpp"
 #include "cuda/ownership.hpp"
 
 namespace evodevo::cuda {
 namespace {
 
-// no other size would let more warps be resident
-constexpr unsigned blocks[] = {1, 2, 3, 4, 5, 6, 8, 10, 16, 32};
+// few, because each pair of these is a launch of its own, and bodies of like size should share one
+constexpr unsigned unrolled_rows[] = {4, 8, 12, 15, 16, 20, 24};
+constexpr unsigned blocks[] = {1, 2, 4, 8, 16, 32};
+constexpr unsigned rows_of_a_chunk = 8;
 constexpr unsigned resident_warps = 32;  // of a multiprocessor at 64 registers a thread
 
 unsigned divided(std::size_t a, std::size_t b) { return static_cast<unsigned>((a + b - 1) / b); }

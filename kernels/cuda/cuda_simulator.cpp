@@ -17,16 +17,18 @@ namespace {
 
 static_assert(cuda::guard_interval == EnergyGuard::interval);
 
-constexpr std::size_t most_streams = 4;  // of one batch; with all batches as many as the device has queues
-constexpr int batches_at_once = 8;       // one moves, others are prepared, read out or on their way
+constexpr std::size_t most_streams = 12;  // of one batch
+constexpr int batches_at_once = 8;        // one moves, others are prepared, read out or on their way
 // of the free memory, which other programs want to use too
 constexpr double share_of_memory = 0.8;
 
 /// What a batch has of the device to itself.
 struct Lane {
-  Lane() : streams(most_streams) {}
+  Lane() {
+    for (std::size_t i = 0; i < most_streams; ++i) urgent.emplace_back(true), patient.emplace_back();
+  }
 
-  std::vector<cuda::Stream> streams;
+  std::vector<cuda::Stream> urgent, patient;
   cuda::MirroredMemory memory;
 };
 
@@ -77,19 +79,22 @@ class DeviceSimulator final : public CudaSimulator {
         neighbours_(make_cuda_neighbour_search(threads)) {}
 
   void run(std::span<Task> tasks, std::uint64_t steps, Recording recording) override {
+    const std::vector<Task*> live = begin(tasks, steps, recording);
     const cuda::Run run{scene_,
                         stepping_,
                         recording,
                         steps,
-                        cuda::features_of(scene_, stepping_.precision, recording),
+                        cuda::features_of(scene_, stepping_.precision, recording, has_muscles(live)),
                         device_.shared_bytes};
-    std::vector<cuda::Plan<T>> plans = plan(begin(tasks, run), run);
+    std::vector<cuda::Plan<T>> plans = plan(live, run);
     const Lanes::Loan lane(lanes_);
+    // after a run with stress the host has work to do; meanwhile runs without it fill the device
+    const std::vector<cuda::Stream>& streams = recording.stress ? lane->urgent : lane->patient;
     double seconds = 0;
     std::size_t portions = 0;
     for (std::span<cuda::Plan<T>> left = plans; !left.empty(); ++portions) {
       cuda::Portion<T> portion = next_portion(left, run, lane->memory);
-      seconds += portion.simulate(kernels_, lane->streams, workers_, busy_);
+      seconds += portion.simulate(kernels_, streams, workers_, busy_);
       left = left.subspan(portion.bodies());
     }
     const std::lock_guard lock(mutex_);
@@ -115,20 +120,28 @@ class DeviceSimulator final : public CudaSimulator {
 
  private:
   /// Empties the answers and gives the tasks that need the device; bodies without masses only grow older.
-  static std::vector<Task*> begin(std::span<Task> tasks, const cuda::Run& run) {
+  static std::vector<Task*> begin(std::span<Task> tasks, std::uint64_t steps, Recording recording) {
     std::vector<Task*> live;
     for (Task& task : tasks) {
       if (task.status != Status::ok) continue;
-      task.stress.assign(run.recording.stress ? task.body->springs.size() : 0, 0.0);
+      task.stress.clear();
       task.work = 0;
       task.spring_evaluations = 0;
-      if (run.steps == 0) continue;
-      if (task.body->masses.empty())
-        task.state->steps += run.steps;
-      else
+      if (steps > 0 && !task.body->masses.empty()) {
         live.push_back(&task);
+        continue;
+      }
+      if (recording.stress) task.stress.assign(task.body->springs.size(), 0.0);
+      task.state->steps += steps;
     }
     return live;
+  }
+
+  static bool has_muscles(const std::vector<Task*>& tasks) {
+    return std::any_of(tasks.begin(), tasks.end(), [](const Task* task) {
+      const std::vector<Material>& materials = task->body->materials;
+      return std::any_of(materials.begin(), materials.end(), [](const Material& m) { return m.amplitude != 0; });
+    });
   }
 
   std::vector<cuda::Plan<T>> plan(const std::vector<Task*>& tasks, const cuda::Run& run) {

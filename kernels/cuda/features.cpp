@@ -2,13 +2,14 @@
 
 namespace evodevo::cuda {
 
-Features features_of(const Scene& scene, Precision precision, Recording recording) {
+Features features_of(const Scene& scene, Precision precision, Recording recording, bool actuation) {
   return {.float64 = precision == Precision::float64,
           .gravity = scene.gravity.has_value(),
           .floor = scene.floor.has_value(),
           .friction = scene.friction && scene.floor,
           .damping = scene.damping.has_value(),
           .drag = scene.drag.has_value(),
+          .actuation = actuation,
           .stress = recording.stress,
           .work = recording.work};
 }
@@ -34,6 +35,7 @@ std::vector<std::string> definitions(const Features& features, const ResidentFor
     return std::string("EVODEVO_") + name + "=" + std::to_string(value);
   };
   std::vector<std::string> all = definitions(features);
+  all.push_back(number("ROWS", form.rows));
   all.push_back(number("MASSES", form.masses_per_thread));
   all.push_back(number("CHUNKED", form.chunked));
   all.push_back(number("RECORDS_ON_CHIP", form.records_on_chip));

@@ -19,11 +19,12 @@ struct Features {
   friend auto operator<=>(const Features&, const Features&) = default;
 };
 
-Features features_of(const Scene& scene, Precision precision, Recording recording);
+/// `actuation`: whether some body has a muscle among its materials.
+Features features_of(const Scene& scene, Precision precision, Recording recording, bool actuation);
 
 /// What of a body's layout is compiled into the kernel that keeps it on the chip.
 struct ResidentForm {
-  unsigned masses_per_thread = 0;
+  unsigned rows = 0, masses_per_thread = 0;
   bool chunked = false;          ///< more than one chunk of rows for each warp
   bool records_on_chip = false;  ///< springs in shared memory, else streamed from the device's
   bool wide_offsets = false;     ///< masses beyond the first 64 KiB

@@ -10,11 +10,6 @@ namespace evodevo::cuda {
 inline constexpr unsigned lanes = 32;            ///< threads of a warp, banks of shared memory
 inline constexpr unsigned guard_interval = 100;  ///< steps between two checks of a body
 
-/// Springs of a thread that a kernel has code for, one after the other; few, because each is code to compile.
-inline constexpr unsigned unrolled_rows[] = {4, 8, 12, 15, 16, 20, 24};
-/// Springs of a thread in each chunk of a body that has more.
-inline constexpr unsigned rows_of_a_chunk = 8;
-
 /// Masses lie in shared memory in groups of 32, one to a bank: six planes of 32 numbers, the places x, y, z and the
 /// forces x, y, z. All six are then at a constant distance of each other, whatever the size of the body.
 template <class T>
@@ -89,15 +84,15 @@ struct ResidentBody {
   double* stress;                    ///< [slots] sum of |force|, N
   T* recent_stress;                  ///< [slots] of it what is not yet in `stress`, units; where chunked
   Answer* answer;
-  std::uint64_t first_step;                            ///< since birth
-  double energy_bound;                                 ///< J
-  double resolution;                                   ///< N, a power of two
-  T largest_force;                                     ///< units of the resolution; a larger one leaves the range
-  std::uint32_t groups, warps, chunks, rows, entries;  ///< warps: that have springs; rows: of a warp in one chunk
-  std::uint32_t table_steps;                           ///< steps that the table in shared memory holds
-  std::uint32_t table_offset;                          ///< bytes from the beginning of shared memory
-  std::uint32_t rate_offset;                           ///< likewise, of the rates, where work is recorded
-  std::uint32_t record_offset;                         ///< likewise, of the records
+  std::uint64_t first_step;                      ///< since birth
+  double energy_bound;                           ///< J
+  double resolution;                             ///< N, a power of two
+  T largest_force;                               ///< units of the resolution; a larger one leaves the range
+  std::uint32_t groups, warps, chunks, entries;  ///< warps: that have springs
+  std::uint32_t table_steps;                     ///< steps that the table in shared memory holds
+  std::uint32_t table_offset;                    ///< bytes from the beginning of shared memory
+  std::uint32_t rate_offset;                     ///< likewise, of the rates, where work is recorded
+  std::uint32_t record_offset;                   ///< likewise, of the records
 };
 
 /// A spring at one of its ends.

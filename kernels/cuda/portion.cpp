@@ -36,7 +36,7 @@ Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MirroredMemory& me
   for (std::size_t i = 0; i < plans.size(); ++i) {
     sizes_ += plans[i].sizes();
     if (const auto* resident = std::get_if<Resident<T>>(&plans[i].body))
-      resident_[{resident->features(), resident->form(), resident->threads()}].push_back(i);
+      resident_[{resident->form(), resident->threads()}].push_back(i);
     else
       streamed_.push_back(i);
   }
@@ -99,11 +99,12 @@ std::vector<typename Portion<T>::ReadyLaunch> Portion<T>::ready_launches(KernelS
   workers.for_each(launches.size(), [&](std::size_t i) {
     const Launch& launch = launches[i].launch;
     launches[i].kernel =
-        kernels.get("cuda/resident.cu", "evodevo_run_resident", definitions(launch.features, launch.form));
+        kernels.get("cuda/resident.cu", "evodevo_run_resident", definitions(run_.features, launch.form));
   });
   // the largest first, so that small ones fill the gaps at the end
-  std::sort(launches.begin(), launches.end(),
-            [](const ReadyLaunch& a, const ReadyLaunch& b) { return a.launch.threads > b.launch.threads; });
+  std::sort(launches.begin(), launches.end(), [](const ReadyLaunch& a, const ReadyLaunch& b) {
+    return a.launch.threads * a.launch.form.rows > b.launch.threads * b.launch.form.rows;
+  });
   return launches;
 }
 
@@ -124,9 +125,6 @@ void Portion<T>::launch_resident(KernelStore& kernels, std::span<const Stream> s
     check(cudaStreamWaitEvent(stream, ready), "waiting for an event");
     launch(one.kernel, dim3(static_cast<unsigned>(one.members.size())), one.launch.threads, shared_bytes, stream,
            world_, one.bodies, run_.steps);
-    const Event done;
-    check(cudaEventRecord(done, stream), "recording an event");
-    check(cudaStreamWaitEvent(streams[0], done), "waiting for an event");
   }
 }
 
@@ -134,14 +132,11 @@ template <class T>
 void Portion<T>::launch_streamed(KernelStore& kernels, cudaStream_t stream) {
   if (streamed_.empty()) return;
   constexpr unsigned step_threads = 128;
-  Features features = run_.features;
   unsigned masses = 1;
-  for (const std::size_t i : streamed_) {
-    masses = std::max(masses, std::get<Streamed<T>>(plans_[i].body).masses());
-    for (const Material& material : plans_[i].task->body->materials)
-      features.actuation = features.actuation || material.amplitude != 0;
-  }
-  const auto kernel = [&](const char* name) { return kernels.get("cuda/streamed.cu", name, definitions(features)); };
+  for (const std::size_t i : streamed_) masses = std::max(masses, std::get<Streamed<T>>(plans_[i].body).masses());
+  const auto kernel = [&](const char* name) {
+    return kernels.get("cuda/streamed.cu", name, definitions(run_.features));
+  };
   const cudaKernel_t fill = kernel("evodevo_fill_tables"), step = kernel("evodevo_step_streamed"),
                      check_bodies = kernel("evodevo_check_streamed");
   const auto* bodies =
@@ -164,7 +159,12 @@ void Portion<T>::download(cudaStream_t stream) {
   check(cudaMemcpyAsync(host_.front().state, device_.front().state, sizes_.state + sizes_.sums, cudaMemcpyDeviceToHost,
                         stream),
         "copying bodies from the GPU");
-  // asleep, because other batches need the core
+  wait(stream);
+}
+
+/// Waits until a stream has done all that it was given; asleep, because other batches need the core.
+template <class T>
+void Portion<T>::wait(cudaStream_t stream) {
   const Event done(true);
   check(cudaEventRecord(done, stream), "recording an event");
   check(cudaEventSynchronize(done), "simulating on the GPU");
@@ -180,6 +180,8 @@ double Portion<T>::simulate(KernelStore& kernels, std::span<const Stream> stream
     check(cudaEventRecord(begin, streams[0]), "recording an event");
     launch_resident(kernels, streams, workers);
     launch_streamed(kernels, streams[0]);
+    // here and not on the device, where other batches' launches could be queued behind a stream that waits
+    for (const Stream& stream : streams) wait(stream);
     check(cudaEventRecord(end, streams[0]), "recording an event");
     download(streams[0]);
   }

@@ -56,7 +56,6 @@ class Portion {
  private:
   /// Resident bodies that one launch handles.
   struct Launch {
-    Features features;
     ResidentForm form;
     unsigned threads;
     auto operator<=>(const Launch&) const = default;
@@ -74,6 +73,7 @@ class Portion {
   void launch_resident(KernelStore& kernels, std::span<const Stream> streams, Workers& workers);
   void launch_streamed(KernelStore& kernels, cudaStream_t stream);
   void download(cudaStream_t stream);
+  static void wait(cudaStream_t stream);
 
   std::span<Plan<T>> plans_;
   Run run_;

@@ -97,10 +97,7 @@ Resident<T>::Resident(const Task& task, const Features& features)
     : task_(&task),
       features_(features),
       arranged_(ArrangedBody::of(*task.body, largest_block(features.float64), task.preparation)),
-      range_(force_range<T>(*task.body, *task.state)) {
-  for (const Spring& spring : task.body->springs)
-    features_.actuation = features_.actuation || task.body->materials[spring.material].amplitude != 0;
-}
+      range_(force_range<T>(*task.body, *task.state)) {}
 
 /// Divides up shared memory; false where it is too small.
 template <class T>
@@ -140,7 +137,8 @@ void Resident<T>::reserve() {
 template <class T>
 ResidentForm Resident<T>::form() const {
   const Shape& shape = arrangement().shape;
-  return {.masses_per_thread = shape.masses_per_thread,
+  return {.rows = shape.rows,
+          .masses_per_thread = shape.masses_per_thread,
           .chunked = shape.chunks > 1,
           .records_on_chip = records_on_chip_,
           .wide_offsets = masses_bytes<T>(arrangement().groups) > largest_offset,
@@ -215,7 +213,6 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
           .groups = arrangement().groups,
           .warps = arrangement().shape.warps,
           .chunks = arrangement().shape.chunks,
-          .rows = arrangement().shape.rows,
           .entries = static_cast<std::uint32_t>(task_->body->materials.size() + 1),
           .table_steps = chip_.table_steps,
           .table_offset = static_cast<std::uint32_t>(chip_.table_offset),

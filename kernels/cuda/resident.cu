@@ -9,6 +9,7 @@
 
 namespace evodevo::cuda {
 
+constexpr unsigned rows = EVODEVO_ROWS;                    // springs of a thread in one chunk, unrolled
 constexpr unsigned masses_per_thread = EVODEVO_MASSES;     // that a thread moves
 constexpr bool chunked = EVODEVO_CHUNKED;                  // more rows for each warp than can be unrolled
 constexpr bool records_on_chip = EVODEVO_RECORDS_ON_CHIP;  // else they are streamed from memory
@@ -78,7 +79,6 @@ struct Owner {
 };
 
 /// What a thread adds up over its springs in some steps.
-template <unsigned rows>
 struct Sums {
   Number largest = 0;            // |force|, units
   Number row_stress[rows] = {};  // sum of |force| of the spring in each row of its only chunk, units
@@ -96,19 +96,17 @@ struct Share {
   const Record<Number>* records;  // of all slots
   unsigned owner;                 // offset of the mass that it begins with
   unsigned first_slot;
-  unsigned slots;              // of the warp in one chunk
   unsigned chunks;             // 0: the warp has no springs
   const std::uint32_t* turns;  // of the warp's chunks
 
-  __device__ __forceinline__ unsigned slot(unsigned chunk) const { return first_slot + chunk * slots; }
+  __device__ __forceinline__ unsigned slot(unsigned chunk) const { return first_slot + chunk * rows * lanes; }
 };
 
 __device__ __forceinline__ Share share_of(const Body& body) {
   Share share;
   const unsigned warp = threadIdx.x / lanes, chunks = chunked ? body.chunks : 1;
-  share.slots = body.rows * lanes;
   share.chunks = warp < body.warps ? chunks : 0;
-  share.first_slot = warp * chunks * share.slots + threadIdx.x % lanes;
+  share.first_slot = warp * chunks * rows * lanes + threadIdx.x % lanes;
   share.turns = body.turns + warp * chunks;
   share.owner = offset_of_place(body.first_group[warp] * lanes + threadIdx.x % lanes);
   share.records = records_on_chip ? &on_chip<Record<Number>>(body.record_offset) : in_memory(body.records);
@@ -122,9 +120,7 @@ struct Lengths {
 };
 
 /// Adds one spring's force to both of its ends; returns its size, units.
-template <unsigned rows>
-__device__ __forceinline__ Number add_force(const Spring& spring, Owner& owner, const Lengths& lengths,
-                                            Sums<rows>& sums) {
+__device__ __forceinline__ Number add_force(const Spring& spring, Owner& owner, const Lengths& lengths, Sums& sums) {
   const auto s = physics::separation(owner.place, spring.place);
   const Number inverse = physics::inverse_length(s);
   const Number factor =
@@ -149,9 +145,8 @@ __device__ __forceinline__ Number add_force(const Spring& spring, Owner& owner, 
 
 /// Adds the forces of `rows` rows, the first of which is at `slot`. The next row's reads are issued before this row's
 /// atomics, which the compiler may not pass.
-template <unsigned rows>
 __device__ __forceinline__ void add_forces(const Body& body, const Share& share, unsigned slot, unsigned turns,
-                                           const Lengths& lengths, Owner& owner, Sums<rows>& sums) {
+                                           const Lengths& lengths, Owner& owner, Sums& sums) {
   const Record<Number>* records = share.records + slot;
   Record<Number> record = records[rows > 1 ? lanes : 0];
   Spring next(records[0], lengths.table);
@@ -175,10 +170,8 @@ __device__ __forceinline__ void add_forces(const Body& body, const Share& share,
   }
 }
 
-template <unsigned rows>
 __device__ __forceinline__ void add_spring_forces(const Body& body, const Share& share, unsigned turns,
-                                                  const Lengths& lengths, Sums<rows>& sums) {
-  if (share.chunks == 0) return;
+                                                  const Lengths& lengths, Sums& sums) {
   Owner owner(share.owner);
   if constexpr (chunked) {
     for (unsigned chunk = 0; chunk < share.chunks; ++chunk)
@@ -253,7 +246,7 @@ __device__ __forceinline__ void load(const Body& body, Movers& movers) {
   }
   if constexpr (records_on_chip) {
     Record<Number>* records = &on_chip<Record<Number>>(body.record_offset);
-    const unsigned count = body.warps * lanes * body.rows * (chunked ? body.chunks : 1);
+    const unsigned count = body.warps * lanes * rows * (chunked ? body.chunks : 1);
     for (unsigned i = threadIdx.x; i < count; i += blockDim.x) records[i] = body.records[i];
   }
 }
@@ -287,7 +280,7 @@ __device__ double elastic_energy(const Body& body, const Share& share) {
   unsigned offset = share.owner;
   for (unsigned chunk = 0; chunk < share.chunks; ++chunk) {
     const unsigned turns = share.turns[chunk];
-    for (unsigned row = 0; row < body.rows; ++row) {
+    for (unsigned row = 0; row < rows; ++row) {
       const Spring spring(share.records[share.slot(chunk) + row * lanes], body.table_offset);
       const auto s = physics::separation(place_at(offset), spring.place);
       // an empty slot has no stiffness
@@ -354,13 +347,11 @@ __device__ __noinline__ bool has_diverged(const Body& body, const World<Number>&
 }
 
 /// Adds the sums of some steps to the body's.
-template <unsigned rows>
-__device__ __forceinline__ void collect(const Body& body, const Share& share, const Sums<rows>& sums, Totals& totals) {
-  if (share.chunks == 0) return;
+__device__ __forceinline__ void collect(const Body& body, const Share& share, const Sums& sums, Totals& totals) {
   totals.largest = fmax(totals.largest, sums.largest);
   if constexpr (work) totals.power += sums.power;
   if constexpr (stress) {
-    for (unsigned chunk = 0; chunk < share.chunks; ++chunk) {
+    for (unsigned chunk = 0; chunk < (chunked ? share.chunks : 1); ++chunk) {
       double* to = body.stress + share.slot(chunk);
       Number* recent = body.recent_stress + share.slot(chunk);
       double before[rows];  // read all at once, because a read must wait for the write before it
@@ -380,38 +371,24 @@ __device__ __forceinline__ void collect(const Body& body, const Share& share, co
 }
 
 /// Makes `count` steps, whose lengths are in the table. The sums live no longer than this, so that no call of a
-/// function drives them out of the registers.
-template <unsigned rows>
+/// function drives them out of the registers. A warp without springs only moves masses.
+template <bool has_springs>
 __device__ __forceinline__ void advance(const Body& body, const World<Number>& world, const Share& share,
                                         unsigned turns, unsigned count, Movers& movers, Totals& totals) {
   const Number resolution = static_cast<Number>(body.resolution);
   const unsigned row_bytes = body.entries * sizeof(Entry<Number>);
   Lengths lengths{body.table_offset};
   if constexpr (work) lengths.rates = body.rate_offset;
-  Sums<rows> sums;
+  [[maybe_unused]] Sums sums;
   for (unsigned step = 0; step < count; ++step) {
-    add_spring_forces(body, share, turns, lengths, sums);
+    if constexpr (has_springs) add_spring_forces(body, share, turns, lengths, sums);
     __syncthreads();
     move_masses(body, world, resolution, movers);
     __syncthreads();
     if constexpr (actuation) lengths.table += row_bytes;
     if constexpr (actuation && work) lengths.rates += row_bytes / 2;
   }
-  collect(body, share, sums, totals);
-}
-
-/// The same with as many unrolled rows as the body has.
-template <unsigned choice = 0>
-__device__ __forceinline__ void advance_rows(const Body& body, const World<Number>& world, const Share& share,
-                                             unsigned turns, unsigned count, Movers& movers, Totals& totals) {
-  if constexpr (chunked) {
-    advance<rows_of_a_chunk>(body, world, share, turns, count, movers, totals);
-  } else if constexpr (choice < sizeof(unrolled_rows) / sizeof(unsigned)) {
-    if (body.rows == unrolled_rows[choice])
-      advance<unrolled_rows[choice]>(body, world, share, turns, count, movers, totals);
-    else
-      advance_rows<choice + 1>(body, world, share, turns, count, movers, totals);
-  }
+  if constexpr (has_springs) collect(body, share, sums, totals);
 }
 
 extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)
@@ -433,7 +410,10 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)
       fill_table(body, body.first_step + done, now, world.exact_dt);
       __syncthreads();
     }
-    advance_rows(body, world, share, turns, now, movers, totals);
+    if (share.chunks > 0)
+      advance<true>(body, world, share, turns, now, movers, totals);
+    else
+      advance<false>(body, world, share, turns, now, movers, totals);
     done += now;
     if (now < until_check) continue;
     if constexpr (actuation) {

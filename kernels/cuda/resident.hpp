@@ -59,7 +59,6 @@ class Resident {
   /// Bytes of `shared_bytes` that a body can have; the kernel and the system have the rest.
   static std::size_t largest_chip(std::size_t shared_bytes);
 
-  Features features() const { return features_; }
   ResidentForm form() const;
   unsigned threads() const { return 32 * arrangement().shape.block; }
   std::size_t slots() const { return arrangement().slots.size(); }

@@ -37,13 +37,17 @@ class Partners {
 /// The `count` least stressed springs, least first, ties in random order. A stress that is not a number counts as the
 /// greatest.
 std::vector<std::uint32_t> least_stressed(std::span<const double> stress, std::size_t count, Rng& rng) {
+  std::vector<double> comparable(stress.begin(), stress.end());
+  for (double& value : comparable)
+    if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
+  std::vector<double> ordered = comparable;
+  const auto last = ordered.begin() + static_cast<std::ptrdiff_t>(count) - 1;
+  std::nth_element(ordered.begin(), last, ordered.end());
   using Ranked = std::tuple<double, std::uint32_t, std::uint32_t>;
   std::vector<Ranked> ranked;
-  ranked.reserve(stress.size());
-  for (std::uint32_t s = 0; s < stress.size(); ++s)
-    ranked.emplace_back(std::isnan(stress[s]) ? std::numeric_limits<double>::infinity() : stress[s], rng(), s);
-  std::nth_element(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(count), ranked.end());
-  std::sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(count));
+  for (std::uint32_t s = 0; s < comparable.size(); ++s)
+    if (comparable[s] <= *last) ranked.emplace_back(comparable[s], rng(), s);
+  std::sort(ranked.begin(), ranked.end());
   std::vector<std::uint32_t> springs;
   for (std::size_t i = 0; i < count; ++i) springs.push_back(std::get<2>(ranked[i]));
   return springs;

@@ -48,8 +48,9 @@ const Features every_feature{.gravity = true,
                              .work = true};
 
 TEST_F(Compiler, CompilesEveryFormForHopper) {
-  const ResidentForm forms[] = {{.masses_per_thread = 1, .chunked = false, .records_on_chip = true},
-                                {.masses_per_thread = 5, .chunked = true, .wide_offsets = true, .wide_table = true}};
+  const ResidentForm forms[] = {
+      {.rows = 15, .masses_per_thread = 1, .chunked = false, .records_on_chip = true},
+      {.rows = 8, .masses_per_thread = 5, .chunked = true, .wide_offsets = true, .wide_table = true}};
   for (const bool float64 : {false, true}) {
     for (Features features : {Features{}, every_feature}) {
       features.float64 = float64;

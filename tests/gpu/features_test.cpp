@@ -57,10 +57,7 @@ class Sources {
     // comments name what they explain
     for (const EmbeddedSource& source : embedded_sources()) {
       names_.emplace_back(source.name);
-      std::string text = std::regex_replace(std::string(source.text), std::regex(" *//[^\n]*"), "");
-      // one number of rows stands for all, which are the same code at another length
-      texts_.push_back(
-          std::regex_replace(text, std::regex("unrolled_rows\\[\\] = \\{[^}]*\\}"), "unrolled_rows[] = {15}"));
+      texts_.push_back(std::regex_replace(std::string(source.text), std::regex(" *//[^\n]*"), ""));
     }
   }
 
@@ -188,16 +185,18 @@ struct Form {
 
   std::vector<std::string> definitions(Features features) const {
     features.float64 = float64;
-    return layout.masses_per_thread == 0 ? cuda::definitions(features) : cuda::definitions(features, layout);
+    return layout.rows == 0 ? cuda::definitions(features) : cuda::definitions(features, layout);
   }
   friend void PrintTo(const Form& form, std::ostream* stream) { *stream << form.name; }
 };
 
 const std::vector<Form> forms{
-    {"resident", "cuda/resident.cu", {.masses_per_thread = 1, .records_on_chip = true}},
-    {"resident, springs streamed", "cuda/resident.cu", {.masses_per_thread = 5, .chunked = true, .wide_offsets = true}},
+    {"resident", "cuda/resident.cu", {.rows = 15, .masses_per_thread = 1, .records_on_chip = true}},
+    {"resident, springs streamed",
+     "cuda/resident.cu",
+     {.rows = 8, .masses_per_thread = 5, .chunked = true, .wide_offsets = true}},
     {"streamed", "cuda/streamed.cu", {}},
-    {"resident, float64", "cuda/resident.cu", {.masses_per_thread = 2, .records_on_chip = true}, true},
+    {"resident, float64", "cuda/resident.cu", {.rows = 15, .masses_per_thread = 2, .records_on_chip = true}, true},
 };
 
 class FeatureCode : public testing::TestWithParam<Form> {
