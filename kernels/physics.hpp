@@ -114,6 +114,22 @@ EVODEVO_HD T drag_factor(T coefficient, const Triple<T>& velocity) {
   return constant<T>(0) - coefficient * square_root(squared);
 }
 
+/// What uniform damping multiplies the velocity by where it is a force: -rate m v, kg/s.
+template <class T>
+EVODEVO_HD T damping_factor(T rate, T mass) {
+  return constant<T>(0) - rate * mass;
+}
+
+/// What is left of a velocity after a time under quadratic drag: 1/(1 + push c |v|/m), `coefficient` = push c/m (s/m).
+/// Without damping push is the time, with it push = (1 - decay)/rate, decay = exp(-rate time): then
+/// v <- drag_retention * decay * v solves v' = -rate v - c |v| v/m (Bernoulli's equation) exactly, and
+/// v <- drag_retention * (decay * v + push F/m) rests where F = (rate m + c |v|) v, whatever the time.
+template <class T>
+EVODEVO_HD T drag_retention(T coefficient, const Triple<T>& velocity) {
+  const T squared = multiply_add(velocity.z, velocity.z, multiply_add(velocity.y, velocity.y, velocity.x * velocity.x));
+  return constant<T>(1) / multiply_add(coefficient, square_root(squared), constant<T>(1));
+}
+
 /// The velocity after a step's forces: v + dt F/m. With damping it is multiplied by exp(-rate dt) next; together, the
 /// reading of the paper's equations (section IV-C; README, What is simulated) that `paper-euler` names.
 template <class T>

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "evodevo/body.hpp"
+#include "method.hpp"
 #include "scene.hpp"
 
 namespace evodevo {
 
-enum class Method { paper_euler };
 enum class Precision { float32, float64 };
 
 struct Stepping {
@@ -32,12 +32,12 @@ struct Task {
   const Body* body = nullptr;
   State* state = nullptr;  ///< moved in place
 
-  Status status = Status::ok;  ///< ok or diverged; a task that does not come in as ok is left alone
-  double ended_at = 0;         ///< time of a divergence since birth, s; found to within 100 steps
-  std::string reason;          ///< of a divergence
-  std::vector<double> stress;  ///< per spring, N; empty unless recorded, and after a divergence
-  double work = 0;             ///< positive work of the muscles on the body, J; 0 unless recorded
-  std::uint64_t spring_evaluations = 0;
+  Status status = Status::ok;            ///< ok or diverged; a task that does not come in as ok is left alone
+  double ended_at = 0;                   ///< time of a divergence since birth, s; found to within 100 steps
+  std::string reason;                    ///< of a divergence
+  std::vector<double> stress;            ///< per spring, N; empty unless recorded, and after a divergence
+  double work = 0;                       ///< positive work of the muscles on the body, J; 0 unless recorded
+  std::uint64_t spring_evaluations = 0;  ///< springs times steps, however often a method's step looks at a spring
 };
 
 /// Moves bodies through a scene; a mass of 0 kg stays where it is. A body's answer is the same bits alone, in any

@@ -102,6 +102,11 @@ class DeviceSimulator final : public CudaSimulator {
 }  // namespace
 
 std::unique_ptr<CudaSimulator> make_cuda_simulator(const Scene& scene, const Stepping& stepping, std::size_t memory) {
+  if (stepping.method != Method::paper_euler)
+    throw std::invalid_argument(
+        "simulation.method: \"" + std::string(name(stepping.method)) +
+        "\" runs on the CPU alone; set simulation.device to \"cpu\", or simulation.method to \"" +
+        std::string(name(Method::paper_euler)) + "\"");
   if (stepping.precision == Precision::float64)
     return std::make_unique<DeviceSimulator<double>>(scene, stepping, memory);
   return std::make_unique<DeviceSimulator<float>>(scene, stepping, memory);
