@@ -81,6 +81,39 @@ EVODEVO_HD T actuation_power(T tension, T rate) {
   return maximum(negative_multiply_add(tension, rate, constant<T>(0)), constant<T>(0));
 }
 
+/// A spring's stiffness as a matrix, transverse I + along along^T, N/m.
+template <class T>
+struct SpringStiffness {
+  T transverse;     ///< N/m
+  Triple<T> along;  ///< (N/m)^1/2
+};
+
+/// How a spring's force answers to its ends' places: k (n n^T + max(0, 1 - L/|d|)(I - n n^T)), n = d/|d|. A compressed
+/// spring pushes sideways what has left its line, a negative stiffness; it is left out, so that the matrix is positive
+/// semidefinite (Choi and Ko, Stable but responsive cloth, 2002). `factor` is spring_factor(); without length, zero.
+template <class T>
+EVODEVO_HD SpringStiffness<T> spring_stiffness(const Separation<T>& s, T distance, T stiffness, T factor) {
+  const T transverse = maximum(factor, constant<T>(0));
+  const T scale = square_root(stiffness - transverse) / distance;
+  return {transverse, {scale * s.d.x, scale * s.d.y, scale * s.d.z}};
+}
+
+/// The matrix times a vector.
+template <class T>
+EVODEVO_HD Triple<T> times(const SpringStiffness<T>& k, const Triple<T>& v) {
+  const T pull = multiply_add(k.along.z, v.z, multiply_add(k.along.y, v.y, k.along.x * v.x));
+  return {multiply_add(k.along.x, pull, k.transverse * v.x), multiply_add(k.along.y, pull, k.transverse * v.y),
+          multiply_add(k.along.z, pull, k.transverse * v.z)};
+}
+
+/// The force (N) of a stiffness that acts as it will at the end of a step: where violation (m) is how far from its
+/// rest a step without it would lead, k violation/(1 + k dt^2 w) is left, w the inverse masses (1/kg) that it moves.
+/// Extended position-based dynamics in terms of forces, lambda/dt^2 (Macklin et al., XPBD, 2016; compliance 1/k).
+template <class T>
+EVODEVO_HD T compliant_force(T stiffness, T violation, T dt_squared, T inverse_mass) {
+  return stiffness * violation / multiply_add(stiffness * dt_squared, inverse_mass, constant<T>(1));
+}
+
 /// A spring's elastic energy k (|d| - L)^2 / 2, J.
 template <class T>
 EVODEVO_HD T elastic_energy(const Separation<T>& s, T stiffness, T spring_length) {

@@ -115,26 +115,31 @@ double oscillation_limit(Method method) {
       return 2;
     case Method::rk4:
       return 2 * std::sqrt(2);
+    case Method::implicit:
+    case Method::xpbd:
+      return infinity;
   }
   return 0;
 }
 
-double largest_contact_dt(const Scene& scene, double mass) {
-  if (!scene.floor || scene.floor->stiffness <= 0) return infinity;
+double largest_contact_dt(const Scene& scene, double mass, Method method) {
+  if (!is_explicit(method) || !scene.floor || scene.floor->stiffness <= 0) return infinity;
   return 1.2 * std::sqrt(mass / scene.floor->stiffness);
 }
 
 double largest_spring_dt(const Material& material, double mass, Method method) {
-  if (material.stiffness <= 0) return infinity;
+  if (!is_explicit(method) || material.stiffness <= 0) return infinity;
   return oscillation_limit(method) / std::sqrt(2 * material.stiffness / mass);
 }
 
 double largest_dt(const Body& body, std::span<const Vec3> places, Method method) {
+  if (!is_explicit(method)) return infinity;
   const double eigenvalue = largest_eigenvalue(StiffnessMatrix(body, places), infinity);
   return eigenvalue > 0 ? oscillation_limit(method) / std::sqrt(eigenvalue) : infinity;
 }
 
 bool is_stable(const Body& body, std::span<const Vec3> places, const Stepping& stepping) {
+  if (!is_explicit(stepping.method)) return true;
   const StiffnessMatrix matrix(body, places);
   const double frequency = oscillation_limit(stepping.method) / stepping.dt;
   const double limit = frequency * frequency;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cpu/coloured_springs.hpp"
 #include "guard.hpp"
 
 namespace evodevo::cpu {
@@ -81,6 +82,7 @@ class MovingBody {
         slot_scratch_(integrator.slot_arrays * layout_.slots()),
         tension_sum_(sums.tension ? layout_.slots() : 0),
         power_sum_(sums.power ? layout_.slots() : 0) {
+    if (integrator.coloured) coloured_ = ColouredSprings<T>(body, layout_);
     for (auto* arrays : {&position_, &velocity_, &force_})
       for (Array<T>& array : *arrays) array = Array<T>(layout_.padded_masses());
     floor_force_ = Array<T>(layout_.padded_masses());
@@ -103,6 +105,15 @@ class MovingBody {
             .stiffness = layout_.stiffness.data(),
             .rest_length = layout_.rest_length.data(),
             .material = layout_.material.data(),
+            .coloured = {.size = coloured_.size,
+                         .a = coloured_.a.data(),
+                         .b = coloured_.b.data(),
+                         .slot = coloured_.slot.data(),
+                         .stiffness = coloured_.stiffness.data(),
+                         .rest_length = coloured_.rest_length.data(),
+                         .inverse_mass_a = coloured_.inverse_mass_a.data(),
+                         .inverse_mass_b = coloured_.inverse_mass_b.data(),
+                         .material = coloured_.material.data()},
             .mass = mass_.data(),
             .inverse_mass = inverse_mass_.data(),
             .x = position_[0].data(),
@@ -148,6 +159,7 @@ class MovingBody {
   }
 
   Layout<T> layout_;
+  ColouredSprings<T> coloured_;
   Array<T> mass_, inverse_mass_, places_, mass_scratch_, slot_scratch_, floor_force_, tension_sum_, power_sum_;
   Array<T> position_[3], velocity_[3], force_[3];
 };

@@ -10,10 +10,12 @@
 
 #include "cpu/actuation-inl.hpp"
 #include "cpu/energies-inl.hpp"
+#include "cpu/methods/implicit-inl.hpp"
 #include "cpu/methods/paper_euler-inl.hpp"
 #include "cpu/methods/rk4-inl.hpp"
 #include "cpu/methods/symplectic_euler-inl.hpp"
 #include "cpu/methods/velocity_verlet-inl.hpp"
+#include "cpu/methods/xpbd-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
@@ -32,13 +34,14 @@ const char* instruction_set() {
 template <class T>
 const cpu::Kernels<T>* kernels_of() {
   static constexpr std::size_t lanes = hn::MaxLanes(hn::ScalableTag<T>());
-  static const cpu::Kernels<T> kernels{.instruction_set = instruction_set(),
-                                       .lanes = lanes,
-                                       .table_size = 16,
-                                       .actuate = actuate<T>,
-                                       .integrator = {integrator<PaperEuler, T>(), integrator<SymplecticEuler, T>(),
-                                                      integrator<VelocityVerlet, T>(), integrator<Rk4, T>()},
-                                       .energies = energies<T>};
+  static const cpu::Kernels<T> kernels{
+      .instruction_set = instruction_set(),
+      .lanes = lanes,
+      .table_size = 16,
+      .actuate = actuate<T>,
+      .integrator = {integrator<PaperEuler, T>(), integrator<SymplecticEuler, T>(), integrator<VelocityVerlet, T>(),
+                     integrator<Rk4, T>(), integrator<Implicit, T>(), integrator<Xpbd, T>()},
+      .energies = energies<T>};
   return &kernels;
 }
 

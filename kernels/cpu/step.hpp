@@ -37,6 +37,15 @@ struct Sums {
   bool power;    ///< power of actuation
 };
 
+/// ColouredSprings, as arrays.
+template <class T>
+struct ColouredView {
+  std::size_t size;
+  const std::uint32_t *a, *b, *slot;
+  const T *stiffness, *rest_length, *inverse_mass_a, *inverse_mass_b;
+  const Index<T>* material;
+};
+
 /// One body in motion, as arrays. All arrays of masses are padded to whole groups with masses that nothing moves.
 template <class T>
 struct Motion {
@@ -47,6 +56,7 @@ struct Motion {
   const T* stiffness;
   const T* rest_length;
   const Index<T>* material;
+  ColouredView<T> coloured;  ///< where Integrator::coloured asks for it
 
   const T* mass;          ///< kg
   const T* inverse_mass;  ///< 1/kg; 0 for what never moves
@@ -84,6 +94,7 @@ struct Integrator {
   std::size_t rows_per_step;  ///< rows of the tables that time advances by in a step
   std::size_t mass_arrays;    ///< memory of its own; what it holds need not outlive a call
   std::size_t slot_arrays;
+  bool coloured;  ///< whether it needs the springs by colour
   /// Moves the body by `steps` steps; `actuation` holds the relative lengths from their beginning to their end.
   void (*advance)(const Motion<T>&, const World<T>&, const Actuation<T>& actuation, std::size_t steps, Sums);
 };

@@ -41,13 +41,7 @@ SpringPass<T> spring_pass(const cpu::Actuation<T>& actuation, cpu::Sums sums) {
   return spring_pass_with<TableInMemory<T>, T>(sums);
 }
 
-/// Three arrays of numbers for each mass.
-template <class T>
-struct Vectors {
-  T *x, *y, *z;
-};
-
-/// A body between two places in time.
+/// A body, its world and the passes over its springs.
 template <class T>
 struct Stepper {
   const cpu::Motion<T>& motion;
@@ -58,16 +52,15 @@ struct Stepper {
   SpringPass<T> springs;        ///< adds to no sum
   SpringPass<T> noted_springs;  ///< adds to the sums that are on
 
+  /// Array `index` of the method's own.
   T* scratch(std::size_t index) const { return motion.mass_scratch + index * masses; }
-  Vectors<T> scratch_vectors(std::size_t index) const {
-    return {scratch(index), scratch(index + 1), scratch(index + 2)};
-  }
 };
 
 /// What a method may leave as it is. It adds `step(stepper, row)`: one step, at whose beginning the relative lengths
 /// are those in row `row` of the tables.
 struct StepMethod {
   static constexpr std::size_t rows_per_step = 1, mass_arrays = 0, slot_arrays = 0;
+  static constexpr bool coloured = false;
   /// Called before the first of some steps.
   template <class T>
   static void begin(const Stepper<T>&) {}
@@ -89,7 +82,7 @@ void advance(const cpu::Motion<T>& motion, const cpu::World<T>& world, const cpu
 
 template <class M, class T>
 constexpr cpu::Integrator<T> integrator() {
-  return {M::rows_per_step, M::mass_arrays, M::slot_arrays, advance<M, T>};
+  return {M::rows_per_step, M::mass_arrays, M::slot_arrays, M::coloured, advance<M, T>};
 }
 
 }  // namespace evodevo::HWY_NAMESPACE
