@@ -106,12 +106,13 @@ EVODEVO_HD Triple<T> times(const SpringStiffness<T>& k, const Triple<T>& v) {
           multiply_add(k.along.z, pull, k.transverse * v.z)};
 }
 
-/// The force (N) of a stiffness that acts as it will at the end of a step: where violation (m) is how far from its
-/// rest a step without it would lead, k violation/(1 + k dt^2 w) is left, w the inverse masses (1/kg) that it moves.
-/// Extended position-based dynamics in terms of forces, lambda/dt^2 (Macklin et al., XPBD, 2016; compliance 1/k).
+/// The force (N) of a stiffness as it will be at the end of a step: k violation/(1 + k dt push w), where `violation`
+/// (m) is how far from its rest the step would lead without it and w the inverse masses (1/kg) that it moves. In terms
+/// of forces, this is the constraint of compliance 1/k of extended position-based dynamics, lambda/dt^2 (Macklin et
+/// al., XPBD, 2016); with damping the force adds push w to the velocity instead of dt w (see drag_retention()).
 template <class T>
-EVODEVO_HD T compliant_force(T stiffness, T violation, T dt_squared, T inverse_mass) {
-  return stiffness * violation / multiply_add(stiffness * dt_squared, inverse_mass, constant<T>(1));
+EVODEVO_HD T compliant_force(T stiffness, T violation, T dt_push, T inverse_mass) {
+  return stiffness * violation / multiply_add(stiffness * dt_push, inverse_mass, constant<T>(1));
 }
 
 /// A spring's elastic energy k (|d| - L)^2 / 2, J.

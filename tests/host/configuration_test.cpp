@@ -62,6 +62,35 @@ TEST(Configuration, ResolvedTextHoldsEveryDefault) {
     EXPECT_NE(resolved.find(key), std::string::npos) << key << " is not in\n" << resolved;
 }
 
+TEST(Configuration, AMethodByItsName) {
+  for (const std::string_view method : method_names) {
+    const Experiment experiment =
+        testing::read(small_experiment, {{"simulation.method", std::string(method), "--set"}});
+    EXPECT_EQ(name(experiment.stepping.method), method);
+    EXPECT_NE(experiment.resolved.find("method = '" + std::string(method) + "'"), std::string::npos);
+  }
+  EXPECT_EQ(complaint(with("[simulation]", "[simulation]\nmethod = \"rk5\"")),
+            "test.toml:27:10: simulation.method = \"rk5\": is not an option; did you mean \"rk4\"?");
+}
+
+TEST(Configuration, TheLargestStepIsThatOfTheMethod) {
+  // 2 and 2 sqrt(2) over the frequency of two masses on a spring of bone; no floor
+  const std::string airborne = with("[scene.floor]\n[scene.friction]\n", "");
+  const auto with_step = [&](const char* method, const char* dt) {
+    return testing::read(airborne, {{"simulation.method", method, "--set"},
+                                    {"simulation.dt", dt, "--set"},
+                                    {"development.cycle_time", "0.1", "--set"},
+                                    {"fitness.0.settle", "0.1", "--set"},
+                                    {"fitness.1.settle", "0.1", "--set"}});
+  };
+  EXPECT_NO_THROW(with_step("velocity-verlet", "0.005"));
+  EXPECT_THROW(with_step("velocity-verlet", "0.00625"), ConfigError);
+  EXPECT_NO_THROW(with_step("rk4", "0.00625"));
+  EXPECT_THROW(with_step("rk4", "0.01"), ConfigError);
+  EXPECT_NO_THROW(with_step("implicit", "0.01"));
+  EXPECT_NO_THROW(with_step("xpbd", "0.01"));
+}
+
 TEST(Configuration, UnknownKeys) {
   EXPECT_EQ(complaint(with("evaluations", "evalutions")),
             "test.toml:4:1: experiment.evalutions: is not a key of [experiment]; did you mean \"evaluations\"?");

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "support.hpp"
 
@@ -32,11 +33,44 @@ double highest_frequency(const Body& body) {
 
 Stepping at(double dt) { return {Method::paper_euler, Precision::float64, dt}; }
 
-/// At its rest places.
-bool is_stable_at_rest(const Body& body, const Stepping& stepping) {
+std::vector<Vec3> rest_places(const Body& body) {
   std::vector<Vec3> places;
   for (const Mass& mass : body.masses) places.push_back(mass.rest);
-  return is_stable(body, places, stepping);
+  return places;
+}
+
+/// At its rest places.
+bool is_stable_at_rest(const Body& body, const Stepping& stepping) {
+  return is_stable(body, rest_places(body), stepping);
+}
+
+TEST(Stability, TheLargestStepIsThatOfTheHighestFrequency) {
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    const Body body =
+        random_body(static_cast<std::uint32_t>(3 + 12 * seed), static_cast<std::uint32_t>(2 + seed), 5, seed);
+    const double frequency = highest_frequency(body);
+    for (const auto& [method, phase] :
+         {std::pair{Method::paper_euler, 2.0}, std::pair{Method::symplectic_euler, 2.0},
+          std::pair{Method::velocity_verlet, 2.0}, std::pair{Method::rk4, std::sqrt(8)}}) {
+      const double largest = largest_dt(body, rest_places(body), method);
+      EXPECT_LE(largest, 1.0005 * phase / frequency) << seed << ", " << name(method);
+      EXPECT_GT(largest, 0.98 * phase / frequency) << seed << ", " << name(method);
+    }
+  }
+}
+
+TEST(Stability, OnlyExplicitMethodsHaveALargestStep) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const Material material{5000, 0, 0, 0};
+  const Body body = block(2, material);
+  for (const Method method : {Method::implicit, Method::xpbd}) {
+    EXPECT_EQ(largest_dt(body, rest_places(body), method), infinity);
+    EXPECT_EQ(largest_spring_dt(material, 0.2, method), infinity);
+    EXPECT_EQ(largest_contact_dt(walking_scene(), 0.2, method), infinity);
+    EXPECT_TRUE(is_stable(body, rest_places(body), {method, Precision::float32, 0.1}));
+  }
+  EXPECT_EQ(largest_dt(single_mass(0.2), {{Vec3{}}}, Method::rk4), infinity);
+  EXPECT_EQ(largest_dt({}, {}, Method::rk4), infinity);
 }
 
 TEST(Stability, TheLimitOfRandomBodiesIsThatOfTheirHighestFrequency) {

@@ -78,7 +78,7 @@ struct Xpbd : StepMethod {
     const cpu::ColouredView<T>& springs = s.motion.coloured;
     const std::uint32_t *a = springs.a + at, *b = springs.b + at;
     const TableInMemory<T> lengths(s.actuation.relative_length + row * s.actuation.padded);
-    const V dt = hn::Set(d, s.world.step.dt);
+    const V dt = hn::Set(d, s.world.step.dt), push = hn::Set(d, s.world.step.push);
     const V rest_length = hn::Load(d, springs.rest_length + at), k = hn::Load(d, springs.stiffness + at);
     const V wa = hn::Load(d, springs.inverse_mass_a + at), wb = hn::Load(d, springs.inverse_mass_b + at);
 
@@ -90,9 +90,9 @@ struct Xpbd : StepMethod {
                    Triple<V>{multiply_add(dt, v.x, x.x), multiply_add(dt, v.y, x.y), multiply_add(dt, v.z, x.z)});
     const V distance = length(ends);
     const V stretch = distance - rest_length * lengths.at(springs.material + at);
-    const V factor = compliant_force(k, stretch, dt * dt, wa + wb) / distance;
-    store_velocities(s, at, a, pushed(va, dt * factor * wa, ends.d));
-    store_velocities(s, at, b, pushed(vb, hn::Zero(d) - dt * factor * wb, ends.d));
+    const V factor = compliant_force(k, stretch, dt * push, wa + wb) / distance;
+    store_velocities(s, at, a, pushed(va, push * factor * wa, ends.d));
+    store_velocities(s, at, b, pushed(vb, hn::Zero(d) - push * factor * wb, ends.d));
     if (s.sums.tension || s.sums.power) note(s, row, at, spring_tension(ends, distance, factor));
   }
 
@@ -146,13 +146,14 @@ struct Xpbd : StepMethod {
   static void solve_floor(const Stepper<T>& s) {
     const hn::ScalableTag<T> d;
     const cpu::Motion<T>& m = s.motion;
-    const auto dt = hn::Set(d, s.world.step.dt), stiffness = hn::Set(d, s.world.floor_stiffness);
+    const auto dt = hn::Set(d, s.world.step.dt), push = hn::Set(d, s.world.step.push);
+    const auto stiffness = hn::Set(d, s.world.floor_stiffness);
     for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
       const auto vz = hn::Load(d, m.vz + i), inverse_mass = hn::Load(d, m.inverse_mass + i);
       const auto depth = maximum(hn::Zero(d) - moved(hn::Load(d, m.z + i), vz, dt), hn::Zero(d));
-      const auto push = compliant_force(stiffness, depth, dt * dt, inverse_mass);
-      hn::Store(push, d, m.floor_force + i);
-      hn::Store(advanced_velocity(vz, push, dt * inverse_mass), d, m.vz + i);
+      const auto force = compliant_force(stiffness, depth, dt * push, inverse_mass);
+      hn::Store(force, d, m.floor_force + i);
+      hn::Store(advanced_velocity(vz, force, push * inverse_mass), d, m.vz + i);
     }
   }
 };
