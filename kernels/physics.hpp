@@ -106,6 +106,19 @@ EVODEVO_HD Triple<T> times(const SpringStiffness<T>& k, const Triple<T>& v) {
           multiply_add(k.along.z, pull, k.transverse * v.z)};
 }
 
+/// How fast a spring's force on its end a changes while its end b moves away from a with `velocity`, N/s:
+/// (factor (I - n n^T) + k n n^T) velocity. That compressed springs push sideways is in it, but of no more than k, as
+/// of a spring at half its length; of one without length there is none.
+template <class T>
+EVODEVO_HD Triple<T> spring_force_rate(const Separation<T>& s, T stiffness, T factor, const Triple<T>& velocity) {
+  const T sideways = maximum(factor, constant<T>(0) - stiffness);
+  const T transverse = zero_unless_greater(s.squared, vanishing_square<T>(), sideways);
+  const T along = multiply_add(s.d.z, velocity.z, multiply_add(s.d.y, velocity.y, s.d.x * velocity.x)) / s.squared;
+  const T pull = (stiffness - transverse) * along;
+  return {multiply_add(pull, s.d.x, transverse * velocity.x), multiply_add(pull, s.d.y, transverse * velocity.y),
+          multiply_add(pull, s.d.z, transverse * velocity.z)};
+}
+
 /// The force (N) of a stiffness as it will be at the end of a step: k violation/(1 + k dt push w), where `violation`
 /// (m) is how far from its rest the step would lead without it and w the inverse masses (1/kg) that it moves. In terms
 /// of forces, this is the constraint of compliance 1/k of extended position-based dynamics, lambda/dt^2 (Macklin et

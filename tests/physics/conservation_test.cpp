@@ -52,11 +52,11 @@ TEST_P(Conservation, InternalForcesKeepLinearAndAngularMomentum) {
   // conjugate gradients leave a residual
   const double residual = method() == Method::implicit ? 1e-6 : 0;
   EXPECT_LT(norm(after.linear - before.linear), (error + residual) * after.scale);
-  // forces act along the springs as they lie at the beginning of a step; rk4 takes them from elsewhere to fourth order,
-  // implicit and xpbd to first (which the order of convergence tests)
-  const double stages = method() == Method::rk4 ? 1e-6 : 0;
-  if (is_explicit(method())) {
-    EXPECT_LT(norm(after.angular - before.angular), 2 * (error + stages) * after.scale);
+  // forces act along the springs as they lie at the beginning of a step; rk4 takes them from elsewhere too, to fourth
+  // order; backward Euler slows a turn of omega down by omega^2 dt a second, and xpbd by much more where muscles pull
+  const double lost = method() == Method::rk4 ? 1e-6 : method() == Method::implicit ? 2 * 1.16 * 0.0005 : 0;
+  if (method() != Method::xpbd) {
+    EXPECT_LT(norm(after.angular - before.angular), 2 * (error + lost) * after.scale);
   }
   EXPECT_GT(largest_difference(start, a.state), 0.1);  // it did move
 }

@@ -12,11 +12,12 @@ HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
 /// With u = decay v, the velocity v' = u + c at the end of a step follows from
-///   (M + push (dt K + R)) c = push (F - (dt K + R) u),   then x <- x + dt v',
+///   (M + push (dt K+ + R)) c = push (F - (dt K + R) u),   then x <- x + dt v',
 /// F the forces at these places with the springs' lengths and K their stiffness at the end of the step (Baraff and
 /// Witkin, Large steps in cloth simulation, 1998). R is diagonal: drag, c |v|, and for each mass that touches the
-/// floor, z + dt v_z < 0, dt times the floor's stiffness along z, so that the floor pushes with k (-z - dt v'_z). The
-/// matrix is symmetric and positive definite at any dt.
+/// floor, z + dt v_z < 0, dt times the floor's stiffness along z, so that the floor pushes with k (-z - dt v'_z). K+ is
+/// spring_stiffness(), without what would be negative, so the matrix is symmetric and positive definite at any dt; K
+/// is spring_force_rate(), with it, or springs under tension would brake every turn of a body.
 struct Implicit : StepMethod {
   static constexpr std::size_t mass_arrays = 21, slot_arrays = 4;
 
@@ -26,13 +27,15 @@ struct Implicit : StepMethod {
     s.springs(s.motion, s.actuation, row + 1);
     if (s.world.gravity) add_gravity(s.motion, s.world, s.masses);
     set_resistance(s, memory);
-    set_stiffness(s, memory, row + 1);
     if (s.world.damping) damp(s.motion, s.world.step.decay, s.masses);
+    set_stiffness(s, memory, row + 1);
     set_residual(s, memory);
     solve(s, memory);
     add_correction(s, memory);
-    if (s.world.floor) set_floor_force(s, memory);
-    if (s.world.friction) rub(s.motion, s.world, s.world.step.dt, s.motion.vx, s.motion.vy, s.masses);
+    if (s.world.friction) {
+      set_floor_force(s, memory);
+      rub(s.motion, s.world, s.world.step.dt, s.motion.vx, s.motion.vy, s.masses);
+    }
     move(s.motion, s.world.step.dt, s.masses);
     if (s.sums.tension || s.sums.power) s.noted_springs(s.motion, s.actuation, row + 1);
   }
@@ -68,7 +71,7 @@ struct Implicit : StepMethod {
     T* vertical_resistance;
     T* shown;  ///< a vector as neighbours read it, place_stride numbers for each mass
     T* transverse;
-    T* along[3];  ///< of the springs' SpringStiffness
+    T* along[3];  ///< of the springs' SpringStiffness, K+
   };
 
   /// Sets R, and adds the floor to the forces.
@@ -94,35 +97,64 @@ struct Implicit : StepMethod {
     }
   }
 
-  /// Sets K and the preconditioner.
+  /// Shows the vectors x, y, z to neighbours.
+  template <class T>
+  static void show(const Stepper<T>& s, const Memory<T>& memory, const T* x, const T* y, const T* z) {
+    const hn::ScalableTag<T> d;
+    for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d))
+      store_places(d, load(x + i, y + i, z + i), memory.shown + cpu::place_stride * i);
+  }
+
+  template <class T>
+  static HWY_INLINE Triple<hn::Vec<hn::ScalableTag<T>>> load(const T* x, const T* y, const T* z) {
+    const hn::ScalableTag<T> d;
+    return {hn::Load(d, x), hn::Load(d, y), hn::Load(d, z)};
+  }
+
+  /// Sets K+ and the preconditioner, and takes dt K u from the forces.
   template <class T>
   static void set_stiffness(const Stepper<T>& s, const Memory<T>& memory, std::size_t row) {
+    const cpu::Motion<T>& m = s.motion;
+    const TableInMemory<T> lengths(s.actuation.relative_length + row * s.actuation.padded);
+    show(s, memory, m.vx, m.vy, m.vz);
+    for (std::size_t group = 0; group < m.groups; ++group) set_stiffness_of(s, memory, lengths, group);
+  }
+
+  template <class T>
+  static HWY_INLINE void set_stiffness_of(const Stepper<T>& s, const Memory<T>& memory, const TableInMemory<T>& lengths,
+                                          std::size_t group) {
     const hn::ScalableTag<T> d;
     using V = hn::Vec<decltype(d)>;
     const cpu::Motion<T>& m = s.motion;
-    const TableInMemory<T> lengths(s.actuation.relative_length + row * s.actuation.padded);
-    for (std::size_t group = 0; group < m.groups; ++group) {
-      const std::size_t i = group * hn::Lanes(d), end = m.first_row[group + 1] * hn::Lanes(d);
-      const Triple<V> own{hn::Load(d, m.x + i), hn::Load(d, m.y + i), hn::Load(d, m.z + i)};
-      Triple<V> sum{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-      for (std::size_t slot = m.first_row[group] * hn::Lanes(d); slot < end; slot += hn::Lanes(d)) {
-        const Separation<V> between = separation(own, load_places(d, m.places, m.neighbour + slot));
-        const V distance = length(between), k = hn::Load(d, m.stiffness + slot);
-        const V spring_length = hn::Load(d, m.rest_length + slot) * lengths.at(m.material + slot);
-        const auto matrix = spring_stiffness(between, distance, k, spring_factor(distance, k, spring_length));
-        hn::Store(matrix.transverse, d, memory.transverse + slot);
-        hn::Store(matrix.along.x, d, memory.along[0] + slot);
-        hn::Store(matrix.along.y, d, memory.along[1] + slot);
-        hn::Store(matrix.along.z, d, memory.along[2] + slot);
-        sum.x = sum.x + multiply_add(matrix.along.x, matrix.along.x, matrix.transverse);
-        sum.y = sum.y + multiply_add(matrix.along.y, matrix.along.y, matrix.transverse);
-        sum.z = sum.z + multiply_add(matrix.along.z, matrix.along.z, matrix.transverse);
-      }
-      set_preconditioner(s, memory, i, sum);
+    const std::size_t i = group * hn::Lanes(d), end = m.first_row[group + 1] * hn::Lanes(d);
+    const Triple<V> x = load(m.x + i, m.y + i, m.z + i), v = load(m.vx + i, m.vy + i, m.vz + i);
+    Triple<V> diagonal{hn::Zero(d), hn::Zero(d), hn::Zero(d)}, rate = diagonal;
+    for (std::size_t slot = m.first_row[group] * hn::Lanes(d); slot < end; slot += hn::Lanes(d)) {
+      const Separation<V> between = separation(x, load_places(d, m.places, m.neighbour + slot));
+      const Triple<V> other = load_places(d, memory.shown, m.neighbour + slot);
+      const V distance = length(between), k = hn::Load(d, m.stiffness + slot);
+      const V spring_length = hn::Load(d, m.rest_length + slot) * lengths.at(m.material + slot);
+      const V factor = spring_factor(distance, k, spring_length);
+      const SpringStiffness<V> matrix = spring_stiffness(between, distance, k, factor);
+      hn::Store(matrix.transverse, d, memory.transverse + slot);
+      hn::Store(matrix.along.x, d, memory.along[0] + slot);
+      hn::Store(matrix.along.y, d, memory.along[1] + slot);
+      hn::Store(matrix.along.z, d, memory.along[2] + slot);
+      diagonal = {diagonal.x + multiply_add(matrix.along.x, matrix.along.x, matrix.transverse),
+                  diagonal.y + multiply_add(matrix.along.y, matrix.along.y, matrix.transverse),
+                  diagonal.z + multiply_add(matrix.along.z, matrix.along.z, matrix.transverse)};
+      const Triple<V> change =
+          spring_force_rate(between, k, factor, Triple<V>{other.x - v.x, other.y - v.y, other.z - v.z});
+      rate = {rate.x + change.x, rate.y + change.y, rate.z + change.z};
     }
+    set_preconditioner(s, memory, i, diagonal);
+    const V dt = hn::Set(d, s.world.step.dt);
+    hn::Store(multiply_add(dt, rate.x, hn::Load(d, m.fx + i)), d, m.fx + i);
+    hn::Store(multiply_add(dt, rate.y, hn::Load(d, m.fy + i)), d, m.fy + i);
+    hn::Store(multiply_add(dt, rate.z, hn::Load(d, m.fz + i)), d, m.fz + i);
   }
 
-  /// For the masses from i on, `stiffness` the diagonal of K.
+  /// For the masses from i on; `stiffness` is the diagonal of K+.
   template <class T, class V>
   static HWY_INLINE void set_preconditioner(const Stepper<T>& s, const Memory<T>& memory, std::size_t i,
                                             const Triple<V>& stiffness) {
@@ -139,16 +171,24 @@ struct Implicit : StepMethod {
     }
   }
 
-  /// Shows the vectors x, y, z to neighbours.
+  /// What the equation lacks without a correction, kg m/s; dt K u has gone from the forces already.
   template <class T>
-  static void show(const Stepper<T>& s, const Memory<T>& memory, const T* x, const T* y, const T* z) {
+  static void set_residual(const Stepper<T>& s, const Memory<T>& memory) {
     const hn::ScalableTag<T> d;
-    for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d))
-      store_places(d, Triple<hn::Vec<decltype(d)>>{hn::Load(d, x + i), hn::Load(d, y + i), hn::Load(d, z + i)},
-                   memory.shown + cpu::place_stride * i);
+    const cpu::Motion<T>& m = s.motion;
+    const auto push = hn::Set(d, s.world.step.push);
+    const auto set = [&](const T* force, const T* resistance, const T* velocity, T* to) HWY_ATTR {
+      for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
+        const auto resisted_by = hn::Load(d, resistance + i) * hn::Load(d, velocity + i);
+        hn::Store(push * (hn::Load(d, force + i) - resisted_by), d, to + i);
+      }
+    };
+    set(m.fx, memory.resistance, m.vx, memory.residual);
+    set(m.fy, memory.resistance, m.vy, memory.residual + s.masses);
+    set(m.fz, memory.vertical_resistance, m.vz, memory.residual + 2 * s.masses);
   }
 
-  /// push (dt K + R) times the shown vector, of which the masses of `group` have `own`.
+  /// push (dt K+ + R) times the shown vector, of which the masses of `group` have `own`.
   template <class T, class V>
   static HWY_INLINE Triple<V> resisted(const Stepper<T>& s, const Memory<T>& memory, std::size_t group,
                                        const Triple<V>& own) {
@@ -168,25 +208,6 @@ struct Implicit : StepMethod {
     const V across = hn::Load(d, memory.resistance + i), vertical = hn::Load(d, memory.vertical_resistance + i);
     return {push * multiply_add(dt, sum.x, across * own.x), push * multiply_add(dt, sum.y, across * own.y),
             push * multiply_add(dt, sum.z, vertical * own.z)};
-  }
-
-  /// What the equation lacks without a correction: push (F - (dt K + R) u), kg m/s.
-  template <class T>
-  static void set_residual(const Stepper<T>& s, const Memory<T>& memory) {
-    const hn::ScalableTag<T> d;
-    using V = hn::Vec<decltype(d)>;
-    const cpu::Motion<T>& m = s.motion;
-    const V push = hn::Set(d, s.world.step.push);
-    show(s, memory, m.vx, m.vy, m.vz);
-    for (std::size_t group = 0; group < m.groups; ++group) {
-      const std::size_t i = group * hn::Lanes(d);
-      const Triple<V> own{hn::Load(d, m.vx + i), hn::Load(d, m.vy + i), hn::Load(d, m.vz + i)};
-      const Triple<V> lost = resisted(s, memory, group, own);
-      T* const to = memory.residual + i;
-      hn::Store(push * hn::Load(d, m.fx + i) - lost.x, d, to);
-      hn::Store(push * hn::Load(d, m.fy + i) - lost.y, d, to + s.masses);
-      hn::Store(push * hn::Load(d, m.fz + i) - lost.z, d, to + 2 * s.masses);
-    }
   }
 
   /// Finds the correction that leaves no residual by conjugate gradients; <r, P r> measures what is left, r the
@@ -229,7 +250,7 @@ struct Implicit : StepMethod {
     for (std::size_t group = 0; group < s.motion.groups; ++group) {
       const std::size_t i = group * hn::Lanes(d);
       const V mass = hn::Load(d, s.motion.mass + i);
-      const Triple<V> own{hn::Load(d, x + i), hn::Load(d, y + i), hn::Load(d, z + i)};
+      const Triple<V> own = load(x + i, y + i, z + i);
       const Triple<V> part = resisted(s, memory, group, own);
       const Triple<V> all{multiply_add(mass, own.x, part.x), multiply_add(mass, own.y, part.y),
                           multiply_add(mass, own.z, part.z)};
