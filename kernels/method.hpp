@@ -7,8 +7,9 @@
 
 namespace evodevo {
 
-/// How a body is moved by one time step. All but the last two are explicit: beyond a
-/// step that depends on the body they diverge.
+/// How a body is moved by one time step. All but the last two are explicit: beyond a step that depends on the body they
+/// diverge. Those two bear any step and damp what swings faster than it; xpbd lets bodies sag under their weight
+/// beyond some three times the largest step of the explicit methods.
 enum class Method {
   paper_euler,       ///< semi-implicit Euler, the new velocity multiplied by exp(-rate dt); order 1
   symplectic_euler,  ///< semi-implicit Euler with damping and drag that end in the true terminal velocity; order 1

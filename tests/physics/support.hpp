@@ -22,6 +22,8 @@ inline std::string name_of(Precision precision) { return precision == Precision:
 inline constexpr std::array all_methods = {Method::paper_euler, Method::symplectic_euler, Method::velocity_verlet,
                                            Method::rk4,         Method::implicit,         Method::xpbd};
 static_assert(all_methods.size() == method_names.size());
+inline constexpr std::array explicit_methods = {Method::paper_euler, Method::symplectic_euler, Method::velocity_verlet,
+                                                Method::rk4};
 
 /// As a test is called.
 std::string name_of(Method method);
