@@ -163,8 +163,11 @@ TEST_P(ClosedForm, ASlidingMassStopsAfterItsStoppingDistance) {
   const double v = 1.5;
   const Answer a = simulate(body, moving(body, scene, {0.6 * v, 0.8 * v, 0}), scene, stepping(), 2000);
   const double distance = v * v / (2 * 0.4 * g);
-  EXPECT_NEAR(a.state.position[0].x, 0.6 * distance, v * 0.0005);
-  EXPECT_NEAR(a.state.position[0].y, 0.8 * distance, v * 0.0005);
+  // velocity-verlet and rk4 are exact but for the last step
+  const bool exact = method() == Method::velocity_verlet || method() == Method::rk4;
+  const double error = (exact ? 0.1 : 1) * v * 0.0005;
+  EXPECT_NEAR(a.state.position[0].x, 0.6 * distance, error);
+  EXPECT_NEAR(a.state.position[0].y, 0.8 * distance, error);
   EXPECT_EQ(a.state.velocity[0].x, 0);
   EXPECT_EQ(a.state.velocity[0].y, 0);
 }
