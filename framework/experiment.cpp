@@ -217,12 +217,16 @@ class Composer {
     const toml::table defaults = parse_toml("", source_.file);
     const toml::table* table = top_.table("simulation");
     TomlReader t(table != nullptr ? *table : defaults, "simulation");
-    std::string method = "paper-euler", precision = "float";
-    t.choice(method, "method", {"paper-euler"}, "Time-stepping method.");
+    std::string method(name(out_.stepping.method)), precision = "float";
+    t.choice(method, "method",
+             {name(Method::paper_euler), name(Method::symplectic_euler), name(Method::velocity_verlet),
+              name(Method::rk4), name(Method::implicit), name(Method::xpbd)},
+             "Time-stepping method.");
     t.choice(precision, "precision", {"float", "double"}, "Arithmetic of the simulation.");
     t.real(out_.stepping.dt, "dt", {1e-7, 0.1, "s"}, "Time step.");
     t.choice(out_.device, "device", {"auto", "cpu", "cuda"}, "Where to simulate; auto: on a GPU where there is one.");
     t.integer(out_.threads, "threads", {0, 4096}, "Threads on the CPU; 0 for all cores.");
+    out_.stepping.method = method_of(method);
     if (precision == "double") out_.stepping.precision = Precision::float64;
     check_step(t);
     top_.resolve("simulation", t.finish());
@@ -235,11 +239,11 @@ class Composer {
       t.fail("dt", "the step " + to_text(dt) + " s is too long for " + what + " on masses of " + to_text(mass) +
                        " kg; expected at most " + to_text(largest) + " s");
     };
-    const double contact = largest_contact_dt(out_.scene, mass);
+    const double contact = largest_contact_dt(out_.scene, mass, out_.stepping.method);
     if (dt > contact) refuse("scene.floor.stiffness = " + to_text(out_.scene.floor->stiffness) + " N/m", contact);
     for (std::size_t i = 0; i < out_.world.materials.size(); ++i) {
       const Material& material = out_.world.materials[i];
-      const double largest = largest_spring_dt(material, mass);
+      const double largest = largest_spring_dt(material, mass, out_.stepping.method);
       if (dt > largest)
         refuse("materials." + out_.world.material_names[i] + ".stiffness = " + to_text(material.stiffness) + " N/m",
                largest);

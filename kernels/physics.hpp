@@ -81,6 +81,53 @@ EVODEVO_HD T actuation_power(T tension, T rate) {
   return maximum(negative_multiply_add(tension, rate, constant<T>(0)), constant<T>(0));
 }
 
+/// A spring's stiffness as a matrix, transverse I + along along^T, N/m.
+template <class T>
+struct SpringStiffness {
+  T transverse;     ///< N/m
+  Triple<T> along;  ///< (N/m)^1/2
+};
+
+/// How a spring's force answers to its ends' places: k (n n^T + max(0, 1 - L/|d|)(I - n n^T)), n = d/|d|. A compressed
+/// spring pushes sideways what has left its line, a negative stiffness; it is left out, so that the matrix is positive
+/// semidefinite (Choi and Ko, Stable but responsive cloth, 2002). `factor` is spring_factor(); without length, zero.
+template <class T>
+EVODEVO_HD SpringStiffness<T> spring_stiffness(const Separation<T>& s, T distance, T stiffness, T factor) {
+  const T transverse = maximum(factor, constant<T>(0));
+  const T scale = square_root(stiffness - transverse) / distance;
+  return {transverse, {scale * s.d.x, scale * s.d.y, scale * s.d.z}};
+}
+
+/// The matrix times a vector.
+template <class T>
+EVODEVO_HD Triple<T> times(const SpringStiffness<T>& k, const Triple<T>& v) {
+  const T pull = multiply_add(k.along.z, v.z, multiply_add(k.along.y, v.y, k.along.x * v.x));
+  return {multiply_add(k.along.x, pull, k.transverse * v.x), multiply_add(k.along.y, pull, k.transverse * v.y),
+          multiply_add(k.along.z, pull, k.transverse * v.z)};
+}
+
+/// How fast a spring's force on its end a changes while its end b moves away from a with `velocity`, N/s:
+/// (factor (I - n n^T) + k n n^T) velocity. That compressed springs push sideways is in it, but of no more than k, as
+/// of a spring at half its length; of one without length there is none.
+template <class T>
+EVODEVO_HD Triple<T> spring_force_rate(const Separation<T>& s, T stiffness, T factor, const Triple<T>& velocity) {
+  const T sideways = maximum(factor, constant<T>(0) - stiffness);
+  const T transverse = zero_unless_greater(s.squared, vanishing_square<T>(), sideways);
+  const T along = multiply_add(s.d.z, velocity.z, multiply_add(s.d.y, velocity.y, s.d.x * velocity.x)) / s.squared;
+  const T pull = (stiffness - transverse) * along;
+  return {multiply_add(pull, s.d.x, transverse * velocity.x), multiply_add(pull, s.d.y, transverse * velocity.y),
+          multiply_add(pull, s.d.z, transverse * velocity.z)};
+}
+
+/// The force (N) of a stiffness as it will be at the end of a step: k violation/(1 + k dt push w), where `violation`
+/// (m) is how far from its rest the step would lead without it and w the inverse masses (1/kg) that it moves. In terms
+/// of forces, this is the constraint of compliance 1/k of extended position-based dynamics, lambda/dt^2 (Macklin et
+/// al., XPBD, 2016); with damping the force adds push w to the velocity instead of dt w (see drag_retention()).
+template <class T>
+EVODEVO_HD T compliant_force(T stiffness, T violation, T dt_push, T inverse_mass) {
+  return stiffness * violation / multiply_add(stiffness * dt_push, inverse_mass, constant<T>(1));
+}
+
 /// A spring's elastic energy k (|d| - L)^2 / 2, J.
 template <class T>
 EVODEVO_HD T elastic_energy(const Separation<T>& s, T stiffness, T spring_length) {
@@ -112,6 +159,22 @@ template <class T>
 EVODEVO_HD T drag_factor(T coefficient, const Triple<T>& velocity) {
   const T squared = multiply_add(velocity.z, velocity.z, multiply_add(velocity.y, velocity.y, velocity.x * velocity.x));
   return constant<T>(0) - coefficient * square_root(squared);
+}
+
+/// What uniform damping multiplies the velocity by where it is a force: -rate m v, kg/s.
+template <class T>
+EVODEVO_HD T damping_factor(T rate, T mass) {
+  return constant<T>(0) - rate * mass;
+}
+
+/// What is left of a velocity after a time under quadratic drag: 1/(1 + push c |v|/m), `coefficient` = push c/m (s/m).
+/// Without damping push is the time, with it push = (1 - decay)/rate, decay = exp(-rate time): then
+/// v <- drag_retention * decay * v solves v' = -rate v - c |v| v/m (Bernoulli's equation) exactly, and
+/// v <- drag_retention * (decay * v + push F/m) rests where F = (rate m + c |v|) v, whatever the time.
+template <class T>
+EVODEVO_HD T drag_retention(T coefficient, const Triple<T>& velocity) {
+  const T squared = multiply_add(velocity.z, velocity.z, multiply_add(velocity.y, velocity.y, velocity.x * velocity.x));
+  return constant<T>(1) / multiply_add(coefficient, square_root(squared), constant<T>(1));
 }
 
 /// The velocity after a step's forces: v + dt F/m. With damping it is multiplied by exp(-rate dt) next; together, the

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "evodevo/body.hpp"
+#include "method.hpp"
 #include "neighbours.hpp"
 #include "scene.hpp"
 
 namespace evodevo {
 
-enum class Method { paper_euler };
 enum class Precision { float32, float64 };
 
 struct Stepping {
@@ -42,12 +42,12 @@ struct Task {
   /// Of the body's last run, or none; afterwards of this one. One that no longer fits the body is not used.
   std::shared_ptr<const Preparation> preparation;
 
-  Status status = Status::ok;  ///< ok or diverged; a task that does not come in as ok is left alone
-  double ended_at = 0;         ///< time of a divergence since birth, s; found to within 100 steps
-  std::string reason;          ///< of a divergence
-  std::vector<double> stress;  ///< per spring, N; empty unless recorded, and after a divergence
-  double work = 0;             ///< positive work of the muscles on the body, J; 0 unless recorded
-  std::uint64_t spring_evaluations = 0;
+  Status status = Status::ok;            ///< ok or diverged; a task that does not come in as ok is left alone
+  double ended_at = 0;                   ///< time of a divergence since birth, s; found to within 100 steps
+  std::string reason;                    ///< of a divergence
+  std::vector<double> stress;            ///< per spring, N; empty unless recorded, and after a divergence
+  double work = 0;                       ///< positive work of the muscles on the body, J; 0 unless recorded
+  std::uint64_t spring_evaluations = 0;  ///< springs times steps, however often a method's step looks at a spring
 };
 
 /// How a device of its own, such as a GPU, was used since its simulator was made.

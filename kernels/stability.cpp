@@ -77,10 +77,10 @@ Eigen::VectorXd scattered(Eigen::Index size) {
   return v.normalized();
 }
 
-/// Whether the largest eigenvalue of `matrix` is at most `limit`, by Lanczos' form of the power iteration. Its
-/// estimates rise towards the eigenvalue: one above the limit settles the matter, and after 60 iterations (of a
-/// thousand-mass body they are right to about 0.1 %) a margin of 2 %, one in frequency, covers what is missing.
-bool largest_eigenvalue_is_within(const StiffnessMatrix& matrix, double limit) {
+/// The largest eigenvalue of `matrix` or, where that is above `enough`, something between, by Lanczos' form of the
+/// power iteration. Its estimates rise towards the eigenvalue; after 60 iterations (of a thousand-mass body they are
+/// right to about 0.1 %) a margin of 2 %, one in frequency, covers what is missing.
+double largest_eigenvalue(const StiffnessMatrix& matrix, double enough) {
   constexpr int iterations = 60;
   constexpr double margin = 1.02;
   std::vector<double> diagonal, off_diagonal;
@@ -97,29 +97,54 @@ bool largest_eigenvalue_is_within(const StiffnessMatrix& matrix, double limit) {
     small.computeFromTridiagonal(d, o, Eigen::EigenvaluesOnly);
     estimate = small.eigenvalues().maxCoeff();
     beta = next.norm();
-    if (estimate > limit || beta <= 1e-12 * estimate) break;
+    if (estimate > enough || beta <= 1e-12 * estimate) break;
     off_diagonal.push_back(beta);
     previous = v;
     v = next / beta;
   }
-  return margin * estimate <= limit;
+  return margin * estimate;
 }
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-double largest_contact_dt(const Scene& scene, double mass) {
-  if (!scene.floor || scene.floor->stiffness <= 0) return std::numeric_limits<double>::infinity();
+double oscillation_limit(Method method) {
+  switch (method) {
+    case Method::paper_euler:
+    case Method::symplectic_euler:
+    case Method::velocity_verlet:
+      return 2;
+    case Method::rk4:
+      return 2 * std::sqrt(2);
+    case Method::implicit:
+    case Method::xpbd:
+      return infinity;
+  }
+  return 0;
+}
+
+double largest_contact_dt(const Scene& scene, double mass, Method method) {
+  if (!is_explicit(method) || !scene.floor || scene.floor->stiffness <= 0) return infinity;
   return 1.2 * std::sqrt(mass / scene.floor->stiffness);
 }
 
-double largest_spring_dt(const Material& material, double mass) {
-  if (material.stiffness <= 0) return std::numeric_limits<double>::infinity();
-  return 2 / std::sqrt(2 * material.stiffness / mass);
+double largest_spring_dt(const Material& material, double mass, Method method) {
+  if (!is_explicit(method) || material.stiffness <= 0) return infinity;
+  return oscillation_limit(method) / std::sqrt(2 * material.stiffness / mass);
+}
+
+double largest_dt(const Body& body, std::span<const Vec3> places, Method method) {
+  if (!is_explicit(method)) return infinity;
+  const double eigenvalue = largest_eigenvalue(StiffnessMatrix(body, places), infinity);
+  return eigenvalue > 0 ? oscillation_limit(method) / std::sqrt(eigenvalue) : infinity;
 }
 
 bool is_stable(const Body& body, std::span<const Vec3> places, const Stepping& stepping) {
-  const double limit = 4 / (stepping.dt * stepping.dt);  // of the square of the angular frequency
-  return eigenvalue_bound(body) <= limit || largest_eigenvalue_is_within(StiffnessMatrix(body, places), limit);
+  if (!is_explicit(stepping.method)) return true;
+  const double frequency = oscillation_limit(stepping.method) / stepping.dt;
+  const double limit = frequency * frequency;
+  return eigenvalue_bound(body) <= limit || largest_eigenvalue(StiffnessMatrix(body, places), limit) <= limit;
 }
 
 }  // namespace evodevo

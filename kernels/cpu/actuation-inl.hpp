@@ -76,18 +76,18 @@ HWY_INLINE void store_as(D, hn::Vec<D> values, float* to) {
 }
 
 template <class T>
-void actuate(const cpu::Actuation<T>& actuation, std::uint64_t first, std::size_t steps, double dt) {
+void actuate(const cpu::Actuation<T>& actuation, std::uint64_t first, std::size_t rows, double dt) {
   const hn::ScalableTag<double> d;
   const auto full_turn = hn::Set(d, 2 * 3.14159265358979323846);
-  for (std::size_t step = 0; step < steps; ++step) {
-    const auto time = hn::Set(d, static_cast<double>(first + step) * dt);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const auto time = hn::Set(d, static_cast<double>(first + row) * dt);
     for (std::size_t m = 0; m < actuation.padded; m += hn::Lanes(d)) {
       const auto amplitude = hn::Load(d, actuation.amplitude + m);
       const auto frequency = hn::Load(d, actuation.frequency + m);
       // the phase is reduced in double, so that late times lose no digits
       const auto turns = frequency * time;
       const auto angle = full_turn * (turns - hn::Floor(turns)) + hn::Load(d, actuation.phase + m);
-      const std::size_t entry = step * actuation.padded + m;
+      const std::size_t entry = row * actuation.padded + m;
       store_as(d, hn::Set(d, 1.0) + amplitude * hn::Sin(d, angle), actuation.relative_length + entry);
       if (actuation.relative_rate != nullptr)
         store_as(d, full_turn * frequency * amplitude * hn::Cos(d, angle), actuation.relative_rate + entry);

@@ -46,10 +46,41 @@ HWY_INLINE void add_drag(const cpu::Motion<T>& m, const cpu::World<T>& world, st
   }
 }
 
+/// Damping as a force.
 template <class T>
-HWY_INLINE void advance_velocities(const cpu::Motion<T>& m, const cpu::World<T>& world, std::size_t masses) {
+HWY_INLINE void add_damping(const cpu::Motion<T>& m, const cpu::World<T>& world, std::size_t masses) {
   const hn::ScalableTag<T> d;
-  const auto dt = hn::Set(d, world.dt);
+  const auto rate = hn::Set(d, world.damping_rate);
+  for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
+    const auto factor = damping_factor(rate, hn::Load(d, m.mass + i));
+    hn::Store(multiply_add(factor, hn::Load(d, m.vx + i), hn::Load(d, m.fx + i)), d, m.fx + i);
+    hn::Store(multiply_add(factor, hn::Load(d, m.vy + i), hn::Load(d, m.fy + i)), d, m.fy + i);
+    hn::Store(multiply_add(factor, hn::Load(d, m.vz + i), hn::Load(d, m.fz + i)), d, m.fz + i);
+  }
+}
+
+/// Drag for a time in which acceleration adds `push`: scales the velocities and, where forces act in it, the forces.
+template <bool forces_too, class T>
+HWY_INLINE void yield_to_drag(const cpu::Motion<T>& m, const cpu::World<T>& world, T push, std::size_t masses) {
+  const hn::ScalableTag<T> d;
+  using V = hn::Vec<decltype(d)>;
+  const V coefficient_push = hn::Set(d, world.drag_coefficient * push);
+  for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
+    const Triple<V> v{hn::Load(d, m.vx + i), hn::Load(d, m.vy + i), hn::Load(d, m.vz + i)};
+    const V kept = drag_retention(coefficient_push * hn::Load(d, m.inverse_mass + i), v);
+    hn::Store(v.x * kept, d, m.vx + i);
+    hn::Store(v.y * kept, d, m.vy + i);
+    hn::Store(v.z * kept, d, m.vz + i);
+    if constexpr (forces_too)
+      for (T* force : {m.fx, m.fy, m.fz}) hn::Store(hn::Load(d, force + i) * kept, d, force + i);
+  }
+}
+
+/// v <- v + time F/m
+template <class T>
+HWY_INLINE void advance_velocities(const cpu::Motion<T>& m, T time, std::size_t masses) {
+  const hn::ScalableTag<T> d;
+  const auto dt = hn::Set(d, time);
   for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
     const auto dt_over_mass = dt * hn::Load(d, m.inverse_mass + i);
     hn::Store(advanced_velocity(hn::Load(d, m.vx + i), hn::Load(d, m.fx + i), dt_over_mass), d, m.vx + i);
@@ -59,24 +90,34 @@ HWY_INLINE void advance_velocities(const cpu::Motion<T>& m, const cpu::World<T>&
 }
 
 template <class T>
-HWY_INLINE void damp(const cpu::Motion<T>& m, const cpu::World<T>& world, std::size_t masses) {
+HWY_INLINE void damp(const cpu::Motion<T>& m, T decay_, std::size_t masses) {
   const hn::ScalableTag<T> d;
-  const auto decay = hn::Set(d, world.decay);
+  const auto decay = hn::Set(d, decay_);
   for (T* v : {m.vx, m.vy, m.vz})
     for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) hn::Store(hn::Load(d, v + i) * decay, d, v + i);
 }
 
+/// What friction leaves, after `time` under the normal forces floor_force, of the tangential velocities vx, vy.
 template <class T>
-HWY_INLINE void rub(const cpu::Motion<T>& m, const cpu::World<T>& world, std::size_t masses) {
+HWY_INLINE void rub(const cpu::Motion<T>& m, const cpu::World<T>& world, T time, T* vx_, T* vy_, std::size_t masses) {
   const hn::ScalableTag<T> d;
-  const auto coefficient_dt = hn::Set(d, world.friction_coefficient * world.dt);
+  const auto coefficient_dt = hn::Set(d, world.friction_coefficient * time);
   for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
-    const auto vx = hn::Load(d, m.vx + i), vy = hn::Load(d, m.vy + i);
+    const auto vx = hn::Load(d, vx_ + i), vy = hn::Load(d, vy_ + i);
     const auto loss = coefficient_dt * hn::Load(d, m.floor_force + i) * hn::Load(d, m.inverse_mass + i);
     const auto kept = friction_factor(vx, vy, loss);
-    hn::Store(vx * kept, d, m.vx + i);
-    hn::Store(vy * kept, d, m.vy + i);
+    hn::Store(vx * kept, d, vx_ + i);
+    hn::Store(vy * kept, d, vy_ + i);
   }
+}
+
+/// Copies x, y, z to where neighbours read them.
+template <class T>
+HWY_INLINE void show_places(const cpu::Motion<T>& m, std::size_t masses) {
+  const hn::ScalableTag<T> d;
+  for (std::size_t i = 0; i < masses; i += hn::Lanes(d))
+    store_places(d, Triple<hn::Vec<decltype(d)>>{hn::Load(d, m.x + i), hn::Load(d, m.y + i), hn::Load(d, m.z + i)},
+                 m.places + cpu::place_stride * i);
 }
 
 /// x <- x + dt v, in both copies of the places.

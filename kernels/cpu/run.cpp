@@ -3,10 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cpu/coloured_springs.hpp"
 #include "guard.hpp"
 
 namespace evodevo::cpu {
 namespace {
+
+template <class T>
+TimeSpan<T> time_span(const Scene& scene, double dt) {
+  const double rate = scene.damping ? scene.damping->rate : 0;
+  const double push = rate > 0 ? -std::expm1(-rate * dt) / rate : dt;
+  return {static_cast<T>(dt), static_cast<T>(std::exp(-rate * dt)), static_cast<T>(push)};
+}
 
 template <class T>
 World<T> world_of(const Scene& scene, const Stepping& stepping) {
@@ -20,22 +28,23 @@ World<T> world_of(const Scene& scene, const Stepping& stepping) {
           .floor_stiffness = as_t(scene.floor ? scene.floor->stiffness : 0),
           .friction_coefficient = as_t(scene.friction ? scene.friction->coefficient : 0),
           .drag_coefficient = as_t(scene.drag ? scene.drag->coefficient : 0),
-          .decay = as_t(scene.damping ? std::exp(-scene.damping->rate * stepping.dt) : 1),
-          .dt = as_t(stepping.dt)};
+          .damping_rate = as_t(scene.damping ? scene.damping->rate : 0),
+          .step = time_span<T>(scene, stepping.dt),
+          .half_step = time_span<T>(scene, stepping.dt / 2)};
 }
 
-/// The memory behind Actuation, for EnergyGuard::interval steps.
+/// The memory behind Actuation.
 template <class T>
 class ActuationTables {
  public:
-  ActuationTables(const Body& body, std::size_t multiple, Sums sums)
+  ActuationTables(const Body& body, std::size_t rows, std::size_t multiple, Sums sums)
       : materials_(body.materials.size()),
         padded_(std::max<std::size_t>(1, (materials_ + multiple - 1) / multiple) * multiple),
         amplitude_(padded_),
         frequency_(padded_),
         phase_(padded_),
-        length_(EnergyGuard::interval * padded_),
-        rate_(sums.power ? EnergyGuard::interval * padded_ : 0) {
+        length_(rows * padded_),
+        rate_(sums.power ? rows * padded_ : 0) {
     for (std::size_t i = 0; i < materials_; ++i) {
       amplitude_[i] = body.materials[i].amplitude;
       frequency_[i] = body.materials[i].frequency;
@@ -43,14 +52,15 @@ class ActuationTables {
     }
   }
 
-  Actuation<T> view() {
+  /// The tables from row `first` on.
+  Actuation<T> view(std::size_t first = 0) {
     return {.materials = materials_,
             .padded = padded_,
             .amplitude = amplitude_.data(),
             .frequency = frequency_.data(),
             .phase = phase_.data(),
-            .relative_length = length_.data(),
-            .relative_rate = rate_.size() > 0 ? rate_.data() : nullptr};
+            .relative_length = length_.data() + first * padded_,
+            .relative_rate = rate_.size() > 0 ? rate_.data() + first * padded_ : nullptr};
   }
 
  private:
@@ -63,13 +73,16 @@ class ActuationTables {
 template <class T>
 class MovingBody {
  public:
-  MovingBody(const Body& body, const State& state, std::size_t lanes, Sums sums)
+  MovingBody(const Body& body, const State& state, std::size_t lanes, const Integrator<T>& integrator, Sums sums)
       : layout_(body, lanes),
         mass_(layout_.padded_masses()),
         inverse_mass_(layout_.padded_masses()),
         places_(place_stride * layout_.padded_masses()),
+        mass_scratch_(integrator.mass_arrays * layout_.padded_masses()),
+        slot_scratch_(integrator.slot_arrays * layout_.slots()),
         tension_sum_(sums.tension ? layout_.slots() : 0),
         power_sum_(sums.power ? layout_.slots() : 0) {
+    if (integrator.coloured) coloured_ = ColouredSprings<T>(body, layout_);
     for (auto* arrays : {&position_, &velocity_, &force_})
       for (Array<T>& array : *arrays) array = Array<T>(layout_.padded_masses());
     floor_force_ = Array<T>(layout_.padded_masses());
@@ -92,6 +105,15 @@ class MovingBody {
             .stiffness = layout_.stiffness.data(),
             .rest_length = layout_.rest_length.data(),
             .material = layout_.material.data(),
+            .coloured = {.size = coloured_.size,
+                         .a = coloured_.a.data(),
+                         .b = coloured_.b.data(),
+                         .slot = coloured_.slot.data(),
+                         .stiffness = coloured_.stiffness.data(),
+                         .rest_length = coloured_.rest_length.data(),
+                         .inverse_mass_a = coloured_.inverse_mass_a.data(),
+                         .inverse_mass_b = coloured_.inverse_mass_b.data(),
+                         .material = coloured_.material.data()},
             .mass = mass_.data(),
             .inverse_mass = inverse_mass_.data(),
             .x = position_[0].data(),
@@ -105,6 +127,9 @@ class MovingBody {
             .fy = force_[1].data(),
             .fz = force_[2].data(),
             .floor_force = floor_force_.data(),
+            .mass_scratch = mass_scratch_.data(),
+            .slot_scratch = slot_scratch_.data(),
+            .slots = layout_.slots(),
             .tension_sum = tension_sum_.data(),
             .power_sum = power_sum_.data()};
   }
@@ -134,7 +159,8 @@ class MovingBody {
   }
 
   Layout<T> layout_;
-  Array<T> mass_, inverse_mass_, places_, floor_force_, tension_sum_, power_sum_;
+  ColouredSprings<T> coloured_;
+  Array<T> mass_, inverse_mass_, places_, mass_scratch_, slot_scratch_, floor_force_, tension_sum_, power_sum_;
   Array<T> position_[3], velocity_[3], force_[3];
 };
 
@@ -148,22 +174,23 @@ void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels
   const Sums sums{recording.stress, recording.work};
   const World<T> world = world_of<T>(scene, stepping);
   const EnergyGuard guard(body, state, scene, stepping);
-  MovingBody<T> moving(body, state, kernels.lanes, sums);
-  ActuationTables<T> tables(body, kernels.table_size, sums);
+  const Integrator<T>& integrator = kernels.integrator[static_cast<std::size_t>(stepping.method)];
+  const std::size_t rows = integrator.rows_per_step;
+  MovingBody<T> moving(body, state, kernels.lanes, integrator, sums);
+  ActuationTables<T> tables(body, EnergyGuard::interval * rows + 1, kernels.table_size, sums);
   task.stress.assign(recording.stress ? body.springs.size() : 0, 0.0);
   task.work = 0;
   task.spring_evaluations = 0;
 
   for (std::uint64_t done = 0; done < steps && task.status == Status::ok;) {
     const std::size_t now = std::min<std::uint64_t>(steps - done, EnergyGuard::interval);
-    kernels.actuate(tables.view(), state.steps, now, stepping.dt);
-    kernels.advance(moving.view(), world, tables.view(), now, sums);
+    kernels.actuate(tables.view(), state.steps * rows, now * rows + 1, stepping.dt / static_cast<double>(rows));
+    integrator.advance(moving.view(), world, tables.view(), now, sums);
     moving.collect(task.stress, task.work, stepping.dt);
     done += now;
     state.steps += now;
     task.spring_evaluations += now * body.springs.size();
-    kernels.actuate(tables.view(), state.steps, 1, stepping.dt);
-    const Energies e = kernels.energies(moving.view(), tables.view());
+    const Energies e = kernels.energies(moving.view(), tables.view(now * rows));
     task.reason = guard.verdict(e.kinetic, e.elastic, e.height, e.finite);
     if (!task.reason.empty()) {
       task.status = Status::diverged;

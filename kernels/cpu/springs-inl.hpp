@@ -13,10 +13,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
-/// Writes the sums of the spring forces on a group's masses to the motion's forces, and adds to the sums that are on.
-/// `lengths` and `rates` are this step's rows of the tables; without power_on, `rates` is not read.
+/// Sets the motion's forces on a group's masses to the sums of the spring forces, and adds to the sums that are on.
+/// `lengths` and `rates` are rows of the tables; without power_on, `rates` is not read.
 template <bool tension_on, bool power_on, class Table, class T>
-HWY_INLINE void add_spring_forces(const cpu::Motion<T>& motion, std::size_t group, const Table& lengths,
+HWY_INLINE void set_spring_forces(const cpu::Motion<T>& motion, std::size_t group, const Table& lengths,
                                   const Table& rates) {
   using D = hn::ScalableTag<T>;
   using V = hn::Vec<D>;

@@ -10,50 +10,15 @@
 
 #include "cpu/actuation-inl.hpp"
 #include "cpu/energies-inl.hpp"
-#include "cpu/masses-inl.hpp"
-#include "cpu/springs-inl.hpp"
+#include "cpu/methods/implicit-inl.hpp"
+#include "cpu/methods/paper_euler-inl.hpp"
+#include "cpu/methods/rk4-inl.hpp"
+#include "cpu/methods/symplectic_euler-inl.hpp"
+#include "cpu/methods/velocity_verlet-inl.hpp"
+#include "cpu/methods/xpbd-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
-
-/// The time step of paper-euler: all forces from the places, velocities from the forces, places from the velocities.
-template <class Table, bool tension_on, bool power_on, class T>
-void advance_with(const cpu::Motion<T>& motion, const cpu::World<T>& world, const cpu::Actuation<T>& actuation,
-                  std::size_t steps) {
-  const std::size_t masses = motion.groups * hn::Lanes(hn::ScalableTag<T>());
-  for (std::size_t step = 0; step < steps; ++step) {
-    const std::size_t row = step * actuation.padded;
-    const Table lengths(actuation.relative_length + row);
-    const Table rates(power_on ? actuation.relative_rate + row : actuation.relative_length + row);
-    for (std::size_t group = 0; group < motion.groups; ++group)
-      add_spring_forces<tension_on, power_on>(motion, group, lengths, rates);
-    if (world.gravity) add_gravity(motion, world, masses);
-    if (world.floor) add_floor(motion, world, masses);
-    if (world.drag) add_drag(motion, world, masses);
-    advance_velocities(motion, world, masses);
-    if (world.damping) damp(motion, world, masses);
-    if (world.friction) rub(motion, world, masses);
-    move(motion, world.dt, masses);
-  }
-}
-
-template <class Table, class T>
-void advance_recording(const cpu::Motion<T>& motion, const cpu::World<T>& world, const cpu::Actuation<T>& actuation,
-                       std::size_t steps, cpu::Sums sums) {
-  if (sums.tension && sums.power) return advance_with<Table, true, true>(motion, world, actuation, steps);
-  if (sums.tension) return advance_with<Table, true, false>(motion, world, actuation, steps);
-  if (sums.power) return advance_with<Table, false, true>(motion, world, actuation, steps);
-  advance_with<Table, false, false>(motion, world, actuation, steps);
-}
-
-template <class T>
-void advance(const cpu::Motion<T>& motion, const cpu::World<T>& world, const cpu::Actuation<T>& actuation,
-             std::size_t steps, cpu::Sums sums) {
-  if constexpr (register_table_size<T>() > 0)
-    if (actuation.materials <= register_table_size<T>())
-      return advance_recording<TableInRegisters<T>>(motion, world, actuation, steps, sums);
-  advance_recording<TableInMemory<T>>(motion, world, actuation, steps, sums);
-}
 
 const char* instruction_set() {
   switch (HWY_TARGET) {
@@ -69,7 +34,14 @@ const char* instruction_set() {
 template <class T>
 const cpu::Kernels<T>* kernels_of() {
   static constexpr std::size_t lanes = hn::MaxLanes(hn::ScalableTag<T>());
-  static const cpu::Kernels<T> kernels{instruction_set(), lanes, 16, actuate<T>, advance<T>, energies<T>};
+  static const cpu::Kernels<T> kernels{
+      .instruction_set = instruction_set(),
+      .lanes = lanes,
+      .table_size = 16,
+      .actuate = actuate<T>,
+      .integrator = {integrator<PaperEuler, T>(), integrator<SymplecticEuler, T>(), integrator<VelocityVerlet, T>(),
+                     integrator<Rk4, T>(), integrator<Implicit, T>(), integrator<Xpbd, T>()},
+      .energies = energies<T>};
   return &kernels;
 }
 

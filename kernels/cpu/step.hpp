@@ -7,8 +7,17 @@
 #include <cstdint>
 
 #include "cpu/layout.hpp"
+#include "method.hpp"
 
 namespace evodevo::cpu {
+
+/// A step or a part of one.
+template <class T>
+struct TimeSpan {
+  T dt;     ///< s
+  T decay;  ///< exp(-damping rate dt): what damping leaves of a velocity
+  T push;   ///< (1 - decay)/rate, s: what a constant acceleration adds to it meanwhile
+};
 
 /// The scene and the step in the arithmetic of the simulation; a force that is off is not computed.
 template <class T>
@@ -18,14 +27,23 @@ struct World {
   T floor_stiffness;  ///< N/m
   T friction_coefficient;
   T drag_coefficient;  ///< kg/m
-  T decay;             ///< exp(-damping rate dt)
-  T dt;                ///< s
+  T damping_rate;      ///< 1/s
+  TimeSpan<T> step, half_step;
 };
 
 /// What is added up for each slot during the steps.
 struct Sums {
   bool tension;  ///< |force|, for stress
   bool power;    ///< power of actuation
+};
+
+/// ColouredSprings, as arrays.
+template <class T>
+struct ColouredView {
+  std::size_t size;
+  const std::uint32_t *a, *b, *slot;
+  const T *stiffness, *rest_length, *inverse_mass_a, *inverse_mass_b;
+  const Index<T>* material;
 };
 
 /// One body in motion, as arrays. All arrays of masses are padded to whole groups with masses that nothing moves.
@@ -38,6 +56,7 @@ struct Motion {
   const T* stiffness;
   const T* rest_length;
   const Index<T>* material;
+  ColouredView<T> coloured;  ///< where Integrator::coloured asks for it
 
   const T* mass;          ///< kg
   const T* inverse_mass;  ///< 1/kg; 0 for what never moves
@@ -46,24 +65,38 @@ struct Motion {
   T *vx, *vy, *vz;        ///< m/s
   T *fx, *fy, *fz;        ///< N
   T* floor_force;         ///< N
+  T* mass_scratch;        ///< Integrator::mass_arrays arrays, one number for each mass
+  T* slot_scratch;        ///< Integrator::slot_arrays arrays, one number for each slot
+  std::size_t slots;
 
   T* tension_sum;  ///< [slots] N; only where Sums asks for it
   T* power_sum;    ///< [slots] W; only where Sums asks for it
 };
 
-/// Materials in arrays, padded to `padded`, and what they do in each of some steps.
+/// Materials in arrays, padded to `padded`, and what they do at each of some times.
 template <class T>
 struct Actuation {
   std::size_t materials, padded;
   const double *amplitude, *frequency, *phase;
-  T* relative_length;  ///< [step][padded] L(t)/L0
-  T* relative_rate;    ///< [step][padded] its rate of change, 1/s; null where Sums::power is off
+  T* relative_length;  ///< [row][padded] L(t)/L0
+  T* relative_rate;    ///< [row][padded] its rate of change, 1/s; null where Sums::power is off
 };
 
 struct Energies {
   double kinetic, elastic;  ///< J
   double height;            ///< sum of mass times z, kg m
   bool finite;              ///< whether all places and velocities are
+};
+
+/// A time-stepping method.
+template <class T>
+struct Integrator {
+  std::size_t rows_per_step;  ///< rows of the tables that time advances by in a step
+  std::size_t mass_arrays;    ///< memory of its own; what it holds need not outlive a call
+  std::size_t slot_arrays;
+  bool coloured;  ///< whether it needs the springs by colour
+  /// Moves the body by `steps` steps; `actuation` holds the relative lengths from their beginning to their end.
+  void (*advance)(const Motion<T>&, const World<T>&, const Actuation<T>& actuation, std::size_t steps, Sums);
 };
 
 /// The functions of one instruction set for one precision.
@@ -73,10 +106,9 @@ struct Kernels {
   std::size_t lanes;
   std::size_t table_size;  ///< Actuation::padded is a multiple of this
 
-  /// Fills in the tables for the steps first, first + 1, .. first + steps - 1 since birth.
-  void (*actuate)(const Actuation<T>&, std::uint64_t first, std::size_t steps, double dt);
-  /// Moves the body by `steps` steps whose relative lengths `actuation` holds.
-  void (*advance)(const Motion<T>&, const World<T>&, const Actuation<T>& actuation, std::size_t steps, Sums);
+  /// Fills in `rows` rows of the tables: for the times first dt, (first + 1) dt, .. since birth.
+  void (*actuate)(const Actuation<T>&, std::uint64_t first, std::size_t rows, double dt);
+  Integrator<T> integrator[method_names.size()];  ///< by Method
   /// The energies now, with the relative lengths of the table's row 0.
   Energies (*energies)(const Motion<T>&, const Actuation<T>& actuation);
 };

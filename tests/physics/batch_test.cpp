@@ -15,12 +15,12 @@ using testing::Test;
 constexpr Stepping stepping{Method::paper_euler, Precision::float32, 0.0005};
 
 /// Bodies of many sizes, each with its answer alone.
-class Batch : public Test {
+class Bodies {
  protected:
-  Batch() {
+  explicit Bodies(const Stepping& steps) : steps_(steps) {
     for (std::uint32_t i = 0; i < 9; ++i) bodies.push_back(random_body(5 + 17 * i, 4 + i, 3 + 3 * i, i));
     for (const Body& body : bodies)
-      alone.push_back(simulate(body, state_at_birth(body, full_scene()), full_scene(), stepping, 333, recording));
+      alone.push_back(simulate(body, state_at_birth(body, full_scene()), full_scene(), steps_, 333, recording));
   }
 
   /// Simulates the bodies named by `order` in one batch and expects the answers that they have alone.
@@ -29,7 +29,7 @@ class Batch : public Test {
     for (const std::size_t i : order) states.push_back(state_at_birth(bodies[i], full_scene()));
     std::vector<Task> tasks(order.size());
     for (std::size_t t = 0; t < order.size(); ++t) tasks[t].body = &bodies[order[t]], tasks[t].state = &states[t];
-    make_cpu_simulator(full_scene(), stepping, threads)->run(tasks, 333, recording);
+    make_cpu_simulator(full_scene(), steps_, threads)->run(tasks, 333, recording);
     for (std::size_t t = 0; t < order.size(); ++t) {
       EXPECT_TRUE(same_bits(states[t], alone[order[t]].state)) << "body " << order[t] << ", " << threads << " threads";
       EXPECT_EQ(tasks[t].stress, alone[order[t]].task.stress);
@@ -38,25 +38,39 @@ class Batch : public Test {
   }
 
   static constexpr Recording recording{.stress = true, .work = true};
+  Stepping steps_;
   std::vector<Body> bodies;
   std::vector<Answer> alone;
 };
 
-TEST_F(Batch, AnyNumberOfThreadsGivesTheSameBits) {
+class Batch : public Bodies, public Test {
+ protected:
+  Batch() : Bodies(stepping) {}
+};
+
+class BatchOfEachMethod : public Bodies, public testing::TestWithParam<Method> {
+ protected:
+  BatchOfEachMethod() : Bodies({GetParam(), Precision::float32, 0.0005}) {}
+};
+
+INSTANTIATE_TEST_SUITE_P(Methods, BatchOfEachMethod, testing::ValuesIn(all_methods),
+                         [](const auto& instance) { return name_of(instance.param); });
+
+TEST_P(BatchOfEachMethod, AnyNumberOfThreadsGivesTheSameBits) {
   std::vector<std::size_t> all(bodies.size());
   std::iota(all.begin(), all.end(), 0u);
   for (const int threads : {0, 1, 2, 3, 16}) expect_the_same(all, threads);
 }
 
-TEST_F(Batch, AnyOrderAndCompositionGivesTheSameBits) {
+TEST_P(BatchOfEachMethod, AnyOrderAndCompositionGivesTheSameBits) {
   expect_the_same({8, 7, 6, 5, 4, 3, 2, 1, 0}, 2);
   expect_the_same({3, 3, 3, 0, 8}, 2);
   expect_the_same({}, 2);
 }
 
-TEST_F(Batch, StepsInPortionsGiveTheSameBits) {
+TEST_P(BatchOfEachMethod, StepsInPortionsGiveTheSameBits) {
   for (const Precision precision : {Precision::float32, Precision::float64}) {
-    const Stepping steps{Method::paper_euler, precision, 0.0005};
+    const Stepping steps{GetParam(), precision, 0.0005};
     const Body& body = bodies[6];
     const Answer once = simulate(body, state_at_birth(body, full_scene()), full_scene(), steps, 700);
     State state = state_at_birth(body, full_scene());

@@ -27,9 +27,16 @@ Momentum momentum(const Body& body, const State& state) {
   return sum;
 }
 
-class Conservation : public testing::TestWithParam<Precision> {};
+class Conservation : public testing::TestWithParam<Arithmetic> {
+ protected:
+  static Method method() { return std::get<Method>(GetParam()); }
+  static Precision precision() { return std::get<Precision>(GetParam()); }
+  static Stepping stepping() { return {method(), precision(), 0.0005}; }
+};
 
-INSTANTIATE_TEST_SUITE_P(Precisions, Conservation, testing::Values(Precision::float32, Precision::float64),
+INSTANTIATE_TEST_SUITE_P(Methods, Conservation,
+                         testing::Combine(testing::ValuesIn(all_methods),
+                                          testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(Conservation, InternalForcesKeepLinearAndAngularMomentum) {
@@ -38,16 +45,31 @@ TEST_P(Conservation, InternalForcesKeepLinearAndAngularMomentum) {
   for (std::size_t i = 0; i < start.velocity.size(); ++i) start.velocity[i] = cross({0, 0.4, 1}, start.position[i]);
   const Momentum before = momentum(body, start);
   start.start_energy = total_energy(body, start, {}, 0);
-  const Answer a = simulate(body, start, {}, {Method::paper_euler, GetParam(), 0.0005}, 2000);
+  const Answer a = simulate(body, start, {}, stepping(), 2000);
   ASSERT_EQ(a.task.status, Status::ok) << a.task.reason;
   const Momentum after = momentum(body, a.state);
-  const double error = GetParam() == Precision::float32 ? 2e-5 : 1e-13;
-  EXPECT_LT(norm(after.linear - before.linear), error * after.scale);
-  EXPECT_LT(norm(after.angular - before.angular), 2 * error * after.scale);
+  const double error = precision() == Precision::float32 ? 2e-5 : 1e-13;
+  // conjugate gradients leave a residual
+  const double residual = method() == Method::implicit ? 1e-6 : 0;
+  EXPECT_LT(norm(after.linear - before.linear), (error + residual) * after.scale);
+  // forces act along the springs as they lie at the beginning of a step; rk4 takes them from elsewhere too, to fourth
+  // order; backward Euler slows a turn of omega down by omega^2 dt a second, and xpbd by much more where muscles pull
+  const double lost = method() == Method::rk4 ? 1e-6 : method() == Method::implicit ? 2 * 1.16 * 0.0005 : 0;
+  if (method() != Method::xpbd) {
+    EXPECT_LT(norm(after.angular - before.angular), 2 * (error + lost) * after.scale);
+  }
   EXPECT_GT(largest_difference(start, a.state), 0.1);  // it did move
 }
 
-TEST_P(Conservation, TheEnergyOfAnUndampedBodyStaysInBounds) {
+/// By the methods that do not damp by themselves.
+class EnergyConservation : public Conservation {};
+
+INSTANTIATE_TEST_SUITE_P(Methods, EnergyConservation,
+                         testing::Combine(testing::ValuesIn(explicit_methods),
+                                          testing::Values(Precision::float32, Precision::float64)),
+                         [](const auto& instance) { return name_of(instance.param); });
+
+TEST_P(EnergyConservation, TheEnergyOfAnUndampedBodyStaysInBounds) {
   Body body = random_body(60, 10, 5, 4);
   for (Material& material : body.materials) material.amplitude = 0;
   State state = resting(body, {});
@@ -55,7 +77,7 @@ TEST_P(Conservation, TheEnergyOfAnUndampedBodyStaysInBounds) {
     state.velocity[i] = {std::sin(3.0 * static_cast<double>(i)), 0, 0};
   const double energy = state.start_energy = total_energy(body, state, {}, 0);
   for (int second = 0; second < 20; ++second) {
-    const Answer a = simulate(body, state, {}, {Method::paper_euler, GetParam(), 0.0005}, 2000);
+    const Answer a = simulate(body, state, {}, stepping(), 2000);
     ASSERT_EQ(a.task.status, Status::ok) << a.task.reason;
     state = a.state;
     EXPECT_NEAR(total_energy(body, state, {}, 0.0005), energy, 0.05 * energy);
@@ -64,9 +86,9 @@ TEST_P(Conservation, TheEnergyOfAnUndampedBodyStaysInBounds) {
 
 TEST_P(Conservation, ABodyAtRestWithoutMusclesStaysAtRestAndIsNeverFlagged) {
   const Body body = block(3, {5000, 0, 0, 0});
-  const Answer a = simulate(body, state_at_birth(body, {}), {}, {Method::paper_euler, GetParam(), 0.0005}, 20000);
+  const Answer a = simulate(body, state_at_birth(body, {}), {}, stepping(), 20000);
   EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
-  EXPECT_LT(largest_difference(a.state, state_at_birth(body, {})), tolerance(GetParam()));
+  EXPECT_LT(largest_difference(a.state, state_at_birth(body, {})), tolerance(precision()));
 }
 
 TEST_P(Conservation, AFlatBodyOnTheFloorIsNeverFlagged) {
@@ -76,7 +98,7 @@ TEST_P(Conservation, AFlatBodyOnTheFloorIsNeverFlagged) {
   for (Mass& mass : body.masses) mass.rest.z = 0, mass.mass = 0.2;
   for (Spring& s : body.springs) s.rest_length = norm(body.masses[s.b].rest - body.masses[s.a].rest);
   EXPECT_NEAR(state_at_birth(body, scene).start_energy, 0, 1e-20);
-  const Answer a = simulate(body, state_at_birth(body, scene), scene, {Method::paper_euler, GetParam(), 0.0005}, 4000);
+  const Answer a = simulate(body, state_at_birth(body, scene), scene, stepping(), 4000);
   EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
 }
 

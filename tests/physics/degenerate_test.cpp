@@ -9,20 +9,22 @@
 namespace evodevo::test {
 namespace {
 
-/// Runs `body` in two scenes and both precisions with everything recorded; expects numbers.
+/// Runs `body` by every method in two scenes and both precisions with everything recorded; expects numbers.
 void expect_numbers(const Body& body) {
-  for (const Precision precision : {Precision::float32, Precision::float64})
-    for (const Scene& scene : {Scene{}, full_scene()}) {
-      const Answer a = simulate(body, state_at_birth(body, scene), scene, {Method::paper_euler, precision, 0.0005},
-                                1050, {.stress = true, .work = true});
-      EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
-      EXPECT_EQ(a.state.steps, 1050u);
-      EXPECT_TRUE(std::isfinite(a.task.work));
-      EXPECT_EQ(a.task.stress.size(), body.springs.size());
-      for (const double stress : a.task.stress) EXPECT_TRUE(std::isfinite(stress));
-      for (const Vec3& x : a.state.position) EXPECT_TRUE(std::isfinite(x.x + x.y + x.z));
-      for (const Vec3& v : a.state.velocity) EXPECT_TRUE(std::isfinite(v.x + v.y + v.z));
-    }
+  for (const Method method : all_methods)
+    for (const Precision precision : {Precision::float32, Precision::float64})
+      for (const Scene& scene : {Scene{}, full_scene()}) {
+        SCOPED_TRACE(name_of({method, precision}));
+        const Answer a = simulate(body, state_at_birth(body, scene), scene, {method, precision, 0.0005}, 1050,
+                                  {.stress = true, .work = true});
+        EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+        EXPECT_EQ(a.state.steps, 1050u);
+        EXPECT_TRUE(std::isfinite(a.task.work));
+        EXPECT_EQ(a.task.stress.size(), body.springs.size());
+        for (const double stress : a.task.stress) EXPECT_TRUE(std::isfinite(stress));
+        for (const Vec3& x : a.state.position) EXPECT_TRUE(std::isfinite(x.x + x.y + x.z));
+        for (const Vec3& v : a.state.velocity) EXPECT_TRUE(std::isfinite(v.x + v.y + v.z));
+      }
 }
 
 TEST(Degenerate, Nothing) { expect_numbers({}); }

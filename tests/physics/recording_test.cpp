@@ -8,12 +8,15 @@
 namespace evodevo::test {
 namespace {
 
-class Recorded : public testing::TestWithParam<Precision> {
+class Recorded : public testing::TestWithParam<Arithmetic> {
  protected:
-  Stepping stepping() const { return {Method::paper_euler, GetParam(), 0.0005}; }
+  static Precision precision() { return std::get<Precision>(GetParam()); }
+  static Stepping stepping() { return {std::get<Method>(GetParam()), precision(), 0.0005}; }
 };
 
-INSTANTIATE_TEST_SUITE_P(Precisions, Recorded, testing::Values(Precision::float32, Precision::float64),
+INSTANTIATE_TEST_SUITE_P(Methods, Recorded,
+                         testing::Combine(testing::ValuesIn(all_methods),
+                                          testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(Recorded, AStaticallyLoadedSpringIsUnderItsLoad) {
@@ -25,7 +28,7 @@ TEST_P(Recorded, AStaticallyLoadedSpringIsUnderItsLoad) {
   const Scene scene{Gravity{}, {}, {}, {}, {}};
   const Answer a = simulate(body, resting(body, scene), scene, stepping(), 1234, {.stress = true});
   ASSERT_EQ(a.task.stress.size(), 1u);
-  EXPECT_NEAR(a.task.stress[0], weight, GetParam() == Precision::float32 ? 2e-3 : 1e-9);
+  EXPECT_NEAR(a.task.stress[0], weight, precision() == Precision::float32 ? 2e-3 : 1e-9);
   EXPECT_EQ(a.task.work, 0);
 }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "support.hpp"
 
@@ -32,11 +33,44 @@ double highest_frequency(const Body& body) {
 
 Stepping at(double dt) { return {Method::paper_euler, Precision::float64, dt}; }
 
-/// At its rest places.
-bool is_stable_at_rest(const Body& body, const Stepping& stepping) {
+std::vector<Vec3> rest_places(const Body& body) {
   std::vector<Vec3> places;
   for (const Mass& mass : body.masses) places.push_back(mass.rest);
-  return is_stable(body, places, stepping);
+  return places;
+}
+
+/// At its rest places.
+bool is_stable_at_rest(const Body& body, const Stepping& stepping) {
+  return is_stable(body, rest_places(body), stepping);
+}
+
+TEST(Stability, TheLargestStepIsThatOfTheHighestFrequency) {
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    const Body body =
+        random_body(static_cast<std::uint32_t>(3 + 12 * seed), static_cast<std::uint32_t>(2 + seed), 5, seed);
+    const double frequency = highest_frequency(body);
+    for (const auto& [method, phase] :
+         {std::pair{Method::paper_euler, 2.0}, std::pair{Method::symplectic_euler, 2.0},
+          std::pair{Method::velocity_verlet, 2.0}, std::pair{Method::rk4, std::sqrt(8)}}) {
+      const double largest = largest_dt(body, rest_places(body), method);
+      EXPECT_LE(largest, phase / frequency) << seed << ", " << name(method);
+      EXPECT_GT(largest, 0.98 * phase / frequency) << seed << ", " << name(method);
+    }
+  }
+}
+
+TEST(Stability, OnlyExplicitMethodsHaveALargestStep) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const Material material{5000, 0, 0, 0};
+  const Body body = block(2, material);
+  for (const Method method : {Method::implicit, Method::xpbd}) {
+    EXPECT_EQ(largest_dt(body, rest_places(body), method), infinity);
+    EXPECT_EQ(largest_spring_dt(material, 0.2, method), infinity);
+    EXPECT_EQ(largest_contact_dt(walking_scene(), 0.2, method), infinity);
+    EXPECT_TRUE(is_stable(body, rest_places(body), {method, Precision::float32, 0.1}));
+  }
+  EXPECT_EQ(largest_dt(single_mass(0.2), {{Vec3{}}}, Method::rk4), infinity);
+  EXPECT_EQ(largest_dt({}, {}, Method::rk4), infinity);
 }
 
 TEST(Stability, TheLimitOfRandomBodiesIsThatOfTheirHighestFrequency) {
@@ -63,7 +97,7 @@ TEST(Stability, TheLimitOfAChainIsThatOfItsHighestFrequency) {
 TEST(Stability, OneSpringIsStableUpToItsLimitAndNotBeyond) {
   const Material material{5000, 0, 0, 0};
   const Body body = pair_of_masses(0.2, material, 1.001);
-  const double limit = largest_spring_dt(material, 0.2);
+  const double limit = largest_spring_dt(material, 0.2, Method::paper_euler);
   EXPECT_NEAR(limit, 2 / highest_frequency(body), 1e-12);
   EXPECT_TRUE(is_stable_at_rest(body, at(0.9999 * limit)));
   EXPECT_FALSE(is_stable_at_rest(body, at(1.0001 * limit)));
@@ -78,7 +112,7 @@ TEST(Stability, DegenerateBodiesHaveAnAnswer) {
   EXPECT_TRUE(is_stable_at_rest({}, at(1)));
   EXPECT_TRUE(is_stable_at_rest(single_mass(0.2), at(1)));
   const Body coincident = pair_of_masses(0.2, {5000, 0, 0, 0}, 0);
-  const double limit = largest_spring_dt({5000, 0, 0, 0}, 0.2);
+  const double limit = largest_spring_dt({5000, 0, 0, 0}, 0.2, Method::paper_euler);
   EXPECT_TRUE(is_stable_at_rest(coincident, at(0.98 * limit)));
   EXPECT_FALSE(is_stable_at_rest(coincident, at(1.01 * limit)));
 }
@@ -93,9 +127,9 @@ TEST(Stability, AFixedMassAddsNothing) {
 }
 
 TEST(Stability, ScenesAndMaterialsHaveTheirOwnLimits) {
-  EXPECT_DOUBLE_EQ(largest_contact_dt(walking_scene(), 0.2), 1.2 * std::sqrt(0.2 / 1e6));
-  EXPECT_EQ(largest_contact_dt({}, 0.2), std::numeric_limits<double>::infinity());
-  EXPECT_EQ(largest_spring_dt({0, 0, 0, 0}, 0.2), std::numeric_limits<double>::infinity());
+  EXPECT_DOUBLE_EQ(largest_contact_dt(walking_scene(), 0.2, Method::paper_euler), 1.2 * std::sqrt(0.2 / 1e6));
+  EXPECT_EQ(largest_contact_dt({}, 0.2, Method::paper_euler), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(largest_spring_dt({0, 0, 0, 0}, 0.2, Method::paper_euler), std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

@@ -10,6 +10,16 @@
 
 namespace evodevo::test {
 
+std::string name_of(Method method) {
+  std::string text(name(method));
+  std::replace(text.begin(), text.end(), '-', '_');
+  return text;
+}
+
+std::string name_of(const Arithmetic& arithmetic) {
+  return name_of(std::get<Method>(arithmetic)) + "_" + name_of(std::get<Precision>(arithmetic));
+}
+
 Body single_mass(double mass, Vec3 place) {
   Body body;
   body.masses.push_back({place, mass});

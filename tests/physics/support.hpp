@@ -1,8 +1,10 @@
 // Bodies, scenes and a second simulator for the tests of the physics.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "evodevo/body.hpp"
@@ -16,6 +18,19 @@ inline constexpr double pi = 3.14159265358979323846;
 /// What a test of each precision tells apart: a little more than rounding brings in a few hundred steps.
 inline double tolerance(Precision precision) { return precision == Precision::float32 ? 2e-5 : 1e-12; }
 inline std::string name_of(Precision precision) { return precision == Precision::float32 ? "float32" : "float64"; }
+
+inline constexpr std::array all_methods = {Method::paper_euler, Method::symplectic_euler, Method::velocity_verlet,
+                                           Method::rk4,         Method::implicit,         Method::xpbd};
+static_assert(all_methods.size() == method_names.size());
+inline constexpr std::array explicit_methods = {Method::paper_euler, Method::symplectic_euler, Method::velocity_verlet,
+                                                Method::rk4};
+
+/// As a test is called.
+std::string name_of(Method method);
+
+/// What most tests run with each of.
+using Arithmetic = std::tuple<Method, Precision>;
+std::string name_of(const Arithmetic& arithmetic);
 
 /// One mass at `place`.
 Body single_mass(double mass, Vec3 place = {});

@@ -1,0 +1,320 @@
+// Backward Euler, linearised, by conjugate gradients; included once per instruction set.
+#if defined(EVODEVO_CPU_METHODS_IMPLICIT_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef EVODEVO_CPU_METHODS_IMPLICIT_INL_HPP
+#undef EVODEVO_CPU_METHODS_IMPLICIT_INL_HPP
+#else
+#define EVODEVO_CPU_METHODS_IMPLICIT_INL_HPP
+#endif
+
+#include "cpu/stepper-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace evodevo::HWY_NAMESPACE {
+
+/// With u = decay v, the velocity v' = u + c at the end of a step follows from
+///   (M + push (dt K+ + R)) c = push (F - (dt K + R) u),   then x <- x + dt v',
+/// F the forces at these places with the springs' lengths and K their stiffness at the end of the step (Baraff and
+/// Witkin, Large steps in cloth simulation, 1998). R is diagonal: drag, c |v|, and for each mass that touches the
+/// floor, z + dt v_z < 0, dt times the floor's stiffness along z, so that the floor pushes with k (-z - dt v'_z). K+ is
+/// spring_stiffness(), without what would be negative, so the matrix is symmetric and positive definite at any dt; K
+/// is spring_force_rate(), with it, or springs under tension would brake every turn of a body.
+struct Implicit : StepMethod {
+  static constexpr std::size_t mass_arrays = 21, slot_arrays = 4;
+
+  template <class T>
+  static void step(const Stepper<T>& s, std::size_t row) {
+    const Memory<T> memory(s);
+    s.springs(s.motion, s.actuation, row + 1);
+    if (s.world.gravity) add_gravity(s.motion, s.world, s.masses);
+    set_resistance(s, memory);
+    if (s.world.damping) damp(s.motion, s.world.step.decay, s.masses);
+    set_stiffness(s, memory, row + 1);
+    set_residual(s, memory);
+    solve(s, memory);
+    add_correction(s, memory);
+    if (s.world.friction) {
+      set_floor_force(s, memory);
+      rub(s.motion, s.world, s.world.step.dt, s.motion.vx, s.motion.vy, s.masses);
+    }
+    move(s.motion, s.world.step.dt, s.masses);
+    if (s.sums.tension || s.sums.power) s.noted_springs(s.motion, s.actuation, row + 1);
+  }
+
+ private:
+  /// The residual, in the preconditioner's norm, at which the correction is good: relative to what it is without one.
+  /// In float32 rounding alone leaves about 1e-4 at twenty times the explicit methods' largest dt, where the matrix has
+  /// a condition of 1,600; in float64 1e-6 is far below the error of the method itself.
+  template <class T>
+  static constexpr T tolerance = sizeof(T) == sizeof(float) ? T(1e-4) : T(1e-6);
+  /// A bound for what never gets there; what is left then is an error, but no energy.
+  static constexpr int most_iterations = 500;
+
+  /// Vectors lie as all x, all y, all z.
+  template <class T>
+  struct Memory {
+    explicit Memory(const Stepper<T>& s)
+        : residual(s.scratch(0)),
+          direction(s.scratch(3)),
+          correction(s.scratch(6)),
+          applied(s.scratch(9)),
+          inverse_diagonal(s.scratch(12)),
+          resistance(s.scratch(15)),
+          vertical_resistance(s.scratch(16)),
+          shown(s.scratch(17)),
+          transverse(s.motion.slot_scratch),
+          along{transverse + s.motion.slots, transverse + 2 * s.motion.slots, transverse + 3 * s.motion.slots} {}
+
+    T *residual, *direction, *correction;
+    T* applied;           ///< the matrix times the direction
+    T* inverse_diagonal;  ///< of the matrix: the preconditioner; 0 for masses that do not move
+    T* resistance;        ///< R along x and y, kg/s
+    T* vertical_resistance;
+    T* shown;  ///< a vector as neighbours read it, place_stride numbers for each mass
+    T* transverse;
+    T* along[3];  ///< of the springs' SpringStiffness, K+
+  };
+
+  /// Sets R, and adds the floor to the forces.
+  template <class T>
+  static void set_resistance(const Stepper<T>& s, const Memory<T>& memory) {
+    const hn::ScalableTag<T> d;
+    using V = hn::Vec<decltype(d)>;
+    const cpu::Motion<T>& m = s.motion;
+    const V coefficient = hn::Set(d, s.world.drag_coefficient), zero = hn::Zero(d);
+    const V dt = hn::Set(d, s.world.step.dt), floor = hn::Set(d, s.world.floor_stiffness);
+    for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
+      const V vz = hn::Load(d, m.vz + i);
+      V across = zero, touching = zero;
+      if (s.world.drag)
+        across = zero - drag_factor(coefficient, Triple<V>{hn::Load(d, m.vx + i), hn::Load(d, m.vy + i), vz});
+      if (s.world.floor) {
+        const V z = hn::Load(d, m.z + i);
+        touching = zero_unless_greater(zero - moved(z, vz, dt), zero, floor);
+        hn::Store(negative_multiply_add(touching, z, hn::Load(d, m.fz + i)), d, m.fz + i);
+      }
+      hn::Store(across, d, memory.resistance + i);
+      hn::Store(multiply_add(dt, touching, across), d, memory.vertical_resistance + i);
+    }
+  }
+
+  /// Shows the vectors x, y, z to neighbours.
+  template <class T>
+  static void show(const Stepper<T>& s, const Memory<T>& memory, const T* x, const T* y, const T* z) {
+    const hn::ScalableTag<T> d;
+    for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d))
+      store_places(d, load(x + i, y + i, z + i), memory.shown + cpu::place_stride * i);
+  }
+
+  template <class T>
+  static HWY_INLINE Triple<hn::Vec<hn::ScalableTag<T>>> load(const T* x, const T* y, const T* z) {
+    const hn::ScalableTag<T> d;
+    return {hn::Load(d, x), hn::Load(d, y), hn::Load(d, z)};
+  }
+
+  /// Sets K+ and the preconditioner, and takes dt K u from the forces.
+  template <class T>
+  static void set_stiffness(const Stepper<T>& s, const Memory<T>& memory, std::size_t row) {
+    const cpu::Motion<T>& m = s.motion;
+    const TableInMemory<T> lengths(s.actuation.relative_length + row * s.actuation.padded);
+    show(s, memory, m.vx, m.vy, m.vz);
+    for (std::size_t group = 0; group < m.groups; ++group) set_stiffness_of(s, memory, lengths, group);
+  }
+
+  template <class T>
+  static HWY_INLINE void set_stiffness_of(const Stepper<T>& s, const Memory<T>& memory, const TableInMemory<T>& lengths,
+                                          std::size_t group) {
+    const hn::ScalableTag<T> d;
+    using V = hn::Vec<decltype(d)>;
+    const cpu::Motion<T>& m = s.motion;
+    const std::size_t i = group * hn::Lanes(d), end = m.first_row[group + 1] * hn::Lanes(d);
+    const Triple<V> x = load(m.x + i, m.y + i, m.z + i), v = load(m.vx + i, m.vy + i, m.vz + i);
+    Triple<V> diagonal{hn::Zero(d), hn::Zero(d), hn::Zero(d)}, rate = diagonal;
+    for (std::size_t slot = m.first_row[group] * hn::Lanes(d); slot < end; slot += hn::Lanes(d)) {
+      const Separation<V> between = separation(x, load_places(d, m.places, m.neighbour + slot));
+      const Triple<V> other = load_places(d, memory.shown, m.neighbour + slot);
+      const V distance = length(between), k = hn::Load(d, m.stiffness + slot);
+      const V spring_length = hn::Load(d, m.rest_length + slot) * lengths.at(m.material + slot);
+      const V factor = spring_factor(distance, k, spring_length);
+      const SpringStiffness<V> matrix = spring_stiffness(between, distance, k, factor);
+      hn::Store(matrix.transverse, d, memory.transverse + slot);
+      hn::Store(matrix.along.x, d, memory.along[0] + slot);
+      hn::Store(matrix.along.y, d, memory.along[1] + slot);
+      hn::Store(matrix.along.z, d, memory.along[2] + slot);
+      diagonal = {diagonal.x + multiply_add(matrix.along.x, matrix.along.x, matrix.transverse),
+                  diagonal.y + multiply_add(matrix.along.y, matrix.along.y, matrix.transverse),
+                  diagonal.z + multiply_add(matrix.along.z, matrix.along.z, matrix.transverse)};
+      const Triple<V> change =
+          spring_force_rate(between, k, factor, Triple<V>{other.x - v.x, other.y - v.y, other.z - v.z});
+      rate = {rate.x + change.x, rate.y + change.y, rate.z + change.z};
+    }
+    set_preconditioner(s, memory, i, diagonal);
+    const V dt = hn::Set(d, s.world.step.dt);
+    hn::Store(multiply_add(dt, rate.x, hn::Load(d, m.fx + i)), d, m.fx + i);
+    hn::Store(multiply_add(dt, rate.y, hn::Load(d, m.fy + i)), d, m.fy + i);
+    hn::Store(multiply_add(dt, rate.z, hn::Load(d, m.fz + i)), d, m.fz + i);
+  }
+
+  /// For the masses from i on; `stiffness` is the diagonal of K+.
+  template <class T, class V>
+  static HWY_INLINE void set_preconditioner(const Stepper<T>& s, const Memory<T>& memory, std::size_t i,
+                                            const Triple<V>& stiffness) {
+    const hn::ScalableTag<T> d;
+    const V push = hn::Set(d, s.world.step.push), dt = hn::Set(d, s.world.step.dt), one = hn::Set(d, T(1));
+    const V mass = hn::Load(d, s.motion.mass + i), inverse_mass = hn::Load(d, s.motion.inverse_mass + i);
+    const V across = hn::Load(d, memory.resistance + i), vertical = hn::Load(d, memory.vertical_resistance + i);
+    const V resistances[] = {multiply_add(dt, stiffness.x, across), multiply_add(dt, stiffness.y, across),
+                             multiply_add(dt, stiffness.z, vertical)};
+    for (std::size_t c = 0; c < 3; ++c) {
+      // what never moves may have no mass to divide by; its quotient is not used
+      const V inverse = one / multiply_add(push, resistances[c], mass);
+      hn::Store(zero_unless_greater(inverse_mass, hn::Zero(d), inverse), d, memory.inverse_diagonal + c * s.masses + i);
+    }
+  }
+
+  /// What the equation lacks without a correction, kg m/s; dt K u has gone from the forces already.
+  template <class T>
+  static void set_residual(const Stepper<T>& s, const Memory<T>& memory) {
+    const hn::ScalableTag<T> d;
+    const cpu::Motion<T>& m = s.motion;
+    const auto push = hn::Set(d, s.world.step.push);
+    const auto set = [&](const T* force, const T* resistance, const T* velocity, T* to) HWY_ATTR {
+      for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
+        const auto resisted_by = hn::Load(d, resistance + i) * hn::Load(d, velocity + i);
+        hn::Store(push * (hn::Load(d, force + i) - resisted_by), d, to + i);
+      }
+    };
+    set(m.fx, memory.resistance, m.vx, memory.residual);
+    set(m.fy, memory.resistance, m.vy, memory.residual + s.masses);
+    set(m.fz, memory.vertical_resistance, m.vz, memory.residual + 2 * s.masses);
+  }
+
+  /// push (dt K+ + R) times the shown vector, of which the masses of `group` have `own`.
+  template <class T, class V>
+  static HWY_INLINE Triple<V> resisted(const Stepper<T>& s, const Memory<T>& memory, std::size_t group,
+                                       const Triple<V>& own) {
+    const hn::ScalableTag<T> d;
+    const cpu::Motion<T>& m = s.motion;
+    const std::size_t i = group * hn::Lanes(d), end = m.first_row[group + 1] * hn::Lanes(d);
+    Triple<V> sum{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    for (std::size_t slot = m.first_row[group] * hn::Lanes(d); slot < end; slot += hn::Lanes(d)) {
+      const Triple<V> other = load_places(d, memory.shown, m.neighbour + slot);
+      const SpringStiffness<V> matrix{hn::Load(d, memory.transverse + slot),
+                                      {hn::Load(d, memory.along[0] + slot), hn::Load(d, memory.along[1] + slot),
+                                       hn::Load(d, memory.along[2] + slot)}};
+      const Triple<V> force = times(matrix, Triple<V>{own.x - other.x, own.y - other.y, own.z - other.z});
+      sum = {sum.x + force.x, sum.y + force.y, sum.z + force.z};
+    }
+    const V dt = hn::Set(d, s.world.step.dt), push = hn::Set(d, s.world.step.push);
+    const V across = hn::Load(d, memory.resistance + i), vertical = hn::Load(d, memory.vertical_resistance + i);
+    return {push * multiply_add(dt, sum.x, across * own.x), push * multiply_add(dt, sum.y, across * own.y),
+            push * multiply_add(dt, sum.z, vertical * own.z)};
+  }
+
+  /// Finds the correction that leaves no residual by conjugate gradients; <r, P r> measures what is left, r the
+  /// residual and P the preconditioner.
+  template <class T>
+  static void solve(const Stepper<T>& s, const Memory<T>& memory) {
+    T left = start(s, memory);
+    const T enough = tolerance<T> * tolerance<T> * left;
+    for (int i = 0; i < most_iterations && left > enough; ++i) {
+      const T curvature = apply(s, memory);
+      if (!(curvature > 0)) break;  // so near to nothing that its square is 0
+      const T before = left;
+      left = advance_along(s, memory, left / curvature);
+      turn(s, memory, left / before);
+    }
+  }
+
+  /// No correction yet, and the first direction P r. Returns <r, P r>.
+  template <class T>
+  static T start(const Stepper<T>& s, const Memory<T>& memory) {
+    const hn::ScalableTag<T> d;
+    hn::Vec<decltype(d)> sum = hn::Zero(d);
+    for (std::size_t i = 0; i < 3 * s.masses; i += hn::Lanes(d)) {
+      const auto r = hn::Load(d, memory.residual + i), direction = hn::Load(d, memory.inverse_diagonal + i) * r;
+      hn::Store(direction, d, memory.direction + i);
+      hn::Store(hn::Zero(d), d, memory.correction + i);
+      sum = multiply_add(direction, r, sum);
+    }
+    return hn::GetLane(hn::SumOfLanes(d, sum));
+  }
+
+  /// Applies the matrix to the direction. Returns the scalar product of the two.
+  template <class T>
+  static T apply(const Stepper<T>& s, const Memory<T>& memory) {
+    const hn::ScalableTag<T> d;
+    using V = hn::Vec<decltype(d)>;
+    const T *x = memory.direction, *y = x + s.masses, *z = y + s.masses;
+    show(s, memory, x, y, z);
+    V sum = hn::Zero(d);
+    for (std::size_t group = 0; group < s.motion.groups; ++group) {
+      const std::size_t i = group * hn::Lanes(d);
+      const V mass = hn::Load(d, s.motion.mass + i);
+      const Triple<V> own = load(x + i, y + i, z + i);
+      const Triple<V> part = resisted(s, memory, group, own);
+      const Triple<V> all{multiply_add(mass, own.x, part.x), multiply_add(mass, own.y, part.y),
+                          multiply_add(mass, own.z, part.z)};
+      hn::Store(all.x, d, memory.applied + i);
+      hn::Store(all.y, d, memory.applied + s.masses + i);
+      hn::Store(all.z, d, memory.applied + 2 * s.masses + i);
+      sum = multiply_add(own.z, all.z, multiply_add(own.y, all.y, multiply_add(own.x, all.x, sum)));
+    }
+    return hn::GetLane(hn::SumOfLanes(d, sum));
+  }
+
+  /// Corrects by `share` of the direction. Returns the new <r, P r>.
+  template <class T>
+  static T advance_along(const Stepper<T>& s, const Memory<T>& memory, T share_) {
+    const hn::ScalableTag<T> d;
+    const auto share = hn::Set(d, share_);
+    hn::Vec<decltype(d)> sum = hn::Zero(d);
+    for (std::size_t i = 0; i < 3 * s.masses; i += hn::Lanes(d)) {
+      const auto correction = hn::Load(d, memory.correction + i), residual = hn::Load(d, memory.residual + i);
+      hn::Store(multiply_add(share, hn::Load(d, memory.direction + i), correction), d, memory.correction + i);
+      const auto r = negative_multiply_add(share, hn::Load(d, memory.applied + i), residual);
+      hn::Store(r, d, memory.residual + i);
+      sum = multiply_add(r * r, hn::Load(d, memory.inverse_diagonal + i), sum);
+    }
+    return hn::GetLane(hn::SumOfLanes(d, sum));
+  }
+
+  /// The next direction: P r and `share` of the last.
+  template <class T>
+  static void turn(const Stepper<T>& s, const Memory<T>& memory, T share_) {
+    const hn::ScalableTag<T> d;
+    const auto share = hn::Set(d, share_);
+    for (std::size_t i = 0; i < 3 * s.masses; i += hn::Lanes(d)) {
+      const auto steepest = hn::Load(d, memory.inverse_diagonal + i) * hn::Load(d, memory.residual + i);
+      hn::Store(multiply_add(share, hn::Load(d, memory.direction + i), steepest), d, memory.direction + i);
+    }
+  }
+
+  template <class T>
+  static void add_correction(const Stepper<T>& s, const Memory<T>& memory) {
+    const hn::ScalableTag<T> d;
+    const T* correction = memory.correction;
+    for (T* v : {s.motion.vx, s.motion.vy, s.motion.vz}) {
+      for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d))
+        hn::Store(hn::Load(d, v + i) + hn::Load(d, correction + i), d, v + i);
+      correction += s.masses;
+    }
+  }
+
+  /// The floor's push at the end of the step, N; it does not hold on to what leaves it.
+  template <class T>
+  static void set_floor_force(const Stepper<T>& s, const Memory<T>& memory) {
+    const hn::ScalableTag<T> d;
+    const cpu::Motion<T>& m = s.motion;
+    const auto stiffness = hn::Set(d, s.world.floor_stiffness), dt = hn::Set(d, s.world.step.dt);
+    for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
+      const auto z = moved(hn::Load(d, m.z + i), hn::Load(d, m.vz + i), dt);
+      const auto touches = hn::Load(d, memory.vertical_resistance + i) - hn::Load(d, memory.resistance + i);
+      hn::Store(zero_unless_greater(touches, hn::Zero(d), floor_force(stiffness, z)), d, m.floor_force + i);
+    }
+  }
+};
+
+}  // namespace evodevo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

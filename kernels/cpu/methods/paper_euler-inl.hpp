@@ -1,0 +1,33 @@
+// The method that the paper's equations read as; included once per instruction set.
+#if defined(EVODEVO_CPU_METHODS_PAPER_EULER_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef EVODEVO_CPU_METHODS_PAPER_EULER_INL_HPP
+#undef EVODEVO_CPU_METHODS_PAPER_EULER_INL_HPP
+#else
+#define EVODEVO_CPU_METHODS_PAPER_EULER_INL_HPP
+#endif
+
+#include "cpu/stepper-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace evodevo::HWY_NAMESPACE {
+
+/// All forces from the places, velocities from the forces, places from the velocities. The velocity is multiplied by
+/// exp(-rate dt) after the forces have acted, so a falling mass ends short of g/rate by a share that grows with dt.
+struct PaperEuler : StepMethod {
+  template <class T>
+  static void step(const Stepper<T>& s, std::size_t row) {
+    s.noted_springs(s.motion, s.actuation, row);
+    if (s.world.gravity) add_gravity(s.motion, s.world, s.masses);
+    if (s.world.floor) add_floor(s.motion, s.world, s.masses);
+    if (s.world.drag) add_drag(s.motion, s.world, s.masses);
+    advance_velocities(s.motion, s.world.step.dt, s.masses);
+    if (s.world.damping) damp(s.motion, s.world.step.decay, s.masses);
+    if (s.world.friction) rub(s.motion, s.world, s.world.step.dt, s.motion.vx, s.motion.vy, s.masses);
+    move(s.motion, s.world.step.dt, s.masses);
+  }
+};
+
+}  // namespace evodevo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

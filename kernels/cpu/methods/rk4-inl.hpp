@@ -1,0 +1,154 @@
+// The classical Runge-Kutta method of fourth order; included once per instruction set.
+#if defined(EVODEVO_CPU_METHODS_RK4_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef EVODEVO_CPU_METHODS_RK4_INL_HPP
+#undef EVODEVO_CPU_METHODS_RK4_INL_HPP
+#else
+#define EVODEVO_CPU_METHODS_RK4_INL_HPP
+#endif
+
+#include "cpu/stepper-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace evodevo::HWY_NAMESPACE {
+
+/// Four stages, with damping, drag and floor in the right-hand side. Friction acts once, after the step, as a constant
+/// force: with the mean of the stages' normal forces it takes mu N dt/m of the velocity and half of that of the mean
+/// velocity, so a mass inside the cone stays where it is.
+struct Rk4 : StepMethod {
+  static constexpr std::size_t rows_per_step = 2, mass_arrays = 13;
+
+  template <class T>
+  static void step(const Stepper<T>& s, std::size_t row) {
+    const T dt = s.world.step.dt, half = s.world.half_step.dt;
+    begin_stages(s);
+    set_forces(s, s.noted_springs, row);
+    add_stage(s, T(1) / 6);
+    go_ahead(s, half);
+    set_forces(s, s.springs, row + 1);
+    add_stage(s, T(1) / 3);
+    go_ahead(s, half);
+    set_forces(s, s.springs, row + 1);
+    add_stage(s, T(1) / 3);
+    go_ahead(s, dt);
+    set_forces(s, s.springs, row + 2);
+    add_stage(s, T(1) / 6);
+    finish(s, dt);
+  }
+
+ private:
+  /// One coordinate of all masses.
+  template <class T>
+  struct Axis {
+    T *place, *velocity;
+    const T* force;
+    T *first_place, *first_velocity;  ///< at the beginning of the step
+    T *mean_velocity, *mean_acceleration;
+  };
+
+  template <class T>
+  static Axis<T> axis(const Stepper<T>& s, std::size_t c) {
+    const cpu::Motion<T>& m = s.motion;
+    T* const places[] = {m.x, m.y, m.z};
+    T* const velocities[] = {m.vx, m.vy, m.vz};
+    const T* const forces[] = {m.fx, m.fy, m.fz};
+    return {places[c], velocities[c], forces[c], s.scratch(c), s.scratch(3 + c), s.scratch(6 + c), s.scratch(9 + c)};
+  }
+
+  template <class T>
+  static T* mean_floor_force(const Stepper<T>& s) {
+    return s.scratch(12);
+  }
+
+  template <class T>
+  static void begin_stages(const Stepper<T>& s) {
+    const hn::ScalableTag<T> d;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Axis<T> a = axis(s, c);
+      for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
+        hn::Store(hn::Load(d, a.place + i), d, a.first_place + i);
+        hn::Store(hn::Load(d, a.velocity + i), d, a.first_velocity + i);
+        hn::Store(hn::Zero(d), d, a.mean_velocity + i);
+        hn::Store(hn::Zero(d), d, a.mean_acceleration + i);
+      }
+    }
+    for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) hn::Store(hn::Zero(d), d, mean_floor_force(s) + i);
+  }
+
+  template <class T>
+  static void set_forces(const Stepper<T>& s, SpringPass<T> springs, std::size_t row) {
+    springs(s.motion, s.actuation, row);
+    if (s.world.gravity) add_gravity(s.motion, s.world, s.masses);
+    if (s.world.floor) add_floor(s.motion, s.world, s.masses);
+    if (s.world.drag) add_drag(s.motion, s.world, s.masses);
+    if (s.world.damping) add_damping(s.motion, s.world, s.masses);
+  }
+
+  /// Adds the velocities, accelerations and normal forces of this stage to their means.
+  template <class T>
+  static void add_stage(const Stepper<T>& s, T share) {
+    const hn::ScalableTag<T> d;
+    const auto weight = hn::Set(d, share);
+    const auto add = [&](std::size_t i, auto value, T* mean)
+                         HWY_ATTR { hn::Store(multiply_add(weight, value, hn::Load(d, mean + i)), d, mean + i); };
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Axis<T> a = axis(s, c);
+      for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
+        add(i, hn::Load(d, a.velocity + i), a.mean_velocity);
+        add(i, hn::Load(d, a.force + i) * hn::Load(d, s.motion.inverse_mass + i), a.mean_acceleration);
+      }
+    }
+    if (s.world.friction)
+      for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d))
+        add(i, hn::Load(d, s.motion.floor_force + i), mean_floor_force(s));
+  }
+
+  /// To where the velocities and accelerations of this stage lead from the beginning of the step in `time` s.
+  template <class T>
+  static void go_ahead(const Stepper<T>& s, T time) {
+    const hn::ScalableTag<T> d;
+    const auto dt = hn::Set(d, time);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Axis<T> a = axis(s, c);
+      for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
+        const auto dt_over_mass = dt * hn::Load(d, s.motion.inverse_mass + i);
+        hn::Store(moved(hn::Load(d, a.first_place + i), hn::Load(d, a.velocity + i), dt), d, a.place + i);
+        hn::Store(advanced_velocity(hn::Load(d, a.first_velocity + i), hn::Load(d, a.force + i), dt_over_mass), d,
+                  a.velocity + i);
+      }
+    }
+    show_places(s.motion, s.masses);
+  }
+
+  template <class T>
+  static void finish(const Stepper<T>& s, T time) {
+    const hn::ScalableTag<T> d;
+    const auto dt = hn::Set(d, time);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Axis<T> a = axis(s, c);
+      for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d))
+        hn::Store(moved(hn::Load(d, a.first_velocity + i), hn::Load(d, a.mean_acceleration + i), dt), d,
+                  a.velocity + i);
+    }
+    if (s.world.friction) rub_over_step(s, time);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Axis<T> a = axis(s, c);
+      for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d))
+        hn::Store(moved(hn::Load(d, a.first_place + i), hn::Load(d, a.mean_velocity + i), dt), d, a.place + i);
+    }
+    show_places(s.motion, s.masses);
+  }
+
+  template <class T>
+  static void rub_over_step(const Stepper<T>& s, T time) {
+    const hn::ScalableTag<T> d;
+    for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d))
+      hn::Store(hn::Load(d, mean_floor_force(s) + i), d, s.motion.floor_force + i);
+    rub(s.motion, s.world, time, s.motion.vx, s.motion.vy, s.masses);
+    rub(s.motion, s.world, time / 2, axis(s, 0).mean_velocity, axis(s, 1).mean_velocity, s.masses);
+  }
+};
+
+}  // namespace evodevo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

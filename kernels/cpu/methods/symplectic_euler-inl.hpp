@@ -1,0 +1,34 @@
+// Semi-implicit Euler that ends in the true terminal velocity; included once per instruction set.
+#if defined(EVODEVO_CPU_METHODS_SYMPLECTIC_EULER_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef EVODEVO_CPU_METHODS_SYMPLECTIC_EULER_INL_HPP
+#undef EVODEVO_CPU_METHODS_SYMPLECTIC_EULER_INL_HPP
+#else
+#define EVODEVO_CPU_METHODS_SYMPLECTIC_EULER_INL_HPP
+#endif
+
+#include "cpu/stepper-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace evodevo::HWY_NAMESPACE {
+
+/// v <- (decay v + push F/m)/(1 + push c |v|/m), then x <- x + dt v: damping and drag are exact where no force acts,
+/// and under a constant force the velocity ends where they balance it, at any dt.
+struct SymplecticEuler : StepMethod {
+  template <class T>
+  static void step(const Stepper<T>& s, std::size_t row) {
+    const cpu::TimeSpan<T>& time = s.world.step;
+    s.noted_springs(s.motion, s.actuation, row);
+    if (s.world.gravity) add_gravity(s.motion, s.world, s.masses);
+    if (s.world.floor) add_floor(s.motion, s.world, s.masses);
+    if (s.world.drag) yield_to_drag<true>(s.motion, s.world, time.push, s.masses);
+    if (s.world.damping) damp(s.motion, time.decay, s.masses);
+    advance_velocities(s.motion, time.push, s.masses);
+    if (s.world.friction) rub(s.motion, s.world, time.dt, s.motion.vx, s.motion.vy, s.masses);
+    move(s.motion, time.dt, s.masses);
+  }
+};
+
+}  // namespace evodevo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

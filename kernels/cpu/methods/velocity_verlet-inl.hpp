@@ -1,0 +1,59 @@
+// Velocity Verlet; included once per instruction set.
+#if defined(EVODEVO_CPU_METHODS_VELOCITY_VERLET_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef EVODEVO_CPU_METHODS_VELOCITY_VERLET_INL_HPP
+#undef EVODEVO_CPU_METHODS_VELOCITY_VERLET_INL_HPP
+#else
+#define EVODEVO_CPU_METHODS_VELOCITY_VERLET_INL_HPP
+#endif
+
+#include "cpu/stepper-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace evodevo::HWY_NAMESPACE {
+
+/// Kick, drift, kick, with half a step of damping and drag before and after: the same from either end, so of second
+/// order. The forces at the end of a step are those at the beginning of the next.
+struct VelocityVerlet : StepMethod {
+  template <class T>
+  static void begin(const Stepper<T>& s) {
+    set_forces(s, s.springs, 0);
+  }
+
+  template <class T>
+  static void step(const Stepper<T>& s, std::size_t row) {
+    slow_down(s);
+    kick(s);
+    move(s.motion, s.world.step.dt, s.masses);
+    set_forces(s, s.noted_springs, row + 1);
+    kick(s);
+    slow_down(s);
+  }
+
+ private:
+  template <class T>
+  static void set_forces(const Stepper<T>& s, SpringPass<T> springs, std::size_t row) {
+    springs(s.motion, s.actuation, row);
+    if (s.world.gravity) add_gravity(s.motion, s.world, s.masses);
+    if (s.world.floor) add_floor(s.motion, s.world, s.masses);
+  }
+
+  /// Half a step of damping and drag, exactly.
+  template <class T>
+  static void slow_down(const Stepper<T>& s) {
+    if (s.world.drag) yield_to_drag<false>(s.motion, s.world, s.world.half_step.push, s.masses);
+    if (s.world.damping) damp(s.motion, s.world.half_step.decay, s.masses);
+  }
+
+  /// Half a step of the forces, and of the friction that goes with them.
+  template <class T>
+  static void kick(const Stepper<T>& s) {
+    const T time = s.world.half_step.dt;
+    advance_velocities(s.motion, time, s.masses);
+    if (s.world.friction) rub(s.motion, s.world, time, s.motion.vx, s.motion.vy, s.masses);
+  }
+};
+
+}  // namespace evodevo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

@@ -1,0 +1,164 @@
+// Extended position-based dynamics; included once per instruction set.
+#if defined(EVODEVO_CPU_METHODS_XPBD_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef EVODEVO_CPU_METHODS_XPBD_INL_HPP
+#undef EVODEVO_CPU_METHODS_XPBD_INL_HPP
+#else
+#define EVODEVO_CPU_METHODS_XPBD_INL_HPP
+#endif
+
+#include "cpu/stepper-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace evodevo::HWY_NAMESPACE {
+
+/// Springs as constraints |d| = L of compliance 1/k and the floor as one of z >= 0, solved one after the other in the
+/// order of the springs' colours, the floor last (Macklin et al., XPBD, 2016). They are solved once a step: at the same
+/// cost, one pass over a smaller step is nearer the truth than several over a larger one (Macklin et al., Small steps
+/// in physics simulation, 2019), and it tends to it with dt. The unknowns are velocities instead of places, x + dt v
+/// the place at the end of the step: in float32, velocities that are differences of places would be mostly rounding.
+struct Xpbd : StepMethod {
+  static constexpr std::size_t mass_arrays = cpu::place_stride;
+  static constexpr bool coloured = true;
+
+  template <class T>
+  static void step(const Stepper<T>& s, std::size_t row) {
+    fall(s);
+    show_velocities(s);
+    for (std::size_t at = 0; at < s.motion.coloured.size; at += hn::Lanes(hn::ScalableTag<T>()))
+      solve_springs(s, row + 1, at);
+    take_velocities(s);
+    if (s.world.floor) solve_floor(s);
+    if (s.world.friction) rub(s.motion, s.world, s.world.step.dt, s.motion.vx, s.motion.vy, s.masses);
+    move(s.motion, s.world.step.dt, s.masses);
+  }
+
+ private:
+  /// The velocities as springs read and write them, place_stride numbers for each mass.
+  template <class T>
+  static T* shown(const Stepper<T>& s) {
+    return s.scratch(0);
+  }
+
+  /// Gravity, drag and damping, as in symplectic-euler.
+  template <class T>
+  static void fall(const Stepper<T>& s) {
+    const hn::ScalableTag<T> d;
+    for (T* force : {s.motion.fx, s.motion.fy, s.motion.fz})
+      for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) hn::Store(hn::Zero(d), d, force + i);
+    if (s.world.gravity) add_gravity(s.motion, s.world, s.masses);
+    if (s.world.drag) yield_to_drag<true>(s.motion, s.world, s.world.step.push, s.masses);
+    if (s.world.damping) damp(s.motion, s.world.step.decay, s.masses);
+    if (s.world.gravity) advance_velocities(s.motion, s.world.step.push, s.masses);
+  }
+
+  template <class T>
+  static void show_velocities(const Stepper<T>& s) {
+    const hn::ScalableTag<T> d;
+    const cpu::Motion<T>& m = s.motion;
+    for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d))
+      store_places(d, Triple<hn::Vec<decltype(d)>>{hn::Load(d, m.vx + i), hn::Load(d, m.vy + i), hn::Load(d, m.vz + i)},
+                   shown(s) + cpu::place_stride * i);
+  }
+
+  template <class T>
+  static void take_velocities(const Stepper<T>& s) {
+    const T* velocity = shown(s);
+    for (std::size_t i = 0; i < s.masses; ++i, velocity += cpu::place_stride) {
+      s.motion.vx[i] = velocity[0];
+      s.motion.vy[i] = velocity[1];
+      s.motion.vz[i] = velocity[2];
+    }
+  }
+
+  /// Solves the springs `at`, `at` + 1, .. of one colour, a vector of them.
+  template <class T>
+  static void solve_springs(const Stepper<T>& s, std::size_t row, std::size_t at) {
+    const hn::ScalableTag<T> d;
+    using V = hn::Vec<decltype(d)>;
+    const cpu::ColouredView<T>& springs = s.motion.coloured;
+    const std::uint32_t *a = springs.a + at, *b = springs.b + at;
+    const TableInMemory<T> lengths(s.actuation.relative_length + row * s.actuation.padded);
+    const V dt = hn::Set(d, s.world.step.dt), push = hn::Set(d, s.world.step.push);
+    const V rest_length = hn::Load(d, springs.rest_length + at), k = hn::Load(d, springs.stiffness + at);
+    const V wa = hn::Load(d, springs.inverse_mass_a + at), wb = hn::Load(d, springs.inverse_mass_b + at);
+
+    const Triple<V> va = load_places(d, shown(s), a), vb = load_places(d, shown(s), b);
+    const Triple<V> xa = load_places(d, s.motion.places, a), xb = load_places(d, s.motion.places, b);
+    const Triple<V> x = {xb.x - xa.x, xb.y - xa.y, xb.z - xa.z}, v = {vb.x - va.x, vb.y - va.y, vb.z - va.z};
+    const Separation<V> ends =
+        separation(Triple<V>{hn::Zero(d), hn::Zero(d), hn::Zero(d)},
+                   Triple<V>{multiply_add(dt, v.x, x.x), multiply_add(dt, v.y, x.y), multiply_add(dt, v.z, x.z)});
+    const V distance = length(ends);
+    const V stretch = distance - rest_length * lengths.at(springs.material + at);
+    const V factor = compliant_force(k, stretch, dt * push, wa + wb) / distance;
+    store_velocities(s, at, a, pushed(va, push * factor * wa, ends.d));
+    store_velocities(s, at, b, pushed(vb, hn::Zero(d) - push * factor * wb, ends.d));
+    if (s.sums.tension || s.sums.power) note(s, row, at, spring_tension(ends, distance, factor));
+  }
+
+  template <class V>
+  static HWY_INLINE Triple<V> pushed(const Triple<V>& v, V by, const Triple<V>& d) {
+    return {multiply_add(by, d.x, v.x), multiply_add(by, d.y, v.y), multiply_add(by, d.z, v.z)};
+  }
+
+  /// Whether a lane holds a spring, and not what fills its colour up.
+  template <class T>
+  static bool is_spring(const Stepper<T>& s, std::size_t at) {
+    return s.motion.coloured.stiffness[at] > T(0);
+  }
+
+  template <class T, class V>
+  static HWY_INLINE void store_velocities(const Stepper<T>& s, std::size_t at, const std::uint32_t* offset,
+                                          const Triple<V>& v) {
+    const hn::ScalableTag<T> d;
+    HWY_ALIGN T rows[cpu::place_stride * hn::MaxLanes(hn::ScalableTag<T>())];
+    store_places(d, v, rows);
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+      if (!is_spring(s, at + lane)) continue;
+      for (std::size_t c = 0; c < 3; ++c) shown(s)[offset[lane] + c] = rows[cpu::place_stride * lane + c];
+    }
+  }
+
+  /// Adds to the sums that are on.
+  template <class T, class V>
+  static void note(const Stepper<T>& s, std::size_t row, std::size_t at, V tension) {
+    const hn::ScalableTag<T> d;
+    if (s.sums.tension) add_to_slots(s, at, hn::Abs(tension), s.motion.tension_sum);
+    if (s.sums.power) {
+      const cpu::ColouredView<T>& springs = s.motion.coloured;
+      const TableInMemory<T> rates(s.actuation.relative_rate + row * s.actuation.padded);
+      const V rate = hn::Load(d, springs.rest_length + at) * rates.at(springs.material + at);
+      add_to_slots(s, at, actuation_power(tension, rate), s.motion.power_sum);
+    }
+  }
+
+  template <class T, class V>
+  static void add_to_slots(const Stepper<T>& s, std::size_t at, V values, T* sum) {
+    const hn::ScalableTag<T> d;
+    HWY_ALIGN T numbers[hn::MaxLanes(hn::ScalableTag<T>())];
+    hn::Store(values, d, numbers);
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane)
+      if (is_spring(s, at + lane)) sum[s.motion.coloured.slot[at + lane]] += numbers[lane];
+  }
+
+  /// Pushes up what would end below the floor.
+  template <class T>
+  static void solve_floor(const Stepper<T>& s) {
+    const hn::ScalableTag<T> d;
+    const cpu::Motion<T>& m = s.motion;
+    const auto dt = hn::Set(d, s.world.step.dt), push = hn::Set(d, s.world.step.push);
+    const auto stiffness = hn::Set(d, s.world.floor_stiffness);
+    for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
+      const auto vz = hn::Load(d, m.vz + i), inverse_mass = hn::Load(d, m.inverse_mass + i);
+      const auto depth = maximum(hn::Zero(d) - moved(hn::Load(d, m.z + i), vz, dt), hn::Zero(d));
+      const auto force = compliant_force(stiffness, depth, dt * push, inverse_mass);
+      hn::Store(force, d, m.floor_force + i);
+      hn::Store(advanced_velocity(vz, force, push * inverse_mass), d, m.vz + i);
+    }
+  }
+};
+
+}  // namespace evodevo::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

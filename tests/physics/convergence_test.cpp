@@ -1,0 +1,173 @@
+// Every method tends to the same motion, and with its own order.
+#include <gtest/gtest.h>
+
+#include <boost/numeric/odeint.hpp>
+#include <cmath>
+
+#include "support.hpp"
+
+namespace evodevo::test {
+namespace {
+
+/// The right-hand side for places and velocities, one after the other, of a body in a scene without a floor.
+class EquationOfMotion {
+ public:
+  EquationOfMotion(const Body& body, const Scene& scene) : body_(body), scene_(scene) {}
+
+  void operator()(const std::vector<double>& y, std::vector<double>& rate, double t) const {
+    const std::size_t half = y.size() / 2;
+    for (std::size_t i = 0; i < half; ++i) rate[i] = y[half + i], rate[half + i] = 0;
+    for (const Spring& s : body_.springs) add_spring(s, y, rate, t);
+    for (std::size_t i = 0; i < half; i += 3) {
+      const double* v = &y[half + i];
+      const double speed = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      const double drag = scene_.drag ? scene_.drag->coefficient * speed / body_.masses[i / 3].mass : 0;
+      const double damping = scene_.damping ? scene_.damping->rate : 0;
+      for (std::size_t c = 0; c < 3; ++c) rate[half + i + c] -= (drag + damping) * v[c];
+      if (scene_.gravity) rate[half + i + 2] -= scene_.gravity->acceleration;
+    }
+  }
+
+ private:
+  void add_spring(const Spring& s, const std::vector<double>& y, std::vector<double>& rate, double t) const {
+    const Material& m = body_.materials[s.material];
+    const std::size_t a = std::size_t{3} * s.a, b = std::size_t{3} * s.b, half = y.size() / 2;
+    const double d[] = {y[b] - y[a], y[b + 1] - y[a + 1], y[b + 2] - y[a + 2]};
+    const double distance = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    const double rest = s.rest_length * (1 + m.amplitude * std::sin(2 * pi * m.frequency * t + m.phase));
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double force = m.stiffness * (distance - rest) * d[c] / distance;
+      rate[half + a + c] += force / body_.masses[s.a].mass;
+      rate[half + b + c] -= force / body_.masses[s.b].mass;
+    }
+  }
+
+  const Body& body_;
+  const Scene& scene_;
+};
+
+/// The places after `time` s, to twelve digits, by the method of Dormand and Prince.
+State solution(const Body& body, const State& start, const Scene& scene, double time) {
+  namespace odeint = boost::numeric::odeint;
+  std::vector<double> y;
+  for (const auto* vectors : {&start.position, &start.velocity})
+    for (const Vec3& v : *vectors) y.insert(y.end(), {v.x, v.y, v.z});
+  const auto stepper = odeint::make_controlled<odeint::runge_kutta_dopri5<std::vector<double>>>(1e-13, 1e-13);
+  odeint::integrate_adaptive(stepper, EquationOfMotion(body, scene), y, 0.0, time, 1e-4);
+  State end = start;
+  for (std::size_t i = 0; i < end.position.size(); ++i) end.position[i] = {y[3 * i], y[3 * i + 1], y[3 * i + 2]};
+  return end;
+}
+
+struct Smooth {
+  const char* name;
+  Body body;
+  Scene scene;
+};
+
+/// One muscle that swings, slowed down by all that slows down.
+Smooth one_spring() {
+  return {"one_spring", pair_of_masses(0.2, {500, 0.1, 2, 0.7}, 1.05), {{}, {}, {}, Damping{3}, Drag{0.2}}};
+}
+
+/// A lattice of muscles in two phases that turns as it falls.
+Smooth lattice() {
+  Body body = block(2, {800, 0.1, 3, 0});
+  body.materials.push_back({1000, 0.1, 2, 1});
+  for (std::size_t i = 0; i < body.springs.size(); i += 3) body.springs[i].material = 1;
+  return {"lattice", body, {Gravity{}, {}, {}, Damping{2}, Drag{0.1}}};
+}
+
+State turning(const Smooth& smooth) {
+  State state = resting(smooth.body, smooth.scene);
+  for (std::size_t i = 0; i < state.velocity.size(); ++i)
+    state.velocity[i] = {-2 * state.position[i].y, 2 * state.position[i].x, state.position[i].x};
+  state.start_energy = 100 + total_energy(smooth.body, state, smooth.scene, 0);
+  return state;
+}
+
+int order_of(Method method) {
+  switch (method) {
+    case Method::velocity_verlet:
+      return 2;
+    case Method::rk4:
+      return 4;
+    default:
+      return 1;
+  }
+}
+
+class Convergence : public testing::TestWithParam<Method> {};
+
+INSTANTIATE_TEST_SUITE_P(Methods, Convergence, testing::ValuesIn(all_methods),
+                         [](const auto& instance) { return name_of(instance.param); });
+
+TEST_P(Convergence, TheErrorFallsWithTheOrderOfTheMethod) {
+  const int order = order_of(GetParam());
+  const double time = 0.2;
+  for (const Smooth& smooth : {one_spring(), lattice()}) {
+    const State start = turning(smooth), truth = solution(smooth.body, start, smooth.scene, time);
+    ASSERT_GT(largest_difference(start, truth), 0.02);
+    const auto error = [&](std::uint64_t steps) {
+      const Stepping stepping{GetParam(), Precision::float64, time / static_cast<double>(steps)};
+      const Answer a = simulate(smooth.body, start, smooth.scene, stepping, steps);
+      EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+      return largest_difference(a.state, truth);
+    };
+    // small enough for the order to show, large enough for the error to stand above the rounding
+    const std::uint64_t steps = order == 1 ? 12800 : order == 2 ? 1600 : 200;
+    EXPECT_NEAR(std::log2(error(steps) / error(2 * steps)), order, 0.1) << smooth.name;
+  }
+}
+
+TEST_P(Convergence, WithFloorAndFrictionAllTendToOneMotion) {
+  // a block falls onto a soft floor, slides and comes to rest
+  const Scene scene{Gravity{}, Floor{2e4}, Friction{0.5}, Damping{2}, {}};
+  const Body body = block(1, {2000, 0, 0, 0});
+  State start = state_at_birth(body, scene);
+  for (Vec3& v : start.velocity) v = {1.2, 0.3, -0.3};
+  start.start_energy = total_energy(body, start, scene, 0);
+  const double time = 0.15;
+  const State truth = reference(body, start, scene, 1e-6, 150000).state;
+  ASSERT_GT(largest_difference(start, truth), 0.01);
+  const auto error = [&](std::uint64_t steps) {
+    const Stepping stepping{GetParam(), Precision::float64, time / static_cast<double>(steps)};
+    const Answer a = simulate(body, start, scene, stepping, steps);
+    EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+    return largest_difference(a.state, truth);
+  };
+  const double coarse = error(600), fine = error(9600);
+  EXPECT_LT(coarse, 0.01);
+  EXPECT_LT(fine, coarse / 6);  // a sixteenth of the step
+}
+
+/// The speed (m/s) at which damping and drag together bear the weight: rate m v + c v^2 = m g.
+double terminal_speed(const Scene& scene, double mass) {
+  const double a = scene.drag->coefficient, b = scene.damping->rate * mass, weight = mass * scene.gravity->acceleration;
+  return (std::sqrt(b * b + 4 * a * weight) - b) / (2 * a);
+}
+
+TEST_P(Convergence, TheTerminalVelocityIsTrue) {
+  const Scene scene{Gravity{}, {}, {}, Damping{5}, Drag{0.3}};
+  const Body body = single_mass(0.2);
+  const double expected = terminal_speed(scene, 0.2);
+  for (const double dt : {0.1, 0.01, 0.001}) {
+    const Stepping stepping{GetParam(), Precision::float64, dt};
+    const Answer a = simulate(body, resting(body, scene), scene, stepping, static_cast<std::uint64_t>(20 / dt));
+    const double error = std::abs(a.state.velocity[0].z + expected) / expected;
+    switch (GetParam()) {
+      case Method::paper_euler:  // v <- (v + dt a) decay: short by about rate dt/2
+        EXPECT_LT(error, 5 * dt);
+        EXPECT_GT(error, 0.5 * dt);
+        break;
+      case Method::velocity_verlet:
+        EXPECT_LT(error, 10 * dt * dt);
+        break;
+      default:
+        EXPECT_LT(error, 1e-12) << "dt " << dt;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace evodevo::test
