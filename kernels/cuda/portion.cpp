@@ -1,6 +1,7 @@
 #include "cuda/portion.hpp"
 
 #include <algorithm>
+#include <deque>
 
 #include "cuda/launch.hpp"
 
@@ -10,6 +11,21 @@ namespace {
 /// Room for one body's description of either kind.
 template <class T>
 constexpr std::size_t header_bytes = (std::max(sizeof(ResidentBody<T>), sizeof(StreamedBody<T>)) + 31) / 32 * 32;
+
+/// Waits until all streams have done what they were given; asleep, because other batches need the core. Not on the
+/// device, where other batches' launches could be queued behind a stream that waits. Returns the time since `begin`, s.
+double wait_for(std::span<const Stream> streams, const Event& begin) {
+  std::deque<Event> ends;
+  for (const Stream& stream : streams) check(cudaEventRecord(ends.emplace_back(true), stream), "recording an event");
+  float longest = 0;
+  for (const Event& end : ends) {
+    float milliseconds = 0;
+    check(cudaEventSynchronize(end), "simulating on the GPU");
+    check(cudaEventElapsedTime(&milliseconds, begin, end), "reading a time");
+    longest = std::max(longest, milliseconds);
+  }
+  return longest / 1000.0;
+}
 
 }  // namespace
 
@@ -159,20 +175,15 @@ void Portion<T>::download(cudaStream_t stream) {
   check(cudaMemcpyAsync(host_.front().state, device_.front().state, sizes_.state + sizes_.sums, cudaMemcpyDeviceToHost,
                         stream),
         "copying bodies from the GPU");
-  wait(stream);
-}
-
-/// Waits until a stream has done all that it was given; asleep, because other batches need the core.
-template <class T>
-void Portion<T>::wait(cudaStream_t stream) {
   const Event done(true);
   check(cudaEventRecord(done, stream), "recording an event");
-  check(cudaEventSynchronize(done), "simulating on the GPU");
+  check(cudaEventSynchronize(done), "copying bodies from the GPU");
 }
 
 template <class T>
 double Portion<T>::simulate(KernelStore& kernels, std::span<const Stream> streams, Workers& workers, BusyClock& busy) {
-  const Event begin, end;
+  const Event begin;
+  double seconds = 0;
   pack(workers);
   {
     const BusyClock::Span span(busy);
@@ -180,9 +191,7 @@ double Portion<T>::simulate(KernelStore& kernels, std::span<const Stream> stream
     check(cudaEventRecord(begin, streams[0]), "recording an event");
     launch_resident(kernels, streams, workers);
     launch_streamed(kernels, streams[0]);
-    // here and not on the device, where other batches' launches could be queued behind a stream that waits
-    for (const Stream& stream : streams) wait(stream);
-    check(cudaEventRecord(end, streams[0]), "recording an event");
+    seconds = wait_for(streams, begin);
     download(streams[0]);
   }
   workers.for_each(plans_.size(), [&](std::size_t i) {
@@ -193,9 +202,7 @@ double Portion<T>::simulate(KernelStore& kernels, std::span<const Stream> stream
         },
         plan.body);
   });
-  float milliseconds = 0;
-  check(cudaEventElapsedTime(&milliseconds, begin, end), "reading a time");
-  return milliseconds / 1000.0;
+  return seconds;
 }
 
 template struct Plan<float>;

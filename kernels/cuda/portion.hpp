@@ -73,7 +73,6 @@ class Portion {
   void launch_resident(KernelStore& kernels, std::span<const Stream> streams, Workers& workers);
   void launch_streamed(KernelStore& kernels, cudaStream_t stream);
   void download(cudaStream_t stream);
-  static void wait(cudaStream_t stream);
 
   std::span<Plan<T>> plans_;
   Run run_;

@@ -149,7 +149,7 @@ class Sources {
 };
 
 /// All instructions in an ELF file of machine code: its sections .text.*, one behind the other.
-std::string instructions(const std::vector<char>& file) {
+std::string text_of(const std::vector<char>& file) {
   const auto read = [&]<class T>(T& value, std::size_t offset) { std::memcpy(&value, &file.at(offset), sizeof value); };
   Elf64_Ehdr header;
   read(header, 0);
@@ -163,17 +163,22 @@ std::string instructions(const std::vector<char>& file) {
   return code;
 }
 
-/// How many instructions there are but those that only fill up a section: 16 bytes each since Volta, the low twelve
-/// bits name the operation.
-int count(const std::string& instructions) {
-  int count = 0;
+using Operations = std::vector<std::uint16_t>;
+
+/// The operations of the instructions in a file, sorted, but those that only fill up a section: 16 bytes each since
+/// Volta, the low twelve bits name the operation. Which registers they use is left out: the compiler's choice may hang
+/// on a name.
+Operations operations(const std::vector<char>& file) {
+  const std::string instructions = text_of(file);
+  Operations all;
   for (std::size_t i = 0; i < instructions.size(); i += 16) {
     std::uint16_t bits;
     std::memcpy(&bits, &instructions[i], sizeof bits);
     constexpr std::uint16_t nop = 0x918;
-    count += (bits & 0xfff) != nop;
+    if ((bits & 0xfff) != nop) all.push_back(bits & 0xfff);
   }
-  return count;
+  std::sort(all.begin(), all.end());
+  return all;
 }
 
 /// A kernel in one of its forms.
@@ -201,18 +206,19 @@ const std::vector<Form> forms{
 
 class FeatureCode : public testing::TestWithParam<Form> {
  protected:
-  std::string code(const Sources& sources, const Features& features) const {
-    return instructions(compile(sources.all(), GetParam().source, GetParam().definitions(features), "sm_90"));
+  Operations code(const Sources& sources, const Features& features) const {
+    return operations(compile(sources.all(), GetParam().source, GetParam().definitions(features), "sm_90"));
   }
 };
 
 TEST_P(FeatureCode, IsNotThereWhereTheFeatureIsOff) {
+  const auto count = [](const Operations& operations) { return static_cast<int>(operations.size()); };
   const int all = count(code({}, every_feature()));
   std::printf("%s: %d instructions with every feature\n", GetParam().name, all);
   for (const Subject& subject : subjects) {
     Sources sources;
     sources.remove(subject);
-    const std::string off = code({}, without(subject));
+    const Operations off = code({}, without(subject));
     std::printf("  without %-9s %5d fewer\n", subject.name, all - count(off));
     EXPECT_NE(count(off), all) << subject.name << " is not compiled at all";
     EXPECT_TRUE(off == code(sources, every_feature())) << subject.name << " leaves something where it is off";
@@ -223,8 +229,8 @@ TEST_P(FeatureCode, IsNotThereWhereAllAreOff) {
   Sources sources;
   for (const Subject& subject : subjects)
     if (subject.on != &Features::friction) sources.remove(subject);  // gone with the floor
-  const std::string bare = code({}, {});
-  std::printf("%s: %d instructions without any\n", GetParam().name, count(bare));
+  const Operations bare = code({}, {});
+  std::printf("%s: %zu instructions without any\n", GetParam().name, bare.size());
   EXPECT_TRUE(bare == code(sources, every_feature()));
 }
 

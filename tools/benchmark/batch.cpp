@@ -34,19 +34,20 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-Batch::Batch(const Settings& settings, const Body& body, const Scene& scene)
-    : body_(body),
+Batch::Batch(const Settings& settings, std::span<const Body> bodies, const Scene& scene)
+    : bodies_(bodies),
       scene_(scene),
       simulator_(make_simulator(settings, scene)),
-      birth_(state_at_birth(body, scene)),
       states_(settings.bodies),
-      steps_(settings.steps) {}
+      steps_(settings.steps) {
+  for (const Body& body : bodies) births_.push_back(state_at_birth(body, scene));
+}
 
 Rate Batch::rate(Recording recording) {
   std::vector<Task> tasks(states_.size());
   for (std::size_t i = 0; i < tasks.size(); ++i) {
-    states_[i] = birth_;
-    tasks[i].body = &body_;
+    states_[i] = births_[i % births_.size()];
+    tasks[i].body = &bodies_[i % bodies_.size()];
     tasks[i].state = &states_[i];
   }
   const auto start = std::chrono::steady_clock::now();

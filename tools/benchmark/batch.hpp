@@ -1,8 +1,9 @@
-// Batches of equal bodies and the time that it takes to move them.
+// Batches of bodies and the time that it takes to move them.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,11 @@ struct Rate {
   double device = 0;  ///< of the device's own time; the same on the CPU
 };
 
-/// A batch of equal bodies in our simulator. The body must outlive it.
+/// A batch in our simulator, of one body after the other until there are as many as the settings say. They must outlive
+/// it.
 class Batch {
  public:
-  Batch(const Settings& settings, const Body& body, const Scene& scene);
+  Batch(const Settings& settings, std::span<const Body> bodies, const Scene& scene);
 
   std::string device() const { return simulator_->device(); }
 
@@ -32,10 +34,10 @@ class Batch {
   Rate rate(Recording recording = {});
 
  private:
-  const Body& body_;
+  std::span<const Body> bodies_;
   Scene scene_;
   std::unique_ptr<Simulator> simulator_;
-  State birth_;
+  std::vector<State> births_;
   std::vector<State> states_;
   std::uint64_t steps_;
 };

@@ -47,8 +47,8 @@ class Comparison {
  public:
   Comparison(const Settings& settings, const Feature& feature)
       : feature_(feature),
-        with_(settings, *feature.with.body, feature.with.scene),
-        without_(settings, *feature.without.body, feature.without.scene) {
+        with_(settings, {feature.with.body, 1}, feature.with.scene),
+        without_(settings, {feature.without.body, 1}, feature.without.scene) {
     measure();  // warm-up
     for (std::vector<double>* values : {&rates_with_, &rates_without_, &ratios_}) values->clear();
   }

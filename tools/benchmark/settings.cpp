@@ -33,8 +33,10 @@ void check(const Settings& s) {
     throw std::invalid_argument("--study " + s.study + " compares methods on a GPU; add --device cuda");
   if (beside_cuda && s.precision != "float32")
     throw std::invalid_argument("--study " + s.study + " has one precision; leave --precision out");
-  if ((s.study == "tallies") == s.robots.empty())
-    throw std::invalid_argument("--robots names the experiment of --study tallies, and goes with no other study");
+  if (s.study == "tallies" && s.robots.empty())
+    throw std::invalid_argument("--study tallies takes random robots; name their experiment with --robots");
+  if (s.study != "tallies" && s.study != "speed" && !s.robots.empty())
+    throw std::invalid_argument("--robots goes with --study speed and tallies alone");
   if (s.bodies < 1 || s.bodies > most_bodies || s.steps < 1 || s.runs < 1 || s.masses < 2)
     throw std::invalid_argument("steps and runs must be at least 1, masses at least 2, bodies from 1 to " +
                                 std::to_string(most_bodies));
@@ -64,7 +66,7 @@ std::optional<Settings> parse(int argc, const char* const* argv) {
   options.add_options()("materials", po::value(&s.materials)->default_value(0),
                         "materials of the springs, in turn; 0: the body's own");
   options.add_options()("robots", po::value(&s.robots)->default_value(""),
-                        "an experiment whose scene and random robots the study of tallies takes");
+                        "an experiment whose scene and random robots --study speed and tallies take instead of --body");
   options.add_options()("bodies", po::value(&s.bodies)->default_value(8), "bodies in the batch");
   options.add_options()("steps", po::value(&s.steps)->default_value(2000), "time steps of 0.5 ms");
   options.add_options()("threads", po::value(&s.threads)->default_value(0), "threads; 0: all cores");

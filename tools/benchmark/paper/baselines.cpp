@@ -10,7 +10,7 @@ namespace evodevo::benchmark {
 
 Report baselines(const Settings& settings) {
   const NamedBody body = body_named(settings.body, settings.masses, settings.materials);
-  Batch ours(settings, body.body, walking_scene());
+  Batch ours(settings, {&body.body, 1}, walking_scene());
   const Candidate global = fastest(settings, body.body, MassMemory::global);
   const Candidate shared = fastest(settings, body.body, MassMemory::shared);
   TimedMethod with_global(settings, body.body, global.method), with_shared(settings, body.body, shared.method);

@@ -53,7 +53,7 @@ void add_our_rows(const Settings& settings, Batch& ours, Report& rows) {
 Report stress_costs(const Settings& settings) {
   const NamedBody body = body_named(settings.body, settings.masses, settings.materials);
   const PaperMethod plain = fastest(settings, body.body, MassMemory::shared).method;
-  Batch ours(settings, body.body, walking_scene());
+  Batch ours(settings, {&body.body, 1}, walking_scene());
   Report rows = paper_rows(settings, body.body, plain);
   add_our_rows(settings, ours, rows);
   Report report = conditions(settings, "What stress costs", ours.device(), body);
