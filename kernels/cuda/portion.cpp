@@ -32,7 +32,8 @@ double wait_for(std::span<const Stream> streams, const Event& begin) {
 template <class T>
 Plan<T>::Plan(Task& task_, const Run& run)
     : task(&task_), guard(*task_.body, *task_.state, run.scene, run.stepping), body([&]() -> decltype(body) {
-        if (auto resident = Resident<T>::arrange(task_, run.features, run.shared_bytes)) return *std::move(resident);
+        if (auto resident = Resident<T>::arrange(task_, run.scene, run.features, run.shared_bytes))
+          return *std::move(resident);
         return Streamed<T>(task_, run.features);
       }()) {}
 

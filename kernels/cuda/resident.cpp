@@ -51,8 +51,11 @@ std::shared_ptr<const ArrangedBody> ArrangedBody::of(const Body& body, unsigned 
 }
 
 template <class T>
-ForceRange force_range(const Body& body, const State& state) {
-  double largest = 0;
+ForceRange force_range(const Body& body, const State& state, const Scene& scene) {
+  double weight = 0;
+  if (scene.gravity)
+    for (const Mass& mass : body.masses) weight += mass.mass * std::abs(scene.gravity->acceleration);
+  double largest = weight;
   std::vector<std::uint32_t> valence(body.masses.size());
   for (const Spring& spring : body.springs) {
     const Material& material = body.materials[spring.material];
@@ -70,8 +73,8 @@ ForceRange force_range(const Body& body, const State& state) {
   return range;
 }
 
-template ForceRange force_range<float>(const Body&, const State&);
-template ForceRange force_range<double>(const Body&, const State&);
+template ForceRange force_range<float>(const Body&, const State&, const Scene&);
+template ForceRange force_range<double>(const Body&, const State&, const Scene&);
 
 template <class T>
 std::size_t Resident<T>::largest_chip(std::size_t shared_bytes) {
@@ -79,25 +82,26 @@ std::size_t Resident<T>::largest_chip(std::size_t shared_bytes) {
 }
 
 template <class T>
-std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features& features, std::size_t shared_bytes) {
+std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Scene& scene, const Features& features,
+                                                std::size_t shared_bytes) {
   // before the work of arranging it: whether the masses and one step's table fit
   const std::size_t entries = task.body->materials.size() + 1;
   const std::size_t least =
       masses_bytes<T>((task.body->masses.size() + lanes - 1) / lanes) + entries * (sizeof(Entry<T>) + sizeof(T));
   if (least > largest_chip(shared_bytes) || entries * sizeof(Entry<T>) > largest_offset * sizeof(T))
     return std::nullopt;
-  Resident resident(task, features);
+  Resident resident(task, scene, features);
   if (!resident.fit(largest_chip(shared_bytes))) return std::nullopt;
   resident.reserve();
   return resident;
 }
 
 template <class T>
-Resident<T>::Resident(const Task& task, const Features& features)
+Resident<T>::Resident(const Task& task, const Scene& scene, const Features& features)
     : task_(&task),
       features_(features),
       arranged_(ArrangedBody::of(*task.body, largest_block(features.float64), task.preparation)),
-      range_(force_range<T>(*task.body, *task.state)) {}
+      range_(force_range<T>(*task.body, *task.state, scene)) {}
 
 /// Divides up shared memory; false where it is too small.
 template <class T>

@@ -26,10 +26,10 @@ struct ForceRange {
   double largest = 0;     ///< N; no spring's force may be larger
 };
 
-/// The range for a body: up to the force at which its strongest spring is twice as long as it wants to be, or twice
-/// what a spring's force is now.
+/// The range for a body: up to the force at which its strongest spring is twice as long as it wants to be, to twice
+/// what a spring's force is now, and to the body's weight, which may be more than soft or short springs can bear.
 template <class T>
-ForceRange force_range(const Body& body, const State& state);
+ForceRange force_range(const Body& body, const State& state, const Scene& scene);
 
 /// A body's arrangement, which depends on nothing but how many masses there are and which of them are joined.
 class ArrangedBody final : public Preparation {
@@ -54,7 +54,8 @@ template <class T>
 class Resident {
  public:
   /// The body of `task` on a chip whose blocks have up to `shared_bytes`; nothing where it does not fit.
-  static std::optional<Resident> arrange(const Task& task, const Features& features, std::size_t shared_bytes);
+  static std::optional<Resident> arrange(const Task& task, const Scene& scene, const Features& features,
+                                         std::size_t shared_bytes);
 
   /// Bytes of `shared_bytes` that a body can have; the kernel and the system have the rest.
   static std::size_t largest_chip(std::size_t shared_bytes);
@@ -73,7 +74,7 @@ class Resident {
               Task& task) const;
 
  private:
-  Resident(const Task& task, const Features& features);
+  Resident(const Task& task, const Scene& scene, const Features& features);
   bool fit(std::size_t shared_bytes);
   void reserve();
   void pack_records(Record<T>* to) const;

@@ -70,6 +70,20 @@ TEST_P(Divergence, ForceRange) {
   EXPECT_THAT(run.answer.reason, testing::HasSubstr("force range"));
 }
 
+TEST_P(Divergence, NotUnderAWeightThatSpringsCannotBear) {
+  EVODEVO_NEEDS_GPU();
+  const Scene scene = walking_scene();
+  Body body = random_body(50, 10, 2);
+  constexpr double scale = 1e-4;
+  for (Mass& mass : body.masses) mass.rest = scale * mass.rest;
+  for (Spring& spring : body.springs) spring.rest_length *= scale;
+  Robot cpu(body, state_at_birth(body, scene)), gpu(body, state_at_birth(body, scene));
+  simulate(*make_cpu_simulator(scene, stepping(GetParam()), 1), {&cpu}, 4000);
+  simulate(*make_cuda_simulator(scene, stepping(GetParam())), {&gpu}, 4000);
+  EXPECT_EQ(cpu.answer.status, Status::ok) << cpu.answer.reason;
+  EXPECT_EQ(gpu.answer.status, Status::ok) << gpu.answer.reason;
+}
+
 INSTANTIATE_TEST_SUITE_P(Gpu, Divergence, testing::Values(Precision::float32, Precision::float64),
                          [](const auto& test) { return std::string(name(test.param)); });
 

@@ -30,7 +30,7 @@ TEST(Resident, RecordsLeadToTheirMaterials) {
     const Body body = body_of(materials);
     State state = state_at_birth(body, testing_gpu::walking_scene());
     const Task task{.body = &body, .state = &state};
-    const auto resident = Resident<float>::arrange(task, features, shared_bytes);
+    const auto resident = Resident<float>::arrange(task, testing_gpu::walking_scene(), features, shared_bytes);
     ASSERT_TRUE(resident) << materials;
     const bool wide = body.materials.size() > 8190;  // of 8 bytes in 64 KiB, beside that of empty slots
     EXPECT_EQ(resident->form().wide_table, wide) << materials;
@@ -55,8 +55,8 @@ TEST(Resident, LeavesToTheDevicesMemoryWhatTheChipCannotHold) {
   const Body body = body_of(0);  // in float64 its table alone is as large as the chip
   State state = state_at_birth(body, testing_gpu::walking_scene());
   const Task task{.body = &body, .state = &state};
-  EXPECT_FALSE(Resident<double>::arrange(task, features, shared_bytes));
-  EXPECT_FALSE(Resident<float>::arrange(task, features, shared_bytes / 2));
+  EXPECT_FALSE(Resident<double>::arrange(task, testing_gpu::walking_scene(), features, shared_bytes));
+  EXPECT_FALSE(Resident<float>::arrange(task, testing_gpu::walking_scene(), features, shared_bytes / 2));
 }
 
 }  // namespace
