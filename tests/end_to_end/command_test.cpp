@@ -15,6 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::Finished;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using testing::small_experiment;
 
@@ -44,6 +45,7 @@ TEST_F(Command, RunSaysWhereOnWhatAndHowFast) {
   EXPECT_THAT(finished.output, HasSubstr("generation 3  evaluations 24/24"));
   EXPECT_THAT(finished.output, HasSubstr("best: individual"));
   EXPECT_THAT(finished.output, HasSubstr("spring evaluations/s"));
+  EXPECT_THAT(finished.output, ContainsRegex("time:  simulate [0-9]+ %, develop [0-9]+ %, decode [0-9]+ %, archive"));
 }
 
 TEST_F(Command, ShowAgreesWithTheArchive) {

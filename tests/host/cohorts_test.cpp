@@ -1,0 +1,79 @@
+// Batches that go through life in several cohorts at once.
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "breeding.hpp"
+#include "evaluation.hpp"
+#include "support/experiments.hpp"
+
+namespace evodevo {
+namespace {
+
+/// A simulator that wants to be called by several threads, as a GPU's does.
+class Concurrent final : public Simulator {
+ public:
+  Concurrent(const Experiment& experiment, int calls)
+      : simulator_(make_cpu_simulator(experiment.scene, experiment.stepping, 2)), calls_(calls) {}
+
+  void run(std::span<Task> tasks, std::uint64_t steps, Recording recording) override {
+    ++runs;
+    simulator_->run(tasks, steps, recording);
+  }
+  NeighbourSearch& neighbours() override { return simulator_->neighbours(); }
+  int concurrency() const override { return calls_; }
+  std::string device() const override { return simulator_->device(); }
+
+  std::atomic<int> runs = 0;
+
+ private:
+  std::unique_ptr<Simulator> simulator_;
+  int calls_;
+};
+
+TEST(Cohorts, GiveTheResultsOfOneBatch) {
+  const Experiment experiment = testing::read(testing::small_experiment);
+  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 300);
+  std::vector<Newborn> newborns;
+  for (const Individual& individual : individuals)
+    newborns.push_back({individual.id, individual.born, &individual.genome});
+  Concurrent one(experiment, 1), four(experiment, 4);
+  const std::vector<Result> together = Evaluation(experiment, one).evaluate(newborns, [](double) {});
+  double before = 0;
+  const std::vector<Result> apart = Evaluation(experiment, four).evaluate(newborns, [&](double done) {
+    EXPECT_GE(done, before);  // of all cohorts together
+    before = done;
+  });
+  EXPECT_NEAR(before, 1, 1e-12);
+  EXPECT_EQ(four.runs, 4 * one.runs);
+  ASSERT_EQ(apart.size(), together.size());
+  for (std::size_t i = 0; i < together.size(); ++i) {
+    EXPECT_EQ(apart[i].status, together[i].status);
+    EXPECT_EQ(apart[i].objectives, together[i].objectives);
+  }
+}
+
+TEST(Cohorts, PassOnAFailure) {
+  class Failing final : public Simulator {
+   public:
+    explicit Failing(std::unique_ptr<Simulator> simulator) : simulator_(std::move(simulator)) {}
+    void run(std::span<Task>, std::uint64_t, Recording) override { throw std::runtime_error("the device is lost"); }
+    NeighbourSearch& neighbours() override { return simulator_->neighbours(); }
+    int concurrency() const override { return 4; }
+    std::string device() const override { return "failing"; }
+
+   private:
+    std::unique_ptr<Simulator> simulator_;
+  };
+  const Experiment experiment = testing::read(testing::small_experiment);
+  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 300);
+  std::vector<Newborn> newborns;
+  for (const Individual& individual : individuals)
+    newborns.push_back({individual.id, individual.born, &individual.genome});
+  Failing simulator(make_cpu_simulator(experiment.scene, experiment.stepping, 1));
+  const Evaluation evaluation(experiment, simulator);
+  EXPECT_THROW(evaluation.evaluate(newborns, [](double) {}), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace evodevo

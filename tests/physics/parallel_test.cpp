@@ -1,0 +1,98 @@
+// Loops on several threads, and the clock that measures overlapping spans.
+#include "parallel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <future>
+#include <stdexcept>
+#include <vector>
+
+#include "busy_clock.hpp"
+
+namespace evodevo {
+namespace {
+
+TEST(Workers, CallEveryItemOnce) {
+  for (const int threads : {1, 2, 5}) {
+    Workers workers(threads);
+    for (const std::size_t count : {0, 1, 3, 1000}) {
+      std::vector<std::atomic<int>> calls(count);
+      workers.for_each(count, [&](std::size_t i) { ++calls[i]; });
+      for (const std::atomic<int>& n : calls) EXPECT_EQ(n, 1);
+    }
+  }
+}
+
+TEST(Workers, ServeSeveralCallersAtOnce) {
+  Workers workers(2);
+  std::atomic<int> sum = 0;
+  on_own_threads(6, [&](std::size_t) { workers.for_each(100, [&](std::size_t) { ++sum; }); });
+  EXPECT_EQ(sum, 600);
+}
+
+TEST(Workers, PassOnTheFirstExceptionAndStop) {
+  Workers workers(1);
+  int calls = 0;
+  EXPECT_THROW(workers.for_each(10,
+                                [&](std::size_t i) {
+                                  ++calls;
+                                  if (i == 3) throw std::range_error("three");
+                                }),
+               std::range_error);
+  EXPECT_EQ(calls, 4);
+  workers.for_each(2, [&](std::size_t) { ++calls; });
+  EXPECT_EQ(calls, 6) << "they work on after a failure";
+}
+
+TEST(Workers, DoWhatHasAnEarlierTurnFirst) {
+  constexpr std::size_t many = 1'000'000;
+  Workers workers(1);
+  std::promise<void> begun;
+  std::atomic<bool> urgent_done = false;
+  std::size_t items = 0, items_before = 0;  // of the loop that can wait; only the one worker counts
+  on_own_threads(2, [&](std::size_t caller) {
+    const Turn turn(caller == 0 ? 1 : 0);
+    if (caller == 0) {
+      workers.for_each(many, [&](std::size_t) {
+        if (items++ == 0) begun.set_value();
+        if (!urgent_done) std::this_thread::yield();
+      });
+    } else {
+      begun.get_future().wait();
+      workers.for_each(1, [&](std::size_t) {
+        items_before = items;
+        urgent_done = true;
+      });
+    }
+  });
+  EXPECT_EQ(items, many);
+  EXPECT_LT(items_before, many) << "it waited for the other loop's end";
+}
+
+TEST(OnOwnThreads, PassOnAnException) {
+  std::atomic<int> calls = 0;
+  EXPECT_THROW(on_own_threads(4,
+                              [&](std::size_t i) {
+                                ++calls;
+                                if (i == 2) throw std::range_error("two");
+                              }),
+               std::range_error);
+  EXPECT_EQ(calls, 4);
+}
+
+TEST(BusyClock, CountsOverlappingSpansOnce) {
+  BusyClock clock, outer;
+  {
+    const BusyClock::Span around(outer);
+    const BusyClock::Span first(clock), second(clock);
+    while (clock.seconds() < 0.002) std::this_thread::yield();
+  }
+  const double closed = clock.seconds();
+  EXPECT_GE(closed, 0.002);
+  EXPECT_LE(closed, outer.seconds()) << "two open spans are one";
+  EXPECT_EQ(clock.seconds(), closed) << "it stands while none is open";
+}
+
+}  // namespace
+}  // namespace evodevo
