@@ -130,13 +130,4 @@ std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, Neighbour
   return built;
 }
 
-std::string step_failure(const Body& body, std::span<const Vec3> places, const Scene& scene, const Stepping& stepping) {
-  double lightest = std::numeric_limits<double>::infinity();
-  for (const Mass& mass : body.masses) lightest = std::min(lightest, mass.mass);
-  const bool contact_holds = stepping.dt <= largest_contact_dt(scene, lightest, stepping.method);
-  if (contact_holds && is_stable(body, places, stepping)) return "";
-  return "unstable dt: " + to_text(stepping.dt) + " s is too long for the body's " +
-         (contact_holds ? "springs" : "lightest mass on this floor");
-}
-
 }  // namespace evodevo

@@ -8,7 +8,6 @@
 #include "evodevo/encoding.hpp"
 #include "neighbours.hpp"
 #include "parallel.hpp"
-#include "simulator.hpp"
 
 namespace evodevo {
 
@@ -25,8 +24,5 @@ BuiltBody build_body(Blueprint blueprint);
 
 /// The same for a population, whose neighbours are searched for together.
 std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, Workers& workers);
-
-/// Why this body, its masses at `places`, cannot be simulated with this step: "unstable dt: …"; empty where it can.
-std::string step_failure(const Body& body, std::span<const Vec3> places, const Scene& scene, const Stepping& stepping);
 
 }  // namespace evodevo

@@ -12,6 +12,7 @@ namespace evodevo {
 struct LivingBody {
   Body body;
   State state;
+  double longest_dt = 0;                                     ///< see LongestStep, s
   std::vector<double> stress;                                ///< of the last cycle, per spring, N
   std::shared_ptr<const Preparation> preparation = nullptr;  ///< what the simulator keeps from cycle to cycle
 };

@@ -21,15 +21,40 @@ void end(Life& life, Status status, std::string reason, double ended_at = 0) {
   life.result.ended_at = ended_at;
 }
 
-/// First and last step of a fitness' window, counted from the start of the final evaluation.
-std::pair<std::uint64_t, std::uint64_t> window_steps(const Request& request, double dt) {
-  return {steps_in(request.settle, dt), steps_in(request.settle + request.window, dt)};
+/// The index of the first mark that is not before `time` (s), but for rounding.
+std::size_t mark_at(const std::vector<double>& marks, double time) {
+  constexpr double rounding = 1e-9;
+  return static_cast<std::size_t>(std::lower_bound(marks.begin(), marks.end(), time - rounding) - marks.begin());
 }
 
 }  // namespace
 
 Evaluation::Evaluation(const Experiment& experiment, Simulator& simulator)
-    : experiment_(experiment), simulator_(simulator), marks_(marks()), workers_(static_cast<int>(experiment.threads)) {}
+    : Evaluation(experiment, simulator, Conditions(experiment)) {}
+
+Evaluation::Evaluation(const Experiment& experiment, Simulator& simulator, const Conditions& conditions)
+    : experiment_(experiment),
+      simulator_(simulator),
+      conditions_(conditions),
+      workers_(static_cast<int>(experiment.threads)) {
+  set_windows();
+}
+
+void Evaluation::set_windows() {
+  const auto add_mark = [&](double time) {
+    const std::size_t at = mark_at(marks_, time);
+    if (at == marks_.size() || mark_at({time}, marks_[at]) == 1)
+      marks_.insert(marks_.begin() + static_cast<std::ptrdiff_t>(at), time);
+  };
+  std::vector<std::pair<double, double>> times;
+  for (const auto& fitness : experiment_.fitness) {
+    const Request request = fitness->observes();
+    const double opens = request.settle + conditions_.later;
+    times.emplace_back(opens, opens + request.window);
+  }
+  for (const auto& [opens, closes] : times) add_mark(opens), add_mark(closes);
+  for (const auto& [opens, closes] : times) windows_.push_back({mark_at(marks_, opens), mark_at(marks_, closes)});
+}
 
 std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, const Progress& progress) const {
   const std::size_t cohorts =
@@ -52,16 +77,12 @@ std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, cons
 }
 
 std::vector<Result> Evaluation::evaluate_cohort(std::span<const Newborn> newborns, const Progress& progress) const {
-  const auto development = static_cast<double>(development_steps()), measurement = static_cast<double>(marks_.back());
-  const double share = development / std::max(1.0, development + measurement);
+  const double share = development_time() / std::max(1.0, development_time() + marks_.back());
   std::vector<Life> lives = birth(newborns);
   develop(lives, [&](double done) { progress(done * share); });
   measure(lives, [&](double done) { progress(share + done * (1 - share)); });
   std::vector<Result> results;
-  for (Life& life : lives) {
-    score(life);
-    results.push_back(std::move(life.result));
-  }
+  for (Life& life : lives) results.push_back(std::move(life.result));
   return results;
 }
 
@@ -79,27 +100,25 @@ std::vector<Life> Evaluation::birth(std::span<const Newborn> newborns) const {
     if (!built[i].failure.empty()) return end(life, Status::invalid, std::move(built[i].failure));
     life.living.body = std::move(built[i].body);
     life.living.state = state_at_birth(life.living.body, experiment_.scene);
-    check_step(life);
+    choose_step(life);
   });
   return lives;
 }
 
-std::uint64_t Evaluation::development_steps() const {
-  const Development& development = experiment_.development;
-  return static_cast<std::uint64_t>(development.cycles) * steps_in(development.cycle_time, experiment_.stepping.dt);
+double Evaluation::development_time() const {
+  return static_cast<double>(experiment_.development.cycles) * experiment_.development.cycle_time;
 }
 
 void Evaluation::develop(std::span<Life> lives, const Progress& progress) const {
   const Development& development = experiment_.development;
-  const std::uint64_t steps = steps_in(development.cycle_time, experiment_.stepping.dt);
   for (int cycle = 1; cycle <= development.cycles; ++cycle) {
-    simulate(lives, steps, {.stress = !development.operators.empty()});
+    simulate(lives, development.cycle_time, {.stress = !development.operators.empty()});
     const BusyClock::Span span(develop_);
     workers_.for_each(lives.size(), [&](std::size_t i) {
       if (!lives[i].alive()) return;
       apply_operators(lives[i], cycle);
       if (development.reset) return_to_rest(lives[i]);
-      if (!development.operators.empty()) check_step(lives[i]);
+      if (!development.operators.empty()) choose_step(lives[i]);
     });
     progress(static_cast<double>(cycle) / static_cast<double>(development.cycles));
   }
@@ -124,7 +143,7 @@ void Evaluation::apply_operators(Life& life, int cycle) const {
                      .stress = living.stress,
                      .cycle = cycle,
                      .cycles = static_cast<int>(development.cycles),
-                     .time = static_cast<double>(living.state.steps) * experiment_.stepping.dt,
+                     .time = living.state.time,
                      .bounds = bounds(living),
                      .mass = experiment_.world.mass,
                      .resets = development.reset,
@@ -144,11 +163,13 @@ void Evaluation::apply_operators(Life& life, int cycle) const {
   }
 }
 
-void Evaluation::check_step(Life& life) const {
-  if (life.living.body.springs.empty()) return end(life, Status::invalid, "no springs");
-  std::string failure =
-      step_failure(life.living.body, life.living.state.position, experiment_.scene, experiment_.stepping);
-  if (!failure.empty()) end(life, Status::invalid, std::move(failure));
+void Evaluation::choose_step(Life& life) const {
+  LivingBody& living = life.living;
+  if (living.body.springs.empty()) return end(life, Status::invalid, "no springs");
+  LongestStep longest =
+      longest_step(conditions_.step, living.body, living.state.position, experiment_.scene, conditions_.method);
+  if (!longest.failure.empty()) return end(life, Status::invalid, std::move(longest.failure));
+  living.longest_dt = longest.dt;
 }
 
 void Evaluation::return_to_rest(Life& life) const {
@@ -159,7 +180,7 @@ void Evaluation::return_to_rest(Life& life) const {
   }
 }
 
-void Evaluation::simulate(std::span<Life> lives, std::uint64_t steps, Recording recording) const {
+void Evaluation::simulate(std::span<Life> lives, double duration, Recording recording) const {
   const BusyClock::Span span(simulate_);
   std::vector<Task> tasks;
   std::vector<Life*> alive;
@@ -169,9 +190,12 @@ void Evaluation::simulate(std::span<Life> lives, std::uint64_t steps, Recording 
     Task& task = tasks.emplace_back();
     task.body = &life.living.body;
     task.state = &life.living.state;
+    const Pace pace = pace_over(duration, conditions_.step, life.living.longest_dt);
+    task.dt = pace.dt;
+    task.steps = pace.steps;
     task.preparation = std::move(life.living.preparation);
   }
-  simulator_.run(tasks, steps, recording);
+  simulator_.run(tasks, recording);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     Life& life = *alive[i];
     life.result.spring_evaluations += tasks[i].spring_evaluations;
@@ -182,31 +206,18 @@ void Evaluation::simulate(std::span<Life> lives, std::uint64_t steps, Recording 
   }
 }
 
-std::vector<std::uint64_t> Evaluation::marks() const {
-  std::vector<std::uint64_t> marks;
-  for (const auto& fitness : experiment_.fitness) {
-    const auto [from, to] = window_steps(fitness->observes(), experiment_.stepping.dt);
-    marks.insert(marks.end(), {from, to});
-  }
-  std::sort(marks.begin(), marks.end());
-  marks.erase(std::unique(marks.begin(), marks.end()), marks.end());
-  return marks;
-}
-
-bool Evaluation::needs_work(std::uint64_t from, std::uint64_t to) const {
-  return std::any_of(experiment_.fitness.begin(), experiment_.fitness.end(), [&](const auto& fitness) {
-    const Request request = fitness->observes();
-    const auto [opens, closes] = window_steps(request, experiment_.stepping.dt);
-    return request.work && opens <= from && to <= closes;
-  });
+bool Evaluation::needs_work(std::size_t mark) const {
+  for (std::size_t i = 0; i < windows_.size(); ++i)
+    if (experiment_.fitness[i]->observes().work && windows_[i].opens < mark && mark <= windows_[i].closes) return true;
+  return false;
 }
 
 void Evaluation::measure(std::span<Life> lives, const Progress& progress) const {
-  std::uint64_t now = 0;
+  double now = 0;
   for (Life& life : lives) life.snapshots.assign(1, {});
-  for (const std::uint64_t mark : marks_) {
-    if (mark > now) simulate(lives, mark - now, {.work = needs_work(now, mark)});
-    now = mark;
+  for (std::size_t mark = 0; mark < marks_.size(); ++mark) {
+    if (marks_[mark] > now) simulate(lives, marks_[mark] - now, {.work = needs_work(mark)});
+    now = marks_[mark];
     // the snapshot in hand has gathered the work up to here; the next goes on from it
     for (Life& life : lives) {
       if (!life.alive()) continue;
@@ -215,27 +226,24 @@ void Evaluation::measure(std::span<Life> lives, const Progress& progress) const 
       snapshot.centre = centre_of_mass(life.living.body, life.living.state.position);
       life.snapshots.push_back(snapshot);
     }
-    progress(static_cast<double>(mark) / std::max(1.0, static_cast<double>(marks_.back())));
+    progress(now / std::max(1.0, marks_.back()));
   }
+  for (Life& life : lives) score(life);
 }
 
 void Evaluation::score(Life& life) const {
   if (!life.alive()) return;
-  const auto at = [&](std::uint64_t mark) -> const Snapshot& {
-    const auto found = std::lower_bound(marks_.begin(), marks_.end(), mark);
-    return life.snapshots[static_cast<std::size_t>(found - marks_.begin())];
-  };
   std::vector<double>& objectives = life.result.objectives;
-  for (const auto& fitness : experiment_.fitness) {
-    const Request request = fitness->observes();
-    const auto [from, to] = window_steps(request, experiment_.stepping.dt);
-    const Snapshot &before = at(from), &after = at(to);
+  for (std::size_t i = 0; i < windows_.size(); ++i) {
+    const Fitness& fitness = *experiment_.fitness[i];
+    const Request request = fitness.observes();
+    const Snapshot &before = life.snapshots[windows_[i].opens], &after = life.snapshots[windows_[i].closes];
     const Observation observation{.box = before.box,
                                   .centre_before = before.centre,
                                   .centre_after = after.centre,
                                   .window = request.window,
                                   .work = request.work ? after.work - before.work : 0};
-    for (const double value : fitness->score(observation)) objectives.push_back(value);
+    for (const double value : fitness.score(observation)) objectives.push_back(value);
   }
   if (objectives.size() != experiment_.objectives.size())
     throw std::runtime_error("the fitness operators gave " + std::to_string(objectives.size()) + " numbers for " +

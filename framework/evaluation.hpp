@@ -46,6 +46,15 @@ struct Life {
   bool alive() const { return result.status == Status::ok; }
 };
 
+/// How lives are simulated, by default as an experiment says.
+struct Conditions {
+  explicit Conditions(const Experiment& experiment) : method(experiment.stepping.method), step(experiment.step) {}
+
+  Method method;  ///< of the simulator
+  StepRule step;
+  double later = 0;  ///< how much later the windows of the fitness open, s
+};
+
 /// Takes the part of a job that is done, 0 to 1.
 using Progress = std::function<void(double)>;
 
@@ -59,6 +68,7 @@ struct PhaseTimes {
 class Evaluation {
  public:
   Evaluation(const Experiment& experiment, Simulator& simulator);
+  Evaluation(const Experiment& experiment, Simulator& simulator, const Conditions& conditions);
 
   /// Decodes, develops, measures and scores. The results are in the newborns' order and independent of the batch.
   /// `progress` is called with the part of the simulation that is done, 0 to 1, by one thread at a time.
@@ -68,27 +78,35 @@ class Evaluation {
   std::vector<Life> birth(std::span<const Newborn> newborns) const;
   /// Lets bodies live through their development cycles: what comes out is matured.
   void develop(std::span<Life> lives, const Progress& progress) const;
+  /// Chooses the longest step for the body as it is; a body that has none is invalid.
+  void choose_step(Life& life) const;
+  /// The final evaluation: moves the matured bodies on and scores them.
+  void measure(std::span<Life> lives, const Progress& progress) const;
 
   PhaseTimes phase_times() const { return {decode_.seconds(), simulate_.seconds(), develop_.seconds()}; }
 
  private:
   std::vector<Result> evaluate_cohort(std::span<const Newborn> newborns, const Progress& progress) const;
-  /// The moments of the final evaluation, in steps from its start, at which some fitness looks.
-  std::vector<std::uint64_t> marks() const;
-  void simulate(std::span<Life> lives, std::uint64_t steps, Recording recording) const;
+  void set_windows();
+  void simulate(std::span<Life> lives, double duration, Recording recording) const;
   /// The box around the body where it is when life goes on, cut off at the floor.
   Box bounds(const LivingBody& living) const;
   void apply_operators(Life& life, int cycle) const;
-  void check_step(Life& life) const;
-  void measure(std::span<Life> lives, const Progress& progress) const;
-  std::uint64_t development_steps() const;
-  bool needs_work(std::uint64_t from, std::uint64_t to) const;
+  double development_time() const;
+  /// Whether a fitness asks for the work in the time up to a mark.
+  bool needs_work(std::size_t mark) const;
   void score(Life& life) const;
   void return_to_rest(Life& life) const;
 
   const Experiment& experiment_;
   Simulator& simulator_;
-  std::vector<std::uint64_t> marks_;
+  Conditions conditions_;
+  /// A fitness' window, as indices of marks.
+  struct Window {
+    std::size_t opens, closes;
+  };
+  std::vector<double> marks_;    ///< when some fitness looks, from the start of the final evaluation, s
+  std::vector<Window> windows_;  ///< of each fitness
   mutable Workers workers_;
   mutable BusyClock decode_, simulate_, develop_;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "accuracy.hpp"
 #include "overrides.hpp"
 #include "philox.hpp"
 #include "stability.hpp"
@@ -217,24 +218,43 @@ class Composer {
     const toml::table defaults = parse_toml("", source_.file);
     const toml::table* table = top_.table("simulation");
     TomlReader t(table != nullptr ? *table : defaults, "simulation");
-    std::string method(name(out_.stepping.method)), precision = "float";
+    read_accuracy(t);
+    std::string method(name(out_.stepping.method)), unstable = "invalid";
+    std::string precision = out_.stepping.precision == Precision::float32 ? "float" : "double";
     t.choice(method, "method",
              {name(Method::paper_euler), name(Method::symplectic_euler), name(Method::velocity_verlet),
               name(Method::rk4), name(Method::implicit), name(Method::xpbd)},
              "Time-stepping method.");
     t.choice(precision, "precision", {"float", "double"}, "Arithmetic of the simulation.");
-    t.real(out_.stepping.dt, "dt", {1e-7, 0.1, "s"}, "Time step.");
+    t.real_or_auto(out_.step.dt, "dt", {1e-7, 0.1, "s"}, "Time step; auto: as long as each body bears.");
+    t.integer(out_.step.refine, "refine", {1, 1000}, "What every time step is divided by.");
+    t.choice(unstable, "unstable", {"invalid", "run"}, "What a body is, or does, that a fixed dt is too long for.");
     t.choice(out_.device, "device", {"auto", "cpu", "cuda"}, "Where to simulate; auto: on a GPU where there is one.");
     t.integer(out_.threads, "threads", {0, 4096}, "Threads on the CPU; 0 for all cores.");
     out_.stepping.method = method_of(method);
-    if (precision == "double") out_.stepping.precision = Precision::float64;
-    check_step(t);
+    out_.stepping.precision = precision == "double" ? Precision::float64 : Precision::float32;
+    out_.step.run_unstable = unstable == "run";
+    if (out_.step.dt)
+      check_step(t);
+    else if (!is_explicit(out_.stepping.method))
+      t.fail("dt", "\"" + method + "\" is stable at any step, so none follows from stability; give a number of s");
     top_.resolve("simulation", t.finish());
+  }
+
+  /// What the other keys of [simulation] are where they are left out.
+  void read_accuracy(TomlReader& t) {
+    std::string accuracy(accuracies.front().name);
+    t.choice(accuracy, "accuracy", {accuracies[0].name, accuracies[1].name, accuracies[2].name, accuracies[3].name},
+             "Method, precision and dt where they are left out.");
+    const auto chosen =
+        std::find_if(accuracies.begin(), accuracies.end(), [&](const Accuracy& a) { return a.name == accuracy; });
+    out_.stepping = chosen->stepping;
+    out_.step = chosen->step;
   }
 
   /// Refuses a dt that the floor, or a single spring, could not bear.
   void check_step(const TomlReader& t) const {
-    const double mass = out_.world.mass, dt = out_.stepping.dt;
+    const double mass = out_.world.mass, dt = *out_.step.fixed();
     const auto refuse = [&](const std::string& what, double largest) {
       t.fail("dt", "the step " + to_text(dt) + " s is too long for " + what + " on masses of " + to_text(mass) +
                        " kg; expected at most " + to_text(largest) + " s");
@@ -250,12 +270,12 @@ class Composer {
     }
   }
 
-  /// Refuses a duration that is not a whole number of steps.
+  /// Refuses a duration that is not a whole number of steps of a fixed dt.
   void check_duration(const TomlReader& t, std::string_view name, double duration) const {
-    if (is_whole_number_of_steps(duration, out_.stepping.dt)) return;
-    const double steps = std::max(1.0, std::round(duration / out_.stepping.dt));
-    t.fail(name, to_text(duration) + " s is not a whole number of steps of " + to_text(out_.stepping.dt) +
-                     " s; the nearest that is: " + to_text(steps * out_.stepping.dt) + " s");
+    if (!out_.step.dt || is_whole_number_of_steps(duration, *out_.step.dt)) return;
+    const double dt = *out_.step.dt, steps = std::max(1.0, std::round(duration / dt));
+    t.fail(name, to_text(duration) + " s is not a whole number of steps of " + to_text(dt) +
+                     " s; the nearest that is: " + to_text(steps * dt) + " s");
   }
 
   void check_variation() const {
@@ -283,7 +303,8 @@ class Composer {
     read_section("development", false, [&](TomlReader& t) {
       development.cycles = 100;
       t.integer(development.cycles, "cycles", {0, place::most_cycles}, "Cycles of simulation and development.");
-      t.real(development.cycle_time, "cycle_time", {out_.stepping.dt, 1e6, "s"}, "Simulated time of one cycle.");
+      t.real(development.cycle_time, "cycle_time", {out_.step.dt.value_or(0.001), 1e6, "s"},
+             "Simulated time of one cycle.");
       t.flag(development.reset, "reset", "Whether the body goes back to its rest places after every cycle.");
       check_duration(t, "cycle_time", development.cycle_time);
       read_array(t, "operator", [&](TomlReader& entry) {
@@ -350,13 +371,6 @@ std::map<std::string, Material> base_materials() {
           {"muscle2", {5000, 0.14, 1, pi}},
           {"bone", {10000, 0, 0, 0}},
           {"air", {0, 0, 0, 0}}};
-}
-
-std::uint64_t steps_in(double duration, double dt) { return static_cast<std::uint64_t>(std::llround(duration / dt)); }
-
-bool is_whole_number_of_steps(double duration, double dt) {
-  const double steps = duration / dt;
-  return std::abs(steps - std::round(steps)) <= 1e-6 * std::max(1.0, steps);
 }
 
 }  // namespace evodevo

@@ -11,6 +11,7 @@
 #include "loader.hpp"
 #include "overrides.hpp"
 #include "simulator.hpp"
+#include "time_steps.hpp"
 
 namespace evodevo {
 
@@ -51,6 +52,7 @@ struct Experiment {
   std::vector<Varied<Crossover>> crossovers;
   Scene scene;
   Stepping stepping;
+  StepRule step;
   std::string device = "auto";
   std::int64_t threads = 0;  ///< 0: all cores
   Development development;
@@ -76,9 +78,5 @@ Experiment read_experiment(std::string_view text, const ExperimentSource& source
 
 /// The five base materials (paper, Table I; the second muscle in counter-phase, as in its source).
 std::map<std::string, Material> base_materials();
-
-/// How many steps a duration takes; `duration` must be a whole number of steps (see is_whole_number_of_steps).
-std::uint64_t steps_in(double duration, double dt);
-bool is_whole_number_of_steps(double duration, double dt);
 
 }  // namespace evodevo

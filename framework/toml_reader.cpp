@@ -154,6 +154,21 @@ void TomlReader::materials(std::vector<std::string>& value, std::string_view nam
   resolve(name, std::move(resolved));
 }
 
+void TomlReader::real_or_auto(std::optional<double>& value, std::string_view name, Range range, std::string_view) {
+  if (const toml::node* node = look_up(name)) {
+    if (!node->is_string())
+      value = number(*node, name, range, false);
+    else if (node->value<std::string>() == "auto")
+      value.reset();
+    else
+      fail_at(*node, name, "expected a number or \"auto\"");
+  }
+  if (value)
+    resolve(name, *value);
+  else
+    resolve(name, "auto");
+}
+
 std::string TomlReader::text(std::string_view name, const char* fallback) {
   const toml::node* node = look_up(name);
   if (node == nullptr && fallback == nullptr) fail(name, "is missing");

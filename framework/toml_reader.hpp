@@ -3,6 +3,7 @@
 
 #include <toml++/toml.h>
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -47,6 +48,8 @@ class TomlReader final : public Parameters {
   void counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view text) override;
   void materials(std::vector<std::string>& value, std::string_view name, std::string_view text) override;
 
+  /// A number, or the word "auto", which stands for none.
+  void real_or_auto(std::optional<double>& value, std::string_view name, Range range, std::string_view text);
   /// A text; where `fallback` is null the key must be there.
   std::string text(std::string_view name, const char* fallback = nullptr);
   std::vector<std::string> texts(std::string_view name);

@@ -11,8 +11,7 @@ physics::Triple<double> triple(Vec3 v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
-double total_energy(const Body& body, const State& state, const Scene& scene, double dt) {
-  const double time = static_cast<double>(state.steps) * dt;
+double total_energy(const Body& body, const State& state, const Scene& scene) {
   double energy = 0;
   for (std::size_t i = 0; i < body.masses.size(); ++i) {
     energy += physics::kinetic_energy(body.masses[i].mass, triple(state.velocity[i]));
@@ -21,7 +20,7 @@ double total_energy(const Body& body, const State& state, const Scene& scene, do
   for (const Spring& spring : body.springs) {
     const Material& material = body.materials[spring.material];
     const auto s = physics::separation(triple(state.position[spring.a]), triple(state.position[spring.b]));
-    energy += physics::elastic_energy(s, material.stiffness, spring.rest_length * material.relative_length(time));
+    energy += physics::elastic_energy(s, material.stiffness, spring.rest_length * material.relative_length(state.time));
   }
   return energy;
 }
@@ -33,7 +32,7 @@ State state_at_birth(const Body& body, const Scene& scene) {
   const Vec3 centre = centre_of_mass(body, state.position);
   const double lowest = bounding_box(state.position).low.z;
   for (Vec3& place : state.position) place = place - Vec3{centre.x, centre.y, lowest};
-  state.start_energy = total_energy(body, state, scene, 0);
+  state.start_energy = total_energy(body, state, scene);
   return state;
 }
 

@@ -48,10 +48,9 @@ std::string with_number(const char* format, double a, double b) {
 
 }  // namespace
 
-EnergyGuard::EnergyGuard(const Body& body, const State& state, const Scene& scene, const Stepping& stepping)
+EnergyGuard::EnergyGuard(const Body& body, const State& state, const Scene& scene, Precision precision, double dt)
     : bound_(10 * (std::max(state.start_energy, 0.0) +
-                   strain_allowance(body, 16384 * epsilon(stepping.precision), extent(state)) +
-                   sag_allowance(body, scene, stepping.dt))),
+                   strain_allowance(body, 16384 * epsilon(precision), extent(state)) + sag_allowance(body, scene, dt))),
       acceleration_(scene.gravity ? scene.gravity->acceleration : 0) {}
 
 std::string EnergyGuard::verdict(double kinetic, double elastic, double moment, bool finite) const {

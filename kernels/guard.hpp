@@ -18,7 +18,7 @@ class EnergyGuard {
   /// what falling below z = 0 sets free where no floor is and, so that a body for which all these are zero may rest,
   /// what rounding (16,384 units in the last place of each spring and its place) and the sagging of masses into the
   /// floor (m g (m g/k + g dt^2) each) can bring.
-  EnergyGuard(const Body& body, const State& state, const Scene& scene, const Stepping& stepping);
+  EnergyGuard(const Body& body, const State& state, const Scene& scene, Precision precision, double dt);
 
   /// What kinetic plus elastic energy must not pass, J; falling below z = 0 raises it tenfold of what it sets free.
   double bound() const { return bound_; }

@@ -17,10 +17,10 @@ namespace evodevo {
 
 enum class Precision { float32, float64 };
 
+/// How steps are made. How long they are is each task's own.
 struct Stepping {
   Method method = Method::paper_euler;
   Precision precision = Precision::float32;
-  double dt = 0.0005;  ///< s; paper, Table II
 };
 
 /// What is recorded beside the motion; what is not asked for costs nothing.
@@ -35,10 +35,13 @@ class Preparation {
   virtual ~Preparation() = default;
 };
 
-/// One body's share of a batch. `body` and `state` are given; the rest is the answer.
+/// One body's share of a batch: `steps` time steps of `dt`, the i-th of them at State::time + i dt. `body` to `steps`
+/// are given; the rest is the answer.
 struct Task {
   const Body* body = nullptr;
   State* state = nullptr;  ///< moved in place
+  double dt = 0.0005;      ///< time step, s; paper, Table II
+  std::uint64_t steps = 0;
   /// Of the body's last run, or none; afterwards of this one. One that no longer fits the body is not used.
   std::shared_ptr<const Preparation> preparation;
 
@@ -62,9 +65,9 @@ class Simulator {
  public:
   virtual ~Simulator() = default;
 
-  /// Moves every task's body by `steps` time steps. A body that diverges stops there and disturbs no other.
-  /// May be called from several threads at once.
-  virtual void run(std::span<Task> tasks, std::uint64_t steps, Recording recording) = 0;
+  /// Moves every task's body. A body that diverges stops there and disturbs no other. May be called from several
+  /// threads at once.
+  virtual void run(std::span<Task> tasks, Recording recording) = 0;
 
   /// A search for neighbours on the same device.
   virtual NeighbourSearch& neighbours() = 0;
@@ -89,6 +92,6 @@ State state_at_birth(const Body& body, const Scene& scene);
 
 /// The kinetic, elastic and, with gravity, height energy (above z = 0) of a body, J: `State::start_energy` for a body
 /// that does not start by state_at_birth().
-double total_energy(const Body& body, const State& state, const Scene& scene, double dt);
+double total_energy(const Body& body, const State& state, const Scene& scene);
 
 }  // namespace evodevo

@@ -1,5 +1,6 @@
 // evodevo body and simulate: single bodies out of a run and into a scene.
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
@@ -7,7 +8,6 @@
 #include <sstream>
 
 #include "archive.hpp"
-#include "body_building.hpp"
 #include "body_json.hpp"
 #include "commands/options.hpp"
 #include "text.hpp"
@@ -60,7 +60,7 @@ State state_as_given(const Body& body, const Experiment& experiment) {
   State state;
   for (const Mass& mass : body.masses) state.position.push_back(mass.rest);
   state.velocity.resize(body.masses.size());
-  state.start_energy = total_energy(body, state, experiment.scene, experiment.stepping.dt);
+  state.start_energy = total_energy(body, state, experiment.scene);
   return state;
 }
 
@@ -112,14 +112,16 @@ int simulate_command(const Arguments& arguments) {
   const auto body_file = (*given)["BODY.json"].as<std::string>();
   const Experiment experiment =
       read_experiment(experiment_source((*given)["EXPERIMENT.toml"].as<std::string>(), *given));
-  const double duration = (*given)["duration"].as<double>(), dt = experiment.stepping.dt;
+  const auto duration = (*given)["duration"].as<double>();
   if (!(duration > 0 && duration <= 1e6))
     throw UsageError("--duration " + to_text(duration) + ": expected more than 0 and at most 1e6 s");
   const Body body = read_body(body_file);
   const auto simulator = make_simulator(experiment);
   State state = state_as_given(body, experiment);
-  const std::string failure = step_failure(body, state.position, experiment.scene, experiment.stepping);
-  if (!failure.empty()) throw ConfigError(body_file + ": " + failure + "; set a smaller simulation.dt");
+  const LongestStep longest =
+      longest_step(experiment.step, body, state.position, experiment.scene, experiment.stepping.method);
+  if (!longest.failure.empty())
+    throw ConfigError(body_file + ": " + longest.failure + "; set a smaller simulation.dt, or \"auto\"");
   std::optional<TrajectoryFile> trajectory;
   if (given->contains("trajectory")) trajectory.emplace((*given)["trajectory"].as<std::string>());
 
@@ -128,28 +130,31 @@ int simulate_command(const Arguments& arguments) {
   Task task;
   task.body = &body;
   task.state = &state;
-  const std::uint64_t steps = std::max<std::uint64_t>(1, steps_in(duration, dt));
-  const std::uint64_t per_frame = trajectory ? std::max<std::uint64_t>(1, steps_in(frame_time, dt)) : steps;
+  const auto [dt, asked] = pace_over(duration, experiment.step, longest.dt);
+  const std::uint64_t steps = std::max<std::uint64_t>(1, asked);
+  const auto steps_of_frame = static_cast<std::uint64_t>(std::round(frame_time / dt));
+  const std::uint64_t per_frame = trajectory ? std::max<std::uint64_t>(1, steps_of_frame) : steps;
+  task.dt = dt;
   if (trajectory) trajectory->add(0, state);
   double seconds = 0;
   std::uint64_t spring_evaluations = 0;
   for (std::uint64_t done = 0; done < steps && task.status == Status::ok; done += per_frame) {
     const auto clock_start = std::chrono::steady_clock::now();
-    simulator->run({&task, 1}, std::min(per_frame, steps - done), {});
+    task.steps = std::min(per_frame, steps - done);
+    simulator->run({&task, 1}, {});
     seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - clock_start).count();
     spring_evaluations += task.spring_evaluations;
-    if (trajectory && task.status == Status::ok) trajectory->add(static_cast<double>(state.steps) * dt, state);
+    if (trajectory && task.status == Status::ok) trajectory->add(state.time, state);
   }
 
   std::cout << body.masses.size() << " masses, " << body.springs.size() << " springs on " << simulator->device()
-            << '\n';
+            << ", steps of " << short_text(1000 * dt) << " ms\n";
   if (task.status != Status::ok) {
     std::cout << name(task.status) << " after " << to_text(task.ended_at) << " s: " << task.reason << '\n';
     return 1;
   }
   const Vec3 moved = centre_of_mass(body, state.position) - start;
-  std::cout << "after " << to_text(static_cast<double>(steps) * dt) << " s the centre of mass has moved by "
-            << vector_text(moved) << " m";
+  std::cout << "after " << to_text(state.time) << " s the centre of mass has moved by " << vector_text(moved) << " m";
   if (length > 0)
     std::cout << ", " << short_text(norm({moved.x, moved.y, 0}) / length) << " body lengths along the ground";
   std::cout << "\nspeed: " << short_text(static_cast<double>(spring_evaluations) / seconds)

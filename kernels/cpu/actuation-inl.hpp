@@ -76,11 +76,11 @@ HWY_INLINE void store_as(D, hn::Vec<D> values, float* to) {
 }
 
 template <class T>
-void actuate(const cpu::Actuation<T>& actuation, std::uint64_t first, std::size_t rows, double dt) {
+void actuate(const cpu::Actuation<T>& actuation, double start, std::uint64_t first, std::size_t rows, double dt) {
   const hn::ScalableTag<double> d;
   const auto full_turn = hn::Set(d, 2 * 3.14159265358979323846);
   for (std::size_t row = 0; row < rows; ++row) {
-    const auto time = hn::Set(d, static_cast<double>(first + row) * dt);
+    const auto time = hn::Set(d, start + static_cast<double>(first + row) * dt);
     for (std::size_t m = 0; m < actuation.padded; m += hn::Lanes(d)) {
       const auto amplitude = hn::Load(d, actuation.amplitude + m);
       const auto frequency = hn::Load(d, actuation.frequency + m);

@@ -17,7 +17,7 @@ TimeSpan<T> time_span(const Scene& scene, double dt) {
 }
 
 template <class T>
-World<T> world_of(const Scene& scene, const Stepping& stepping) {
+World<T> world_of(const Scene& scene, double dt) {
   const auto as_t = [](double value) { return static_cast<T>(value); };
   return {.gravity = scene.gravity.has_value(),
           .floor = scene.floor.has_value(),
@@ -29,8 +29,8 @@ World<T> world_of(const Scene& scene, const Stepping& stepping) {
           .friction_coefficient = as_t(scene.friction ? scene.friction->coefficient : 0),
           .drag_coefficient = as_t(scene.drag ? scene.drag->coefficient : 0),
           .damping_rate = as_t(scene.damping ? scene.damping->rate : 0),
-          .step = time_span<T>(scene, stepping.dt),
-          .half_step = time_span<T>(scene, stepping.dt / 2)};
+          .step = time_span<T>(scene, dt),
+          .half_step = time_span<T>(scene, dt / 2)};
 }
 
 /// The memory behind Actuation.
@@ -167,13 +167,12 @@ class MovingBody {
 }  // namespace
 
 template <class T>
-void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels<T>& kernels, std::uint64_t steps,
-         Recording recording) {
+void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels<T>& kernels, Recording recording) {
   const Body& body = *task.body;
   State& state = *task.state;
   const Sums sums{recording.stress, recording.work};
-  const World<T> world = world_of<T>(scene, stepping);
-  const EnergyGuard guard(body, state, scene, stepping);
+  const World<T> world = world_of<T>(scene, task.dt);
+  const EnergyGuard guard(body, state, scene, stepping.precision, task.dt);
   const Integrator<T>& integrator = kernels.integrator[static_cast<std::size_t>(stepping.method)];
   const std::size_t rows = integrator.rows_per_step;
   MovingBody<T> moving(body, state, kernels.lanes, integrator, sums);
@@ -182,28 +181,29 @@ void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels
   task.work = 0;
   task.spring_evaluations = 0;
 
-  for (std::uint64_t done = 0; done < steps && task.status == Status::ok;) {
-    const std::size_t now = std::min<std::uint64_t>(steps - done, EnergyGuard::interval);
-    kernels.actuate(tables.view(), state.steps * rows, now * rows + 1, stepping.dt / static_cast<double>(rows));
+  const double start = state.time;
+  for (std::uint64_t done = 0; done < task.steps && task.status == Status::ok;) {
+    const std::size_t now = std::min<std::uint64_t>(task.steps - done, EnergyGuard::interval);
+    kernels.actuate(tables.view(), start, done * rows, now * rows + 1, task.dt / static_cast<double>(rows));
     integrator.advance(moving.view(), world, tables.view(), now, sums);
-    moving.collect(task.stress, task.work, stepping.dt);
+    moving.collect(task.stress, task.work, task.dt);
     done += now;
-    state.steps += now;
+    state.time = start + static_cast<double>(done) * task.dt;
     task.spring_evaluations += now * body.springs.size();
     const Energies e = kernels.energies(moving.view(), tables.view(now * rows));
     task.reason = guard.verdict(e.kinetic, e.elastic, e.height, e.finite);
     if (!task.reason.empty()) {
       task.status = Status::diverged;
-      task.ended_at = static_cast<double>(state.steps) * stepping.dt;
+      task.ended_at = state.time;
       task.stress.clear();
       task.work = 0;
     }
   }
-  if (steps > 0) moving.write(state);  // else not even round it
-  for (double& stress : task.stress) stress /= static_cast<double>(std::max<std::uint64_t>(steps, 1));
+  if (task.steps > 0) moving.write(state);  // else not even round it
+  for (double& stress : task.stress) stress /= static_cast<double>(std::max<std::uint64_t>(task.steps, 1));
 }
 
-template void run(Task&, const Scene&, const Stepping&, const Kernels<float>&, std::uint64_t, Recording);
-template void run(Task&, const Scene&, const Stepping&, const Kernels<double>&, std::uint64_t, Recording);
+template void run(Task&, const Scene&, const Stepping&, const Kernels<float>&, Recording);
+template void run(Task&, const Scene&, const Stepping&, const Kernels<double>&, Recording);
 
 }  // namespace evodevo::cpu

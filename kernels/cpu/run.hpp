@@ -7,12 +7,11 @@
 
 namespace evodevo::cpu {
 
-/// Moves one task's body by `steps` steps and fills in its answer.
+/// Moves one task's body and fills in its answer.
 template <class T>
-void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels<T>& kernels, std::uint64_t steps,
-         Recording recording);
+void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels<T>& kernels, Recording recording);
 
-extern template void run(Task&, const Scene&, const Stepping&, const Kernels<float>&, std::uint64_t, Recording);
-extern template void run(Task&, const Scene&, const Stepping&, const Kernels<double>&, std::uint64_t, Recording);
+extern template void run(Task&, const Scene&, const Stepping&, const Kernels<float>&, Recording);
+extern template void run(Task&, const Scene&, const Stepping&, const Kernels<double>&, Recording);
 
 }  // namespace evodevo::cpu

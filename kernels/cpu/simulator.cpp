@@ -11,11 +11,15 @@ template <class T>
 class CpuSimulator final : public Simulator {
  public:
   CpuSimulator(const Scene& scene, const Stepping& stepping, int threads)
-      : scene_(scene), stepping_(stepping), workers_(threads), neighbours_(make_cpu_neighbour_search(threads)), kernels_(cpu::kernels<T>()) {}
+      : scene_(scene),
+        stepping_(stepping),
+        workers_(threads),
+        neighbours_(make_cpu_neighbour_search(threads)),
+        kernels_(cpu::kernels<T>()) {}
 
-  void run(std::span<Task> tasks, std::uint64_t steps, Recording recording) override {
+  void run(std::span<Task> tasks, Recording recording) override {
     workers_.for_each(tasks.size(), [&](std::size_t i) {
-      if (tasks[i].status == Status::ok) cpu::run(tasks[i], scene_, stepping_, kernels_, steps, recording);
+      if (tasks[i].status == Status::ok) cpu::run(tasks[i], scene_, stepping_, kernels_, recording);
     });
   }
 

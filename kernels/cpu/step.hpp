@@ -106,8 +106,8 @@ struct Kernels {
   std::size_t lanes;
   std::size_t table_size;  ///< Actuation::padded is a multiple of this
 
-  /// Fills in `rows` rows of the tables: for the times first dt, (first + 1) dt, .. since birth.
-  void (*actuate)(const Actuation<T>&, std::uint64_t first, std::size_t rows, double dt);
+  /// Fills in `rows` rows of the tables: for the times start + first dt, start + (first + 1) dt, ..
+  void (*actuate)(const Actuation<T>&, double start, std::uint64_t first, std::size_t rows, double dt);
   Integrator<T> integrator[method_names.size()];  ///< by Method
   /// The energies now, with the relative lengths of the table's row 0.
   Energies (*energies)(const Motion<T>&, const Actuation<T>& actuation);

@@ -11,14 +11,14 @@
 namespace evodevo::cuda {
 
 /// Fills in a task's status, reason, work and times. `largest_force`: the end of the range of forces, N.
-inline void read_answer(const Answer& answer, const EnergyGuard& guard, double largest_force, double dt,
-                        Recording recording, Task& task) {
-  task.state->steps += answer.steps;
+inline void read_answer(const Answer& answer, const EnergyGuard& guard, double largest_force, Recording recording,
+                        Task& task) {
+  task.state->time += static_cast<double>(answer.steps) * task.dt;
   task.spring_evaluations = answer.steps * task.body->springs.size();
   task.work = recording.work ? answer.work : 0;
   if (!answer.diverged) return;
   task.status = Status::diverged;
-  task.ended_at = static_cast<double>(task.state->steps) * dt;
+  task.ended_at = task.state->time;
   task.work = 0;
   task.stress.clear();
   task.reason = guard.verdict(answer.kinetic, answer.elastic, answer.moment, answer.finite != 0);

@@ -78,12 +78,9 @@ class DeviceSimulator final : public CudaSimulator {
         workers_(threads),
         neighbours_(make_cuda_neighbour_search(threads)) {}
 
-  void run(std::span<Task> tasks, std::uint64_t steps, Recording recording) override {
-    const std::vector<Task*> live = begin(tasks, steps, recording);
-    const cuda::Run run{scene_,
-                        stepping_,
-                        recording,
-                        steps,
+  void run(std::span<Task> tasks, Recording recording) override {
+    const std::vector<Task*> live = begin(tasks, recording);
+    const cuda::Run run{scene_, stepping_, recording,
                         cuda::features_of(scene_, stepping_.precision, recording, has_muscles(live)),
                         device_.shared_bytes};
     std::vector<cuda::Plan<T>> plans = plan(live, run);
@@ -120,19 +117,19 @@ class DeviceSimulator final : public CudaSimulator {
 
  private:
   /// Empties the answers and gives the tasks that need the device; bodies without masses only grow older.
-  static std::vector<Task*> begin(std::span<Task> tasks, std::uint64_t steps, Recording recording) {
+  static std::vector<Task*> begin(std::span<Task> tasks, Recording recording) {
     std::vector<Task*> live;
     for (Task& task : tasks) {
       if (task.status != Status::ok) continue;
       task.stress.clear();
       task.work = 0;
       task.spring_evaluations = 0;
-      if (steps > 0 && !task.body->masses.empty()) {
+      if (task.steps > 0 && !task.body->masses.empty()) {
         live.push_back(&task);
         continue;
       }
       if (recording.stress) task.stress.assign(task.body->springs.size(), 0.0);
-      task.state->steps += steps;
+      task.state->time += static_cast<double>(task.steps) * task.dt;
     }
     return live;
   }

@@ -40,7 +40,7 @@ struct Actuator {
   double phase;      ///< in half turns
 };
 
-/// The scene and the step in the arithmetic of the simulation.
+/// The scene and a body's step in the arithmetic of the simulation.
 template <class T>
 struct World {
   T acceleration;      ///< of gravity, m/s^2
@@ -73,6 +73,7 @@ struct Motion {
 template <class T>
 struct ResidentBody {
   using Integer = typename FixedPoint<T>::Integer;
+  World<T> world;
   const Record<T>* records;          ///< [warps][chunks][rows][lanes]
   const std::uint32_t* first_group;  ///< [block's warps] whose masses a warp's first row belongs to
   const std::uint32_t* turns;        ///< [block's warps][chunks] bit r: the next group begins after row r
@@ -84,7 +85,8 @@ struct ResidentBody {
   double* stress;                    ///< [slots] sum of |force|, N
   T* recent_stress;                  ///< [slots] of it what is not yet in `stress`, units; where chunked
   Answer* answer;
-  std::uint64_t first_step;                      ///< since birth
+  double start_time;                             ///< since birth, s
+  std::uint64_t steps;                           ///< to make
   double energy_bound;                           ///< J
   double resolution;                             ///< N, a power of two
   T largest_force;                               ///< units of the resolution; a larger one leaves the range
@@ -113,6 +115,7 @@ struct alignas(4 * sizeof(T)) Point {
 /// group have about as many.
 template <class T>
 struct StreamedBody {
+  World<T> world;
   const std::uint32_t* first_row;  ///< [groups of 32 masses + 1]
   const Joint<T>* joints;          ///< [rows][lanes]; a mass's joints are in the rows of its group, in its lane
   const Actuator* actuators;       ///< [entries]; stiffness in N/m
@@ -125,8 +128,9 @@ struct StreamedBody {
   double* stress;                  ///< [rows][lanes] sum of |force|, N, at owned joints
   double* power;                   ///< [masses] sum of power, W; where work is recorded
   Answer* answer;
-  std::uint64_t first_step;  ///< since birth
-  double energy_bound;       ///< J
+  double start_time;    ///< since birth, s
+  std::uint64_t steps;  ///< to make
+  double energy_bound;  ///< J
   std::uint32_t masses, entries;
 };
 

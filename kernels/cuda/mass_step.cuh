@@ -18,25 +18,25 @@ constexpr bool work = EVODEVO_WORK;
 
 using Place = physics::Triple<Number>;
 
-/// Where in its cycle a material is in the step `step` since birth, half turns. It is reduced in double precision, so
-/// that late times lose no digits.
-__device__ __forceinline__ double half_turns(const Actuator& actuator, std::uint64_t step, double dt) {
-  const double turns = actuator.frequency * (static_cast<double>(step) * dt);
+/// Where in its cycle a material is at `time` (s since birth), half turns. It is reduced in double precision, so that
+/// late times lose no digits.
+__device__ __forceinline__ double half_turns(const Actuator& actuator, double time) {
+  const double turns = actuator.frequency * time;
   return 2 * (turns - floor(turns)) + actuator.phase;
 }
 
-/// A material in a step.
-__device__ __forceinline__ Entry<Number> entry_of(const Actuator& actuator, std::uint64_t step, double dt) {
+/// A material at a time.
+__device__ __forceinline__ Entry<Number> entry_of(const Actuator& actuator, double time) {
   double length = 1;  // L/L0
-  if constexpr (actuation) length += actuator.amplitude * sinpi(half_turns(actuator, step, dt));
+  if constexpr (actuation) length += actuator.amplitude * sinpi(half_turns(actuator, time));
   return {static_cast<Number>(actuator.stiffness), static_cast<Number>(actuator.stiffness * length)};
 }
 
-/// The rate of L/L0 in a step, 1/s.
-__device__ __forceinline__ Number length_rate(const Actuator& actuator, std::uint64_t step, double dt) {
+/// The rate of L/L0 at a time, 1/s.
+__device__ __forceinline__ Number length_rate(const Actuator& actuator, double time) {
   double rate = 0;
   if constexpr (actuation)
-    rate = 2 * 3.14159265358979323846 * actuator.frequency * actuator.amplitude * cospi(half_turns(actuator, step, dt));
+    rate = 2 * 3.14159265358979323846 * actuator.frequency * actuator.amplitude * cospi(half_turns(actuator, time));
   return static_cast<Number>(rate);
 }
 

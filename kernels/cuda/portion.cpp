@@ -31,7 +31,9 @@ double wait_for(std::span<const Stream> streams, const Event& begin) {
 
 template <class T>
 Plan<T>::Plan(Task& task_, const Run& run)
-    : task(&task_), guard(*task_.body, *task_.state, run.scene, run.stepping), body([&]() -> decltype(body) {
+    : task(&task_),
+      guard(*task_.body, *task_.state, run.scene, run.stepping.precision, task_.dt),
+      body([&]() -> decltype(body) {
         if (auto resident = Resident<T>::arrange(task_, run.scene, run.features, run.shared_bytes))
           return *std::move(resident);
         return Streamed<T>(task_, run.features);
@@ -49,7 +51,7 @@ std::size_t Portion<T>::bytes_for(const Sizes& sizes, std::size_t bodies) {
 
 template <class T>
 Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MirroredMemory& memory)
-    : plans_(plans), run_(run), memory_(memory), world_(world_of<T>(run.scene, run.stepping.dt)) {
+    : plans_(plans), run_(run), memory_(memory) {
   for (std::size_t i = 0; i < plans.size(); ++i) {
     sizes_ += plans[i].sizes();
     if (const auto* resident = std::get_if<Resident<T>>(&plans[i].body))
@@ -86,11 +88,11 @@ void Portion<T>::pack(Workers& workers) {
   workers.for_each(plans_.size(), [&](std::size_t i) {
     if (i < order.size()) {
       const std::size_t at = order[i];
-      resident[i] = std::get<Resident<T>>(plans_[at].body).pack(host_[at], device_[at], plans_[at].guard);
+      resident[i] = std::get<Resident<T>>(plans_[at].body).pack(host_[at], device_[at], plans_[at].guard, run_.scene);
     } else {
       const std::size_t at = streamed_[i - order.size()];
       streamed[i - order.size()] =
-          std::get<Streamed<T>>(plans_[at].body).pack(host_[at], device_[at], plans_[at].guard);
+          std::get<Streamed<T>>(plans_[at].body).pack(host_[at], device_[at], plans_[at].guard, run_.scene);
     }
   });
 }
@@ -141,7 +143,7 @@ void Portion<T>::launch_resident(KernelStore& kernels, std::span<const Stream> s
     const cudaStream_t stream = streams[next++ % streams.size()];
     check(cudaStreamWaitEvent(stream, ready), "waiting for an event");
     launch(one.kernel, dim3(static_cast<unsigned>(one.members.size())), one.launch.threads, shared_bytes, stream,
-           world_, one.bodies, run_.steps);
+           one.bodies);
   }
 }
 
@@ -150,7 +152,12 @@ void Portion<T>::launch_streamed(KernelStore& kernels, cudaStream_t stream) {
   if (streamed_.empty()) return;
   constexpr unsigned step_threads = 128;
   unsigned masses = 1;
-  for (const std::size_t i : streamed_) masses = std::max(masses, std::get<Streamed<T>>(plans_[i].body).masses());
+  std::uint64_t steps = 0;
+  for (const std::size_t i : streamed_) {
+    const auto& body = std::get<Streamed<T>>(plans_[i].body);
+    masses = std::max(masses, body.masses());
+    steps = std::max(steps, body.steps());
+  }
   const auto kernel = [&](const char* name) {
     return kernels.get("cuda/streamed.cu", name, definitions(run_.features));
   };
@@ -160,14 +167,13 @@ void Portion<T>::launch_streamed(KernelStore& kernels, cudaStream_t stream) {
       reinterpret_cast<const StreamedBody<T>*>(memory_.device() + (plans_.size() - streamed_.size()) * header_bytes<T>);
   const auto count = static_cast<unsigned>(streamed_.size());
   const dim3 over_masses((masses + step_threads - 1) / step_threads, count);
-  for (std::uint64_t done = 0; done < run_.steps;) {
-    const auto now = static_cast<unsigned>(std::min<std::uint64_t>(run_.steps - done, guard_interval));
-    launch(fill, dim3(count), 256, 0, stream, world_, bodies, done, now);
-    for (unsigned i = 0; i < now; ++i)
-      launch(step, over_masses, step_threads, 0, stream, world_, bodies, i, static_cast<unsigned>((done + i) % 2));
+  for (std::uint64_t done = 0; done < steps;) {
+    const auto now = static_cast<unsigned>(std::min<std::uint64_t>(steps - done, guard_interval));
+    launch(fill, dim3(count), 256, 0, stream, bodies, done, now);
+    for (unsigned i = 0; i < now; ++i) launch(step, over_masses, step_threads, 0, stream, bodies, done, i);
+    launch(fill, dim3(count), 256, 0, stream, bodies, done + now, 1u);
+    launch(check_bodies, dim3(count), check_threads, 0, stream, bodies, done, now);
     done += now;
-    launch(fill, dim3(count), 256, 0, stream, world_, bodies, done, 1u);
-    launch(check_bodies, dim3(count), check_threads, 0, stream, world_, bodies, now, static_cast<unsigned>(done % 2));
   }
 }
 
@@ -197,11 +203,7 @@ double Portion<T>::simulate(KernelStore& kernels, std::span<const Stream> stream
   }
   workers.for_each(plans_.size(), [&](std::size_t i) {
     Plan<T>& plan = plans_[i];
-    std::visit(
-        [&](const auto& body) {
-          body.unpack(host_[i], plan.guard, run_.steps, run_.stepping.dt, run_.recording, *plan.task);
-        },
-        plan.body);
+    std::visit([&](const auto& body) { body.unpack(host_[i], plan.guard, run_.recording, *plan.task); }, plan.body);
   });
   return seconds;
 }

@@ -22,7 +22,6 @@ struct Run {
   Scene scene;
   Stepping stepping;
   Recording recording;
-  std::uint64_t steps;
   Features features;
   std::size_t shared_bytes;  ///< of the chip that one block can have
 };
@@ -77,7 +76,6 @@ class Portion {
   std::span<Plan<T>> plans_;
   Run run_;
   MirroredMemory& memory_;
-  World<T> world_;
   Sizes sizes_;
   std::vector<Regions> host_, device_;                   // of each plan
   std::map<Launch, std::vector<std::size_t>> resident_;  ///< the largest bodies first

@@ -186,7 +186,8 @@ void Resident<T>::pack_masses(const Regions& host) const {
 }
 
 template <class T>
-ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, const EnergyGuard& guard) const {
+ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, const EnergyGuard& guard,
+                                  const Scene& scene) const {
   using Integer = typename FixedPoint<T>::Integer;
   pack_records(records_.in(host.input));
   pack_masses(host);
@@ -198,7 +199,8 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
   std::transform(task_->body->materials.begin(), task_->body->materials.end(), actuators_.in(host.input) + 1,
                  [&](const Material& material) { return actuator_of(material, range_.resolution); });
   *answer_.in(host.state) = {};
-  return {.records = records_.in(device.input),
+  return {.world = world_of<T>(scene, task_->dt),
+          .records = records_.in(device.input),
           .first_group = first_group_.in(device.input),
           .turns = turns_.in(device.input),
           .actuators = actuators_.in(device.input),
@@ -210,7 +212,8 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
           .stress = stress_.in(device.sums),
           .recent_stress = recent_stress_.in(device.sums),
           .answer = answer_.in(device.state),
-          .first_step = task_->state->steps,
+          .start_time = task_->state->time,
+          .steps = task_->steps,
           .energy_bound = guard.bound(),
           .resolution = range_.resolution,
           .largest_force = static_cast<T>(range_.largest / range_.resolution),
@@ -225,9 +228,8 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
 }
 
 template <class T>
-void Resident<T>::unpack(const Regions& host, const EnergyGuard& guard, std::uint64_t steps, double dt,
-                         Recording recording, Task& task) const {
-  read_answer(*answer_.in(host.state), guard, range_.largest, dt, recording, task);
+void Resident<T>::unpack(const Regions& host, const EnergyGuard& guard, Recording recording, Task& task) const {
+  read_answer(*answer_.in(host.state), guard, range_.largest, recording, task);
   task.preparation = arranged_;
   const auto at = [&](std::size_t plane, std::uint32_t place) -> double {
     return motion_[plane].in(host.state)[place];
@@ -240,7 +242,7 @@ void Resident<T>::unpack(const Regions& host, const EnergyGuard& guard, std::uin
   if (!recording.stress || task.status != Status::ok) return;
   task.stress.resize(task.body->springs.size());
   for (std::size_t i = 0; i < task.stress.size(); ++i)
-    task.stress[i] = stress_.in(host.sums)[arrangement().slot_of[i]] / static_cast<double>(steps);
+    task.stress[i] = stress_.in(host.sums)[arrangement().slot_of[i]] / static_cast<double>(task.steps);
 }
 
 template class Resident<float>;

@@ -264,13 +264,13 @@ __device__ __forceinline__ void store(const Body& body, const Movers& movers) {
   });
 }
 
-/// Fills in the table for `count` steps from `step` since birth on.
-__device__ __noinline__ void fill_table(const Body& body, std::uint64_t step, unsigned count, double dt) {
+/// Fills in the table for `count` steps from the run's step `step` on.
+__device__ __noinline__ void fill_table(const Body& body, std::uint64_t step, unsigned count) {
   for (unsigned i = threadIdx.x; i < count * body.entries; i += blockDim.x) {
     const Actuator actuator = body.actuators[i % body.entries];
-    const std::uint64_t now = step + i / body.entries;
-    on_chip<Entry<Number>>(body.table_offset + i * sizeof(Entry<Number>)) = entry_of(actuator, now, dt);
-    if constexpr (work) on_chip<Number>(body.rate_offset + i * sizeof(Number)) = length_rate(actuator, now, dt);
+    const double time = body.start_time + static_cast<double>(step + i / body.entries) * body.world.exact_dt;
+    on_chip<Entry<Number>>(body.table_offset + i * sizeof(Entry<Number>)) = entry_of(actuator, time);
+    if constexpr (work) on_chip<Number>(body.rate_offset + i * sizeof(Number)) = length_rate(actuator, time);
   }
 }
 
@@ -315,8 +315,7 @@ __device__ __forceinline__ Check check_of(const Body& body, const Movers& movers
 }
 
 /// Writes down the body's energies after `steps` steps and says whether it has diverged; the same for all threads.
-__device__ __noinline__ bool has_diverged(const Body& body, const World<Number>& world, Check check,
-                                          std::uint64_t steps) {
+__device__ __noinline__ bool has_diverged(const Body& body, Check check, std::uint64_t steps) {
   __shared__ double of_warps[4][lanes];
   const bool finite = !__syncthreads_or(check.not_finite != 0);
   const bool out_of_range = __syncthreads_or(!(check.totals.largest <= body.largest_force));
@@ -326,12 +325,12 @@ __device__ __noinline__ bool has_diverged(const Body& body, const World<Number>&
   Answer& answer = *body.answer;
   if constexpr (gravity) {
     const double moment = block_sum(check.moment, of_warps[2]);
-    bound += fallen_energy(moment, world);
+    bound += fallen_energy(moment, body.world);
     if (threadIdx.x == 0) answer.moment = moment;
   }
   if constexpr (work) {
     const double power = block_sum(check.totals.power, of_warps[3]);
-    if (threadIdx.x == 0) answer.work += world.exact_dt * body.resolution * power;
+    if (threadIdx.x == 0) answer.work += body.world.exact_dt * body.resolution * power;
   }
   bool diverged = !finite || out_of_range;
   if (threadIdx.x == 0) {
@@ -392,35 +391,35 @@ __device__ __forceinline__ void advance(const Body& body, const World<Number>& w
 }
 
 extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)
-    evodevo_run_resident(const World<Number> world, const Body* bodies, std::uint64_t steps) {
+    evodevo_run_resident(const Body* bodies) {
   const Body& body = bodies[blockIdx.x];
   const Share share = share_of(body);
   const unsigned turns = chunked ? 0 : *share.turns;
   Movers movers;
   Totals totals;
   load(body, movers);
-  fill_table(body, body.first_step, 1, world.exact_dt);
+  fill_table(body, 0, 1);
   __syncthreads();
-  for (std::uint64_t done = 0; done < steps;) {
+  for (std::uint64_t done = 0; done < body.steps;) {
     const unsigned until_check =
-        static_cast<unsigned>(min(steps - done, static_cast<std::uint64_t>(guard_interval) - done % guard_interval));
+        static_cast<unsigned>(min(body.steps - done, static_cast<std::uint64_t>(guard_interval) - done % guard_interval));
     unsigned now = until_check;
     if constexpr (actuation) {
       now = min(until_check, body.table_steps);
-      fill_table(body, body.first_step + done, now, world.exact_dt);
+      fill_table(body, done, now);
       __syncthreads();
     }
     if (share.chunks > 0)
-      advance<true>(body, world, share, turns, now, movers, totals);
+      advance<true>(body, body.world, share, turns, now, movers, totals);
     else
-      advance<false>(body, world, share, turns, now, movers, totals);
+      advance<false>(body, body.world, share, turns, now, movers, totals);
     done += now;
     if (now < until_check) continue;
     if constexpr (actuation) {
-      fill_table(body, body.first_step + done, 1, world.exact_dt);
+      fill_table(body, done, 1);
       __syncthreads();
     }
-    if (has_diverged(body, world, check_of(body, movers, totals), done)) break;
+    if (has_diverged(body, check_of(body, movers, totals), done)) break;
     totals = Totals();
   }
   store(body, movers);

@@ -67,11 +67,10 @@ class Resident {
   Sizes sizes() const { return sizes_; }
 
   /// Writes the body into its part of the host's regions; `device` is where these will be on the device.
-  ResidentBody<T> pack(const Regions& host, const Regions& device, const EnergyGuard& guard) const;
+  ResidentBody<T> pack(const Regions& host, const Regions& device, const EnergyGuard& guard, const Scene& scene) const;
 
   /// Reads the task's answer.
-  void unpack(const Regions& host, const EnergyGuard& guard, std::uint64_t steps, double dt, Recording recording,
-              Task& task) const;
+  void unpack(const Regions& host, const EnergyGuard& guard, Recording recording, Task& task) const;
 
  private:
   Resident(const Task& task, const Scene& scene, const Features& features);

@@ -56,7 +56,8 @@ void Streamed<T>::pack_joints(const Regions& host) const {
 }
 
 template <class T>
-StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, const EnergyGuard& guard) const {
+StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, const EnergyGuard& guard,
+                                  const Scene& scene) const {
   const Body& body = *task_->body;
   std::copy(first_row_.begin(), first_row_.end(), rows_.in(host.input));
   pack_joints(host);
@@ -76,7 +77,8 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
     velocities_.in(host.state)[place] = point(task_->state->velocity[i]);
   }
   *answer_.in(host.state) = {};
-  return {.first_row = rows_.in(device.input),
+  return {.world = world_of<T>(scene, task_->dt),
+          .first_row = rows_.in(device.input),
           .joints = joints_.in(device.input),
           .actuators = actuators_.in(device.input),
           .mass = mass_.in(device.input),
@@ -88,17 +90,17 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
           .stress = stress_.in(device.sums),
           .power = power_.in(device.sums),
           .answer = answer_.in(device.state),
-          .first_step = task_->state->steps,
+          .start_time = task_->state->time,
+          .steps = task_->steps,
           .energy_bound = guard.bound(),
           .masses = masses(),
           .entries = static_cast<std::uint32_t>(body.materials.size() + 1)};
 }
 
 template <class T>
-void Streamed<T>::unpack(const Regions& host, const EnergyGuard& guard, std::uint64_t steps, double dt,
-                         Recording recording, Task& task) const {
+void Streamed<T>::unpack(const Regions& host, const EnergyGuard& guard, Recording recording, Task& task) const {
   const Answer& answer = *answer_.in(host.state);
-  read_answer(answer, guard, 0, dt, recording, task);
+  read_answer(answer, guard, 0, recording, task);
   const Point<T>* places = places_.in(host.state) + answer.steps % 2 * masses();
   const Point<T>* velocities = velocities_.in(host.state);
   for (std::size_t i = 0; i < masses(); ++i) {
@@ -109,7 +111,7 @@ void Streamed<T>::unpack(const Regions& host, const EnergyGuard& guard, std::uin
   if (!recording.stress || task.status != Status::ok) return;
   task.stress.resize(task.body->springs.size());
   for (std::size_t i = 0; i < task.stress.size(); ++i)
-    task.stress[i] = stress_.in(host.sums)[owned_joint_[i]] / static_cast<double>(steps);
+    task.stress[i] = stress_.in(host.sums)[owned_joint_[i]] / static_cast<double>(task.steps);
 }
 
 template class Streamed<float>;

@@ -39,39 +39,43 @@ __device__ __forceinline__ Place spring_forces(const Body& body, unsigned mass, 
   return force;
 }
 
-/// Fills in the tables for `count` steps, the first of them `done` steps after the run's beginning.
-extern "C" __global__ void evodevo_fill_tables(const World<Number> world, const Body* bodies, std::uint64_t done,
-                                               unsigned count) {
+/// Fills in the tables for `count` steps, the first of them `done` steps after the run's beginning. From a body's last
+/// step on they hold the lengths of its end.
+extern "C" __global__ void evodevo_fill_tables(const Body* bodies, std::uint64_t done, unsigned count) {
   const Body& body = bodies[blockIdx.x];
   for (unsigned i = threadIdx.x; i < count * body.entries; i += blockDim.x) {
     const Actuator actuator = body.actuators[i % body.entries];
-    const std::uint64_t step = body.first_step + done + i / body.entries;
-    body.table[i] = entry_of(actuator, step, world.exact_dt);
-    if constexpr (work) body.rates[i] = length_rate(actuator, step, world.exact_dt);
+    const std::uint64_t step = min(done + i / body.entries, body.steps);
+    const double time = body.start_time + static_cast<double>(step) * body.world.exact_dt;
+    body.table[i] = entry_of(actuator, time);
+    if constexpr (work) body.rates[i] = length_rate(actuator, time);
   }
 }
 
-/// Makes the step whose lengths are in the tables' row `row`; `half` of the places is read, the other is written.
-extern "C" __global__ void evodevo_step_streamed(const World<Number> world, const Body* bodies, unsigned row,
-                                                 unsigned half) {
+/// Makes step `done` + `row` of all bodies that have as many, with the lengths in the tables' row `row`. Even steps read
+/// the first half of the places and write the second, odd ones the other way.
+extern "C" __global__ void evodevo_step_streamed(const Body* bodies, std::uint64_t done, unsigned row) {
   const Body& body = bodies[blockIdx.y];
   const unsigned mass = blockIdx.x * blockDim.x + threadIdx.x;
-  if (mass >= body.masses || body.answer->diverged) return;
+  if (mass >= body.masses || done + row >= body.steps || body.answer->diverged) return;
+  const auto half = static_cast<unsigned>((done + row) % 2);
   const Point<Number>* from = body.places + half * body.masses;
   Place place = triple(from[mass]), velocity = triple(body.velocities[mass]);
   const Place force = spring_forces(body, mass, from, row);
-  move(world, place, velocity, force, body.mass[mass], body.inverse_mass[mass]);
+  move(body.world, place, velocity, force, body.mass[mass], body.inverse_mass[mass]);
   body.places[(1 - half) * body.masses + mass] = {place.x, place.y, place.z, 0};
   body.velocities[mass] = {velocity.x, velocity.y, velocity.z, 0};
 }
 
-/// Writes down every body's energies, `now` steps after the last check, and stops the ones that have diverged. The
-/// tables' row 0 holds the lengths of now.
+/// Writes down the energies of every body that moved in the `now` steps after the first `done`, and stops the ones that
+/// have diverged. The tables' row 0 holds the lengths of now.
 extern "C" __global__ void __launch_bounds__(EVODEVO_CHECK_THREADS)
-    evodevo_check_streamed(const World<Number> world, const Body* bodies, unsigned now, unsigned half) {
+    evodevo_check_streamed(const Body* bodies, std::uint64_t done, unsigned now) {
   const Body& body = bodies[blockIdx.x];
-  if (body.answer->diverged) return;
-  const Point<Number>* places = body.places + half * body.masses;
+  if (done >= body.steps || body.answer->diverged) return;
+  const World<Number>& world = body.world;
+  const std::uint64_t steps = min(done + now, body.steps);
+  const Point<Number>* places = body.places + steps % 2 * body.masses;
   double kinetic = 0, elastic = 0;
   double moment = 0;  // kg m
   double power = 0;   // W
@@ -111,7 +115,7 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_CHECK_THREADS)
     if (threadIdx.x == 0) answer.work += world.exact_dt * power;
   }
   if (threadIdx.x > 0) return;
-  answer.steps += now;
+  answer.steps = steps;
   answer.kinetic = kinetic;
   answer.elastic = elastic;
   answer.diverged = !finite || !(kinetic + elastic <= bound);

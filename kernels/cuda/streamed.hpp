@@ -15,13 +15,13 @@ class Streamed {
 
   Sizes sizes() const { return sizes_; }
   std::uint32_t masses() const { return static_cast<std::uint32_t>(task_->body->masses.size()); }
+  std::uint64_t steps() const { return task_->steps; }
 
   /// Writes the body into its part of the host's regions; `device` is where these will be on the device.
-  StreamedBody<T> pack(const Regions& host, const Regions& device, const EnergyGuard& guard) const;
+  StreamedBody<T> pack(const Regions& host, const Regions& device, const EnergyGuard& guard, const Scene& scene) const;
 
   /// Reads the task's answer.
-  void unpack(const Regions& host, const EnergyGuard& guard, std::uint64_t steps, double dt, Recording recording,
-              Task& task) const;
+  void unpack(const Regions& host, const EnergyGuard& guard, Recording recording, Task& task) const;
 
  private:
   void pack_joints(const Regions& host) const;

@@ -42,7 +42,7 @@ TEST(Experiments, PaperHoldsThePapersValues) {
   const Experiment paper = read_experiment({experiment_file("paper.toml"), {}});
   EXPECT_EQ(paper.development.cycles, 100);
   EXPECT_EQ(paper.development.cycle_time, 1);
-  EXPECT_EQ(paper.stepping.dt, 0.0005);
+  EXPECT_EQ(paper.step.dt, 0.0005);
   EXPECT_EQ(paper.scene.floor->stiffness, 1e6);
   EXPECT_EQ(paper.scene.friction->coefficient, 0.5);
   EXPECT_EQ(paper.scene.gravity->acceleration, 9.81);

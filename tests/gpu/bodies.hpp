@@ -55,7 +55,7 @@ inline State moving_state(const Body& body, const Scene& scene, std::uint64_t se
   Random random(seed);
   State state = state_at_birth(body, scene);
   for (Vec3& velocity : state.velocity) velocity = 0.5 * random.vector();
-  state.start_energy = total_energy(body, state, scene, 0.0005);
+  state.start_energy = total_energy(body, state, scene);
   return state;
 }
 
@@ -64,18 +64,19 @@ inline Scene walking_scene() { return {Gravity{}, Floor{}, Friction{}, Damping{}
 /// A body's run and its answer.
 struct Robot {
   Robot(const Body& body_, const State& state_) : body(&body_), state(state_) {}
-  Task task() { return {.body = body, .state = &state}; }
+  Task task(std::uint64_t steps) { return {.body = body, .state = &state, .dt = dt, .steps = steps}; }
 
   const Body* body;
   State state;
+  double dt = 0.0005;  ///< s
   Task answer;
 };
 
 /// Moves all bodies in one batch.
 inline void simulate(Simulator& simulator, std::vector<Robot*> runs, std::uint64_t steps, Recording recording = {}) {
   std::vector<Task> tasks;
-  for (Robot* run : runs) tasks.push_back(run->task());
-  simulator.run(tasks, steps, recording);
+  for (Robot* run : runs) tasks.push_back(run->task(steps));
+  simulator.run(tasks, recording);
   for (std::size_t i = 0; i < runs.size(); ++i) runs[i]->answer = tasks[i];
 }
 

@@ -22,7 +22,7 @@ namespace evodevo::testing_gpu {
     GTEST_SKIP() << missing;                                         \
   } while (false)
 
-inline Stepping stepping(Precision precision) { return {Method::paper_euler, precision, 0.0005}; }
+inline Stepping stepping(Precision precision) { return {Method::paper_euler, precision}; }
 
 inline const char* name(Precision precision) { return precision == Precision::float32 ? "float32" : "float64"; }
 

@@ -11,7 +11,6 @@ namespace evodevo::cuda {
 namespace {
 
 constexpr std::size_t shared_bytes = 227 << 10;  // of an H200
-const Stepping stepping{Method::paper_euler, Precision::float32, 0.0005};
 const Features features{.gravity = true, .floor = true, .friction = true, .damping = true};
 
 /// A body of 1,000 masses and 25 neighbours whose springs have `materials` materials in turn; 0: each its own.
@@ -28,7 +27,8 @@ Body body_of(std::size_t materials) {
 TEST(Resident, RecordsLeadToTheirMaterials) {
   for (const std::size_t materials : {15, 200, 5000, 9000, 0}) {
     const Body body = body_of(materials);
-    State state = state_at_birth(body, testing_gpu::walking_scene());
+    const Scene scene = testing_gpu::walking_scene();
+    State state = state_at_birth(body, scene);
     const Task task{.body = &body, .state = &state};
     const auto resident = Resident<float>::arrange(task, testing_gpu::walking_scene(), features, shared_bytes);
     ASSERT_TRUE(resident) << materials;
@@ -38,7 +38,7 @@ TEST(Resident, RecordsLeadToTheirMaterials) {
     std::vector<std::byte> input(resident->sizes().input), motion(resident->sizes().state);
     const Regions regions{input.data(), motion.data(), nullptr};
     const auto packed =
-        resident->pack(regions, regions, EnergyGuard(body, state, testing_gpu::walking_scene(), stepping));
+        resident->pack(regions, regions, EnergyGuard(body, state, scene, Precision::float32, task.dt), scene);
     std::size_t springs = 0;
     for (std::size_t i = 0; i < resident->slots(); ++i) {
       const std::size_t entry = (packed.records[i].packed >> 16) * (wide ? sizeof(float) : 1) / sizeof(Entry<float>);

@@ -96,22 +96,5 @@ TEST(BodyBuilding, APopulationIsBuiltAsEachBodyAlone) {
   }
 }
 
-TEST(BodyBuilding, ABodyThatAloneExceedsTheStepIsTold) {
-  // one mass with n springs of 10,000 N/m that lead away on one line: omega^2 is about n k / m
-  Blueprint blueprint;
-  blueprint.body.materials = {{10000, 0, 0, 0}};
-  for (int i = 0; i < 400; ++i) blueprint.body.masses.push_back({{i == 0 ? 0.0 : 1.0, 0, 1e-3 * i}, 0.2, 0, 0});
-  for (std::uint32_t i = 1; i < 400; ++i) blueprint.body.springs.push_back({0, i, 1, 0});
-  const BuiltBody built = build_body(std::move(blueprint));
-  const std::vector<Vec3> places = state_at_birth(built.body, {}).position;
-  EXPECT_EQ(step_failure(built.body, places, {}, {.dt = 0.0005}),
-            "unstable dt: 0.0005 s is too long for the body's springs");
-  EXPECT_EQ(step_failure(built.body, places, {}, {.dt = 0.0002}), "");
-  Scene floor;
-  floor.floor = Floor{1e8};
-  EXPECT_EQ(step_failure(built.body, places, floor, {.dt = 0.0002}),
-            "unstable dt: 0.0002 s is too long for the body's lightest mass on this floor");
-}
-
 }  // namespace
 }  // namespace evodevo

@@ -16,9 +16,9 @@ class Concurrent final : public Simulator {
   Concurrent(const Experiment& experiment, int calls)
       : simulator_(make_cpu_simulator(experiment.scene, experiment.stepping, 2)), calls_(calls) {}
 
-  void run(std::span<Task> tasks, std::uint64_t steps, Recording recording) override {
+  void run(std::span<Task> tasks, Recording recording) override {
     ++runs;
-    simulator_->run(tasks, steps, recording);
+    simulator_->run(tasks, recording);
   }
   NeighbourSearch& neighbours() override { return simulator_->neighbours(); }
   int concurrency() const override { return calls_; }
@@ -57,7 +57,7 @@ TEST(Cohorts, PassOnAFailure) {
   class Failing final : public Simulator {
    public:
     explicit Failing(std::unique_ptr<Simulator> simulator) : simulator_(std::move(simulator)) {}
-    void run(std::span<Task>, std::uint64_t, Recording) override { throw std::runtime_error("the device is lost"); }
+    void run(std::span<Task>, Recording) override { throw std::runtime_error("the device is lost"); }
     NeighbourSearch& neighbours() override { return simulator_->neighbours(); }
     int concurrency() const override { return 4; }
     std::string device() const override { return "failing"; }

@@ -49,7 +49,7 @@ TEST(Configuration, ResolvedTextReadsBackAsItself) {
   const Experiment experiment = testing::read(small_experiment, {{"simulation.dt", "0.00025", "--set"}});
   const Experiment again = testing::read(experiment.resolved);
   EXPECT_EQ(again.resolved, experiment.resolved);
-  EXPECT_EQ(again.stepping.dt, 0.00025);
+  EXPECT_EQ(again.step.dt, 0.00025);
   EXPECT_EQ(again.seed, experiment.seed);
   EXPECT_EQ(again.world.materials, experiment.world.materials);
 }

@@ -22,9 +22,9 @@ class Breaking final : public Simulator {
   Breaking(const Experiment& experiment, std::function<bool()> lost)
       : simulator_(make_cpu_simulator(experiment.scene, experiment.stepping, 1)), lost_(std::move(lost)) {}
 
-  void run(std::span<Task> tasks, std::uint64_t steps, Recording recording) override {
+  void run(std::span<Task> tasks, Recording recording) override {
     if (lost_()) throw std::runtime_error("CUDA: simulating on the GPU failed");
-    simulator_->run(tasks, steps, recording);
+    simulator_->run(tasks, recording);
   }
   NeighbourSearch& neighbours() override { return simulator_->neighbours(); }
   std::string device() const override { return simulator_->device(); }

@@ -12,12 +12,12 @@ namespace {
 
 using testing::Test;
 
-constexpr Stepping stepping{Method::paper_euler, Precision::float32, 0.0005};
+constexpr Steps stepping{Method::paper_euler, Precision::float32, 0.0005};
 
 /// Bodies of many sizes, each with its answer alone.
 class Bodies {
  protected:
-  explicit Bodies(const Stepping& steps) : steps_(steps) {
+  explicit Bodies(const Steps& steps) : steps_(steps) {
     for (std::uint32_t i = 0; i < 9; ++i) bodies.push_back(random_body(5 + 17 * i, 4 + i, 3 + 3 * i, i));
     for (const Body& body : bodies)
       alone.push_back(simulate(body, state_at_birth(body, full_scene()), full_scene(), steps_, 333, recording));
@@ -28,8 +28,9 @@ class Bodies {
     std::vector<State> states;
     for (const std::size_t i : order) states.push_back(state_at_birth(bodies[i], full_scene()));
     std::vector<Task> tasks(order.size());
-    for (std::size_t t = 0; t < order.size(); ++t) tasks[t].body = &bodies[order[t]], tasks[t].state = &states[t];
-    make_cpu_simulator(full_scene(), steps_, threads)->run(tasks, 333, recording);
+    for (std::size_t t = 0; t < order.size(); ++t)
+      tasks[t] = {.body = &bodies[order[t]], .state = &states[t], .dt = steps_.dt, .steps = 333};
+    make_cpu_simulator(full_scene(), steps_, threads)->run(tasks, recording);
     for (std::size_t t = 0; t < order.size(); ++t) {
       EXPECT_TRUE(same_bits(states[t], alone[order[t]].state)) << "body " << order[t] << ", " << threads << " threads";
       EXPECT_EQ(tasks[t].stress, alone[order[t]].task.stress);
@@ -38,7 +39,7 @@ class Bodies {
   }
 
   static constexpr Recording recording{.stress = true, .work = true};
-  Stepping steps_;
+  Steps steps_;
   std::vector<Body> bodies;
   std::vector<Answer> alone;
 };
@@ -70,12 +71,31 @@ TEST_P(BatchOfEachMethod, AnyOrderAndCompositionGivesTheSameBits) {
 
 TEST_P(BatchOfEachMethod, StepsInPortionsGiveTheSameBits) {
   for (const Precision precision : {Precision::float32, Precision::float64}) {
-    const Stepping steps{GetParam(), precision, 0.0005};
+    const Steps steps{GetParam(), precision, 0x1p-11};  // so that all times are exact
     const Body& body = bodies[6];
     const Answer once = simulate(body, state_at_birth(body, full_scene()), full_scene(), steps, 700);
     State state = state_at_birth(body, full_scene());
     for (const std::uint64_t n : {1u, 99u, 0u, 350u, 250u}) state = simulate(body, state, full_scene(), steps, n).state;
     EXPECT_TRUE(same_bits(once.state, state)) << name_of(precision);
+  }
+}
+
+TEST_P(BatchOfEachMethod, EveryBodyHasItsOwnSteps) {
+  std::vector<State> states;
+  for (const Body& body : bodies) states.push_back(state_at_birth(body, full_scene()));
+  std::vector<Task> tasks(bodies.size());
+  const auto pace = [](std::size_t i) { return std::pair(0.0005 / static_cast<double>(i + 1), 30 + 60 * i); };
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    tasks[i] = {.body = &bodies[i], .state = &states[i], .dt = pace(i).first, .steps = pace(i).second};
+  make_cpu_simulator(full_scene(), steps_, 2)->run(tasks, recording);
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const Steps steps{steps_.method, steps_.precision, pace(i).first};
+    const Answer a =
+        simulate(bodies[i], state_at_birth(bodies[i], full_scene()), full_scene(), steps, pace(i).second, recording);
+    EXPECT_TRUE(same_bits(a.state, states[i])) << i;
+    EXPECT_EQ(a.task.stress, tasks[i].stress) << i;
+    EXPECT_DOUBLE_EQ(states[i].time, pace(i).first * static_cast<double>(pace(i).second));
+    EXPECT_EQ(tasks[i].spring_evaluations, pace(i).second * bodies[i].springs.size());
   }
 }
 
@@ -86,8 +106,8 @@ TEST_F(Batch, ABodyThatDivergesIsFlaggedAndDisturbsNoOther) {
                             state_at_birth(bodies[5], full_scene())};
   std::vector<Task> tasks(3);
   tasks[0].body = &bodies[4], tasks[1].body = &unstable, tasks[2].body = &bodies[5];
-  for (std::size_t i = 0; i < 3; ++i) tasks[i].state = &states[i];
-  make_cpu_simulator(full_scene(), stepping, 2)->run(tasks, 333, recording);
+  for (std::size_t i = 0; i < 3; ++i) tasks[i].state = &states[i], tasks[i].steps = 333;
+  make_cpu_simulator(full_scene(), stepping, 2)->run(tasks, recording);
   EXPECT_EQ(tasks[1].status, Status::diverged);
   EXPECT_DOUBLE_EQ(tasks[1].ended_at, 100 * stepping.dt);
   EXPECT_EQ(tasks[1].spring_evaluations, 100u);
@@ -102,9 +122,10 @@ TEST_F(Batch, ATaskThatDoesNotComeInAsOkIsLeftAlone) {
   State state = state_at_birth(bodies[2], full_scene());
   Task task;
   task.body = &bodies[2], task.state = &state;
+  task.steps = 100;
   task.status = Status::invalid;
   task.reason = "no";
-  make_cpu_simulator(full_scene(), stepping, 1)->run({&task, 1}, 100, recording);
+  make_cpu_simulator(full_scene(), stepping, 1)->run({&task, 1}, recording);
   EXPECT_TRUE(same_bits(state, state_at_birth(bodies[2], full_scene())));
   EXPECT_EQ(task.status, Status::invalid);
   EXPECT_EQ(task.reason, "no");
@@ -113,14 +134,14 @@ TEST_F(Batch, ATaskThatDoesNotComeInAsOkIsLeftAlone) {
 TEST(Guard, EnergyFromNothingIsDivergence) {
   const Body body = block(1, {1000, 0, 0, 0});
   State state = state_at_birth(body, {});
-  state.steps = 50;
+  state.time = 0.025;
   state.start_energy = 1;
   for (Vec3& v : state.velocity) v = {0, 0, 3.6};  // 10.4 J
   const Answer a = simulate(body, state, {}, stepping, 1000);
   EXPECT_EQ(a.task.status, Status::diverged);
   EXPECT_EQ(a.task.reason.find("energy of 10.4 J above the bound of 10"), 0u) << a.task.reason;
   EXPECT_DOUBLE_EQ(a.task.ended_at, 150 * stepping.dt);
-  EXPECT_EQ(a.state.steps, 150u);
+  EXPECT_EQ(a.state.time, a.task.ended_at);
   for (Vec3& v : state.velocity) v = {0, 0, 3.4};  // 9.2 J
   EXPECT_EQ(simulate(body, state, {}, stepping, 1000).task.status, Status::ok);
 }

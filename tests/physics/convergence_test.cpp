@@ -82,7 +82,7 @@ State turning(const Smooth& smooth) {
   State state = resting(smooth.body, smooth.scene);
   for (std::size_t i = 0; i < state.velocity.size(); ++i)
     state.velocity[i] = {-2 * state.position[i].y, 2 * state.position[i].x, state.position[i].x};
-  state.start_energy = 100 + total_energy(smooth.body, state, smooth.scene, 0);
+  state.start_energy = 100 + total_energy(smooth.body, state, smooth.scene);
   return state;
 }
 
@@ -109,7 +109,7 @@ TEST_P(Convergence, TheErrorFallsWithTheOrderOfTheMethod) {
     const State start = turning(smooth), truth = solution(smooth.body, start, smooth.scene, time);
     ASSERT_GT(largest_difference(start, truth), 0.02);
     const auto error = [&](std::uint64_t steps) {
-      const Stepping stepping{GetParam(), Precision::float64, time / static_cast<double>(steps)};
+      const Steps stepping{GetParam(), Precision::float64, time / static_cast<double>(steps)};
       const Answer a = simulate(smooth.body, start, smooth.scene, stepping, steps);
       EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
       return largest_difference(a.state, truth);
@@ -126,12 +126,12 @@ TEST_P(Convergence, WithFloorAndFrictionAllTendToOneMotion) {
   const Body body = block(1, {2000, 0, 0, 0});
   State start = state_at_birth(body, scene);
   for (Vec3& v : start.velocity) v = {1.2, 0.3, -0.3};
-  start.start_energy = total_energy(body, start, scene, 0);
+  start.start_energy = total_energy(body, start, scene);
   const double time = 0.15;
   const State truth = reference(body, start, scene, 1e-6, 150000).state;
   ASSERT_GT(largest_difference(start, truth), 0.01);
   const auto error = [&](std::uint64_t steps) {
-    const Stepping stepping{GetParam(), Precision::float64, time / static_cast<double>(steps)};
+    const Steps stepping{GetParam(), Precision::float64, time / static_cast<double>(steps)};
     const Answer a = simulate(body, start, scene, stepping, steps);
     EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
     return largest_difference(a.state, truth);
@@ -152,7 +152,7 @@ TEST_P(Convergence, TheTerminalVelocityIsTrue) {
   const Body body = single_mass(0.2);
   const double expected = terminal_speed(scene, 0.2);
   for (const double dt : {0.1, 0.01, 0.001}) {
-    const Stepping stepping{GetParam(), Precision::float64, dt};
+    const Steps stepping{GetParam(), Precision::float64, dt};
     const Answer a = simulate(body, resting(body, scene), scene, stepping, static_cast<std::uint64_t>(20 / dt));
     const double error = std::abs(a.state.velocity[0].z + expected) / expected;
     switch (GetParam()) {

@@ -11,7 +11,7 @@ namespace {
 class Recorded : public testing::TestWithParam<Arithmetic> {
  protected:
   static Precision precision() { return std::get<Precision>(GetParam()); }
-  static Stepping stepping() { return {std::get<Method>(GetParam()), precision(), 0.0005}; }
+  static Steps stepping() { return {std::get<Method>(GetParam()), precision(), 0.0005}; }
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, Recorded,

@@ -52,8 +52,8 @@ State turning(const Body& body, const Scene& scene) {
   State state = state_at_birth(body, scene);
   for (std::size_t i = 0; i < state.velocity.size(); ++i)
     state.velocity[i] = {-0.5 * state.position[i].y, 0.5 * state.position[i].x, -0.2};
-  state.steps = 300;
-  state.start_energy = total_energy(body, state, scene, 0.0005);
+  state.time = 0.15;
+  state.start_energy = total_energy(body, state, scene);
   return state;
 }
 
@@ -61,7 +61,7 @@ TEST_P(AgainstReference, RandomBodiesInAllForcesAgreeToRounding) {
   const auto& [set, precision, materials] = GetParam();
   if (!is_there(set)) GTEST_SKIP() << "this processor has no " << set.name;
   const OnlyTarget only(set.target);
-  const Stepping stepping{Method::paper_euler, precision, 0.0005};
+  const Steps stepping{Method::paper_euler, precision, 0.0005};
   ASSERT_EQ(make_cpu_simulator({}, stepping, 1)->device(), set.device);
   const bool single = precision == Precision::float32;
   for (const std::uint32_t masses : {37u, 150u}) {
@@ -90,7 +90,7 @@ class InstructionSets : public testing::TestWithParam<Arithmetic> {
   static Answer simulated_with(const Set& set, std::uint64_t steps) {
     const OnlyTarget only(set.target);
     const Body body = random_body(150, 12, 14, 8);
-    const Stepping stepping{std::get<Method>(GetParam()), std::get<Precision>(GetParam()), 0.0005};
+    const Steps stepping{std::get<Method>(GetParam()), std::get<Precision>(GetParam()), 0.0005};
     return simulate(body, state_at_birth(body, full_scene()), full_scene(), stepping, steps,
                     {.stress = true, .work = true});
   }

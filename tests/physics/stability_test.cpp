@@ -31,7 +31,7 @@ double highest_frequency(const Body& body) {
   return std::sqrt(solver.eigenvalues().maxCoeff());
 }
 
-Stepping at(double dt) { return {Method::paper_euler, Precision::float64, dt}; }
+Steps at(double dt) { return {Method::paper_euler, Precision::float64, dt}; }
 
 std::vector<Vec3> rest_places(const Body& body) {
   std::vector<Vec3> places;
@@ -40,8 +40,8 @@ std::vector<Vec3> rest_places(const Body& body) {
 }
 
 /// At its rest places.
-bool is_stable_at_rest(const Body& body, const Stepping& stepping) {
-  return is_stable(body, rest_places(body), stepping);
+bool is_stable_at_rest(const Body& body, const Steps& stepping) {
+  return is_stable(body, rest_places(body), stepping.method, stepping.dt);
 }
 
 TEST(Stability, TheLargestStepIsThatOfTheHighestFrequency) {
@@ -67,7 +67,7 @@ TEST(Stability, OnlyExplicitMethodsHaveALargestStep) {
     EXPECT_EQ(largest_dt(body, rest_places(body), method), infinity);
     EXPECT_EQ(largest_spring_dt(material, 0.2, method), infinity);
     EXPECT_EQ(largest_contact_dt(walking_scene(), 0.2, method), infinity);
-    EXPECT_TRUE(is_stable(body, rest_places(body), {method, Precision::float32, 0.1}));
+    EXPECT_TRUE(is_stable(body, rest_places(body), method, 0.1));
   }
   EXPECT_EQ(largest_dt(single_mass(0.2), {{Vec3{}}}, Method::rk4), infinity);
   EXPECT_EQ(largest_dt({}, {}, Method::rk4), infinity);
@@ -106,6 +106,57 @@ TEST(Stability, OneSpringIsStableUpToItsLimitAndNotBeyond) {
   start.start_energy *= 100;  // near the limit the true energy swings by a factor of 50 around a conserved one
   EXPECT_EQ(simulate(body, start, {}, at(0.99 * limit), 50000).task.status, Status::ok);
   EXPECT_EQ(simulate(body, start, {}, at(1.01 * limit), 1000).task.status, Status::diverged);
+}
+
+TEST(Stability, WhatIsWantedIsGivenWhereTheBodyBearsIt) {
+  const Body body = random_body(80, 12, 5, 3);
+  const double limit = 2 / highest_frequency(body);
+  for (const double wanted : {1e-4 * limit, 0.5 * limit, 0.9 * limit})
+    EXPECT_EQ(largest_dt(body, rest_places(body), Method::paper_euler, wanted), wanted);
+  const double largest = largest_dt(body, rest_places(body), Method::paper_euler, 1.5 * limit);
+  EXPECT_LE(largest, limit);
+  EXPECT_GT(largest, 0.98 * limit);
+}
+
+TEST(Stability, ASafeStepHasAMarginForWhateverLimitsIt) {
+  const Body body = random_body(80, 12, 5, 3);
+  const auto safe = [&](const Scene& scene, Method method) { return safe_dt(body, rest_places(body), scene, method); };
+  const double springs = 2 / highest_frequency(body);
+  EXPECT_LE(safe({}, Method::velocity_verlet), spring_margin * springs);
+  EXPECT_GT(safe({}, Method::velocity_verlet), 0.98 * spring_margin * springs);
+  double lightest = 1;
+  for (const Mass& mass : body.masses) lightest = std::min(lightest, mass.mass);
+  EXPECT_EQ(safe(walking_scene(), Method::paper_euler), largest_contact_dt(walking_scene(), lightest, Method::rk4));
+  Scene thick;
+  thick.damping = Damping{1e4};
+  EXPECT_EQ(safe(thick, Method::rk4), 2e-4);
+  EXPECT_GT(safe(thick, Method::paper_euler), 2e-4) << "damps exactly";
+}
+
+TEST(Stability, ASafeStepSeesTheMusclesAndEndsInTime) {
+  const auto safe = [](double frequency) {
+    const Body body = pair_of_masses(1, {0.01, 0.1, frequency, 0});
+    return safe_dt(body, rest_places(body), {}, Method::paper_euler);
+  };
+  EXPECT_EQ(safe(100), 0.0005);
+  EXPECT_EQ(safe(0), 0.01);
+  const Body still = single_mass(1);
+  EXPECT_EQ(safe_dt(still, rest_places(still), {}, Method::paper_euler), 0.01);
+  const Body lost = pair_of_masses(1, {0.01, 0, 0, 0}, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_FALSE(safe_dt(lost, rest_places(lost), {}, Method::paper_euler) > 0);
+}
+
+TEST(Stability, RandomBodiesInMotionBearTheirSafeStep) {
+  for (const Method method : explicit_methods)
+    for (std::uint64_t seed = 0; seed < 6; ++seed)
+      for (const Scene& scene : {Scene{}, walking_scene()}) {
+        const Body body = random_body(60, 10, 5, seed);
+        const State birth = state_at_birth(body, scene);
+        const double dt = safe_dt(body, birth.position, scene, method);
+        const Answer a =
+            simulate(body, birth, scene, {method, Precision::float64, dt}, static_cast<std::uint64_t>(5 / dt));
+        EXPECT_EQ(a.task.status, Status::ok) << name(method) << ", " << seed << ": " << a.task.reason;
+      }
 }
 
 TEST(Stability, DegenerateBodiesHaveAnAnswer) {

@@ -72,16 +72,18 @@ State resting(const Body& body, const Scene& scene) {
   State state;
   for (const Mass& mass : body.masses) state.position.push_back(mass.rest);
   state.velocity.resize(body.masses.size());
-  state.start_energy = total_energy(body, state, scene, 0);
+  state.start_energy = total_energy(body, state, scene);
   return state;
 }
 
-Answer simulate(const Body& body, State state, const Scene& scene, const Stepping& stepping, std::uint64_t steps,
+Answer simulate(const Body& body, State state, const Scene& scene, const Steps& stepping, std::uint64_t steps,
                 Recording recording) {
   Answer answer{{}, std::move(state)};
   answer.task.body = &body;
   answer.task.state = &answer.state;
-  make_cpu_simulator(scene, stepping, 1)->run({&answer.task, 1}, steps, recording);
+  answer.task.dt = stepping.dt;
+  answer.task.steps = steps;
+  make_cpu_simulator(scene, stepping, 1)->run({&answer.task, 1}, recording);
   answer.task.state = nullptr;  // the state moves with the answer
   return answer;
 }
@@ -89,8 +91,9 @@ Answer simulate(const Body& body, State state, const Scene& scene, const Steppin
 Reference reference(const Body& body, State state, const Scene& scene, double dt, std::uint64_t steps) {
   Reference result;
   result.stress.resize(body.springs.size());
+  const double start = state.time;
   for (std::uint64_t step = 0; step < steps; ++step) {
-    const double t = static_cast<double>(state.steps) * dt;
+    const double t = start + static_cast<double>(step) * dt;
     std::vector<Vec3> force(body.masses.size());
     for (std::size_t i = 0; i < body.springs.size(); ++i) {
       const Spring& s = body.springs[i];
@@ -123,8 +126,8 @@ Reference reference(const Body& body, State state, const Scene& scene, double dt
       }
       x = x + dt * v;
     }
-    ++state.steps;
   }
+  state.time = start + static_cast<double>(steps) * dt;
   result.state = std::move(state);
   return result;
 }
@@ -139,7 +142,7 @@ bool same_bits(const State& a, const State& b) {
   const auto same = [](const std::vector<Vec3>& u, const std::vector<Vec3>& v) {
     return u.size() == v.size() && (u.empty() || std::memcmp(u.data(), v.data(), u.size() * sizeof(Vec3)) == 0);
   };
-  return a.steps == b.steps && same(a.position, b.position) && same(a.velocity, b.velocity);
+  return a.time == b.time && same(a.position, b.position) && same(a.velocity, b.velocity);
 }
 
 }  // namespace evodevo::test

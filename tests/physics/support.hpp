@@ -15,6 +15,15 @@ namespace evodevo::test {
 
 inline constexpr double pi = 3.14159265358979323846;
 
+/// How a test makes its steps.
+struct Steps {
+  Method method = Method::paper_euler;
+  Precision precision = Precision::float32;
+  double dt = 0.0005;  ///< s
+
+  operator Stepping() const { return {method, precision}; }
+};
+
 /// What a test of each precision tells apart: a little more than rounding brings in a few hundred steps.
 inline double tolerance(Precision precision) { return precision == Precision::float32 ? 2e-5 : 1e-12; }
 inline std::string name_of(Precision precision) { return precision == Precision::float32 ? "float32" : "float64"; }
@@ -59,7 +68,7 @@ struct Answer {
 };
 
 /// One body simulated alone on one thread.
-Answer simulate(const Body& body, State state, const Scene& scene, const Stepping& stepping, std::uint64_t steps,
+Answer simulate(const Body& body, State state, const Scene& scene, const Steps& stepping, std::uint64_t steps,
                 Recording recording = {});
 
 /// The same by a plain program in double precision that shares no code with the simulator: one spring after the other,

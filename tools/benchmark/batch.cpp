@@ -49,9 +49,11 @@ Rate Batch::rate(Recording recording) {
     states_[i] = births_[i % births_.size()];
     tasks[i].body = &bodies_[i % bodies_.size()];
     tasks[i].state = &states_[i];
+    tasks[i].dt = time_step;
+    tasks[i].steps = steps_;
   }
   const auto start = std::chrono::steady_clock::now();
-  simulator_->run(tasks, steps_, recording);
+  simulator_->run(tasks, recording);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   double evaluations = 0;
   for (const Task& task : tasks) {

@@ -54,7 +54,7 @@ Report conditions(const Settings& settings, const std::string& study, const std:
           {"scene", description(walking_scene())},
           {"method", "paper-euler"},
           {"precision", settings.precision},
-          {"dt", settings.stepping().dt}};
+          {"dt", time_step}};
 }
 
 std::string markdown(const Report& report) {

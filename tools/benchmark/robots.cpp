@@ -5,7 +5,9 @@
 #include <stdexcept>
 
 #include "body_building.hpp"
+#include "settings.hpp"
 #include "simulator.hpp"
+#include "time_steps.hpp"
 
 namespace evodevo::benchmark {
 namespace {
@@ -16,7 +18,9 @@ std::optional<Body> random_robot(const Experiment& experiment, std::uint64_t see
   BuiltBody built = build_body(experiment.encoding->decode(genome, experiment.world));
   if (!built.failure.empty()) return std::nullopt;
   const State birth = state_at_birth(built.body, experiment.scene);
-  if (!step_failure(built.body, birth.position, experiment.scene, experiment.stepping).empty()) return std::nullopt;
+  const LongestStep step =
+      longest_step({.dt = time_step}, built.body, birth.position, experiment.scene, Method::paper_euler);
+  if (!step.failure.empty()) return std::nullopt;
   return std::move(built.body);
 }
 

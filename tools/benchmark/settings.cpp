@@ -45,7 +45,7 @@ void check(const Settings& s) {
 }  // namespace
 
 Stepping Settings::stepping() const {
-  return {Method::paper_euler, precision == "float32" ? Precision::float32 : Precision::float64, 0.0005};
+  return {Method::paper_euler, precision == "float32" ? Precision::float32 : Precision::float64};
 }
 
 std::optional<Settings> parse(int argc, const char* const* argv) {

@@ -9,6 +9,8 @@
 
 namespace evodevo::benchmark {
 
+inline constexpr double time_step = 0.0005;  ///< s
+
 struct Settings {
   std::string command;  ///< the line itself
   std::string study, device, body, robots, precision, instructions, tables;

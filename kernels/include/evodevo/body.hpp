@@ -91,7 +91,7 @@ struct Body {
 struct State {
   std::vector<Vec3> position;  ///< m
   std::vector<Vec3> velocity;  ///< m/s
-  std::uint64_t steps = 0;     ///< time steps since birth; time is steps * dt
+  double time = 0;             ///< since birth, s
   double start_energy = 0;     ///< height + kinetic + elastic energy at birth, J; the energy guard's yardstick
 };
 

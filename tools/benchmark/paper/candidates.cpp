@@ -9,7 +9,7 @@ std::string description(const PaperMethod& method) {
 }
 
 TimedMethod::TimedMethod(const Settings& settings, const Body& body, const PaperMethod& method)
-    : simulator_({&body, 1}, settings.bodies, walking_scene(), settings.stepping().dt, method), steps_(settings.steps) {
+    : simulator_({&body, 1}, settings.bodies, walking_scene(), time_step, method), steps_(settings.steps) {
   simulator_.run(1);  // warm-up
 }
 

@@ -132,7 +132,7 @@ State PaperSimulator::state(std::size_t body) const {
   const PaperBody& at = layout_.bodies[body * copies_];
   const std::vector<cuda::Point<float>> places = places_.download(), velocities = velocities_.download();
   State state;
-  state.steps = steps_;
+  state.time = static_cast<double>(steps_) * world_.exact_dt;
   for (std::uint32_t i = at.first_mass; i < at.first_mass + at.masses; ++i) {
     const auto &p = places[i], &v = velocities[i];
     if (!std::isfinite(p.x + p.y + p.z + v.x + v.y + v.z))

@@ -32,7 +32,7 @@ extern "C" __global__ void evodevo_paper_table(const World<Number> world, const 
                                                unsigned entries, std::uint64_t step, unsigned count,
                                                Entry<Number>* table) {
   for (unsigned i = threadIdx.x; i < count * entries; i += blockDim.x)
-    table[i] = cuda::entry_of(actuators[i % entries], step + i / entries, world.exact_dt);
+    table[i] = cuda::entry_of(actuators[i % entries], static_cast<double>(step + i / entries) * world.exact_dt);
 }
 
 }  // namespace evodevo::benchmark

@@ -44,8 +44,9 @@ Rankings exact_rankings(const Settings& settings, const Scene& scene, const std:
   std::vector<State> states;
   for (const Body& robot : robots) states.push_back(state_at_birth(robot, scene));
   std::vector<Task> tasks(robots.size());
-  for (std::size_t i = 0; i < tasks.size(); ++i) tasks[i].body = &robots[i], tasks[i].state = &states[i];
-  simulator->run(tasks, steps, {.stress = true});
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    tasks[i] = {.body = &robots[i], .state = &states[i], .dt = time_step, .steps = steps};
+  simulator->run(tasks, {.stress = true});
   Rankings rankings;
   for (const Task& task : tasks) {
     if (task.status != Status::ok) throw std::runtime_error("a robot has diverged: " + task.reason);
@@ -78,7 +79,7 @@ Report tally_agreement(const Settings& settings) {
 
   Report rows = Report::array();
   for (const auto& [name, method] : stress_methods({})) {
-    PaperSimulator simulator(robots, 1, scene, settings.stepping().dt, method);
+    PaperSimulator simulator(robots, 1, scene, time_step, method);
     Report row = {{"recorded", name}};
     std::uint64_t done = 0;
     for (std::size_t window = 0; window < std::size(windows); ++window) {
@@ -105,7 +106,7 @@ Report tally_agreement(const Settings& settings) {
       {"scene", description(scene)},
       {"method", "paper-euler"},
       {"precision", settings.precision},
-      {"dt", settings.stepping().dt},
+      {"dt", time_step},
       {"note", "The share of the " + std::to_string(sought) +
                    " truly least and most stressed springs, by exact stress of our simulator, that are among the " +
                    std::to_string(sought) +

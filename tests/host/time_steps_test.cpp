@@ -1,0 +1,63 @@
+// Which steps a body takes.
+#include "time_steps.hpp"
+
+#include <gtest/gtest.h>
+
+#include "simulator.hpp"
+#include "stability.hpp"
+
+namespace evodevo {
+namespace {
+
+/// One mass with 399 springs of 10,000 N/m that lead away on one line: omega^2 is about 399 k/m, and 2/omega 0.45 ms.
+Body star() {
+  Body body;
+  body.materials = {{10000, 0, 0, 0}};
+  for (int i = 0; i < 400; ++i) body.masses.push_back({{i == 0 ? 0.0 : 1.0, 0, 1e-3 * i}, 0.2, 0, 0});
+  for (std::uint32_t i = 1; i < 400; ++i) body.springs.push_back({0, i, 1, 0});
+  return body;
+}
+
+LongestStep longest(const StepRule& rule, const Scene& scene = {}, Method method = Method::paper_euler) {
+  const Body body = star();
+  return longest_step(rule, body, state_at_birth(body, {}).position, scene, method);
+}
+
+TEST(TimeSteps, ABodyThatAloneExceedsAFixedStepIsTold) {
+  EXPECT_EQ(longest({.dt = 0.0005}).failure, "unstable dt: 0.0005 s is too long for the body's springs");
+  EXPECT_EQ(longest({.dt = 0.0002}).failure, "");
+  EXPECT_EQ(longest({.dt = 0.0005, .refine = 2}).failure, "") << "half of it is borne";
+  Scene floor;
+  floor.floor = Floor{1e8};
+  EXPECT_EQ(longest({.dt = 0.0002}, floor).failure,
+            "unstable dt: 0.0002 s is too long for the body's lightest mass on this floor");
+  EXPECT_EQ(longest({.dt = 0.0005, .run_unstable = true}, floor).failure, "") << "as the file asks";
+}
+
+TEST(TimeSteps, WithoutAFixedStepABodyHasItsOwn) {
+  const LongestStep springs = longest({.dt = std::nullopt});
+  EXPECT_EQ(springs.failure, "");
+  EXPECT_NEAR(springs.dt, 0.9 * 2 / std::sqrt(399 * 10000 / 0.2), 1e-5);
+  Scene floor;
+  floor.floor = Floor{1e8};
+  EXPECT_DOUBLE_EQ(longest({.dt = std::nullopt}, floor).dt, 1.2 * std::sqrt(0.2 / 1e8));
+  floor.floor = Floor{1e18};
+  EXPECT_EQ(longest({.dt = std::nullopt}, floor).failure.substr(0, 54),
+            "unstable dt: the body would need steps of 5.3665631459");
+}
+
+TEST(TimeSteps, StepsDivideTheirDuration) {
+  const auto expect = [](const Pace& pace, double dt, std::uint64_t steps) {
+    EXPECT_DOUBLE_EQ(pace.dt, dt);
+    EXPECT_EQ(pace.steps, steps);
+  };
+  expect(pace_over(1, {.dt = 0.0005}, 1), 0.0005, 2000);
+  expect(pace_over(1, {.dt = 0.0005, .refine = 4}, 1), 0.000125, 8000);
+  expect(pace_over(1, {.dt = std::nullopt}, 0.3), 0.25, 4);
+  expect(pace_over(1, {.dt = std::nullopt, .refine = 4}, 0.3), 0.0625, 16);
+  expect(pace_over(0.25, {.dt = std::nullopt}, 0.25), 0.25, 1);
+  expect(pace_over(0.001, {.dt = std::nullopt}, 0.25), 0.001, 1);
+}
+
+}  // namespace
+}  // namespace evodevo
