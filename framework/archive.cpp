@@ -51,6 +51,14 @@ CREATE VIEW members AS
   FROM generations JOIN individuals ON born <= generation AND (died IS NULL OR died > generation);
 )sql";
 
+/// Runs of older programs come without it.
+constexpr const char* verification_schema = R"sql(
+CREATE TABLE IF NOT EXISTS verifications(
+  individual INTEGER NOT NULL, trial TEXT NOT NULL, position INTEGER NOT NULL,
+  status TEXT NOT NULL, reason TEXT, value REAL,  -- of the first objective
+  PRIMARY KEY(individual, trial)) WITHOUT ROWID;
+)sql";
+
 std::string utc_now() {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   std::tm utc{};
@@ -204,6 +212,11 @@ Archive Archive::resume(const fs::path& folder) {
   return archive;
 }
 
+Archive Archive::annotate(const fs::path& folder) {
+  require_run(folder);
+  return opened(folder, SQLite::OPEN_READWRITE);
+}
+
 Archive Archive::read(const fs::path& folder) {
   require_run(folder);
   return opened(folder, SQLite::OPEN_READONLY);
@@ -272,6 +285,47 @@ void Archive::commit(const std::vector<Individual>& newborns, const std::vector<
   add.bind(8, summary.wall_time);
   add.exec();
   transaction.commit();
+}
+
+void Archive::add_verifications(const std::vector<Verification>& verifications) try {
+  SQLite::Database& database = files_->database;
+  SQLite::Transaction transaction(database);
+  database.exec(verification_schema);
+  SQLite::Statement insert(database, "INSERT OR REPLACE INTO verifications VALUES(?, ?, ?, ?, ?, ?)");
+  for (const Verification& verification : verifications) {
+    int position = 0;
+    for (const Trial& trial : verification.trials) {
+      insert.bind(1, verification.individual);
+      insert.bind(2, trial.name);
+      insert.bind(3, position++);
+      insert.bind(4, name(trial.status));
+      if (trial.status != Status::ok) insert.bind(5, trial.reason);
+      bind_optional(insert, 6, trial.value);
+      insert.exec();
+      insert.reset();
+      insert.clearBindings();
+    }
+  }
+  transaction.commit();
+} catch (const SQLite::Exception& error) {
+  throw ArchiveError(folder_.string() + ": verifications cannot be written: " + error.what());
+}
+
+std::optional<Verification> Archive::verification(std::uint32_t id) const {
+  if (!files_->database.tableExists("verifications")) return std::nullopt;
+  SQLite::Statement row(files_->database,
+                        "SELECT trial, status, reason, verifications.value, scores.value FROM verifications "
+                        "JOIN scores USING(individual) WHERE individual = ? AND objective = 0 ORDER BY position");
+  row.bind(1, id);
+  Verification verification{id, 0, {}};
+  while (row.executeStep()) {
+    verification.fitness = row.getColumn(4).getDouble();
+    verification.trials.push_back({row.getColumn(0).getString(), status_from(row.getColumn(1).getString()),
+                                   row.isColumnNull(2) ? "" : row.getColumn(2).getString(),
+                                   optional_double(row.getColumn(3))});
+  }
+  if (verification.trials.empty()) return std::nullopt;
+  return verification;
 }
 
 std::string Archive::record(const std::string& key) const {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "population.hpp"
+#include "verification.hpp"
 
 namespace evodevo {
 
@@ -29,6 +30,8 @@ class Archive {
   static Archive create(const std::filesystem::path& folder, const Experiment& experiment, const std::string& device);
   /// Opens a record to go on with it; refuses while another process writes it.
   static Archive resume(const std::filesystem::path& folder);
+  /// Opens a record to add what is found out about its individuals. Does not disturb a process that writes it.
+  static Archive annotate(const std::filesystem::path& folder);
   /// Opens a record to read. Does not disturb a process that writes it.
   static Archive read(const std::filesystem::path& folder);
 
@@ -38,6 +41,9 @@ class Archive {
   /// Adds one generation in one transaction: its newborns with their results, who was dropped, and its summary.
   void commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,
               const Summary& summary);
+
+  /// Adds verifications; they take the place of earlier ones of the same individuals.
+  void add_verifications(const std::vector<Verification>& verifications);
 
   const std::filesystem::path& folder() const { return folder_; }
   /// An entry of the run's record, such as "seed" or "device". Throws ArchiveError if there is none.
@@ -53,6 +59,8 @@ class Archive {
   std::optional<ArchivedIndividual> individual(std::uint32_t id) const;
   /// The ids of the `count` individuals with the best first objective, best first; ties in the order of birth.
   std::vector<std::uint32_t> best(std::size_t count) const;
+  /// Of an individual; nothing where it was not verified.
+  std::optional<Verification> verification(std::uint32_t id) const;
 
  private:
   struct Files;

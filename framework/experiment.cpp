@@ -46,6 +46,7 @@ void declare(Parameters& p, Experiment& experiment) {
   p.integer(experiment.evaluations, "evaluations", {1, 1e9}, "Evaluations in the whole run.");
   p.integer(experiment.population, "population", {1, 1e6}, "Individuals that live at once.");
   p.integer(experiment.newcomers, "newcomers", {0, 1e6}, "Random individuals that enter each generation.");
+  p.integer(experiment.verify, "verify", {0, 1000}, "Best individuals to verify when the run ends.");
 }
 
 /// The folder that paths in the experiment are relative to.

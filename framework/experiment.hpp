@@ -44,6 +44,7 @@ struct Experiment {
   std::int64_t evaluations = 1000;  ///< in the whole run
   std::int64_t population = 50;
   std::int64_t newcomers = 1;  ///< random individuals that enter each generation
+  std::int64_t verify = 1;     ///< best individuals to verify when the run ends
 
   World world;
   std::unique_ptr<Encoding> encoding;

@@ -19,6 +19,7 @@ constexpr Command commands[] = {
     {"run", run_command, "run EXPERIMENT.toml              evolve robots"},
     {"resume", resume_command, "resume DIR                       go on with a run that was interrupted"},
     {"show", show_command, "show DIR                         what a run has come to"},
+    {"verify", verify_command, "verify DIR                       whether its best robots keep their fitness"},
     {"body", body_command, "body DIR                         a robot of a run, as JSON"},
     {"simulate", simulate_command, "simulate BODY.json EXPERIMENT.toml   one body in a scene"},
     {"check", check_command, "check EXPERIMENT.toml            whether an experiment can be run"},

@@ -15,6 +15,7 @@ using Arguments = std::vector<std::string>;
 int run_command(const Arguments& arguments);
 int resume_command(const Arguments& arguments);
 int check_command(const Arguments& arguments);
+int verify_command(const Arguments& arguments);
 int show_command(const Arguments& arguments);
 int body_command(const Arguments& arguments);
 int simulate_command(const Arguments& arguments);

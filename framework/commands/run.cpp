@@ -6,6 +6,7 @@
 
 #include "commands/options.hpp"
 #include "commands/progress.hpp"
+#include "commands/verification_report.hpp"
 #include "evolution.hpp"
 #include "parallel.hpp"
 #include "text.hpp"
@@ -90,7 +91,12 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
   print_outcome(experiment, archive, progress);
   print_time_spent(time, simulator);
   const std::vector<Summary> generations = archive.generations();
-  if (!generations.empty() && generations.back().evaluations >= experiment.evaluations) return 0;
+  if (!generations.empty() && generations.back().evaluations >= experiment.evaluations) {
+    const auto count = static_cast<std::size_t>(experiment.verify);
+    for (const Verification& verification : verify_best(experiment, simulator, archive, count))
+      print(verification, experiment.objectives.front());
+    return 0;
+  }
   std::cout << "interrupted; to go on: " << resume_command_for(archive) << std::endl;
   return interrupted;
 }

@@ -5,6 +5,7 @@
 
 #include "archive.hpp"
 #include "commands/options.hpp"
+#include "commands/verification_report.hpp"
 
 namespace evodevo {
 namespace {
@@ -93,6 +94,7 @@ class Report {
       objectives[objectives_[i].name] = individual.result.objectives[i];
     Json ancestors = Json::array();
     for (std::size_t i = 1; i < line.size(); ++i) ancestors.push_back(line[i].id);
+    const auto verification = archive_.verification(id);
     return {{"individual", individual.id},
             {"generation", individual.born},
             {"age", last_age(individual, last_generation_)},
@@ -100,7 +102,8 @@ class Report {
             {"objectives", std::move(objectives)},
             {"parents", individual.parents},
             {"made_by", individual.made_by},
-            {"ancestry", std::move(ancestors)}};
+            {"ancestry", std::move(ancestors)},
+            {"verification", verification ? to_json(*verification, objectives_.front()) : Json(nullptr)}};
   }
 
   void print_generations() const {
@@ -124,7 +127,10 @@ class Report {
       for (std::size_t i = 0; i < objectives_.size(); ++i)
         std::printf("%s %s %s, ", objectives_[i].name.c_str(), number(individual.result.objectives[i]).c_str(),
                     objectives_[i].unit.c_str());
-      std::printf("born in generation %u, age %u\n", individual.born, last_age(individual, last_generation_));
+      std::printf("born in generation %u, age %u", individual.born, last_age(individual, last_generation_));
+      if (const auto verification = archive_.verification(id))
+        std::printf(", %s", marks_text(*verification, objectives_.front().maximise).c_str());
+      std::printf("\n");
       std::string text;
       for (const ArchivedIndividual& ancestor : line) {
         if (!text.empty()) text += " < ";

@@ -1,0 +1,96 @@
+// evodevo verify: whether champions keep their fitness when they are simulated again in other ways.
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "archive.hpp"
+#include "commands/options.hpp"
+#include "commands/verification_report.hpp"
+
+namespace evodevo {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace po = boost::program_options;
+
+constexpr std::int64_t most_verified = 1000;
+
+std::string number(const std::optional<double>& value) {
+  if (!value) return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", *value);
+  return text;
+}
+
+}  // namespace
+
+std::vector<Verification> verify_best(const Experiment& experiment, Simulator& simulator, Archive& archive,
+                                      std::size_t count) {
+  std::vector<Individual> individuals;
+  for (const std::uint32_t id : archive.best(count)) individuals.push_back(*archive.individual(id));
+  std::vector<Verification> verifications = verify(experiment, simulator, individuals);
+  archive.add_verifications(verifications);
+  return verifications;
+}
+
+std::string marks_text(const Verification& verification, bool maximise) {
+  std::string text;
+  for (const std::string& mark : marks(verification, maximise)) text += (text.empty() ? "" : ", ") + mark;
+  return text.empty() ? "verified" : text;
+}
+
+void print(const Verification& verification, const Objective& objective) {
+  std::printf("individual %u: %s %s %s: %s\n", verification.individual, objective.name.c_str(),
+              number(verification.fitness).c_str(), objective.unit.c_str(),
+              marks_text(verification, objective.maximise).c_str());
+  for (const Trial& trial : verification.trials) {
+    const char* outcome = held(verification, trial, objective.maximise) ? "held" : "not held";
+    std::printf("  %-14s %10s  %s%s\n", trial.name.c_str(), number(trial.value).c_str(), outcome,
+                trial.reason.empty() ? "" : (", " + std::string(name(trial.status)) + ": " + trial.reason).c_str());
+  }
+  std::fflush(stdout);
+}
+
+Json to_json(const Verification& verification, const Objective& objective) {
+  Json trials = Json::array();
+  for (const Trial& trial : verification.trials)
+    trials.push_back({{"trial", trial.name},
+                      {"status", name(trial.status)},
+                      {"reason", trial.reason},
+                      {"value", trial.value ? Json(*trial.value) : Json(nullptr)},
+                      {"held", held(verification, trial, objective.maximise)}});
+  return {{"individual", verification.individual},
+          {"fitness", verification.fitness},
+          {"marks", marks(verification, objective.maximise)},
+          {"trials", std::move(trials)}};
+}
+
+int verify_command(const Arguments& arguments) {
+  CommandLine line{"verify DIR [--best N] [--json]", {"DIR"}, {}};
+  line.options.add_options()("best", po::value<std::int64_t>()->default_value(3), "how many of the best individuals")(
+      "json", "machine-readable");
+  const auto given = parse(std::move(line), arguments);
+  if (!given) return 0;
+  const auto best = (*given)["best"].as<std::int64_t>();
+  if (best < 1 || best > most_verified)
+    throw UsageError("--best " + std::to_string(best) + ": expected 1 to " + std::to_string(most_verified));
+  Archive archive = Archive::annotate((*given)["DIR"].as<std::string>());
+  if (archive.best(1).empty())
+    throw ArchiveError(archive.folder().string() + ": no individual has a fitness to verify");
+  Experiment experiment = recorded_experiment(archive);
+  experiment.device = "auto";  // whatever the run had, it may not be here
+  const auto simulator = make_simulator(experiment);
+  const auto verifications = verify_best(experiment, *simulator, archive, static_cast<std::size_t>(best));
+  const Objective& objective = experiment.objectives.front();
+  Json all = Json::array();
+  for (const Verification& verification : verifications) {
+    if (given->contains("json"))
+      all.push_back(to_json(verification, objective));
+    else
+      print(verification, objective);
+  }
+  if (given->contains("json")) std::cout << all.dump(1) << '\n';
+  return 0;
+}
+
+}  // namespace evodevo
