@@ -226,7 +226,7 @@ void Evaluation::measure(std::span<Life> lives, const Progress& progress) const 
       snapshot.centre = centre_of_mass(life.living.body, life.living.state.position);
       life.snapshots.push_back(snapshot);
     }
-    progress(now / std::max(1.0, marks_.back()));
+    progress(marks_.back() > 0 ? now / marks_.back() : 1);
   }
   for (Life& life : lives) score(life);
 }
