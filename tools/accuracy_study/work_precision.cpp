@@ -44,13 +44,33 @@ Measured measure(const Trial& trial, const Setting& setting, const Device& devic
           benchmark::median(seconds) / trial.duration / static_cast<double>(travellers.size())};
 }
 
+/// Compiles a GPU's kernels on all cores at once, which is no part of any cost.
+void compile_kernels(const std::vector<Trial>& trials, const Device& device, Workers& workers) {
+  struct Kernel {
+    const Trial* trial;
+    Setting setting;
+  };
+  std::vector<Kernel> kernels;
+  for (const Trial& trial : trials)
+    for (const Method method : device.methods())
+      for (const Precision precision : {Precision::float32, Precision::float64})
+        kernels.push_back({&trial, {method, precision, 1e-5}});
+  workers.for_each(kernels.size(), [&](std::size_t i) {
+    const auto& [trial, setting] = kernels[i];
+    Traveller traveller{&trial->body, trial->start};
+    Simulation(trial->scene, setting, {device.name, 1}).advance({&traveller, 1}, setting.dt);
+  });
+}
+
 }  // namespace
 
 std::vector<Table> work_precision(const Settings& settings) {
   Workers workers(settings.device.threads);
   Table table("work_precision", {"scene", "reference", "method", "precision", "dt (s)", "error (1)",
                                  "cost (s per simulated s)", "noise ceiling (1)"});
-  for (const Trial& trial : trials(settings.quick, workers))
+  const std::vector<Trial> all = trials(settings.quick, workers);
+  if (settings.device.name == "cuda") compile_kernels(all, settings.device, workers);
+  for (const Trial& trial : all)
     for (const Method method : settings.device.methods())
       for (const Precision precision : {Precision::float32, Precision::float64})
         for (const double dt : time_steps(settings.quick)) {
