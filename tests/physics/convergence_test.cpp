@@ -1,63 +1,13 @@
 // Every method tends to the same motion, and with its own order.
 #include <gtest/gtest.h>
 
-#include <boost/numeric/odeint.hpp>
 #include <cmath>
 
+#include "reference.hpp"
 #include "support.hpp"
 
 namespace evodevo::test {
 namespace {
-
-/// The right-hand side for places and velocities, one after the other, of a body in a scene without a floor.
-class EquationOfMotion {
- public:
-  EquationOfMotion(const Body& body, const Scene& scene) : body_(body), scene_(scene) {}
-
-  void operator()(const std::vector<double>& y, std::vector<double>& rate, double t) const {
-    const std::size_t half = y.size() / 2;
-    for (std::size_t i = 0; i < half; ++i) rate[i] = y[half + i], rate[half + i] = 0;
-    for (const Spring& s : body_.springs) add_spring(s, y, rate, t);
-    for (std::size_t i = 0; i < half; i += 3) {
-      const double* v = &y[half + i];
-      const double speed = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-      const double drag = scene_.drag ? scene_.drag->coefficient * speed / body_.masses[i / 3].mass : 0;
-      const double damping = scene_.damping ? scene_.damping->rate : 0;
-      for (std::size_t c = 0; c < 3; ++c) rate[half + i + c] -= (drag + damping) * v[c];
-      if (scene_.gravity) rate[half + i + 2] -= scene_.gravity->acceleration;
-    }
-  }
-
- private:
-  void add_spring(const Spring& s, const std::vector<double>& y, std::vector<double>& rate, double t) const {
-    const Material& m = body_.materials[s.material];
-    const std::size_t a = std::size_t{3} * s.a, b = std::size_t{3} * s.b, half = y.size() / 2;
-    const double d[] = {y[b] - y[a], y[b + 1] - y[a + 1], y[b + 2] - y[a + 2]};
-    const double distance = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    const double rest = s.rest_length * (1 + m.amplitude * std::sin(2 * pi * m.frequency * t + m.phase));
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double force = m.stiffness * (distance - rest) * d[c] / distance;
-      rate[half + a + c] += force / body_.masses[s.a].mass;
-      rate[half + b + c] -= force / body_.masses[s.b].mass;
-    }
-  }
-
-  const Body& body_;
-  const Scene& scene_;
-};
-
-/// The places after `time` s, to twelve digits, by the method of Dormand and Prince.
-State solution(const Body& body, const State& start, const Scene& scene, double time) {
-  namespace odeint = boost::numeric::odeint;
-  std::vector<double> y;
-  for (const auto* vectors : {&start.position, &start.velocity})
-    for (const Vec3& v : *vectors) y.insert(y.end(), {v.x, v.y, v.z});
-  const auto stepper = odeint::make_controlled<odeint::runge_kutta_dopri5<std::vector<double>>>(1e-13, 1e-13);
-  odeint::integrate_adaptive(stepper, EquationOfMotion(body, scene), y, 0.0, time, 1e-4);
-  State end = start;
-  for (std::size_t i = 0; i < end.position.size(); ++i) end.position[i] = {y[3 * i], y[3 * i + 1], y[3 * i + 2]};
-  return end;
-}
 
 struct Smooth {
   const char* name;
@@ -106,7 +56,7 @@ TEST_P(Convergence, TheErrorFallsWithTheOrderOfTheMethod) {
   const int order = order_of(GetParam());
   const double time = 0.2;
   for (const Smooth& smooth : {one_spring(), lattice()}) {
-    const State start = turning(smooth), truth = solution(smooth.body, start, smooth.scene, time);
+    const State start = turning(smooth), truth = accuracy::solution(smooth.body, start, smooth.scene, time);
     ASSERT_GT(largest_difference(start, truth), 0.02);
     const auto error = [&](std::uint64_t steps) {
       const Steps stepping{GetParam(), Precision::float64, time / static_cast<double>(steps)};

@@ -1,7 +1,6 @@
 #include "robots.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <stdexcept>
 
 #include "body_building.hpp"
@@ -12,9 +11,14 @@
 namespace evodevo::benchmark {
 namespace {
 
-std::optional<Body> random_robot(const Experiment& experiment, std::uint64_t seed) {
-  Rng rng = experiment.world.rng(seed);
-  const Genome genome = experiment.encoding->random(experiment.layout, rng);
+bool has_muscle(const Body& body) {
+  return std::any_of(body.springs.begin(), body.springs.end(),
+                     [&](const Spring& spring) { return body.materials[spring.material].amplitude != 0; });
+}
+
+}  // namespace
+
+std::optional<Body> robot_of(const Experiment& experiment, const Genome& genome) {
   BuiltBody built = build_body(experiment.encoding->decode(genome, experiment.world));
   if (!built.failure.empty()) return std::nullopt;
   const State birth = state_at_birth(built.body, experiment.scene);
@@ -24,22 +28,24 @@ std::optional<Body> random_robot(const Experiment& experiment, std::uint64_t see
   return std::move(built.body);
 }
 
-bool has_muscle(const Body& body) {
-  return std::any_of(body.springs.begin(), body.springs.end(),
-                     [&](const Spring& spring) { return body.materials[spring.material].amplitude != 0; });
-}
-
-}  // namespace
-
-std::vector<Body> random_robots(const Experiment& experiment, std::size_t count, std::size_t springs) {
-  std::vector<Body> robots;
-  for (std::uint64_t seed = 1; robots.size() < count; ++seed) {
+std::vector<Genome> random_genomes(const Experiment& experiment, std::size_t count, std::size_t springs) {
+  std::vector<Genome> genomes;
+  for (std::uint64_t seed = 1; genomes.size() < count; ++seed) {
     if (seed > 100 * count)
       throw std::runtime_error("too few random robots of " + experiment.name + " have a muscle and " +
                                std::to_string(springs) + " springs; name an experiment with larger ones");
-    auto robot = random_robot(experiment, seed);
-    if (robot && has_muscle(*robot) && robot->springs.size() >= springs) robots.push_back(*std::move(robot));
+    Rng rng = experiment.world.rng(seed);
+    Genome genome = experiment.encoding->random(experiment.layout, rng);
+    const auto robot = robot_of(experiment, genome);
+    if (robot && has_muscle(*robot) && robot->springs.size() >= springs) genomes.push_back(std::move(genome));
   }
+  return genomes;
+}
+
+std::vector<Body> random_robots(const Experiment& experiment, std::size_t count, std::size_t springs) {
+  std::vector<Body> robots;
+  for (const Genome& genome : random_genomes(experiment, count, springs))
+    robots.push_back(*robot_of(experiment, genome));
   return robots;
 }
 

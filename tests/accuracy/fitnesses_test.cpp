@@ -1,0 +1,55 @@
+// Fitnesses are those that evolution sees.
+#include "fitnesses.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "evaluation.hpp"
+#include "support/experiments.hpp"
+
+namespace evodevo::accuracy {
+namespace {
+
+TEST(Fitnesses, AreThoseOfAnEvaluation) {
+  const Experiment experiment =
+      evodevo::testing::read(evodevo::testing::small_experiment, {{"development.cycles", "0", ""}});
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  const Evaluation evaluation(experiment, *simulator);
+  std::vector<Genome> genomes;
+  std::vector<Newborn> newborns;
+  std::vector<Body> bodies;
+  std::vector<double> expected;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Rng rng = experiment.world.rng(seed);
+    genomes.push_back(experiment.encoding->random(experiment.layout, rng));
+  }
+  for (const Genome& genome : genomes) newborns.push_back({0, 0, &genome});
+  const std::vector<Result> results = evaluation.evaluate(newborns, [](double) {});
+  const std::vector<Life> lives = evaluation.birth(newborns);
+  for (std::size_t i = 0; i < lives.size(); ++i)
+    if (results[i].status == Status::ok) {
+      bodies.push_back(lives[i].living.body);
+      expected.push_back(results[i].objectives.front());
+    }
+  ASSERT_GE(bodies.size(), 5u);
+  const Setting same{experiment.stepping.method, experiment.stepping.precision, *experiment.step.dt};
+  const Fitnesses measured = measure(experiment, bodies, same, {"cpu", 1});
+  EXPECT_EQ(measured.values, expected);
+  EXPECT_EQ(measured.diverged, 0);
+  EXPECT_GT(measured.cost, 0);
+}
+
+TEST(Fitnesses, OfWhatDivergesAreNoNumbers) {
+  const Experiment experiment = evodevo::testing::read(evodevo::testing::small_experiment);
+  Body body;
+  body.materials = {{1e9, 0, 0, 0}};
+  body.masses = {{{0, 0, 0}, 0.2}, {{1, 0, 0}, 0.2}};
+  body.springs = {{0, 1, 1.1, 0}};
+  const Fitnesses measured = measure(experiment, {&body, 1}, {}, {"cpu", 1});
+  EXPECT_TRUE(std::isnan(measured.values[0]));
+  EXPECT_EQ(measured.diverged, 1);
+}
+
+}  // namespace
+}  // namespace evodevo::accuracy

@@ -1,0 +1,86 @@
+// What the studies claim.
+#include "studies.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenes.hpp"
+
+namespace evodevo::accuracy {
+namespace {
+
+Settings quick() {
+  Settings settings;
+  settings.quick = true;
+  return settings;
+}
+
+TEST(Orders, WithoutContactAreThoseOfTheory) {
+  const Table found = orders(quick()).at(1);
+  int smooth = 0;
+  for (std::size_t row = 0; row < found.rows().size(); ++row) {
+    if (found.text(row, "contact") == "yes") continue;
+    ++smooth;
+    EXPECT_NEAR(found.number(row, "observed order"), found.number(row, "order in theory"), 0.1)
+        << found.text(row, "scene") << ", " << found.text(row, "method");
+  }
+  EXPECT_EQ(smooth, 12);
+}
+
+TEST(Beam, BendsAndSwingsAsEulerAndBernoulliSay) {
+  const Table table = beam(quick()).front();
+  double last_sum = 1;
+  for (std::size_t row = 0; row < table.rows().size(); ++row) {
+    const auto off = [&](const std::string& quantity) {
+      return std::abs(table.number(row, quantity) / table.number(row, "Euler-Bernoulli " + quantity) - 1);
+    };
+    const double deflection = off("deflection (m)"), frequency = off("first frequency (Hz)");
+    // that theory knows no shear, and that the held end cannot draw in, matters less the longer the beam
+    EXPECT_LT(deflection, 0.02) << row;
+    EXPECT_LT(frequency, row == 0 ? 0.04 : 0.005) << row;
+    EXPECT_LT(deflection + frequency, last_sum) << row;
+    last_sum = deflection + frequency;
+  }
+}
+
+TEST(Trials, HaveATruthThatTheSimulatorFinds) {
+  struct Expected {
+    Trial trial;
+    double error;
+  };
+  for (const auto& [trial, error] :
+       {Expected{spring_trial(), 1e-4}, Expected{beam_trial(), 1e-5}, Expected{lattice_trial(), 1e-3},
+        Expected{swimmer_trial(), 1e-2}, Expected{drop_trial(), 1e-2}, Expected{slide_trial(), 1e-6}}) {
+    const Setting setting{Method::velocity_verlet, Precision::float64, 0.0005};
+    const Traveller end = simulate(trial.body, trial.start, trial.scene, setting, trial.duration);
+    ASSERT_TRUE(end.alive()) << trial.name;
+    EXPECT_LT(trial.error(end.state), error) << trial.name;
+    EXPECT_DOUBLE_EQ(trial.error(trial.start), 1) << trial.name;
+  }
+}
+
+TEST(Energies, AreKeptByTheSymplecticMethodsAlone) {
+  const Table table = energies(quick()).front();
+  std::size_t row = 0;
+  for (const Method method : Device{}.methods())
+    for (int precision = 0; precision < 2; ++precision) {
+      double last = 0;
+      for (;
+           row < table.rows().size() && table.text(row, "method") == name(method) && table.number(row, "steps") > last;
+           ++row)
+        last = table.number(row, "steps");
+      const double kept = table.number(row - 1, "energy (of the first)");
+      EXPECT_EQ(last, 3e4);
+      if (method == Method::rk4)
+        EXPECT_TRUE(kept > 0.3 && kept < 0.9) << kept;
+      else if (is_explicit(method))
+        EXPECT_NEAR(kept, 1, 0.1) << name(method);
+      else
+        EXPECT_LT(kept, 0.1) << name(method);
+    }
+  EXPECT_EQ(row, table.rows().size());
+}
+
+}  // namespace
+}  // namespace evodevo::accuracy

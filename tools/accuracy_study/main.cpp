@@ -1,0 +1,49 @@
+// Writes the tables of the studies that are asked for.
+#include <chrono>
+#include <fstream>
+#include <iostream>
+#include <stdexcept>
+
+#include "parallel.hpp"
+#include "studies.hpp"
+
+namespace evodevo::accuracy {
+namespace {
+
+const Study& study_named(const std::string& name) {
+  for (const Study& study : studies)
+    if (study.name == name) return study;
+  throw std::logic_error("no study " + name);
+}
+
+/// What made the tables, so that anyone can repeat it.
+void write_origin(const Settings& settings) {
+  std::ofstream stream(settings.folder / "origin.txt");
+  stream << settings.command << '\n'
+         << settings.device.description() << ", " << thread_count(settings.device.threads) << " host threads\n";
+  if (!stream.flush()) throw std::runtime_error((settings.folder / "origin.txt").string() + ": cannot be written");
+}
+
+void run(const Settings& settings) {
+  std::filesystem::create_directories(settings.folder);
+  for (const std::string& name : settings.studies) {
+    const auto start = std::chrono::steady_clock::now();
+    for (const Table& table : study_named(name).run(settings)) write(table, settings.folder);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    std::cerr << "accuracy: " << name << " took " << seconds.count() << " s\n";
+  }
+  write_origin(settings);
+}
+
+}  // namespace
+}  // namespace evodevo::accuracy
+
+int main(int argc, char** argv) {
+  try {
+    if (const auto settings = evodevo::accuracy::parse(argc, argv)) evodevo::accuracy::run(*settings);
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "accuracy: " << error.what() << '\n';
+    return 2;
+  }
+}
