@@ -77,7 +77,7 @@ std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, cons
 }
 
 std::vector<Result> Evaluation::evaluate_cohort(std::span<const Newborn> newborns, const Progress& progress) const {
-  const double share = development_time() / std::max(1.0, development_time() + marks_.back());
+  const double whole = development_time() + marks_.back(), share = whole > 0 ? development_time() / whole : 0;
   std::vector<Life> lives = birth(newborns);
   develop(lives, [&](double done) { progress(done * share); });
   measure(lives, [&](double done) { progress(share + done * (1 - share)); });
@@ -226,7 +226,7 @@ void Evaluation::measure(std::span<Life> lives, const Progress& progress) const 
       snapshot.centre = centre_of_mass(life.living.body, life.living.state.position);
       life.snapshots.push_back(snapshot);
     }
-    progress(now / std::max(1.0, marks_.back()));
+    progress(marks_.back() > 0 ? now / marks_.back() : 1);
   }
   for (Life& life : lives) score(life);
 }

@@ -372,8 +372,8 @@ __device__ __forceinline__ void collect(const Body& body, const Share& share, co
 /// Makes `count` steps, whose lengths are in the table. The sums live no longer than this, so that no call of a
 /// function drives them out of the registers. A warp without springs only moves masses.
 template <bool has_springs>
-__device__ __forceinline__ void advance(const Body& body, const Share& share, unsigned turns, unsigned count,
-                                        Movers& movers, Totals& totals) {
+__device__ __forceinline__ void advance(const Body& body, const World<Number>& world, const Share& share,
+                                        unsigned turns, unsigned count, Movers& movers, Totals& totals) {
   const Number resolution = static_cast<Number>(body.resolution);
   const unsigned row_bytes = body.entries * sizeof(Entry<Number>);
   Lengths lengths{body.table_offset};
@@ -382,7 +382,7 @@ __device__ __forceinline__ void advance(const Body& body, const Share& share, un
   for (unsigned step = 0; step < count; ++step) {
     if constexpr (has_springs) add_spring_forces(body, share, turns, lengths, sums);
     __syncthreads();
-    move_masses(body, body.world, resolution, movers);
+    move_masses(body, world, resolution, movers);
     __syncthreads();
     if constexpr (actuation) lengths.table += row_bytes;
     if constexpr (actuation && work) lengths.rates += row_bytes / 2;
@@ -390,7 +390,8 @@ __device__ __forceinline__ void advance(const Body& body, const Share& share, un
   if constexpr (has_springs) collect(body, share, sums, totals);
 }
 
-extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1) evodevo_run_resident(const Body* bodies) {
+extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)
+    evodevo_run_resident(const Body* bodies) {
   const Body& body = bodies[blockIdx.x];
   const Share share = share_of(body);
   const unsigned turns = chunked ? 0 : *share.turns;
@@ -400,8 +401,8 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1) evodevo_run
   fill_table(body, 0, 1);
   __syncthreads();
   for (std::uint64_t done = 0; done < body.steps;) {
-    const unsigned until_check = static_cast<unsigned>(
-        min(body.steps - done, static_cast<std::uint64_t>(guard_interval) - done % guard_interval));
+    const unsigned until_check =
+        static_cast<unsigned>(min(body.steps - done, static_cast<std::uint64_t>(guard_interval) - done % guard_interval));
     unsigned now = until_check;
     if constexpr (actuation) {
       now = min(until_check, body.table_steps);
@@ -409,9 +410,9 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1) evodevo_run
       __syncthreads();
     }
     if (share.chunks > 0)
-      advance<true>(body, share, turns, now, movers, totals);
+      advance<true>(body, body.world, share, turns, now, movers, totals);
     else
-      advance<false>(body, share, turns, now, movers, totals);
+      advance<false>(body, body.world, share, turns, now, movers, totals);
     done += now;
     if (now < until_check) continue;
     if constexpr (actuation) {
