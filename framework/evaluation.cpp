@@ -77,7 +77,7 @@ std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, cons
 }
 
 std::vector<Result> Evaluation::evaluate_cohort(std::span<const Newborn> newborns, const Progress& progress) const {
-  const double share = development_time() / std::max(1e-9, development_time() + marks_.back());
+  const double whole = development_time() + marks_.back(), share = whole > 0 ? development_time() / whole : 0;
   std::vector<Life> lives = birth(newborns);
   develop(lives, [&](double done) { progress(done * share); });
   measure(lives, [&](double done) { progress(share + done * (1 - share)); });

@@ -110,6 +110,28 @@ TEST_F(Command, FailedBodiesLoseToAnyFiniteOne) {
   }
 }
 
+TEST_F(Command, ARunVerifiesItsBestAndMoreAreVerifiedAtWill) {
+  run_small();
+  const auto verification = [&] {
+    return nlohmann::json::parse(evodevo({"show", folder_, "--json"}).output).at("best").at("verification");
+  };
+  const auto of_run = verification();
+  ASSERT_FALSE(of_run.is_null());
+  EXPECT_EQ(of_run.at("trials").size(), 8u);
+  const Finished verified = evodevo({"verify", folder_, "--best", "2", "--json"});
+  ASSERT_EQ(verified.exit_code, 0) << verified.output;
+  const auto json = nlohmann::json::parse(verified.output);
+  ASSERT_EQ(json.size(), 2u);
+  EXPECT_EQ(json[0], of_run) << "the same every time";
+  EXPECT_EQ(verification(), of_run);
+  const Finished text = evodevo({"verify", folder_});
+  EXPECT_THAT(text.output, HasSubstr("individual " + json[0].at("individual").dump() + ": distance"));
+  EXPECT_THAT(text.output, HasSubstr("  quarter-step "));
+  const std::string mark = of_run.at("marks").empty() ? "verified" : of_run.at("marks")[0].get<std::string>();
+  EXPECT_THAT(evodevo({"show", folder_}).output, HasSubstr(", " + mark));
+  EXPECT_EQ(evodevo({"verify", folder_, "--best", "0"}).output, "evodevo: --best 0: expected 1 to 1000\n");
+}
+
 TEST_F(Command, BodyComesOutAndGoesIntoAScene) {
   run_small();
   const Finished body = evodevo({"body", folder_});

@@ -84,6 +84,28 @@ TEST_F(ArchiveTest, GivesBackWhatWasCommitted) {
   EXPECT_EQ(archive.statuses().at("diverged"), 1);
 }
 
+TEST_F(ArchiveTest, TakesVerificationsWhileAnotherWrites) {
+  Archive writer = Archive::create(folder_, experiment_, "cpu");
+  Individual individual;
+  individual.genome = {0.5f};
+  individual.result.objectives = {0.3, 1};
+  writer.commit({individual}, {}, {});
+  EXPECT_FALSE(Archive::read(folder_).verification(0).has_value());
+  Archive::annotate(folder_).add_verifications({{0, 0.3, {{"again", Status::ok, "", 7}}}});
+  const std::vector<Trial> trials{{"settled", Status::diverged, "too wild", std::nullopt},
+                                  {"again", Status::ok, "", 0.1 + 0.2}};
+  Archive::annotate(folder_).add_verifications({{0, 0.3, trials}});
+  const Verification back = Archive::read(folder_).verification(0).value();
+  EXPECT_EQ(back.individual, 0u);
+  EXPECT_EQ(back.fitness, 0.3);
+  ASSERT_EQ(back.trials.size(), 2u) << "the later one took the place of the first";
+  EXPECT_EQ(back.trials[0].name, "settled");
+  EXPECT_EQ(back.trials[0].status, Status::diverged);
+  EXPECT_EQ(back.trials[0].reason, "too wild");
+  EXPECT_FALSE(back.trials[0].value.has_value());
+  EXPECT_EQ(back.trials[1].value, 0.1 + 0.2);
+}
+
 TEST_F(ArchiveTest, NeverWritesOverARun) {
   { Archive::create(folder_, experiment_, "cpu"); }
   EXPECT_EQ(refusal([&] { Archive::create(folder_, experiment_, "cpu"); }),

@@ -73,6 +73,49 @@ TEST(Configuration, AMethodByItsName) {
             "test.toml:27:10: simulation.method = \"rk5\": is not an option; did you mean \"rk4\"?");
 }
 
+TEST(Configuration, AccuracyChoosesWhatIsLeftOut) {
+  const auto read = [](const std::string& keys) {
+    return testing::read(with("[simulation]", "[simulation]\n" + keys));
+  };
+  const auto expect = [](const Experiment& e, Method method, Precision precision, std::optional<double> dt) {
+    EXPECT_EQ(e.stepping.method, method);
+    EXPECT_EQ(e.stepping.precision, precision);
+    EXPECT_EQ(e.step.dt, dt);
+    const Experiment again = testing::read(e.resolved);
+    EXPECT_EQ(again.resolved, e.resolved);
+    EXPECT_EQ(again.stepping.method, method);
+    EXPECT_EQ(again.step.dt, dt);
+  };
+  expect(read(""), Method::paper_euler, Precision::float32, 0.0005);
+  expect(read("accuracy = \"fast\""), Method::symplectic_euler, Precision::float32, std::nullopt);
+  expect(read("accuracy = \"balanced\""), Method::velocity_verlet, Precision::float32, std::nullopt);
+  expect(read("accuracy = \"reference\""), Method::rk4, Precision::float64, std::nullopt);
+  EXPECT_EQ(read("accuracy = \"reference\"").step.refine, 4);
+  expect(read("accuracy = \"reference\"\nmethod = \"velocity-verlet\"\ndt = 0.00025"), Method::velocity_verlet,
+         Precision::float64, 0.00025);
+  EXPECT_NE(read("accuracy = \"fast\"").resolved.find("dt = 'auto'"), std::string::npos);
+  EXPECT_NE(read("accuracy = \"fast\"").resolved.find("method = 'symplectic-euler'"), std::string::npos);
+  EXPECT_EQ(
+      complaint(with("[simulation]", "[simulation]\naccuracy = \"best\"")),
+      "test.toml:27:12: simulation.accuracy = \"best\": is not an option; known: paper, fast, balanced, reference");
+}
+
+TEST(Configuration, AStepOfItsOwnForEveryBody) {
+  const std::string automatic = with("[simulation]", "[simulation]\ndt = \"auto\"");
+  const Experiment experiment =
+      testing::read(automatic, {{"scene.floor.stiffness", "1e11", ""}, {"development.cycle_time", "0.0507", ""}});
+  EXPECT_FALSE(experiment.step.dt.has_value()) << "whatever the scene, and for any duration";
+  EXPECT_EQ(testing::read(small_experiment, {{"simulation.dt", "auto", "--set"}}).resolved.find("dt = 0"),
+            std::string::npos);
+  EXPECT_EQ(complaint(with("[simulation]", "[simulation]\ndt = \"automatic\"")),
+            "test.toml:27:6: simulation.dt = \"automatic\": expected a number or \"auto\"");
+  EXPECT_EQ(complaint(automatic, {{"simulation.method", "implicit", ""}}),
+            "test.toml:27:6: simulation.dt = \"auto\": \"implicit\" is stable at any step, so none follows from "
+            "stability; give a number of s");
+  EXPECT_EQ(complaint(with("[simulation]", "[simulation]\ndt = 0.001\nrefine = 2")), "no complaint")
+      << "half of it is borne";
+}
+
 TEST(Configuration, TheLargestStepIsThatOfTheMethod) {
   // two masses on a spring of bone bear 6.3 ms with a limit of 2, 8.9 ms with 2 sqrt(2); there is no floor
   const std::string airborne = with("[scene.floor]\n[scene.friction]\n", "");

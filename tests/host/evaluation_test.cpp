@@ -164,6 +164,62 @@ TEST(Evaluation, EveryFitnessSeesItsOwnWindow) {
   EXPECT_NEAR(whole.box.longest_side(), 1, 1e-6) << "two voxels of half a metre";
 }
 
+TEST(Evaluation, ABodysOwnStepEndsWithItsWindow) {
+  // nothing but a fall, whose way a step of first order overshoots by g t dt/2
+  Experiment experiment = testing::read(testing::small_experiment, {{"simulation.dt", "auto", ""}});
+  experiment.scene = {};
+  experiment.scene.gravity = Gravity{};
+  experiment.development.cycle_time = 0.0513;  // no whole number of any step
+  Observation seen;
+  experiment.fitness.clear();
+  experiment.fitness.push_back(std::make_unique<Watcher>(Request{.settle = 0.1, .window = 0.2, .work = true}, seen));
+  experiment.objectives = {{"a", "", true}};
+  const Result result = evaluate(experiment, {{.genome = {2, 2}}}).front();
+  ASSERT_EQ(result.status, Status::ok) << result.reason;
+  const double from = 2 * 0.0513 + 0.1, to = from + 0.2;
+  EXPECT_NEAR(seen.centre_before.z - seen.centre_after.z, 9.81 / 2 * (to * to - from * from), 9.81 * 0.2 * 0.005);
+  EXPECT_LT(result.spring_evaluations, 50u * 806) << "fewer steps than of 0.5 ms";
+  EXPECT_GT(result.spring_evaluations, 50u * 40);
+}
+
+TEST(Evaluation, AnUnstableBodyIsInvalidOrRunsAsTheFileAsks) {
+  const auto status = [](const char* unstable) {
+    const Experiment experiment = testing::read(
+        testing::small_experiment, {{"materials.bone.stiffness", "1e6", ""}, {"simulation.unstable", unstable, ""}});
+    return evaluate(experiment, {{.genome = {1, 1}}}).front();
+  };
+  EXPECT_EQ(status("invalid").status, Status::invalid);
+  EXPECT_EQ(status("invalid").reason, "unstable dt: 0.0005 s is too long for the body's springs");
+  EXPECT_EQ(status("invalid").spring_evaluations, 0u);
+  EXPECT_GT(status("run").spring_evaluations, 0u);
+  EXPECT_NE(status("run").status, Status::invalid);
+}
+
+/// Stiffens the body: as many springs again, of a thousand times the stiffness.
+struct Stiffener final : Devo {
+  void develop(const Moment& now, Edits& edits, Rng&) const override {
+    for (std::uint32_t i = 0; i < now.body.springs.size(); ++i) {
+      edits.removed_springs.push_back(i);
+      Material material = now.body.materials[now.body.springs[i].material];
+      material.stiffness *= 1000;
+      edits.new_springs.push_back({now.body.springs[i].a, now.body.springs[i].b, material, {}});
+    }
+  }
+};
+
+TEST(Evaluation, DevelopmentChangesTheStep) {
+  Experiment experiment = testing::read(testing::small_experiment, {{"simulation.dt", "auto", ""}});
+  experiment.development.operators[0] = std::make_unique<Stiffener>();
+  experiment.development.cycles = 1;
+  const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
+  EXPECT_EQ(result.status, Status::ok) << result.reason;
+  experiment.development.operators.clear();
+  experiment.development.names.clear();
+  const Result soft = evaluate(experiment, {{.genome = {1, 1}}}).front();
+  EXPECT_EQ(soft.status, Status::ok) << soft.reason;
+  EXPECT_GT(result.spring_evaluations, 4 * soft.spring_evaluations) << "the steps that follow are shorter";
+}
+
 /// Removes every spring.
 struct Destroyer final : Devo {
   void develop(const Moment& now, Edits& edits, Rng&) const override {

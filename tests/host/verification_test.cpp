@@ -1,0 +1,191 @@
+// What becomes of champions that only seemed to be some.
+#include "verification.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "breeding.hpp"
+#include "support/experiments.hpp"
+
+namespace evodevo {
+namespace {
+
+const Progress unwatched = [](double) {};
+
+/// Random robots of some thirty masses that walk.
+const std::string walkers = R"(
+[experiment]
+seed = 7
+[encoding]
+name = "neural"
+points = 40
+neighbours = 8
+[[mutation]]
+name = "reset-weight"
+[scene.gravity]
+[scene.floor]
+[scene.friction]
+[scene.damping]
+[[fitness]]
+name = "distance"
+settle = 14
+window = 5
+[selection]
+name = "elitist"
+)";
+
+std::unique_ptr<Simulator> simulator_for(const Experiment& experiment) {
+  return make_cpu_simulator(experiment.scene, experiment.stepping, 2);
+}
+
+std::vector<Individual> evaluated(const Experiment& experiment, Simulator& simulator,
+                                  std::vector<Individual> individuals) {
+  std::vector<Newborn> newborns;
+  for (const Individual& individual : individuals)
+    newborns.push_back({individual.id, individual.born, &individual.genome});
+  std::vector<Result> results = Evaluation(experiment, simulator).evaluate(newborns, unwatched);
+  for (std::size_t i = 0; i < results.size(); ++i) individuals[i].result = std::move(results[i]);
+  return individuals;
+}
+
+/// The best of 24 random individuals, verified.
+Verification verified_best(const Experiment& experiment) {
+  const auto simulator = simulator_for(experiment);
+  std::vector<Individual> individuals = evaluated(experiment, *simulator, breed(experiment, {}, 0, 0, 24));
+  std::erase_if(individuals, [](const Individual& i) { return i.result.status != Status::ok; });
+  const Individual best = *std::max_element(
+      individuals.begin(), individuals.end(),
+      [](const Individual& a, const Individual& b) { return a.result.objectives[0] < b.result.objectives[0]; });
+  EXPECT_GT(best.result.objectives[0], 0.01) << "there must be something to verify";
+  return verify(experiment, *simulator, {&best, 1}).front();
+}
+
+double value(const Verification& verification, const std::string& trial) {
+  for (const Trial& t : verification.trials)
+    if (t.name == trial) return t.value.value();
+  throw std::out_of_range("no trial " + trial);
+}
+
+using Marks = std::vector<std::string>;
+
+TEST(Verify, AWalkerIsOne) {
+  const Verification walker = verified_best(testing::read(walkers));
+  EXPECT_EQ(value(walker, "again"), walker.fitness) << "the same bits";
+  for (const Trial& trial : walker.trials)
+    EXPECT_EQ(held(walker, trial, true), trial.name != "no-muscles") << trial.name;
+  EXPECT_EQ(marks(walker, true), Marks{});
+}
+
+TEST(Verify, WhatFallsIsPassive) {
+  const Experiment experiment = testing::read(walkers, {{"encoding.materials", "[\"tissue\", \"bone\"]", ""},
+                                                        {"fitness.0.settle", "0", ""},
+                                                        {"fitness.0.window", "2", ""}});
+  const Verification faller = verified_best(experiment);
+  EXPECT_EQ(value(faller, "no-muscles"), faller.fitness) << "it has none";
+  EXPECT_LT(std::abs(value(faller, "settled")), 0.1 * faller.fitness) << "it has come to rest";
+  EXPECT_EQ(marks(faller, true), Marks{"passive"});
+}
+
+constexpr double mass = 0.2, strain = 0.1;
+
+/// Two masses 1 m apart whose spring wants to be longer by `strain`.
+class StrainedPair final : public Encoding {
+ public:
+  explicit StrainedPair(double stiffness) : stiffness_(stiffness) {}
+  Layout layout(const World&) const override { return {}; }
+  Blueprint decode(const Genome&, const World&) const override {
+    Blueprint blueprint;
+    blueprint.body.materials = {{stiffness_, strain, 0, 3.14159265358979323846 / 2}};
+    blueprint.body.masses = {{{0, 0, 0}, mass}, {{1, 0, 0}, mass}};
+    blueprint.body.springs = {{0, 1, 1, 0}};
+    return blueprint;
+  }
+
+ private:
+  double stiffness_;
+};
+
+/// By how much more than its strain a body is stretched at some time.
+class Stretch final : public Fitness {
+ public:
+  explicit Stretch(double time) : time_(time) {}
+  Request observes() const override { return {.settle = time_, .window = 0.001}; }
+  std::vector<Objective> objectives() const override { return {{"stretch", "m", true}}; }
+  std::vector<double> score(const Observation& seen) const override { return {seen.box.longest_side() - (1 + strain)}; }
+
+ private:
+  double time_;
+};
+
+/// A step just below the limit multiplies a swing by 1/sqrt(1 - (omega dt)^2/4); in truth it stays at the strain.
+TEST(Verify, WhatOnlyTheStepBringsForthIsAnArtefact) {
+  constexpr double h = 1.9, dt = 0.001;  // omega dt, s
+  double x = -strain, v = 0, furthest = 0;
+  int when = 0;
+  for (int step = 1; step < 200; ++step) {
+    v -= h * h * x;
+    x += v;
+    if (x > furthest) furthest = x, when = step;
+  }
+  ASSERT_GT(furthest, 2.5 * strain);
+  Experiment experiment = testing::read(walkers);
+  experiment.scene = {};
+  experiment.stepping.precision = Precision::float64;
+  experiment.step = {.dt = dt};
+  experiment.encoding = std::make_unique<StrainedPair>(h * h * mass / (2 * dt * dt));
+  experiment.fitness.clear();
+  experiment.fitness.push_back(std::make_unique<Stretch>(when * dt));
+  experiment.objectives = experiment.fitness[0]->objectives();
+  const auto simulator = simulator_for(experiment);
+  const auto individuals = evaluated(experiment, *simulator, {Individual{}});
+  ASSERT_EQ(individuals[0].result.status, Status::ok) << individuals[0].result.reason;
+  EXPECT_NEAR(individuals[0].result.objectives[0], furthest, 1e-9);
+  const Verification verification = verify(experiment, *simulator, individuals).front();
+  EXPECT_LT(value(verification, "quarter-step"), 1.2 * strain);
+  EXPECT_LT(value(verification, "other-method"), 1.2 * strain);
+  const Marks found = marks(verification, true);
+  EXPECT_NE(std::find(found.begin(), found.end(), "artefact"), found.end());
+}
+
+TEST(Verify, TheSameEveryTimeWhateverElseIsVerified) {
+  const Experiment experiment = testing::read(testing::small_experiment);
+  const auto simulator = simulator_for(experiment);
+  std::vector<Individual> individuals = evaluated(experiment, *simulator, breed(experiment, {}, 0, 0, 12));
+  std::erase_if(individuals, [](const Individual& i) { return i.result.status != Status::ok; });
+  ASSERT_GE(individuals.size(), 2u);
+  const auto together = verify(experiment, *simulator, individuals);
+  for (std::size_t i = 0; i < individuals.size(); ++i) {
+    const auto alone = verify(experiment, *simulator, {&individuals[i], 1});
+    for (std::size_t t = 0; t < alone[0].trials.size(); ++t)
+      EXPECT_EQ(alone[0].trials[t].value, together[i].trials[t].value) << alone[0].trials[t].name;
+    EXPECT_EQ(value(together[i], "again"), individuals[i].result.objectives[0]) << "developed as in the run";
+    EXPECT_NE(value(together[i], "disturbed-1"), value(together[i], "disturbed-2"));
+  }
+}
+
+TEST(Verify, ThresholdsAreAtHalf) {
+  const auto found = [](double fitness, const std::string& trial, std::optional<double> value, bool maximise = true) {
+    const Verification verification{0, fitness, {{trial, value ? Status::ok : Status::diverged, "", value}}};
+    return marks(verification, maximise);
+  };
+  EXPECT_EQ(found(2, "quarter-step", 1), Marks{});
+  EXPECT_EQ(found(2, "quarter-step", 0.99), Marks{"artefact"});
+  EXPECT_EQ(found(2, "other-method", std::nullopt), Marks{"artefact"});
+  EXPECT_EQ(found(2, "other-method", std::nan("")), Marks{"artefact"});
+  EXPECT_EQ(found(2, "disturbed-1", 0), Marks{}) << "chance, not the step";
+  EXPECT_EQ(found(2, "no-muscles", 1), Marks{});
+  EXPECT_EQ(found(2, "no-muscles", 1.01), Marks{"passive"});
+  EXPECT_EQ(found(2, "no-muscles", std::nullopt), Marks{});
+  EXPECT_EQ(found(2, "settled", 1), Marks{});
+  EXPECT_EQ(found(2, "settled", 0.99), Marks{"passive"});
+  EXPECT_EQ(found(2, "settled", std::nullopt), Marks{});
+  EXPECT_EQ(found(-2, "no-muscles", -2), Marks{}) << "nothing to keep";
+  EXPECT_EQ(found(2, "quarter-step", 3, false), Marks{});
+  EXPECT_EQ(found(2, "quarter-step", 3.1, false), Marks{"artefact"});
+  EXPECT_EQ(found(2, "no-muscles", 0, false), Marks{}) << "rest costs nothing";
+}
+
+}  // namespace
+}  // namespace evodevo
