@@ -89,8 +89,7 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
   progress.finish();
   print_outcome(experiment, archive, progress);
   print_time_spent(time, simulator);
-  const std::vector<Summary> generations = archive.generations();
-  if (!generations.empty() && generations.back().evaluations >= experiment.evaluations) return 0;
+  if (is_finished(experiment, archive.generations())) return 0;
   std::cout << "interrupted; to go on: " << resume_command_for(archive) << std::endl;
   return interrupted;
 }

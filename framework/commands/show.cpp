@@ -5,6 +5,7 @@
 
 #include "archive.hpp"
 #include "commands/options.hpp"
+#include "evolution.hpp"
 
 namespace evodevo {
 namespace {
@@ -49,6 +50,7 @@ class Report {
                  {"created", archive_.record("created")},
                  {"evaluations", done()},
                  {"evaluations_asked", experiment.evaluations},
+                 {"finished", is_finished(experiment, generations_)},
                  {"statuses", archive_.statuses()}};
     root["objectives"] = Json::array();
     for (const Objective& o : objectives_)
