@@ -64,6 +64,14 @@ Summary summarise(const std::vector<Individual>& newborns, std::uint32_t generat
 
 }  // namespace
 
+bool is_finished(const Experiment& experiment, const std::vector<Summary>& generations) {
+  if (generations.empty()) return false;
+  double spring_evaluations = 0;
+  for (const Summary& summary : generations) spring_evaluations += static_cast<double>(summary.spring_evaluations);
+  return generations.back().evaluations >= experiment.evaluations ||
+         (experiment.spring_evaluations > 0 && spring_evaluations >= experiment.spring_evaluations);
+}
+
 TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& archive, const std::atomic<bool>& stop,
                  const Observer& observer) {
   using Clock = std::chrono::steady_clock;
@@ -73,12 +81,12 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
   const auto begin = Clock::now();
   TimeSpent time;
   const Evaluation evaluation(experiment, simulator);
-  const std::vector<Summary> past = archive.generations();
-  auto generation = static_cast<std::uint32_t>(past.size());
-  std::int64_t evaluations = past.empty() ? 0 : past.back().evaluations;
+  std::vector<Summary> summaries = archive.generations();
+  auto generation = static_cast<std::uint32_t>(summaries.size());
+  std::int64_t evaluations = summaries.empty() ? 0 : summaries.back().evaluations;
   std::vector<Individual> population = archive.population();
 
-  for (; evaluations < experiment.evaluations && !stop; ++generation) {
+  for (; !is_finished(experiment, summaries) && !stop; ++generation) {
     const auto start = Clock::now();
     const std::int64_t count = std::min(experiment.population, experiment.evaluations - evaluations);
     // every evaluation takes one id, so ids go on from the evaluations so far
@@ -96,6 +104,7 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
     archive.commit(newborns, dropped, summary);
     time.archive += seconds_since(commit);
     observer.generation_done(summary);
+    summaries.push_back(summary);
   }
   time.whole = seconds_since(begin);
   time.evaluation = evaluation.phase_times();

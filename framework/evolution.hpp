@@ -22,8 +22,11 @@ struct TimeSpent {
   PhaseTimes evaluation;
 };
 
-/// Evolves from where the archive stands until the experiment's evaluations are spent, or `stop` is set and the
-/// generation under way is committed. An archive continued gives the same as one never interrupted.
+/// Whether a run that has come to these generations has spent the experiment's evaluations or spring evaluations.
+bool is_finished(const Experiment& experiment, const std::vector<Summary>& generations);
+
+/// Evolves from where the archive stands until the run is finished, or `stop` is set and the generation under way is
+/// committed. An archive continued gives the same as one never interrupted.
 TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& archive, const std::atomic<bool>& stop,
                  const Observer& observer);
 

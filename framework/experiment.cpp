@@ -44,6 +44,8 @@ void declare(Parameters& p, Material& material) {
 void declare(Parameters& p, Experiment& experiment) {
   p.integer(experiment.seed, "seed", {0, 0x1p53 - 1}, "Seed of all random numbers.");
   p.integer(experiment.evaluations, "evaluations", {1, 1e9}, "Evaluations in the whole run.");
+  p.real(experiment.spring_evaluations, "spring_evaluations", {0, 1e18},
+         "The run also ends with the generation that reaches as many; 0 for no such end.");
   p.integer(experiment.population, "population", {1, 1e6}, "Individuals that live at once.");
   p.integer(experiment.newcomers, "newcomers", {0, 1e6}, "Random individuals that enter each generation.");
   p.integer(experiment.verify, "verify", {0, 1000}, "Best individuals to verify when the run ends.");

@@ -42,6 +42,7 @@ struct Experiment {
   std::string name;  ///< of the file, without folder and ending
   std::int64_t seed = 1;
   std::int64_t evaluations = 1000;  ///< in the whole run
+  double spring_evaluations = 0;    ///< after which the run ends early; 0: it does not
   std::int64_t population = 50;
   std::int64_t newcomers = 1;  ///< random individuals that enter each generation
   std::int64_t verify = 1;     ///< best individuals to verify when the run ends

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 
@@ -36,7 +37,10 @@ ProgressDisplay::ProgressDisplay(const Experiment& experiment, const std::vector
   if (past.empty()) return;
   last_ = past.back();
   evaluations_before_ = last_.evaluations;
-  for (const Summary& summary : past) diverged_ += summary.diverged;
+  for (const Summary& summary : past) {
+    diverged_ += summary.diverged;
+    spring_evaluations_before_ += static_cast<double>(summary.spring_evaluations);
+  }
 }
 
 Observer ProgressDisplay::observer() {
@@ -48,16 +52,25 @@ double ProgressDisplay::seconds() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
+double ProgressDisplay::seconds_left(double evaluations) const {
+  const double done = evaluations - static_cast<double>(evaluations_before_);
+  const double left = seconds() / done * (static_cast<double>(experiment_.evaluations) - evaluations);
+  if (experiment_.spring_evaluations == 0 || spring_evaluations_ == 0) return left;
+  const auto springs = static_cast<double>(spring_evaluations_);
+  const double springs_left = experiment_.spring_evaluations - spring_evaluations_before_ - springs;
+  return std::min(left, seconds() / springs * std::max(0.0, springs_left));
+}
+
 std::string ProgressDisplay::line(double evaluations) const {
   const double rate = (evaluations - static_cast<double>(evaluations_before_)) / seconds();
-  const double left = (static_cast<double>(experiment_.evaluations) - evaluations) / rate;
   std::string text = "generation " + std::to_string(last_.generation) + "  evaluations " +
                      formatted("%.0f", evaluations) + "/" + std::to_string(experiment_.evaluations) + "  best " +
                      optional_text(last_.best) + "  median " + optional_text(last_.median) + "  diverged " +
                      formatted("%.1f %%", last_.evaluations > 0 ? 100.0 * static_cast<double>(diverged_) /
                                                                       static_cast<double>(last_.evaluations)
                                                                 : 0.0);
-  if (rate > 0) text += "  " + formatted("%.3g", rate) + " evaluations/s  " + duration_text(left) + " left";
+  if (rate > 0)
+    text += "  " + formatted("%.3g", rate) + " evaluations/s  " + duration_text(seconds_left(evaluations)) + " left";
   if (stop_) text += "  (stopping after this generation; Ctrl-C again stops now)";
   return text;
 }

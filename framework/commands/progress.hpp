@@ -25,6 +25,8 @@ class ProgressDisplay {
  private:
   void generation_done(const Summary& summary);
   void generation_progress(double done);
+  /// Until the run has spent what the experiment allows, s.
+  double seconds_left(double evaluations) const;
   std::string line(double evaluations) const;
   void show_live(double evaluations);
 
@@ -33,6 +35,7 @@ class ProgressDisplay {
   const bool live_;
   const std::chrono::steady_clock::time_point start_;
   std::int64_t evaluations_before_ = 0;  ///< this process
+  double spring_evaluations_before_ = 0;
   Summary last_;
   std::int64_t diverged_ = 0;
   std::uint64_t spring_evaluations_ = 0;

@@ -90,8 +90,7 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
   progress.finish();
   print_outcome(experiment, archive, progress);
   print_time_spent(time, simulator);
-  const std::vector<Summary> generations = archive.generations();
-  if (!generations.empty() && generations.back().evaluations >= experiment.evaluations) {
+  if (is_finished(experiment, archive.generations())) {
     const auto count = static_cast<std::size_t>(experiment.verify);
     for (const Verification& verification : verify_best(experiment, simulator, archive, count))
       print(verification, experiment.objectives.front());

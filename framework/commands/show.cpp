@@ -6,6 +6,7 @@
 #include "archive.hpp"
 #include "commands/options.hpp"
 #include "commands/verification_report.hpp"
+#include "evolution.hpp"
 
 namespace evodevo {
 namespace {
@@ -50,6 +51,7 @@ class Report {
                  {"created", archive_.record("created")},
                  {"evaluations", done()},
                  {"evaluations_asked", experiment.evaluations},
+                 {"finished", is_finished(experiment, generations_)},
                  {"statuses", archive_.statuses()}};
     root["objectives"] = Json::array();
     for (const Objective& o : objectives_)

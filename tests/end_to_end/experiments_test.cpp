@@ -17,12 +17,11 @@ std::string experiment_file(const std::string& name) { return std::string(EVODEV
 TEST(Experiments, EachRunsForTwoGenerationsWhenShrunk) {
   const testing::Scratch scratch;
   int count = 0;
-  for (const fs::directory_entry& entry : fs::directory_iterator(EVODEVO_EXPERIMENTS)) {
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(EVODEVO_EXPERIMENTS)) {
     if (entry.path().extension() != ".toml") continue;
-    ++count;
     SCOPED_TRACE(entry.path());
-    std::vector<std::string> command = {EVODEVO_PROGRAM, "run", entry.path(), "--out",
-                                        (scratch / entry.path().stem().string()).string()};
+    const std::string folder = (scratch / std::to_string(count++)).string();
+    std::vector<std::string> command = {EVODEVO_PROGRAM, "run", entry.path(), "--out", folder};
     std::vector<std::string> shrunk = {"experiment.population=8", "experiment.evaluations=16", "encoding.points=60",
                                        "fitness.0.settle=0.1", "fitness.0.window=0.1"};
     const bool develops = read_experiment({entry.path(), {}}).development.cycles > 0;
@@ -30,11 +29,11 @@ TEST(Experiments, EachRunsForTwoGenerationsWhenShrunk) {
     for (const std::string& set : shrunk) command.insert(command.end(), {"--set", set});
     const testing::Finished finished = testing::run(command);
     ASSERT_EQ(finished.exit_code, 0) << finished.output;
-    const Archive archive = Archive::read(scratch / entry.path().stem().string());
+    const Archive archive = Archive::read(folder);
     EXPECT_EQ(archive.generations().size(), 2u);
     EXPECT_GT(archive.statuses().at("ok"), 0);
   }
-  EXPECT_EQ(count, 5);
+  EXPECT_EQ(count, 7);
 }
 
 /// What the paper gives, value by value.
@@ -56,14 +55,33 @@ TEST(Experiments, PaperHoldsThePapersValues) {
     EXPECT_NE(paper.resolved.find(line), std::string::npos) << line;
 }
 
+/// All of an experiment but [development] and [experiment].
+std::string rest_of(const Experiment& experiment) {
+  const std::string& text = experiment.resolved;
+  const std::size_t encoding = text.find("[encoding]"), own = text.find("[experiment]");  // in alphabetical order
+  return text.substr(encoding, own - encoding) + text.substr(text.find("\n[", own));
+}
+
 TEST(Experiments, EvoAndEvoDevoDifferInDevelopmentAlone) {
-  const auto lines = [](const std::string& name) {
-    std::string text = read_experiment({experiment_file(name), {}}).resolved;
-    return text.substr(text.find("[encoding]"));  // [development] is before it, in alphabetical order
-  };
-  EXPECT_EQ(lines("evo.toml"), lines("evo-devo.toml"));
+  EXPECT_EQ(rest_of(read_experiment({experiment_file("evo.toml"), {}})),
+            rest_of(read_experiment({experiment_file("evo-devo.toml"), {}})));
   EXPECT_EQ(read_experiment({experiment_file("evo.toml"), {}}).development.cycles, 0);
   EXPECT_GT(read_experiment({experiment_file("evo-devo.toml"), {}}).development.cycles, 0);
+}
+
+TEST(Experiments, TheStudysCostTheSameAndDifferInDevelopmentAlone) {
+  const Experiment evo = read_experiment({experiment_file("evo.toml"), {}});
+  const Experiment one = read_experiment({experiment_file("study/evo.toml"), {}});
+  EXPECT_GT(one.spring_evaluations, 0);
+  for (const fs::directory_entry& entry : fs::directory_iterator(experiment_file("study"))) {
+    SCOPED_TRACE(entry.path());
+    const Experiment experiment = read_experiment({entry.path(), {}});
+    EXPECT_EQ(rest_of(experiment), rest_of(evo));
+    EXPECT_EQ(experiment.population, evo.population);
+    EXPECT_EQ(experiment.newcomers, evo.newcomers);
+    EXPECT_EQ(experiment.spring_evaluations, one.spring_evaluations);
+    EXPECT_EQ(experiment.evaluations, one.evaluations);
+  }
 }
 
 TEST(Experiments, EveryWalkerButThePapersSettlesTenSeconds) {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "archive.hpp"
@@ -103,10 +104,15 @@ TEST_F(Interruption, CtrlCCommitsAndSaysHowToGoOn) {
   EXPECT_EQ(process.wait(), 130) << process.output();
   const std::string folder = (scratch_ / "stopped").string();
   EXPECT_THAT(process.output(), HasSubstr("interrupted; to go on: evodevo resume " + folder));
+  const auto finished = [&] {
+    return nlohmann::json::parse(testing::run({EVODEVO_PROGRAM, "show", folder, "--json"}).output).at("finished");
+  };
+  EXPECT_EQ(finished(), false);
   const std::size_t done = Archive::read(folder).generations().size();
   EXPECT_GE(done, 1u);
   EXPECT_LT(done, 13u);
   EXPECT_EQ(testing::run(resume_command("stopped")).exit_code, 0);
+  EXPECT_EQ(finished(), true);
   expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(folder));
 }
 

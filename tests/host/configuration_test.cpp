@@ -303,7 +303,7 @@ TEST(Configuration, Overrides) {
             "--set experiment.population=-1: experiment.population = -1: expected 1 to 1000000");
   EXPECT_EQ(complaint(small_experiment, {{"experiment.size", "3", "--set experiment.size=3"}}),
             "--set experiment.size=3: experiment.size: is not a key of [experiment]; known: seed, evaluations, "
-            "population, newcomers, verify");
+            "spring_evaluations, population, newcomers, verify");
   EXPECT_EQ(complaint(small_experiment, {{"fitness.7.window", "3", "--set fitness.7.window=3"}}),
             "--set fitness.7.window=3: fitness.7.window: there is no item 7");
   EXPECT_EQ(complaint(small_experiment, {{"fitness.0", "3", "--set fitness.0=3"}}),

@@ -82,5 +82,24 @@ TEST_F(LostDevice, ResumedEndsAsIfItHadNotBeen) {
   }
 }
 
+TEST(SpringEvaluations, EndTheRunWithTheGenerationThatReachesThem) {
+  const testing::Scratch scratch;
+  Experiment experiment = testing::read(testing::small_experiment);
+  const auto run = [&](const std::string& folder) {
+    Archive archive = Archive::create(scratch / folder, experiment, "test");
+    EXPECT_EQ(evolve_and_report(experiment, *make_cpu_simulator(experiment.scene, experiment.stepping, 1), archive), 0);
+    return archive.generations();
+  };
+  const auto all = run("all");
+  ASSERT_EQ(all.size(), 4u);
+  // exactly what two generations need, and one more than that
+  experiment.spring_evaluations = static_cast<double>(all[0].spring_evaluations + all[1].spring_evaluations);
+  EXPECT_EQ(run("two").size(), 2u);
+  experiment.spring_evaluations += 1;
+  EXPECT_EQ(run("three").size(), 3u);
+  experiment.spring_evaluations = 1e18;
+  EXPECT_EQ(run("never reached").size(), 4u);
+}
+
 }  // namespace
 }  // namespace evodevo

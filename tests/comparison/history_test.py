@@ -1,0 +1,128 @@
+"""Runs on a common axis: steps, failures, directions."""
+
+import math
+import pathlib
+import unittest
+import xml.etree.ElementTree
+
+from comparison import chart, report
+from comparison.history import Objective, common_span, history
+from comparison.runs import Variant
+
+FAR = Objective("distance", "m", True)
+CHEAP = Objective("work", "J", False)
+
+
+def shown(best, springs=10, evaluations=5):
+    """What `show --json` says of a run in which every generation costs the same."""
+    return {
+        "generations": [
+            {
+                "evaluations": evaluations * (i + 1),
+                "best": score,
+                "diverged": 1,
+                "invalid": 0,
+                "spring_evaluations": springs,
+                "wall_time": 0.5,
+            }
+            for i, score in enumerate(best)
+        ]
+    }
+
+
+class Histories(unittest.TestCase):
+    def test_the_best_so_far_is_never_lost_and_never_early(self):
+        run = history(shown([1, 3, 2]), FAR)
+        for cost, expected in ((0, -math.inf), (9, -math.inf), (10, 1), (19, 1), (20, 3), (30, 3), (99, 3)):
+            self.assertEqual(run.at("spring_evaluations", cost), expected, cost)
+        self.assertEqual(run.at("evaluations", 14), 3)
+        self.assertEqual(run.at("spring_evaluations", 29, "evaluations"), 10)
+        self.assertEqual(run.diverged[-1], 3)
+
+    def test_less_may_be_better(self):
+        self.assertEqual(history(shown([3, 1, 2]), CHEAP).best, [math.inf, 3, 1, 1])
+
+    def test_generations_without_a_fitness(self):
+        self.assertEqual(history(shown([None, 2, None]), FAR).best[1:], [-math.inf, 2, 2])
+        self.assertEqual(history(shown([None, 2]), CHEAP).best[1:], [math.inf, 2])
+
+    def test_the_common_span(self):
+        runs = [history(shown([1, 2, 3], springs=10), FAR), history(shown([1, 2], springs=12), FAR)]
+        self.assertEqual(common_span(runs, "spring_evaluations"), (12, 24))
+
+
+class Reports(unittest.TestCase):
+    def histories(self, objective, **runs):
+        return {
+            Variant(pathlib.Path(name)): [history(shown(best), objective) for best in some]
+            for name, some in runs.items()
+        }
+
+    def test_the_better_one_is_better_whichever_way_is_better(self):
+        low, high = [[i / 10, i / 10] for i in range(8)], [[2 + i / 10, 2 + i / 10] for i in range(8)]
+        for objective, better in ((FAR, high), (CHEAP, low)):
+            worse = low if better is high else high
+            histories = self.histories(objective, first=worse, second=better)
+            first, second = report.standings(histories, objective, "evaluations", 10)
+            self.assertEqual((first.a12, first.p, second.a12), (0.5, 1, 1))
+            self.assertAlmostEqual(second.p, 2 / 12870, places=14)  # of C(16, 8) ways the two most extreme
+            self.assertRegex(second.verdict("first"), "`second`, beside `first`: better")
+
+    def test_a_small_difference_is_no_finding(self):
+        histories = self.histories(FAR, first=[[1], [2], [3]], second=[[4], [5], [6]])
+        second = report.standings(histories, FAR, "evaluations", 5)[1]
+        self.assertIn("no difference is shown", second.verdict("first"))
+
+    def test_costs_differ_between_the_axes(self):
+        # the second spends three times as much on each generation, so it has a third of them at equal cost
+        first = [history(shown([1, 2, 3], springs=10), FAR)]
+        second = [history(shown([10, 20, 30], springs=30), FAR)]
+        histories = {Variant(pathlib.Path("first")): first, Variant(pathlib.Path("second")): second}
+        text = report.section(histories, FAR, "spring_evaluations")
+        self.assertIn("## After 30 spring evaluations", text)
+        self.assertIn("| `second` | 10 | 10 to 10 | 5 | 1.00 |", text)
+        self.assertIn("| `second` | 30 |", report.section(histories, FAR, "evaluations"))
+
+    def test_runs_without_a_fitness_are_named_so(self):
+        histories = self.histories(FAR, first=[[1, 2], [1, 2]], second=[[None, None], [None, None]])
+        text = report.section(histories, FAR, "evaluations")
+        self.assertIn("| `second` | none | none to none |", text)
+        self.assertNotIn("inf", text + chart.svg(histories, FAR))
+        self.assertNotIn("nan", text + chart.svg(histories, FAR))
+
+    def test_numbers(self):
+        for value, text in ((0.12345, "0.123"), (600, "600"), (15000, "15000"), (1.3e12, "1.3e12"), (2e-7, "2e-7")):
+            self.assertEqual(report.number(value), text)
+
+
+class Charts(unittest.TestCase):
+    def svg(self, histories):
+        return xml.etree.ElementTree.fromstring(chart.svg(histories, FAR))
+
+    def test_it_is_svg_with_a_labelled_curve_for_each_in_each_panel(self):
+        histories = {
+            Variant(pathlib.Path("a<b")): [history(shown([1, 2]), FAR)],
+            Variant(pathlib.Path("c"), (("development.cycle_time", "0.5"),)): [history(shown([3, 4]), FAR)],
+        }
+        root = self.svg(histories)
+        namespace = "{http://www.w3.org/2000/svg}"
+        texts = [element.text for element in root.iter(namespace + "text")]
+        for label in ("a<b 2", "c cycle_time=0.5 4"):
+            self.assertEqual(texts.count(label), 2, texts)
+        self.assertEqual(len(list(root.iter(namespace + "polyline"))), 4)
+
+    def test_labels_do_not_overlap_nor_leave_the_panel(self):
+        for heights in ([100, 100, 100], [355, 360, 362], [10, 200, 20]):
+            placed = sorted(chart.spread(heights, 40, 366))
+            self.assertGreaterEqual(placed[0], 40)
+            self.assertLessEqual(placed[-1], 366)
+            self.assertTrue(all(b - a >= chart.LINE - 1e-9 for a, b in zip(placed, placed[1:])), placed)
+        self.assertEqual(chart.spread([50, 300, 100], 40, 366), [50, 300, 100])
+
+    def test_ticks_are_round_and_within(self):
+        self.assertEqual(chart.ticks(0, 10), [0, 2.5, 5, 7.5, 10])
+        self.assertEqual(chart.ticks(-1, 1), [-1, -0.5, 0, 0.5, 1])
+
+
+if __name__ == "__main__":
+    unittest.main()

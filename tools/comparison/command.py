@@ -1,0 +1,95 @@
+"""The command: from its arguments to the report."""
+
+import argparse
+import pathlib
+import shlex
+import signal
+import sys
+
+from . import chart, report
+from .history import Objective, history
+from .runs import Failure, Interrupted, Runs, make_variants, parse_sweep
+
+DESCRIPTION = """\
+Runs experiments over seeds and reports how their best robots compare, at equal evaluations and at equal spring
+evaluations: medians with bootstrap intervals, rank tests against the first experiment, effect sizes, failures, a chart.
+A stopped comparison goes on with the same command; more seeds, experiments or values may be added."""
+
+
+def positive(text):
+    value = int(text)
+    if value < 1:
+        raise ValueError
+    return value
+
+
+def parse(arguments):
+    parser = argparse.ArgumentParser(
+        "tools/compare",
+        description=DESCRIPTION,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    add = parser.add_argument
+    add("experiments", metavar="EXPERIMENT.toml", nargs="+", type=pathlib.Path)
+    add("--seeds", metavar="N", type=positive, default=10, help="runs of each; seeds 1 to N (%(default)s)")
+    add(
+        "--sweep", metavar="KEY=V,V,…", action="append", default=[], help="values in turn, where KEY's table is there"
+    )
+    add("--set", metavar="KEY=VALUE", action="append", default=[], help="a key of all experiments")
+    add("--jobs", metavar="N", type=positive, default=1, help="runs at once, which share the cores (%(default)s)")
+    add("--out", metavar="DIR", type=pathlib.Path, help="default: runs/compare-EXPERIMENT-EXPERIMENT…")
+    return parser.parse_args(arguments)
+
+
+def first_objective(shown):
+    """The objective that is compared, which must be the same in all runs."""
+    objectives = {Objective(**run["objectives"][0]) for run in shown}
+    if len(objectives) > 1:
+        names = ", ".join(sorted(f"{o.name} ({o.unit})" for o in objectives))
+        raise Failure(f"the experiments differ in their first objective: {names}; only the same can be compared")
+    return objectives.pop()
+
+
+def compare(arguments, program):
+    given = parse(arguments)
+    variants = make_variants(given.experiments, [parse_sweep(text) for text in given.sweep])
+    out = given.out or pathlib.Path("runs") / "-".join(["compare", *(file.stem for file in given.experiments)])
+    runs = Runs(program, out, variants, given.seeds, given.set)
+    runs.check()
+    runs.make(given.jobs, lambda line: print(line, flush=True))
+
+    shown = {run: runs.shown(run) for run in runs.all}
+    objective = first_objective(shown.values())
+    histories = {
+        variant: [history(shown[run], objective) for run in runs.all if run.variant == variant] for variant in variants
+    }
+    setting = report.Setting(
+        command=shlex.join(["tools/compare", *map(str, arguments)]),
+        seeds=given.seeds,
+        devices=sorted({run["device"] for run in shown.values()}),
+        versions=sorted({run["evodevo"] for run in shown.values()}),
+    )
+    text = report.markdown(histories, objective, setting)
+    (out / "report.md").write_text(text)
+    report.write_csv(out / "results.csv", histories)
+    (out / "chart.svg").write_text(chart.svg(histories, objective))
+    print(f"\n{text}\nwritten to {out}")
+
+
+def interrupt(_signal, _frame):
+    raise Interrupted
+
+
+def main(arguments, program):
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, interrupt)
+    try:
+        compare(arguments, program)
+    except Failure as failure:
+        print(f"compare: {failure}", file=sys.stderr)
+        return 2
+    except Interrupted:
+        print("compare: interrupted; the same command goes on", file=sys.stderr)
+        return 130
+    return 0

@@ -1,0 +1,62 @@
+"""How runs went: the best score so far over evaluations and over spring evaluations."""
+
+import bisect
+import dataclasses
+import itertools
+import math
+
+
+@dataclasses.dataclass(frozen=True)
+class Objective:
+    name: str
+    unit: str
+    maximise: bool
+
+    @property
+    def worst(self):
+        """The score of a run in which no robot has a fitness."""
+        return -math.inf if self.maximise else math.inf
+
+    def upwards(self, scores):
+        """The scores, turned so that more is better."""
+        return scores if self.maximise else [-score for score in scores]
+
+
+@dataclasses.dataclass(frozen=True)
+class History:
+    """One run. Each list begins before the first generation; all but `best` add up over generations."""
+
+    evaluations: list
+    spring_evaluations: list
+    best: list
+    diverged: list
+    invalid: list
+    seconds: list
+
+    def at(self, axis, cost, what="best"):
+        """`what` after the last generation that was complete at that cost."""
+        return getattr(self, what)[bisect.bisect_right(getattr(self, axis), cost) - 1]
+
+
+def history(shown, objective):
+    """The history of a run from what `evodevo show --json` says of it."""
+    generations = shown["generations"]
+
+    def summed(key):
+        return list(itertools.accumulate((generation[key] for generation in generations), initial=0))
+
+    better = max if objective.maximise else min
+    scores = [objective.worst if generation["best"] is None else generation["best"] for generation in generations]
+    return History(
+        evaluations=[0, *(generation["evaluations"] for generation in generations)],
+        spring_evaluations=summed("spring_evaluations"),
+        best=list(itertools.accumulate(scores, better, initial=objective.worst)),
+        diverged=summed("diverged"),
+        invalid=summed("invalid"),
+        seconds=summed("wall_time"),
+    )
+
+
+def common_span(histories, axis):
+    """From where on each of these runs has a generation, and until where all of them go."""
+    return max(getattr(h, axis)[1] for h in histories), min(getattr(h, axis)[-1] for h in histories)

@@ -1,0 +1,201 @@
+"""Which runs a comparison is made of, and making them."""
+
+import dataclasses
+import itertools
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import tomllib
+import urllib.parse
+
+
+class Failure(Exception):
+    """What keeps a comparison from going on, with the remedy."""
+
+
+class Interrupted(Exception):
+    """Somebody asked to stop."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Variant:
+    """An experiment with values of the swept keys."""
+
+    experiment: pathlib.Path
+    swept: tuple = ()  # of (key, value)
+
+    @property
+    def name(self):
+        """Also the name of its folder."""
+        parts = [self.experiment.stem, *(f"{key}={value}" for key, value in self.swept)]
+        return ",".join(urllib.parse.quote(part, safe="=+ ") for part in parts)
+
+    @property
+    def label(self):
+        """The name for a chart: keys without their tables."""
+        return " ".join([self.experiment.stem, *(f"{key.split('.')[-1]}={value}" for key, value in self.swept)])
+
+
+@dataclasses.dataclass(frozen=True)
+class Run:
+    variant: Variant
+    seed: int
+    folder: pathlib.Path
+
+    @property
+    def log(self):
+        return self.folder.with_name(self.folder.name + ".log")
+
+
+def parse_sweep(text):
+    """`KEY=VALUE,VALUE,…` as the key and its values."""
+    key, _, values = text.partition("=")
+    values = values.split(",")
+    if not key or not all(values):
+        raise Failure(f"--sweep {text}: expected KEY=VALUE,VALUE,…")
+    if len(set(values)) < len(values):
+        raise Failure(f"--sweep {text}: a value is there twice")
+    if key == "experiment.seed":
+        raise Failure(f"--sweep {text}: every run has a seed of its own; say how many with --seeds")
+    return key, values
+
+
+def has_table_of(experiment, key):
+    """Whether the file has the table that the key belongs to."""
+    node = experiment
+    for part in key.split(".")[:-1]:
+        if isinstance(node, list):
+            node = node[int(part)] if part.isdigit() and int(part) < len(node) else None
+        else:
+            node = node.get(part) if isinstance(node, dict) else None
+    return node is not None
+
+
+def read_toml(file):
+    try:
+        return tomllib.loads(file.read_text())
+    except (OSError, ValueError) as error:
+        raise Failure(f"{file}: cannot be read: {error}") from None
+
+
+def make_variants(files, sweeps):
+    """Each experiment with all combinations of the values of those keys whose table it has."""
+    variants = []
+    for file in files:
+        if any(file.stem == other.experiment.stem for other in variants):
+            raise Failure(f"{file}: another experiment has the name {file.stem} already; rename one of them")
+        experiment = read_toml(file)
+        here = [[(key, value) for value in values] for key, values in sweeps if has_table_of(experiment, key)]
+        variants += [Variant(file, swept) for swept in itertools.product(*here)]
+    for key, _ in sweeps:
+        if not any(key in dict(variant.swept) for variant in variants):
+            table = key.rpartition(".")[0]
+            raise Failure(f"--sweep {key}: no experiment has a table [{table}]; add it to those that are to be swept")
+    return variants
+
+
+class Runs:
+    """The runs of a comparison, in a folder of their own for each variant. What is there is not made again."""
+
+    def __init__(self, program, out, variants, seeds, settings):
+        self._program = str(program)
+        self._settings = settings
+        self._variants = variants
+        # seed by seed, so that what is there at any time compares all variants
+        self.all = [
+            Run(variant, seed, out / "runs" / variant.name / f"seed-{seed}")
+            for seed in range(1, seeds + 1)
+            for variant in variants
+        ]
+
+    def check(self):
+        """Refuses experiments that cannot be run, and folders with runs of something else."""
+        for variant in self._variants:
+            self._evodevo("check", variant.experiment, *self._overrides(variant))
+        for variant, folder in {run.variant: run.folder.parent for run in self.all}.items():
+            made_from = {"experiment": variant.experiment.read_text(), "set": self._settings}
+            record = folder / "made-from.json"
+            if not record.exists():
+                folder.mkdir(parents=True, exist_ok=True)
+                record.write_text(json.dumps(made_from, indent=1) + "\n")
+            elif json.loads(record.read_text()) != made_from:
+                raise Failure(
+                    f"{folder}: its runs were made from another {variant.experiment.name} or with another --set, as "
+                    f"{record.name} tells; give another --out, or remove this folder"
+                )
+
+    def make(self, jobs, tell):
+        """Makes or finishes all runs, `jobs` at once."""
+        waiting = [run for run in self.all if not self.is_finished(run)]
+        active = {}
+        try:
+            while waiting or active:
+                while waiting and len(active) < jobs:
+                    run = waiting.pop(0)
+                    active[run] = self._start(run, jobs)
+                    tell(f"{run.variant.name}, seed {run.seed} ({len(waiting)} more to start)")
+                os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOWAIT)
+                for run in [run for run, process in active.items() if process.poll() is not None]:
+                    self._require_success(run, active.pop(run).returncode)
+        finally:
+            stop(active.values())
+
+    def is_finished(self, run):
+        return (run.folder / "run.sqlite").exists() and bool((self._shown_if_begun(run) or {}).get("finished"))
+
+    def shown(self, run):
+        return json.loads(self._evodevo("show", run.folder, "--json"))
+
+    def _shown_if_begun(self, run):
+        try:
+            return self.shown(run)
+        except Failure as failure:
+            if "ended before it began" in str(failure):  # killed in its first moments
+                return None
+            raise
+
+    def _start(self, run, jobs):
+        begun = (run.folder / "run.sqlite").exists() and self._shown_if_begun(run) is not None
+        if begun:
+            arguments = ["resume", run.folder]
+        else:
+            shutil.rmtree(run.folder, ignore_errors=True)
+            threads = ["--threads", max(1, (os.cpu_count() or 1) // jobs)] if jobs > 1 else []
+            overrides = [*self._overrides(run.variant), "--seed", run.seed, *threads]
+            arguments = ["run", run.variant.experiment, "--out", run.folder, *overrides]
+        with open(run.log, "a") as log:
+            # a group of its own: Ctrl-C reaches this process alone, which then asks each run to stop
+            command = [self._program, *map(str, arguments)]
+            return subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, process_group=0)
+
+    def _overrides(self, variant):
+        pairs = [*self._settings, *(f"{key}={value}" for key, value in variant.swept)]
+        return [word for pair in pairs for word in ("--set", pair)]
+
+    def _evodevo(self, *arguments):
+        command = [self._program, *map(str, arguments)]
+        finished = subprocess.run(command, capture_output=True, text=True)
+        if finished.returncode != 0:
+            raise Failure(finished.stderr.strip() or f"{' '.join(command)} ended with {finished.returncode}")
+        return finished.stdout
+
+    @staticmethod
+    def _require_success(run, code):
+        if code != 0:
+            last = "\n  ".join(run.log.read_text().splitlines()[-3:])
+            raise Failure(f"{run.folder}: the run ended with {code}:\n  {last}\nthe same command goes on from there")
+
+
+def stop(processes):
+    """Lets each process finish its generation; whoever asks a second time does not wait for that."""
+    while alive := [process for process in processes if process.poll() is None]:
+        try:
+            for process in alive:
+                process.send_signal(signal.SIGTERM)
+            for process in alive:
+                process.wait()
+        except Interrupted:
+            continue
