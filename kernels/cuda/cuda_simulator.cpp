@@ -84,7 +84,7 @@ class DeviceSimulator final : public CudaSimulator {
                         stepping_,
                         recording,
                         steps,
-                        cuda::features_of(scene_, stepping_.precision, recording, has_muscles(live)),
+                        cuda::features_of(scene_, stepping_, recording, has_muscles(live)),
                         device_.shared_bytes};
     std::vector<cuda::Plan<T>> plans = plan(live, run);
     const Lanes::Loan lane(lanes_);
@@ -185,11 +185,6 @@ class DeviceSimulator final : public CudaSimulator {
 
 std::unique_ptr<CudaSimulator> make_cuda_simulator(const Scene& scene, const Stepping& stepping, int threads,
                                                    std::size_t memory) {
-  if (stepping.method != Method::paper_euler)
-    throw std::invalid_argument(
-        "simulation.method: \"" + std::string(name(stepping.method)) +
-        "\" runs on the CPU alone; set simulation.device to \"cpu\", or simulation.method to \"" +
-        std::string(name(Method::paper_euler)) + "\"");
   if (stepping.precision == Precision::float64)
     return std::make_unique<DeviceSimulator<double>>(scene, stepping, threads, memory);
   return std::make_unique<DeviceSimulator<float>>(scene, stepping, threads, memory);
