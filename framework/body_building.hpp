@@ -26,6 +26,9 @@ BuiltBody build_body(Blueprint blueprint);
 /// The same for a population, whose neighbours are searched for together.
 std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, Workers& workers);
 
+/// The masses that springs do not tie to the largest piece, ascending.
+std::vector<std::uint32_t> loose_masses(const Body& body);
+
 /// Why this body, its masses at `places`, cannot be simulated with this step: "unstable dt: …"; empty where it can.
 std::string step_failure(const Body& body, std::span<const Vec3> places, const Scene& scene, const Stepping& stepping);
 

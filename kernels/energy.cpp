@@ -13,15 +13,17 @@ physics::Triple<double> triple(Vec3 v) { return {v.x, v.y, v.z}; }
 
 double total_energy(const Body& body, const State& state, const Scene& scene, double dt) {
   const double time = static_cast<double>(state.steps) * dt;
+  std::vector<double> relative_length;
+  for (const Material& material : body.materials) relative_length.push_back(material.relative_length(time));
   double energy = 0;
   for (std::size_t i = 0; i < body.masses.size(); ++i) {
     energy += physics::kinetic_energy(body.masses[i].mass, triple(state.velocity[i]));
     if (scene.gravity) energy += body.masses[i].mass * scene.gravity->acceleration * state.position[i].z;
   }
   for (const Spring& spring : body.springs) {
-    const Material& material = body.materials[spring.material];
     const auto s = physics::separation(triple(state.position[spring.a]), triple(state.position[spring.b]));
-    energy += physics::elastic_energy(s, material.stiffness, spring.rest_length * material.relative_length(time));
+    energy += physics::elastic_energy(s, body.materials[spring.material].stiffness,
+                                      spring.rest_length * relative_length[spring.material]);
   }
   return energy;
 }
