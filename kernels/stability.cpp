@@ -221,7 +221,8 @@ double safe_dt(const Body& body, std::span<const Vec3> places, const Scene& scen
 bool is_stable(const Body& body, std::span<const Vec3> places, Method method, double dt) {
   if (!is_explicit(method)) return true;
   const double limit = std::pow(oscillation_limit(method) / dt, 2);
-  return eigenvalue_bound(body, places) <= limit || largest_eigenvalue(StiffnessMatrix(body, places), limit) <= limit;
+  return disc_bound(body, places) <= limit || eigenvalue_bound(body, places) <= limit ||
+         largest_eigenvalue(StiffnessMatrix(body, places), limit) <= limit;
 }
 
 }  // namespace evodevo

@@ -89,13 +89,16 @@ Arrangement::Arrangement(const Body& body, unsigned largest_block, const Arrange
     : groups(divided(body.masses.size(), 32)),
       place_of(places_after(body, 32 * groups, earlier.place_of, earlier_rest)) {
   Settled settled;
+  settled.owner.reserve(body.springs.size());
+  settled.row.reserve(body.springs.size());
   const std::vector<std::uint32_t> group_of_row = earlier.groups_of_rows();
   std::size_t next = 0;  // of the earlier springs
   for (const Spring& spring : body.springs) {
     const std::uint32_t a = place_of[spring.a], b = place_of[spring.b];
     const auto was_here = [&](std::uint32_t slot) {
       const std::uint32_t owner = 32 * group_of_row[slot / 32] + slot % 32, other = earlier.slots[slot].other;
-      return (owner == a && other == b) || (owner == b && other == a);
+      // without branches, because which end owns a spring is anyone's guess
+      return ((owner == a) & (other == b)) | ((owner == b) & (other == a));
     };
     const auto found =
         std::find_if(earlier.slot_of.begin() + static_cast<std::ptrdiff_t>(next), earlier.slot_of.end(), was_here);
@@ -126,6 +129,10 @@ void Arrangement::arrange(const Body& body, unsigned largest_block, Settled sett
   magic_numbers.assign(32 * groups, 0);
   std::vector<Group> members(groups);
   std::vector<std::uint32_t> owned(32 * groups);
+  for (Group& group : members) {
+    group.links.reserve(body.springs.size() / groups * 3 / 2);
+    group.slots.reserve(group.links.capacity());
+  }
   for (std::uint32_t i = 0; i < body.springs.size(); ++i) {
     const std::uint32_t owner = settled.owner[i];
     const std::uint32_t other = place_of[body.springs[i].a] + place_of[body.springs[i].b] - owner;
