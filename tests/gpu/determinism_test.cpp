@@ -4,7 +4,7 @@
 namespace evodevo::testing_gpu {
 namespace {
 
-class Determinism : public testing::TestWithParam<Precision> {};
+class Determinism : public testing::TestWithParam<Way> {};
 
 void expect_same_bits(const Robot& a, const Robot& b) {
   EXPECT_EQ(a.answer.status, b.answer.status);
@@ -115,11 +115,13 @@ TEST_P(Determinism, InternalForcesLeaveTheMomentumAlone) {
   simulate(*simulator, {&run}, 1000);
   Vec3 momentum;
   for (const Vec3& velocity : run.state.velocity) momentum = momentum + 0.25 * velocity;
-  EXPECT_LT(norm(momentum), GetParam() == Precision::float32 ? 1e-4 : 1e-12);
+  const auto [method, precision] = GetParam();
+  // implicit leaves up to a millionth of each step's equation unsolved
+  const double rest = method == Method::implicit ? 1e-5 : 1e-12;
+  EXPECT_LT(norm(momentum), precision == Precision::float32 ? 1e-4 : rest);
 }
 
-INSTANTIATE_TEST_SUITE_P(Gpu, Determinism, testing::Values(Precision::float32, Precision::float64),
-                         [](const auto& test) { return std::string(name(test.param)); });
+INSTANTIATE_TEST_SUITE_P(Gpu, Determinism, all_ways(), [](const auto& test) { return name(test.param); });
 
 }  // namespace
 }  // namespace evodevo::testing_gpu

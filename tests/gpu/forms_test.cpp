@@ -4,13 +4,13 @@
 namespace evodevo::testing_gpu {
 namespace {
 
-class Forms : public testing::TestWithParam<Precision> {
+class Forms : public testing::TestWithParam<Way> {
  protected:
   /// Moves a body for 0.05 s on both devices and compares places, stress and work.
   void compare(const Body& body, const State& start) {
     const Scene scene = walking_scene();
     const Recording all{.stress = true, .work = true};
-    const bool single = GetParam() == Precision::float32;
+    const bool single = std::get<Precision>(GetParam()) == Precision::float32;
     Robot cpu(body, start), gpu(body, start);
     simulate(*make_cpu_simulator(scene, stepping(GetParam()), 0), {&cpu}, 110, all);
     simulate(*make_cuda_simulator(scene, stepping(GetParam())), {&gpu}, 110, all);
@@ -141,8 +141,7 @@ TEST_P(Forms, Masses20000BeyondTheChip) {
   compare(random_body(20000, 12, 5));
 }
 
-INSTANTIATE_TEST_SUITE_P(Gpu, Forms, testing::Values(Precision::float32, Precision::float64),
-                         [](const auto& test) { return std::string(name(test.param)); });
+INSTANTIATE_TEST_SUITE_P(Gpu, Forms, all_ways(), [](const auto& test) { return name(test.param); });
 
 }  // namespace
 }  // namespace evodevo::testing_gpu
