@@ -24,8 +24,9 @@ const MethodForm& form_of(Method method) {
        .rows_per_step = 1,
        .end_rows = 1,
        .numbers_of_mass = 24,
-       .numbers_of_joint = 4},
-      {.file = "cuda/methods/xpbd.cu", .rows_per_step = 1, .end_rows = 1, .coloured = true}};
+       .numbers_of_joint = 5,
+       .points_on_chip = 3},
+      {.file = "cuda/methods/xpbd.cu", .rows_per_step = 1, .end_rows = 1, .points_on_chip = 2, .coloured = true}};
   return forms[static_cast<std::size_t>(method)];
 }
 

@@ -20,6 +20,7 @@ struct MethodForm {
   unsigned passes_per_step = 0;   ///< likewise
   unsigned numbers_of_mass = 0;   ///< of scratch memory that a streamed body needs for each mass
   unsigned numbers_of_joint = 0;  ///< likewise for each joint
+  unsigned points_on_chip = 0;    ///< of each mass, in shared memory where there is room, of methods of whole bodies
   bool coloured = false;          ///< whether it needs the springs by colour
 
   unsigned rows(unsigned steps) const { return steps * rows_per_step + end_rows; }

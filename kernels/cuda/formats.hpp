@@ -148,6 +148,7 @@ struct StreamedBody {
   std::uint64_t steps;  ///< to make
   double energy_bound;  ///< J
   std::uint32_t masses, entries, colours;
+  std::uint32_t on_chip;  ///< whether MethodForm::points_on_chip lie in shared memory
 };
 
 }  // namespace evodevo::cuda

@@ -37,7 +37,7 @@ Plan<T>::Plan(Task& task_, const Run& run)
         if (is_explicit(run.stepping.method))
           if (auto resident = Resident<T>::arrange(task_, run.scene, run.features, run.shared_bytes))
             return *std::move(resident);
-        return Streamed<T>(task_, run.features);
+        return Streamed<T>(task_, run.features, Resident<T>::largest_chip(run.shared_bytes));
       }()) {}
 
 template <class T>
@@ -131,6 +131,15 @@ std::vector<typename Portion<T>::ReadyLaunch> Portion<T>::ready_launches(KernelS
   return launches;
 }
 
+/// Lets a kernel have as much shared memory as any body needs: always the most, because other threads may be about to
+/// start the same kernel.
+template <class T>
+void Portion<T>::allow_largest_chip(cudaKernel_t kernel) const {
+  check(cudaFuncSetAttribute(reinterpret_cast<const void*>(kernel), cudaFuncAttributeMaxDynamicSharedMemorySize,
+                             static_cast<int>(Resident<T>::largest_chip(run_.shared_bytes))),
+        "asking for shared memory");
+}
+
 template <class T>
 void Portion<T>::launch_resident(KernelStore& kernels, std::span<const Stream> streams, Workers& workers) {
   const Event ready;
@@ -140,10 +149,7 @@ void Portion<T>::launch_resident(KernelStore& kernels, std::span<const Stream> s
     std::size_t shared_bytes = 0;
     for (const std::size_t i : one.members)
       shared_bytes = std::max(shared_bytes, std::get<Resident<T>>(plans_[i].body).chip_bytes());
-    // always the most, because other threads may be about to start the same kernel
-    check(cudaFuncSetAttribute(reinterpret_cast<const void*>(one.kernel), cudaFuncAttributeMaxDynamicSharedMemorySize,
-                               static_cast<int>(Resident<T>::largest_chip(run_.shared_bytes))),
-          "asking for shared memory");
+    allow_largest_chip(one.kernel);
     const cudaStream_t stream = streams[next++ % streams.size()];
     check(cudaStreamWaitEvent(stream, ready), "waiting for an event");
     launch(one.kernel, dim3(static_cast<unsigned>(one.members.size())), one.launch.threads, shared_bytes, stream,
@@ -176,10 +182,12 @@ void Portion<T>::launch_streamed(KernelStore& kernels, cudaStream_t stream, std:
   const bool by_block = !is_explicit(run_.stepping.method);
   unsigned masses = 1;
   std::uint64_t steps = 0;
+  std::size_t shared_bytes = 0;
   for (const std::size_t i : members) {
     const auto& body = std::get<Streamed<T>>(plans_[i].body);
     masses = std::max(masses, body.masses());
     steps = std::max(steps, body.steps());
+    shared_bytes = std::max(shared_bytes, body.chip_bytes());
   }
   const unsigned threads = std::get<Streamed<T>>(plans_[members.front()].body).threads();
   const auto kernel = [&](const char* name) {
@@ -187,12 +195,13 @@ void Portion<T>::launch_streamed(KernelStore& kernels, cudaStream_t stream, std:
   };
   const cudaKernel_t fill = kernel("evodevo_fill_tables"), check_bodies = kernel("evodevo_check_streamed"),
                      move = kernel(by_block ? "evodevo_advance_streamed" : "evodevo_pass_streamed");
+  if (by_block) allow_largest_chip(move);
   const auto count = static_cast<unsigned>(members.size());
   const dim3 over_masses((masses + threads - 1) / threads, count);
   for (std::uint64_t done = 0; done < steps;) {
     const auto now = static_cast<unsigned>(std::min<std::uint64_t>(steps - done, guard_interval));
     launch(fill, dim3(count), 256, 0, stream, bodies, done, method.rows(now));
-    if (by_block) launch(move, dim3(count), threads, 0, stream, bodies, done);
+    if (by_block) launch(move, dim3(count), threads, shared_bytes, stream, bodies, done);
     for (unsigned pass = 0; pass < method.passes(now); ++pass)
       launch(move, over_masses, threads, 0, stream, bodies, done, pass);
     launch(fill, dim3(count), 256, 0, stream, bodies, done + now, 1u);

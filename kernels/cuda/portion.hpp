@@ -69,6 +69,7 @@ class Portion {
   void pack(Workers& workers);
   void upload(cudaStream_t stream);
   std::vector<ReadyLaunch> ready_launches(KernelStore& kernels, Workers& workers) const;
+  void allow_largest_chip(cudaKernel_t kernel) const;
   void launch_resident(KernelStore& kernels, std::span<const Stream> streams, Workers& workers);
   void launch_streamed(KernelStore& kernels, std::span<const Stream> streams);
   void launch_streamed(KernelStore& kernels, cudaStream_t stream, std::span<const std::size_t> members,

@@ -10,12 +10,14 @@
 namespace evodevo::cuda {
 
 template <class T>
-Streamed<T>::Streamed(const Task& task, const Features& features)
+Streamed<T>::Streamed(const Task& task, const Features& features, std::size_t largest_chip)
     : task_(&task),
       features_(features),
+      chip_bytes_(form_of(features.method).points_on_chip * sizeof(Point<T>) * task.body->masses.size()),
       place_of_(places_by_valence(*task.body)),
       first_row_(1),
       owned_joint_(task.body->springs.size()) {
+  if (chip_bytes_ > largest_chip) chip_bytes_ = 0;
   const Body& body = *task.body;
   std::vector<std::uint32_t> valence(body.masses.size());
   for (const Spring& spring : body.springs) ++valence[place_of_[spring.a]], ++valence[place_of_[spring.b]];
@@ -59,7 +61,9 @@ void Streamed<T>::reserve() {
 template <class T>
 unsigned Streamed<T>::threads() const {
   if (is_explicit(features_.method)) return 128;
-  return std::clamp(std::bit_ceil(masses()), lanes, lanes * largest_block(features_.float64));
+  // a colour has at most half as many springs as there are masses, and on average about a quarter
+  const std::uint32_t busy = form_of(features_.method).coloured ? masses() / 4 : masses();
+  return std::clamp(std::bit_ceil(busy), lanes, lanes * largest_block(features_.float64));
 }
 
 template <class T>
@@ -137,7 +141,8 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
           .energy_bound = guard.bound(),
           .masses = masses(),
           .entries = static_cast<std::uint32_t>(body.materials.size() + 1),
-          .colours = colours_};
+          .colours = colours_,
+          .on_chip = chip_bytes_ > 0};
 }
 
 template <class T>

@@ -12,12 +12,14 @@ namespace evodevo::cuda {
 template <class T>
 class Streamed {
  public:
-  Streamed(const Task& task, const Features& features);
+  /// `largest_chip`: bytes of shared memory that a body can have.
+  Streamed(const Task& task, const Features& features, std::size_t largest_chip);
 
   Sizes sizes() const { return sizes_; }
   /// Of the blocks that move the body. Where one block does, they depend on nothing but the body, like all that it
   /// sums.
   unsigned threads() const;
+  std::size_t chip_bytes() const { return chip_bytes_; }  ///< of the shared memory of a block that moves it alone
   std::uint32_t masses() const { return static_cast<std::uint32_t>(task_->body->masses.size()); }
   std::uint64_t steps() const { return task_->steps; }
 
@@ -40,6 +42,7 @@ class Streamed {
   const Task* task_;
   Features features_;
   Sizes sizes_;
+  std::size_t chip_bytes_;
   std::vector<std::uint32_t> place_of_;     ///< [masses] by falling number of springs
   std::vector<std::uint32_t> first_row_;    ///< [groups of 32 masses + 1]
   std::vector<std::uint32_t> owned_joint_;  ///< [springs] the one at end a, where the spring's stress is summed

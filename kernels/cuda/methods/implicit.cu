@@ -12,23 +12,27 @@ constexpr int most_iterations = 500;
 struct alignas(4 * sizeof(Number)) Stiffness : physics::SpringStiffness<Number> {};
 
 struct Memory {
-  Point<Number>*residual, *direction, *correction;
+  Point<Number>*residual, *correction;
   Point<Number>* applied;           // the matrix times the direction
   Point<Number>* inverse_diagonal;  // of the matrix: the preconditioner; 0 for masses that do not move
   Point<Number>* resistance;        // R, kg/s
+  Point<Number>* direction;         // on the chip where there is room, because neighbours read it
   Stiffness* stiffness;             // [joints]
+  std::uint32_t* other;  // [joints] the mass at the other end, alone, because what is read is what takes time
 
   __device__ __forceinline__ explicit Memory(const Body& body)
       : residual(reinterpret_cast<Point<Number>*>(body.scratch)),
-        direction(residual + body.masses),
-        correction(direction + body.masses),
+        correction(residual + body.masses),
         applied(correction + body.masses),
         inverse_diagonal(applied + body.masses),
         resistance(inverse_diagonal + body.masses),
-        stiffness(reinterpret_cast<Stiffness*>(resistance + body.masses)) {}
+        direction(body.on_chip ? points_on_chip(body, 2) : resistance + body.masses),
+        stiffness(reinterpret_cast<Stiffness*>(resistance + 2 * body.masses)),
+        other(reinterpret_cast<std::uint32_t*>(stiffness + body.first_row[(body.masses + lanes - 1) / lanes] * lanes)) {
+  }
 };
 static_assert(6 * sizeof(Point<Number>) == EVODEVO_NUMBERS_OF_MASS * sizeof(Number));
-static_assert(sizeof(Stiffness) == EVODEVO_NUMBERS_OF_JOINT * sizeof(Number));
+static_assert(sizeof(Stiffness) + sizeof(Number) == EVODEVO_NUMBERS_OF_JOINT * sizeof(Number));
 
 /// Component by component.
 __device__ __forceinline__ Place product(const Place& a, const Place& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
@@ -63,6 +67,7 @@ __device__ __forceinline__ Place add_springs(const World<Number>& world, const B
         physics::spring_factor_by_inverse(1 / distance, entry.stiffness, entry.rest_force * joint.rest_length);
     const auto matrix = physics::spring_stiffness(s, distance, entry.stiffness, factor);
     memory.stiffness[i] = {matrix};
+    memory.other[i] = joint.other;
     diagonal = sum(diagonal, Number(1), product(matrix.along, matrix.along));
     diagonal = sum(diagonal, matrix.transverse, {1, 1, 1});
     m.force = sum(m.force, factor, s.d);
@@ -109,8 +114,8 @@ __device__ __forceinline__ double apply(const World<Number>& world, const Body& 
   for_each_mass(body, [&](unsigned mass) {
     const Place own = triple(memory.direction[mass]);
     Place force{0, 0, 0};
-    for_each_joint(body, mass, [&](unsigned i, const Joint<Number> joint) {
-      const Place across = difference(own, triple(memory.direction[joint.other]));
+    for_each_joint(body, mass, [&](unsigned i, const Joint<Number>&) {
+      const Place across = difference(own, triple(memory.direction[memory.other[i]]));
       force = sum(force, Number(1), physics::times(memory.stiffness[i], across));
     });
     const Place resisted = sum(product(triple(memory.resistance[mass]), own), world.dt, force);
@@ -193,16 +198,14 @@ __device__ __forceinline__ void note_tensions(const Body& body, unsigned row) {
 /// row.
 extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS)
     evodevo_advance_streamed(const Body* bodies, std::uint64_t done) {
-  const Body& body = bodies[blockIdx.x];
-  if (done >= body.steps || body.answer->diverged) return;
-  const World<Number> world = body.world;
-  const auto count = static_cast<unsigned>(min(body.steps - done, std::uint64_t{guard_interval}));
-  const Memory memory(body);
-  for (unsigned step = 0; step < count; ++step) {
-    solve(world, body, memory, begin(world, body, memory, step + 1));
-    move(world, body, memory);
-    if constexpr (stress || work) note_tensions(body, step + 1);
-  }
+  advance_to_check(bodies[blockIdx.x], done, [](const Body& body, unsigned count) {
+    const Memory memory(body);
+    for (unsigned step = 0; step < count; ++step) {
+      solve(body.world, body, memory, begin(body.world, body, memory, step + 1));
+      move(body.world, body, memory);
+      if constexpr (stress || work) note_tensions(body, step + 1);
+    }
+  });
 }
 
 }  // namespace evodevo::cuda

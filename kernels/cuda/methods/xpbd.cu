@@ -68,15 +68,13 @@ __device__ __forceinline__ void move(const World<Number>& world, const Body& bod
 /// row.
 extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS)
     evodevo_advance_streamed(const Body* bodies, std::uint64_t done) {
-  const Body& body = bodies[blockIdx.x];
-  if (done >= body.steps || body.answer->diverged) return;
-  const World<Number> world = body.world;
-  const auto count = static_cast<unsigned>(min(body.steps - done, std::uint64_t{guard_interval}));
-  for (unsigned step = 0; step < count; ++step) {
-    fall(world, body);
-    solve_springs(world, body, step + 1);
-    move(world, body);
-  }
+  advance_to_check(bodies[blockIdx.x], done, [](const Body& body, unsigned count) {
+    for (unsigned step = 0; step < count; ++step) {
+      fall(body.world, body);
+      solve_springs(body.world, body, step + 1);
+      move(body.world, body);
+    }
+  });
 }
 
 }  // namespace evodevo::cuda
