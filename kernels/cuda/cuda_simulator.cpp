@@ -81,8 +81,7 @@ class DeviceSimulator final : public CudaSimulator {
   void run(std::span<Task> tasks, Recording recording) override {
     const std::vector<Task*> live = begin(tasks, recording);
     const cuda::Run run{scene_, stepping_, recording,
-                        cuda::features_of(scene_, stepping_.precision, recording, has_muscles(live)),
-                        device_.shared_bytes};
+                        cuda::features_of(scene_, stepping_, recording, has_muscles(live)), device_.shared_bytes};
     std::vector<cuda::Plan<T>> plans = plan(live, run);
     const Lanes::Loan lane(lanes_);
     // after a run with stress the host has work to do; meanwhile runs without it fill the device
@@ -182,11 +181,6 @@ class DeviceSimulator final : public CudaSimulator {
 
 std::unique_ptr<CudaSimulator> make_cuda_simulator(const Scene& scene, const Stepping& stepping, int threads,
                                                    std::size_t memory) {
-  if (stepping.method != Method::paper_euler)
-    throw std::invalid_argument(
-        "simulation.method: \"" + std::string(name(stepping.method)) +
-        "\" runs on the CPU alone; set simulation.device to \"cpu\", or simulation.method to \"" +
-        std::string(name(Method::paper_euler)) + "\"");
   if (stepping.precision == Precision::float64)
     return std::make_unique<DeviceSimulator<double>>(scene, stepping, threads, memory);
   return std::make_unique<DeviceSimulator<float>>(scene, stepping, threads, memory);

@@ -93,7 +93,7 @@ std::vector<Table> ranking(const Settings& settings) {
   Comparison comparison(truth.values);
   comparison.add("as it is", "reference moved by 1e-9 m", reference,
                  measure(experiment, bodies, reference, host, 1e-9));
-  for (const Method method : settings.device.methods())
+  for (const Method method : all_methods())
     for (const Precision precision : {Precision::float32, Precision::float64})
       for (const double dt : time_steps(settings.quick)) {
         const Setting setting{method, precision, dt};
