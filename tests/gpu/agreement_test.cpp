@@ -76,7 +76,8 @@ TEST_P(AgreementOfRecords, StressAndWorkOf150Steps) {
               std::abs(gpu.answer.work - cpu.answer.work), cpu.answer.work);
   EXPECT_GT(cpu.answer.work, 0);
   const double accuracy = bound(way, scene.floor.has_value());
-  EXPECT_LT(largest, 1e4 * accuracy);
+  // N, some ten times what is seen: 0.2 in float32, and in float64 7e-5 where one touch of the floor is a step later
+  EXPECT_LT(largest, std::get<Precision>(way) == Precision::float32 ? 3 : 1e-3);
   EXPECT_NEAR(gpu.answer.work, cpu.answer.work, 10 * accuracy * cpu.answer.work);
 }
 
