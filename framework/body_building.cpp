@@ -122,7 +122,7 @@ std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, Neighbour
   });
   std::vector<PointCloud> clouds;
   for (std::size_t i = 0; i < blueprints.size(); ++i) clouds.push_back({places[i], blueprints[i].neighbours});
-  search.find(clouds, [&](std::size_t i, std::span<const IndexPair> pairs) {
+  search.find(clouds, workers, [&](std::size_t i, std::span<const IndexPair> pairs) {
     if (!built[i].failure.empty()) return;
     join(blueprints[i].body, pairs);
     built[i] = finish(std::move(blueprints[i].body));

@@ -33,10 +33,7 @@ Evaluation::Evaluation(const Experiment& experiment, Simulator& simulator)
     : Evaluation(experiment, simulator, Conditions(experiment)) {}
 
 Evaluation::Evaluation(const Experiment& experiment, Simulator& simulator, const Conditions& conditions)
-    : experiment_(experiment),
-      simulator_(simulator),
-      conditions_(conditions),
-      workers_(static_cast<int>(experiment.threads)) {
+    : experiment_(experiment), simulator_(simulator), conditions_(conditions) {
   set_windows();
 }
 
@@ -89,12 +86,12 @@ std::vector<Result> Evaluation::evaluate_cohort(std::span<const Newborn> newborn
 std::vector<Life> Evaluation::birth(std::span<const Newborn> newborns) const {
   const BusyClock::Span span(decode_);
   std::vector<Blueprint> blueprints(newborns.size());
-  workers_.for_each(newborns.size(), [&](std::size_t i) {
+  simulator_.workers().for_each(newborns.size(), [&](std::size_t i) {
     blueprints[i] = experiment_.encoding->decode(*newborns[i].genome, experiment_.world);
   });
-  std::vector<BuiltBody> built = build_bodies(std::move(blueprints), simulator_.neighbours(), workers_);
+  std::vector<BuiltBody> built = build_bodies(std::move(blueprints), simulator_.neighbours(), simulator_.workers());
   std::vector<Life> lives(newborns.size());
-  workers_.for_each(lives.size(), [&](std::size_t i) {
+  simulator_.workers().for_each(lives.size(), [&](std::size_t i) {
     Life& life = lives[i];
     life.newborn = newborns[i];
     if (!built[i].failure.empty()) return end(life, Status::invalid, std::move(built[i].failure));
@@ -114,7 +111,7 @@ void Evaluation::develop(std::span<Life> lives, const Progress& progress) const 
   for (int cycle = 1; cycle <= development.cycles; ++cycle) {
     simulate(lives, development.cycle_time, {.stress = !development.operators.empty()});
     const BusyClock::Span span(develop_);
-    workers_.for_each(lives.size(), [&](std::size_t i) {
+    simulator_.workers().for_each(lives.size(), [&](std::size_t i) {
       if (!lives[i].alive()) return;
       apply_operators(lives[i], cycle);
       if (development.reset) return_to_rest(lives[i]);

@@ -107,7 +107,6 @@ class Evaluation {
   };
   std::vector<double> marks_;    ///< when some fitness looks, from the start of the final evaluation, s
   std::vector<Window> windows_;  ///< of each fitness
-  mutable Workers workers_;
   mutable BusyClock decode_, simulate_, develop_;
 };
 

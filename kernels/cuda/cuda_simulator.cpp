@@ -76,7 +76,7 @@ class DeviceSimulator final : public CudaSimulator {
         device_(cuda::current_device()),
         kernels_(device_.architecture),
         workers_(threads),
-        neighbours_(make_cuda_neighbour_search(threads)) {}
+        neighbours_(make_cuda_neighbour_search()) {}
 
   void run(std::span<Task> tasks, Recording recording) override {
     const std::vector<Task*> live = begin(tasks, recording);
@@ -99,6 +99,8 @@ class DeviceSimulator final : public CudaSimulator {
   }
 
   NeighbourSearch& neighbours() override { return *neighbours_; }
+
+  Workers& workers() override { return workers_; }
 
   int concurrency() const override { return batches_at_once; }
 

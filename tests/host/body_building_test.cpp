@@ -78,7 +78,7 @@ TEST(BodyBuilding, APopulationIsBuiltAsEachBodyAlone) {
   blueprints.back().body.springs = {{1, 2, 4, 0}};
   for (const int threads : {1, 3}) {
     Workers workers(threads);
-    const std::vector<BuiltBody> together = build_bodies(blueprints, *make_cpu_neighbour_search(threads), workers);
+    const std::vector<BuiltBody> together = build_bodies(blueprints, *make_cpu_neighbour_search(), workers);
     ASSERT_EQ(together.size(), blueprints.size());
     for (std::size_t i = 0; i < blueprints.size(); ++i) {
       const BuiltBody alone = build_body(blueprints[i]);

@@ -27,6 +27,7 @@ class Breaking final : public Simulator {
     simulator_->run(tasks, recording);
   }
   NeighbourSearch& neighbours() override { return simulator_->neighbours(); }
+  Workers& workers() override { return simulator_->workers(); }
   std::string device() const override { return simulator_->device(); }
 
  private:
