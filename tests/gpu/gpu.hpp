@@ -22,6 +22,9 @@ namespace evodevo::testing_gpu {
     GTEST_SKIP() << missing;                                         \
   } while (false)
 
+/// The methods that the GPU knows.
+inline constexpr Method methods[] = {Method::paper_euler};
+
 inline Stepping stepping(Precision precision) { return {Method::paper_euler, precision}; }
 
 inline const char* name(Precision precision) { return precision == Precision::float32 ? "float32" : "float64"; }
