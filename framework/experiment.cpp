@@ -255,21 +255,23 @@ class Composer {
     out_.step = chosen->step;
   }
 
-  /// Refuses a dt that the floor, or a single spring, could not bear.
+  /// Refuses a dt that the floor, or a single spring, could not bear, or at which a muscle could not be seen.
   void check_step(const TomlReader& t) const {
     const double mass = out_.world.mass, dt = *out_.step.fixed();
     const auto refuse = [&](const std::string& what, double largest) {
-      t.fail("dt", "the step " + to_text(dt) + " s is too long for " + what + " on masses of " + to_text(mass) +
-                       " kg; expected at most " + to_text(largest) + " s");
+      t.fail("dt", "the step " + to_text(dt) + " s is too long for " + what + "; expected at most " + to_text(largest) +
+                       " s");
     };
+    const std::string on_masses = " N/m on masses of " + to_text(mass) + " kg";
     const double contact = largest_contact_dt(out_.scene, mass, out_.stepping.method);
-    if (dt > contact) refuse("scene.floor.stiffness = " + to_text(out_.scene.floor->stiffness) + " N/m", contact);
+    if (dt > contact) refuse("scene.floor.stiffness = " + to_text(out_.scene.floor->stiffness) + on_masses, contact);
     for (std::size_t i = 0; i < out_.world.materials.size(); ++i) {
       const Material& material = out_.world.materials[i];
-      const double largest = largest_spring_dt(material, mass, out_.stepping.method);
-      if (dt > largest)
-        refuse("materials." + out_.world.material_names[i] + ".stiffness = " + to_text(material.stiffness) + " N/m",
-               largest);
+      const std::string key = "materials." + out_.world.material_names[i];
+      const double spring = largest_spring_dt(material, mass, out_.stepping.method),
+                   muscle = largest_muscle_dt(material);
+      if (dt > spring) refuse(key + ".stiffness = " + to_text(material.stiffness) + on_masses, spring);
+      if (dt > muscle) refuse(key + ".frequency = " + to_text(material.frequency) + " Hz", muscle);
     }
   }
 

@@ -271,6 +271,9 @@ TEST(Configuration, StepsThatTheSceneOrAMaterialCannotBear) {
   EXPECT_EQ(complaint(with("[simulation]\nthreads = 2", "[scene.drag]"), {{"scene.floor.stiffness", "1e9", ""}})
                 .substr(0, 60),
             "test.toml:1:1: simulation.dt: the step 0.0005 s is too long ");
+  EXPECT_EQ(complaint(with("[simulation]", "[materials.muscle]\nfrequency = 1999\n[simulation]\ndt = 0.0005")),
+            "test.toml:29:6: simulation.dt = 0.0005: the step 0.0005 s is too long for materials.muscle.frequency = "
+            "1999 Hz; expected at most 0.0002501250625312656 s");
   EXPECT_EQ(complaint(with("cycle_time = 0.05", "cycle_time = 0.0507")),
             "test.toml:31:14: development.cycle_time = 0.0507: 0.0507 s is not a whole number of steps of 0.0005 s; "
             "the nearest that is: 0.0505 s");
