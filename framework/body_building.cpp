@@ -57,13 +57,16 @@ std::vector<std::uint32_t> pieces(const Body& body) {
   return leader;
 }
 
-/// Keeps the piece with most masses; of equal ones that of the lowest index.
+/// The leader of the piece with most masses; of equal ones that of the lowest index.
+std::uint32_t largest_piece(const std::vector<std::uint32_t>& leader) {
+  std::vector<std::uint32_t> size(leader.size(), 0);
+  for (const std::uint32_t i : leader) ++size[i];
+  return static_cast<std::uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
+}
+
 void keep_largest_piece(Body& body) {
   const std::vector<std::uint32_t> leader = pieces(body);
-  std::vector<std::uint32_t> size(body.masses.size(), 0);
-  for (const std::uint32_t i : leader) ++size[i];
-  const auto largest = static_cast<std::uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
-
+  const std::uint32_t largest = largest_piece(leader);
   std::vector<std::uint32_t> new_index(body.masses.size(), 0);
   std::vector<Mass> kept;
   for (std::uint32_t i = 0; i < leader.size(); ++i) {
@@ -72,8 +75,10 @@ void keep_largest_piece(Body& body) {
     kept.push_back(body.masses[i]);
   }
   std::erase_if(body.springs, [&](const Spring& spring) { return leader[spring.a] != largest; });
-  for (Spring& spring : body.springs)
-    spring = {new_index[spring.a], new_index[spring.b], spring.rest_length, spring.material};
+  for (Spring& spring : body.springs) {
+    spring.a = new_index[spring.a];
+    spring.b = new_index[spring.b];
+  }
   body.masses = std::move(kept);
 }
 
@@ -93,7 +98,17 @@ std::string blueprint_failure(const Blueprint& blueprint) {
   if (masses.empty()) return "no body: no masses";
   if (!std::all_of(masses.begin(), masses.end(), [](const Mass& mass) { return is_finite(mass.rest); }))
     return "no body: a place that is not finite";
+  if (!blueprint.paired_at.empty() && blueprint.paired_at.size() != masses.size())
+    return "no body: " + std::to_string(blueprint.paired_at.size()) + " places to pair " +
+           std::to_string(masses.size()) + " masses at";
+  if (!std::all_of(blueprint.paired_at.begin(), blueprint.paired_at.end(), is_finite))
+    return "no body: a place to pair masses at that is not finite";
   return "";
+}
+
+/// Where the masses' neighbours are searched for.
+std::vector<Vec3> pairing_places(const Blueprint& blueprint) {
+  return blueprint.paired_at.empty() ? rest_places(blueprint.body) : blueprint.paired_at;
 }
 
 /// What is left to do once neighbours are joined.
@@ -109,7 +124,7 @@ BuiltBody finish(Body body) {
 
 BuiltBody build_body(Blueprint blueprint) {
   if (std::string failure = blueprint_failure(blueprint); !failure.empty()) return {{}, std::move(failure)};
-  join(blueprint.body, nearest_pairs(rest_places(blueprint.body), blueprint.neighbours));
+  join(blueprint.body, nearest_pairs(pairing_places(blueprint), blueprint.neighbours));
   return finish(std::move(blueprint.body));
 }
 
@@ -118,7 +133,7 @@ std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, Neighbour
   std::vector<std::vector<Vec3>> places(blueprints.size());
   workers.for_each(blueprints.size(), [&](std::size_t i) {
     built[i].failure = blueprint_failure(blueprints[i]);
-    if (built[i].failure.empty()) places[i] = rest_places(blueprints[i].body);
+    if (built[i].failure.empty()) places[i] = pairing_places(blueprints[i]);
   });
   std::vector<PointCloud> clouds;
   for (std::size_t i = 0; i < blueprints.size(); ++i) clouds.push_back({places[i], blueprints[i].neighbours});
@@ -128,6 +143,15 @@ std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, Neighbour
     built[i] = finish(std::move(blueprints[i].body));
   });
   return built;
+}
+
+std::vector<std::uint32_t> loose_masses(const Body& body) {
+  const std::vector<std::uint32_t> leader = pieces(body);
+  const std::uint32_t largest = largest_piece(leader);
+  std::vector<std::uint32_t> loose;
+  for (std::uint32_t i = 0; i < leader.size(); ++i)
+    if (leader[i] != largest) loose.push_back(i);
+  return loose;
 }
 
 }  // namespace evodevo

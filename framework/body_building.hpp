@@ -25,4 +25,7 @@ BuiltBody build_body(Blueprint blueprint);
 /// The same for a population, whose neighbours are searched for together.
 std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, Workers& workers);
 
+/// The masses that springs do not tie to the largest piece, ascending.
+std::vector<std::uint32_t> loose_masses(const Body& body);
+
 }  // namespace evodevo

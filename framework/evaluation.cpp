@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "body_building.hpp"
+#include "controls.hpp"
 #include "parallel.hpp"
 #include "philox.hpp"
 
@@ -116,12 +117,19 @@ void Evaluation::develop(std::span<Life> lives, const Progress& progress) const 
     const BusyClock::Span span(develop_);
     workers_.for_each(lives.size(), [&](std::size_t i) {
       if (!lives[i].alive()) return;
+      const double before = energy(lives[i]);
       apply_operators(lives[i], cycle);
       if (development.reset) return_to_rest(lives[i]);
+      // what strains or lifts a body is no fault of the simulation
+      lives[i].living.state.start_energy += std::max(0.0, energy(lives[i]) - before);
       if (!development.operators.empty()) choose_step(lives[i]);
     });
     progress(static_cast<double>(cycle) / static_cast<double>(development.cycles));
   }
+}
+
+double Evaluation::energy(const Life& life) const {
+  return total_energy(life.living.body, life.living.state, experiment_.scene);
 }
 
 Box Evaluation::bounds(const LivingBody& living) const {
@@ -136,31 +144,54 @@ Box Evaluation::bounds(const LivingBody& living) const {
 
 void Evaluation::apply_operators(Life& life, int cycle) const {
   const Development& development = experiment_.development;
-  LivingBody& living = life.living;
-  for (std::size_t i = 0; i < development.operators.size(); ++i) {
-    const Moment now{.body = living.body,
-                     .state = living.state,
-                     .stress = living.stress,
-                     .cycle = cycle,
-                     .cycles = static_cast<int>(development.cycles),
-                     .time = living.state.time,
-                     .bounds = bounds(living),
-                     .mass = experiment_.world.mass,
-                     .resets = development.reset,
-                     .genome = *life.newborn.genome,
-                     .layout = experiment_.layout};
-    Rng rng(philox, {static_cast<std::uint64_t>(experiment_.seed), life.newborn.generation, life.newborn.id,
-                     place::devo(i, cycle)});
-    try {
-      Edits edits;
-      development.operators[i]->develop(now, edits, rng);
-      apply_edits(living, edits, now);
-    } catch (const std::exception& error) {
-      throw std::runtime_error("devo operator \"" + development.names[i] + "\", individual " +
-                               std::to_string(life.newborn.id) + ", cycle " + std::to_string(cycle) + ": " +
-                               error.what());
-    }
+  if (development.control == Control::no_change) return;
+  if (development.control == Control::shuffled_stress)
+    stream(life, place::stress_shuffle(cycle)).shuffle(life.living.stress);
+  for (std::size_t i = 0; i < development.operators.size(); ++i)
+    if (development.operators[i].schedule.contains(cycle)) apply_operator(life, cycle, i);
+  shed_loose_pieces(life, cycle);
+}
+
+void Evaluation::apply_operator(Life& life, int cycle, std::size_t index) const {
+  const auto& [op, name, schedule] = experiment_.development.operators[index];
+  const Moment now = moment(life, cycle, schedule);
+  Rng rng = stream(life, place::devo(index, cycle));
+  try {
+    Edits edits;
+    op->develop(now, edits, rng);
+    if (experiment_.development.control == Control::random_places) edits = at_random_places(edits, now, rng);
+    apply_edits(life.living, edits, now);
+  } catch (const std::exception& error) {
+    throw std::runtime_error("devo operator \"" + name + "\", individual " + std::to_string(life.newborn.id) +
+                             ", cycle " + std::to_string(cycle) + ": " + error.what());
   }
+}
+
+Rng Evaluation::stream(const Life& life, std::uint32_t place) const {
+  return Rng(philox, {static_cast<std::uint64_t>(experiment_.seed), life.newborn.generation, life.newborn.id, place});
+}
+
+Moment Evaluation::moment(const Life& life, int cycle, const Schedule& schedule) const {
+  const Development& development = experiment_.development;
+  const LivingBody& living = life.living;
+  return {.body = living.body,
+          .state = living.state,
+          .stress = living.stress,
+          .cycle = cycle,
+          .cycles = static_cast<int>(development.cycles),
+          .turn = static_cast<int>(schedule.turns(cycle)),
+          .turns = static_cast<int>(schedule.turns(development.cycles)),
+          .time = living.state.time,
+          .bounds = bounds(living),
+          .mass = experiment_.world.mass,
+          .resets = development.reset,
+          .genome = *life.newborn.genome,
+          .layout = experiment_.layout};
+}
+
+void Evaluation::shed_loose_pieces(Life& life, int cycle) const {
+  if (Edits edits{.removed_masses = loose_masses(life.living.body)}; !edits.empty())
+    apply_edits(life.living, edits, moment(life, cycle, {}));
 }
 
 void Evaluation::choose_step(Life& life) const {

@@ -91,7 +91,15 @@ class Evaluation {
   void simulate(std::span<Life> lives, double duration, Recording recording) const;
   /// The box around the body where it is when life goes on, cut off at the floor.
   Box bounds(const LivingBody& living) const;
+  double energy(const Life& life) const;
+  /// What an operator sees after a cycle.
+  Moment moment(const Life& life, int cycle, const Schedule& schedule) const;
   void apply_operators(Life& life, int cycle) const;
+  void apply_operator(Life& life, int cycle, std::size_t index) const;
+  /// What development has torn off is no longer part of the body.
+  void shed_loose_pieces(Life& life, int cycle) const;
+  /// Random numbers for one part of a life.
+  Rng stream(const Life& life, std::uint32_t place) const;
   double development_time() const;
   /// Whether a fitness asks for the work in the time up to a mark.
   bool needs_work(std::size_t mark) const;

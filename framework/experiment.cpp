@@ -310,11 +310,37 @@ class Composer {
              "Simulated time of one cycle.");
       t.flag(development.reset, "reset", "Whether the body goes back to its rest places after every cycle.");
       check_duration(t, "cycle_time", development.cycle_time);
+      read_control(t);
       read_array(t, "operator", [&](TomlReader& entry) {
-        development.operators.push_back(make<Devo>(entry));
-        development.names.push_back(out_.uses.back().name);
+        const Schedule schedule = read_schedule(entry);
+        std::unique_ptr<Devo> op = make<Devo>(entry);
+        development.operators.push_back({std::move(op), out_.uses.back().name, schedule});
       });
     });
+  }
+
+  void read_control(TomlReader& t) {
+    std::string control = "off";
+    t.choice(control, "control", {"off", "no-change", "random-places", "shuffled-stress"},
+             "What the experiment's control does to development.");
+    if (control == "no-change") out_.development.control = Control::no_change;
+    if (control == "random-places") out_.development.control = Control::random_places;
+    if (control == "shuffled-stress") out_.development.control = Control::shuffled_stress;
+  }
+
+  /// When a devo operator comes to its turn; by default after every cycle.
+  Schedule read_schedule(TomlReader& t) {
+    const std::int64_t cycles = out_.development.cycles;
+    Schedule schedule;
+    schedule.to = std::max<std::int64_t>(1, cycles);
+    t.integer(schedule.from, "from", {1, place::most_cycles}, "First cycle after which the operator comes.");
+    t.integer(schedule.to, "to", {1, place::most_cycles}, "Last cycle after which it may come.");
+    t.integer(schedule.every, "every", {1, place::most_cycles}, "Cycles from one turn to the next.");
+    if (schedule.turns(cycles) == 0 && cycles > 0)
+      out_.warnings.push_back(t.full_name("from") + " = " + std::to_string(schedule.from) + " to " +
+                              std::to_string(schedule.to) + ": the operator never comes to its turn in " +
+                              std::to_string(cycles) + " cycles");
+    return schedule;
   }
 
   void read_fitness() {

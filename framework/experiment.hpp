@@ -1,6 +1,7 @@
 // An experiment: the settings and operators that a TOML file composes.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -10,6 +11,7 @@
 #include "evodevo/plugin.hpp"
 #include "loader.hpp"
 #include "overrides.hpp"
+#include "philox.hpp"
 #include "simulator.hpp"
 #include "time_steps.hpp"
 
@@ -23,13 +25,35 @@ struct Varied {
   double probability = 0.5;
 };
 
+/// The cycles, from 1, after which a devo operator comes to its turn: from, from + every, ... and none after `to`.
+struct Schedule {
+  std::int64_t from = 1, to = place::most_cycles, every = 1;
+
+  bool contains(std::int64_t cycle) const { return cycle >= from && cycle <= to && (cycle - from) % every == 0; }
+  /// How many turns there are in the cycles 1 to `cycle`.
+  std::int64_t turns(std::int64_t cycle) const {
+    const std::int64_t last = std::min(cycle, to);
+    return last < from ? 0 : (last - from) / every + 1;
+  }
+};
+
+/// A devo operator and when it comes to its turn.
+struct Scheduled {
+  std::unique_ptr<Devo> op;
+  std::string name;
+  Schedule schedule;
+};
+
+/// What an experiment on development is compared with: all else stays the same, the simulated time included.
+enum class Control { off, no_change, random_places, shuffled_stress };
+
 /// A life's development: `cycles` times {simulate `cycle_time`, apply the operators} (paper, section IV-D).
 struct Development {
   std::int64_t cycles = 0;
   double cycle_time = 1;  ///< s
   bool reset = false;     ///< back to the rest places after every cycle
-  std::vector<std::unique_ptr<Devo>> operators;
-  std::vector<std::string> names;  ///< of the operators, in their order
+  Control control = Control::off;
+  std::vector<Scheduled> operators;
 };
 
 /// An operator that the experiment uses, for the record.

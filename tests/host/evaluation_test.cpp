@@ -209,15 +209,39 @@ struct Stiffener final : Devo {
 
 TEST(Evaluation, DevelopmentChangesTheStep) {
   Experiment experiment = testing::read(testing::small_experiment, {{"simulation.dt", "auto", ""}});
-  experiment.development.operators[0] = std::make_unique<Stiffener>();
+  experiment.development.operators[0].op = std::make_unique<Stiffener>();
   experiment.development.cycles = 1;
   const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
   EXPECT_EQ(result.status, Status::ok) << result.reason;
   experiment.development.operators.clear();
-  experiment.development.names.clear();
   const Result soft = evaluate(experiment, {{.genome = {1, 1}}}).front();
   EXPECT_EQ(soft.status, Status::ok) << soft.reason;
   EXPECT_GT(result.spring_evaluations, 4 * soft.spring_evaluations) << "the steps that follow are shorter";
+}
+
+/// Makes every spring three times as long.
+struct Stretcher final : Devo {
+  void develop(const Moment& now, Edits& edits, Rng&) const override {
+    for (std::uint32_t i = 0; i < now.body.springs.size(); ++i)
+      edits.changed_springs.push_back({.spring = i, .rest_length = 3 * now.body.springs[i].rest_length});
+  }
+};
+
+TEST(Evaluation, ABodysLengthIsThatOfTheStartOfTheWindow) {
+  Experiment experiment = testing::read(testing::small_experiment);
+  experiment.scene.gravity.reset();
+  experiment.scene.damping->rate = 100;  // so that it has its new length soon
+  experiment.development.operators[0].op = std::make_unique<Stretcher>();
+  experiment.development.cycles = 1;
+  Observation born, grown;
+  experiment.fitness.clear();
+  experiment.fitness.push_back(std::make_unique<Watcher>(Request{.settle = 0, .window = 1}, born));
+  experiment.fitness.push_back(std::make_unique<Watcher>(Request{.settle = 1, .window = 1}, grown));
+  experiment.objectives = {{"a", "", true}, {"b", "", true}};
+  const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
+  ASSERT_EQ(result.status, Status::ok) << result.reason;
+  EXPECT_NEAR(born.box.longest_side(), 1, 0.05) << "development has just ended: two voxels of half a metre";
+  EXPECT_NEAR(grown.box.longest_side(), 3, 0.05);
 }
 
 /// Removes every spring.
@@ -236,7 +260,7 @@ struct Faulty final : Devo {
 
 TEST(Evaluation, ABodyThatDevelopmentEmptiesIsInvalid) {
   Experiment experiment = testing::read(testing::small_experiment);
-  experiment.development.operators[0] = std::make_unique<Destroyer>();
+  experiment.development.operators[0].op = std::make_unique<Destroyer>();
   const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
   EXPECT_EQ(result.status, Status::invalid);
   EXPECT_EQ(result.reason, "no springs");
@@ -244,7 +268,7 @@ TEST(Evaluation, ABodyThatDevelopmentEmptiesIsInvalid) {
 
 TEST(Evaluation, AFaultyOperatorIsNamed) {
   Experiment experiment = testing::read(testing::small_experiment);
-  experiment.development.operators[0] = std::make_unique<Faulty>();
+  experiment.development.operators[0].op = std::make_unique<Faulty>();
   try {
     evaluate(experiment, {{.id = 5, .genome = {1, 1}}});
     FAIL() << "the fault went unnoticed";
@@ -271,7 +295,7 @@ TEST(Evaluation, ResetPutsTheBodyBackAfterEveryCycle) {
     experiment.scene.gravity = Gravity{};
     experiment.development.reset = reset;
     std::vector<double> seen;
-    experiment.development.operators[0] = std::make_unique<Place>(seen);
+    experiment.development.operators[0].op = std::make_unique<Place>(seen);
     EXPECT_EQ(evaluate(experiment, {{.genome = {1, 1}}}).front().status, Status::ok);
     return seen;
   };
