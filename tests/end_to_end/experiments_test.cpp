@@ -33,7 +33,7 @@ TEST(Experiments, EachRunsForTwoGenerationsWhenShrunk) {
     EXPECT_EQ(archive.generations().size(), 2u);
     EXPECT_GT(archive.statuses().at("ok"), 0);
   }
-  EXPECT_EQ(count, 7);
+  EXPECT_EQ(count, 8);
 }
 
 /// What the paper gives, value by value.
@@ -85,7 +85,7 @@ TEST(Experiments, TheStudysCostTheSameAndDifferInDevelopmentAlone) {
 }
 
 TEST(Experiments, EveryWalkerButThePapersSettlesTenSeconds) {
-  for (const char* name : {"quickstart.toml", "evo.toml", "evo-devo.toml"})
+  for (const char* name : {"quickstart.toml", "evo.toml", "evo-devo.toml", "growth.toml"})
     EXPECT_EQ(read_experiment({experiment_file(name), {}}).fitness.at(0)->observes().settle, 10) << name;
   const Experiment swimmer = read_experiment({experiment_file("swimmer.toml"), {}});
   EXPECT_EQ(swimmer.fitness.at(0)->observes().settle, 0);
