@@ -28,6 +28,13 @@ std::size_t mark_at(const std::vector<double>& marks, double time) {
   return static_cast<std::size_t>(std::lower_bound(marks.begin(), marks.end(), time - rounding) - marks.begin());
 }
 
+/// Whether edits may strain or lift a body. Turnover by springs without force does neither by much.
+bool adds_energy(const Edits& edits) {
+  return !edits.changed_springs.empty() || edits.new_masses.size() > edits.removed_masses.size() ||
+         std::any_of(edits.new_springs.begin(), edits.new_springs.end(),
+                     [](const NewSpring& spring) { return spring.rest_length.has_value(); });
+}
+
 }  // namespace
 
 Evaluation::Evaluation(const Experiment& experiment, Simulator& simulator)
@@ -117,19 +124,20 @@ void Evaluation::develop(std::span<Life> lives, const Progress& progress) const 
     const BusyClock::Span span(develop_);
     workers_.for_each(lives.size(), [&](std::size_t i) {
       if (!lives[i].alive()) return;
-      const double before = energy(lives[i]);
       apply_operators(lives[i], cycle);
-      if (development.reset) return_to_rest(lives[i]);
-      // what strains or lifts a body is no fault of the simulation
-      lives[i].living.state.start_energy += std::max(0.0, energy(lives[i]) - before);
+      if (development.reset) allow_energy(lives[i], [&] { return_to_rest(lives[i]); });
       if (!development.operators.empty()) choose_step(lives[i]);
     });
     progress(static_cast<double>(cycle) / static_cast<double>(development.cycles));
   }
 }
 
-double Evaluation::energy(const Life& life) const {
-  return total_energy(life.living.body, life.living.state, experiment_.scene);
+template <class Change>
+void Evaluation::allow_energy(Life& life, const Change& change) const {
+  const auto energy = [&] { return total_energy(life.living.body, life.living.state, experiment_.scene); };
+  const double before = energy();
+  change();
+  life.living.state.start_energy += std::max(0.0, energy() - before);
 }
 
 Box Evaluation::bounds(const LivingBody& living) const {
@@ -160,7 +168,11 @@ void Evaluation::apply_operator(Life& life, int cycle, std::size_t index) const 
     Edits edits;
     op->develop(now, edits, rng);
     if (experiment_.development.control == Control::random_places) edits = at_random_places(edits, now, rng);
-    apply_edits(life.living, edits, now);
+    const auto apply = [&] { apply_edits(life.living, edits, now); };
+    if (adds_energy(edits))
+      allow_energy(life, apply);
+    else
+      apply();
   } catch (const std::exception& error) {
     throw std::runtime_error("devo operator \"" + name + "\", individual " + std::to_string(life.newborn.id) +
                              ", cycle " + std::to_string(cycle) + ": " + error.what());

@@ -91,7 +91,9 @@ class Evaluation {
   void simulate(std::span<Life> lives, double duration, Recording recording) const;
   /// The box around the body where it is when life goes on, cut off at the floor.
   Box bounds(const LivingBody& living) const;
-  double energy(const Life& life) const;
+  /// Makes a change; the energy that it brings is no fault of the simulation, so the guard is to allow it.
+  template <class Change>
+  void allow_energy(Life& life, const Change& change) const;
   /// What an operator sees after a cycle.
   Moment moment(const Life& life, int cycle, const Schedule& schedule) const;
   void apply_operators(Life& life, int cycle) const;
