@@ -90,7 +90,8 @@ std::vector<Life> Evaluation::birth(std::span<const Newborn> newborns) const {
   const BusyClock::Span span(decode_);
   std::vector<Blueprint> blueprints(newborns.size());
   workers_.for_each(newborns.size(), [&](std::size_t i) {
-    blueprints[i] = experiment_.encoding->decode(*newborns[i].genome, experiment_.world);
+    blueprints[i] = call_operator([&] { return experiment_.title(Encoding::kind, 0) + ": "; },
+                                  [&] { return experiment_.encoding->decode(*newborns[i].genome, experiment_.world); });
   });
   std::vector<BuiltBody> built = build_bodies(std::move(blueprints), simulator_.neighbours(), workers_);
   std::vector<Life> lives(newborns.size());
@@ -151,15 +152,15 @@ void Evaluation::apply_operators(Life& life, int cycle) const {
                      .layout = experiment_.layout};
     Rng rng(philox, {static_cast<std::uint64_t>(experiment_.seed), life.newborn.generation, life.newborn.id,
                      place::devo(i, cycle)});
-    try {
+    const auto where = [&] {
+      return experiment_.title(Devo::kind, i) + ", individual " + std::to_string(life.newborn.id) + ", cycle " +
+             std::to_string(cycle) + ": ";
+    };
+    call_operator(where, [&] {
       Edits edits;
       development.operators[i]->develop(now, edits, rng);
       apply_edits(living, edits, now);
-    } catch (const std::exception& error) {
-      throw std::runtime_error("devo operator \"" + development.names[i] + "\", individual " +
-                               std::to_string(life.newborn.id) + ", cycle " + std::to_string(cycle) + ": " +
-                               error.what());
-    }
+    });
   }
 }
 
@@ -243,7 +244,9 @@ void Evaluation::score(Life& life) const {
                                   .centre_after = after.centre,
                                   .window = request.window,
                                   .work = request.work ? after.work - before.work : 0};
-    for (const double value : fitness.score(observation)) objectives.push_back(value);
+    const auto scores = call_operator([&] { return experiment_.title(Fitness::kind, i) + ": "; },
+                                      [&] { return fitness.score(observation); });
+    objectives.insert(objectives.end(), scores.begin(), scores.end());
   }
   if (objectives.size() != experiment_.objectives.size())
     throw std::runtime_error("the fitness operators gave " + std::to_string(objectives.size()) + " numbers for " +

@@ -22,12 +22,17 @@ std::vector<std::uint32_t> select(std::vector<Individual>& everyone, const Exper
   const auto population = static_cast<std::uint32_t>(experiment.population);
   const SelectionTable table(everyone, experiment.objectives, generation);
   Rng rng(philox, {static_cast<std::uint64_t>(experiment.seed), generation, 0, place::survivors});
-  std::vector<std::uint32_t> rows = experiment.selection->survivors(table.rows(), population, rng);
-  std::sort(rows.begin(), rows.end());
-  const bool twice = std::adjacent_find(rows.begin(), rows.end()) != rows.end();
-  if (rows.empty() || rows.size() > population || twice || rows.back() >= everyone.size())
-    throw std::runtime_error("selection must choose 1 to " + std::to_string(population) + " different survivors of " +
-                             std::to_string(everyone.size()));
+  const auto rows =
+      call_operator([&] { return experiment.title(Selection::kind, 0) + ": "; },
+                    [&] {
+                      auto chosen = experiment.selection->survivors(table.rows(), population, rng);
+                      std::sort(chosen.begin(), chosen.end());
+                      const bool twice = std::adjacent_find(chosen.begin(), chosen.end()) != chosen.end();
+                      if (chosen.empty() || chosen.size() > population || twice || chosen.back() >= everyone.size())
+                        throw std::runtime_error("must choose 1 to " + std::to_string(population) +
+                                                 " different survivors of " + std::to_string(everyone.size()));
+                      return chosen;
+                    });
   std::vector<Individual> survivors;
   std::vector<std::uint32_t> dropped;
   for (std::uint32_t i = 0; i < everyone.size(); ++i) {

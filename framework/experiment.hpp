@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -29,13 +30,13 @@ struct Development {
   double cycle_time = 1;  ///< s
   bool reset = false;     ///< back to the rest places after every cycle
   std::vector<std::unique_ptr<Devo>> operators;
-  std::vector<std::string> names;  ///< of the operators, in their order
 };
 
 /// An operator that the experiment uses, for the record.
 struct OperatorUse {
   std::string kind, name, version;
   std::filesystem::path file;
+  std::string hash;  ///< of the file
 };
 
 struct Experiment {
@@ -65,12 +66,27 @@ struct Experiment {
   std::vector<OperatorUse> uses;
   std::vector<std::string> warnings;  ///< what does not keep it from running, but may not be meant
   std::string resolved;               ///< TOML that reads back as this very experiment, with every default written out
+
+  /// `devo operator "erosion" of FILE`, the index-th of its kind, for messages.
+  std::string title(std::string_view kind, std::size_t index) const;
 };
+
+/// Calls an operator's own code. What it throws is thrown on with what `where` tells, which ends with ": ", and the
+/// remedy.
+template <class Where, class Call>
+decltype(auto) call_operator(const Where& where, const Call& call) {
+  try {
+    return call();
+  } catch (const std::exception& error) {
+    throw std::runtime_error(where() + error.what() + "; correct the operator, or leave it out of the experiment");
+  }
+}
 
 /// Where an experiment comes from.
 struct ExperimentSource {
-  std::string file;                 ///< for messages, and for what paths in it are relative to
-  std::vector<Override> overrides;  ///< applied in order
+  std::string file;                                     ///< for messages, and for what paths in it are relative to
+  std::vector<Override> overrides;                      ///< applied in order
+  std::vector<std::filesystem::path> plugin_path = {};  ///< where operators are looked for beside those that it names
 };
 
 /// Reads, checks and composes an experiment. Throws ConfigError with the place, the value and the remedy.

@@ -249,7 +249,8 @@ TEST(Configuration, AnOperatorsNameIsNotTakenByAnother) {
 
 TEST(Configuration, ContradictoryParts) {
   EXPECT_EQ(complaint(small_experiment + "\n[plugins]\npaths = ['/no/such/folder']\n"),
-            "test.toml:51:9: plugins.paths = [ \"/no/such/folder\" ]: /no/such/folder is no folder");
+            "test.toml:51:9: plugins.paths = [ \"/no/such/folder\" ]: /no/such/folder is no folder and no library of "
+            "operators");
   EXPECT_EQ(
       complaint(small_experiment, {{"mutation.0.probability", "0", ""}, {"crossover.0.probability", "0", ""}}),
       "test.toml:13:1: mutation = a list with tables: no operator has a probability above 0, so that no child would "
