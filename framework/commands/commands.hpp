@@ -22,6 +22,7 @@ int simulate_command(const Arguments& arguments);
 int operators_command(const Arguments& arguments);
 int describe_command(const Arguments& arguments);
 int new_command(const Arguments& arguments);
+int conform_command(const Arguments& arguments);
 
 /// A command line that does not make sense.
 struct UsageError : std::runtime_error {

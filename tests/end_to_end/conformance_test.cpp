@@ -1,0 +1,115 @@
+// The conformance kit: all built-in operators keep to it, and each wrong plugin is caught by the case meant for it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "loader.hpp"
+#include "support/process.hpp"
+#include "support/scratch.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::Finished;
+
+/// The outcome of every case, "case: outcome" with the reason behind where there is one.
+std::map<std::string, std::string> verdicts(const fs::path& library, int expected_exit) {
+  const Finished finished = testing::run({EVODEVO_PROGRAM, "conform", library.string(), "--json"});
+  EXPECT_EQ(finished.exit_code, expected_exit) << finished.output;
+  std::map<std::string, std::string> outcomes;
+  for (const json& verdict : json::parse(finished.output))
+    outcomes[verdict.at("case")] =
+        verdict.at("outcome").get<std::string>() + " " + verdict.at("reason").get<std::string>();
+  return outcomes;
+}
+
+fs::path wrong(const std::string& rule) {
+  return fs::path(EVODEVO_FAULTY_PLUGINS) / ("wrong_" + rule) / "plugin.evodevo.so";
+}
+
+class BuiltIn : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(BuiltIn, KeepsToAllRules) {
+  const auto outcomes = verdicts(builtin_plugin_folder() / (GetParam() + ".evodevo.so"), 0);
+  EXPECT_GE(outcomes.size(), 12u);
+  for (const auto& [name, outcome] : outcomes) EXPECT_EQ(outcome, "passed ") << name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Conformance, BuiltIn,
+                         ::testing::Values("neural", "voxel", "direct", "reset-weight", "swap-neuron", "two-point",
+                                           "spring-turnover", "mass-turnover", "distance", "actuation-work",
+                                           "age-fitness-pareto", "pareto-layers", "elitist"),
+                         [](const auto& broken) {
+                           std::string name = broken.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+struct Broken {
+  const char* plugin;
+  const char* rule;
+  const char* verdict;  ///< how the verdict begins
+};
+
+class Wrong : public ::testing::TestWithParam<Broken> {};
+
+TEST_P(Wrong, IsCaughtByTheCaseMeantForIt) {
+  const auto outcomes = verdicts(wrong(GetParam().plugin), 1);
+  EXPECT_EQ(outcomes.at("loads"), "passed ");
+  EXPECT_THAT(outcomes.at(GetParam().rule), ::testing::StartsWith(GetParam().verdict));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Conformance, Wrong,
+    ::testing::Values(
+        Broken{"exports", "exports", "failed exports another_export, evodevo_plugin; expected evodevo_plugin alone"},
+        Broken{"listing", "listing", "failed listing it takes "},
+        Broken{"declarations", "declarations", "failed parameter \"genes\" has no sentence"},
+        Broken{"refusals", "refusals", "failed it accepts genes = 0.5"},
+        Broken{"same_seed", "same-seed", "failed two calls with input "},
+        Broken{"threads", "threads", "failed input 0 gives one result on one thread and another on eight"},
+        Broken{"batch", "batch", "failed input 12 alone and after others gives different results"},
+        Broken{"inputs", "inputs", "failed it changes the layout, which it may only read"},
+        Broken{"instances", "instances", "failed a parameter set in one instance changes in another"},
+        Broken{"resuming", "resuming", "failed a run that was stopped and resumed ends otherwise"},
+        Broken{"nothing", "nothing", "failed it makes genes of no genes"},
+        Broken{"layout", "layout", "failed gene 0 = 2 is not of the layout"},
+        Broken{"twins", "twins", "failed of two equal genomes it makes others"},
+        Broken{"decoding", "decoding", "failed a spring dangles"},
+        Broken{"bodies", "bodies", "failed body 0, cycle 1: it joins masses "},
+        Broken{"bodies_beyond", "bodies", "failed body 0: a new mass lies beyond the bounds"},
+        Broken{"translation", "translation", "failed a body that does the same elsewhere scores "},
+        Broken{"nan_hidden", "nan", "failed an observation without a single number scores 0"},
+        Broken{"objectives", "objectives", "failed it gives 2 scores for 1 objectives"},
+        Broken{"order", "order", "failed who lives on depends on the order of birth"},
+        Broken{"elite", "elite", "failed the row with the best first score does not live on"},
+        Broken{"failed", "failed", "failed a failed row lives on instead of a sound one"},
+        Broken{"crashing", "same-seed", "crashed Segmentation fault"}),
+    [](const auto& broken) { return std::string(broken.param.plugin); });
+
+TEST(Conformance, ALibraryThatDoesNotLoadIsToldAlone) {
+  const auto outcomes = verdicts(fs::path(EVODEVO_FAULTY_PLUGINS) / "undefined_symbol" / "plugin.evodevo.so", 1);
+  ASSERT_EQ(outcomes.size(), 1u);
+  EXPECT_THAT(outcomes.at("loads"), ::testing::StartsWith("failed cannot be loaded: "));
+  EXPECT_THAT(verdicts("/no/such/library.evodevo.so", 1).at("loads"), ::testing::HasSubstr("No such file"));
+}
+
+TEST(Conformance, ACaseThatCannotSayAnythingIsSkipped) {
+  const auto outcomes = verdicts(fs::path(EVODEVO_FAULTY_PLUGINS) / "taken_name" / "plugin.evodevo.so", 0);
+  EXPECT_EQ(outcomes.at("resuming"),
+            "skipped no run uses it: evodevo brings an operator of this name itself; rename it");
+}
+
+TEST(Reference, ThePageIsWhatThePluginsSay) {
+  const Finished finished = testing::run({EVODEVO_PROGRAM, "operators", "--markdown"});
+  ASSERT_EQ(finished.exit_code, 0);
+  std::ifstream page(EVODEVO_REFERENCE_PAGE);
+  const std::string text{std::istreambuf_iterator<char>(page), {}};
+  EXPECT_EQ(text, finished.output) << "renew it: tools/evodevo operators --markdown > plugins/README.md";
+}
+
+}  // namespace
+}  // namespace evodevo
