@@ -36,11 +36,10 @@ Individual newcomer(const Experiment& experiment, std::uint32_t generation, std:
   individual.id = id;
   individual.born = individual.origin = generation;
   individual.made_by = "random";
-  call_operator([&] { return experiment.title(Encoding::kind, 0) + ": "; },
-                [&] {
-                  individual.genome = experiment.encoding->random(experiment.layout, rng);
-                  check_genome(individual.genome, experiment.layout);
-                });
+  call_operator(experiment, Encoding::kind, 0, [&] {
+    individual.genome = experiment.encoding->random(experiment.layout, rng);
+    check_genome(individual.genome, experiment.layout);
+  });
   return individual;
 }
 
@@ -75,11 +74,10 @@ Individual child(const Experiment& experiment, const Individual& parent, const I
       const auto& crossover = experiment.crossovers[i];
       Rng rng = stream(experiment, generation, id, place::crossover + static_cast<std::uint32_t>(i));
       Genome other = mate.genome;
-      call_operator([&] { return experiment.title(Crossover::kind, i) + ": "; },
-                    [&] {
-                      crossover.op->cross(individual.genome, other, experiment.layout, rng);
-                      check_genome(individual.genome, experiment.layout);
-                    });
+      call_operator(experiment, Crossover::kind, i, [&] {
+        crossover.op->cross(individual.genome, other, experiment.layout, rng);
+        check_genome(individual.genome, experiment.layout);
+      });
       individual.parents = {parent.id, mate.id};
       individual.origin = std::min(parent.origin, mate.origin);
       names.push_back(crossover.name);
@@ -87,11 +85,10 @@ Individual child(const Experiment& experiment, const Individual& parent, const I
       const std::size_t k = i - experiment.crossovers.size();
       const auto& mutation = experiment.mutations[k];
       Rng rng = stream(experiment, generation, id, place::mutation + static_cast<std::uint32_t>(k));
-      call_operator([&] { return experiment.title(Mutation::kind, k) + ": "; },
-                    [&] {
-                      mutation.op->mutate(individual.genome, experiment.layout, rng);
-                      check_genome(individual.genome, experiment.layout);
-                    });
+      call_operator(experiment, Mutation::kind, k, [&] {
+        mutation.op->mutate(individual.genome, experiment.layout, rng);
+        check_genome(individual.genome, experiment.layout);
+      });
       names.push_back(mutation.name);
     }
   }
@@ -146,8 +143,8 @@ std::vector<Individual> breed(const Experiment& experiment, const std::vector<In
     const SelectionTable table(population, experiment.objectives, generation);
     Rng rng = stream(experiment, generation, 0, place::parents);
     const auto asked = static_cast<std::uint32_t>(count - newcomers);
-    const auto pairs = call_operator([&] { return experiment.title(Selection::kind, 0) + ": "; },
-                                     [&] { return chosen_parents(experiment, table, asked, rng); });
+    const auto pairs =
+        call_operator(experiment, Selection::kind, 0, [&] { return chosen_parents(experiment, table, asked, rng); });
     for (const auto& [parent, mate] : pairs)
       newborns.push_back(child(experiment, population.at(parent), population.at(mate), generation, id++));
   }

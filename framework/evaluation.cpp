@@ -90,8 +90,10 @@ std::vector<Life> Evaluation::birth(std::span<const Newborn> newborns) const {
   const BusyClock::Span span(decode_);
   std::vector<Blueprint> blueprints(newborns.size());
   workers_.for_each(newborns.size(), [&](std::size_t i) {
-    blueprints[i] = call_operator([&] { return experiment_.title(Encoding::kind, 0) + ": "; },
-                                  [&] { return experiment_.encoding->decode(*newborns[i].genome, experiment_.world); });
+    call_operator(experiment_, Encoding::kind, 0, [&] {
+      blueprints[i] = experiment_.encoding->decode(*newborns[i].genome, experiment_.world);
+      if (blueprints[i].failure.empty()) check_blueprint(blueprints[i], experiment_.world);
+    });
   });
   std::vector<BuiltBody> built = build_bodies(std::move(blueprints), simulator_.neighbours(), workers_);
   std::vector<Life> lives(newborns.size());
@@ -153,14 +155,14 @@ void Evaluation::apply_operators(Life& life, int cycle) const {
     Rng rng(philox, {static_cast<std::uint64_t>(experiment_.seed), life.newborn.generation, life.newborn.id,
                      place::devo(i, cycle)});
     const auto where = [&] {
-      return experiment_.title(Devo::kind, i) + ", individual " + std::to_string(life.newborn.id) + ", cycle " +
-             std::to_string(cycle) + ": ";
+      return ", individual " + std::to_string(life.newborn.id) + ", cycle " + std::to_string(cycle);
     };
-    call_operator(where, [&] {
+    const auto develop = [&] {
       Edits edits;
       development.operators[i]->develop(now, edits, rng);
       apply_edits(living, edits, now);
-    });
+    };
+    call_operator(experiment_, Devo::kind, i, develop, where);
   }
 }
 
@@ -244,8 +246,7 @@ void Evaluation::score(Life& life) const {
                                   .centre_after = after.centre,
                                   .window = request.window,
                                   .work = request.work ? after.work - before.work : 0};
-    const auto scores = call_operator([&] { return experiment_.title(Fitness::kind, i) + ": "; },
-                                      [&] { return fitness.score(observation); });
+    const auto scores = call_operator(experiment_, Fitness::kind, i, [&] { return fitness.score(observation); });
     objectives.insert(objectives.end(), scores.begin(), scores.end());
   }
   if (objectives.size() != experiment_.objectives.size())

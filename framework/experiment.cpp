@@ -369,10 +369,14 @@ Experiment compose(toml::table root, const ExperimentSource& source) {
 
 }  // namespace
 
-std::string Experiment::title(std::string_view kind, std::size_t index) const {
-  for (const OperatorUse& use : uses)
-    if (use.kind == kind && index-- == 0) return use.kind + " operator \"" + use.name + "\" of " + use.file.string();
-  return std::string(kind) + " operator";
+void blame_operator(const Experiment& experiment, std::string_view kind, std::size_t index, const std::string& where,
+                    const std::string& what) {
+  const auto use = std::find_if(experiment.uses.begin(), experiment.uses.end(),
+                                [&](const OperatorUse& other) { return other.kind == kind && index-- == 0; });
+  const std::string title =
+      use == experiment.uses.end() ? "operator" : "operator \"" + use->name + "\" of " + use->file.string();
+  throw std::runtime_error(std::string(kind) + " " + title + where + ": " + what +
+                           "; correct the operator, or leave it out of the experiment");
 }
 
 Experiment read_experiment(const ExperimentSource& source) { return compose(parse_toml_file(source.file), source); }

@@ -66,19 +66,23 @@ struct Experiment {
   std::vector<OperatorUse> uses;
   std::vector<std::string> warnings;  ///< what does not keep it from running, but may not be meant
   std::string resolved;               ///< TOML that reads back as this very experiment, with every default written out
-
-  /// `devo operator "erosion" of FILE`, the index-th of its kind, for messages.
-  std::string title(std::string_view kind, std::size_t index) const;
 };
 
-/// Calls an operator's own code. What it throws is thrown on with what `where` tells, which ends with ": ", and the
-/// remedy.
-template <class Where, class Call>
-decltype(auto) call_operator(const Where& where, const Call& call) {
+/// Throws std::runtime_error that names the operator, its file, `where` and `what`, and the remedy.
+[[noreturn]] void blame_operator(const Experiment& experiment, std::string_view kind, std::size_t index,
+                                 const std::string& where, const std::string& what);
+
+/// Calls the own code of an operator, the index-th of its kind, and blames it for what it throws. `where` may add to
+/// the operator's title.
+template <class Call, class Where = decltype([] { return std::string(); })>
+decltype(auto) call_operator(const Experiment& experiment, std::string_view kind, std::size_t index, const Call& call,
+                             const Where& where = {}) {
   try {
     return call();
   } catch (const std::exception& error) {
-    throw std::runtime_error(where() + error.what() + "; correct the operator, or leave it out of the experiment");
+    blame_operator(experiment, kind, index, where(), error.what());
+  } catch (...) {
+    blame_operator(experiment, kind, index, where(), "threw something that is no std::exception");
   }
 }
 
