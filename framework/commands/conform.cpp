@@ -32,6 +32,10 @@ int conform_command(const Arguments& arguments) {
   const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
   if (!given->contains("libraries")) throw UsageError("conform: give the libraries to check, NAME.evodevo.so");
+  const auto libraries = (*given)["libraries"].as<std::vector<std::string>>();
+  for (const std::string& library : libraries)
+    if (!std::filesystem::is_regular_file(library))
+      throw UsageError("conform " + library + ": is no file; give the libraries to check, NAME.evodevo.so");
   const auto seed = (*given)["seed"].as<std::uint64_t>();
   const bool as_json = given->contains("json");
   std::size_t cases = 0, bad = 0;
@@ -48,7 +52,7 @@ int conform_command(const Arguments& arguments) {
     else
       print(verdict);
   };
-  for (const auto& library : (*given)["libraries"].as<std::vector<std::string>>())
+  for (const auto& library : libraries)
     conformance::examine(std::filesystem::absolute(library).lexically_normal(), seed, report);
   if (as_json)
     std::cout << list.dump(1) << '\n';

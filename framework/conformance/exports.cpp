@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <stdexcept>
 
 namespace evodevo::conformance {
@@ -37,10 +38,16 @@ class Bytes {
   std::vector<char> bytes_;
 };
 
-bool is_strong_export(const Elf64_Sym& symbol) {
-  const auto binding = ELF64_ST_BIND(symbol.st_info), visibility = ELF64_ST_VISIBILITY(symbol.st_other);
-  return symbol.st_shndx != SHN_UNDEF && symbol.st_shndx != SHN_ABS && binding != STB_LOCAL && binding != STB_WEAK &&
+bool is_export(const Elf64_Sym& symbol) {
+  const auto visibility = ELF64_ST_VISIBILITY(symbol.st_other);
+  return symbol.st_shndx != SHN_UNDEF && symbol.st_shndx != SHN_ABS && ELF64_ST_BIND(symbol.st_info) != STB_LOCAL &&
          (visibility == STV_DEFAULT || visibility == STV_PROTECTED);
+}
+
+/// What the templates of the standard library become (Itanium C++ ABI, 5.1): visible whatever the compiler is told.
+bool is_of_standard_library(const std::string& name) {
+  static const std::regex mangled("_Z(GV|T[A-Z])?Z?N?[VK]*(S[abdiost]|9__gnu_cxx).*");
+  return std::regex_match(name, mangled);
 }
 
 }  // namespace
@@ -56,7 +63,9 @@ std::vector<std::string> exports(const std::filesystem::path& library) {
     const Elf64_Shdr strings = section(table.sh_link);
     for (std::size_t offset = 0; offset + sizeof(Elf64_Sym) <= table.sh_size; offset += sizeof(Elf64_Sym)) {
       const auto symbol = file.at<Elf64_Sym>(table.sh_offset + offset);
-      if (is_strong_export(symbol)) names.push_back(file.text(strings.sh_offset + symbol.st_name));
+      if (!is_export(symbol)) continue;
+      std::string name = file.text(strings.sh_offset + symbol.st_name);
+      if (!is_of_standard_library(name)) names.push_back(std::move(name));
     }
   }
   std::sort(names.begin(), names.end());

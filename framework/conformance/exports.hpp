@@ -7,8 +7,8 @@
 
 namespace evodevo::conformance {
 
-/// The defined strong symbols of the ELF file's dynamic table, sorted. Weak ones, which templates of the standard
-/// library become, are left out: the host opens libraries so that they do not see each other's.
+/// The defined symbols of the ELF file's dynamic table, sorted, but for those of the standard library's templates.
+/// Throws std::runtime_error where it is no such file.
 std::vector<std::string> exports(const std::filesystem::path& library);
 
 }  // namespace evodevo::conformance

@@ -38,14 +38,20 @@ struct Wrong final : evodevo::Encoding {
   }
 };
 
-#elif defined(WRONG_BODIES) || defined(WRONG_BODIES_BEYOND)
+#elif defined(WRONG_BODIES) || defined(WRONG_BODIES_DANGLING) || defined(WRONG_BODIES_NAN) || \
+    defined(WRONG_BODIES_BEYOND)
 
 struct Wrong final : evodevo::Devo {
-  void develop(const evodevo::Moment& now, evodevo::Edits& edits, Rng&) const override {
+  void develop([[maybe_unused]] const evodevo::Moment& now, evodevo::Edits& edits, Rng&) const override {
 #if defined(WRONG_BODIES)
     if (now.body.springs.empty()) return;
     const evodevo::Spring& twin = now.body.springs[0];
     edits.new_springs.push_back({twin.a, twin.b, now.body.materials[twin.material], {}});
+#elif defined(WRONG_BODIES_DANGLING)
+    const auto beyond = static_cast<std::uint32_t>(now.body.masses.size());
+    edits.new_springs.push_back({0, beyond, {1000, 0, 0, 0}, {}});
+#elif defined(WRONG_BODIES_NAN)
+    edits.new_springs.push_back({0, 1, {std::nan(""), 0, 0, 0}, {}});
 #else
     edits.new_masses.push_back({now.bounds.high + evodevo::Vec3{0, 0, 1}, now.mass});
 #endif
@@ -171,7 +177,7 @@ struct Wrong final : evodevo::Mutation {
 }  // namespace
 
 #if defined(WRONG_EXPORTS)
-extern "C" __attribute__((visibility("default"))) int another_export() { return 1; }
+extern "C" __attribute__((visibility("default"), weak)) int another_export() { return 1; }  // as inline functions are
 #endif
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
