@@ -159,7 +159,7 @@ std::vector<fs::path> Registry::libraries_at(const fs::path& path) {
     for (const fs::directory_entry& entry : fs::directory_iterator(path))
       if (entry.path().filename().string().ends_with(suffix)) files.push_back(fs::absolute(entry.path()));
   } catch (const fs::filesystem_error& failure) {
-    failed_.push_back({path, "the folder cannot be read: " + failure.code().message() +
+    failed_.push_back({path, "cannot be read: " + failure.code().message() +
                                  "; make it readable, or leave it out of the plugin path"});
   }
   std::sort(files.begin(), files.end());
@@ -197,7 +197,8 @@ void Registry::load(const fs::path& file) {
   std::vector<AvailableOperator> brought;
   for (const OperatorEntry& entry : entries) {
     if (const AvailableOperator* twin = find(entry.kind, entry.name))
-      refuse(title(entry) + " is already brought by " + twin->file.string() + "; rename one of them");
+      refuse(title(entry) + " is already brought by " + twin->file.string() +
+             ", which comes first; rename one of them, or take one off the plugin path");
     const AvailableOperator candidate{&entry, manifest, file};
     const auto same = [&](const AvailableOperator& other) { return sort_key(other) == sort_key(candidate); };
     if (std::any_of(brought.begin(), brought.end(), same)) refuse(title(entry) + " is in it twice; rename one of them");
@@ -235,10 +236,10 @@ std::vector<fs::path> environment_plugin_folders() {
 }
 
 std::vector<fs::path> plugin_search_path(const std::vector<fs::path>& own) {
-  std::vector<fs::path> path = {builtin_plugin_folder()};
-  path.insert(path.end(), own.begin(), own.end());
+  std::vector<fs::path> path = own;
   const auto environment = environment_plugin_folders();
   path.insert(path.end(), environment.begin(), environment.end());
+  path.push_back(builtin_plugin_folder());
   return path;
 }
 

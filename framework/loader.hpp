@@ -32,9 +32,9 @@ struct FailedLibrary {
 class Registry {
  public:
   /// Loads every *.evodevo.so of the folders, in their order; files by name. A path may also be that of one library.
-  /// Of two operators with one name the first stays. A library that does not fit, or that crashes while it is loaded,
-  /// is kept in failed() and disturbs no other. Libraries stay loaded until the process ends: an object must not
-  /// outlive its code.
+  /// Of two libraries with one operator name the first stays. A library that does not fit, or that crashes while it is
+  /// loaded, is kept in failed() and disturbs no other. Libraries stay loaded until the process ends: an object must
+  /// not outlive its code.
   explicit Registry(const std::vector<std::filesystem::path>& path);
 
   /// Sorted by kind and name.
@@ -65,8 +65,7 @@ std::unique_ptr<T> create(const AvailableOperator& available) {
 std::filesystem::path builtin_plugin_folder();
 /// The folders that the environment variable EVODEVO_PLUGIN_PATH names, separated by colons.
 std::vector<std::filesystem::path> environment_plugin_folders();
-/// Where operators are looked for: `own`, then EVODEVO_PLUGIN_PATH; before them the program's own folder, so that no
-/// other library can take the name of a built-in operator.
+/// Where operators are looked for: `own`, then EVODEVO_PLUGIN_PATH, then the program's own folder.
 std::vector<std::filesystem::path> plugin_search_path(const std::vector<std::filesystem::path>& own);
 
 /// A folder, or a library by itself.

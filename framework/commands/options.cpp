@@ -54,8 +54,8 @@ constexpr Shorthand shorthands[] = {
 
 void add_plugin_option(po::options_description& options) {
   options.add_options()("plugin-path", po::value<std::vector<std::string>>(),
-                        "folder with operators, or one library, looked at before EVODEVO_PLUGIN_PATH and those that "
-                        "come with evodevo; may be repeated");
+                        "folder with operators, or one library; comes after the experiment's own paths and before "
+                        "EVODEVO_PLUGIN_PATH; may be repeated");
 }
 
 std::vector<std::filesystem::path> given_plugin_path(const po::variables_map& given) {

@@ -71,16 +71,11 @@ void for_each_changed_operator(const Experiment& experiment, const Archive& arch
     if (past[i].hash != experiment.uses[i].hash) report(past[i], experiment.uses[i]);
 }
 
-/// Says what differs from when the run began, where it may change results.
-void warn_of_differences(const Experiment& experiment, const Simulator& simulator, const Archive& archive) {
+/// Says where the run goes on elsewhere than it began, which may change results.
+void warn_of_another_device(const Simulator& simulator, const Archive& archive) {
   if (const std::string before = archive.record("device"); before != simulator.device())
     std::cerr << "warning: the run began on " << before << " and goes on on " << simulator.device()
               << "; results may differ, at first in the last bit\n";
-  for_each_changed_operator(experiment, archive, [](const OperatorUse& then, const OperatorUse& now) {
-    std::cerr << "warning: the run began with " << title(then) << " and goes on with "
-              << (then.version == now.version ? "another build of it" : now.version) << ", " << now.file.string()
-              << "; results may differ\n";
-  });
 }
 
 /// Another build of the same version may do the same; another version says that it does not.
@@ -94,6 +89,14 @@ void refuse_other_versions(const Experiment& experiment, const Archive& archive)
 }
 
 }  // namespace
+
+void warn_of_changed_operators(const Experiment& experiment, const Archive& archive) {
+  for_each_changed_operator(experiment, archive, [](const OperatorUse& then, const OperatorUse& now) {
+    std::cerr << "warning: the run began with " << title(then) << ", now it is "
+              << (then.version == now.version ? "another build of it" : "version " + now.version) << ", "
+              << now.file.string() << "; results may differ\n";
+  });
+}
 
 int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive) {
   std::cout << experiment.name << " on " << simulator.device() << ", "
@@ -147,7 +150,8 @@ int resume_command(const Arguments& arguments) {
   const Experiment experiment = recorded_experiment(archive, given_plugin_path(*given));
   if (!given->contains("allow-other-versions")) refuse_other_versions(experiment, archive);
   const auto simulator = make_simulator(experiment);
-  warn_of_differences(experiment, *simulator, archive);
+  warn_of_another_device(*simulator, archive);
+  warn_of_changed_operators(experiment, archive);
   return evolve_and_report(experiment, *simulator, archive);
 }
 

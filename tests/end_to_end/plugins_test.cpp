@@ -59,6 +59,21 @@ TEST_F(Plugins, AreFoundByOptionVariableAndExperiment) {
             "evodevo: --plugin-path /no/such: is no folder and no library NAME.evodevo.so; build the plugin first\n");
 }
 
+TEST_F(Plugins, TheExperimentsPathsComeBeforeTheOptionsAndThoseBeforeTheVariables) {
+  const std::string older = (plugins / "sound").string(), newer = (plugins / "newer").string();
+  const auto version = [&](const std::string& experiment, const std::string& option) {
+    const Override name{"mutation.0.name", "nothing", ""}, paths{"plugins.paths", "[" + experiment + "]", ""};
+    const Experiment read = read_experiment({file_, {name, paths}, {option}});
+    const auto is_it = [](const OperatorUse& use) { return use.name == "nothing"; };
+    return std::find_if(read.uses.begin(), read.uses.end(), is_it)->version;
+  };
+  EXPECT_EQ(version("'" + older + "'", newer), "1.0.0");
+  EXPECT_EQ(version("'" + newer + "'", older), "2.0.0");
+  setenv("EVODEVO_PLUGIN_PATH", newer.c_str(), 1);
+  EXPECT_EQ(version("", older), "1.0.0");
+  unsetenv("EVODEVO_PLUGIN_PATH");
+}
+
 TEST_F(Plugins, TheRecordKeepsFileVersionAndHash) {
   install("sound");
   ASSERT_EQ(run_with("nothing", {"--plugin-path", own()}).exit_code, 0);
@@ -83,8 +98,8 @@ TEST_F(Plugins, ResumeRefusesAnotherVersionUnlessTold) {
                                 library_.string() + "), or go on with --allow-other-versions\n");
   const Finished allowed = evodevo({"resume", folder_, "--allow-other-versions"});
   EXPECT_EQ(allowed.exit_code, 0) << allowed.output;
-  EXPECT_THAT(allowed.output, HasSubstr("warning: the run began with mutation operator \"nothing\" 1.0.0 and goes on "
-                                        "with 2.0.0, " +
+  EXPECT_THAT(allowed.output, HasSubstr("warning: the run began with mutation operator \"nothing\" 1.0.0, now it is "
+                                        "version 2.0.0, " +
                                         now + "; results may differ\n"));
 }
 
@@ -100,6 +115,21 @@ TEST_F(Plugins, AnUnusableLibraryStopsNoRunThatDoesNotUseIt) {
                                ": crashes while it is loaded: Segmentation fault; look at its static objects, "
                                "constructors and parameters() in a debugger, or remove it\n");
   EXPECT_EQ(evodevo({"operators", "--failed"}).output, "");
+}
+
+TEST_F(Plugins, OfTwoLibrariesWithOneNameTheFirstIsUsedAndTheOtherNamed) {
+  install("taken_name");
+  const Finished finished = run_with("reset-weight", {"--plugin-path", own()});
+  EXPECT_EQ(finished.exit_code, 0) << finished.output;
+  EXPECT_THAT(finished.output,
+              HasSubstr("warning: not usable: " + (builtin_plugin_folder() / "reset-weight.evodevo.so").string() +
+                        ": its mutation operator \"reset-weight\" is already brought by " + library_.string() +
+                        ", which comes first; rename one of them, or take one "
+                        "off the plugin path\n"));
+  const auto uses = Archive::read(folder_).operators();
+  const auto mutation = std::find_if(uses.begin(), uses.end(), [](const auto& use) { return use.kind == "mutation"; });
+  ASSERT_NE(mutation, uses.end());
+  EXPECT_EQ(mutation->file, library_);
 }
 
 TEST_F(Plugins, AnOperatorThatErrsIsNamedWithItsFile) {
