@@ -20,11 +20,15 @@ fi
 cd "$scratch"
 evodevo new "$kind" my-lab.growth
 cd my-lab.growth
-cmake -B build -DCMAKE_PREFIX_PATH="$scratch/package" >/dev/null
+cmake -B build >/dev/null
 cmake --build build
 ctest --test-dir build --output-on-failure
 evodevo run experiment.toml --out run
 evodevo show run --json | grep -q '"my-lab.growth"' || { echo "the run does not use the operator"; exit 1; }
+
+# after a change one file is compiled
+touch growth.cpp
+[ "$(cmake --build build | grep -c 'Building')" = 1 ] || { echo "a change of one file builds others"; exit 1; }
 
 table() { sed -n '/^## /,$p' "$1"; }
 evodevo describe my-lab.growth --markdown --plugin-path build/lib/evodevo >described.md
