@@ -72,7 +72,7 @@ class Archive {
   std::unique_ptr<Files> files_;
 };
 
-/// The experiment that a run used, read from its record.
-Experiment recorded_experiment(const Archive& archive);
+/// The experiment that a run used, read from its record. Operators are looked for on `plugin_path` too.
+Experiment recorded_experiment(const Archive& archive, std::vector<std::filesystem::path> plugin_path = {});
 
 }  // namespace evodevo

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 
 #include "parallel.hpp"
 #include "stability.hpp"
@@ -121,6 +122,28 @@ BuiltBody finish(Body body) {
 }
 
 }  // namespace
+
+void check_blueprint(const Blueprint& blueprint, const World& world) {
+  const auto require = [](bool holds, const char* what, std::size_t index, const char* fault) {
+    if (!holds) throw std::invalid_argument(std::string(what) + " " + std::to_string(index) + " " + fault);
+  };
+  const Body& body = blueprint.body;
+  const auto materials = static_cast<std::int64_t>(body.materials.size());
+  for (std::size_t i = 0; i < world.materials.size(); ++i)
+    require(i < body.materials.size() && body.materials[i] == world.materials[i], "material", i, "is not the world's");
+  for (std::size_t i = 0; i < body.masses.size(); ++i) {
+    const Mass& mass = body.masses[i];
+    require(mass.mass > 0 && std::isfinite(mass.mass), "mass", i, "weighs nothing, or has no finite mass");
+    require(mass.material >= no_material && mass.material < materials, "mass", i, "is of a material that is not there");
+  }
+  for (std::size_t i = 0; i < body.springs.size(); ++i) {
+    const Spring& spring = body.springs[i];
+    require(std::max(spring.a, spring.b) < body.masses.size(), "spring", i, "dangles");
+    require(spring.a != spring.b, "spring", i, "joins a mass to itself");
+    require(spring.rest_length >= 0 && std::isfinite(spring.rest_length), "spring", i, "has no finite rest length");
+    require(spring.material < materials, "spring", i, "is of a material that is not there");
+  }
+}
 
 BuiltBody build_body(Blueprint blueprint) {
   if (std::string failure = blueprint_failure(blueprint); !failure.empty()) return {{}, std::move(failure)};

@@ -17,6 +17,10 @@ struct BuiltBody {
   std::string failure;  ///< empty where there is a body
 };
 
+/// Throws std::invalid_argument, naming the fault, where the blueprint's indices or numbers make no body at all. Places
+/// that are not finite are no such fault: networks may give them, and the body is then an invalid one.
+void check_blueprint(const Blueprint& blueprint, const World& world);
+
 /// Joins the neighbours that the blueprint asks for, leaves out springs of air (and counts them as contacts), drops
 /// masses without springs, keeps the largest piece, and moves the rest places so that the lowest is at z = 0 and the
 /// centre of mass over the origin.

@@ -98,7 +98,10 @@ std::vector<Life> Evaluation::birth(std::span<const Newborn> newborns) const {
   const BusyClock::Span span(decode_);
   std::vector<Blueprint> blueprints(newborns.size());
   workers_.for_each(newborns.size(), [&](std::size_t i) {
-    blueprints[i] = experiment_.encoding->decode(*newborns[i].genome, experiment_.world);
+    call_operator(experiment_, Encoding::kind, 0, [&] {
+      blueprints[i] = experiment_.encoding->decode(*newborns[i].genome, experiment_.world);
+      if (blueprints[i].failure.empty()) check_blueprint(blueprints[i], experiment_.world);
+    });
   });
   std::vector<BuiltBody> built = build_bodies(std::move(blueprints), simulator_.neighbours(), workers_);
   std::vector<Life> lives(newborns.size());
@@ -161,10 +164,13 @@ void Evaluation::apply_operators(Life& life, int cycle) const {
 }
 
 void Evaluation::apply_operator(Life& life, int cycle, std::size_t index) const {
-  const auto& [op, name, schedule] = experiment_.development.operators[index];
+  const auto& [op, schedule] = experiment_.development.operators[index];
   const Moment now = moment(life, cycle, schedule);
   Rng rng = stream(life, place::devo(index, cycle));
-  try {
+  const auto where = [&] {
+    return ", individual " + std::to_string(life.newborn.id) + ", cycle " + std::to_string(cycle);
+  };
+  const auto develop = [&] {
     Edits edits;
     op->develop(now, edits, rng);
     if (experiment_.development.control == Control::random_places) edits = at_random_places(edits, now, rng);
@@ -173,10 +179,8 @@ void Evaluation::apply_operator(Life& life, int cycle, std::size_t index) const 
       allow_energy(life, apply);
     else
       apply();
-  } catch (const std::exception& error) {
-    throw std::runtime_error("devo operator \"" + name + "\", individual " + std::to_string(life.newborn.id) +
-                             ", cycle " + std::to_string(cycle) + ": " + error.what());
-  }
+  };
+  call_operator(experiment_, Devo::kind, index, develop, where);
 }
 
 Rng Evaluation::stream(const Life& life, std::uint32_t place) const {
@@ -286,7 +290,8 @@ void Evaluation::score(Life& life) const {
                                   .centre_after = after.centre,
                                   .window = request.window,
                                   .work = request.work ? after.work - before.work : 0};
-    for (const double value : fitness.score(observation)) objectives.push_back(value);
+    const auto scores = call_operator(experiment_, Fitness::kind, i, [&] { return fitness.score(observation); });
+    objectives.insert(objectives.end(), scores.begin(), scores.end());
   }
   if (objectives.size() != experiment_.objectives.size())
     throw std::runtime_error("the fitness operators gave " + std::to_string(objectives.size()) + " numbers for " +

@@ -16,18 +16,25 @@ void evaluate(std::vector<Individual>& newborns, const Evaluation& evaluation, c
   for (std::size_t i = 0; i < newborns.size(); ++i) newborns[i].result = std::move(results[i]);
 }
 
+std::vector<std::uint32_t> chosen_survivors(const Experiment& experiment, const SelectionTable& table,
+                                            std::uint32_t population, Rng& rng) {
+  auto rows = experiment.selection->survivors(table.rows(), population, rng);
+  std::sort(rows.begin(), rows.end());
+  const bool twice = std::adjacent_find(rows.begin(), rows.end()) != rows.end();
+  if (rows.empty() || rows.size() > population || twice || rows.back() >= table.rows().size())
+    throw std::runtime_error("must choose 1 to " + std::to_string(population) + " different survivors of " +
+                             std::to_string(table.rows().size()));
+  return rows;
+}
+
 /// Reduces `everyone` to the survivors, in the order of birth; returns the ids of the others.
 std::vector<std::uint32_t> select(std::vector<Individual>& everyone, const Experiment& experiment,
                                   std::uint32_t generation) {
   const auto population = static_cast<std::uint32_t>(experiment.population);
   const SelectionTable table(everyone, experiment.objectives, generation);
   Rng rng(philox, {static_cast<std::uint64_t>(experiment.seed), generation, 0, place::survivors});
-  std::vector<std::uint32_t> rows = experiment.selection->survivors(table.rows(), population, rng);
-  std::sort(rows.begin(), rows.end());
-  const bool twice = std::adjacent_find(rows.begin(), rows.end()) != rows.end();
-  if (rows.empty() || rows.size() > population || twice || rows.back() >= everyone.size())
-    throw std::runtime_error("selection must choose 1 to " + std::to_string(population) + " different survivors of " +
-                             std::to_string(everyone.size()));
+  const auto rows = call_operator(experiment, Selection::kind, 0,
+                                  [&] { return chosen_survivors(experiment, table, population, rng); });
   std::vector<Individual> survivors;
   std::vector<std::uint32_t> dropped;
   for (std::uint32_t i = 0; i < everyone.size(); ++i) {

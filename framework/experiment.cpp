@@ -57,8 +57,9 @@ fs::path folder_of(const ExperimentSource& source) { return fs::absolute(source.
 /// Reads the experiment's tables one after the other; each adds its resolved form.
 class Composer {
  public:
-  Composer(const toml::table& root, const Registry& registry, const ExperimentSource& source)
-      : top_(root, ""), registry_(registry), source_(source) {}
+  Composer(const toml::table& root, const Registry& registry, const std::vector<fs::path>& plugin_path,
+           const ExperimentSource& source)
+      : top_(root, ""), registry_(registry), plugin_path_(plugin_path), source_(source) {}
 
   Experiment compose() {
     top_.expect({"experiment", "encoding", "mutation", "crossover", "scene", "simulation", "development", "fitness",
@@ -125,7 +126,8 @@ class Composer {
     }
     std::unique_ptr<T> op = create<T>(*available);
     op->parameters(table);
-    out_.uses.push_back({available->entry->kind, name, available->manifest->version, available->file});
+    out_.uses.push_back(
+        {available->entry->kind, name, available->manifest->version, available->file, file_hash(available->file)});
     return op;
   }
 
@@ -141,16 +143,23 @@ class Composer {
 
   void read_plugins() {
     read_section("plugins", false, [&](TomlReader& t) {
-      toml::array absolute;
       for (const std::string& path : t.texts("paths")) {
         const fs::path folder = (folder_of(source_) / path).lexically_normal();
-        if (!fs::is_directory(folder)) t.fail("paths", folder.string() + " is no folder");
-        absolute.push_back(folder.string());
+        if (!is_plugin_path(folder)) t.fail("paths", folder.string() + " is no folder and no library of operators");
       }
-      t.resolve("paths", std::move(absolute));
     });
+    record_plugin_path();
     for (const FailedLibrary& failed : registry_.failed())
       out_.warnings.push_back("not usable: " + failed.file.string() + ": " + failed.reason);
+  }
+
+  /// The record names all folders but the program's own, so that the run can be resumed without the options and the
+  /// environment that it was begun with.
+  void record_plugin_path() {
+    toml::array paths;
+    for (const fs::path& path : plugin_path_)
+      if (path != builtin_plugin_folder() && is_plugin_path(path)) paths.push_back(path.lexically_normal().string());
+    if (!paths.empty()) top_.resolve("plugins", toml::table{{"paths", std::move(paths)}});
   }
 
   void read_materials() {
@@ -313,8 +322,7 @@ class Composer {
       read_control(t);
       read_array(t, "operator", [&](TomlReader& entry) {
         const Schedule schedule = read_schedule(entry);
-        std::unique_ptr<Devo> op = make<Devo>(entry);
-        development.operators.push_back({std::move(op), out_.uses.back().name, schedule});
+        development.operators.push_back({make<Devo>(entry), schedule});
       });
     });
   }
@@ -362,30 +370,42 @@ class Composer {
 
   TomlReader top_;
   const Registry& registry_;
+  const std::vector<fs::path>& plugin_path_;
   const ExperimentSource& source_;
   Experiment out_;
 };
 
 // ---- from file to experiment ----
 
-/// The program's own folder first, so that no other library can take the name of a built-in operator.
-std::vector<fs::path> plugin_folders(const toml::table& root, const fs::path& folder) {
-  std::vector<fs::path> folders = {builtin_plugin_folder()};
+std::vector<fs::path> plugin_path(const toml::table& root, const ExperimentSource& source) {
+  std::vector<fs::path> own;
   if (const toml::array* paths = root["plugins"]["paths"].as_array())
     for (const toml::node& path : *paths)
-      if (const auto text = path.value<std::string>()) folders.push_back(folder / *text);
-  return folders;
+      if (const auto text = path.value<std::string>()) own.push_back(folder_of(source) / *text);
+  for (const fs::path& path : source.plugin_path) own.push_back(fs::absolute(path));
+  return plugin_search_path(own);
 }
 
 Experiment compose(toml::table root, const ExperimentSource& source) {
   for (const Override& change : source.overrides) apply_override(change, root);
-  const Registry registry(plugin_folders(root, folder_of(source)));
-  Experiment experiment = Composer(root, registry, source).compose();
+  const std::vector<fs::path> path = plugin_path(root, source);
+  const Registry registry(path);
+  Experiment experiment = Composer(root, registry, path, source).compose();
   experiment.name = fs::path(source.file).stem().string();
   return experiment;
 }
 
 }  // namespace
+
+void blame_operator(const Experiment& experiment, std::string_view kind, std::size_t index, const std::string& where,
+                    const std::string& what) {
+  const auto use = std::find_if(experiment.uses.begin(), experiment.uses.end(),
+                                [&](const OperatorUse& other) { return other.kind == kind && index-- == 0; });
+  const std::string title =
+      use == experiment.uses.end() ? "operator" : "operator \"" + use->name + "\" of " + use->file.string();
+  throw std::runtime_error(std::string(kind) + " " + title + where + ": " + what +
+                           "; correct the operator, or leave it out of the experiment");
+}
 
 Experiment read_experiment(const ExperimentSource& source) { return compose(parse_toml_file(source.file), source); }
 

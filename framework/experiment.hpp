@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,6 @@ struct Schedule {
 /// A devo operator and when it comes to its turn.
 struct Scheduled {
   std::unique_ptr<Devo> op;
-  std::string name;
   Schedule schedule;
 };
 
@@ -60,6 +60,7 @@ struct Development {
 struct OperatorUse {
   std::string kind, name, version;
   std::filesystem::path file;
+  std::string hash;  ///< of the file
 };
 
 struct Experiment {
@@ -91,10 +92,29 @@ struct Experiment {
   std::string resolved;               ///< TOML that reads back as this very experiment, with every default written out
 };
 
+/// Throws std::runtime_error that names the operator, its file, `where` and `what`, and the remedy.
+[[noreturn]] void blame_operator(const Experiment& experiment, std::string_view kind, std::size_t index,
+                                 const std::string& where, const std::string& what);
+
+/// Calls the own code of an operator, the index-th of its kind, and blames it for what it throws. `where` may add to
+/// the operator's title.
+template <class Call, class Where = decltype([] { return std::string(); })>
+decltype(auto) call_operator(const Experiment& experiment, std::string_view kind, std::size_t index, const Call& call,
+                             const Where& where = {}) {
+  try {
+    return call();
+  } catch (const std::exception& error) {
+    blame_operator(experiment, kind, index, where(), error.what());
+  } catch (...) {
+    blame_operator(experiment, kind, index, where(), "threw something that is no std::exception");
+  }
+}
+
 /// Where an experiment comes from.
 struct ExperimentSource {
-  std::string file;                 ///< for messages, and for what paths in it are relative to
-  std::vector<Override> overrides;  ///< applied in order
+  std::string file;                                     ///< for messages, and for what paths in it are relative to
+  std::vector<Override> overrides;                      ///< applied in order
+  std::vector<std::filesystem::path> plugin_path = {};  ///< where operators are looked for beside those that it names
 };
 
 /// Reads, checks and composes an experiment. Throws ConfigError with the place, the value and the remedy.

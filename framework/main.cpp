@@ -25,6 +25,8 @@ constexpr Command commands[] = {
     {"check", check_command, "check EXPERIMENT.toml            whether an experiment can be run"},
     {"operators", operators_command, "operators                        the operators that are there"},
     {"describe", describe_command, "describe OPERATOR                its parameters"},
+    {"new", new_command, "new KIND NAME                    the project of a plugin"},
+    {"conform", conform_command, "conform LIBRARY...               whether plugins keep to the rules"},
 };
 
 void print_usage(std::ostream& stream) {

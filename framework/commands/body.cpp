@@ -77,14 +77,15 @@ std::string vector_text(Vec3 v) {
 }  // namespace
 
 int body_command(const Arguments& arguments) {
-  CommandLine line{"body DIR [--individual ID] [--matured]", {"DIR"}, {}};
+  CommandLine line{"body DIR [--individual ID] [--matured] [--plugin-path P]", {"DIR"}, {}};
+  add_plugin_option(line.options);
   line.options.add_options()("individual", po::value<std::int64_t>(), "its id; default: the best")(
       "matured",
       "as it is after the development cycles of its life, in the pose that it is in then, not as it is born");
   const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
   const Archive archive = Archive::read((*given)["DIR"].as<std::string>());
-  const Experiment experiment = recorded_experiment(archive);
+  const Experiment experiment = recorded_experiment(archive, given_plugin_path(*given));
   const ArchivedIndividual individual = chosen_individual(archive, *given);
   const auto simulator = make_simulator(experiment);
   const Evaluation evaluation(experiment, *simulator);

@@ -1,4 +1,5 @@
 // Every complaint about an experiment, by its exact text.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -262,17 +263,19 @@ TEST(Configuration, MissingParts) {
             "test.toml:1:1: fitness: is missing; add a table [[fitness]]");
 }
 
-TEST(Configuration, AnOperatorsNameIsNotTakenByAnother) {
+TEST(Configuration, ItsOwnOperatorsComeBeforeThoseBuiltIn) {
   const std::string folder = std::string(EVODEVO_FAULTY_PLUGINS) + "/taken_name";
   const Experiment experiment = testing::read(small_experiment + "\n[plugins]\npaths = ['" + folder + "']\n");
   EXPECT_EQ(experiment.uses.at(1).name, "reset-weight");
-  EXPECT_EQ(experiment.uses.at(1).file.parent_path(), builtin_plugin_folder());
-  EXPECT_EQ(experiment.warnings.size(), 1u);
+  EXPECT_EQ(experiment.uses.at(1).file.parent_path(), folder);
+  ASSERT_EQ(experiment.warnings.size(), 1u);
+  EXPECT_THAT(experiment.warnings[0], ::testing::HasSubstr("reset-weight.evodevo.so: its mutation operator"));
 }
 
 TEST(Configuration, ContradictoryParts) {
   EXPECT_EQ(complaint(small_experiment + "\n[plugins]\npaths = ['/no/such/folder']\n"),
-            "test.toml:51:9: plugins.paths = [ \"/no/such/folder\" ]: /no/such/folder is no folder");
+            "test.toml:51:9: plugins.paths = [ \"/no/such/folder\" ]: /no/such/folder is no folder and no library of "
+            "operators");
   EXPECT_EQ(
       complaint(small_experiment, {{"mutation.0.probability", "0", ""}, {"crossover.0.probability", "0", ""}}),
       "test.toml:13:1: mutation = a list with tables: no operator has a probability above 0, so that no child would "

@@ -266,6 +266,11 @@ TEST(Evaluation, ABodyThatDevelopmentEmptiesIsInvalid) {
   EXPECT_EQ(result.reason, "no springs");
 }
 
+std::string file_of(const Experiment& experiment, std::string_view kind) {
+  const auto is_it = [&](const OperatorUse& use) { return use.kind == kind; };
+  return std::find_if(experiment.uses.begin(), experiment.uses.end(), is_it)->file.string();
+}
+
 TEST(Evaluation, AFaultyOperatorIsNamed) {
   Experiment experiment = testing::read(testing::small_experiment);
   experiment.development.operators[0].op = std::make_unique<Faulty>();
@@ -273,8 +278,29 @@ TEST(Evaluation, AFaultyOperatorIsNamed) {
     evaluate(experiment, {{.id = 5, .genome = {1, 1}}});
     FAIL() << "the fault went unnoticed";
   } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(),
-                 "devo operator \"spring-turnover\", individual 5, cycle 1: joins masses 0 and 0, which are one");
+    EXPECT_EQ(error.what(), "devo operator \"spring-turnover\" of " + file_of(experiment, "devo") +
+                                ", individual 5, cycle 1: joins masses 0 and 0, which are one; correct the operator, "
+                                "or leave it out of the experiment");
+  }
+}
+
+/// Gives a spring to a mass that is not there.
+struct Dangling final : Encoding {
+  Layout layout(const World&) const override { return {}; }
+  Blueprint decode(const Genome&, const World& world) const override {
+    return {.body = {.masses = {{{0, 0, 0}, 1}, {{1, 0, 0}, 1}}, .springs = {{0, 2, 1}}, .materials = world.materials}};
+  }
+};
+
+TEST(Evaluation, AFaultyEncodingIsNamed) {
+  Experiment experiment = testing::read(testing::small_experiment);
+  experiment.encoding = std::make_unique<Dangling>();
+  try {
+    evaluate(experiment, {{.genome = {1, 1}}});
+    FAIL() << "the fault went unnoticed";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), "encoding operator \"voxel\" of " + file_of(experiment, "encoding") +
+                                ": spring 0 dangles; correct the operator, or leave it out of the experiment");
   }
 }
 
