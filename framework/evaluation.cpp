@@ -107,6 +107,7 @@ std::vector<Life> Evaluation::birth(std::span<const Newborn> newborns) const {
     life.newborn = newborns[i];
     if (!built[i].failure.empty()) return end(life, Status::invalid, std::move(built[i].failure));
     life.living.body = std::move(built[i].body);
+    if (const auto& load = experiment_.load) put_load(life.living.body, load->share, load->top);
     life.living.state = state_at_birth(life.living.body, experiment_.scene);
     choose_step(life);
   });

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "breeding.hpp"
@@ -238,6 +239,29 @@ TEST(Evaluation, DevelopmentThatAFixedStepCannotBearIsInvalid) {
   const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
   EXPECT_EQ(result.status, Status::invalid);
   EXPECT_EQ(result.reason, "unstable dt: 0.0005 s is too long for the body's springs");
+}
+
+TEST(Evaluation, ALoadSinksTheFasterInWater) {
+  // where weight and drag are equal: M g = 12 c v^2
+  Experiment experiment = testing::read(
+      testing::small_experiment,
+      {{"scene.load.share", "3", ""}, {"scene.load.top", "1", ""}, {"scene.drag.coefficient", "0.5", ""}});
+  experiment.development = {};
+  experiment.scene.floor.reset();
+  experiment.scene.friction.reset();
+  experiment.scene.damping.reset();
+  Observation seen;
+  experiment.fitness.clear();
+  experiment.fitness.push_back(std::make_unique<Watcher>(Request{.settle = 2, .window = 0.5}, seen));
+  experiment.objectives = {{"a", "", true}};
+  const auto speed = [&] {
+    EXPECT_EQ(evaluate(experiment, {{.genome = {1, 1}}}).front().status, Status::ok);
+    return (seen.centre_before.z - seen.centre_after.z) / 0.5;
+  };
+  const double unloaded = std::sqrt(12 * 0.2 * 9.81 / (12 * 0.5));
+  EXPECT_NEAR(speed(), 2 * unloaded, 0.01 * unloaded);
+  experiment.load.reset();
+  EXPECT_NEAR(speed(), unloaded, 0.01 * unloaded);
 }
 
 /// Makes every spring three times as long.

@@ -44,6 +44,7 @@ name = "ballistic-growth"
 )";
   text.insert(text.find("[[fitness]]"), operators);
   return testing::read(text, {{"encoding.size", "[3, 2, 2]", ""},
+                              {"scene.load.share", "0.5", ""},
                               {"encoding.size_range", "0.2", ""},
                               {"development.cycles", "4", ""},
                               {"development.reset", reset ? "true" : "false", ""}});
@@ -73,8 +74,8 @@ void expect_same(const Body& a, const Body& b) {
   ASSERT_EQ(a.masses.size(), b.masses.size());
   for (std::size_t i = 0; i < a.masses.size(); ++i) {
     const Mass &m = a.masses[i], &n = b.masses[i];
-    ASSERT_EQ(std::tie(m.rest, m.mass, m.material, m.air_contacts),
-              std::tie(n.rest, n.mass, n.material, n.air_contacts))
+    ASSERT_EQ(std::tie(m.rest, m.mass, m.material, m.air_contacts, m.load),
+              std::tie(n.rest, n.mass, n.material, n.air_contacts, n.load))
         << "mass " << i;
   }
   ASSERT_EQ(a.springs.size(), b.springs.size());
