@@ -43,6 +43,8 @@ CREATE INDEX individuals_by_death ON individuals(died);
 CREATE TABLE scores(
   individual INTEGER NOT NULL, objective INTEGER NOT NULL, value REAL NOT NULL,
   PRIMARY KEY(individual, objective)) WITHOUT ROWID;
+-- what development did to those who reached the front when they were born; see life_record.hpp
+CREATE TABLE lives(individual INTEGER PRIMARY KEY, record BLOB NOT NULL);
 CREATE TABLE generations(
   generation INTEGER PRIMARY KEY, evaluations INTEGER NOT NULL, best REAL, median REAL,
   diverged INTEGER NOT NULL, invalid INTEGER NOT NULL, spring_evaluations INTEGER NOT NULL, wall_time REAL NOT NULL);
@@ -244,6 +246,7 @@ void Archive::commit(const std::vector<Individual>& newborns, const std::vector<
   SQLite::Statement insert(database, std::string("INSERT INTO individuals(") + individual_columns +
                                          ") VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL)");
   SQLite::Statement insert_score(database, "INSERT INTO scores VALUES(?, ?, ?)");
+  SQLite::Statement insert_life(database, "INSERT INTO lives VALUES(?, ?)");
   for (const Individual& individual : newborns) {
     const Result& result = individual.result;
     const auto parent = [&](std::size_t i) {
@@ -268,6 +271,12 @@ void Archive::commit(const std::vector<Individual>& newborns, const std::vector<
       insert_score.exec();
       insert_score.reset();
     }
+    if (result.record.empty()) continue;
+    const std::string& bytes = result.record.bytes();
+    insert_life.bind(1, individual.id);
+    insert_life.bind(2, bytes.data(), static_cast<int>(bytes.size()));
+    insert_life.exec();
+    insert_life.reset();
   }
   SQLite::Statement drop(database, "UPDATE individuals SET died = ? WHERE id = ?");
   for (const std::uint32_t id : dropped) {
@@ -397,6 +406,15 @@ std::optional<ArchivedIndividual> Archive::individual(std::uint32_t id) const {
   query.bind(1, id);
   if (!query.executeStep()) return std::nullopt;
   return read_individual(files_->database, query);
+}
+
+std::optional<LifeRecord> Archive::life(std::uint32_t id) const try {
+  SQLite::Statement query(files_->database, "SELECT record FROM lives WHERE individual = ?");
+  query.bind(1, id);
+  if (!query.executeStep()) return std::nullopt;
+  return LifeRecord(query.getColumn(0).getString());
+} catch (const std::invalid_argument& error) {
+  throw ArchiveError(folder_.string() + ": individual " + std::to_string(id) + ": " + error.what());
 }
 
 std::vector<std::uint32_t> Archive::best(std::size_t count) const {

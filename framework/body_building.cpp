@@ -168,6 +168,22 @@ std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, Neighbour
   return built;
 }
 
+void put_load(Body& body, double share, double top) {
+  const Box box = bounding_box(rest_places(body));
+  const double lowest = box.high.z - top * (box.high.z - box.low.z);
+  double own = 0;
+  std::vector<Mass*> carriers;
+  for (Mass& mass : body.masses) {
+    own += mass.mass;
+    if (mass.rest.z >= lowest) carriers.push_back(&mass);
+  }
+  for (Mass* mass : carriers) {
+    mass->load = share * own / static_cast<double>(carriers.size());
+    mass->mass += mass->load;
+  }
+  place_on_origin(body);
+}
+
 std::vector<std::uint32_t> loose_masses(const Body& body) {
   const std::vector<std::uint32_t> leader = pieces(body);
   const std::uint32_t largest = largest_piece(leader);

@@ -29,6 +29,9 @@ BuiltBody build_body(Blueprint blueprint);
 /// The same for a population, whose neighbours are searched for together.
 std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, Workers& workers);
 
+/// Spreads a load of `share` times the body's mass evenly over the masses in the upper part `top` of its height.
+void put_load(Body& body, double share, double top);
+
 /// The masses that springs do not tie to the largest piece, ascending.
 std::vector<std::uint32_t> loose_masses(const Body& body);
 

@@ -143,8 +143,26 @@ class Editor {
                std::to_string(living_.body.materials.size()) + " materials");
       add({mass.place, mass.mass, mass.material, 0}, mass.place, {});
     }
+    pass_load_on(masses);
     living_.body.masses = std::move(masses);
     living_.state = std::move(state);
+  }
+
+  /// Spreads the load of what goes evenly over those that carry one, or over all where nobody is left who does.
+  void pass_load_on(std::vector<Mass>& masses) const {
+    double load = 0;
+    for (std::size_t i = 0; i < old_masses(); ++i)
+      if (mass_gone_[i]) load += living_.body.masses[i].load;
+    if (!(load > 0)) return;
+    const auto carries = [](const Mass& mass) { return mass.load > 0; };
+    const auto carriers = std::count_if(masses.begin(), masses.end(), carries);
+    const double part =
+        load / static_cast<double>(carriers > 0 ? carriers : static_cast<std::ptrdiff_t>(masses.size()));
+    for (Mass& mass : masses) {
+      if (carriers > 0 && !carries(mass)) continue;
+      mass.load += part;
+      mass.mass += part;
+    }
   }
 
   void move_springs() {

@@ -110,6 +110,7 @@ std::vector<Life> Evaluation::birth(std::span<const Newborn> newborns) const {
     life.newborn = newborns[i];
     if (!built[i].failure.empty()) return end(life, Status::invalid, std::move(built[i].failure));
     life.living.body = std::move(built[i].body);
+    if (const auto& load = experiment_.load) put_load(life.living.body, load->share, load->top);
     life.living.state = state_at_birth(life.living.body, experiment_.scene);
     choose_step(life);
   });
@@ -135,11 +136,11 @@ void Evaluation::develop(std::span<Life> lives, const Progress& progress) const 
   }
 }
 
-template <class Change>
-void Evaluation::allow_energy(Life& life, const Change& change) const {
+template <class Action>
+void Evaluation::allow_energy(Life& life, const Action& action) const {
   const auto energy = [&] { return total_energy(life.living.body, life.living.state, experiment_.scene); };
   const double before = energy();
-  change();
+  action();
   life.living.state.start_energy += std::max(0.0, energy() - before);
 }
 
@@ -174,11 +175,7 @@ void Evaluation::apply_operator(Life& life, int cycle, std::size_t index) const 
     Edits edits;
     op->develop(now, edits, rng);
     if (experiment_.development.control == Control::random_places) edits = at_random_places(edits, now, rng);
-    const auto apply = [&] { apply_edits(life.living, edits, now); };
-    if (adds_energy(edits))
-      allow_energy(life, apply);
-    else
-      apply();
+    make_change(life, edits, static_cast<std::uint32_t>(index), now);
   };
   call_operator(experiment_, Devo::kind, index, develop, where);
 }
@@ -205,9 +202,20 @@ Moment Evaluation::moment(const Life& life, int cycle, const Schedule& schedule)
           .layout = experiment_.layout};
 }
 
+void Evaluation::make_change(Life& life, const Edits& edits, std::optional<std::uint32_t> op, const Moment& now) const {
+  if (edits.empty()) return;
+  Change change = change_by(edits, op, now);
+  const auto apply = [&] { apply_edits(life.living, edits, now); };
+  if (adds_energy(edits))
+    allow_energy(life, apply);
+  else
+    apply();
+  set_rest_lengths(change, life.living.body);
+  life.result.record.add(change);
+}
+
 void Evaluation::shed_loose_pieces(Life& life, int cycle) const {
-  if (Edits edits{.removed_masses = loose_masses(life.living.body)}; !edits.empty())
-    apply_edits(life.living, edits, moment(life, cycle, {}));
+  make_change(life, {.removed_masses = loose_masses(life.living.body)}, std::nullopt, moment(life, cycle, {}));
 }
 
 void Evaluation::choose_step(Life& life) const {

@@ -35,6 +35,10 @@ void declare(Parameters& p, Damping& damping) {
 void declare(Parameters& p, Drag& drag) {
   p.real(drag.coefficient, "coefficient", {0, 1e6, "kg/m"}, "Drag on each mass, coefficient |v| v.");
 }
+void declare(Parameters& p, Load& load) {
+  p.real(load.share, "share", {0, 1000, "1"}, "Load that a body carries, relative to its mass at birth.");
+  p.real(load.top, "top", {0, 1, "1"}, "Upper part of the body's height at birth whose masses carry it.");
+}
 void declare(Parameters& p, Material& material) {
   p.real(material.stiffness, "stiffness", {0, 1e12, "N/m"}, "Spring constant; 0 is air.");
   p.real(material.amplitude, "amplitude", {0, 0.9}, "Relative change of length.");
@@ -215,12 +219,13 @@ class Composer {
 
   void read_scene() {
     read_section("scene", false, [&](TomlReader& t) {
-      t.expect({"gravity", "floor", "friction", "damping", "drag"});
+      t.expect({"gravity", "floor", "friction", "damping", "drag", "load"});
       read_force(t, "gravity", out_.scene.gravity);
       read_force(t, "floor", out_.scene.floor);
       read_force(t, "friction", out_.scene.friction);
       read_force(t, "damping", out_.scene.damping);
       read_force(t, "drag", out_.scene.drag);
+      read_force(t, "load", out_.load);
       if (out_.scene.friction && !out_.scene.floor)
         t.fail("friction", "there is nothing to rub on; add [scene.floor] or remove [scene.friction]");
     });

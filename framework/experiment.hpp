@@ -56,6 +56,12 @@ struct Development {
   std::vector<Scheduled> operators;
 };
 
+/// A load that every body carries from birth on. What masses that go carried comes on others.
+struct Load {
+  double share = 0.5;  ///< relative to the body's mass at birth
+  double top = 0.1;    ///< the upper part of the body's height that carries it
+};
+
 /// An operator that the experiment uses, for the record.
 struct OperatorUse {
   std::string kind, name, version;
@@ -78,6 +84,7 @@ struct Experiment {
   std::vector<Varied<Mutation>> mutations;
   std::vector<Varied<Crossover>> crossovers;
   Scene scene;
+  std::optional<Load> load;
   Stepping stepping;
   StepRule step;
   std::string device = "auto";

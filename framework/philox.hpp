@@ -14,7 +14,7 @@ namespace place {
 inline constexpr std::uint32_t newborn = 1;
 inline constexpr std::uint32_t parents = 2;
 inline constexpr std::uint32_t survivors = 3;
-inline constexpr std::uint32_t variation = 4;  ///< which operators a child goes through
+inline constexpr std::uint32_t variation = 4;       ///< which operators a child goes through
 inline constexpr std::uint32_t disturbance = 0x10;  ///< and on, of a verification's starts
 inline constexpr std::uint32_t crossover = 0x100;
 inline constexpr std::uint32_t mutation = 0x200;

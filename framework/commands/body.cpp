@@ -4,10 +4,8 @@
 #include <fstream>
 #include <iomanip>
 #include <iostream>
-#include <limits>
 #include <sstream>
 
-#include "archive.hpp"
 #include "body_json.hpp"
 #include "commands/options.hpp"
 #include "text.hpp"
@@ -19,22 +17,6 @@ namespace {
 namespace po = boost::program_options;
 
 constexpr double frame_time = 0.01;  ///< between two frames of a trajectory, s
-
-ArchivedIndividual chosen_individual(const Archive& archive, const po::variables_map& given) {
-  const std::string folder = archive.folder().string();
-  if (!given.contains("individual")) {
-    const auto best = archive.best(1);
-    if (best.empty()) throw ArchiveError(folder + ": no individual has a fitness; name one with --individual");
-    return *archive.individual(best.front());
-  }
-  const auto id = given["individual"].as<std::int64_t>();
-  const bool is_id = id >= 0 && id <= std::numeric_limits<std::uint32_t>::max();
-  auto individual = is_id ? archive.individual(static_cast<std::uint32_t>(id)) : std::nullopt;
-  if (!individual)
-    throw ArchiveError(folder + ": there is no individual " + std::to_string(id) + "; see `" + program_name() +
-                       " show " + folder + "`");
-  return *individual;
-}
 
 /// Writes a body's motion frame by frame: time, mass, x, y, z, vx, vy, vz in SI units.
 class TrajectoryFile {

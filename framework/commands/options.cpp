@@ -1,6 +1,7 @@
 #include "options.hpp"
 
 #include <iostream>
+#include <limits>
 
 #include "text.hpp"
 #include "toml_reader.hpp"
@@ -94,6 +95,22 @@ ExperimentSource experiment_source(const std::string& file, const po::variables_
     source.overrides.push_back({shorthand.key, value, "--" + std::string(shorthand.option) + " " + value});
   }
   return source;
+}
+
+ArchivedIndividual chosen_individual(const Archive& archive, const po::variables_map& given) {
+  const std::string folder = archive.folder().string();
+  if (!given.contains("individual")) {
+    const auto best = archive.best(1);
+    if (best.empty()) throw ArchiveError(folder + ": no individual has a fitness; name one with --individual");
+    return *archive.individual(best.front());
+  }
+  const auto id = given["individual"].as<std::int64_t>();
+  const bool is_id = id >= 0 && id <= std::numeric_limits<std::uint32_t>::max();
+  auto individual = is_id ? archive.individual(static_cast<std::uint32_t>(id)) : std::nullopt;
+  if (!individual)
+    throw ArchiveError(folder + ": there is no individual " + std::to_string(id) + "; see `" + program_name() +
+                       " show " + folder + "`");
+  return *individual;
 }
 
 std::unique_ptr<Simulator> make_simulator(const Experiment& experiment) {

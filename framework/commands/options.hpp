@@ -3,6 +3,7 @@
 
 #include <boost/program_options.hpp>
 
+#include "archive.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
 
@@ -28,6 +29,9 @@ std::vector<std::filesystem::path> given_plugin_path(const boost::program_option
 void add_experiment_options(boost::program_options::options_description& options);
 /// The experiment that `file` and the options above name.
 ExperimentSource experiment_source(const std::string& file, const boost::program_options::variables_map& given);
+
+/// The individual that --individual names, or else the best. Throws ArchiveError where there is none.
+ArchivedIndividual chosen_individual(const Archive& archive, const boost::program_options::variables_map& given);
 
 /// The simulator for the experiment's device and threads. Throws ConfigError where CUDA is asked for and not to be had.
 std::unique_ptr<Simulator> make_simulator(const Experiment& experiment);

@@ -83,6 +83,21 @@ TEST(BodyBuilding, StandsOnTheFloorOverTheOrigin) {
   EXPECT_EQ(built.body.masses[1].rest, (Vec3{1, 0, 0}));
 }
 
+TEST(BodyBuilding, ALoadLiesOnTheTop) {
+  Body body;
+  for (const Vec3 place : {Vec3{0, 0, 0}, Vec3{2, 0, 0.79}, Vec3{0, 0, 0.81}, Vec3{3, 0, 1}})
+    body.masses.push_back({place, 0.2});
+  put_load(body, 1.5, 0.2);
+  const double carried[] = {0, 0, 0.6, 0.6};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_DOUBLE_EQ(body.masses[i].load, carried[i]);
+    EXPECT_DOUBLE_EQ(body.masses[i].mass, 0.2 + carried[i]);
+  }
+  std::vector<Vec3> places;
+  for (const Mass& mass : body.masses) places.push_back(mass.rest);
+  EXPECT_NEAR(centre_of_mass(body, places).x, 0, 1e-15) << "over the origin with its load";
+}
+
 TEST(BodyBuilding, SaysWhyThereIsNoBody) {
   EXPECT_EQ(build_body(row({}, 3)).failure, "no body: no masses");
   EXPECT_EQ(build_body(row({{0, 0}}, 3)).failure, "no springs");

@@ -48,6 +48,23 @@ struct Line {
   }
 };
 
+TEST(Development, ALoadComesOnOthersWhenItsCarrierGoes) {
+  Line line;
+  for (const std::size_t carrier : {2u, 3u})
+    line.living.body.masses[carrier].load = 1, line.living.body.masses[carrier].mass += 1;
+  line.apply({.removed_masses = {3}, .new_masses = {{{0, 0, 7}, 0.5, 0}}});
+  const std::vector<Mass>& masses = line.living.body.masses;
+  ASSERT_EQ(masses.size(), 4u);
+  EXPECT_EQ(masses[2].load, 2);
+  EXPECT_DOUBLE_EQ(masses[2].mass, 2.2);
+  EXPECT_EQ(masses[0].mass, 0.2);
+  EXPECT_EQ(masses[3].mass, 0.5);
+  line.apply({.removed_masses = {2}});
+  ASSERT_EQ(masses.size(), 3u);
+  for (const Mass& mass : masses) EXPECT_DOUBLE_EQ(mass.load, 2.0 / 3) << "nobody is left who carries one";
+  EXPECT_DOUBLE_EQ(masses[2].mass, 0.5 + 2.0 / 3);
+}
+
 TEST(Development, ASpringGoesAndOneComes) {
   Line line;
   line.apply({.removed_springs = {1}, .new_springs = {{0, 3, muscle, std::nullopt}}});

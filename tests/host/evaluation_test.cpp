@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "breeding.hpp"
@@ -195,28 +196,72 @@ TEST(Evaluation, AnUnstableBodyIsInvalidOrRunsAsTheFileAsks) {
   EXPECT_NE(status("run").status, Status::invalid);
 }
 
-/// Stiffens the body: as many springs again, of a thousand times the stiffness.
+/// Stiffens the body a thousand times, by other springs or the same.
 struct Stiffener final : Devo {
+  explicit Stiffener(bool by_exchange) : exchanges(by_exchange) {}
+
   void develop(const Moment& now, Edits& edits, Rng&) const override {
     for (std::uint32_t i = 0; i < now.body.springs.size(); ++i) {
-      edits.removed_springs.push_back(i);
       Material material = now.body.materials[now.body.springs[i].material];
       material.stiffness *= 1000;
-      edits.new_springs.push_back({now.body.springs[i].a, now.body.springs[i].b, material, {}});
+      if (exchanges) {
+        edits.removed_springs.push_back(i);
+        edits.new_springs.push_back({now.body.springs[i].a, now.body.springs[i].b, material, {}});
+      } else {
+        edits.changed_springs.push_back({.spring = i, .material = material});
+      }
     }
   }
+
+  bool exchanges;  ///< the springs, instead of changing them
 };
 
 TEST(Evaluation, DevelopmentChangesTheStep) {
   Experiment experiment = testing::read(testing::small_experiment, {{"simulation.dt", "auto", ""}});
-  experiment.development.operators[0].op = std::make_unique<Stiffener>();
   experiment.development.cycles = 1;
-  const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
-  EXPECT_EQ(result.status, Status::ok) << result.reason;
+  const auto result_with = [&](bool by_exchange) {
+    experiment.development.operators[0].op = std::make_unique<Stiffener>(by_exchange);
+    return evaluate(experiment, {{.genome = {1, 1}}}).front();
+  };
+  const Result exchanged = result_with(true), changed = result_with(false);
+  EXPECT_EQ(exchanged.status, Status::ok) << exchanged.reason;
+  EXPECT_EQ(changed.status, Status::ok) << changed.reason;
   experiment.development.operators.clear();
   const Result soft = evaluate(experiment, {{.genome = {1, 1}}}).front();
   EXPECT_EQ(soft.status, Status::ok) << soft.reason;
-  EXPECT_GT(result.spring_evaluations, 4 * soft.spring_evaluations) << "the steps that follow are shorter";
+  EXPECT_GT(exchanged.spring_evaluations, 4 * soft.spring_evaluations) << "the steps that follow are shorter";
+  EXPECT_GT(changed.spring_evaluations, 4 * soft.spring_evaluations);
+}
+
+TEST(Evaluation, DevelopmentThatAFixedStepCannotBearIsInvalid) {
+  Experiment experiment = testing::read(testing::small_experiment);
+  experiment.development.operators[0].op = std::make_unique<Stiffener>(false);
+  const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
+  EXPECT_EQ(result.status, Status::invalid);
+  EXPECT_EQ(result.reason, "unstable dt: 0.0005 s is too long for the body's springs");
+}
+
+TEST(Evaluation, ALoadSinksTheFasterInWater) {
+  // where weight and drag are equal: M g = 12 c v^2
+  Experiment experiment = testing::read(
+      testing::small_experiment,
+      {{"scene.load.share", "3", ""}, {"scene.load.top", "1", ""}, {"scene.drag.coefficient", "0.5", ""}});
+  experiment.development = {};
+  experiment.scene.floor.reset();
+  experiment.scene.friction.reset();
+  experiment.scene.damping.reset();
+  Observation seen;
+  experiment.fitness.clear();
+  experiment.fitness.push_back(std::make_unique<Watcher>(Request{.settle = 2, .window = 0.5}, seen));
+  experiment.objectives = {{"a", "", true}};
+  const auto speed = [&] {
+    EXPECT_EQ(evaluate(experiment, {{.genome = {1, 1}}}).front().status, Status::ok);
+    return (seen.centre_before.z - seen.centre_after.z) / 0.5;
+  };
+  const double unloaded = std::sqrt(12 * 0.2 * 9.81 / (12 * 0.5));
+  EXPECT_NEAR(speed(), 2 * unloaded, 0.01 * unloaded);
+  experiment.load.reset();
+  EXPECT_NEAR(speed(), unloaded, 0.01 * unloaded);
 }
 
 /// Makes every spring three times as long.

@@ -64,6 +64,7 @@ struct Mass {
   double mass = 0;                      ///< kg
   std::int32_t material = no_material;  ///< index into Body::materials, or no_material
   std::uint32_t air_contacts = 0;       ///< neighbours to which a spring of air was left out
+  double load = 0;                      ///< how much of `mass` it carries for the scene, kg
 };
 
 struct Spring {
