@@ -3,6 +3,7 @@
 
 #include <boost/program_options.hpp>
 
+#include "archive.hpp"
 #include "commands.hpp"
 #include "experiment.hpp"
 
@@ -13,15 +14,24 @@ struct CommandLine {
   std::string usage;                    ///< "run EXPERIMENT.toml [options]"
   std::vector<std::string> positional;  ///< names of required arguments, in order
   boost::program_options::options_description options;
+  std::string repeated = {};  ///< the option that takes all arguments behind the required ones
 };
 
 /// The values given; empty where --help was asked for and printed. Throws UsageError.
 std::optional<boost::program_options::variables_map> parse(CommandLine line, const Arguments& arguments);
 
-/// --set, and shorthands for single keys.
+/// --plugin-path.
+void add_plugin_option(boost::program_options::options_description& options);
+/// What --plugin-path names. Throws UsageError where there is neither a folder nor a library.
+std::vector<std::filesystem::path> given_plugin_path(const boost::program_options::variables_map& given);
+
+/// --set, --plugin-path, and shorthands for single keys.
 void add_experiment_options(boost::program_options::options_description& options);
 /// The experiment that `file` and the options above name.
 ExperimentSource experiment_source(const std::string& file, const boost::program_options::variables_map& given);
+
+/// The individual that --individual names, or else the best. Throws ArchiveError where there is none.
+ArchivedIndividual chosen_individual(const Archive& archive, const boost::program_options::variables_map& given);
 
 /// The simulator for the experiment's device and threads. Throws ConfigError where CUDA is asked for and not to be had.
 std::unique_ptr<Simulator> make_simulator(const Experiment& experiment);

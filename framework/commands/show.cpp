@@ -58,8 +58,11 @@ class Report {
       root["objectives"].push_back({{"name", o.name}, {"unit", o.unit}, {"maximise", o.maximise}});
     root["operators"] = Json::array();
     for (const OperatorUse& use : archive_.operators())
-      root["operators"].push_back(
-          {{"kind", use.kind}, {"name", use.name}, {"version", use.version}, {"file", use.file.string()}});
+      root["operators"].push_back({{"kind", use.kind},
+                                   {"name", use.name},
+                                   {"version", use.version},
+                                   {"file", use.file.string()},
+                                   {"hash", use.hash}});
     root["generations"] = Json::array();
     for (const Summary& s : generations_)
       root["generations"].push_back({{"generation", s.generation},
