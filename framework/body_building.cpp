@@ -24,13 +24,6 @@ void leave_out_air(Body& body) {
   });
 }
 
-std::vector<Vec3> rest_places(const Body& body) {
-  std::vector<Vec3> places;
-  places.reserve(body.masses.size());
-  for (const Mass& mass : body.masses) places.push_back(mass.rest);
-  return places;
-}
-
 void join(Body& body, std::span<const IndexPair> pairs) {
   body.springs.reserve(body.springs.size() + pairs.size());
   for (const auto& [a, b] : pairs) {
@@ -122,6 +115,13 @@ BuiltBody finish(Body body) {
 }
 
 }  // namespace
+
+std::vector<Vec3> rest_places(const Body& body) {
+  std::vector<Vec3> places;
+  places.reserve(body.masses.size());
+  for (const Mass& mass : body.masses) places.push_back(mass.rest);
+  return places;
+}
 
 void check_blueprint(const Blueprint& blueprint, const World& world) {
   const auto require = [](bool holds, const char* what, std::size_t index, const char* fault) {

@@ -32,6 +32,8 @@ std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, Neighbour
 /// Spreads a load of `share` times the body's mass evenly over the masses in the upper part `top` of its height.
 void put_load(Body& body, double share, double top);
 
+std::vector<Vec3> rest_places(const Body& body);
+
 /// The masses that springs do not tie to the largest piece, ascending.
 std::vector<std::uint32_t> loose_masses(const Body& body);
 

@@ -166,22 +166,21 @@ class Editor {
   }
 
   void move_springs() {
-    std::vector<Spring> springs;
-    std::vector<double> stress;
-    springs.reserve(living_.body.springs.size() + edits_.new_springs.size());
-    stress.reserve(springs.capacity());
-    for (std::size_t i = 0; i < living_.body.springs.size(); ++i) {
-      const Spring& spring = living_.body.springs[i];
-      if (spring_gone_[i] || goes(spring)) continue;
-      springs.push_back(spring);
-      springs.back().a = new_index_[spring.a];
-      springs.back().b = new_index_[spring.b];
-      stress.push_back(living_.stress[i]);
+    std::vector<Spring>& springs = living_.body.springs;
+    std::vector<double>& stress = living_.stress;
+    std::size_t kept = 0;
+    double sum = 0;
+    for (std::size_t i = 0; i < springs.size(); ++i) {
+      if (spring_gone_[i] || goes(springs[i])) continue;
+      springs[kept] = springs[i];
+      springs[kept].a = new_index_[springs[i].a];
+      springs[kept].b = new_index_[springs[i].b];
+      stress[kept] = stress[i];
+      sum += stress[kept++];
     }
-    mean_stress_ =
-        stress.empty() ? 0 : std::accumulate(stress.begin(), stress.end(), 0.0) / static_cast<double>(stress.size());
-    living_.body.springs = std::move(springs);
-    living_.stress = std::move(stress);
+    springs.resize(kept);
+    stress.resize(kept);
+    mean_stress_ = kept == 0 ? 0 : sum / static_cast<double>(kept);
   }
 
   std::uint64_t new_key(const NewSpring& spring) const { return pair_key(new_index_[spring.a], new_index_[spring.b]); }
@@ -196,10 +195,11 @@ class Editor {
         if (new_key(*spring) == key) refuse(pair_text(*spring) + ", which are joined already");
     };
     if (const auto twin = std::adjacent_find(keys.begin(), keys.end()); twin != keys.end()) refuse_pair(*twin);
-    std::vector<std::uint8_t> gets_spring(living_.body.masses.size(), 0);
-    for (const NewSpring& spring : arrivals) gets_spring[new_index_[spring.a]] = gets_spring[new_index_[spring.b]] = 1;
+    // most springs are told apart from all arrivals by one of their ends
+    std::vector<std::uint8_t> is_lower(living_.body.masses.size(), 0), is_upper = is_lower;
+    for (const std::uint64_t key : keys) is_lower[key >> 32] = is_upper[key & 0xffffffff] = 1;
     for (const Spring& spring : living_.body.springs) {
-      if (!gets_spring[spring.a] || !gets_spring[spring.b]) continue;
+      if (!is_lower[std::min(spring.a, spring.b)] || !is_upper[std::max(spring.a, spring.b)]) continue;
       if (const auto key = pair_key(spring.a, spring.b); std::binary_search(keys.begin(), keys.end(), key))
         refuse_pair(key);
     }

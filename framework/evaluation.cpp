@@ -142,10 +142,8 @@ void Evaluation::allow_energy(Life& life, const Action& action) const {
 }
 
 Box Evaluation::bounds(const LivingBody& living) const {
-  std::vector<Vec3> places = living.state.position;
-  if (experiment_.development.reset)
-    for (std::size_t i = 0; i < places.size(); ++i) places[i] = living.body.masses[i].rest;
-  Box box = bounding_box(places);
+  Box box =
+      experiment_.development.reset ? bounding_box(rest_places(living.body)) : bounding_box(living.state.position);
   if (experiment_.scene.floor) box.low.z = std::max(box.low.z, 0.0);
   box.high.z = std::max(box.high.z, box.low.z);
   return box;
@@ -212,7 +210,8 @@ void Evaluation::make_change(Life& life, const Edits& edits, std::optional<std::
 }
 
 void Evaluation::shed_loose_pieces(Life& life, int cycle) const {
-  make_change(life, {.removed_masses = loose_masses(life.living.body)}, std::nullopt, moment(life, cycle, {}));
+  const Edits edits{.removed_masses = loose_masses(life.living.body)};
+  if (!edits.empty()) make_change(life, edits, std::nullopt, moment(life, cycle, {}));
 }
 
 void Evaluation::choose_step(Life& life) const {

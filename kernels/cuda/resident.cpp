@@ -23,6 +23,16 @@ std::size_t masses_bytes(std::size_t groups) {
   return (groups + 1) * group_bytes<T>;  // and one that empty slots lead to
 }
 
+/// The force of a spring that stops two masses in motion: 2 v sqrt(k m/2) at most, of the greatest v, k and m there
+/// are.
+double stopping_force(const Body& body, const State& state) {
+  double speed = 0, mass = 0, stiffness = 0;
+  for (const Vec3& v : state.velocity) speed = std::max(speed, norm(v));
+  for (const Mass& m : body.masses) mass = std::max(mass, m.mass);
+  for (const Material& material : body.materials) stiffness = std::max(stiffness, material.stiffness);
+  return 2 * speed * std::sqrt(stiffness * mass / 2);
+}
+
 }  // namespace
 
 ArrangedBody::ArrangedBody(const Body& body, Arrangement arrangement_, unsigned largest_block)
@@ -55,7 +65,7 @@ ForceRange force_range(const Body& body, const State& state, const Scene& scene)
   double weight = 0;
   if (scene.gravity)
     for (const Mass& mass : body.masses) weight += mass.mass * std::abs(scene.gravity->acceleration);
-  double largest = weight;
+  double largest = std::max(weight, stopping_force(body, state));
   std::vector<std::uint32_t> valence(body.masses.size());
   for (const Spring& spring : body.springs) {
     const Material& material = body.materials[spring.material];

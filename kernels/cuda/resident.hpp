@@ -27,7 +27,8 @@ struct ForceRange {
 };
 
 /// The range for a body: up to the force at which its strongest spring is twice as long as it wants to be, to twice
-/// what a spring's force is now, and to the body's weight, which may be more than soft or short springs can bear.
+/// what a spring's force is now, to what it takes to stop the masses' motion, and to the body's weight; soft or short
+/// springs may have to bear more of these than of the first.
 template <class T>
 ForceRange force_range(const Body& body, const State& state, const Scene& scene);
 

@@ -10,13 +10,12 @@ inline std::vector<std::uint32_t> springs_of_least(const std::vector<double>& ke
                                                    evodevo::Rng& rng) {
   count = std::min(count, key.size());
   if (count == 0) return {};
-  std::vector<double> ordered = key;
-  const auto last = ordered.begin() + static_cast<std::ptrdiff_t>(count) - 1;
-  std::nth_element(ordered.begin(), last, ordered.end());
+  std::vector<double> least(count);  // few of many: most keys are looked at once
+  std::partial_sort_copy(key.begin(), key.end(), least.begin(), least.end());
   using Ranked = std::tuple<double, std::uint32_t, std::uint32_t>;
   std::vector<Ranked> ranked;
   for (std::uint32_t s = 0; s < key.size(); ++s)
-    if (key[s] <= *last) ranked.emplace_back(key[s], rng(), s);
+    if (key[s] <= least.back()) ranked.emplace_back(key[s], rng(), s);
   std::sort(ranked.begin(), ranked.end());
   std::vector<std::uint32_t> springs;
   for (std::size_t i = 0; i < count; ++i) springs.push_back(std::get<2>(ranked[i]));

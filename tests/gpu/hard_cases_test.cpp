@@ -14,9 +14,14 @@ INSTANTIATE_TEST_SUITE_P(Gpu, HardCases, all_ways(),
 TEST_P(HardCases, AreRightOrFlagged) {
   EVODEVO_NEEDS_GPU();
   const auto [method, precision] = GetParam();
-  test::expect_outcomes(test::hard_cases(method), [&, method = method, precision = precision](const Scene& scene) {
-    return make_cuda_simulator(scene, {method, precision});
-  });
+  // forces are multiples of a 2^23rd of the largest, of which each step near the limit of dt adds some
+  const double rounding = precision == Precision::float32 ? 1e-2 : 1e-6;
+  test::expect_outcomes(
+      test::hard_cases(method),
+      [&, method = method, precision = precision](const Scene& scene) {
+        return make_cuda_simulator(scene, {method, precision});
+      },
+      rounding);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ std::vector<HardCase> hard_cases(Method method);
 using SimulatorMaker = std::function<std::unique_ptr<Simulator>(const Scene&)>;
 
 /// Simulates every case between two other bodies, and expects the case's outcome and of the others the bits that they
-/// have alone.
-void expect_outcomes(const std::vector<HardCase>& cases, const SimulatorMaker& simulator_for);
+/// have alone. `rounding`: the energy that it may bring to a body at rest, J.
+void expect_outcomes(const std::vector<HardCase>& cases, const SimulatorMaker& simulator_for, double rounding = 1e-6);
 
 }  // namespace evodevo::test
