@@ -167,21 +167,31 @@ class Editor {
 
   void move_springs() {
     std::vector<Spring> springs;
-    std::vector<double> stress;
+    std::vector<std::size_t> staying;
     springs.reserve(living_.body.springs.size() + edits_.new_springs.size());
-    stress.reserve(springs.capacity());
+    staying.reserve(living_.body.springs.size());
     for (std::size_t i = 0; i < living_.body.springs.size(); ++i) {
       const Spring& spring = living_.body.springs[i];
       if (spring_gone_[i] || goes(spring)) continue;
       springs.push_back(spring);
       springs.back().a = new_index_[spring.a];
       springs.back().b = new_index_[spring.b];
-      stress.push_back(living_.stress[i]);
+      staying.push_back(i);
     }
-    mean_stress_ =
-        stress.empty() ? 0 : std::accumulate(stress.begin(), stress.end(), 0.0) / static_cast<double>(stress.size());
+    for (const auto list : SpringRecords::lists)
+      if ((living_.*list).size() == living_.body.springs.size()) move_record(living_.*list, staying);
     living_.body.springs = std::move(springs);
-    living_.stress = std::move(stress);
+  }
+
+  /// Leaves what stays in a record, and adds the mean of it for each spring that comes.
+  void move_record(std::vector<double>& record, const std::vector<std::size_t>& staying) const {
+    std::vector<double> moved;
+    moved.reserve(staying.size() + edits_.new_springs.size());
+    for (const std::size_t i : staying) moved.push_back(record[i]);
+    const double sum = std::accumulate(moved.begin(), moved.end(), 0.0);
+    moved.resize(staying.size() + edits_.new_springs.size(),
+                 staying.empty() ? 0 : sum / static_cast<double>(staying.size()));
+    record = std::move(moved);
   }
 
   std::uint64_t new_key(const NewSpring& spring) const { return pair_key(new_index_[spring.a], new_index_[spring.b]); }
@@ -208,7 +218,6 @@ class Editor {
   void add_spring(const NewSpring& spring) {
     living_.body.springs.push_back({new_index_[spring.a], new_index_[spring.b], *spring.rest_length,
                                     living_.body.material_index(spring.material)});
-    living_.stress.push_back(mean_stress_);
   }
 
   LivingBody& living_;
@@ -216,13 +225,20 @@ class Editor {
   const Moment& now_;
   std::vector<std::uint8_t> spring_gone_, mass_gone_;
   std::vector<std::uint32_t> new_index_;  ///< of every old and new mass
-  double mean_stress_ = 0;
 };
 
 }  // namespace
 
 void apply_edits(LivingBody& living, const Edits& edits, const Moment& now) {
   if (!edits.empty()) Editor(living, edits, now).apply();
+}
+
+void show_records(const SpringRecords& records, const SpringRequest& request, Moment& now) {
+  using Shown = std::span<const double>;
+  now.stress = request.stress ? Shown(records.stress) : Shown();
+  now.peak_force = request.peak_force ? Shown(records.peak_force) : Shown();
+  now.muscle_work = request.muscle_work ? Shown(records.muscle_work) : Shown();
+  now.tension = request.tension ? Shown(records.tension) : Shown();
 }
 
 }  // namespace evodevo
