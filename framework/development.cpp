@@ -167,20 +167,27 @@ class Editor {
 
   void move_springs() {
     std::vector<Spring>& springs = living_.body.springs;
-    std::vector<double>& stress = living_.stress;
-    std::size_t kept = 0;
-    double sum = 0;
-    for (std::size_t i = 0; i < springs.size(); ++i) {
-      if (spring_gone_[i] || goes(springs[i])) continue;
-      springs[kept] = springs[i];
-      springs[kept].a = new_index_[springs[i].a];
-      springs[kept].b = new_index_[springs[i].b];
-      stress[kept] = stress[i];
-      sum += stress[kept++];
+    std::vector<std::uint32_t> staying;
+    staying.reserve(springs.size());
+    for (std::uint32_t i = 0; i < springs.size(); ++i)
+      if (!spring_gone_[i] && !goes(springs[i])) staying.push_back(i);
+    for (const auto list : SpringRecords::lists)
+      if ((living_.*list).size() == springs.size()) move_record(living_.*list, staying);
+    for (std::size_t i = 0; i < staying.size(); ++i) {
+      springs[i] = springs[staying[i]];
+      springs[i].a = new_index_[springs[i].a];
+      springs[i].b = new_index_[springs[i].b];
     }
-    springs.resize(kept);
-    stress.resize(kept);
-    mean_stress_ = kept == 0 ? 0 : sum / static_cast<double>(kept);
+    springs.resize(staying.size());
+  }
+
+  /// Leaves what stays in a record, and adds the mean of it for each spring that comes.
+  void move_record(std::vector<double>& record, const std::vector<std::uint32_t>& staying) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < staying.size(); ++i) sum += record[i] = record[staying[i]];
+    record.resize(staying.size());
+    record.resize(staying.size() + edits_.new_springs.size(),
+                  staying.empty() ? 0 : sum / static_cast<double>(staying.size()));
   }
 
   std::uint64_t new_key(const NewSpring& spring) const { return pair_key(new_index_[spring.a], new_index_[spring.b]); }
@@ -208,7 +215,6 @@ class Editor {
   void add_spring(const NewSpring& spring) {
     living_.body.springs.push_back({new_index_[spring.a], new_index_[spring.b], *spring.rest_length,
                                     living_.body.material_index(spring.material)});
-    living_.stress.push_back(mean_stress_);
   }
 
   LivingBody& living_;
@@ -216,13 +222,20 @@ class Editor {
   const Moment& now_;
   std::vector<std::uint8_t> spring_gone_, mass_gone_;
   std::vector<std::uint32_t> new_index_;  ///< of every old and new mass
-  double mean_stress_ = 0;
 };
 
 }  // namespace
 
 void apply_edits(LivingBody& living, const Edits& edits, const Moment& now) {
   if (!edits.empty()) Editor(living, edits, now).apply();
+}
+
+void show_records(const SpringRecords& records, const SpringRequest& request, Moment& now) {
+  using Shown = std::span<const double>;
+  now.stress = request.stress ? Shown(records.stress) : Shown();
+  now.peak_force = request.peak_force ? Shown(records.peak_force) : Shown();
+  now.muscle_work = request.muscle_work ? Shown(records.muscle_work) : Shown();
+  now.tension = request.tension ? Shown(records.tension) : Shown();
 }
 
 }  // namespace evodevo

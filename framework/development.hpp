@@ -8,19 +8,21 @@
 
 namespace evodevo {
 
-/// A body in the middle of its life.
-struct LivingBody {
+/// A body in the middle of its life. The records are of the last cycle.
+struct LivingBody : SpringRecords {
   Body body;
   State state;
   double longest_dt = 0;                                     ///< see LongestStep, s
-  std::vector<double> stress;                                ///< of the last cycle, per spring, N
   std::shared_ptr<const Preparation> preparation = nullptr;  ///< what the simulator keeps from cycle to cycle
 };
 
 /// Applies one operator's edits, all of them together. `now` is the moment that the operator saw; it refers to
-/// `living`. New springs carry the mean stress of the old ones. Throws std::invalid_argument, naming the edit, for an
+/// `living`. New springs carry the mean records of the old ones. Throws std::invalid_argument, naming the edit, for an
 /// index out of range, a mass joined to itself or to one that goes, a pair joined twice, a spring changed twice or one
 /// that goes, air, or a number that is not finite.
 void apply_edits(LivingBody& living, const Edits& edits, const Moment& now);
+
+/// Lets a moment show what was asked for of the springs, and no more.
+void show_records(const SpringRecords& records, const SpringRequest& request, Moment& now);
 
 }  // namespace evodevo

@@ -9,6 +9,7 @@
 #include "controls.hpp"
 #include "parallel.hpp"
 #include "philox.hpp"
+#include "skip_shift.hpp"
 
 namespace evodevo {
 namespace {
@@ -121,7 +122,7 @@ double Evaluation::development_time() const {
 void Evaluation::develop(std::span<Life> lives, const Progress& progress) const {
   const Development& development = experiment_.development;
   for (int cycle = 1; cycle <= development.cycles; ++cycle) {
-    simulate(lives, development.cycle_time, {.stress = !development.operators.empty()});
+    simulate_cycle(lives, cycle);
     const BusyClock::Span span(develop_);
     simulator_.workers().for_each(lives.size(), [&](std::size_t i) {
       if (!lives[i].alive()) return;
@@ -131,6 +132,21 @@ void Evaluation::develop(std::span<Life> lives, const Progress& progress) const 
     });
     progress(static_cast<double>(cycle) / static_cast<double>(development.cycles));
   }
+}
+
+void Evaluation::simulate_cycle(std::span<Life> lives, int cycle) const {
+  const Development& development = experiment_.development;
+  const Recording recording = development.recording(cycle);
+  const auto tally = [&](std::span<Task> tasks, std::span<Life* const> alive) {
+    std::vector<Rng> random;
+    for (const Life* life : alive) random.push_back(stream(*life, place::stress_tallies(cycle)));
+    run_with_tallies(simulator_, tasks, static_cast<std::uint64_t>(development.skip), random);
+  };
+  const auto record = [&](std::span<Task> tasks, std::span<Life* const>) { simulator_.run(tasks, recording); };
+  if (recording.stress && development.probe == Probe::skip_shift)
+    simulate(lives, development.cycle_time, tally);
+  else
+    simulate(lives, development.cycle_time, record);
 }
 
 template <class Action>
@@ -152,16 +168,28 @@ Box Evaluation::bounds(const LivingBody& living) const {
 void Evaluation::apply_operators(Life& life, int cycle) const {
   const Development& development = experiment_.development;
   if (development.control == Control::no_change) return;
-  if (development.control == Control::shuffled_stress)
-    stream(life, place::stress_shuffle(cycle)).shuffle(life.living.stress);
+  if (development.control == Control::shuffled_stress) shuffle_records(life, cycle);
   for (std::size_t i = 0; i < development.operators.size(); ++i)
     if (development.operators[i].schedule.contains(cycle)) apply_operator(life, cycle, i);
   shed_loose_pieces(life, cycle);
 }
 
+void Evaluation::shuffle_records(Life& life, int cycle) const {
+  std::vector<std::size_t> order(life.living.body.springs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  stream(life, place::stress_shuffle(cycle)).shuffle(order);
+  for (const auto list : SpringRecords::lists) {
+    std::vector<double>& record = life.living.*list;
+    if (record.empty()) continue;
+    std::vector<double> shuffled;
+    for (const std::size_t i : order) shuffled.push_back(record[i]);
+    record = std::move(shuffled);
+  }
+}
+
 void Evaluation::apply_operator(Life& life, int cycle, std::size_t index) const {
   const auto& [op, schedule] = experiment_.development.operators[index];
-  const Moment now = moment(life, cycle, schedule);
+  const Moment now = moment(life, cycle, schedule, op->observes());
   Rng rng = stream(life, place::devo(index, cycle));
   const auto where = [&] {
     return ", individual " + std::to_string(life.newborn.id) + ", cycle " + std::to_string(cycle);
@@ -179,22 +207,24 @@ Rng Evaluation::stream(const Life& life, std::uint32_t place) const {
   return Rng(philox, {static_cast<std::uint64_t>(experiment_.seed), life.newborn.generation, life.newborn.id, place});
 }
 
-Moment Evaluation::moment(const Life& life, int cycle, const Schedule& schedule) const {
+Moment Evaluation::moment(const Life& life, int cycle, const Schedule& schedule, const SpringRequest& request) const {
   const Development& development = experiment_.development;
   const LivingBody& living = life.living;
-  return {.body = living.body,
-          .state = living.state,
-          .stress = living.stress,
-          .cycle = cycle,
-          .cycles = static_cast<int>(development.cycles),
-          .turn = static_cast<int>(schedule.turns(cycle)),
-          .turns = static_cast<int>(schedule.turns(development.cycles)),
-          .time = living.state.time,
-          .bounds = bounds(living),
-          .mass = experiment_.world.mass,
-          .resets = development.reset,
-          .genome = *life.newborn.genome,
-          .layout = experiment_.layout};
+  Moment now{.body = living.body,
+             .state = living.state,
+             .stress = {},
+             .cycle = cycle,
+             .cycles = static_cast<int>(development.cycles),
+             .turn = static_cast<int>(schedule.turns(cycle)),
+             .turns = static_cast<int>(schedule.turns(development.cycles)),
+             .time = living.state.time,
+             .bounds = bounds(living),
+             .mass = experiment_.world.mass,
+             .resets = development.reset,
+             .genome = *life.newborn.genome,
+             .layout = experiment_.layout};
+  show_records(living, request, now);
+  return now;
 }
 
 void Evaluation::make_change(Life& life, const Edits& edits, std::optional<std::uint32_t> op, const Moment& now) const {
@@ -211,7 +241,7 @@ void Evaluation::make_change(Life& life, const Edits& edits, std::optional<std::
 
 void Evaluation::shed_loose_pieces(Life& life, int cycle) const {
   const Edits edits{.removed_masses = loose_masses(life.living.body)};
-  if (!edits.empty()) make_change(life, edits, std::nullopt, moment(life, cycle, {}));
+  if (!edits.empty()) make_change(life, edits, std::nullopt, moment(life, cycle, {}, {}));
 }
 
 void Evaluation::choose_step(Life& life) const {
@@ -231,7 +261,8 @@ void Evaluation::return_to_rest(Life& life) const {
   }
 }
 
-void Evaluation::simulate(std::span<Life> lives, double duration, Recording recording) const {
+template <class Move>
+void Evaluation::simulate(std::span<Life> lives, double duration, const Move& move) const {
   const BusyClock::Span span(simulate_);
   std::vector<Task> tasks;
   std::vector<Life*> alive;
@@ -246,13 +277,13 @@ void Evaluation::simulate(std::span<Life> lives, double duration, Recording reco
     task.steps = pace.steps;
     task.preparation = std::move(life.living.preparation);
   }
-  simulator_.run(tasks, recording);
+  move(std::span(tasks), std::span<Life* const>(alive));
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     Life& life = *alive[i];
     life.result.spring_evaluations += tasks[i].spring_evaluations;
-    life.living.stress = std::move(tasks[i].stress);
+    static_cast<SpringRecords&>(life.living) = std::move(static_cast<SpringRecords&>(tasks[i]));
     life.living.preparation = std::move(tasks[i].preparation);
-    if (recording.work) life.snapshots.back().work += tasks[i].work;
+    if (!life.snapshots.empty()) life.snapshots.back().work += tasks[i].work;
     if (tasks[i].status != Status::ok) end(life, tasks[i].status, std::move(tasks[i].reason), tasks[i].ended_at);
   }
 }
@@ -267,7 +298,9 @@ void Evaluation::measure(std::span<Life> lives, const Progress& progress) const 
   double now = 0;
   for (Life& life : lives) life.snapshots.assign(1, {});
   for (std::size_t mark = 0; mark < marks_.size(); ++mark) {
-    if (marks_[mark] > now) simulate(lives, marks_[mark] - now, {.work = needs_work(mark)});
+    const Recording recording{.work = needs_work(mark)};
+    const auto move = [&](std::span<Task> tasks, std::span<Life* const>) { simulator_.run(tasks, recording); };
+    if (marks_[mark] > now) simulate(lives, marks_[mark] - now, move);
     now = marks_[mark];
     // the snapshot in hand has gathered the work up to here; the next goes on from it
     for (Life& life : lives) {

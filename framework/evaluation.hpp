@@ -90,14 +90,20 @@ class Evaluation {
  private:
   std::vector<Result> evaluate_cohort(std::span<const Newborn> newborns, const Progress& progress) const;
   void set_windows();
-  void simulate(std::span<Life> lives, double duration, Recording recording) const;
+  /// Lets the bodies that are alive do something for `duration` s. `move` is to run the tasks of these lives.
+  template <class Move>
+  void simulate(std::span<Life> lives, double duration, const Move& move) const;
+  /// The simulation of a cycle of development, with what its operators ask for recorded as the probe does it.
+  void simulate_cycle(std::span<Life> lives, int cycle) const;
   /// The box around the body where it is when life goes on, cut off at the floor.
   Box bounds(const LivingBody& living) const;
   /// Does what changes a body; the energy that it brings is no fault of the simulation, so the guard is to allow it.
   template <class Action>
   void allow_energy(Life& life, const Action& action) const;
   /// What an operator sees after a cycle.
-  Moment moment(const Life& life, int cycle, const Schedule& schedule) const;
+  Moment moment(const Life& life, int cycle, const Schedule& schedule, const SpringRequest& request) const;
+  /// Deals out what is known of the springs anew, all of one spring together.
+  void shuffle_records(Life& life, int cycle) const;
   void apply_operators(Life& life, int cycle) const;
   void apply_operator(Life& life, int cycle, std::size_t index) const;
   /// Makes and records edits of an operator, or of none.

@@ -327,11 +327,34 @@ class Composer {
       t.flag(development.reset, "reset", "Whether the body goes back to its rest places after every cycle.");
       check_duration(t, "cycle_time", development.cycle_time);
       read_control(t);
+      read_probe(t);
       read_array(t, "operator", [&](TomlReader& entry) {
         const Schedule schedule = read_schedule(entry);
         development.operators.push_back({make<Devo>(entry), schedule});
+        check_request(entry, ask(entry, [&] { return development.operators.back().op->observes(); }));
       });
     });
+  }
+
+  void read_probe(TomlReader& t) {
+    Development& development = out_.development;
+    std::string probe = "exact";
+    t.choice(probe, "probe", {"exact", "skip-shift"},
+             "How the springs' stress is known: as exact means, or by the paper's tallies.");
+    if (probe == "skip-shift") development.probe = Probe::skip_shift;
+    t.integer(development.skip, "skip", {1, 1e9}, "Steps from one tally of skip-shift to the next.");
+    if (development.probe != Probe::skip_shift || !out_.step.fixed()) return;
+    const double steps = std::round(development.cycle_time / *out_.step.fixed());
+    if (static_cast<double>(development.skip) > steps)
+      t.fail("skip", "a cycle of " + to_text(steps) + " steps has no tally; expected at most as many");
+  }
+
+  /// Refuses what tallies do not tell.
+  void check_request(const TomlReader& t, const SpringRequest& request) const {
+    if (out_.development.probe == Probe::skip_shift && (request.peak_force || request.muscle_work || request.tension))
+      t.fail("name",
+             "this operator asks for more of the springs than the tallies of development.probe = \"skip-shift\" "
+             "tell; set development.probe = \"exact\", or let it go by the mean force");
   }
 
   void read_control(TomlReader& t) {
@@ -403,6 +426,20 @@ Experiment compose(toml::table root, const ExperimentSource& source) {
 }
 
 }  // namespace
+
+Recording Development::recording(std::int64_t cycle) const {
+  Recording all;
+  if (control == Control::no_change) return all;
+  for (const Scheduled& scheduled : operators) {
+    if (!scheduled.schedule.contains(cycle)) continue;
+    const SpringRequest request = scheduled.op->observes();
+    all.stress |= request.stress;
+    all.peak_force |= request.peak_force;
+    all.muscle_work |= request.muscle_work;
+    all.tension |= request.tension;
+  }
+  return all;
+}
 
 void blame_operator(const Experiment& experiment, std::string_view kind, std::size_t index, const std::string& where,
                     const std::string& what) {

@@ -47,13 +47,21 @@ struct Scheduled {
 /// What an experiment on development is compared with: all else stays the same, the simulated time included.
 enum class Control { off, no_change, random_places, shuffled_stress };
 
+/// How stress is known: by every spring's exact mean force, or by the paper's tallies (skip_shift.hpp).
+enum class Probe { exact, skip_shift };
+
 /// A life's development: `cycles` times {simulate `cycle_time`, apply the operators} (paper, section IV-D).
 struct Development {
   std::int64_t cycles = 0;
   double cycle_time = 1;  ///< s
   bool reset = false;     ///< back to the rest places after every cycle
   Control control = Control::off;
+  Probe probe = Probe::exact;
+  std::int64_t skip = 100;  ///< steps from one tally to the next; paper, section IV-D1
   std::vector<Scheduled> operators;
+
+  /// What has to be recorded in a cycle for the operators whose turn it is.
+  Recording recording(std::int64_t cycle) const;
 };
 
 /// A load that every body carries from birth on. What masses that go carried comes on others.

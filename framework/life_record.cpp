@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 
@@ -178,7 +179,7 @@ Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const Mome
   change.edits.removed_springs = ascending(edits.removed_springs);
   // an index out of range is refused where the edits are applied
   const auto stress_of = [&](std::uint32_t spring) {
-    return spring < now.stress.size() ? static_cast<float>(now.stress[spring]) : 0.0f;
+    return spring < now.stress.size() ? static_cast<float>(now.stress[spring]) : std::nanf("");
   };
   for (const std::uint32_t spring : change.edits.removed_springs) change.removed_stress.push_back(stress_of(spring));
   for (const ChangedSpring& spring : edits.changed_springs) change.changed_stress.push_back(stress_of(spring.spring));

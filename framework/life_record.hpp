@@ -14,7 +14,8 @@ struct Change {
   std::uint32_t cycle = 0;          ///< from 1
   std::optional<std::uint32_t> op;  ///< place in Development::operators; none: of what was torn off
   Edits edits;                      ///< what goes in ascending order and once; every new spring has its rest length
-  std::vector<float> removed_stress, changed_stress;  ///< of the springs that `edits` names, as the operator saw it, N
+  /// Of the springs that `edits` names, as the operator saw it, N; NaN where it did not ask.
+  std::vector<float> removed_stress, changed_stress;
 };
 
 /// The change that `edits`, wanted by operator `op`, are about to make. Rest lengths are still as the operator left

@@ -1,6 +1,7 @@
 // The simulation core's interface: batches of bodies in, moved bodies out.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -25,8 +26,32 @@ struct Stepping {
 
 /// What is recorded beside the motion; what is not asked for costs nothing.
 struct Recording {
-  bool stress = false;  ///< every spring's mean absolute force
-  bool work = false;    ///< the work that the muscles do
+  bool stress = false;       ///< SpringRecords::stress
+  bool work = false;         ///< Task::work
+  bool peak_force = false;   ///< SpringRecords::peak_force
+  bool muscle_work = false;  ///< SpringRecords::muscle_work
+  bool tension = false;      ///< SpringRecords::tension
+
+  bool of_springs() const { return stress || peak_force || muscle_work || tension; }
+};
+
+/// What was recorded of every spring of a body over a run; a list is empty where it was not asked for.
+struct SpringRecords {
+  std::vector<double> stress;       ///< mean absolute force, N
+  std::vector<double> peak_force;   ///< largest absolute force, N
+  std::vector<double> muscle_work;  ///< positive work of the spring's muscle on the body, J
+  std::vector<double> tension;      ///< mean force, N: positive where the spring pulled, negative where it pushed
+
+  static constexpr std::array lists{&SpringRecords::stress, &SpringRecords::peak_force, &SpringRecords::muscle_work,
+                                    &SpringRecords::tension};
+
+  /// Zeros for `springs` springs in what `recording` asks for.
+  void clear(Recording recording, std::size_t springs) {
+    stress.assign(recording.stress ? springs : 0, 0.0);
+    peak_force.assign(recording.peak_force ? springs : 0, 0.0);
+    muscle_work.assign(recording.muscle_work ? springs : 0, 0.0);
+    tension.assign(recording.tension ? springs : 0, 0.0);
+  }
 };
 
 /// What a simulator has worked out about a body's masses and springs and need not work out again while they stay.
@@ -36,8 +61,8 @@ class Preparation {
 };
 
 /// One body's share of a batch: `steps` time steps of `dt`, the i-th of them at State::time + i dt. `body` to `steps`
-/// are given; the rest is the answer.
-struct Task {
+/// are given; the rest, and what was recorded of the springs, is the answer. The records are empty after a divergence.
+struct Task : SpringRecords {
   const Body* body = nullptr;
   State* state = nullptr;  ///< moved in place
   double dt = 0.0005;      ///< time step, s; paper, Table II
@@ -48,7 +73,6 @@ struct Task {
   Status status = Status::ok;            ///< ok or diverged; a task that does not come in as ok is left alone
   double ended_at = 0;                   ///< time of a divergence since birth, s; found to within 100 steps
   std::string reason;                    ///< of a divergence
-  std::vector<double> stress;            ///< per spring, N; empty unless recorded, and after a divergence
   double work = 0;                       ///< positive work of the muscles on the body, J; 0 unless recorded
   std::uint64_t spring_evaluations = 0;  ///< springs times steps, however often a method's step looks at a spring
 };

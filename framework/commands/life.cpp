@@ -1,4 +1,5 @@
 // evodevo life: what development did to a robot, edit by edit.
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <map>
@@ -13,6 +14,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 namespace po = boost::program_options;
+
+/// Nothing where the operator did not ask for stress.
+std::optional<float> seen(float stress) { return std::isnan(stress) ? std::nullopt : std::optional(stress); }
 
 /// What happened to one mass or spring.
 struct Event {
@@ -45,7 +49,7 @@ class Chronicle {
     for (std::size_t i = 0; i < edits.changed_springs.size(); ++i) {
       const ChangedSpring& spring = edits.changed_springs[i];
       Event& event = add_event(change, "changed", ends(spring.spring));
-      event.stress = change.changed_stress[i];
+      event.stress = seen(change.changed_stress[i]);
       event.rest_length = spring.rest_length;
       event.material = spring.material;
     }
@@ -81,7 +85,7 @@ class Chronicle {
     for (std::uint32_t s = 0; s < body_.springs.size(); ++s)
       if (goes(body_.springs[s].a) || goes(body_.springs[s].b)) gone[s] = std::nullopt;
     for (std::size_t i = 0; i < edits.removed_springs.size(); ++i)
-      gone[edits.removed_springs[i]] = change.removed_stress[i];
+      gone[edits.removed_springs[i]] = seen(change.removed_stress[i]);
     for (const std::uint32_t mass : edits.removed_masses) add_event(change, "gone", {number_.at(mass)});
     for (const auto& [spring, stress] : gone) add_event(change, "gone", ends(spring)).stress = stress;
   }

@@ -117,7 +117,7 @@ void bodies_stay_sound(const AvailableOperator& subject, std::uint64_t seed) {
     for (life.cycle = 1; life.cycle <= 10; ++life.cycle) {
       Edits edits;
       Rng rng = stream(seed, input, static_cast<std::uint32_t>(life.cycle));
-      const Moment now = life.now();
+      const Moment now = life.now(op->observes());
       op->develop(now, edits, rng);
       edited = edited || !numbers_of(edits).empty();
       for (const NewMass& mass : edits.new_masses) {

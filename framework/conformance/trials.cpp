@@ -42,7 +42,9 @@ Numbers numbers_of(const World& world) {
 }
 
 Numbers numbers_of(const SampleLife& life) {
-  Numbers numbers(life.living.stress);
+  Numbers numbers;
+  for (const auto list : SpringRecords::lists)
+    numbers.insert(numbers.end(), (life.living.*list).begin(), (life.living.*list).end());
   append(numbers, life.living.body);
   for (const Vec3& place : life.living.state.position) append(numbers, place);
   for (const Vec3& velocity : life.living.state.velocity) append(numbers, velocity);
@@ -97,7 +99,7 @@ Numbers try_devo(const Devo& op, std::uint64_t seed, std::uint32_t input) {
   const SampleLife life = sample_life(seed, input);
   Edits edits;
   Rng rng = stream(seed, input, 1);
-  op.develop(life.now(), edits, rng);
+  op.develop(life.now(op.observes()), edits, rng);
   require_untouched("the body, its state or its genes", numbers_of(sample_life(seed, input)), numbers_of(life));
   return numbers_of(edits);
 }
@@ -190,20 +192,22 @@ Numbers numbers_of(const Edits& edits) {
   return numbers;
 }
 
-Moment SampleLife::now() const {
-  return {.body = living.body,
-          .state = living.state,
-          .stress = living.stress,
-          .cycle = cycle,
-          .cycles = 20,
-          .turn = cycle,
-          .turns = 20,
-          .time = 0.5 * cycle,
-          .bounds = bounds,
-          .mass = 0.2,
-          .resets = resets,
-          .genome = genome,
-          .layout = layout};
+Moment SampleLife::now(const SpringRequest& request) const {
+  Moment now{.body = living.body,
+             .state = living.state,
+             .stress = {},
+             .cycle = cycle,
+             .cycles = 20,
+             .turn = cycle,
+             .turns = 20,
+             .time = 0.5 * cycle,
+             .bounds = bounds,
+             .mass = 0.2,
+             .resets = resets,
+             .genome = genome,
+             .layout = layout};
+  show_records(living, request, now);
+  return now;
 }
 
 SampleLife sample_life(std::uint64_t seed, std::uint32_t input) {
@@ -232,7 +236,11 @@ SampleLife sample_life(std::uint64_t seed, std::uint32_t input) {
     const Material stiff{1000.0 + rng.below(3), 0.1, 1, 0};
     const auto growth = static_cast<float>(rng.uniform(0.8, 1.25));
     body.springs.push_back({a, b, length, body.material_index(stiff), growth});
-    life.living.stress.push_back(rng.uniform(0, 100));
+    const double stress = rng.uniform(0, 100);
+    life.living.stress.push_back(stress);
+    life.living.peak_force.push_back(stress * rng.uniform(1, 3));
+    life.living.muscle_work.push_back(rng.uniform(0, 5));
+    life.living.tension.push_back(stress * rng.uniform(-1, 1));
   }
   life.bounds = bounding_box(life.living.state.position);
   return life;

@@ -36,7 +36,8 @@ struct SampleLife {
   int cycle = 1;
   bool resets = false;
 
-  Moment now() const;
+  /// `request`: what the operator asks for; it sees nothing else of the springs.
+  Moment now(const SpringRequest& request) const;
 };
 /// Some are of masses with materials, some of springs with theirs; some are as good as empty.
 SampleLife sample_life(std::uint64_t seed, std::uint32_t input);

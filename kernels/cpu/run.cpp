@@ -80,8 +80,10 @@ class MovingBody {
         places_(place_stride * layout_.padded_masses()),
         mass_scratch_(integrator.mass_arrays * layout_.padded_masses()),
         slot_scratch_(integrator.slot_arrays * layout_.slots()),
-        tension_sum_(sums.tension ? layout_.slots() : 0),
-        power_sum_(sums.power ? layout_.slots() : 0) {
+        force_sum_(sums.force ? layout_.slots() : 0),
+        power_sum_(sums.power ? layout_.slots() : 0),
+        peak_(sums.peak ? layout_.slots() : 0),
+        tension_sum_(sums.tension ? layout_.slots() : 0) {
     if (integrator.coloured) coloured_ = ColouredSprings<T>(body, layout_);
     for (auto* arrays : {&position_, &velocity_, &force_})
       for (Array<T>& array : *arrays) array = Array<T>(layout_.padded_masses());
@@ -130,18 +132,25 @@ class MovingBody {
             .mass_scratch = mass_scratch_.data(),
             .slot_scratch = slot_scratch_.data(),
             .slots = layout_.slots(),
-            .tension_sum = tension_sum_.data(),
-            .power_sum = power_sum_.data()};
+            .force_sum = data_of(force_sum_),
+            .power_sum = data_of(power_sum_),
+            .peak = data_of(peak_),
+            .tension_sum = data_of(tension_sum_)};
   }
 
-  /// Adds the slots' sums to the springs' and starts them again from zero; in between, float32 stays exact enough.
-  void collect(std::vector<double>& tension, double& energy, double dt) {
+  /// Adds the slots' sums to the task's and starts them again from zero; in between, float32 stays exact enough.
+  void collect(Task& task) {
     for (std::size_t i = 0; i < layout_.springs; ++i) {
-      if (tension_sum_.size() > 0) tension[i] += tension_sum_[layout_.slot_of[i]];
-      if (power_sum_.size() > 0) energy += dt * power_sum_[layout_.slot_of[i]];
+      const std::uint32_t slot = layout_.slot_of[i];
+      if (force_sum_.size() > 0) task.stress[i] += force_sum_[slot];
+      if (power_sum_.size() > 0) task.work += task.dt * power_sum_[slot];
+      if (!task.muscle_work.empty()) task.muscle_work[i] += task.dt * power_sum_[slot];
+      if (peak_.size() > 0) task.peak_force[i] = peak_[slot];
+      if (tension_sum_.size() > 0) task.tension[i] += tension_sum_[slot];
     }
-    tension_sum_.clear();
+    force_sum_.clear();
     power_sum_.clear();
+    tension_sum_.clear();
   }
 
   void write(State& state) const {
@@ -152,6 +161,8 @@ class MovingBody {
   }
 
  private:
+  static T* data_of(Array<T>& array) { return array.size() > 0 ? array.data() : nullptr; }
+
   static void put(Array<T> (&to)[3], std::size_t i, Vec3 v) {
     to[0][i] = static_cast<T>(v.x);
     to[1][i] = static_cast<T>(v.y);
@@ -160,7 +171,8 @@ class MovingBody {
 
   Layout<T> layout_;
   ColouredSprings<T> coloured_;
-  Array<T> mass_, inverse_mass_, places_, mass_scratch_, slot_scratch_, floor_force_, tension_sum_, power_sum_;
+  Array<T> mass_, inverse_mass_, places_, mass_scratch_, slot_scratch_, floor_force_;
+  Array<T> force_sum_, power_sum_, peak_, tension_sum_;
   Array<T> position_[3], velocity_[3], force_[3];
 };
 
@@ -170,14 +182,17 @@ template <class T>
 void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels<T>& kernels, Recording recording) {
   const Body& body = *task.body;
   State& state = *task.state;
-  const Sums sums{recording.stress, recording.work};
+  const Sums sums{.force = recording.stress,
+                  .power = recording.work || recording.muscle_work,
+                  .peak = recording.peak_force,
+                  .tension = recording.tension};
   const World<T> world = world_of<T>(scene, task.dt);
   const EnergyGuard guard(body, state, scene, stepping.precision, task.dt);
   const Integrator<T>& integrator = kernels.integrator[static_cast<std::size_t>(stepping.method)];
   const std::size_t rows = integrator.rows_per_step;
   MovingBody<T> moving(body, state, kernels.lanes, integrator, sums);
   ActuationTables<T> tables(body, EnergyGuard::interval * rows + 1, kernels.table_size, sums);
-  task.stress.assign(recording.stress ? body.springs.size() : 0, 0.0);
+  task.clear(recording, body.springs.size());
   task.work = 0;
   task.spring_evaluations = 0;
 
@@ -186,7 +201,7 @@ void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels
     const std::size_t now = std::min<std::uint64_t>(task.steps - done, EnergyGuard::interval);
     kernels.actuate(tables.view(), start, done * rows, now * rows + 1, task.dt / static_cast<double>(rows));
     integrator.advance(moving.view(), world, tables.view(), now, sums);
-    moving.collect(task.stress, task.work, task.dt);
+    moving.collect(task);
     done += now;
     state.time = start + static_cast<double>(done) * task.dt;
     task.spring_evaluations += now * body.springs.size();
@@ -195,12 +210,13 @@ void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels
     if (!task.reason.empty()) {
       task.status = Status::diverged;
       task.ended_at = state.time;
-      task.stress.clear();
-      task.work = 0;
+      task.clear({}, 0);
     }
   }
   if (task.steps > 0) moving.write(state);  // else not even round it
-  for (double& stress : task.stress) stress /= static_cast<double>(std::max<std::uint64_t>(task.steps, 1));
+  if (!recording.work || task.status != Status::ok) task.work = 0;
+  for (auto* means : {&task.stress, &task.tension})
+    for (double& mean : *means) mean /= static_cast<double>(std::max<std::uint64_t>(task.steps, 1));
 }
 
 template void run(Task&, const Scene&, const Stepping&, const Kernels<float>&, Recording);

@@ -13,11 +13,26 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
+/// Sums that are known when the code is compiled: those that most runs ask for, whose loops hold nothing else.
+template <bool force_on, bool power_on>
+struct UsualSums {
+  template <class T>
+  explicit UsualSums(const cpu::Motion<T>&) {}
+  static constexpr bool force = force_on, power = power_on, peak = false, tension = false;
+};
+
+/// Sums that a motion has room for.
+struct AnySums : cpu::Sums {
+  template <class T>
+  explicit AnySums(const cpu::Motion<T>& m)
+      : Sums{m.force_sum != nullptr, m.power_sum != nullptr, m.peak != nullptr, m.tension_sum != nullptr} {}
+};
+
 /// Sets the motion's forces on a group's masses to the sums of the spring forces, and adds to the sums that are on.
-/// `lengths` and `rates` are rows of the tables; without power_on, `rates` is not read.
-template <bool tension_on, bool power_on, class Table, class T>
-HWY_INLINE void set_spring_forces(const cpu::Motion<T>& motion, std::size_t group, const Table& lengths,
-                                  const Table& rates) {
+/// `lengths` and `rates` are rows of the tables; without power, `rates` is not read.
+template <class Sums, class Table, class T>
+HWY_INLINE void set_spring_forces(const cpu::Motion<T>& motion, const Sums& sums, std::size_t group,
+                                  const Table& lengths, const Table& rates) {
   using D = hn::ScalableTag<T>;
   using V = hn::Vec<D>;
   const D d;
@@ -39,15 +54,22 @@ HWY_INLINE void set_spring_forces(const cpu::Motion<T>& motion, std::size_t grou
     force.x = multiply_add(factor, s.d.x, force.x);
     force.y = multiply_add(factor, s.d.y, force.y);
     force.z = multiply_add(factor, s.d.z, force.z);
-    if constexpr (tension_on) {
-      T* sum = motion.tension_sum + slot;
-      hn::Store(hn::Load(d, sum) + hn::Abs(spring_tension(s, distance, factor)), d, sum);
+    const V tension = spring_tension(s, distance, factor);
+    if (sums.force) {
+      T* sum = motion.force_sum + slot;
+      hn::Store(hn::Load(d, sum) + hn::Abs(tension), d, sum);
     }
-    if constexpr (power_on) {
+    if (sums.power) {
       T* sum = motion.power_sum + slot;
-      hn::Store(
-          hn::Load(d, sum) + actuation_power(spring_tension(s, distance, factor), rest_length * rates.at(material)), d,
-          sum);
+      hn::Store(hn::Load(d, sum) + actuation_power(tension, rest_length * rates.at(material)), d, sum);
+    }
+    if (sums.peak) {
+      T* peak = motion.peak + slot;
+      hn::Store(hn::Max(hn::Load(d, peak), hn::Abs(tension)), d, peak);
+    }
+    if (sums.tension) {
+      T* sum = motion.tension_sum + slot;
+      hn::Store(hn::Load(d, sum) + tension, d, sum);
     }
   }
   hn::Store(force.x, d, motion.fx + at);

@@ -33,8 +33,10 @@ struct World {
 
 /// What is added up for each slot during the steps.
 struct Sums {
-  bool tension;  ///< |force|, for stress
-  bool power;    ///< power of actuation
+  bool force = false;    ///< |force|, for stress
+  bool power = false;    ///< power of actuation
+  bool peak = false;     ///< the largest |force|
+  bool tension = false;  ///< force, positive where the spring pulls
 };
 
 /// ColouredSprings, as arrays.
@@ -69,8 +71,11 @@ struct Motion {
   T* slot_scratch;        ///< Integrator::slot_arrays arrays, one number for each slot
   std::size_t slots;
 
-  T* tension_sum;  ///< [slots] N; only where Sums asks for it
-  T* power_sum;    ///< [slots] W; only where Sums asks for it
+  // [slots]; null where Sums does not ask for them
+  T* force_sum;    ///< N
+  T* power_sum;    ///< W
+  T* peak;         ///< N
+  T* tension_sum;  ///< N
 };
 
 /// Materials in arrays, padded to `padded`, and what they do at each of some times.

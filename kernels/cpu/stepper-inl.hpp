@@ -16,21 +16,22 @@ namespace evodevo::HWY_NAMESPACE {
 template <class T>
 using SpringPass = void (*)(const cpu::Motion<T>&, const cpu::Actuation<T>&, std::size_t row);
 
-template <class Table, bool tension_on, bool power_on, class T>
+template <class Table, class Sums, class T>
 void set_spring_forces(const cpu::Motion<T>& motion, const cpu::Actuation<T>& actuation, std::size_t row) {
+  const Sums sums(motion);
   const T* relative_length = actuation.relative_length + row * actuation.padded;
   const Table lengths(relative_length);
-  const Table rates(power_on ? actuation.relative_rate + row * actuation.padded : relative_length);
-  for (std::size_t group = 0; group < motion.groups; ++group)
-    set_spring_forces<tension_on, power_on>(motion, group, lengths, rates);
+  const Table rates(sums.power ? actuation.relative_rate + row * actuation.padded : relative_length);
+  for (std::size_t group = 0; group < motion.groups; ++group) set_spring_forces(motion, sums, group, lengths, rates);
 }
 
 template <class Table, class T>
 SpringPass<T> spring_pass_with(cpu::Sums sums) {
-  if (sums.tension && sums.power) return set_spring_forces<Table, true, true, T>;
-  if (sums.tension) return set_spring_forces<Table, true, false, T>;
-  if (sums.power) return set_spring_forces<Table, false, true, T>;
-  return set_spring_forces<Table, false, false, T>;
+  if (sums.peak || sums.tension) return set_spring_forces<Table, AnySums, T>;
+  if (sums.force && sums.power) return set_spring_forces<Table, UsualSums<true, true>, T>;
+  if (sums.force) return set_spring_forces<Table, UsualSums<true, false>, T>;
+  if (sums.power) return set_spring_forces<Table, UsualSums<false, true>, T>;
+  return set_spring_forces<Table, UsualSums<false, false>, T>;
 }
 
 /// The pass that adds to `sums`.
@@ -51,6 +52,9 @@ struct Stepper {
   std::size_t masses;           ///< padded to whole groups
   SpringPass<T> springs;        ///< adds to no sum
   SpringPass<T> noted_springs;  ///< adds to the sums that are on
+
+  /// Whether any sum is on.
+  bool notes() const { return sums.force || sums.power || sums.peak || sums.tension; }
 
   /// Array `index` of the method's own.
   T* scratch(std::size_t index) const { return motion.mass_scratch + index * masses; }
@@ -74,7 +78,7 @@ void advance(const cpu::Motion<T>& motion, const cpu::World<T>& world, const cpu
                            actuation,
                            sums,
                            motion.groups * hn::Lanes(hn::ScalableTag<T>()),
-                           spring_pass(actuation, {false, false}),
+                           spring_pass(actuation, {}),
                            spring_pass(actuation, sums)};
   M::begin(stepper);
   for (std::size_t step = 0; step < steps; ++step) M::step(stepper, step * M::rows_per_step);

@@ -20,7 +20,7 @@ inline void read_answer(const Answer& answer, const EnergyGuard& guard, double l
   task.status = Status::diverged;
   task.ended_at = task.state->time;
   task.work = 0;
-  task.stress.clear();
+  task.clear({}, 0);
   task.reason = guard.verdict(answer.kinetic, answer.elastic, answer.moment, answer.finite != 0);
   if (task.reason.empty()) {
     char text[96];

@@ -47,12 +47,17 @@ __device__ __forceinline__ void advance_to_check(const Body& stored, std::uint64
   if (body.on_chip) for_each_mass(body, [&](unsigned mass) { store(stored, mass, moving(body, mass)); });
 }
 
-/// Adds a spring's tension (N) to the sums of stress, at `joint`, and of power, at `mass`.
+/// Adds a spring's tension (N) to what is recorded of it, at `joint`, and to the sum of power, at `mass`.
 __device__ __forceinline__ void note(const Body& body, unsigned row, unsigned joint, unsigned mass, unsigned entry,
                                      Number rest_length, Number tension) {
   if constexpr (stress) body.stress[joint] += fabs(tension);
-  if constexpr (work)
-    body.power[mass] += physics::actuation_power(tension, body.rates[row * body.entries + entry] * rest_length);
+  if constexpr (work) {
+    const Number watts = physics::actuation_power(tension, body.rates[row * body.entries + entry] * rest_length);
+    body.power[mass] += watts;
+    if constexpr (muscle_work) body.powers[joint] += watts;
+  }
+  if constexpr (peak_force) body.peak[joint] = fmax(body.peak[joint], fabs(tension));
+  if constexpr (mean_tension) body.tensions[joint] += tension;
 }
 
 }  // namespace evodevo::cuda

@@ -84,8 +84,8 @@ class DeviceSimulator final : public CudaSimulator {
                         cuda::features_of(scene_, stepping_, recording, has_muscles(live)), device_.shared_bytes};
     std::vector<cuda::Plan<T>> plans = plan(live, run);
     const Lanes::Loan lane(lanes_);
-    // after a run with stress the host has work to do; meanwhile runs without it fill the device
-    const std::vector<cuda::Stream>& streams = recording.stress ? lane->urgent : lane->patient;
+    // after a run with records of springs the host has work to do; meanwhile runs without it fill the device
+    const std::vector<cuda::Stream>& streams = recording.of_springs() ? lane->urgent : lane->patient;
     double seconds = 0;
     std::size_t portions = 0;
     for (std::span<cuda::Plan<T>> left = plans; !left.empty(); ++portions) {
@@ -122,14 +122,13 @@ class DeviceSimulator final : public CudaSimulator {
     std::vector<Task*> live;
     for (Task& task : tasks) {
       if (task.status != Status::ok) continue;
-      task.stress.clear();
+      task.clear(recording, task.body->springs.size());
       task.work = 0;
       task.spring_evaluations = 0;
       if (task.steps > 0 && !task.body->masses.empty()) {
         live.push_back(&task);
         continue;
       }
-      if (recording.stress) task.stress.assign(task.body->springs.size(), 0.0);
       task.state->time += static_cast<double>(task.steps) * task.dt;
     }
     return live;

@@ -40,7 +40,10 @@ Features features_of(const Scene& scene, const Stepping& stepping, Recording rec
           .drag = scene.drag.has_value(),
           .actuation = actuation,
           .stress = recording.stress,
-          .work = recording.work};
+          .work = recording.work || recording.muscle_work,
+          .peak_force = recording.peak_force,
+          .muscle_work = recording.muscle_work,
+          .tension = recording.tension};
 }
 
 std::vector<std::string> definitions(const Features& features) {
@@ -65,7 +68,10 @@ std::vector<std::string> definitions(const Features& features) {
           flag("DAMPING", features.damping),
           flag("DRAG", features.drag),
           flag("STRESS", features.stress),
-          flag("WORK", features.work)};
+          flag("WORK", features.work),
+          flag("PEAK_FORCE", features.peak_force),
+          flag("MUSCLE_WORK", features.muscle_work),
+          flag("TENSION", features.tension)};
 }
 
 std::vector<std::string> definitions(const Features& features, const ResidentForm& form) {

@@ -38,6 +38,7 @@ struct Features {
   bool float64 = false;
   bool gravity = false, floor = false, friction = false, damping = false, drag = false;
   bool actuation = false, stress = false, work = false;
+  bool peak_force = false, muscle_work = false, tension = false;  ///< muscle_work: only with work
 
   friend auto operator<=>(const Features&, const Features&) = default;
 };

@@ -88,6 +88,10 @@ struct ResidentBody {
   Motion<T> motion;                  ///< [places]
   double* stress;                    ///< [slots] sum of |force|, N
   T* recent_stress;                  ///< [slots] of it what is not yet in `stress`, units; where chunked
+  // [slots] where they are recorded, by reductions that nobody waits for; a slot has one writer
+  Integer* peak;     ///< bits of the largest |force|, units: those of numbers that are not negative rise with them
+  double* powers;    ///< sum of power, units m/s
+  double* tensions;  ///< sum of force, units
   Answer* answer;
   double start_time;                             ///< since birth, s
   std::uint64_t steps;                           ///< to make
@@ -143,6 +147,10 @@ struct StreamedBody {
   T* rates;                              ///< [rows][entries] rate of L/L0, 1/s; where work is recorded
   double* stress;                        ///< [rows][lanes] sum of |force|, N, at owned joints
   double* power;                         ///< [masses] sum of power, W; where work is recorded
+  // at owned joints, where they are recorded
+  T* peak;           ///< [rows][lanes] largest |force|, N
+  double* powers;    ///< [rows][lanes] sum of power, W
+  double* tensions;  ///< [rows][lanes] sum of force, N
   Answer* answer;
   double start_time;    ///< since birth, s
   std::uint64_t steps;  ///< to make

@@ -16,6 +16,9 @@ constexpr bool damping = EVODEVO_DAMPING;
 constexpr bool drag = EVODEVO_DRAG;
 constexpr bool stress = EVODEVO_STRESS;
 constexpr bool work = EVODEVO_WORK;
+constexpr bool peak_force = EVODEVO_PEAK_FORCE;
+constexpr bool muscle_work = EVODEVO_MUSCLE_WORK;
+constexpr bool mean_tension = EVODEVO_TENSION;
 
 constexpr unsigned rows_per_step = EVODEVO_ROWS_PER_STEP;      // of the tables of lengths
 constexpr unsigned end_rows = EVODEVO_END_ROWS;                // 1 where a step reads the row at its end, else 0

@@ -1,6 +1,7 @@
 #include "cuda/resident.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace evodevo::cuda {
@@ -147,6 +148,9 @@ void Resident<T>::reserve() {
   answer_ = state.add<Answer>(1);
   stress_ = sums.add<double>(features_.stress ? arrangement().slots.size() : 0);
   recent_stress_ = sums.add<T>(features_.stress && form().chunked ? arrangement().slots.size() : 0);
+  peak_ = sums.add<typename FixedPoint<T>::Integer>(features_.peak_force ? arrangement().slots.size() : 0);
+  powers_ = sums.add<double>(features_.muscle_work ? arrangement().slots.size() : 0);
+  tensions_ = sums.add<double>(features_.tension ? arrangement().slots.size() : 0);
   sizes_ = {input.size(), state.size(), sums.size()};
 }
 
@@ -223,6 +227,9 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
                      motion_[3].in(device.state), motion_[4].in(device.state), motion_[5].in(device.state)},
           .stress = stress_.in(device.sums),
           .recent_stress = recent_stress_.in(device.sums),
+          .peak = peak_.in(device.sums),
+          .powers = powers_.in(device.sums),
+          .tensions = tensions_.in(device.sums),
           .answer = answer_.in(device.state),
           .start_time = task_->state->time,
           .steps = task_->steps,
@@ -251,10 +258,21 @@ void Resident<T>::unpack(const Regions& host, const EnergyGuard& guard, Recordin
     task.state->position[i] = {at(0, place), at(1, place), at(2, place)};
     task.state->velocity[i] = {at(3, place), at(4, place), at(5, place)};
   }
-  if (!recording.stress || task.status != Status::ok) return;
-  task.stress.resize(task.body->springs.size());
-  for (std::size_t i = 0; i < task.stress.size(); ++i)
-    task.stress[i] = stress_.in(host.sums)[arrangement().slot_of[i]] / static_cast<double>(task.steps);
+  if (task.status == Status::ok) unpack_springs(host, task);
+}
+
+/// Reads what was recorded of the springs; the task's lists have room for it.
+template <class T>
+void Resident<T>::unpack_springs(const Regions& host, Task& task) const {
+  const auto steps = static_cast<double>(task.steps);
+  const auto read = [&](std::vector<double>& to, const auto& number_at) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = number_at(arrangement().slot_of[i]);
+  };
+  read(task.stress, [&](std::size_t slot) { return stress_.in(host.sums)[slot] / steps; });
+  read(task.peak_force,
+       [&](std::size_t slot) { return range_.resolution * std::bit_cast<T>(peak_.in(host.sums)[slot]); });
+  read(task.muscle_work, [&](std::size_t slot) { return range_.resolution * task.dt * powers_.in(host.sums)[slot]; });
+  read(task.tension, [&](std::size_t slot) { return range_.resolution * tensions_.in(host.sums)[slot] / steps; });
 }
 
 template class Resident<float>;

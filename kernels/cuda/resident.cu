@@ -120,8 +120,9 @@ struct Lengths {
   bool noted = true;  // whether its forces count for stress and work
 };
 
-/// Adds one spring's force to both of its ends; returns its size, units.
-__device__ __forceinline__ Number add_force(const Spring& spring, Owner& owner, const Lengths& lengths, Sums& sums) {
+/// Adds the force of the spring at `slot` to both of its ends; returns its size, units.
+__device__ __forceinline__ Number add_force(const Body& body, unsigned slot, const Spring& spring, Owner& owner,
+                                            const Lengths& lengths, Sums& sums) {
   const auto s = physics::separation(owner.place, spring.place);
   const Number inverse = physics::inverse_length(s);
   const Number factor =
@@ -130,8 +131,15 @@ __device__ __forceinline__ Number add_force(const Spring& spring, Owner& owner, 
   sums.largest = fmax(sums.largest, fabs(tension));
   if constexpr (work) {
     const Number rate = on_chip<Number>(lengths.rates + spring.table_entry / 2) * spring.rest_length;
-    if (lengths.noted) sums.power += physics::actuation_power(tension, rate);
+    const Number watts = physics::actuation_power(tension, rate);
+    if (lengths.noted) sums.power += watts;
+    if constexpr (muscle_work)
+      if (lengths.noted) atomicAdd(in_memory(body.powers) + slot, static_cast<double>(watts));
   }
+  if constexpr (peak_force)
+    if (lengths.noted) atomicMax(in_memory(body.peak) + slot, bits(fabs(tension)));
+  if constexpr (mean_tension)
+    if (lengths.noted) atomicAdd(in_memory(body.tensions) + slot, static_cast<double>(tension));
   const Integer x = bits(physics::multiply_add(-factor, s.d.x, Fixed::magic));
   const Integer y = bits(physics::multiply_add(-factor, s.d.y, Fixed::magic));
   const Integer z = bits(physics::multiply_add(-factor, s.d.z, Fixed::magic));
@@ -156,7 +164,7 @@ __device__ __forceinline__ void add_forces(const Body& body, const Share& share,
     const Spring spring = next;
     if (row + 1 < rows) next = Spring(record, lengths.table);
     if (row + 2 < rows) record = records[(row + 2) * lanes];
-    const Number force = add_force(spring, owner, lengths, sums);
+    const Number force = add_force(body, slot + row * lanes, spring, owner, lengths, sums);
     if constexpr (stress) {
       // no thread waits for the sum in memory, which has no other writer and so no order
       const Number noted = lengths.noted ? force : Number(0);

@@ -79,6 +79,7 @@ class Resident {
   void reserve();
   void pack_records(Record<T>* to) const;
   void pack_masses(const Regions& host) const;
+  void unpack_springs(const Regions& host, Task& task) const;
 
   const Arrangement& arrangement() const { return arranged_->arrangement; }
 
@@ -99,6 +100,8 @@ class Resident {
   Section<Answer> answer_;
   Section<double> stress_;
   Section<T> recent_stress_;
+  Section<typename FixedPoint<T>::Integer> peak_;
+  Section<double> powers_, tensions_;
 };
 
 extern template class Resident<float>;

@@ -54,6 +54,9 @@ void Streamed<T>::reserve() {
   rates_ = sums.add<T>(features_.work ? table : 0);
   stress_ = sums.add<double>(features_.stress ? joints() : 0);
   power_ = sums.add<double>(features_.work ? masses() : 0);
+  peak_ = sums.add<T>(features_.peak_force ? joints() : 0);
+  powers_ = sums.add<double>(features_.muscle_work ? joints() : 0);
+  tensions_ = sums.add<double>(features_.tension ? joints() : 0);
   scratch_ = scratch.add<T>(method.numbers_of_mass * masses() + method.numbers_of_joint * joints());
   sizes_ = {input.size(), state.size(), sums.size(), scratch.size()};
 }
@@ -135,6 +138,9 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
           .rates = rates_.in(device.sums),
           .stress = stress_.in(device.sums),
           .power = power_.in(device.sums),
+          .peak = peak_.in(device.sums),
+          .powers = powers_.in(device.sums),
+          .tensions = tensions_.in(device.sums),
           .answer = answer_.in(device.state),
           .start_time = task_->state->time,
           .steps = task_->steps,
@@ -157,10 +163,20 @@ void Streamed<T>::unpack(const Regions& host, const EnergyGuard& guard, Recordin
     task.state->position[i] = {x.x, x.y, x.z};
     task.state->velocity[i] = {v.x, v.y, v.z};
   }
-  if (!recording.stress || task.status != Status::ok) return;
-  task.stress.resize(task.body->springs.size());
-  for (std::size_t i = 0; i < task.stress.size(); ++i)
-    task.stress[i] = stress_.in(host.sums)[owned_joint_[i]] / static_cast<double>(task.steps);
+  if (task.status == Status::ok) unpack_springs(host, task);
+}
+
+/// Reads what was recorded of the springs; the task's lists have room for it.
+template <class T>
+void Streamed<T>::unpack_springs(const Regions& host, Task& task) const {
+  const auto steps = static_cast<double>(task.steps);
+  const auto read = [&](std::vector<double>& to, const auto& number_at) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = number_at(owned_joint_[i]);
+  };
+  read(task.stress, [&](std::size_t joint) { return stress_.in(host.sums)[joint] / steps; });
+  read(task.peak_force, [&](std::size_t joint) { return peak_.in(host.sums)[joint]; });
+  read(task.muscle_work, [&](std::size_t joint) { return task.dt * powers_.in(host.sums)[joint]; });
+  read(task.tension, [&](std::size_t joint) { return tensions_.in(host.sums)[joint] / steps; });
 }
 
 template class Streamed<float>;

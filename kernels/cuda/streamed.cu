@@ -24,8 +24,14 @@ __device__ __forceinline__ Place spring_forces(const Body& body, unsigned mass, 
     if (joint.owned && noted) {
       const Number tension = factor * physics::length_by_inverse(s, inverse);
       if constexpr (stress) body.stress[i] += fabs(tension);
-      if constexpr (work)
-        power += physics::actuation_power(tension, body.rates[row * body.entries + joint.entry] * joint.rest_length);
+      if constexpr (work) {
+        const Number watts =
+            physics::actuation_power(tension, body.rates[row * body.entries + joint.entry] * joint.rest_length);
+        power += watts;
+        if constexpr (muscle_work) body.powers[i] += watts;
+      }
+      if constexpr (peak_force) body.peak[i] = fmax(body.peak[i], fabs(tension));
+      if constexpr (mean_tension) body.tensions[i] += tension;
     }
     force.x = physics::multiply_add(factor, s.d.x, force.x);
     force.y = physics::multiply_add(factor, s.d.y, force.y);

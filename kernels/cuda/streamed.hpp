@@ -33,6 +33,7 @@ class Streamed {
   void reserve();
   void pack_joints(const Regions& host) const;
   void pack_colours(const Regions& host) const;
+  void unpack_springs(const Regions& host, Task& task) const;
   /// Where the `row`-th joint of the mass at `place` lies.
   std::uint32_t joint_at(std::uint32_t place, std::uint32_t row) const {
     return lanes * (first_row_[place / lanes] + row) + place % lanes;
@@ -60,6 +61,8 @@ class Streamed {
   Section<Entry<T>> table_;
   Section<T> rates_;
   Section<double> stress_, power_;
+  Section<T> peak_;
+  Section<double> powers_, tensions_;
   Section<T> scratch_;
 };
 

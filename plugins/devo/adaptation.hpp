@@ -9,13 +9,16 @@
 /// bound already goes no further.
 class Adaptation : public evodevo::Devo {
  public:
+  evodevo::SpringRequest observes() const final { return measure_.request(); }
+
   void develop(const evodevo::Moment& now, evodevo::Edits& edits, evodevo::Rng& rng) const final {
+    const std::vector<double> stress_of = measure_.of(now);
     std::vector<std::uint32_t> springs;
     std::vector<double> stress;
     for (std::uint32_t s = 0; s < now.body.springs.size(); ++s) {
       if (!(value(now.body, s) > 0)) continue;
       springs.push_back(s);
-      stress.push_back(now.stress[s]);
+      stress.push_back(stress_of[s]);
     }
     for (const std::uint32_t i : most_stressed(stress, static_cast<std::size_t>(springs_), rng)) {
       const double before = value(now.body, springs[i]), after = adapted(before);
@@ -31,6 +34,7 @@ class Adaptation : public evodevo::Devo {
     p.real(factor_, "factor", {0.5, 2, "1"}, "By what the property is multiplied, above or below 1.");
     p.real(low_, "low", range, low_text);
     p.real(high_, "high", range, high_text);
+    measure_.declare(p);
   }
 
  private:
@@ -45,4 +49,5 @@ class Adaptation : public evodevo::Devo {
 
   std::int64_t springs_ = 125;
   double factor_, low_, high_;
+  StressMeasure measure_;
 };

@@ -10,6 +10,7 @@ struct ArrivalRule {
   double min_distance = 0.02;  ///< m
   std::string where = "random";
   std::string join = "random";
+  StressMeasure measure;
 
   void declare(evodevo::Parameters& p) {
     p.integer(springs, "springs", {1, 100'000, "1"}, "Springs of a new mass, to masses that stay.");
@@ -17,7 +18,10 @@ struct ArrivalRule {
     p.choice(where, "where", {"random", "by-stress"},
              "Where a new mass comes: anywhere in the body's box, or on a spring drawn with probability by stress.");
     p.choice(join, "join", {"random", "nearest"}, "Which masses a new one is joined to.");
+    measure.declare(p);
   }
+
+  evodevo::SpringRequest request() const { return where == "by-stress" ? measure.request() : evodevo::SpringRequest{}; }
 };
 
 /// New masses on their way into a body, which has springs. A new mass has the material of a random mass that stays and
@@ -26,7 +30,7 @@ class Arrivals {
  public:
   Arrivals(const ArrivalRule& rule, const evodevo::Moment& now)
       : rule_(rule), now_(now), stays_(now.body.masses.size(), true) {
-    if (rule.where == "by-stress") lottery_ = StressLottery(now.stress);
+    if (rule.where == "by-stress") lottery_ = StressLottery(rule.measure.of(now));
   }
 
   /// Whether a mass stays; one that goes takes up no room and is not joined to.

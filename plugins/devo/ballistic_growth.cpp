@@ -10,6 +10,8 @@ namespace {
 /// `size_range`; springs that come later have none.
 class BallisticGrowth final : public evodevo::Devo {
  public:
+  evodevo::SpringRequest observes() const override { return {}; }
+
   void develop(const evodevo::Moment& now, evodevo::Edits& edits, evodevo::Rng&) const override {
     const auto relative_length = [&](const evodevo::Spring& spring, int turn) {
       return 1 + (static_cast<double>(spring.growth) - 1) * turn / now.turns;

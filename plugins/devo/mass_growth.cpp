@@ -14,6 +14,8 @@ class MassGrowth final : public evodevo::Devo {
     arrival_.declare(p);
   }
 
+  evodevo::SpringRequest observes() const override { return arrival_.request(); }
+
   void develop(const evodevo::Moment& now, evodevo::Edits& edits, evodevo::Rng& rng) const override {
     if (now.body.springs.empty()) return;
     const std::int64_t room = limit_ - static_cast<std::int64_t>(now.body.masses.size());

@@ -21,6 +21,8 @@ class MassTurnover final : public evodevo::Devo {
     arrival_.declare(p);
   }
 
+  evodevo::SpringRequest observes() const override { return arrival_.request(); }
+
   void develop(const Moment& now, Edits& edits, Rng& rng) const override {
     const auto leaving = poorest(now.body, rng);
     if (leaving.empty() || now.body.springs.empty()) return;

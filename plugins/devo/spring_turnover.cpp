@@ -49,10 +49,11 @@ using Pair = std::pair<std::uint32_t, std::uint32_t>;
 /// Suggests pairs of masses for new springs, again and again.
 class Candidates {
  public:
-  Candidates(const std::string& where, const Moment& now, const Partners& partners, std::size_t count, Rng& rng)
+  Candidates(const std::string& where, const Moment& now, std::span<const double> stress, const Partners& partners,
+             std::size_t count, Rng& rng)
       : now_(now), partners_(partners) {
-    if (where == "most-stressed") most_stressed_ = most_stressed(now.stress, count, rng);
-    if (where == "by-stress") lottery_ = StressLottery(now.stress);
+    if (where == "most-stressed") most_stressed_ = most_stressed(stress, count, rng);
+    if (where == "by-stress") lottery_ = StressLottery(stress);
   }
 
   Pair next(Rng& rng) {
@@ -93,15 +94,19 @@ class SpringTurnover final : public evodevo::Devo {
     p.choice(where_, "where", {"random", "most-stressed", "by-stress"},
              "Where springs come: between random masses, beside each of as many most stressed springs, or beside "
              "springs drawn with probability by stress; one beside another closes a triangle with it.");
+    measure_.declare(p);
   }
+
+  evodevo::SpringRequest observes() const override { return measure_.request(); }
 
   void develop(const Moment& now, Edits& edits, Rng& rng) const override {
     const Body& body = now.body;
     const std::size_t count = std::min(body.springs.size(), static_cast<std::size_t>(springs_));
     if (count == 0 || body.masses.size() < 2) return;
-    const auto leaving = least_stressed(now.stress, count, rng);
+    const std::vector<double> stress = measure_.of(now);
+    const auto leaving = least_stressed(stress, count, rng);
     const Partners partners(body);
-    Candidates candidates(where_, now, partners, count, rng);
+    Candidates candidates(where_, now, stress, partners, count, rng);
     std::set<Pair> taken;
     // enough to fill a body that is nearly complete; a complete one ends here
     for (std::size_t attempts = attempts_per_spring * count; attempts > 0 && taken.size() < count; --attempts) {
@@ -128,6 +133,7 @@ class SpringTurnover final : public evodevo::Devo {
 
   std::int64_t springs_ = 125;
   std::string where_ = "random";
+  StressMeasure measure_;
 };
 
 }  // namespace

@@ -37,6 +37,38 @@ inline std::vector<std::uint32_t> most_stressed(std::span<const double> stress, 
   return springs_of_least(key, count, rng);
 }
 
+/// What springs are judged by, as a parameter that all operators have in common.
+class StressMeasure {
+ public:
+  void declare(evodevo::Parameters& p) {
+    p.choice(by_, "by", {"mean-force", "peak", "work", "tension", "compression"},
+             "What counts as stress: a spring's mean or largest absolute force over the cycle, the work of its muscle, "
+             "or the mean force by which it pulled or pushed.");
+  }
+
+  evodevo::SpringRequest request() const {
+    return {.stress = by_ == "mean-force",
+            .peak_force = by_ == "peak",
+            .muscle_work = by_ == "work",
+            .tension = by_ == "tension" || by_ == "compression"};
+  }
+
+  /// Of every spring, N or J.
+  std::vector<double> of(const evodevo::Moment& now) const {
+    const std::span<const double> record = by_ == "mean-force" ? now.stress
+                                           : by_ == "peak"     ? now.peak_force
+                                           : by_ == "work"     ? now.muscle_work
+                                                               : now.tension;
+    std::vector<double> stress(record.begin(), record.end());
+    if (by_ == "compression")
+      for (double& value : stress) value = -value;
+    return stress;
+  }
+
+ private:
+  std::string by_ = "mean-force";
+};
+
 /// Draws springs with probability in proportion to their stress; all alike where no spring has any. A stress that is
 /// not finite counts as none.
 class StressLottery {
@@ -60,5 +92,5 @@ class StressLottery {
   }
 
  private:
-  std::vector<double> sums_;  ///< of the stress up to each spring, N
+  std::vector<double> sums_;  ///< of the stress up to each spring
 };

@@ -54,6 +54,10 @@ DATA = {
     "beam": "length (voxels),deflection (m),Euler-Bernoulli deflection (m),first frequency (Hz),"
     "Euler-Bernoulli first frequency (Hz)\n5,1,1.01,2,2\n10,1,1,2,2\n",
     "features": "feature,cost (% of the time without it)\nfloor,3\ndrag,-1\n",
+    "stress_overlap": "scene,experiment,sought,springs sought,cycle time (s),found (1),found by the 10th percentile (1),"
+    "found by the 90th percentile (1),by chance (1),robots\nwalk,w.toml,least stressed,125,0.05,0.2,0.1,0.3,0.01,4\n"
+    "walk,w.toml,most stressed,100,0.05,0.3,0.2,0.4,0.01,4\nwalk,w.toml,least stressed,125,10,1,1,1,0.01,4\n"
+    "walk,w.toml,most stressed,100,10,1,1,1,0.01,4\n",
     "energy": "method,precision,steps,energy (of the first)\nrk4,float,10,0.9\nrk4,float,20,0.8\nrk4,double,10,0.9\n",
 }
 

@@ -1,5 +1,7 @@
 // The GPU computes what the CPU computes: to rounding, as long as rounding has not grown.
 #include "gpu.hpp"
+#include "philox.hpp"
+#include "skip_shift.hpp"
 #include "stability.hpp"
 
 namespace evodevo::testing_gpu {
@@ -61,16 +63,22 @@ TEST_P(AgreementOfRecords, StressAndWorkOf150Steps) {
   const State start = moving_state(body, scene, 10);
   Robot cpu(body, start), gpu(body, start), plain(body, start);
   const auto simulator = make_cuda_simulator(scene, stepping(way));
-  simulate(*make_cpu_simulator(scene, stepping(way), 1), {&cpu}, 150, {.stress = true, .work = true});
-  simulate(*simulator, {&gpu}, 150, {.stress = true, .work = true});
+  const Recording all{.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};
+  simulate(*make_cpu_simulator(scene, stepping(way), 1), {&cpu}, 150, all);
+  simulate(*simulator, {&gpu}, 150, all);
   simulate(*simulator, {&plain}, 150);
   // recording changes nothing
   EXPECT_EQ(distance(gpu.state, plain.state), 0);
-  ASSERT_EQ(gpu.answer.stress.size(), body.springs.size());
-  double largest = 0, mean = 0;
+  for (const auto list : SpringRecords::lists) ASSERT_EQ((gpu.answer.*list).size(), body.springs.size());
+  double largest = 0, largest_peak = 0, mean = 0, sum = 0;
   for (std::size_t i = 0; i < body.springs.size(); ++i) {
-    largest = std::max(largest, std::abs(gpu.answer.stress[i] - cpu.answer.stress[i]));
+    largest = std::max({largest, std::abs(gpu.answer.stress[i] - cpu.answer.stress[i]),
+                        std::abs(gpu.answer.tension[i] - cpu.answer.tension[i])});
+    largest_peak = std::max(largest_peak, std::abs(gpu.answer.peak_force[i] - cpu.answer.peak_force[i]));
     mean += cpu.answer.stress[i] / static_cast<double>(body.springs.size());
+    sum += gpu.answer.muscle_work[i];
+    EXPECT_LE(std::abs(gpu.answer.tension[i]), gpu.answer.stress[i] * 1.0001) << i;
+    EXPECT_GE(gpu.answer.peak_force[i] * 1.0001, gpu.answer.stress[i]) << i;
   }
   std::printf("           stress off by %.3g N of %.3g N, work by %.3g J of %.3g J\n", largest, mean,
               std::abs(gpu.answer.work - cpu.answer.work), cpu.answer.work);
@@ -78,10 +86,31 @@ TEST_P(AgreementOfRecords, StressAndWorkOf150Steps) {
   const double accuracy = bound(way, scene.floor.has_value());
   // N, some ten times what is seen: 0.2 in float32, and in float64 7e-5 where one touch of the floor is a step later
   EXPECT_LT(largest, std::get<Precision>(way) == Precision::float32 ? 3 : 1e-3);
+  EXPECT_LT(largest_peak, std::get<Precision>(way) == Precision::float32 ? 60 : 1e-1);
   EXPECT_NEAR(gpu.answer.work, cpu.answer.work, 10 * accuracy * cpu.answer.work);
+  EXPECT_NEAR(sum, gpu.answer.work, (std::get<Precision>(way) == Precision::float32 ? 1e-5 : 1e-12) * sum);
 }
 
 INSTANTIATE_TEST_SUITE_P(Gpu, AgreementOfRecords, all_ways(), [](const auto& test) { return name(test.param); });
+
+TEST(AgreementOfTallies, InFloat64) {
+  EVODEVO_NEEDS_GPU();
+  const Scene scene{Gravity{}, {}, {}, Damping{}, {}};
+  const Body body = random_body(300, 20, 9);
+  const Stepping stepping{Method::paper_euler, Precision::float64};
+  const State start = moving_state(body, scene, 10);
+  const auto tallied = [&](Simulator& simulator) {
+    State state = start;
+    Task task{.body = &body, .state = &state, .steps = 150};
+    Rng random(philox, {1, 2, 3, 4});
+    run_with_tallies(simulator, {&task, 1}, 10, {&random, 1});
+    EXPECT_EQ(task.status, Status::ok) << task.reason;
+    return task.stress;
+  };
+  const std::vector<double> cpu = tallied(*make_cpu_simulator(scene, stepping, 1));
+  EXPECT_GT(*std::max_element(cpu.begin(), cpu.end()), 5) << "of 15";
+  EXPECT_EQ(tallied(*make_cuda_simulator(scene, stepping)), cpu);
+}
 
 /// Methods that bear steps beyond those of the explicit ones, in float64: in float32 contact parts them soon.
 class AgreementOfLargeSteps : public testing::TestWithParam<Method> {};

@@ -45,7 +45,10 @@ const Features every_feature{.gravity = true,
                              .drag = true,
                              .actuation = true,
                              .stress = true,
-                             .work = true};
+                             .work = true,
+                             .peak_force = true,
+                             .muscle_work = true,
+                             .tension = true};
 
 /// Whether the kernels of a method are there in the form for bodies of any size.
 bool compiles_streamed(const Features& features) {

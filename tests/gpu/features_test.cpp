@@ -36,7 +36,11 @@ const std::vector<Subject> subjects{
     // row_stress, which nobody uses then, stays: it leaves nothing, but the compiler numbers registers otherwise
     // without
     {"stress", &Features::stress, {"stress"}, {}, {}},
-    {"work", &Features::work, {"work"}, {"power", "rates"}, {"length_rate", "actuation_power"}},
+    // each muscle's work is a part of the body's
+    {"work", &Features::work, {"muscle_work", "work"}, {"power", "rates"}, {"length_rate", "actuation_power"}},
+    {"each muscle's work", &Features::muscle_work, {"muscle_work"}, {}, {}},
+    {"peak force", &Features::peak_force, {"peak_force"}, {}, {}},
+    {"tension", &Features::tension, {"mean_tension"}, {}, {}},
 };
 
 Features every_feature() {
@@ -49,6 +53,7 @@ Features without(const Subject& subject) {
   Features features = every_feature();
   features.*subject.on = false;
   features.friction = features.friction && features.floor;
+  features.muscle_work = features.muscle_work && features.work;
   return features;
 }
 
@@ -223,7 +228,7 @@ TEST_P(FeatureCode, IsNotThereWhereTheFeatureIsOff) {
     Sources sources;
     sources.remove(subject);
     const Operations off = code({}, without(subject));
-    std::printf("  without %-9s %5d fewer\n", subject.name, all - count(off));
+    std::printf("  without %-18s %5d fewer\n", subject.name, all - count(off));
     EXPECT_NE(count(off), all) << subject.name << " is not compiled at all";
     EXPECT_TRUE(off == code(sources, every_feature())) << subject.name << " leaves something where it is off";
   }
@@ -232,7 +237,8 @@ TEST_P(FeatureCode, IsNotThereWhereTheFeatureIsOff) {
 TEST_P(FeatureCode, IsNotThereWhereAllAreOff) {
   Sources sources;
   for (const Subject& subject : subjects)
-    if (subject.on != &Features::friction) sources.remove(subject);  // gone with the floor
+    // some are gone with the floor and the body's work
+    if (subject.on != &Features::friction && subject.on != &Features::muscle_work) sources.remove(subject);
   const Operations bare = code({}, {});
   std::printf("%s: %zu instructions without any\n", GetParam().name, bare.size());
   EXPECT_TRUE(bare == code(sources, every_feature()));

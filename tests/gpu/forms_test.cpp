@@ -6,10 +6,10 @@ namespace {
 
 class Forms : public testing::TestWithParam<Way> {
  protected:
-  /// Moves a body for 0.05 s on both devices and compares places, stress and work.
+  /// Moves a body for 0.05 s on both devices and compares places and all that is recorded.
   void compare(const Body& body, const State& start) {
     const Scene scene = walking_scene();
-    const Recording all{.stress = true, .work = true};
+    const Recording all{.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};
     const bool single = std::get<Precision>(GetParam()) == Precision::float32;
     Robot cpu(body, start), gpu(body, start);
     simulate(*make_cpu_simulator(scene, stepping(GetParam()), 0), {&cpu}, 110, all);
@@ -18,9 +18,14 @@ class Forms : public testing::TestWithParam<Way> {
     EXPECT_EQ(cpu.state.time, gpu.state.time);
     EXPECT_EQ(cpu.answer.spring_evaluations, gpu.answer.spring_evaluations);
     EXPECT_LE(distance(cpu.state, gpu.state), single ? 3e-3 : 3e-9);
-    ASSERT_EQ(cpu.answer.stress.size(), gpu.answer.stress.size());
-    for (std::size_t i = 0; i < cpu.answer.stress.size(); ++i)
-      ASSERT_NEAR(cpu.answer.stress[i], gpu.answer.stress[i], (single ? 5e-2 : 5e-8) * (1 + cpu.answer.stress[i])) << i;
+    for (const auto list : SpringRecords::lists) ASSERT_EQ((cpu.answer.*list).size(), (gpu.answer.*list).size());
+    for (std::size_t i = 0; i < cpu.answer.stress.size(); ++i) {
+      const double near = (single ? 5e-2 : 5e-8) * (1 + cpu.answer.stress[i]);
+      ASSERT_NEAR(cpu.answer.stress[i], gpu.answer.stress[i], near) << i;
+      ASSERT_NEAR(cpu.answer.tension[i], gpu.answer.tension[i], near) << i;
+      ASSERT_NEAR(cpu.answer.peak_force[i], gpu.answer.peak_force[i], 2 * near * (1 + cpu.answer.peak_force[i])) << i;
+      ASSERT_NEAR(cpu.answer.muscle_work[i], gpu.answer.muscle_work[i], near) << i;
+    }
     EXPECT_NEAR(cpu.answer.work, gpu.answer.work, (single ? 1e-3 : 1e-9) * (1e-3 + cpu.answer.work));
   }
   void compare(const Body& body) { compare(body, moving_state(body, walking_scene(), 11)); }

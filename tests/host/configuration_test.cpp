@@ -69,6 +69,19 @@ TEST(Configuration, DevelopmentHasSchedulesAndAControl) {
             "development.operator.0.from = 3 to 2: the operator never comes to its turn in 2 cycles");
 }
 
+TEST(Configuration, DevelopmentHasAProbe) {
+  const Experiment exact = testing::read(small_experiment);
+  EXPECT_EQ(exact.development.probe, Probe::exact);
+  const std::string tallied = with("cycles = 2", "cycles = 2\nprobe = \"skip-shift\"");
+  const Experiment paper = testing::read(tallied);
+  EXPECT_EQ(paper.development.probe, Probe::skip_shift);
+  EXPECT_EQ(paper.development.skip, 100);
+  EXPECT_EQ(complaint(with("cycles = 2", "cycles = 2\nprobe = \"skip-shift\"\nskip = 101")),
+            "test.toml:32:8: development.skip = 101: a cycle of 100 steps has no tally; expected at most as many");
+  EXPECT_THAT(complaint(tallied, {{"development.operator.0.by", "peak", ""}}),
+              ::testing::HasSubstr("asks for more of the springs than the tallies"));
+}
+
 TEST(Configuration, ResolvedTextReadsBackAsItself) {
   const Experiment experiment = testing::read(small_experiment, {{"simulation.dt", "0.00025", "--set"}});
   const Experiment again = testing::read(experiment.resolved);

@@ -139,7 +139,7 @@ TEST(RandomPlaces, FewerComeWhereThereIsNoRoom) {
 
 /// What an operator saw in a life.
 struct Seen {
-  std::vector<std::vector<double>> stress;
+  std::vector<std::vector<double>> stress, peak_force;
   std::vector<std::pair<int, int>> turns;
   std::vector<int> cycles;
 };
@@ -147,15 +147,18 @@ struct Seen {
 /// Watches, and changes nothing.
 class Watcher final : public Devo {
  public:
-  explicit Watcher(Seen& seen) : seen_(seen) {}
+  explicit Watcher(Seen& seen, SpringRequest request = {.stress = true}) : seen_(seen), request_(request) {}
+  SpringRequest observes() const override { return request_; }
   void develop(const Moment& now, Edits&, Rng&) const override {
     seen_.stress.emplace_back(now.stress.begin(), now.stress.end());
+    seen_.peak_force.emplace_back(now.peak_force.begin(), now.peak_force.end());
     seen_.turns.emplace_back(now.turn, now.turns);
     seen_.cycles.push_back(now.cycle);
   }
 
  private:
   Seen& seen_;
+  SpringRequest request_;
 };
 
 /// Edits that do not depend on what is there.
@@ -211,6 +214,42 @@ TEST(Control, ShuffledStressIsTheSameStressInAnotherOrder) {
   }
   EXPECT_EQ(watch(with_control("shuffled-stress")).stress, shuffled.stress) << "the same when lived again";
   EXPECT_NE(watch(with_control("shuffled-stress"), 1).stress, shuffled.stress) << "but not for another individual";
+}
+
+TEST(Control, ShufflesAllThatIsKnownOfASpringTogether) {
+  const auto pairs_of = [](const char* control) {
+    Seen seen;
+    Experiment experiment = with_control(control);
+    for (Scheduled& scheduled : experiment.development.operators)
+      scheduled.op = std::make_unique<Watcher>(seen, SpringRequest{.stress = true, .peak_force = true});
+    matured(experiment);
+    std::vector<std::pair<double, double>> pairs;
+    for (std::size_t s = 0; s < seen.stress.at(0).size(); ++s)
+      pairs.emplace_back(seen.stress[0][s], seen.peak_force.at(0).at(s));
+    return pairs;
+  };
+  const auto off = pairs_of("off"), shuffled = pairs_of("shuffled-stress");
+  ASSERT_EQ(off.size(), 50u);
+  EXPECT_NE(shuffled, off);
+  EXPECT_THAT(shuffled, ::testing::UnorderedElementsAreArray(off));
+}
+
+TEST(Development, OperatorsSeeWhatTheyAskForAlone) {
+  Seen nothing, peak;
+  Experiment experiment = with_control("off");
+  auto& operators = experiment.development.operators;
+  operators.clear();
+  operators.push_back({std::make_unique<Watcher>(nothing, SpringRequest{}), {}});
+  operators.push_back({std::make_unique<Watcher>(peak, SpringRequest{.peak_force = true}), {.from = 2}});
+  EXPECT_FALSE(experiment.development.recording(1).of_springs()) << "the second comes later";
+  EXPECT_TRUE(experiment.development.recording(2).peak_force);
+  EXPECT_FALSE(experiment.development.recording(2).stress);
+  matured(experiment);
+  EXPECT_EQ(nothing.stress, (std::vector<std::vector<double>>(2)));
+  EXPECT_EQ(nothing.peak_force, (std::vector<std::vector<double>>(2)));
+  ASSERT_EQ(peak.peak_force.size(), 1u);
+  EXPECT_EQ(peak.peak_force[0].size(), 50u);
+  EXPECT_TRUE(peak.stress[0].empty());
 }
 
 TEST(Control, RandomPlacesMoveWhatOperatorsWant) {

@@ -23,7 +23,9 @@ struct Life {
   Layout layout;
 
   Moment now() const {
-    return {living.body, living.state, living.stress, 3, 100, turn, turns, time, bounds, mass, resets, genome, layout};
+    Moment now{living.body, living.state, {}, 3, 100, turn, turns, time, bounds, mass, resets, genome, layout};
+    show_records(living, {.stress = true, .peak_force = true, .muscle_work = true, .tension = true}, now);
+    return now;
   }
 
   void add_mass(Vec3 rest, std::int32_t material) {

@@ -11,12 +11,21 @@
 
 namespace evodevo {
 
+/// What a devo operator has to know about every spring's last cycle; nothing else is recorded.
+struct SpringRequest {
+  bool stress = false;       ///< Moment::stress
+  bool peak_force = false;   ///< Moment::peak_force
+  bool muscle_work = false;  ///< Moment::muscle_work
+  bool tension = false;      ///< Moment::tension
+};
+
 /// A moment in a life: what a devo operator may look at.
 struct Moment {
   const Body& body;
   const State& state;
-  std::span<const double> stress;  ///< mean absolute force of every spring over the last cycle, N; springs that came
-                                   ///< since the cycle ended carry the mean of the others
+  std::span<const double> stress;  ///< mean absolute force of every spring over the last cycle, N; where the
+                                   ///< experiment's probe is skip-shift, how often it was its group's most
+                                   ///< stressed less how often its least
   int cycle;                       ///< cycles lived so far, from 1
   int cycles;                      ///< cycles in the whole development
   int turn;                        ///< how often this operator has come to its turn, now included
@@ -27,6 +36,11 @@ struct Moment {
   bool resets;                     ///< whether the body goes back to its rest places before it moves on
   const Genome& genome;
   const Layout& layout;
+  // like stress, empty where Devo::observes() does not ask for them; springs that came since the cycle ended carry the
+  // mean of the others
+  std::span<const double> peak_force = {};   ///< the largest absolute force, N
+  std::span<const double> muscle_work = {};  ///< positive work of the spring's muscle on the body, J
+  std::span<const double> tension = {};      ///< the mean force, N: positive where it pulled, negative where it pushed
 
   /// Where a mass is when life goes on, m.
   Vec3 place(std::uint32_t mass_index) const {
@@ -73,6 +87,8 @@ class Devo : public Operator {
  public:
   static constexpr std::string_view kind = "devo";
 
+  /// Asked once the parameters are set.
+  virtual SpringRequest observes() const { return {.stress = true}; }
   virtual void develop(const Moment& now, Edits& edits, Rng& rng) const = 0;
 };
 

@@ -37,7 +37,7 @@ struct Implicit : StepMethod {
       rub(s.motion, s.world, s.world.step.dt, s.motion.vx, s.motion.vy, s.masses);
     }
     move(s.motion, s.world.step.dt, s.masses);
-    if (s.sums.tension || s.sums.power) s.noted_springs(s.motion, s.actuation, row + 1);
+    if (s.notes()) s.noted_springs(s.motion, s.actuation, row + 1);
   }
 
  private:

@@ -93,7 +93,7 @@ struct Xpbd : StepMethod {
     const V factor = compliant_force(k, stretch, dt * push, wa + wb) / distance;
     store_velocities(s, at, a, pushed(va, push * factor * wa, ends.d));
     store_velocities(s, at, b, pushed(vb, hn::Zero(d) - push * factor * wb, ends.d));
-    if (s.sums.tension || s.sums.power) note(s, row, at, spring_tension(ends, distance, factor));
+    if (s.notes()) note(s, row, at, spring_tension(ends, distance, factor));
   }
 
   template <class V>
@@ -123,22 +123,31 @@ struct Xpbd : StepMethod {
   template <class T, class V>
   static void note(const Stepper<T>& s, std::size_t row, std::size_t at, V tension) {
     const hn::ScalableTag<T> d;
-    if (s.sums.tension) add_to_slots(s, at, hn::Abs(tension), s.motion.tension_sum);
+    const auto add = [](T sum, T value) { return sum + value; };
+    if (s.sums.force) put_into_slots(s, at, hn::Abs(tension), s.motion.force_sum, add);
+    if (s.sums.tension) put_into_slots(s, at, tension, s.motion.tension_sum, add);
+    if (s.sums.peak)
+      put_into_slots(s, at, hn::Abs(tension), s.motion.peak,
+                     [](T most, T value) { return value > most ? value : most; });
     if (s.sums.power) {
       const cpu::ColouredView<T>& springs = s.motion.coloured;
       const TableInMemory<T> rates(s.actuation.relative_rate + row * s.actuation.padded);
       const V rate = hn::Load(d, springs.rest_length + at) * rates.at(springs.material + at);
-      add_to_slots(s, at, actuation_power(tension, rate), s.motion.power_sum);
+      put_into_slots(s, at, actuation_power(tension, rate), s.motion.power_sum, add);
     }
   }
 
-  template <class T, class V>
-  static void add_to_slots(const Stepper<T>& s, std::size_t at, V values, T* sum) {
+  /// Sets the slots of what is noted to join(before, value).
+  template <class T, class V, class Join>
+  static void put_into_slots(const Stepper<T>& s, std::size_t at, V values, T* noted, const Join& join) {
     const hn::ScalableTag<T> d;
     HWY_ALIGN T numbers[hn::MaxLanes(hn::ScalableTag<T>())];
     hn::Store(values, d, numbers);
-    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane)
-      if (is_spring(s, at + lane)) sum[s.motion.coloured.slot[at + lane]] += numbers[lane];
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+      if (!is_spring(s, at + lane)) continue;
+      T& slot = noted[s.motion.coloured.slot[at + lane]];
+      slot = join(slot, numbers[lane]);
+    }
   }
 
   /// Pushes up what would end below the floor.

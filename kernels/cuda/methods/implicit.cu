@@ -178,7 +178,7 @@ __device__ __forceinline__ void move(const World<Number>& world, const Body& bod
   __syncthreads();
 }
 
-/// Adds the springs' tensions now to the sums of stress and power.
+/// Adds the springs' tensions now to what is recorded.
 __device__ __forceinline__ void note_tensions(const Body& body, unsigned row) {
   for_each_mass(body, [&](unsigned mass) {
     const Place own = triple(body.places[mass]);
@@ -203,7 +203,7 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS)
     for (unsigned step = 0; step < count; ++step) {
       solve(body.world, body, memory, begin(body.world, body, memory, step + 1));
       move(body.world, body, memory);
-      if constexpr (stress || work) note_tensions(body, step + 1);
+      if constexpr (stress || work || peak_force || mean_tension) note_tensions(body, step + 1);
     }
   });
 }

@@ -1,0 +1,187 @@
+// The paper's tallies against their definition.
+#include "skip_shift.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "breeding.hpp"
+#include "evaluation.hpp"
+#include "philox.hpp"
+#include "support/experiments.hpp"
+
+namespace evodevo {
+namespace {
+
+Rng stream(std::uint32_t individual) { return Rng(philox, {5, 0, individual, 0}); }
+
+/// A row of masses along x, each joined to the next; spring i is stretched by i mm, so that it pulls with i N.
+Body chain(std::uint32_t springs) {
+  Body body;
+  body.materials = {{1000, 0, 0, 0}};
+  for (std::uint32_t i = 0; i <= springs; ++i) body.masses.push_back({{double(i), 0, 0}, 0.2});
+  for (std::uint32_t i = 0; i < springs; ++i) body.springs.push_back({i, i + 1, 1 - 0.001 * i, 0});
+  return body;
+}
+
+State resting(const Body& body, const Scene& scene) {
+  State state = state_at_birth(body, scene);
+  for (std::size_t i = 0; i < body.masses.size(); ++i) state.position[i] = body.masses[i].rest;
+  state.start_energy = total_energy(body, state, scene);
+  return state;
+}
+
+TEST(SkipShift, EachGroupGivesAPointToItsMostAndTakesOneFromItsLeast) {
+  const Body body = chain(1000);
+  std::vector<double> points(1000);
+  Rng random = stream(1);
+  tally(body, resting(body, {}), random, points);
+
+  // the same groups again, group by group
+  std::vector<std::uint32_t> order(1000);
+  std::iota(order.begin(), order.end(), 0u);
+  Rng again = stream(1);
+  again.shuffle(order);
+  std::vector<double> expected(1000);
+  for (std::size_t group = 0; group < 256; ++group) {
+    const std::size_t first = group * 1000 / 256, last = (group + 1) * 1000 / 256;
+    std::uint32_t most = order[first], least = order[first];
+    for (std::size_t i = first; i < last; ++i) {
+      most = std::max(most, order[i]);  // the force rises with the index
+      least = std::min(least, order[i]);
+    }
+    expected[most] += 1;
+    expected[least] -= 1;
+  }
+  EXPECT_EQ(points, expected);
+}
+
+TEST(SkipShift, ChanceDecidesAmongEquals) {
+  // two kinds of springs: the points of a kind are shared evenly, wherever its springs stand
+  Body body = chain(600);
+  for (std::uint32_t i = 0; i < 600; ++i) body.springs[i].rest_length = i % 2 ? 0.9 : 0.8;
+  const State state = resting(body, {});
+  std::vector<double> points(600);
+  Rng random = stream(2);
+  for (int i = 0; i < 200; ++i) tally(body, state, random, points);
+  double halves[2][2] = {};
+  for (std::size_t i = 0; i < 600; ++i) halves[i % 2][i / 300] += points[i];
+  EXPECT_GT(halves[0][0], 10'000);
+  EXPECT_LT(halves[1][0], -10'000);
+  EXPECT_NEAR(halves[0][0], halves[0][1], 800);
+  EXPECT_NEAR(halves[1][0], halves[1][1], 800);
+}
+
+TEST(SkipShift, FewSpringsAreGroupsOfOne) {
+  const Body body = chain(3);
+  std::vector<double> points(3);
+  Rng random = stream(3);
+  tally(body, resting(body, {}), random, points);
+  EXPECT_EQ(points, std::vector<double>(3)) << "most and least at once";
+}
+
+/// The stress and the state after a run with tallies.
+struct Tallied {
+  Task task;
+  State state;
+};
+
+Tallied run(Simulator& simulator, const Body& body, const State& start, std::uint64_t steps, std::uint64_t skip) {
+  Tallied tallied{{}, start};
+  tallied.task = {.body = &body, .state = &tallied.state, .dt = 0.0005, .steps = steps};
+  Rng random = stream(4);
+  run_with_tallies(simulator, {&tallied.task, 1}, skip, {&random, 1});
+  return tallied;
+}
+
+TEST(SkipShift, TalliesAfterEverySkipSteps) {
+  const Scene scene{Gravity{}, Floor{}, Friction{}, Damping{}, {}};
+  const auto simulator = make_cpu_simulator(scene, {.precision = Precision::float64}, 1);
+  const Body body = chain(700);
+  const State start = state_at_birth(body, scene);
+  const Tallied tallied = run(*simulator, body, start, 105, 10);
+
+  State state = start;
+  std::vector<double> points(700);
+  Rng random = stream(4);
+  for (int piece = 0; piece < 10; ++piece) {
+    Task task{.body = &body, .state = &state, .dt = 0.0005, .steps = 10};
+    simulator->run({&task, 1}, {});
+    tally(body, state, random, points);
+  }
+  EXPECT_EQ(tallied.task.stress, points);
+  EXPECT_EQ(tallied.task.status, Status::ok);
+  EXPECT_EQ(tallied.task.spring_evaluations, 105u * 700);
+  EXPECT_EQ(tallied.state.time, 105 * 0.0005);
+  // all steps are made, those after the last tally too
+  State whole = start;
+  Task task{.body = &body, .state = &whole, .dt = 0.0005, .steps = 105};
+  simulator->run({&task, 1}, {});
+  for (std::size_t i = 0; i < whole.position.size(); ++i)
+    EXPECT_LT(norm(whole.position[i] - tallied.state.position[i]), 1e-10);
+}
+
+TEST(SkipShift, FindsTheExtremesThatTheExactStressFinds) {
+  const Scene scene;
+  const auto simulator = make_cpu_simulator(scene, {}, 1);
+  Body body = chain(1000);
+  for (Mass& mass : body.masses) mass.mass = 0;  // held, so that forces stay
+  const Tallied tallied = run(*simulator, body, resting(body, scene), 400, 10);
+  std::vector<std::size_t> order(1000);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](auto a, auto b) { return tallied.task.stress[a] < tallied.task.stress[b]; });
+  const auto found = std::count_if(order.begin(), order.begin() + 100, [](auto s) { return s < 100; });
+  EXPECT_GT(found, 60) << "10 by chance";
+}
+
+TEST(SkipShift, ADivergedBodyEndsAndDisturbsNoOther) {
+  const auto simulator = make_cpu_simulator({}, {}, 1);
+  Body broken = chain(300);
+  broken.materials[0].stiffness = 1e9;
+  const Body sound = chain(300);
+  const auto alone = run(*simulator, sound, state_at_birth(sound, {}), 200, 20);
+  std::vector<State> states{state_at_birth(broken, {}), state_at_birth(sound, {})};
+  std::vector<Task> tasks(2);
+  tasks[0] = {.body = &broken, .state = &states[0], .steps = 200};
+  tasks[1] = {.body = &sound, .state = &states[1], .steps = 200};
+  std::vector<Rng> random{stream(9), stream(4)};
+  run_with_tallies(*simulator, tasks, 20, random);
+  EXPECT_EQ(tasks[0].status, Status::diverged);
+  EXPECT_FALSE(tasks[0].reason.empty());
+  EXPECT_GT(tasks[0].ended_at, 0);
+  EXPECT_TRUE(tasks[0].stress.empty());
+  EXPECT_EQ(tasks[1].stress, alone.task.stress);
+}
+
+TEST(SkipShift, DrivesDevelopment) {
+  using Ends = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  const auto springs_after = [](const char* probe, int threads) {
+    const Experiment experiment =
+        testing::read(testing::small_experiment, {{"encoding.size", "[3, 2, 2]", ""},
+                                                  {"development.probe", probe, ""},
+                                                  {"development.skip", "10", ""},
+                                                  {"development.operator.0.springs", "20", ""}});
+    const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, threads);
+    const Evaluation evaluation(experiment, *simulator);
+    const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 6);
+    std::vector<Newborn> newborns;
+    for (const Individual& individual : individuals) newborns.push_back({individual.id, 0, &individual.genome});
+    std::vector<Life> lives = evaluation.birth(newborns);
+    evaluation.develop(lives, [](double) {});
+    std::vector<Ends> matured;
+    for (const Life& life : lives) {
+      if (!life.alive()) continue;
+      Ends& ends = matured.emplace_back();
+      for (const Spring& spring : life.living.body.springs) ends.emplace_back(spring.a, spring.b);
+    }
+    EXPECT_GE(matured.size(), 2u);
+    return matured;
+  };
+  EXPECT_EQ(springs_after("skip-shift", 1), springs_after("skip-shift", 4));
+  EXPECT_NE(springs_after("skip-shift", 1), springs_after("exact", 1));
+}
+
+}  // namespace
+}  // namespace evodevo

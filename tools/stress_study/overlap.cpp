@@ -1,0 +1,162 @@
+#include "overlap.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+#include "benchmark/agreement.hpp"
+#include "benchmark/robots.hpp"
+#include "commands/options.hpp"
+
+namespace evodevo::stress_study {
+namespace {
+
+constexpr double dt = 0.0005;  // s; paper, Table II
+// that a robot must have for those that are sought to be few
+constexpr std::size_t fewest_springs = 10 * least_sought;
+
+std::vector<double> negated(std::vector<double> values) {
+  for (double& value : values) value = -value;
+  return values;
+}
+
+/// The value below which a share of all lies, between two by what is between them.
+double quantile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  const double at = share * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  const std::size_t above = std::min(below + 1, values.size() - 1);
+  return std::lerp(values[below], values[above], at - static_cast<double>(below));
+}
+
+/// Robots that move on together; what is recorded of each adds up.
+class Lives {
+ public:
+  Lives(const Experiment& experiment, const std::vector<Body>& bodies)
+      : simulator_(make_simulator(experiment)), bodies_(bodies), sums_(bodies.size()), over_time_(bodies.size()) {
+    for (const Body& body : bodies) states_.push_back(state_at_birth(body, experiment.scene));
+    tasks_.resize(bodies.size());
+  }
+
+  void move_to(double time) {
+    const auto steps = static_cast<std::uint64_t>(std::llround(time / dt)) - done_;
+    for (std::size_t i = 0; i < tasks_.size(); ++i) {
+      tasks_[i].body = &bodies_[i];
+      tasks_[i].state = &states_[i];
+      tasks_[i].dt = dt;
+      tasks_[i].steps = steps;
+    }
+    simulator_->run(tasks_, {.stress = true});
+    done_ += steps;
+    for (std::size_t i = 0; i < tasks_.size(); ++i)
+      if (tasks_[i].status == Status::ok) add(tasks_[i].stress, static_cast<double>(steps), i);
+  }
+
+  /// Of those that have not diverged.
+  std::vector<StressOverTime> take() {
+    std::vector<StressOverTime> sound;
+    for (std::size_t i = 0; i < tasks_.size(); ++i)
+      if (tasks_[i].status == Status::ok) sound.push_back(std::move(over_time_[i]));
+    return sound;
+  }
+
+ private:
+  void add(const std::vector<double>& stress, double steps, std::size_t robot) {
+    std::vector<double>& sum = sums_[robot];
+    sum.resize(stress.size());
+    for (std::size_t s = 0; s < sum.size(); ++s) sum[s] += steps * stress[s];
+    std::vector<double>& mean = over_time_[robot].emplace_back(sum);
+    for (double& value : mean) value /= static_cast<double>(done_);
+  }
+
+  std::unique_ptr<Simulator> simulator_;
+  const std::vector<Body>& bodies_;
+  std::vector<State> states_;
+  std::vector<Task> tasks_;
+  std::uint64_t done_ = 0;
+  std::vector<std::vector<double>> sums_;  // N, over steps
+  std::vector<StressOverTime> over_time_;
+};
+
+void add_row(const Case& one, double time, const char* sought, std::size_t count, const std::vector<double>& shares,
+             double springs, accuracy::Table& table) {
+  const double mean = std::accumulate(shares.begin(), shares.end(), 0.0) / static_cast<double>(shares.size());
+  table.add({one.scene, one.experiment, std::string(sought), static_cast<double>(count), time, mean,
+             quantile(shares, 0.1), quantile(shares, 0.9), static_cast<double>(count) / springs,
+             static_cast<double>(shares.size())});
+}
+
+}  // namespace
+
+Found found(const std::vector<double>& truth, const std::vector<double>& estimate) {
+  return {benchmark::share_found(negated(truth), negated(estimate), least_sought),
+          benchmark::share_found(truth, estimate, most_sought)};
+}
+
+std::vector<Case> cases(const std::vector<std::string>& experiments) {
+  std::vector<Case> all;
+  for (const std::string& file : experiments) all.push_back({std::filesystem::path(file).stem().string(), file});
+  all.push_back({all.front().scene + ", muscles still", all.front().experiment, true});
+  return all;
+}
+
+std::vector<double> cycle_times() { return {0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10}; }
+
+std::vector<StressOverTime> simulate(const Case& one, std::size_t robots, const std::string& device) {
+  const Experiment experiment = read_experiment({one.experiment, {{"simulation.device", device, "--device"}}});
+  std::vector<Body> bodies = benchmark::random_robots(experiment, robots, fewest_springs);
+  if (one.muscles_still)
+    for (Body& body : bodies)
+      for (Material& material : body.materials) material.amplitude = 0;
+  Lives lives(experiment, bodies);
+  for (const double time : cycle_times()) lives.move_to(time);
+  return lives.take();
+}
+
+accuracy::Table overlap_table() {
+  return {"stress_overlap",
+          {"scene", "experiment", "sought", "springs sought", "cycle time (s)", "found (1)",
+           "found by the 10th percentile (1)", "found by the 90th percentile (1)", "by chance (1)", "robots"}};
+}
+
+void add_rows(const Case& one, const std::vector<StressOverTime>& robots, accuracy::Table& table) {
+  if (robots.empty())
+    throw std::runtime_error("all robots of " + one.experiment + " have diverged; choose another one");
+  double springs = 0;
+  for (const StressOverTime& robot : robots)
+    springs += static_cast<double>(robot.back().size()) / static_cast<double>(robots.size());
+  const std::vector<double> times = cycle_times();
+  for (std::size_t t = 0; t < times.size(); ++t) {
+    std::vector<double> least, most;
+    for (const StressOverTime& robot : robots) {
+      const Found shares = found(robot.back(), robot.at(t));
+      least.push_back(shares.least);
+      most.push_back(shares.most);
+    }
+    add_row(one, times[t], "least stressed", least_sought, least, springs, table);
+    add_row(one, times[t], "most stressed", most_sought, most, springs, table);
+  }
+}
+
+accuracy::Table shortest_cycles(const accuracy::Table& overlap, double share) {
+  accuracy::Table table("stress_shortest_cycle", {"scene", "sought", "share found (1)", "shortest cycle (s)"});
+  const double last = cycle_times().back();
+  for (std::size_t row = 0; row < overlap.rows().size(); ++row) {
+    if (overlap.number(row, "cycle time (s)") != last) continue;
+    // backwards through the rows of the same scene and kind, as long as enough is found
+    double shortest = std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t before = row + 1; before-- > 0;) {
+      if (overlap.text(before, "scene") != overlap.text(row, "scene")) break;
+      if (overlap.text(before, "sought") != overlap.text(row, "sought")) continue;
+      if (!(overlap.number(before, "found (1)") >= share)) break;
+      // the last cycle finds itself
+      if (before != row) shortest = overlap.number(before, "cycle time (s)");
+    }
+    table.add({overlap.text(row, "scene"), overlap.text(row, "sought"), share, shortest});
+  }
+  return table;
+}
+
+}  // namespace evodevo::stress_study
