@@ -69,7 +69,7 @@ TEST_P(Divergence, ForceRange) {
   State start = moving_state(body, {}, 3);
   start.start_energy = 1e300;
   Robot run(body, start);
-  run.dt = 1.02 * largest_dt(body, start.position, std::get<Method>(GetParam()));
+  run.dt = 1.05 * largest_dt(body, start.position, std::get<Method>(GetParam()));
   simulate(*make_cuda_simulator(Scene{}, stepping(GetParam())), {&run}, 300);
   EXPECT_EQ(run.answer.status, Status::diverged);
   EXPECT_THAT(run.answer.reason, testing::HasSubstr("force range"));
