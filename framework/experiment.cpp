@@ -22,6 +22,7 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 void declare(Parameters& p, Gravity& gravity) {
   p.real(gravity.acceleration, "acceleration", {0, 1000, "m/s^2"}, "Gravity, downwards.");
+  p.real(gravity.slope, "slope", {-80, 80, "degrees"}, "Slope of the floor; +x is downhill where it is above 0.");
 }
 void declare(Parameters& p, Floor& floor) {
   p.real(floor.stiffness, "stiffness", {0, 1e12, "N/m"}, "Upward force on a mass for each metre below the floor.");

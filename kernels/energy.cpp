@@ -17,7 +17,9 @@ double total_energy(const Body& body, const State& state, const Scene& scene) {
   double energy = 0;
   for (std::size_t i = 0; i < body.masses.size(); ++i) {
     energy += physics::kinetic_energy(body.masses[i].mass, triple(state.velocity[i]));
-    if (scene.gravity) energy += body.masses[i].mass * scene.gravity->acceleration * state.position[i].z;
+    if (scene.gravity)
+      energy += body.masses[i].mass * scene.gravity->downwards() *
+                physics::height(state.position[i].x, state.position[i].z, scene.gravity->grade());
   }
   for (const Spring& spring : body.springs) {
     const auto s = physics::separation(triple(state.position[spring.a]), triple(state.position[spring.b]));

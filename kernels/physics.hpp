@@ -142,10 +142,22 @@ EVODEVO_HD T kinetic_energy(T mass, const Triple<T>& velocity) {
   return constant<T>(0.5) * mass * squared;
 }
 
+/// How high a place lies where the ground falls by `grade` for each metre along x, m: for energies.
+template <class T>
+EVODEVO_HD T height(T x, T z, T grade) {
+  return negative_multiply_add(grade, x, z);
+}
+
 /// The weight of a mass, N along z (paper, section IV-C).
 template <class T>
 EVODEVO_HD T weight(T mass, T acceleration) {
   return constant<T>(0) - mass * acceleration;
+}
+
+/// What pulls a mass of `weight` (N along z) downhill, N along x.
+template <class T>
+EVODEVO_HD T downhill_force(T weight, T grade) {
+  return constant<T>(0) - grade * weight;
 }
 
 /// The floor's push k max(0, -z), N along z (paper, section IV-C1).

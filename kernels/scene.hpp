@@ -1,12 +1,22 @@
 // The forces of the world and how time is stepped. A force that a scene does not hold is not computed.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 namespace evodevo {
 
 struct Gravity {
-  double acceleration = 9.81;  ///< m/s^2, along -z
+  double acceleration = 9.81;  ///< m/s^2
+  double slope = 0;            ///< degrees; the floor stays level and gravity leans instead, so that +x is downhill
+
+  /// The acceleration along -z, m/s^2.
+  double downwards() const { return acceleration * std::cos(radians()); }
+  /// How much the ground falls for each metre along x.
+  double grade() const { return std::tan(radians()); }
+
+ private:
+  double radians() const { return slope * (3.14159265358979323846 / 180); }
 };
 /// The plane z = 0 that pushes a mass below it up with `stiffness` times its depth (paper, section IV-C1).
 struct Floor {

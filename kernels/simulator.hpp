@@ -94,8 +94,8 @@ std::unique_ptr<Simulator> make_cpu_simulator(const Scene& scene, const Stepping
 /// mass over the origin, at rest, at t = 0; `start_energy` for the scene.
 State state_at_birth(const Body& body, const Scene& scene);
 
-/// The kinetic, elastic and, with gravity, height energy (above z = 0) of a body, J: `State::start_energy` for a body
-/// that does not start by state_at_birth().
+/// The kinetic, elastic and, with gravity, height energy (above the origin) of a body, J: `State::start_energy` for a
+/// body that does not start by state_at_birth().
 double total_energy(const Body& body, const State& state, const Scene& scene);
 
 }  // namespace evodevo

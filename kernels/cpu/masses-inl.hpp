@@ -19,6 +19,12 @@ HWY_INLINE void add_gravity(const cpu::Motion<T>& m, const cpu::World<T>& world,
   const auto acceleration = hn::Set(d, world.acceleration);
   for (std::size_t i = 0; i < masses; i += hn::Lanes(d))
     hn::Store(hn::Load(d, m.fz + i) + weight(hn::Load(d, m.mass + i), acceleration), d, m.fz + i);
+  if (!world.slope) return;
+  const auto grade = hn::Set(d, world.grade);
+  for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
+    const auto pull = downhill_force(weight(hn::Load(d, m.mass + i), acceleration), grade);
+    hn::Store(hn::Load(d, m.fx + i) + pull, d, m.fx + i);
+  }
 }
 
 template <class T>

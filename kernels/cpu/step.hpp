@@ -22,8 +22,9 @@ struct TimeSpan {
 /// The scene and the step in the arithmetic of the simulation; a force that is off is not computed.
 template <class T>
 struct World {
-  bool gravity, floor, friction, drag, damping;
-  T acceleration;     ///< of gravity, m/s^2
+  bool gravity, slope, floor, friction, drag, damping;
+  T acceleration;     ///< of gravity along -z, m/s^2
+  T grade;            ///< Gravity::grade()
   T floor_stiffness;  ///< N/m
   T friction_coefficient;
   T drag_coefficient;  ///< kg/m
@@ -84,7 +85,7 @@ struct Actuation {
 
 struct Energies {
   double kinetic, elastic;  ///< J
-  double height;            ///< sum of mass times z, kg m
+  double moment;            ///< sum of mass times height, kg m
   bool finite;              ///< whether all places and velocities are
 };
 
@@ -110,7 +111,7 @@ struct Kernels {
   void (*actuate)(const Actuation<T>&, double start, std::uint64_t first, std::size_t rows, double dt);
   Integrator<T> integrator[method_names.size()];  ///< by Method
   /// The energies now, with the relative lengths of the table's row 0.
-  Energies (*energies)(const Motion<T>&, const Actuation<T>& actuation);
+  Energies (*energies)(const Motion<T>&, const World<T>&, const Actuation<T>& actuation);
 };
 
 /// The functions for the best instruction set that this processor has.

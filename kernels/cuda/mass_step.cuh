@@ -10,6 +10,7 @@ namespace evodevo::cuda {
 using Number = EVODEVO_NUMBER;
 constexpr bool actuation = EVODEVO_ACTUATION;
 constexpr bool gravity = EVODEVO_GRAVITY;
+constexpr bool slope = EVODEVO_SLOPE;
 constexpr bool floor_on = EVODEVO_FLOOR;
 constexpr bool friction = EVODEVO_FRICTION;
 constexpr bool damping = EVODEVO_DAMPING;
@@ -84,6 +85,7 @@ __device__ __forceinline__ Place scaled(const Place& a, Number factor) {
 
 __device__ __forceinline__ void add_gravity(const World<Number>& world, Moving& m) {
   if constexpr (gravity) m.force.z += physics::weight(m.mass, world.acceleration);
+  if constexpr (slope) m.force.x += physics::downhill_force(physics::weight(m.mass, world.acceleration), world.grade);
 }
 
 __device__ __forceinline__ void add_floor(const World<Number>& world, Moving& m) {

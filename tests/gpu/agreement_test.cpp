@@ -20,11 +20,12 @@ struct Case {
 std::vector<Case> cases() {
   return {{"nothing", {}},
           {"gravity", {Gravity{}, {}, {}, {}, {}}},
+          {"slope", {Gravity{9.81, 12}, {}, {}, {}, {}}},
           {"floor", {Gravity{}, Floor{}, {}, {}, {}}},
           {"friction", {Gravity{}, Floor{}, Friction{}, {}, {}}},
           {"damping", {{}, {}, {}, Damping{}, {}}},
           {"drag", {{}, {}, {}, {}, Drag{0.5}}},
-          {"everything", {Gravity{}, Floor{}, Friction{}, Damping{}, Drag{0.5}}}};
+          {"everything", {Gravity{9.81, 12}, Floor{}, Friction{}, Damping{}, Drag{0.5}}}};
 }
 
 class AgreementOfPlaces : public testing::TestWithParam<std::tuple<Case, Way>> {};

@@ -39,6 +39,7 @@ class Compiler : public testing::Test {
 };
 
 const Features every_feature{.gravity = true,
+                             .slope = true,
                              .floor = true,
                              .friction = true,
                              .damping = true,

@@ -26,7 +26,13 @@ struct Subject {
 };
 
 const std::vector<Subject> subjects{
-    {"gravity", &Features::gravity, {"gravity"}, {"moment"}, {"weight", "fallen_energy"}},
+    // a slope needs gravity
+    {"gravity",
+     &Features::gravity,
+     {"gravity", "slope"},
+     {"moment"},
+     {"weight", "downhill_force", "moment_of", "fallen_energy"}},
+    {"slope", &Features::slope, {"slope"}, {}, {"downhill_force"}},
     // friction needs the floor's push
     {"floor", &Features::floor, {"floor_on", "friction"}, {"push"}, {"floor_force", "friction_factor"}},
     {"friction", &Features::friction, {"friction"}, {}, {"friction_factor"}},
@@ -48,6 +54,7 @@ Features every_feature() {
 Features without(const Subject& subject) {
   Features features = every_feature();
   features.*subject.on = false;
+  features.slope = features.slope && features.gravity;
   features.friction = features.friction && features.floor;
   return features;
 }
@@ -232,7 +239,8 @@ TEST_P(FeatureCode, IsNotThereWhereTheFeatureIsOff) {
 TEST_P(FeatureCode, IsNotThereWhereAllAreOff) {
   Sources sources;
   for (const Subject& subject : subjects)
-    if (subject.on != &Features::friction) sources.remove(subject);  // gone with the floor
+    if (subject.on != &Features::slope && subject.on != &Features::friction)  // gone with gravity and the floor
+      sources.remove(subject);
   const Operations bare = code({}, {});
   std::printf("%s: %zu instructions without any\n", GetParam().name, bare.size());
   EXPECT_TRUE(bare == code(sources, every_feature()));
