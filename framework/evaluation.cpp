@@ -146,7 +146,7 @@ Box Evaluation::bounds(const LivingBody& living) const {
   if (experiment_.development.reset)
     for (std::size_t i = 0; i < places.size(); ++i) places[i] = living.body.masses[i].rest;
   Box box = bounding_box(places);
-  if (experiment_.scene.floor) box.low.z = std::max(box.low.z, 0.0);
+  if (const auto& floor = experiment_.scene.floor) box.low.z = std::max(box.low.z, floor->roughness);
   box.high.z = std::max(box.high.z, box.low.z);
   return box;
 }

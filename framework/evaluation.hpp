@@ -91,7 +91,7 @@ class Evaluation {
   std::vector<Result> evaluate_cohort(std::span<const Newborn> newborns, const Progress& progress) const;
   void set_windows();
   void simulate(std::span<Life> lives, double duration, Recording recording) const;
-  /// The box around the body where it is when life goes on, cut off at the floor.
+  /// The box around the body where it is when life goes on, cut off at the floor's highest place.
   Box bounds(const LivingBody& living) const;
   /// Does what changes a body; the energy that it brings is no fault of the simulation, so the guard is to allow it.
   template <class Action>

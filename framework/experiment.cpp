@@ -26,6 +26,9 @@ void declare(Parameters& p, Gravity& gravity) {
 }
 void declare(Parameters& p, Floor& floor) {
   p.real(floor.stiffness, "stiffness", {0, 1e12, "N/m"}, "Upward force on a mass for each metre below the floor.");
+  p.real(floor.roughness, "roughness", {0, 100, "m"}, "Largest height and depth of rough ground; 0 is level.");
+  p.real(floor.wavelength, "wavelength", {1e-3, 1e6, "m"}, "From one hill of rough ground to the next.");
+  p.integer(floor.seed, "seed", {0, 0x1p32 - 1}, "Seed of rough ground.");
 }
 void declare(Parameters& p, Friction& friction) {
   p.real(friction.coefficient, "coefficient", {0, 100}, "Coulomb friction between masses and floor.");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 namespace evodevo {
@@ -18,9 +19,17 @@ struct Gravity {
  private:
   double radians() const { return slope * (3.14159265358979323846 / 180); }
 };
-/// The plane z = 0 that pushes a mass below it up with `stiffness` times its depth (paper, section IV-C1).
+/// The plane z = 0, or rough ground about it, that pushes a mass below it up with `stiffness` times its depth (paper,
+/// section IV-C1).
 struct Floor {
   double stiffness = 1e6;  ///< N/m
+  double roughness = 0;    ///< the largest height and depth of hills and hollows, m
+  double wavelength = 1;   ///< from one hill to the next, where a hollow is between, m
+  std::int64_t seed = 1;   ///< of the heights
+
+  bool rough() const { return roughness > 0; }
+  /// The most that the ground rises for each metre: between heights half a wavelength apart.
+  double steepest() const { return 7.5 * roughness / wavelength; }
 };
 /// Coulomb friction on the floor.
 struct Friction {

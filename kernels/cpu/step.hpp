@@ -22,10 +22,13 @@ struct TimeSpan {
 /// The scene and the step in the arithmetic of the simulation; a force that is off is not computed.
 template <class T>
 struct World {
-  bool gravity, slope, floor, friction, drag, damping;
-  T acceleration;     ///< of gravity along -z, m/s^2
-  T grade;            ///< Gravity::grade()
-  T floor_stiffness;  ///< N/m
+  bool gravity, slope, floor, rough, friction, drag, damping;
+  T acceleration;      ///< of gravity along -z, m/s^2
+  T grade;             ///< Gravity::grade()
+  T floor_stiffness;   ///< N/m
+  T roughness;         ///< m
+  T cells;             ///< of rough ground, in a metre
+  std::uint32_t seed;  ///< of rough ground
   T friction_coefficient;
   T drag_coefficient;  ///< kg/m
   T damping_rate;      ///< 1/s

@@ -54,6 +54,9 @@ struct World {
   T half_push;         ///< s
   T damping_rate;      ///< 1/s
   T grade;             ///< Gravity::grade()
+  T roughness;         ///< m
+  T cells;             ///< of rough ground, in a metre
+  std::uint32_t seed;  ///< of rough ground
   double exact_dt;     ///< s
 };
 

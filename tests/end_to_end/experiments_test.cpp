@@ -34,7 +34,7 @@ TEST(Experiments, EachRunsForTwoGenerationsWhenShrunk) {
     EXPECT_EQ(archive.generations().size(), 2u);
     EXPECT_GT(archive.statuses().at("ok"), 0);
   }
-  EXPECT_EQ(count, 14);
+  EXPECT_EQ(count, 15);
 }
 
 TEST(Experiments, TheEnvironmentsDifferInTheirSceneAlone) {

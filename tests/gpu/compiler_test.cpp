@@ -41,6 +41,7 @@ class Compiler : public testing::Test {
 const Features every_feature{.gravity = true,
                              .slope = true,
                              .floor = true,
+                             .rough = true,
                              .friction = true,
                              .damping = true,
                              .drag = true,

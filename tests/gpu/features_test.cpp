@@ -33,8 +33,9 @@ const std::vector<Subject> subjects{
      {"moment"},
      {"weight", "downhill_force", "moment_of", "fallen_energy"}},
     {"slope", &Features::slope, {"slope"}, {}, {"downhill_force"}},
-    // friction needs the floor's push
-    {"floor", &Features::floor, {"floor_on", "friction"}, {"push"}, {"floor_force", "friction_factor"}},
+    // rough ground and friction need the floor
+    {"floor", &Features::floor, {"floor_on", "friction", "rough"}, {"push"}, {"floor_force", "friction_factor"}},
+    {"rough ground", &Features::rough, {"rough"}, {}, {"ground_under"}},
     {"friction", &Features::friction, {"friction"}, {}, {"friction_factor"}},
     {"damping", &Features::damping, {"damping"}, {}, {}},
     {"drag", &Features::drag, {"drag"}, {}, {"drag_factor"}},
@@ -55,6 +56,7 @@ Features without(const Subject& subject) {
   Features features = every_feature();
   features.*subject.on = false;
   features.slope = features.slope && features.gravity;
+  features.rough = features.rough && features.floor;
   features.friction = features.friction && features.floor;
   return features;
 }
@@ -239,7 +241,8 @@ TEST_P(FeatureCode, IsNotThereWhereTheFeatureIsOff) {
 TEST_P(FeatureCode, IsNotThereWhereAllAreOff) {
   Sources sources;
   for (const Subject& subject : subjects)
-    if (subject.on != &Features::slope && subject.on != &Features::friction)  // gone with gravity and the floor
+    // gone with gravity and the floor
+    if (subject.on != &Features::slope && subject.on != &Features::rough && subject.on != &Features::friction)
       sources.remove(subject);
   const Operations bare = code({}, {});
   std::printf("%s: %zu instructions without any\n", GetParam().name, bare.size());

@@ -68,6 +68,7 @@ class EquationOfMotion {
 State solution(const Body& body, const State& start, const Scene& scene, double time) {
   namespace odeint = boost::numeric::odeint;
   if (scene.friction) throw std::invalid_argument("Coulomb friction is no force law that could be integrated");
+  if (scene.floor && scene.floor->rough()) throw std::invalid_argument("rough ground is not in the reference");
   std::vector<double> y;
   for (const auto* vectors : {&start.position, &start.velocity})
     for (const Vec3& v : *vectors) y.insert(y.end(), {v.x, v.y, v.z});
