@@ -187,11 +187,11 @@ struct Ground {
 /// step in slope or curvature (Perlin, Improving noise, 2002).
 template <class T>
 struct Fade {
-  T value, slope;
+  T value, rise;
 
   EVODEVO_HD explicit Fade(T p)
       : value(p * p * p * multiply_add(p, multiply_add(p, constant<T>(6), constant<T>(-15)), constant<T>(10))),
-        slope(constant<T>(30) * (p * (constant<T>(1) - p)) * (p * (constant<T>(1) - p))) {}
+        rise(constant<T>(30) * (p * (constant<T>(1) - p)) * (p * (constant<T>(1) - p))) {}
 };
 
 /// The height and slope of rough ground; it has no end and does not repeat.
@@ -204,8 +204,8 @@ EVODEVO_HD Ground<T> ground_at(T x, T y, const Roughness<T>& shape) {
   const T near = multiply_add(p.value, right - here, here), far = multiply_add(p.value, across - behind, behind);
   const T along_x = multiply_add(q.value, (across - behind) - (right - here), right - here);
   const T steepness = shape.roughness * shape.cells;
-  return {shape.roughness * multiply_add(q.value, far - near, near), steepness * p.slope * along_x,
-          steepness * q.slope * (far - near)};
+  return {shape.roughness * multiply_add(q.value, far - near, near), steepness * p.rise * along_x,
+          steepness * q.rise * (far - near)};
 }
 
 /// The part of a velocity along the ground's normal (-slope_x, -slope_y, 1), m/s.

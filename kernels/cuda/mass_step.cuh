@@ -113,16 +113,16 @@ __device__ __forceinline__ Number next_clearance(const World<Number>& world, con
   return physics::moved(clearance(world, m.place), rise(world, m.place, m.velocity), world.dt);
 }
 
-/// Adds the ground's push along z, and what it has along x and y where the ground is not level.
-__device__ __forceinline__ void push_off(const World<Number>& world, const Place& place, Number up, Place& v) {
-  v.z += up;
+/// Adds what the ground's push, `up` along z, has along x and y where the ground is not level.
+__device__ __forceinline__ void lean(const World<Number>& world, const Place& place, Number up, Place& v) {
   if constexpr (rough) v = physics::leaned(ground_under(world, place), v, up);
 }
 
 __device__ __forceinline__ void add_floor(const World<Number>& world, Moving& m) {
   if constexpr (floor_on) {
     m.push = physics::floor_force(world.floor_stiffness, clearance(world, m.place));
-    push_off(world, m.place, m.push, m.force);
+    m.force.z += m.push;
+    lean(world, m.place, m.push, m.force);
   }
 }
 

@@ -47,7 +47,9 @@ __device__ __forceinline__ Place resistance_of(const World<Number>& world, Movin
   if constexpr (drag) across = -physics::drag_factor(world.drag_coefficient, m.velocity);
   if constexpr (floor_on) {
     touching = physics::zero_unless_greater(-next_clearance(world, m), Number(0), world.floor_stiffness);
-    push_off(world, m.place, -touching * clearance(world, m.place), m.force);
+    const Number above = clearance(world, m.place);
+    m.force.z = physics::negative_multiply_add(touching, above, m.force.z);
+    lean(world, m.place, -touching * above, m.force);
   }
   return {across, across, physics::multiply_add(world.dt, touching, across)};
 }
@@ -59,8 +61,9 @@ __device__ __forceinline__ Place resisted(const World<Number>& world, const Plac
   if constexpr (rough) {
     // along the ground's normal, not z
     const Number touching = resistance.z - resistance.x;
-    all.z -= touching * v.z;
-    push_off(world, place, touching * rise(world, place, v), all);
+    const Number up = touching * rise(world, place, v);
+    all.z += up - touching * v.z;
+    lean(world, place, up, all);
   }
   return all;
 }

@@ -52,7 +52,8 @@ __device__ __forceinline__ void solve_floor(const World<Number>& world, Moving& 
     if constexpr (rough) inverse_mass *= physics::normal_squared(ground_under(world, m.place));
     m.push = physics::compliant_force(world.floor_stiffness, physics::maximum(-z, Number(0)), world.dt * world.push,
                                       inverse_mass);
-    push_off(world, m.place, m.push * (world.push * m.inverse_mass), m.velocity);
+    m.velocity.z = physics::advanced_velocity(m.velocity.z, m.push, world.push * m.inverse_mass);
+    lean(world, m.place, m.push * (world.push * m.inverse_mass), m.velocity);
   }
 }
 
