@@ -23,6 +23,8 @@ constexpr Command commands[] = {
     {"body", body_command, "body DIR                         a robot of a run, as JSON"},
     {"life", life_command, "life DIR                         how a robot's body developed"},
     {"simulate", simulate_command, "simulate BODY.json EXPERIMENT.toml   one body in a scene"},
+    {"environments", environments_command,
+     "environments EXPERIMENT.toml...  the bodies that one genome grows in several scenes"},
     {"check", check_command, "check EXPERIMENT.toml            whether an experiment can be run"},
     {"operators", operators_command, "operators                        the operators that are there"},
     {"describe", describe_command, "describe OPERATOR                its parameters"},

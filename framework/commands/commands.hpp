@@ -20,6 +20,7 @@ int show_command(const Arguments& arguments);
 int body_command(const Arguments& arguments);
 int life_command(const Arguments& arguments);
 int simulate_command(const Arguments& arguments);
+int environments_command(const Arguments& arguments);
 int operators_command(const Arguments& arguments);
 int describe_command(const Arguments& arguments);
 int new_command(const Arguments& arguments);
