@@ -329,9 +329,15 @@ std::optional<Verification> Archive::verification(std::uint32_t id) const {
 }
 
 std::string Archive::record(const std::string& key) const {
+  auto value = find_record(key);
+  if (!value) throw ArchiveError(folder_.string() + ": its record has no \"" + key + "\"");
+  return std::move(*value);
+}
+
+std::optional<std::string> Archive::find_record(const std::string& key) const {
   SQLite::Statement query(files_->database, "SELECT value FROM record WHERE key = ?");
   query.bind(1, key);
-  if (!query.executeStep()) throw ArchiveError(folder_.string() + ": its record has no \"" + key + "\"");
+  if (!query.executeStep()) return std::nullopt;
   return query.getColumn(0).getString();
 }
 

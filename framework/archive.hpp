@@ -48,6 +48,8 @@ class Archive {
   const std::filesystem::path& folder() const { return folder_; }
   /// An entry of the run's record, such as "seed" or "device". Throws ArchiveError if there is none.
   std::string record(const std::string& key) const;
+  /// The same; nothing if there is none.
+  std::optional<std::string> find_record(const std::string& key) const;
   void set_record(const std::string& key, const std::string& value);
   std::vector<OperatorUse> operators() const;
   std::vector<Objective> objectives() const;

@@ -57,24 +57,26 @@ std::vector<std::uint32_t> pieces(const Body& body) {
   return leader;
 }
 
-/// Keeps the piece with most masses; of equal ones that of the lowest index.
-void keep_largest_piece(Body& body) {
+/// Keeps the piece with most masses; of equal ones that of the lowest index. Returns the masses kept.
+std::vector<std::uint32_t> keep_largest_piece(Body& body) {
   const std::vector<std::uint32_t> leader = pieces(body);
   std::vector<std::uint32_t> size(body.masses.size(), 0);
   for (const std::uint32_t i : leader) ++size[i];
   const auto largest = static_cast<std::uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
 
-  std::vector<std::uint32_t> new_index(body.masses.size(), 0);
-  std::vector<Mass> kept;
+  std::vector<std::uint32_t> new_index(body.masses.size(), 0), kept;
+  std::vector<Mass> masses;
   for (std::uint32_t i = 0; i < leader.size(); ++i) {
     if (leader[i] != largest) continue;
-    new_index[i] = static_cast<std::uint32_t>(kept.size());
-    kept.push_back(body.masses[i]);
+    new_index[i] = static_cast<std::uint32_t>(masses.size());
+    kept.push_back(i);
+    masses.push_back(body.masses[i]);
   }
   std::erase_if(body.springs, [&](const Spring& spring) { return leader[spring.a] != largest; });
   for (Spring& spring : body.springs)
     spring = {new_index[spring.a], new_index[spring.b], spring.rest_length, spring.material};
-  body.masses = std::move(kept);
+  body.masses = std::move(masses);
+  return kept;
 }
 
 void place_on_origin(Body& body) {
@@ -99,16 +101,16 @@ std::string blueprint_failure(const Blueprint& blueprint) {
 /// What is left to do once neighbours are joined.
 BuiltBody finish(Body body) {
   leave_out_air(body);
-  if (body.springs.empty()) return {{}, "no springs"};
-  keep_largest_piece(body);
+  if (body.springs.empty()) return {{}, "no springs", {}};
+  std::vector<std::uint32_t> kept = keep_largest_piece(body);
   place_on_origin(body);
-  return {std::move(body), ""};
+  return {std::move(body), "", std::move(kept)};
 }
 
 }  // namespace
 
 BuiltBody build_body(Blueprint blueprint) {
-  if (std::string failure = blueprint_failure(blueprint); !failure.empty()) return {{}, std::move(failure)};
+  if (std::string failure = blueprint_failure(blueprint); !failure.empty()) return {{}, std::move(failure), {}};
   join(blueprint.body, nearest_pairs(rest_places(blueprint.body), blueprint.neighbours));
   return finish(std::move(blueprint.body));
 }

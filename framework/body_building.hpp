@@ -14,7 +14,8 @@ namespace evodevo {
 /// A finished body, or why there is none.
 struct BuiltBody {
   Body body;
-  std::string failure;  ///< empty where there is a body
+  std::string failure;              ///< empty where there is a body
+  std::vector<std::uint32_t> kept;  ///< which of the blueprint's masses the body's are, ascending
 };
 
 /// Joins the neighbours that the blueprint asks for, leaves out springs of air (and counts them as contacts), drops

@@ -1,6 +1,7 @@
 #include "options.hpp"
 
 #include <iostream>
+#include <limits>
 
 #include "text.hpp"
 #include "toml_reader.hpp"
@@ -17,8 +18,12 @@ std::optional<po::variables_map> parse(CommandLine line, const Arguments& argume
   po::options_description all = line.options;
   po::positional_options_description positional;
   for (const std::string& name : line.positional) {
-    all.add_options()(name.c_str(), po::value<std::string>());
-    positional.add(name.c_str(), 1);
+    const bool takes_rest = name.ends_with("...");
+    if (takes_rest)
+      all.add_options()(name.c_str(), po::value<std::vector<std::string>>());
+    else
+      all.add_options()(name.c_str(), po::value<std::string>());
+    positional.add(name.c_str(), takes_rest ? -1 : 1);
   }
   po::variables_map given;
   try {
@@ -50,6 +55,12 @@ constexpr Shorthand shorthands[] = {
 };
 
 }  // namespace
+
+std::uint32_t individual_id(std::int64_t number) {
+  if (number < 0 || number > std::numeric_limits<std::uint32_t>::max())
+    throw UsageError("--individual " + std::to_string(number) + ": expected the id of an individual, from 0");
+  return static_cast<std::uint32_t>(number);
+}
 
 void add_experiment_options(po::options_description& options) {
   for (const Shorthand& shorthand : shorthands)

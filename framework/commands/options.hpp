@@ -10,13 +10,17 @@ namespace evodevo {
 
 /// What a command expects.
 struct CommandLine {
-  std::string usage;                    ///< "run EXPERIMENT.toml [options]"
-  std::vector<std::string> positional;  ///< names of required arguments, in order
+  std::string usage;  ///< "run EXPERIMENT.toml [options]"
+  std::vector<std::string>
+      positional;  ///< names of required arguments, in order; one that ends in "..." takes the rest
   boost::program_options::options_description options;
 };
 
 /// The values given; empty where --help was asked for and printed. Throws UsageError.
 std::optional<boost::program_options::variables_map> parse(CommandLine line, const Arguments& arguments);
+
+/// An id given as a number. Throws UsageError for one that no individual can have.
+std::uint32_t individual_id(std::int64_t number);
 
 /// --set, and shorthands for single keys.
 void add_experiment_options(boost::program_options::options_description& options);

@@ -44,7 +44,8 @@ class Neural final : public evodevo::Encoding {
 
     const auto materials = static_cast<Eigen::Index>(chosen.size());
     const float* genes = genome.data();
-    const Matrix first = layer(genes, hidden_, ball(world)).cwiseMax(0);
+    const Matrix points = ball(world);
+    const Matrix first = layer(genes, hidden_, points).cwiseMax(0);
     const Matrix second = layer(genes, hidden_, first).cwiseMax(0);
     const Matrix outputs = layer(genes, 3 + materials, second);
 
@@ -58,6 +59,7 @@ class Neural final : public evodevo::Encoding {
       blueprint.body.masses.push_back(
           {{place(output[0]), place(output[1]), place(output[2])}, world.mass, chosen[static_cast<size_t>(material)]});
     }
+    for (const auto& point : points.colwise()) blueprint.origins.push_back({point[0], point[1], point[2]});
     return blueprint;
   }
 

@@ -37,6 +37,8 @@ struct Blueprint {
   std::uint32_t neighbours =
       0;                ///< > 0: every mass is joined to as many nearest ones; materials: mean of the two masses'
   std::string failure;  ///< why there is no body; empty where there is one
+  std::vector<Vec3> origins =
+      {};  ///< of an encoding that maps points to places: the point of each mass, to be looked at
 };
 
 class Encoding : public Operator {

@@ -1,0 +1,356 @@
+// One robot in its world, drawn by three.js. Springs and masses are flat pieces that face the camera and are shaded as
+// cylinders and balls: two triangles each, their ends looked up in a texture of places, so that a frame costs the
+// program no more than writing the places of the masses.
+import * as THREE from "three";
+import { springColour, materialColour } from "./colours.js";
+import { style } from "./elements.js";
+
+const textureWidth = 256;
+const effectTime = 0.7; // s in which vanished springs fade and new ones cool
+
+const placeOf = /* glsl */ `
+uniform sampler2D places;
+vec3 placeOf(float mass) {
+  int i = int(mass);
+  return texelFetch(places, ivec2(i % ${textureWidth}, i / ${textureWidth}), 0).xyz;
+}`;
+
+const shade = /* glsl */ `
+uniform vec3 haze;
+uniform vec2 hazeRange;
+vec3 shade(vec3 colour, vec3 normal, float depth) {
+  float light = 0.58 + 0.42 * max(0.0, dot(normal, normalize(vec3(-0.35, 0.75, 0.55))));
+  return mix(colour * light, haze, 0.55 * smoothstep(hazeRange.x, hazeRange.y, depth));
+}`;
+
+const springVertex = /* glsl */ `
+in vec2 ends;
+in vec3 colour;
+in float fresh;
+uniform float radius;
+out vec3 vColour;
+out vec3 vSide;
+out vec3 vFront;
+out float vAcross;
+out float vDepth;
+${placeOf}
+void main() {
+  vec4 a = modelViewMatrix * vec4(placeOf(ends.x), 1.0);
+  vec4 b = modelViewMatrix * vec4(placeOf(ends.y), 1.0);
+  vec3 along = b.xyz - a.xyz;
+  vec3 at = mix(a.xyz, b.xyz, position.y);
+  vSide = normalize(cross(along, -at) + vec3(1e-9, 0.0, 0.0));
+  vFront = normalize(cross(vSide, along) + vec3(0.0, 0.0, 1e-9));
+  if (dot(vFront, -at) < 0.0) vFront = -vFront;
+  vAcross = position.x;
+  vColour = colour;
+  vDepth = -at.z;
+  gl_Position = projectionMatrix * vec4(at + vSide * position.x * radius * (1.0 + 1.2 * fresh), 1.0);
+}`;
+
+const springFragment = /* glsl */ `
+in vec3 vColour;
+in vec3 vSide;
+in vec3 vFront;
+in float vAcross;
+in float vDepth;
+uniform float opacity;
+out vec4 fragment;
+${shade}
+void main() {
+  vec3 normal = vSide * vAcross + vFront * sqrt(max(0.0, 1.0 - vAcross * vAcross));
+  fragment = vec4(shade(vColour, normal, vDepth), opacity);
+}`;
+
+const massVertex = /* glsl */ `
+in float mass;
+in vec3 colour;
+uniform float radius;
+out vec2 vAt;
+out vec3 vColour;
+out float vDepth;
+${placeOf}
+void main() {
+  vec4 at = modelViewMatrix * vec4(placeOf(mass), 1.0);
+  vAt = position.xy;
+  vColour = colour;
+  vDepth = -at.z;
+  gl_Position = projectionMatrix * (at + vec4(position.xy * radius, 0.0, 0.0));
+}`;
+
+const massFragment = /* glsl */ `
+in vec2 vAt;
+in vec3 vColour;
+in float vDepth;
+out vec4 fragment;
+${shade}
+void main() {
+  float r = dot(vAt, vAt);
+  if (r > 1.0) discard;
+  fragment = vec4(shade(vColour, vec3(vAt, sqrt(1.0 - r)), vDepth), 1.0);
+}`;
+
+// springs laid on the floor along the light; the stencil lets each pixel darken once
+const shadowVertex = /* glsl */ `
+in vec2 ends;
+uniform float radius;
+${placeOf}
+vec3 onFloor(vec3 p) { return vec3(p.xy + max(0.0, p.z) * vec2(-0.18, 0.3), 0.0); }
+void main() {
+  vec3 a = onFloor(placeOf(ends.x)), b = onFloor(placeOf(ends.y));
+  vec2 along = normalize(b.xy - a.xy + vec2(1e-9, 0.0));
+  vec3 at = mix(a, b, position.y) + vec3(-along.y, along.x, 0.0) * position.x * radius * 2.2;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1.0);
+}`;
+
+const shadowFragment = /* glsl */ `
+uniform vec4 shadow;
+out vec4 fragment;
+void main() { fragment = shadow; }`;
+
+const skyVertex = /* glsl */ `
+out vec2 vAt;
+void main() {
+  vAt = position.xy;
+  gl_Position = vec4(position.xy, 0.0, 1.0);
+}`;
+
+const skyFragment = /* glsl */ `
+in vec2 vAt;
+uniform vec3 near;
+uniform vec3 far;
+out vec4 fragment;
+void main() { fragment = vec4(mix(near, far, smoothstep(0.0, 1.5, length(vAt - vec2(0.0, 0.2)))), 1.0); }`;
+
+const floorVertex = /* glsl */ `
+out vec2 vAt;
+void main() {
+  vec4 at = modelMatrix * vec4(position, 1.0);
+  vAt = at.xy;
+  gl_Position = projectionMatrix * viewMatrix * at;
+}`;
+
+const floorFragment = /* glsl */ `
+in vec2 vAt;
+uniform vec3 line;
+uniform vec2 focus;
+uniform float reach;
+out vec4 fragment;
+float grid(float cell, float width) {
+  vec2 at = vAt / cell;
+  vec2 edge = abs(fract(at - 0.5) - 0.5) / (fwidth(at) * width);
+  return 1.0 - min(min(edge.x, edge.y), 1.0);
+}
+void main() {
+  float fade = 1.0 - smoothstep(0.25 * reach, reach, distance(vAt, focus));
+  float strength = max(0.32 * grid(0.25, 1.0), 0.85 * grid(1.0, 1.4));
+  fragment = vec4(line, strength * fade);
+}`;
+
+// motes that drift past: what a swimmer moves through, repeated around the focus
+const moteVertex = /* glsl */ `
+uniform vec3 focus;
+uniform float reach;
+uniform float pixels;
+out float vFade;
+void main() {
+  vec3 at = mod(position * 2.0 * reach - focus + reach, 2.0 * reach) - reach;
+  vFade = 1.0 - smoothstep(0.4 * reach, reach, length(at));
+  vec4 view = viewMatrix * vec4(at + focus, 1.0);
+  gl_Position = projectionMatrix * view;
+  gl_PointSize = clamp(0.012 * reach * pixels / -view.z, 1.0, 7.0);
+}`;
+
+const moteFragment = /* glsl */ `
+in float vFade;
+uniform vec3 line;
+out vec4 fragment;
+void main() {
+  float r = length(gl_PointCoord - 0.5) * 2.0;
+  fragment = vec4(line, vFade * (1.0 - smoothstep(0.4, 1.0, r)));
+}`;
+
+const material = (vertexShader, fragmentShader, uniforms, options = {}) =>
+  new THREE.ShaderMaterial({ glslVersion: THREE.GLSL3, vertexShader, fragmentShader, uniforms, ...options });
+
+/** Instances of a square whose corners are at ±1 across and 0 … 1, or ±1, along. */
+function pieces(low) {
+  const geometry = new THREE.InstancedBufferGeometry();
+  const corners = [-1, low, 0, 1, low, 0, 1, 1, 0, -1, 1, 0];
+  geometry.setAttribute("position", new THREE.Float32BufferAttribute(corners, 3));
+  geometry.setIndex([0, 1, 2, 0, 2, 3]);
+  geometry.instanceCount = 0;
+  return geometry;
+}
+
+function setInstances(geometry, count, attributes) {
+  for (const [name, [size, values]] of Object.entries(attributes))
+    geometry.setAttribute(name, new THREE.InstancedBufferAttribute(Float32Array.from(values), size));
+  geometry.instanceCount = count;
+}
+
+const colour = (name) => new THREE.Color().setStyle(style(name), THREE.LinearSRGBColorSpace);
+
+export class Stage {
+  /** A robot in its scene, which may have a floor, or water. */
+  constructor(life, scene) {
+    this.life = life;
+    this.scene = new THREE.Scene();
+    this.mode = "material";
+    const { size, middle } = life.boxIn(0);
+    this.size = size;
+    this.start = middle;
+    this.focus = new THREE.Vector3();
+    const rows = Math.max(1, Math.ceil(life.massCount / textureWidth));
+    this.places = new THREE.DataTexture(new Float32Array(4 * textureWidth * rows), textureWidth, rows, THREE.RGBAFormat, THREE.FloatType);
+    this.#makeUniforms();
+    this.#addSky();
+    this.#addFloor(scene.floor);
+    if (scene.water) this.#addMotes();
+    this.#addBody(scene.floor);
+    this.readTheme();
+  }
+
+  #makeUniforms() {
+    const springs = Math.max(1, ...this.life.shots.map((shot) => shot.springs.length));
+    const radius = this.size * Math.min(0.0075, 0.09 / Math.sqrt(springs));
+    this.shared = {
+      places: { value: this.places },
+      radius: { value: radius },
+      haze: { value: new THREE.Color() },
+      hazeRange: { value: new THREE.Vector2() },
+    };
+    this.world = { line: { value: new THREE.Color() }, focus: { value: new THREE.Vector3() }, reach: { value: 6 * this.size } };
+    this.shadow = { value: new THREE.Vector4() };
+  }
+
+  #add(geometry, made, order) {
+    const mesh = new THREE.Mesh(geometry, made);
+    mesh.frustumCulled = false;
+    mesh.renderOrder = order;
+    this.scene.add(mesh);
+    return mesh;
+  }
+
+  #addBody(hasFloor) {
+    const springs = (opacity, options) => material(springVertex, springFragment, { ...this.shared, opacity: { value: opacity } }, { side: THREE.DoubleSide, ...options });
+    this.springs = pieces(0);
+    this.#add(this.springs, springs(1, {}), 2);
+    this.gone = pieces(0);
+    this.goneMaterial = springs(0, { transparent: true, depthWrite: false });
+    this.#add(this.gone, this.goneMaterial, 4);
+    this.masses = pieces(-1);
+    this.#add(this.masses, material(massVertex, massFragment, { ...this.shared, radius: { value: 1.7 * this.shared.radius.value } }), 3);
+    if (!hasFloor) return;
+    const stencil = { stencilWrite: true, stencilRef: 0, stencilFunc: THREE.EqualStencilFunc, stencilZPass: THREE.IncrementStencilOp };
+    this.#add(this.springs, material(shadowVertex, shadowFragment, { ...this.shared, shadow: this.shadow }, { transparent: true, depthWrite: false, side: THREE.DoubleSide, ...stencil }), 1);
+  }
+
+  #addSky() {
+    this.sky = { near: { value: new THREE.Color() }, far: { value: new THREE.Color() } };
+    this.#add(new THREE.PlaneGeometry(2, 2), material(skyVertex, skyFragment, this.sky, { depthWrite: false, depthTest: false }), -1);
+  }
+
+  #addFloor(there) {
+    if (!there) return;
+    this.floor = this.#add(new THREE.PlaneGeometry(1, 1), material(floorVertex, floorFragment, this.world, { transparent: true, depthWrite: false }), 0);
+    this.floor.scale.setScalar(4 * this.world.reach.value);
+  }
+
+  #addMotes() {
+    const geometry = new THREE.BufferGeometry();
+    let seed = 1; // a generator of its own: every page shows the same water
+    const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute(Array.from({ length: 3 * 500 }, random), 3));
+    this.pixels = { value: 1 };
+    const motes = new THREE.Points(geometry, material(moteVertex, moteFragment, { ...this.world, pixels: this.pixels }, { transparent: true, depthWrite: false }));
+    motes.frustumCulled = false;
+    this.scene.add(motes);
+  }
+
+  readTheme() {
+    this.shared.haze.value.copy(colour("--stage"));
+    this.sky.near.value.copy(colour("--stage"));
+    this.sky.far.value.copy(colour("--stage-low"));
+    this.world.line.value.copy(colour("--grid"));
+    const dark = colour("--shadow");
+    this.shadow.value.set(dark.r, dark.g, dark.b, Number(style("--shadow-strength")));
+    this.#shown = undefined;
+  }
+
+  setMode(mode) {
+    this.mode = mode;
+    this.#shown = undefined;
+  }
+
+  #shown; // the shot whose springs are in the buffers
+
+  #fill(index) {
+    const { life } = this;
+    const shot = life.shots[index];
+    const springs = (list) => ({
+      ends: [2, list.flatMap(({ spring }) => [life.ends[2 * spring], life.ends[2 * spring + 1]])],
+      colour: [3, list.flatMap(({ shot: of, i }) => springColour(life, of, i, this.mode))],
+      fresh: [1, list.map(({ fresh }) => fresh)],
+    });
+    this.all = Array.from(shot.springs, (spring, i) => ({ spring, i, shot, fresh: shot.isNew[i] }));
+    setInstances(this.springs, this.all.length, springs(this.all));
+    const gone = shot.gone.map(({ spring, i }) => ({ spring, i, shot: life.shots[index - 1], fresh: 1 }));
+    setInstances(this.gone, gone.length, springs(gone));
+    this.baseColours = this.springs.attributes.colour.array.slice();
+    setInstances(this.masses, shot.masses.length, {
+      mass: [1, shot.masses],
+      colour: [3, Array.from(shot.masses).flatMap((mass) => this.#massColour(mass, shot))],
+    });
+    this.#shown = index;
+  }
+
+  #massColour(mass, shot) {
+    const made = this.life.robot.film.materials[this.life.massMaterials[mass]];
+    if (made && shot.springs.length === 0) return materialColour(made, this.life.robot.film.materials);
+    return colour("--mass").toArray();
+  }
+
+  /** Lets new springs glow, and vanished ones fade, by the time since the shot began. */
+  #light(shot, time) {
+    const left = 1 - Math.min(1, (time - shot.begin) / Math.min(effectTime, 0.7 * (shot.end - shot.begin) || effectTime));
+    this.goneMaterial.uniforms.opacity.value = 0.75 * left;
+    if (!shot.isNew.includes(1)) return;
+    const glow = colour("--fresh").toArray();
+    const { colour: colours, fresh } = this.springs.attributes;
+    shot.isNew.forEach((isNew, i) => {
+      if (!isNew) return;
+      fresh.array[i] = left;
+      for (let k = 0; k < 3; ++k) colours.array[3 * i + k] = this.baseColours[3 * i + k] + left * (glow[k] - this.baseColours[3 * i + k]);
+    });
+    colours.needsUpdate = fresh.needsUpdate = true;
+  }
+
+  /** Puts the robot where it is at a time, and the camera's focus with it. */
+  seek(time, follow) {
+    const { life } = this;
+    if (life.shots.length === 0) return;
+    const index = life.shotAt(time);
+    if (index !== this.#shown) this.#fill(index);
+    life.writePlaces(time, this.places.image.data);
+    this.places.needsUpdate = true;
+    this.#light(life.shots[index], time);
+    const middle = follow ? life.middleAt(time, life.smoothPath) : this.start;
+    // heights stay, so that a fall looks like one
+    this.focus.set(middle[0], middle[1], this.floor ? this.start[2] : middle[2]);
+    this.world.focus.value.copy(this.focus);
+    this.floor?.position.set(this.focus.x, this.focus.y, 0);
+  }
+
+  draw(renderer, camera, height) {
+    const distance = camera.position.distanceTo(this.focus);
+    this.shared.hazeRange.value.set(distance - 0.5 * this.size, distance + 1.1 * this.size);
+    if (this.pixels) this.pixels.value = height;
+    renderer.render(this.scene, camera);
+  }
+
+  dispose() {
+    this.scene.traverse((object) => (object.geometry?.dispose(), object.material?.dispose()));
+    this.places.dispose();
+  }
+}
