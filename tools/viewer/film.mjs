@@ -68,8 +68,8 @@ async function still(tab, out, at) {
     return asked ?? (viewer.stages[0].life.shots.at(-1).begin + viewer.end) / 2;
   }, at);
   const image = await picture(tab, moment);
-  const isGallery = await tab.evaluate(async () => (await window.evodevo).gallery !== undefined);
-  await writeFile(out, isGallery ? await tab.screenshot({ fullPage: true }) : image);
+  const gallery = await tab.$(".gallery");
+  await writeFile(out, gallery ? await gallery.screenshot() : image);
 }
 
 const [page, out, at] = process.argv.slice(2);

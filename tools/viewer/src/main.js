@@ -22,6 +22,9 @@ const labelOf = (run, robot) => {
 };
 const robots = runs.flatMap((run) => run.robots.map((robot) => ({ run, robot, label: labelOf(run, robot) })));
 
+/** A share in percent that is 100 only where it is all. */
+const share = (part, all) => (part === all ? "100" : Math.min(99.9, (100 * part) / all).toFixed(1));
+
 function facts(run) {
   const fact = (label, value, note) => element("div", { className: "fact" }, element("dt", { textContent: label }), element("dd", {}, element("b", { textContent: value }), note ? element("span", { textContent: note }) : null));
   const [objective] = run.objectives;
@@ -32,7 +35,7 @@ function facts(run) {
     fact(`Best ${objective.name}`, short(run.best?.objectives[objective.name]), objective.unit),
     fact("Evaluations", run.evaluations.toLocaleString("en"), run.finished ? `${run.generations.length} generations` : `of ${run.evaluations_asked.toLocaleString("en")}, not finished`),
     fact("Springs simulated", short(springs), "spring evaluations"),
-    fact("Ended well", all > 0 ? `${Math.round((100 * run.statuses.ok) / all)} %` : "–", `${run.statuses.invalid} invalid, ${run.statuses.diverged} diverged`),
+    fact("Ended well", all > 0 ? `${share(run.statuses.ok, all)} %` : "–", `${run.statuses.invalid} invalid, ${run.statuses.diverged} diverged`),
     fact("The best, verified", marks === undefined ? "not yet" : marks.length > 0 ? marks.join(", ") : "held", marks === undefined ? "see evodevo verify" : marks.length > 0 ? "" : "neither artefact nor passive"));
 }
 

@@ -335,11 +335,19 @@ export class Stage {
     life.writePlaces(time, this.places.image.data);
     this.places.needsUpdate = true;
     this.#light(life.shots[index], time);
-    const middle = follow ? life.middleAt(time, life.smoothPath) : this.start;
-    // heights stay, so that a fall looks like one
-    this.focus.set(middle[0], middle[1], this.floor ? this.start[2] : middle[2]);
+    const middle = follow ? this.#followed(time) : this.start;
+    this.focus.set(...middle);
     this.world.focus.value.copy(this.focus);
     this.floor?.position.set(this.focus.x, this.focus.y, 0);
+  }
+
+  /** Where the body's middle has moved from where it was at birth. */
+  #followed(time) {
+    const { life, start } = this;
+    const from = life.middleAt(life.begin, life.smoothPath);
+    const now = life.middleAt(time, life.smoothPath);
+    const height = this.floor && from[2] > 0 ? (start[2] * now[2]) / from[2] : start[2] + now[2] - from[2];
+    return [start[0] + now[0] - from[0], start[1] + now[1] - from[1], height];
   }
 
   draw(renderer, camera, height) {
