@@ -1,12 +1,11 @@
 // What the tests of the page share: a small run, a browser, and ways to look at pictures.
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
-import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 
-const { chromium } = createRequire(join(process.env.EVODEVO_VIEWER, "film.mjs"))("playwright-core");
+export const { launch } = await import(pathToFileURL(join(process.env.EVODEVO_VIEWER, "browser.mjs")).href);
 
 /** Names that would do harm, were they read as markup. */
 export const experimentName = `<img src=x onerror="window.harmed=1">`;
@@ -77,9 +76,6 @@ export function archived(folder, query) {
   const program = "import json,sqlite3,sys; print(json.dumps(sqlite3.connect(sys.argv[1]).execute(sys.argv[2]).fetchall()))";
   return JSON.parse(execFileSync("python3", ["-c", program, join(folder, "run.sqlite"), query], { encoding: "utf8" }));
 }
-
-export const launch = () =>
-  chromium.launch({ executablePath: process.env.EVODEVO_CHROMIUM, args: ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", ...(process.getuid() === 0 ? ["--no-sandbox"] : [])] });
 
 /** A page opened from its file; what it asks for and complains of is kept in `requests` and `complaints`. */
 export async function opened(browser, file, options = {}) {

@@ -1,8 +1,6 @@
 // What the colours of springs mean.
 import { style } from "./elements.js";
 
-export const colourModes = { material: "material", stress: "stress", cycle: "cycle" };
-
 const mix = (a, b, t) => a.map((x, i) => x + (b[i] - x) * t);
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
 const ramp = (stops, t) => {
@@ -33,13 +31,21 @@ export const stressColour = (level) => ramp(palette.stress, level / 255);
 export const cycleColour = (cameWith, shots) =>
   cameWith <= 0 ? palette.born : ramp(palette.cycles, shots > 2 ? (cameWith - 1) / (shots - 2) : 1);
 
-/** How many of the shots can bring springs: the development cycles, and what follows them. */
-export const developing = (life) => new Set([0, ...life.cameWith]).size > 1 ? Math.max(...life.cameWith) + 1 : 1;
+/** How many of the first shots hold all in which springs come. */
+export const developing = (life) => 1 + life.cameWith.reduce((last, index) => Math.max(last, index), 0);
 
-/** The colour of the i-th spring of a shot. */
-export function springColour(life, shot, i, mode) {
-  const materials = life.robot.film.materials;
-  if (mode === colourModes.stress) return stressColour(shot.stress[i] ?? 0);
-  if (mode === colourModes.cycle) return cycleColour(life.cameWith[shot.springs[i]], developing(life));
-  return materialColour(materials[shot.materials[i]], materials);
+/** A function that gives the colour of the i-th spring of a shot. */
+export function springColours(life, mode) {
+  const { materials } = life.robot.film;
+  if (mode === "stress") {
+    const levels = Array.from({ length: 256 }, (_, level) => stressColour(level));
+    return (shot, i) => levels[shot.stress[i] ?? 0];
+  }
+  if (mode === "cycle") {
+    const cycles = developing(life);
+    const colours = life.shots.map((_, index) => cycleColour(index, cycles));
+    return (shot, i) => colours[life.cameWith[shot.springs[i]]];
+  }
+  const colours = materials.map((made) => materialColour(made, materials));
+  return (shot, i) => colours[shot.materials[i]];
 }

@@ -35,7 +35,8 @@ export class Life {
     };
   }
 
-  /** Finds the shot in which each spring came, and for each shot the springs that came and went with it. */
+  /** Finds the shot in which each spring came; for each shot which of its springs are new, and which of the one before
+   *  have gone. */
   #markArrivals() {
     this.cameWith = new Int32Array(this.ends.length / 2).fill(-1);
     let before = new Map();
@@ -46,7 +47,7 @@ export class Life {
         now.set(spring, i);
       });
       shot.isNew = Uint8Array.from(shot.springs, (spring) => (index > 0 && !before.has(spring) ? 1 : 0));
-      shot.gone = [...before].filter(([spring]) => !now.has(spring)).map(([spring, i]) => ({ spring, i }));
+      shot.gone = [...before].filter(([spring]) => !now.has(spring)).map(([, i]) => i);
       before = now;
     });
   }

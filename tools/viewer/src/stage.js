@@ -2,7 +2,7 @@
 // cylinders and balls: two triangles each, their ends looked up in a texture of places, so that a frame costs the
 // program no more than writing the places of the masses.
 import * as THREE from "three";
-import { springColour, materialColour } from "./colours.js";
+import { materialColour, springColours } from "./colours.js";
 import { style } from "./elements.js";
 
 const textureWidth = 256;
@@ -185,7 +185,7 @@ function pieces(low) {
 
 function setInstances(geometry, count, attributes) {
   for (const [name, [size, values]] of Object.entries(attributes))
-    geometry.setAttribute(name, new THREE.InstancedBufferAttribute(Float32Array.from(values), size));
+    geometry.setAttribute(name, new THREE.InstancedBufferAttribute(values, size));
   geometry.instanceCount = count;
 }
 
@@ -288,27 +288,36 @@ export class Stage {
   #fill(index) {
     const { life } = this;
     const shot = life.shots[index];
-    const springs = (list) => ({
-      ends: [2, list.flatMap(({ spring }) => [life.ends[2 * spring], life.ends[2 * spring + 1]])],
-      colour: [3, list.flatMap(({ shot: of, i }) => springColour(life, of, i, this.mode))],
-      fresh: [1, list.map(({ fresh }) => fresh)],
-    });
-    this.all = Array.from(shot.springs, (spring, i) => ({ spring, i, shot, fresh: shot.isNew[i] }));
-    setInstances(this.springs, this.all.length, springs(this.all));
-    const gone = shot.gone.map(({ spring, i }) => ({ spring, i, shot: life.shots[index - 1], fresh: 1 }));
-    setInstances(this.gone, gone.length, springs(gone));
+    const colourOf = springColours(life, this.mode);
+    const there = Array.from(shot.springs, (_, i) => i);
+    setInstances(this.springs, there.length, this.#instances(shot, there, colourOf, (i) => shot.isNew[i]));
+    setInstances(this.gone, shot.gone.length, this.#instances(life.shots[index - 1], shot.gone, colourOf, () => 1));
     this.baseColours = this.springs.attributes.colour.array.slice();
     setInstances(this.masses, shot.masses.length, {
-      mass: [1, shot.masses],
-      colour: [3, Array.from(shot.masses).flatMap((mass) => this.#massColour(mass, shot))],
+      mass: [1, Float32Array.from(shot.masses)],
+      colour: [3, this.#massColours(shot)],
     });
     this.#shown = index;
   }
 
-  #massColour(mass, shot) {
-    const made = this.life.robot.film.materials[this.life.massMaterials[mass]];
-    if (made && shot.springs.length === 0) return materialColour(made, this.life.robot.film.materials);
-    return colour("--mass").toArray();
+  /** What the buffers hold of some of a shot's springs. */
+  #instances(shot, list, colourOf, freshOf) {
+    const ends = new Float32Array(2 * list.length);
+    const colour = new Float32Array(3 * list.length);
+    list.forEach((i, k) => {
+      const spring = shot.springs[i];
+      ends.set(this.life.ends.subarray(2 * spring, 2 * spring + 2), 2 * k);
+      colour.set(colourOf(shot, i), 3 * k);
+    });
+    return { ends: [2, ends], colour: [3, colour], fresh: [1, Float32Array.from(list, freshOf)] };
+  }
+
+  /** Points that no springs join have the colours of their materials. */
+  #massColours(shot) {
+    const { materials } = this.life.robot.film;
+    const plain = colour("--mass").toArray();
+    const colours = shot.springs.length === 0 ? materials.map((made) => materialColour(made, materials)) : [];
+    return Float32Array.from(Array.from(shot.masses).flatMap((mass) => colours[this.life.massMaterials[mass]] ?? plain));
   }
 
   /** Lets new springs glow, and vanished ones fade, by the time since the shot began. */

@@ -1,0 +1,169 @@
+// What pages of the viewer hold: lives as they were, and numbers that can be unpacked.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include "breeding.hpp"
+#include "report/filming.hpp"
+#include "report/packing.hpp"
+#include "report/page.hpp"
+#include "report/robot_json.hpp"
+#include "support/experiments.hpp"
+
+namespace evodevo {
+namespace {
+
+using ::testing::ElementsAre;
+
+std::vector<Newborn> newborns_of(const std::vector<Individual>& individuals) {
+  std::vector<Newborn> newborns;
+  for (const Individual& individual : individuals)
+    newborns.push_back({individual.id, individual.born, &individual.genome});
+  return newborns;
+}
+
+/// What a page does with a packed text.
+std::vector<std::int64_t> unpacked(const std::string& text) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::vector<unsigned char> deflated, plain(1 << 20);
+  std::uint32_t bits = 0, count = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    bits = bits << 6 | static_cast<std::uint32_t>(digits.find(c));
+    if ((count += 6) >= 8) deflated.push_back(static_cast<unsigned char>(bits >> (count -= 8)));
+  }
+  uLongf size = plain.size();
+  EXPECT_EQ(uncompress(plain.data(), &size, deflated.data(), static_cast<uLong>(deflated.size())), Z_OK);
+  std::vector<std::int64_t> numbers;
+  std::uint64_t number = 0, shift = 0;
+  for (uLongf i = 0; i < size; ++i) {
+    number |= static_cast<std::uint64_t>(plain[i] & 0x7f) << shift;
+    shift += 7;
+    if (plain[i] & 0x80) continue;
+    numbers.push_back(static_cast<std::int64_t>(number >> 1) ^ -static_cast<std::int64_t>(number & 1));
+    number = shift = 0;
+  }
+  return numbers;
+}
+
+TEST(Filming, ChangesNoResult) {
+  const Experiment experiment = testing::read(testing::small_experiment);
+  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 12);
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
+  const std::vector<Newborn> newborns = newborns_of(individuals);
+  const std::vector<Result> plain = Evaluation(experiment, *simulator).evaluate(newborns, [](double) {});
+  const std::vector<FilmedLife> filmed = film_lives(experiment, *simulator, newborns);
+  ASSERT_EQ(filmed.size(), plain.size());
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    EXPECT_EQ(filmed[i].result.status, plain[i].status);
+    EXPECT_EQ(filmed[i].result.spring_evaluations, plain[i].spring_evaluations);
+    ASSERT_EQ(filmed[i].result.objectives.size(), plain[i].objectives.size());
+    for (std::size_t k = 0; k < plain[i].objectives.size(); ++k)
+      EXPECT_NEAR(filmed[i].result.objectives[k], plain[i].objectives[k], 1e-5 * std::abs(plain[i].objectives[k]));
+  }
+}
+
+TEST(Filming, ReachesFromBirthToTheEndWithoutAGap) {
+  const Experiment experiment = testing::read(testing::small_experiment);
+  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 12);
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
+  std::size_t lives = 0;
+  for (const FilmedLife& life : film_lives(experiment, *simulator, newborns_of(individuals))) {
+    if (life.result.status != Status::ok) continue;
+    ++lives;
+    ASSERT_EQ(life.film.size(), 4u);  // two cycles, settling, the window
+    EXPECT_EQ(life.cycles, 2u);
+    double time = 0;
+    for (const Shot& shot : life.film) {
+      EXPECT_NEAR(shot.frames.front().time, time, 1e-9);
+      for (const Frame& frame : shot.frames) EXPECT_EQ(frame.places.size(), shot.body.masses.size());
+      EXPECT_EQ(shot.stress.size(), shot.body.springs.size());
+      time = shot.frames.back().time;
+    }
+    EXPECT_NEAR(time, 2 * 0.05 + 0.15, 1e-9);
+    EXPECT_EQ(life.film.back().frames.size(), 7u);  // 60 a second in 0.1 s, and the first
+  }
+  EXPECT_GT(lives, 4u);
+}
+
+TEST(Filming, SeesTheStressOfTheWholeStretch) {
+  const Experiment experiment = testing::read(testing::small_experiment);
+  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 1);
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  FilmingSimulator camera(*simulator, filmed_frames_per_second);
+  Life life = Evaluation(experiment, *simulator).birth(newborns_of(individuals)).front();
+  ASSERT_TRUE(life.alive());
+  const auto stress = [&](Simulator& by) {
+    State state = life.living.state;
+    Task task{.body = &life.living.body, .state = &state, .steps = 333};
+    by.run({&task, 1}, {.stress = true});
+    return task.stress;
+  };
+  const std::vector<double> whole = stress(*simulator), filmed = stress(camera);
+  ASSERT_EQ(whole.size(), filmed.size());
+  for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_NEAR(filmed[i], whole[i], 1e-4 * whole[i] + 1e-6);
+}
+
+TEST(Packing, KeepsNumbers) {
+  const std::vector<std::int64_t> numbers = {0, -1, 1, 63, -64, 64, 8191, -8193, 1'000'000'007, -(1LL << 40)};
+  for (std::size_t count = 0; count <= numbers.size(); ++count) {
+    const std::vector<std::int64_t> some(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(count));
+    EXPECT_EQ(unpacked(packed(some)), some);
+  }
+}
+
+TEST(Packing, KeepsWhatIsLeftOfStraightLines) {
+  const Frame a{0, {{1, 2, 3}, {2, 2, 3}}}, b{1, {{2, 2, 3}, {3, 2, 3}}}, c{2, {{3, 2, 3}, {4, 2, 7}}};
+  const std::vector<const Frame*> frames = {&a, &b, &c};
+  EXPECT_THAT(unpacked(packed_places(frames, 0.5)), ElementsAre(2, 2, 4, 0, 6, 0, 2, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 8));
+}
+
+/// A body with masses at these x, joined by these pairs.
+Shot shot_of(const std::vector<double>& places, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {
+  Shot shot;
+  shot.body.materials = {{.stiffness = 1}};
+  Frame& frame = shot.frames.emplace_back();
+  for (const double x : places) {
+    shot.body.masses.push_back({.rest = {x, 0, 0}, .mass = 1, .material = 0});
+    frame.places.push_back(seen({x, 0, 0}));
+  }
+  for (const auto& [a, b] : pairs) shot.body.springs.push_back({a, b, 1, 0});
+  shot.stress.assign(pairs.size(), 1.0);
+  return shot;
+}
+
+TEST(FilmJson, KnowsMassesAndSpringsAgainAfterEdits) {
+  // the first mass goes with its spring, the others move up by one; a new mass and a spring to it come
+  const Film film = {shot_of({0, 1, 2}, {{0, 1}, {1, 2}}), shot_of({1, 2, 5}, {{0, 1}, {2, 0}})};
+  const auto json = film_json(film, {"before", "after"}, 1000);
+  EXPECT_EQ(json["masses"], 4);
+  EXPECT_THAT(unpacked(json["ends"]), ElementsAre(0, 1, 1, 2, 1, 3));
+  EXPECT_THAT(unpacked(json["shots"][0]["masses"]), ElementsAre(0, 1, 1));
+  EXPECT_THAT(unpacked(json["shots"][0]["springs"]), ElementsAre(0, 1));
+  EXPECT_THAT(unpacked(json["shots"][1]["masses"]), ElementsAre(1, 1, 1));
+  EXPECT_THAT(unpacked(json["shots"][1]["springs"]), ElementsAre(1, 1));
+}
+
+TEST(FilmJson, StatesTheErrorOfWhatItLeavesOut) {
+  // a mass that jumps by 1 m in the middle of a stretch of which every other frame is kept
+  Shot shot = shot_of({0, 4}, {{0, 1}});
+  for (int i = 1; i <= 4; ++i) {
+    shot.frames.push_back(shot.frames.front());
+    shot.frames.back().time = i;
+  }
+  shot.frames[1].places[0] = {0, 1, 0};
+  const auto json = film_json({shot}, {"jump"}, 1'000'000);
+  EXPECT_EQ(json["shots"][0]["times"], (std::vector<double>{0, 2, 4}));
+  EXPECT_NEAR(json["error"]["largest"].get<double>(), 1, 1e-3);
+  EXPECT_EQ(json["every"], 2);
+}
+
+TEST(Page, HoldsDataThatNothingReadsAsMarkup) {
+  const std::string page = filled_page("<script>EVODEVO_DATA</script>", {{"name", "</script><script>harm()"}});
+  const std::string data = page.substr(8, page.rfind("</script>") - 8);
+  EXPECT_EQ(data.find('<'), std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(data)["name"], "</script><script>harm()");
+}
+
+}  // namespace
+}  // namespace evodevo
