@@ -30,7 +30,7 @@ export class Gallery {
       stage.focus.set(...middle);
       const camera = new THREE.PerspectiveCamera(30, 1, 0.01, 100);
       camera.up.set(0, 0, 1);
-      camera.position.set(0.55, -1, 0.5).normalize().multiplyScalar(2.35 * size).add(stage.focus);
+      camera.position.set(0.55, -1, 0.5).normalize().multiplyScalar(2.6 * size).add(stage.focus);
       camera.lookAt(stage.focus);
       stage.draw(renderer, camera, side);
       const picture = this.pictures[i].getContext("2d");

@@ -33,7 +33,7 @@ function facts(run) {
   const marks = run.best?.verification?.marks;
   return element("dl", { className: "facts" },
     fact(`Best ${objective.name}`, short(run.best?.objectives[objective.name]), objective.unit),
-    fact("Evaluations", run.evaluations.toLocaleString("en"), run.finished ? `${run.generations.length} generations` : `of ${run.evaluations_asked.toLocaleString("en")}, not finished`),
+    fact("Evaluations", run.evaluations.toLocaleString("en"), run.finished ? `in ${run.generations.length} generation${run.generations.length === 1 ? "" : "s"}` : `of ${run.evaluations_asked.toLocaleString("en")}, not finished`),
     fact("Springs simulated", short(springs), "spring evaluations"),
     fact("Ended well", all > 0 ? `${share(run.statuses.ok, all)} %` : "–", `${run.statuses.invalid} invalid, ${run.statuses.diverged} diverged`),
     fact("The best, verified", marks === undefined ? "not yet" : marks.length > 0 ? marks.join(", ") : "held", marks === undefined ? "see evodevo verify" : marks.length > 0 ? "" : "neither artefact nor passive"));

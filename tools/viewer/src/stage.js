@@ -28,6 +28,7 @@ in vec2 ends;
 in vec3 colour;
 in float fresh;
 uniform float radius;
+uniform float pixel; // at a distance of 1
 out vec3 vColour;
 out vec3 vSide;
 out vec3 vFront;
@@ -45,7 +46,9 @@ void main() {
   vAcross = position.x;
   vColour = colour;
   vDepth = -at.z;
-  gl_Position = projectionMatrix * vec4(at + vSide * position.x * radius * (1.0 + 1.2 * fresh), 1.0);
+  // what is thinner than a pixel would come and go
+  float wide = max(radius * (1.0 + 1.2 * fresh), 0.6 * pixel * vDepth);
+  gl_Position = projectionMatrix * vec4(at + vSide * position.x * wide, 1.0);
 }`;
 
 const springFragment = /* glsl */ `
@@ -217,6 +220,7 @@ export class Stage {
     this.shared = {
       places: { value: this.places },
       radius: { value: radius },
+      pixel: { value: 0 },
       haze: { value: new THREE.Color() },
       hazeRange: { value: new THREE.Vector2() },
     };
@@ -359,9 +363,11 @@ export class Stage {
     return [start[0] + now[0] - from[0], start[1] + now[1] - from[1], height];
   }
 
+  /** Draws what camera sees to a picture of so many pixels' height. */
   draw(renderer, camera, height) {
     const distance = camera.position.distanceTo(this.focus);
     this.shared.hazeRange.value.set(distance - 0.5 * this.size, distance + 1.1 * this.size);
+    this.shared.pixel.value = (2 * Math.tan((camera.fov * Math.PI) / 360)) / height;
     if (this.pixels) this.pixels.value = height;
     renderer.render(this.scene, camera);
   }
