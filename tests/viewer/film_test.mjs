@@ -29,10 +29,26 @@ const hasFfmpeg = (process.env.PATH ?? "").split(":").some((folder) => existsSyn
 test("a film shows the whole life at 30 frames a second", { skip: hasFfmpeg ? false : "there is no ffmpeg" }, () => {
   const out = scratch.path("film.mp4");
   evodevo("film", scratch.run, "--individual", "0", "--out", out);
-  const probed = execFileSync("ffprobe", ["-v", "error", "-count_frames", "-show_entries", "stream=width,height,nb_read_frames,r_frame_rate", "-of", "json", out], { encoding: "utf8" });
+  const probed = execFileSync(
+    "ffprobe",
+    [
+      "-v",
+      "error",
+      "-count_frames",
+      "-show_entries",
+      "stream=width,height,nb_read_frames,r_frame_rate",
+      "-of",
+      "json",
+      out,
+    ],
+    { encoding: "utf8" },
+  );
   const [stream] = JSON.parse(probed).streams;
   const duration = cycles * cycleTime + 0.5 + 1.0;
-  assert.deepEqual([stream.width, stream.height, stream.r_frame_rate, Number(stream.nb_read_frames)], [1280, 720, "30/1", 30 * duration + 1]);
+  assert.deepEqual(
+    [stream.width, stream.height, stream.r_frame_rate, Number(stream.nb_read_frames)],
+    [1280, 720, "30/1", 30 * duration + 1],
+  );
 });
 
 test("pictures of two moments differ", () => {

@@ -3,7 +3,23 @@ import assert from "node:assert/strict";
 import { statSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 import { after, before, test } from "node:test";
-import { amber, archived, cycles, cycleTime, differing, evodevo, experimentName, inPage, launch, materialName, opened, picture, Scratch, sum, until } from "./support.mjs";
+import {
+  amber,
+  archived,
+  cycles,
+  cycleTime,
+  differing,
+  evodevo,
+  experimentName,
+  inPage,
+  launch,
+  materialName,
+  opened,
+  picture,
+  Scratch,
+  sum,
+  until,
+} from "./support.mjs";
 
 const scratch = new Scratch();
 const report = scratch.path("report.html");
@@ -21,29 +37,50 @@ after(async () => {
 });
 
 test("it opens from its file, fetches nothing, and complains of nothing", async () => {
-  assert.deepEqual(page.requests.filter((url) => !url.startsWith("data:")), [pathToFileURL(report).href]);
+  assert.deepEqual(
+    page.requests.filter((url) => !url.startsWith("data:")),
+    [pathToFileURL(report).href],
+  );
   assert.deepEqual(page.complaints, []);
 });
 
 test("charts hold the archive's numbers", async () => {
-  const rows = archived(scratch.run, "SELECT evaluations, best, median, spring_evaluations, generation, diverged, invalid FROM generations ORDER BY generation");
-  const charts = await inPage(page, ({ charts }) => Object.fromEntries(Object.entries(charts.byName).map(([name, { data }]) => [name, data])));
+  const rows = archived(
+    scratch.run,
+    "SELECT evaluations, best, median, spring_evaluations, generation, diverged, invalid FROM generations ORDER BY generation",
+  );
+  const charts = await inPage(page, ({ charts }) =>
+    Object.fromEntries(Object.entries(charts.byName).map(([name, { data }]) => [name, data])),
+  );
   const column = (i) => rows.map((row) => row[i]);
   assert.deepEqual(charts.evaluations, [column(0), column(1), column(2)]);
   let springs = 0;
   assert.deepEqual(charts.springs, [column(3).map((n) => (springs += n)), column(1), column(2)]);
   const count = rows.map((row, i) => row[0] - (i > 0 ? rows[i - 1][0] : 0));
-  assert.deepEqual(charts.statuses, [column(4), rows.map(() => 100), rows.map((r, i) => (100 * (r[5] + r[6])) / count[i]), rows.map((r, i) => (100 * r[5]) / count[i])]);
+  assert.deepEqual(charts.statuses, [
+    column(4),
+    rows.map(() => 100),
+    rows.map((r, i) => (100 * (r[5] + r[6])) / count[i]),
+    rows.map((r, i) => (100 * r[5]) / count[i]),
+  ]);
 });
 
 test("the chart of ages holds the living, and its front is what none of them beats", async () => {
   const last = archived(scratch.run, "SELECT max(generation) FROM generations")[0][0];
-  const living = archived(scratch.run, `SELECT ${last} - origin, value FROM individuals JOIN scores ON id = individual WHERE died IS NULL AND objective = 0 AND status = 'ok'`);
+  const living = archived(
+    scratch.run,
+    `SELECT ${last} - origin, value FROM individuals JOIN scores ON id = individual WHERE died IS NULL AND objective = 0 AND status = 'ok'`,
+  );
   const [ages, dots, front] = await inPage(page, ({ charts }) => charts.byName.ages.data);
-  const points = (values) => values.flatMap((value, i) => (value === null ? [] : [[Math.round(ages[i]), value]])).sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+  const points = (values) =>
+    values
+      .flatMap((value, i) => (value === null ? [] : [[Math.round(ages[i]), value]]))
+      .sort((a, b) => a[0] - b[0] || a[1] - b[1]);
   const sorted = (list) => [...list].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
   assert.deepEqual(points(dots), sorted(living));
-  const unbeaten = living.filter(([age, value]) => !living.some(([a, v]) => a <= age && v >= value && (a < age || v > value)));
+  const unbeaten = living.filter(
+    ([age, value]) => !living.some(([a, v]) => a <= age && v >= value && (a < age || v > value)),
+  );
   const distinct = unbeaten.filter(([age, value], i) => unbeaten.findIndex(([a, v]) => a === age && v === value) === i);
   assert.deepEqual(points(front), sorted(distinct));
 });
@@ -53,7 +90,12 @@ test("it says where the time went", async () => {
   assert.ok(recorded > 0);
   const shown = await inPage(page, ({ data }) => data.runs[0].time.simulate);
   assert.equal(shown, recorded);
-  assert.deepEqual(await page.locator(".bar > span:first-child").allTextContents(), ["simulate", "develop", "decode", "archive"]);
+  assert.deepEqual(await page.locator(".bar > span:first-child").allTextContents(), [
+    "simulate",
+    "develop",
+    "decode",
+    "archive",
+  ]);
 });
 
 test("a name with markup in it is shown as text", async () => {
@@ -66,17 +108,23 @@ test("a name with markup in it is shown as text", async () => {
 
 test("masses are where the matured body has them", async () => {
   const body = JSON.parse(evodevo("body", scratch.run, "--matured"));
-  const { places, step, springs } = await inPage(page, ({ viewer }, [time, count]) => {
-    const { life } = viewer.stages[0];
-    const all = new Float32Array(4 * life.massCount);
-    life.writePlaces(time, all);
-    const shot = life.shots[count];
-    const places = Array.from(shot.masses, (mass) => Array.from(all.slice(4 * mass, 4 * mass + 3)));
-    return { places, step: life.robot.film.step, springs: shot.springs.length };
-  }, [cycles * cycleTime, cycles]);
+  const { places, step, springs } = await inPage(
+    page,
+    ({ viewer }, [time, count]) => {
+      const { life } = viewer.stages[0];
+      const all = new Float32Array(4 * life.massCount);
+      life.writePlaces(time, all);
+      const shot = life.shots[count];
+      const places = Array.from(shot.masses, (mass) => Array.from(all.slice(4 * mass, 4 * mass + 3)));
+      return { places, step: life.robot.film.step, springs: shot.springs.length };
+    },
+    [cycles * cycleTime, cycles],
+  );
   assert.equal(springs, body.springs.length);
   assert.equal(places.length, body.masses.length);
-  places.forEach((place, i) => place.forEach((x, axis) => assert.ok(Math.abs(x - body.masses[i].position[axis]) <= 0.501 * step + 1e-6)));
+  places.forEach((place, i) =>
+    place.forEach((x, axis) => assert.ok(Math.abs(x - body.masses[i].position[axis]) <= 0.501 * step + 1e-6)),
+  );
 });
 
 test("the robot moves, and stands still while it is paused", async () => {
@@ -97,13 +145,22 @@ test("play goes on in time, and stops at the end", async () => {
 test("each colour mode looks different and says what it shows", async () => {
   await inPage(page, ({ viewer }) => viewer.seek(1.4));
   const seen = [];
-  for (const [mode, words] of [["Material", "muscle"], ["Stress", " N"], ["Came in", "there from birth"]]) {
+  for (const [mode, words] of [
+    ["Material", "muscle"],
+    ["Stress", " N"],
+    ["Came in", "there from birth"],
+  ]) {
     await page.locator(".modes label", { hasText: mode }).click();
     await inPage(page, () => {});
     assert.ok((await page.locator(".legend").textContent()).includes(words));
     seen.push(await picture(page));
   }
-  for (const [a, b] of [[0, 1], [1, 2], [0, 2]]) assert.ok(sum(await differing(seen[a], seen[b])) > 200, `${a} and ${b}`);
+  for (const [a, b] of [
+    [0, 1],
+    [1, 2],
+    [0, 2],
+  ])
+    assert.ok(sum(await differing(seen[a], seen[b])) > 200, `${a} and ${b}`);
 });
 
 test("the life slider goes to cycles, where vanished springs fade and new ones light up", async () => {
@@ -111,7 +168,11 @@ test("the life slider goes to cycles, where vanished springs fade and new ones l
   const slider = page.getByLabel("Cycle of life");
   await slider.fill("1");
   assert.equal(await page.locator(".cycle-name").textContent(), "cycle 2");
-  const edits = await inPage(page, ({ viewer }) => ({ time: viewer.time, gone: viewer.stages[0].life.shots[1].gone.length, came: viewer.stages[0].life.shots[1].isNew.reduce((a, b) => a + b) }));
+  const edits = await inPage(page, ({ viewer }) => ({
+    time: viewer.time,
+    gone: viewer.stages[0].life.shots[1].gone.length,
+    came: viewer.stages[0].life.shots[1].isNew.reduce((a, b) => a + b),
+  }));
   assert.equal(edits.time, cycleTime);
   assert.ok(edits.gone >= 6 && edits.came >= 6, JSON.stringify(edits));
   assert.ok((await page.locator(".caption").first().textContent()).includes(`−${edits.gone} +${edits.came}`));
@@ -152,13 +213,22 @@ test("keys steer it", async () => {
 });
 
 test("it fits a phone, where a finger turns the robot", async () => {
-  const phone = await opened(browser, report, { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true, colorScheme: "dark" });
+  const phone = await opened(browser, report, {
+    viewport: { width: 360, height: 740 },
+    hasTouch: true,
+    isMobile: true,
+    colorScheme: "dark",
+  });
   const width = await phone.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
   assert.ok(width[0] <= width[1], `${width[0]} wide`);
   const box = await (await phone.$(".stage canvas")).boundingBox();
   const before = await inPage(phone, ({ viewer }) => viewer.camera.position.toArray());
   const finger = await phone.context().newCDPSession(phone);
-  const touch = (type, x) => finger.send("Input.dispatchTouchEvent", { type, touchPoints: type === "touchEnd" ? [] : [{ x, y: box.y + box.height / 2 }] });
+  const touch = (type, x) =>
+    finger.send("Input.dispatchTouchEvent", {
+      type,
+      touchPoints: type === "touchEnd" ? [] : [{ x, y: box.y + box.height / 2 }],
+    });
   await touch("touchStart", 200);
   for (const x of [190, 170, 140, 110]) await touch("touchMove", x);
   await touch("touchEnd");

@@ -73,7 +73,8 @@ export function evodevo(...words) {
 
 /** What a query finds in a run's archive, read by SQLite itself. */
 export function archived(folder, query) {
-  const program = "import json,sqlite3,sys; print(json.dumps(sqlite3.connect(sys.argv[1]).execute(sys.argv[2]).fetchall()))";
+  const program =
+    "import json,sqlite3,sys; print(json.dumps(sqlite3.connect(sys.argv[1]).execute(sys.argv[2]).fetchall()))";
   return JSON.parse(execFileSync("python3", ["-c", program, join(folder, "run.sqlite"), query], { encoding: "utf8" }));
 }
 
@@ -126,7 +127,8 @@ export async function differing(a, b) {
   return a.evaluate(({ data, width }, other) => {
     const counts = [0, 0];
     for (let i = 0; i < data.length; i += 4)
-      if ([0, 1, 2].some((k) => Math.abs(data[i + k] - other.data[i + k]) > 24)) ++counts[2 * ((i / 4) % width) < width ? 0 : 1];
+      if ([0, 1, 2].some((k) => Math.abs(data[i + k] - other.data[i + k]) > 24))
+        ++counts[2 * ((i / 4) % width) < width ? 0 : 1];
     return counts;
   }, b);
 }
@@ -135,7 +137,8 @@ export async function differing(a, b) {
 export async function amber(picture) {
   return picture.evaluate(({ data }) => {
     let count = 0;
-    for (let i = 0; i < data.length; i += 4) if (data[i] > 150 && data[i] > 1.2 * data[i + 1] && data[i + 1] > 2.5 * data[i + 2]) ++count;
+    for (let i = 0; i < data.length; i += 4)
+      if (data[i] > 150 && data[i] > 1.2 * data[i + 1] && data[i + 1] > 2.5 * data[i + 2]) ++count;
     return count;
   });
 }

@@ -22,7 +22,11 @@ export const launch = async () =>
   chromium.launch({
     executablePath: process.env.EVODEVO_CHROMIUM ?? program(["chromium", "chromium-browser", "google-chrome"]),
     // without a GPU; root, as in a container, has no sandbox
-    args: ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", ...(process.getuid?.() === 0 ? ["--no-sandbox"] : [])],
+    args: [
+      "--use-angle=swiftshader",
+      "--enable-unsafe-swiftshader",
+      ...(process.getuid?.() === 0 ? ["--no-sandbox"] : []),
+    ],
   });
 
 /** A page of the viewer, ready. `options` are Playwright's. */

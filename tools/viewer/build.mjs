@@ -21,4 +21,7 @@ const parts = {
 };
 const page = await readFile(join(source, "page.html"), "utf8");
 // a function, since $ in a replacement string has a meaning
-await writeFile(out, page.replace(/EVODEVO_(STYLE|PROGRAM)/g, (name) => parts[name]));
+await writeFile(
+  out,
+  page.replace(/EVODEVO_(STYLE|PROGRAM)/g, (name) => parts[name]),
+);

@@ -10,7 +10,9 @@ const viewport = { width: 1280, height: 720 };
 function encoder(out) {
   const input = ["-f", "image2pipe", "-framerate", String(framesPerSecond), "-i", "-"];
   const output = ["-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", "-movflags", "+faststart", out];
-  const ffmpeg = spawn(program(["ffmpeg"]), ["-y", "-loglevel", "error", ...input, ...output], { stdio: ["pipe", "inherit", "inherit"] });
+  const ffmpeg = spawn(program(["ffmpeg"]), ["-y", "-loglevel", "error", ...input, ...output], {
+    stdio: ["pipe", "inherit", "inherit"],
+  });
   ffmpeg.stdin.on("error", () => {}); // its exit code says it
   return { ffmpeg, closed: once(ffmpeg, "close") };
 }

@@ -13,7 +13,13 @@ export const css = (colour) => `rgb(${colour.map((x) => Math.round(255 * x)).joi
 let palette;
 export function readPalette() {
   const list = (name) => style(name).split(/\s+/).map(rgb);
-  palette = { muscles: list("--muscles"), passive: list("--passive"), stress: list("--stress"), cycles: list("--cycles"), born: rgb(style("--born")) };
+  palette = {
+    muscles: list("--muscles"),
+    passive: list("--passive"),
+    stress: list("--stress"),
+    cycles: list("--cycles"),
+    born: rgb(style("--born")),
+  };
 }
 
 /** Muscles by phase, the more they move the stronger; what does not move by stiffness. */

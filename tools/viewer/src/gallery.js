@@ -11,8 +11,19 @@ export class Gallery {
     this.robots = robots;
     this.pictures = robots.map(() => element("canvas", { width: side, height: side }));
     const tile = ({ robot, label }, i) =>
-      element("button", { type: "button", className: "tile", onclick: () => (viewer.show(i).then(() => viewer.toggle()), viewer.root.scrollIntoView({ behavior: "smooth" })) },
-        this.pictures[i], element("span", { textContent: robot.film.shots.length > 0 ? label : robot.reason }));
+      element(
+        "button",
+        {
+          type: "button",
+          className: "tile",
+          onclick: () => (
+            viewer.show(i).then(() => viewer.toggle()),
+            viewer.root.scrollIntoView({ behavior: "smooth" })
+          ),
+        },
+        this.pictures[i],
+        element("span", { textContent: robot.film.shots.length > 0 ? label : robot.reason }),
+      );
     this.root = element("section", { className: "gallery" }, ...robots.map(tile));
   }
 
@@ -30,7 +41,11 @@ export class Gallery {
       stage.focus.set(...middle);
       const camera = new THREE.PerspectiveCamera(30, 1, 0.01, 100);
       camera.up.set(0, 0, 1);
-      camera.position.set(0.55, -1, 0.5).normalize().multiplyScalar(2.6 * size).add(stage.focus);
+      camera.position
+        .set(0.55, -1, 0.5)
+        .normalize()
+        .multiplyScalar(2.6 * size)
+        .add(stage.focus);
       camera.lookAt(stage.focus);
       stage.draw(renderer, camera, side);
       const picture = this.pictures[i].getContext("2d");

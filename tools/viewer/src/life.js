@@ -121,7 +121,10 @@ export class Life {
       const row = shot.places.subarray(axis * n, (axis + 1) * n);
       return [row.reduce((a, b) => Math.min(a, b)) * step, row.reduce((a, b) => Math.max(a, b)) * step];
     });
-    return { size: Math.max(step, ...ranges.map(([low, high]) => high - low)), middle: ranges.map(([low, high]) => (low + high) / 2) };
+    return {
+      size: Math.max(step, ...ranges.map(([low, high]) => high - low)),
+      middle: ranges.map(([low, high]) => (low + high) / 2),
+    };
   }
 }
 

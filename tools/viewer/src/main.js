@@ -18,7 +18,9 @@ const objectiveOf = (run, robot) => {
 };
 const labelOf = (run, robot) => {
   const whose = runs.length > 1 ? `${run.label}: ` : "";
-  return isGallery ? `Robot ${robot.individual}` : `${whose}${robot.role}, individual ${robot.individual}, ${objectiveOf(run, robot)}`;
+  return isGallery
+    ? `Robot ${robot.individual}`
+    : `${whose}${robot.role}, individual ${robot.individual}, ${objectiveOf(run, robot)}`;
 };
 const robots = runs.flatMap((run) => run.robots.map((robot) => ({ run, robot, label: labelOf(run, robot) })));
 
@@ -26,23 +28,50 @@ const robots = runs.flatMap((run) => run.robots.map((robot) => ({ run, robot, la
 const share = (part, all) => (part === all ? "100" : Math.min(99.9, (100 * part) / all).toFixed(1));
 
 function facts(run) {
-  const fact = (label, value, note) => element("div", { className: "fact" }, element("dt", { textContent: label }), element("dd", {}, element("b", { textContent: value }), note ? element("span", { textContent: note }) : null));
+  const fact = (label, value, note) =>
+    element(
+      "div",
+      { className: "fact" },
+      element("dt", { textContent: label }),
+      element("dd", {}, element("b", { textContent: value }), note ? element("span", { textContent: note }) : null),
+    );
   const [objective] = run.objectives;
   const all = Object.values(run.statuses).reduce((sum, n) => sum + n, 0);
   const springs = run.generations.reduce((sum, g) => sum + g.spring_evaluations, 0);
   const marks = run.best?.verification?.marks;
-  return element("dl", { className: "facts" },
+  return element(
+    "dl",
+    { className: "facts" },
     fact(`Best ${objective.name}`, short(run.best?.objectives[objective.name]), objective.unit),
-    fact("Evaluations", run.evaluations.toLocaleString("en"), run.finished ? `in ${run.generations.length} generation${run.generations.length === 1 ? "" : "s"}` : `of ${run.evaluations_asked.toLocaleString("en")}, not finished`),
+    fact(
+      "Evaluations",
+      run.evaluations.toLocaleString("en"),
+      run.finished
+        ? `in ${run.generations.length} generation${run.generations.length === 1 ? "" : "s"}`
+        : `of ${run.evaluations_asked.toLocaleString("en")}, not finished`,
+    ),
     fact("Springs simulated", short(springs), "spring evaluations"),
-    fact("Ended well", all > 0 ? `${share(run.statuses.ok, all)} %` : "–", `${run.statuses.invalid} invalid, ${run.statuses.diverged} diverged`),
-    fact("The best, verified", marks === undefined ? "not yet" : marks.length > 0 ? marks.join(", ") : "held", marks === undefined ? "see evodevo verify" : marks.length > 0 ? "" : "neither artefact nor passive"));
+    fact(
+      "Ended well",
+      all > 0 ? `${share(run.statuses.ok, all)} %` : "–",
+      `${run.statuses.invalid} invalid, ${run.statuses.diverged} diverged`,
+    ),
+    fact(
+      "The best, verified",
+      marks === undefined ? "not yet" : marks.length > 0 ? marks.join(", ") : "held",
+      marks === undefined ? "see evodevo verify" : marks.length > 0 ? "" : "neither artefact nor passive",
+    ),
+  );
 }
 
 function header() {
   const run = runs[0];
   const title = runs.length > 1 ? `${runs.length} runs` : run.experiment;
-  const subtitle = isGallery ? `${robots.length} random robots of its encoding, seed ${run.seed}` : runs.length > 1 ? runs.map((r) => r.label).join(" · ") : `${run.label} · seed ${run.seed} · ${run.device} · begun ${run.created.replace("T", " ").replace("Z", " UTC")}`;
+  const subtitle = isGallery
+    ? `${robots.length} random robots of its encoding, seed ${run.seed}`
+    : runs.length > 1
+      ? runs.map((r) => r.label).join(" · ")
+      : `${run.label} · seed ${run.seed} · ${run.device} · begun ${run.created.replace("T", " ").replace("Z", " UTC")}`;
   document.title = `${title} – evodevo`;
   return element("header", {}, element("h1", { textContent: title }), element("p", { textContent: subtitle }));
 }
@@ -52,24 +81,79 @@ function robotTable(viewer) {
   const names = objectives.map((o) => o.name);
   const cell = (text) => element("td", { textContent: text });
   const rows = robots.map(({ run, robot }, i) =>
-    element("tr", {},
-      element("td", {}, element("button", { type: "button", textContent: robot.role, onclick: () => (viewer.show(i), viewer.root.scrollIntoView({ behavior: "smooth" })) })),
+    element(
+      "tr",
+      {},
+      element(
+        "td",
+        {},
+        element("button", {
+          type: "button",
+          textContent: robot.role,
+          onclick: () => (viewer.show(i), viewer.root.scrollIntoView({ behavior: "smooth" })),
+        }),
+      ),
       ...(runs.length > 1 ? [cell(run.label)] : []),
       cell(String(robot.individual)),
-      ...names.map((name, k) => cell(name in robot.objectives ? `${short(robot.objectives[name])}${again(robot, name, k)}` : robot.status)),
-      cell(String(robot.generation)), cell(String(robot.age)), cell(robot.made_by), cell(robot.ancestry.length > 0 ? robot.ancestry.join(" ‹ ") : "none")));
-  const heads = ["", ...(runs.length > 1 ? ["Run"] : []), "Individual", ...objectives.map((o) => `${o.name} (${o.unit})`), "Born", "Age", "Made by", "First parents"];
-  return element("section", { className: "table" }, element("h2", { textContent: "Robots shown" }), element("div", { className: "scroll" }, element("table", {}, element("thead", {}, element("tr", {}, ...heads.map((text) => element("th", { textContent: text })))), element("tbody", {}, ...rows))));
+      ...names.map((name, k) =>
+        cell(name in robot.objectives ? `${short(robot.objectives[name])}${again(robot, name, k)}` : robot.status),
+      ),
+      cell(String(robot.generation)),
+      cell(String(robot.age)),
+      cell(robot.made_by),
+      cell(robot.ancestry.length > 0 ? robot.ancestry.join(" ‹ ") : "none"),
+    ),
+  );
+  const heads = [
+    "",
+    ...(runs.length > 1 ? ["Run"] : []),
+    "Individual",
+    ...objectives.map((o) => `${o.name} (${o.unit})`),
+    "Born",
+    "Age",
+    "Made by",
+    "First parents",
+  ];
+  return element(
+    "section",
+    { className: "table" },
+    element("h2", { textContent: "Robots shown" }),
+    element(
+      "div",
+      { className: "scroll" },
+      element(
+        "table",
+        {},
+        element("thead", {}, element("tr", {}, ...heads.map((text) => element("th", { textContent: text })))),
+        element("tbody", {}, ...rows),
+      ),
+    ),
+  );
 }
 
 /** Where the life that is shown went otherwise than the one in the archive, such as on another device. */
 function again(robot, name, k) {
   const shown = robot.again[k];
-  return shown === undefined || Math.abs(shown - robot.objectives[name]) <= 0.01 * Math.abs(robot.objectives[name]) ? "" : ` (as shown: ${short(shown)})`;
+  return shown === undefined || Math.abs(shown - robot.objectives[name]) <= 0.01 * Math.abs(robot.objectives[name])
+    ? ""
+    : ` (as shown: ${short(shown)})`;
 }
 
 const experiments = () =>
-  element("section", { className: "experiment" }, ...runs.map((run) => element("details", {}, element("summary", { textContent: runs.length > 1 ? `Experiment of ${run.label}` : "The experiment, every default written out" }), element("pre", { textContent: run.resolved }))));
+  element(
+    "section",
+    { className: "experiment" },
+    ...runs.map((run) =>
+      element(
+        "details",
+        {},
+        element("summary", {
+          textContent: runs.length > 1 ? `Experiment of ${run.label}` : "The experiment, every default written out",
+        }),
+        element("pre", { textContent: run.resolved }),
+      ),
+    ),
+  );
 
 async function begin() {
   readPalette();

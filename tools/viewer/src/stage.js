@@ -205,7 +205,13 @@ export class Stage {
     this.start = middle;
     this.focus = new THREE.Vector3();
     const rows = Math.max(1, Math.ceil(life.massCount / textureWidth));
-    this.places = new THREE.DataTexture(new Float32Array(4 * textureWidth * rows), textureWidth, rows, THREE.RGBAFormat, THREE.FloatType);
+    this.places = new THREE.DataTexture(
+      new Float32Array(4 * textureWidth * rows),
+      textureWidth,
+      rows,
+      THREE.RGBAFormat,
+      THREE.FloatType,
+    );
     this.#makeUniforms();
     this.#addSky();
     this.#addFloor(scene.floor);
@@ -224,7 +230,11 @@ export class Stage {
       haze: { value: new THREE.Color() },
       hazeRange: { value: new THREE.Vector2() },
     };
-    this.world = { line: { value: new THREE.Color() }, focus: { value: new THREE.Vector3() }, reach: { value: 6 * this.size } };
+    this.world = {
+      line: { value: new THREE.Color() },
+      focus: { value: new THREE.Vector3() },
+      reach: { value: 6 * this.size },
+    };
     this.shadow = { value: new THREE.Vector4() };
   }
 
@@ -237,27 +247,59 @@ export class Stage {
   }
 
   #addBody(hasFloor) {
-    const springs = (opacity, options) => material(springVertex, springFragment, { ...this.shared, opacity: { value: opacity } }, { side: THREE.DoubleSide, ...options });
+    const springs = (opacity, options) =>
+      material(
+        springVertex,
+        springFragment,
+        { ...this.shared, opacity: { value: opacity } },
+        { side: THREE.DoubleSide, ...options },
+      );
     this.springs = pieces(0);
     this.#add(this.springs, springs(1, {}), 2);
     this.gone = pieces(0);
     this.goneMaterial = springs(0, { transparent: true, depthWrite: false });
     this.#add(this.gone, this.goneMaterial, 4);
     this.masses = pieces(-1);
-    this.#add(this.masses, material(massVertex, massFragment, { ...this.shared, radius: { value: 1.7 * this.shared.radius.value } }), 3);
+    this.#add(
+      this.masses,
+      material(massVertex, massFragment, { ...this.shared, radius: { value: 1.7 * this.shared.radius.value } }),
+      3,
+    );
     if (!hasFloor) return;
-    const stencil = { stencilWrite: true, stencilRef: 0, stencilFunc: THREE.EqualStencilFunc, stencilZPass: THREE.IncrementStencilOp };
-    this.#add(this.springs, material(shadowVertex, shadowFragment, { ...this.shared, shadow: this.shadow }, { transparent: true, depthWrite: false, side: THREE.DoubleSide, ...stencil }), 1);
+    const stencil = {
+      stencilWrite: true,
+      stencilRef: 0,
+      stencilFunc: THREE.EqualStencilFunc,
+      stencilZPass: THREE.IncrementStencilOp,
+    };
+    this.#add(
+      this.springs,
+      material(
+        shadowVertex,
+        shadowFragment,
+        { ...this.shared, shadow: this.shadow },
+        { transparent: true, depthWrite: false, side: THREE.DoubleSide, ...stencil },
+      ),
+      1,
+    );
   }
 
   #addSky() {
     this.sky = { near: { value: new THREE.Color() }, far: { value: new THREE.Color() } };
-    this.#add(new THREE.PlaneGeometry(2, 2), material(skyVertex, skyFragment, this.sky, { depthWrite: false, depthTest: false }), -1);
+    this.#add(
+      new THREE.PlaneGeometry(2, 2),
+      material(skyVertex, skyFragment, this.sky, { depthWrite: false, depthTest: false }),
+      -1,
+    );
   }
 
   #addFloor(there) {
     if (!there) return;
-    this.floor = this.#add(new THREE.PlaneGeometry(1, 1), material(floorVertex, floorFragment, this.world, { transparent: true, depthWrite: false }), 0);
+    this.floor = this.#add(
+      new THREE.PlaneGeometry(1, 1),
+      material(floorVertex, floorFragment, this.world, { transparent: true, depthWrite: false }),
+      0,
+    );
     this.floor.scale.setScalar(4 * this.world.reach.value);
   }
 
@@ -267,7 +309,15 @@ export class Stage {
     const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
     geometry.setAttribute("position", new THREE.Float32BufferAttribute(Array.from({ length: 3 * 500 }, random), 3));
     this.pixels = { value: 1 };
-    const motes = new THREE.Points(geometry, material(moteVertex, moteFragment, { ...this.world, pixels: this.pixels }, { transparent: true, depthWrite: false }));
+    const motes = new THREE.Points(
+      geometry,
+      material(
+        moteVertex,
+        moteFragment,
+        { ...this.world, pixels: this.pixels },
+        { transparent: true, depthWrite: false },
+      ),
+    );
     motes.frustumCulled = false;
     this.scene.add(motes);
   }
@@ -294,8 +344,16 @@ export class Stage {
     const shot = life.shots[index];
     const colourOf = springColours(life, this.mode);
     const there = Array.from(shot.springs, (_, i) => i);
-    setInstances(this.springs, there.length, this.#instances(shot, there, colourOf, (i) => shot.isNew[i]));
-    setInstances(this.gone, shot.gone.length, this.#instances(life.shots[index - 1], shot.gone, colourOf, () => 1));
+    setInstances(
+      this.springs,
+      there.length,
+      this.#instances(shot, there, colourOf, (i) => shot.isNew[i]),
+    );
+    setInstances(
+      this.gone,
+      shot.gone.length,
+      this.#instances(life.shots[index - 1], shot.gone, colourOf, () => 1),
+    );
     this.baseColours = this.springs.attributes.colour.array.slice();
     setInstances(this.masses, shot.masses.length, {
       mass: [1, Float32Array.from(shot.masses)],
@@ -321,12 +379,15 @@ export class Stage {
     const { materials } = this.life.robot.film;
     const plain = colour("--mass").toArray();
     const colours = shot.springs.length === 0 ? materials.map((made) => materialColour(made, materials)) : [];
-    return Float32Array.from(Array.from(shot.masses).flatMap((mass) => colours[this.life.massMaterials[mass]] ?? plain));
+    return Float32Array.from(
+      Array.from(shot.masses).flatMap((mass) => colours[this.life.massMaterials[mass]] ?? plain),
+    );
   }
 
   /** Lets new springs glow, and vanished ones fade, by the time since the shot began. */
   #light(shot, time) {
-    const left = 1 - Math.min(1, (time - shot.begin) / Math.min(effectTime, 0.7 * (shot.end - shot.begin) || effectTime));
+    const left =
+      1 - Math.min(1, (time - shot.begin) / Math.min(effectTime, 0.7 * (shot.end - shot.begin) || effectTime));
     this.goneMaterial.uniforms.opacity.value = 0.75 * left;
     if (!shot.isNew.includes(1)) return;
     const glow = colour("--fresh").toArray();
@@ -334,7 +395,8 @@ export class Stage {
     shot.isNew.forEach((isNew, i) => {
       if (!isNew) return;
       fresh.array[i] = left;
-      for (let k = 0; k < 3; ++k) colours.array[3 * i + k] = this.baseColours[3 * i + k] + left * (glow[k] - this.baseColours[3 * i + k]);
+      for (let k = 0; k < 3; ++k)
+        colours.array[3 * i + k] = this.baseColours[3 * i + k] + left * (glow[k] - this.baseColours[3 * i + k]);
     });
     colours.needsUpdate = fresh.needsUpdate = true;
   }

@@ -10,7 +10,7 @@ export async function integers(text) {
   for (let i = 0; i < numbers.length; ++i) {
     let value = 0;
     let shift = 0;
-    do value |= (plain[at] & 0x7f) << shift, (shift += 7);
+    do ((value |= (plain[at] & 0x7f) << shift), (shift += 7));
     while (plain[at++] >= 0x80);
     numbers[i] = (value >>> 1) ^ -(value & 1);
   }

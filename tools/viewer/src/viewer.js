@@ -29,34 +29,103 @@ export class Viewer {
 
   #build() {
     const choose = (label, which, options) =>
-      element("label", { className: "choice" }, element("span", { textContent: label }), element("select", { onchange: (e) => this.#pick(which, e.target.value) }, ...options));
-    const options = () => this.robots.map(({ label }, i) => element("option", { value: String(i), textContent: label }));
+      element(
+        "label",
+        { className: "choice" },
+        element("span", { textContent: label }),
+        element("select", { onchange: (e) => this.#pick(which, e.target.value) }, ...options),
+      );
+    const options = () =>
+      this.robots.map(({ label }, i) => element("option", { value: String(i), textContent: label }));
     this.first = choose("Robot", 0, options());
     this.second = choose("beside", 1, [element("option", { value: "", textContent: "none" }), ...options()]);
-    this.canvas = element("canvas", { tabIndex: 0, ariaLabel: "The robot. Drag to turn, pinch or wheel to come nearer." });
+    this.canvas = element("canvas", {
+      tabIndex: 0,
+      ariaLabel: "The robot. Drag to turn, pinch or wheel to come nearer.",
+    });
     this.captions = [0, 1].map(() => element("div", { className: "caption" }));
     this.play = element("button", { className: "play", type: "button", onclick: () => this.toggle() });
-    this.scrub = element("input", { type: "range", min: "0", max: "1", step: "any", value: "0", ariaLabel: "Time", oninput: (e) => this.#scrubbed(Number(e.target.value)) });
+    this.scrub = element("input", {
+      type: "range",
+      min: "0",
+      max: "1",
+      step: "any",
+      value: "0",
+      ariaLabel: "Time",
+      oninput: (e) => this.#scrubbed(Number(e.target.value)),
+    });
     this.clock = element("output", { className: "clock" });
-    this.speedSelect = element("select", { ariaLabel: "Speed", onchange: (e) => (this.speed = Number(e.target.value)) }, ...speeds.map((s) => element("option", { value: String(s), textContent: `${s}×`, selected: s === 1 })));
-    this.modes = element("fieldset", { className: "modes" }, element("legend", { textContent: "Colour" }), ...[["material", "Material"], ["stress", "Stress"], ["cycle", "Came in"]].map(([mode, label]) =>
-      element("label", {}, element("input", { type: "radio", name: "colour", value: mode, checked: mode === this.mode, onchange: () => this.setMode(mode) }), element("span", { textContent: label }))));
-    this.cycle = element("input", { type: "range", min: "0", max: "0", step: "1", value: "0", ariaLabel: "Cycle of life", oninput: (e) => this.#jumped(Number(e.target.value)) });
+    this.speedSelect = element(
+      "select",
+      { ariaLabel: "Speed", onchange: (e) => (this.speed = Number(e.target.value)) },
+      ...speeds.map((s) => element("option", { value: String(s), textContent: `${s}×`, selected: s === 1 })),
+    );
+    this.modes = element(
+      "fieldset",
+      { className: "modes" },
+      element("legend", { textContent: "Colour" }),
+      ...[
+        ["material", "Material"],
+        ["stress", "Stress"],
+        ["cycle", "Came in"],
+      ].map(([mode, label]) =>
+        element(
+          "label",
+          {},
+          element("input", {
+            type: "radio",
+            name: "colour",
+            value: mode,
+            checked: mode === this.mode,
+            onchange: () => this.setMode(mode),
+          }),
+          element("span", { textContent: label }),
+        ),
+      ),
+    );
+    this.cycle = element("input", {
+      type: "range",
+      min: "0",
+      max: "0",
+      step: "1",
+      value: "0",
+      ariaLabel: "Cycle of life",
+      oninput: (e) => this.#jumped(Number(e.target.value)),
+    });
     this.cycleName = element("output", { className: "cycle-name" });
-    this.followBox = element("input", { type: "checkbox", checked: true, onchange: (e) => this.setFollow(e.target.checked) });
+    this.followBox = element("input", {
+      type: "checkbox",
+      checked: true,
+      onchange: (e) => this.setFollow(e.target.checked),
+    });
     this.legend = element("div", { className: "legend" });
     this.note = element("p", { className: "note" });
     this.stage = element("div", { className: "stage" }, this.canvas, ...this.captions);
-    this.root = element("section", { className: "viewer" },
+    this.root = element(
+      "section",
+      { className: "viewer" },
       element("div", { className: "pickers" }, this.first, this.robots.length > 1 ? this.second : null),
       this.stage,
       element("div", { className: "transport" }, this.play, this.scrub, this.clock, this.speedSelect),
-      element("div", { className: "life" }, element("label", {}, element("span", { textContent: "Life" }), this.cycle), this.cycleName,
-        element("label", { className: "check" }, this.followBox, element("span", { textContent: "Follow" }))),
+      element(
+        "div",
+        { className: "life" },
+        element("label", {}, element("span", { textContent: "Life" }), this.cycle),
+        this.cycleName,
+        element("label", { className: "check" }, this.followBox, element("span", { textContent: "Follow" })),
+      ),
       element("div", { className: "looks" }, this.modes, this.legend),
       this.note,
-      element("details", { className: "keys" }, element("summary", { textContent: "Keys" }),
-        element("p", { textContent: "Space plays and pauses. ← and → step by a frame, with Shift by a second. [ and ] go from cycle to cycle. + and − change the speed. C changes the colour, F follows, R turns the camera back. Drag turns, the wheel or two fingers zoom, right drag or two fingers move." })));
+      element(
+        "details",
+        { className: "keys" },
+        element("summary", { textContent: "Keys" }),
+        element("p", {
+          textContent:
+            "Space plays and pauses. ← and → step by a frame, with Shift by a second. [ and ] go from cycle to cycle. + and − change the speed. C changes the colour, F follows, R turns the camera back. Drag turns, the wheel or two fingers zoom, right drag or two fingers move.",
+        }),
+      ),
+    );
     this.#showPlaying();
   }
 
@@ -73,7 +142,13 @@ export class Viewer {
 
   #listen() {
     document.addEventListener("keydown", (event) => {
-      if (event.target.closest?.("input:not([type=range]),select,textarea") || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (
+        event.target.closest?.("input:not([type=range]),select,textarea") ||
+        event.ctrlKey ||
+        event.metaKey ||
+        event.altKey
+      )
+        return;
       const action = this.#keys()[event.key];
       if (!action || (event.target.closest?.("button,summary") && event.key === " ")) return;
       event.preventDefault();
@@ -83,7 +158,8 @@ export class Viewer {
 
   #keys() {
     const step = (sign) => (event) => (this.pause(), this.seek(this.time + sign * (event.shiftKey ? 1 : 1 / 30)));
-    const speed = (by) => () => this.setSpeed(speeds[Math.min(speeds.length - 1, Math.max(0, speeds.indexOf(this.speed) + by))]);
+    const speed = (by) => () =>
+      this.setSpeed(speeds[Math.min(speeds.length - 1, Math.max(0, speeds.indexOf(this.speed) + by))]);
     return {
       " ": () => this.toggle(),
       ArrowLeft: step(-1),
@@ -143,7 +219,10 @@ export class Viewer {
   #frameBody() {
     const size = Math.max(...this.stages.map((stage) => stage.size));
     this.orbit.target.set(0, 0, 0);
-    this.camera.position.set(0.55, -1, 0.42).normalize().multiplyScalar(framing * size);
+    this.camera.position
+      .set(0.55, -1, 0.42)
+      .normalize()
+      .multiplyScalar(framing * size);
     this.camera.near = 0.01 * size;
     this.camera.far = 60 * size;
     this.orbit.minDistance = 0.3 * size;
@@ -220,25 +299,50 @@ export class Viewer {
   /** Says what the colours mean, and how exact the picture is. */
   #explain() {
     const shown = this.stages.filter((stage) => stage.life.shots.length > 0);
-    this.legend.replaceChildren(...(shown.length > 0 ? this.#legend(shown[0].life, this.robots[this.chosen[0]].run) : []));
-    const error = shown.map((stage) => stage.life.robot.film.error).reduce((a, b) => (b.largest > (a?.largest ?? -1) ? b : a), undefined);
-    this.note.textContent = error ? `Places are shown to within ${short(1000 * error.most)} mm 99 times in 100, and to within ${short(1000 * error.largest)} mm always.` : "";
+    this.legend.replaceChildren(
+      ...(shown.length > 0 ? this.#legend(shown[0].life, this.robots[this.chosen[0]].run) : []),
+    );
+    const error = shown
+      .map((stage) => stage.life.robot.film.error)
+      .reduce((a, b) => (b.largest > (a?.largest ?? -1) ? b : a), undefined);
+    this.note.textContent = error
+      ? `Places are shown to within ${short(1000 * error.most)} mm 99 times in 100, and to within ${short(1000 * error.largest)} mm always.`
+      : "";
   }
 
   #legend(life, run) {
     const film = life.robot.film;
-    const swatch = (colour, text) => element("span", { className: "swatch" }, element("i", { style: `background:${css(colour)}` }), element("span", { textContent: text }));
+    const swatch = (colour, text) =>
+      element(
+        "span",
+        { className: "swatch" },
+        element("i", { style: `background:${css(colour)}` }),
+        element("span", { textContent: text }),
+      );
     const scale = (colour, low, high) => {
       const stops = Array.from({ length: 9 }, (_, i) => css(colour(i / 8)));
-      return [element("span", { textContent: low }), element("i", { className: "scale", style: `background:linear-gradient(90deg,${stops.join(",")})` }), element("span", { textContent: high })];
+      return [
+        element("span", { textContent: low }),
+        element("i", { className: "scale", style: `background:linear-gradient(90deg,${stops.join(",")})` }),
+        element("span", { textContent: high }),
+      ];
     };
-    if (this.mode === "stress") return scale((t) => stressColour(255 * t), "0 N", `${short(film.most_stress)} N (root scale)`);
+    if (this.mode === "stress")
+      return scale((t) => stressColour(255 * t), "0 N", `${short(film.most_stress)} N (root scale)`);
     if (this.mode === "cycle") {
       const cycles = developing(life);
       const born = swatch(cycleColour(0, cycles), "there from birth");
-      return cycles > 1 ? [born, ...scale((t) => cycleColour(1 + t * (cycles - 2), cycles), "after cycle 1", `after cycle ${cycles - 1}`)] : [born];
+      return cycles > 1
+        ? [
+            born,
+            ...scale((t) => cycleColour(1 + t * (cycles - 2), cycles), "after cycle 1", `after cycle ${cycles - 1}`),
+          ]
+        : [born];
     }
-    return run.material_names.map((name, i) => [film.materials[i], name]).filter(([made]) => made?.stiffness > 0).map(([made, name]) => swatch(materialColour(made, film.materials), name));
+    return run.material_names
+      .map((name, i) => [film.materials[i], name])
+      .filter(([made]) => made?.stiffness > 0)
+      .map(([made, name]) => swatch(materialColour(made, film.materials), name));
   }
 
   #caption(k) {
@@ -246,10 +350,12 @@ export class Viewer {
     const index = this.chosen.filter((i) => i !== undefined)[k];
     const { life } = stage;
     const name = element("strong", { textContent: this.robots[index].label });
-    if (life.shots.length === 0) return [name, element("span", { textContent: `${life.robot.status}: ${life.robot.reason}` })];
+    if (life.shots.length === 0)
+      return [name, element("span", { textContent: `${life.robot.status}: ${life.robot.reason}` })];
     const shot = life.shots[life.shotAt(this.time)];
     const measured = life.shots.find(({ name: n }) => n === "measured");
-    const moved = measured && this.time > measured.begin ? distance(life.middleAt(this.time), life.middleAt(measured.begin)) : null;
+    const moved =
+      measured && this.time > measured.begin ? distance(life.middleAt(this.time), life.middleAt(measured.begin)) : null;
     const gone = shot.gone.length;
     const came = shot.isNew.reduce((sum, isNew) => sum + isNew, 0);
     const text = [shot.name, `${shot.springs.length} springs`];
@@ -289,7 +395,10 @@ export class Viewer {
     const camera = this.camera.clone();
     camera.aspect = width / height;
     // a narrow picture shows as much of the body as a wide one
-    camera.fov = camera.aspect < 1 ? 2 * Math.atan(Math.tan((camera.fov * Math.PI) / 360) / camera.aspect) * (180 / Math.PI) : camera.fov;
+    camera.fov =
+      camera.aspect < 1
+        ? 2 * Math.atan(Math.tan((camera.fov * Math.PI) / 360) / camera.aspect) * (180 / Math.PI)
+        : camera.fov;
     camera.position.add(stage.focus);
     camera.updateProjectionMatrix();
     camera.updateMatrixWorld();
