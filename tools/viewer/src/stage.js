@@ -307,7 +307,7 @@ export class Stage {
     const geometry = new THREE.BufferGeometry();
     let seed = 1; // a generator of its own: every page shows the same water
     const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
-    geometry.setAttribute("position", new THREE.Float32BufferAttribute(Array.from({ length: 3 * 500 }, random), 3));
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute(Array.from({ length: 3 * 2500 }, random), 3));
     this.pixels = { value: 1 };
     const motes = new THREE.Points(
       geometry,
@@ -323,9 +323,9 @@ export class Stage {
   }
 
   readTheme() {
-    this.shared.haze.value.copy(colour("--stage"));
-    this.sky.near.value.copy(colour("--stage"));
-    this.sky.far.value.copy(colour("--stage-low"));
+    this.shared.haze.value.copy(colour(this.pixels ? "--water" : "--stage"));
+    this.sky.near.value.copy(colour(this.pixels ? "--water" : "--stage"));
+    this.sky.far.value.copy(colour(this.pixels ? "--water-low" : "--stage-low"));
     this.world.line.value.copy(colour("--grid"));
     const dark = colour("--shadow");
     this.shadow.value.set(dark.r, dark.g, dark.b, Number(style("--shadow-strength")));
