@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* database_name = "run.sqlite";
 constexpr const char* lock_name = "lock";
-constexpr const char* format = "1";  ///< raised when a change of the tables keeps older programs from reading them
+constexpr const char* format = "2";  ///< raised when a change of the tables keeps older programs from reading them
 /// Readers and the writer do not wait for each other; but a folder that nobody may write cannot be read like this.
 constexpr const char* wait_for_nobody = "PRAGMA journal_mode = WAL";
 constexpr const char* rest_in_one_file = "PRAGMA journal_mode = DELETE";
@@ -26,7 +26,8 @@ constexpr int busy_ms = 60'000;  ///< how long to wait for a process that is jus
 
 constexpr const char* schema = R"sql(
 CREATE TABLE record(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE operators(kind TEXT NOT NULL, name TEXT NOT NULL, version TEXT NOT NULL, file TEXT NOT NULL);
+CREATE TABLE operators(kind TEXT NOT NULL, name TEXT NOT NULL, version TEXT NOT NULL, file TEXT NOT NULL,
+  hash TEXT NOT NULL);
 CREATE TABLE objectives(position INTEGER PRIMARY KEY, name TEXT NOT NULL, unit TEXT NOT NULL, maximise INTEGER NOT NULL);
 CREATE TABLE individuals(
   id INTEGER PRIMARY KEY,
@@ -42,6 +43,8 @@ CREATE INDEX individuals_by_death ON individuals(died);
 CREATE TABLE scores(
   individual INTEGER NOT NULL, objective INTEGER NOT NULL, value REAL NOT NULL,
   PRIMARY KEY(individual, objective)) WITHOUT ROWID;
+-- what development did to those who reached the front when they were born; see life_record.hpp
+CREATE TABLE lives(individual INTEGER PRIMARY KEY, record BLOB NOT NULL);
 CREATE TABLE generations(
   generation INTEGER PRIMARY KEY, evaluations INTEGER NOT NULL, best REAL, median REAL,
   diverged INTEGER NOT NULL, invalid INTEGER NOT NULL, spring_evaluations INTEGER NOT NULL, wall_time REAL NOT NULL);
@@ -181,8 +184,8 @@ Archive Archive::create(const fs::path& folder, const Experiment& experiment, co
   SQLite::Transaction transaction(database);
   database.exec(schema);
   for (const OperatorUse& use : experiment.uses) {
-    SQLite::Statement insert(database, "INSERT INTO operators VALUES(?, ?, ?, ?)");
-    SQLite::bind(insert, use.kind, use.name, use.version, use.file.string());
+    SQLite::Statement insert(database, "INSERT INTO operators VALUES(?, ?, ?, ?, ?)");
+    SQLite::bind(insert, use.kind, use.name, use.version, use.file.string(), use.hash);
     insert.exec();
   }
   for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
@@ -243,6 +246,7 @@ void Archive::commit(const std::vector<Individual>& newborns, const std::vector<
   SQLite::Statement insert(database, std::string("INSERT INTO individuals(") + individual_columns +
                                          ") VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL)");
   SQLite::Statement insert_score(database, "INSERT INTO scores VALUES(?, ?, ?)");
+  SQLite::Statement insert_life(database, "INSERT INTO lives VALUES(?, ?)");
   for (const Individual& individual : newborns) {
     const Result& result = individual.result;
     const auto parent = [&](std::size_t i) {
@@ -267,6 +271,12 @@ void Archive::commit(const std::vector<Individual>& newborns, const std::vector<
       insert_score.exec();
       insert_score.reset();
     }
+    if (result.record.empty()) continue;
+    const std::string& bytes = result.record.bytes();
+    insert_life.bind(1, individual.id);
+    insert_life.bind(2, bytes.data(), static_cast<int>(bytes.size()));
+    insert_life.exec();
+    insert_life.reset();
   }
   SQLite::Statement drop(database, "UPDATE individuals SET died = ? WHERE id = ?");
   for (const std::uint32_t id : dropped) {
@@ -349,10 +359,10 @@ void Archive::set_record(const std::string& key, const std::string& value) {
 
 std::vector<OperatorUse> Archive::operators() const {
   std::vector<OperatorUse> uses;
-  SQLite::Statement query(files_->database, "SELECT kind, name, version, file FROM operators ORDER BY rowid");
+  SQLite::Statement query(files_->database, "SELECT kind, name, version, file, hash FROM operators ORDER BY rowid");
   while (query.executeStep())
     uses.push_back({query.getColumn(0).getString(), query.getColumn(1).getString(), query.getColumn(2).getString(),
-                    query.getColumn(3).getString()});
+                    query.getColumn(3).getString(), query.getColumn(4).getString()});
   return uses;
 }
 
@@ -404,6 +414,15 @@ std::optional<ArchivedIndividual> Archive::individual(std::uint32_t id) const {
   return read_individual(files_->database, query);
 }
 
+std::optional<LifeRecord> Archive::life(std::uint32_t id) const try {
+  SQLite::Statement query(files_->database, "SELECT record FROM lives WHERE individual = ?");
+  query.bind(1, id);
+  if (!query.executeStep()) return std::nullopt;
+  return LifeRecord(query.getColumn(0).getString());
+} catch (const std::invalid_argument& error) {
+  throw ArchiveError(folder_.string() + ": individual " + std::to_string(id) + ": " + error.what());
+}
+
 std::vector<std::uint32_t> Archive::best(std::size_t count) const {
   const bool maximise = objectives().at(0).maximise;
   std::vector<std::uint32_t> ids;
@@ -415,9 +434,11 @@ std::vector<std::uint32_t> Archive::best(std::size_t count) const {
   return ids;
 }
 
-Experiment recorded_experiment(const Archive& archive) {
-  Experiment experiment = read_experiment(archive.record("experiment"),
-                                          {.file = (archive.folder() / "record of the run").string(), .overrides = {}});
+Experiment recorded_experiment(const Archive& archive, std::vector<fs::path> plugin_path) {
+  Experiment experiment =
+      read_experiment(archive.record("experiment"), {.file = (archive.folder() / "record of the run").string(),
+                                                     .overrides = {},
+                                                     .plugin_path = std::move(plugin_path)});
   experiment.name = archive.record("name");
   return experiment;
 }

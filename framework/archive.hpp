@@ -61,6 +61,8 @@ class Archive {
   std::optional<ArchivedIndividual> individual(std::uint32_t id) const;
   /// The ids of the `count` individuals with the best first objective, best first; ties in the order of birth.
   std::vector<std::uint32_t> best(std::size_t count) const;
+  /// What development did to an individual; nothing unless it reached the front when it was born.
+  std::optional<LifeRecord> life(std::uint32_t id) const;
   /// Of an individual; nothing where it was not verified.
   std::optional<Verification> verification(std::uint32_t id) const;
 
@@ -74,7 +76,7 @@ class Archive {
   std::unique_ptr<Files> files_;
 };
 
-/// The experiment that a run used, read from its record.
-Experiment recorded_experiment(const Archive& archive);
+/// The experiment that a run used, read from its record. Operators are looked for on `plugin_path` too.
+Experiment recorded_experiment(const Archive& archive, std::vector<std::filesystem::path> plugin_path = {});
 
 }  // namespace evodevo

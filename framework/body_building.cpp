@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 
 #include "parallel.hpp"
 #include "stability.hpp"
@@ -57,13 +58,17 @@ std::vector<std::uint32_t> pieces(const Body& body) {
   return leader;
 }
 
-/// Keeps the piece with most masses; of equal ones that of the lowest index. Returns the masses kept.
+/// The leader of the piece with most masses; of equal ones that of the lowest index.
+std::uint32_t largest_piece(const std::vector<std::uint32_t>& leader) {
+  std::vector<std::uint32_t> size(leader.size(), 0);
+  for (const std::uint32_t i : leader) ++size[i];
+  return static_cast<std::uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
+}
+
+/// Returns the masses kept.
 std::vector<std::uint32_t> keep_largest_piece(Body& body) {
   const std::vector<std::uint32_t> leader = pieces(body);
-  std::vector<std::uint32_t> size(body.masses.size(), 0);
-  for (const std::uint32_t i : leader) ++size[i];
-  const auto largest = static_cast<std::uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
-
+  const std::uint32_t largest = largest_piece(leader);
   std::vector<std::uint32_t> new_index(body.masses.size(), 0), kept;
   std::vector<Mass> masses;
   for (std::uint32_t i = 0; i < leader.size(); ++i) {
@@ -73,8 +78,10 @@ std::vector<std::uint32_t> keep_largest_piece(Body& body) {
     masses.push_back(body.masses[i]);
   }
   std::erase_if(body.springs, [&](const Spring& spring) { return leader[spring.a] != largest; });
-  for (Spring& spring : body.springs)
-    spring = {new_index[spring.a], new_index[spring.b], spring.rest_length, spring.material};
+  for (Spring& spring : body.springs) {
+    spring.a = new_index[spring.a];
+    spring.b = new_index[spring.b];
+  }
   body.masses = std::move(masses);
   return kept;
 }
@@ -95,7 +102,17 @@ std::string blueprint_failure(const Blueprint& blueprint) {
   if (masses.empty()) return "no body: no masses";
   if (!std::all_of(masses.begin(), masses.end(), [](const Mass& mass) { return is_finite(mass.rest); }))
     return "no body: a place that is not finite";
+  if (!blueprint.paired_at.empty() && blueprint.paired_at.size() != masses.size())
+    return "no body: " + std::to_string(blueprint.paired_at.size()) + " places to pair " +
+           std::to_string(masses.size()) + " masses at";
+  if (!std::all_of(blueprint.paired_at.begin(), blueprint.paired_at.end(), is_finite))
+    return "no body: a place to pair masses at that is not finite";
   return "";
+}
+
+/// Where the masses' neighbours are searched for.
+std::vector<Vec3> pairing_places(const Blueprint& blueprint) {
+  return blueprint.paired_at.empty() ? rest_places(blueprint.body) : blueprint.paired_at;
 }
 
 /// What is left to do once neighbours are joined.
@@ -109,9 +126,34 @@ BuiltBody finish(Body body) {
 
 }  // namespace
 
+void check_blueprint(const Blueprint& blueprint, const World& world) {
+  const auto require = [](bool holds, const char* what, std::size_t index, const char* fault) {
+    if (!holds) throw std::invalid_argument(std::string(what) + " " + std::to_string(index) + " " + fault);
+  };
+  const Body& body = blueprint.body;
+  const auto materials = static_cast<std::int64_t>(body.materials.size());
+  for (std::size_t i = 0; i < world.materials.size(); ++i)
+    require(i < body.materials.size() && body.materials[i] == world.materials[i], "material", i, "is not the world's");
+  for (std::size_t i = 0; i < body.masses.size(); ++i) {
+    const Mass& mass = body.masses[i];
+    require(mass.mass > 0 && std::isfinite(mass.mass), "mass", i, "weighs nothing, or has no finite mass");
+    require(mass.material >= no_material && mass.material < materials, "mass", i, "is of a material that is not there");
+  }
+  for (std::size_t i = 0; i < body.springs.size(); ++i) {
+    const Spring& spring = body.springs[i];
+    require(std::max(spring.a, spring.b) < body.masses.size(), "spring", i, "dangles");
+    require(spring.a != spring.b, "spring", i, "joins a mass to itself");
+    require(spring.rest_length >= 0 && std::isfinite(spring.rest_length), "spring", i, "has no finite rest length");
+    require(spring.material < materials, "spring", i, "is of a material that is not there");
+  }
+  if (!blueprint.origins.empty() && blueprint.origins.size() != body.masses.size())
+    throw std::invalid_argument(std::to_string(blueprint.origins.size()) + " origins for " +
+                                std::to_string(body.masses.size()) + " masses");
+}
+
 BuiltBody build_body(Blueprint blueprint) {
   if (std::string failure = blueprint_failure(blueprint); !failure.empty()) return {{}, std::move(failure), {}};
-  join(blueprint.body, nearest_pairs(rest_places(blueprint.body), blueprint.neighbours));
+  join(blueprint.body, nearest_pairs(pairing_places(blueprint), blueprint.neighbours));
   return finish(std::move(blueprint.body));
 }
 
@@ -120,16 +162,41 @@ std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, Neighbour
   std::vector<std::vector<Vec3>> places(blueprints.size());
   workers.for_each(blueprints.size(), [&](std::size_t i) {
     built[i].failure = blueprint_failure(blueprints[i]);
-    if (built[i].failure.empty()) places[i] = rest_places(blueprints[i].body);
+    if (built[i].failure.empty()) places[i] = pairing_places(blueprints[i]);
   });
   std::vector<PointCloud> clouds;
   for (std::size_t i = 0; i < blueprints.size(); ++i) clouds.push_back({places[i], blueprints[i].neighbours});
-  search.find(clouds, [&](std::size_t i, std::span<const IndexPair> pairs) {
+  search.find(clouds, workers, [&](std::size_t i, std::span<const IndexPair> pairs) {
     if (!built[i].failure.empty()) return;
     join(blueprints[i].body, pairs);
     built[i] = finish(std::move(blueprints[i].body));
   });
   return built;
+}
+
+void put_load(Body& body, double share, double top) {
+  const Box box = bounding_box(rest_places(body));
+  const double lowest = box.high.z - top * (box.high.z - box.low.z);
+  double own = 0;
+  std::vector<Mass*> carriers;
+  for (Mass& mass : body.masses) {
+    own += mass.mass;
+    if (mass.rest.z >= lowest) carriers.push_back(&mass);
+  }
+  for (Mass* mass : carriers) {
+    mass->load = share * own / static_cast<double>(carriers.size());
+    mass->mass += mass->load;
+  }
+  place_on_origin(body);
+}
+
+std::vector<std::uint32_t> loose_masses(const Body& body) {
+  const std::vector<std::uint32_t> leader = pieces(body);
+  const std::uint32_t largest = largest_piece(leader);
+  std::vector<std::uint32_t> loose;
+  for (std::uint32_t i = 0; i < leader.size(); ++i)
+    if (leader[i] != largest) loose.push_back(i);
+  return loose;
 }
 
 }  // namespace evodevo

@@ -18,6 +18,10 @@ struct BuiltBody {
   std::vector<std::uint32_t> kept;  ///< which of the blueprint's masses the body's are, ascending
 };
 
+/// Throws std::invalid_argument, naming the fault, where the blueprint's indices or numbers make no body at all. Places
+/// that are not finite are no such fault: networks may give them, and the body is then an invalid one.
+void check_blueprint(const Blueprint& blueprint, const World& world);
+
 /// Joins the neighbours that the blueprint asks for, leaves out springs of air (and counts them as contacts), drops
 /// masses without springs, keeps the largest piece, and moves the rest places so that the lowest is at z = 0 and the
 /// centre of mass over the origin.
@@ -25,5 +29,11 @@ BuiltBody build_body(Blueprint blueprint);
 
 /// The same for a population, whose neighbours are searched for together.
 std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, Workers& workers);
+
+/// Spreads a load of `share` times the body's mass evenly over the masses in the upper part `top` of its height.
+void put_load(Body& body, double share, double top);
+
+/// The masses that springs do not tie to the largest piece, ascending.
+std::vector<std::uint32_t> loose_masses(const Body& body);
 
 }  // namespace evodevo

@@ -17,10 +17,8 @@ Rng stream(const Experiment& experiment, std::uint32_t generation, std::uint32_t
 }
 
 /// Refuses genes that the layout does not allow, so that a faulty operator is found where it errs.
-void check_genome(const Genome& genome, const Layout& layout, const std::string& made_by) {
-  const auto refuse = [&](const std::string& what) {
-    throw std::runtime_error("operator \"" + made_by + "\" made a genome with " + what);
-  };
+void check_genome(const Genome& genome, const Layout& layout) {
+  const auto refuse = [&](const std::string& what) { throw std::runtime_error("made a genome with " + what); };
   if (genome.size() != layout.genes.size())
     refuse(std::to_string(genome.size()) + " genes where there are " + std::to_string(layout.genes.size()));
   for (std::size_t i = 0; i < genome.size(); ++i) {
@@ -38,8 +36,10 @@ Individual newcomer(const Experiment& experiment, std::uint32_t generation, std:
   individual.id = id;
   individual.born = individual.origin = generation;
   individual.made_by = "random";
-  individual.genome = experiment.encoding->random(experiment.layout, rng);
-  check_genome(individual.genome, experiment.layout, "random");
+  call_operator(experiment, Encoding::kind, 0, [&] {
+    individual.genome = experiment.encoding->random(experiment.layout, rng);
+    check_genome(individual.genome, experiment.layout);
+  });
   return individual;
 }
 
@@ -74,7 +74,10 @@ Individual child(const Experiment& experiment, const Individual& parent, const I
       const auto& crossover = experiment.crossovers[i];
       Rng rng = stream(experiment, generation, id, place::crossover + static_cast<std::uint32_t>(i));
       Genome other = mate.genome;
-      crossover.op->cross(individual.genome, other, experiment.layout, rng);
+      call_operator(experiment, Crossover::kind, i, [&] {
+        crossover.op->cross(individual.genome, other, experiment.layout, rng);
+        check_genome(individual.genome, experiment.layout);
+      });
       individual.parents = {parent.id, mate.id};
       individual.origin = std::min(parent.origin, mate.origin);
       names.push_back(crossover.name);
@@ -82,13 +85,29 @@ Individual child(const Experiment& experiment, const Individual& parent, const I
       const std::size_t k = i - experiment.crossovers.size();
       const auto& mutation = experiment.mutations[k];
       Rng rng = stream(experiment, generation, id, place::mutation + static_cast<std::uint32_t>(k));
-      mutation.op->mutate(individual.genome, experiment.layout, rng);
+      call_operator(experiment, Mutation::kind, k, [&] {
+        mutation.op->mutate(individual.genome, experiment.layout, rng);
+        check_genome(individual.genome, experiment.layout);
+      });
       names.push_back(mutation.name);
     }
-    check_genome(individual.genome, experiment.layout, names.back());
   }
   individual.made_by = joined(names, "+");
   return individual;
+}
+
+std::vector<std::pair<std::uint32_t, std::uint32_t>> chosen_parents(const Experiment& experiment,
+                                                                    const SelectionTable& table, std::uint32_t count,
+                                                                    Rng& rng) {
+  auto pairs = experiment.selection->parents(table.rows(), count, rng);
+  if (pairs.size() != count)
+    throw std::runtime_error("chose " + std::to_string(pairs.size()) + " pairs of parents where " +
+                             std::to_string(count) + " were asked for");
+  for (const auto& [parent, mate] : pairs)
+    if (std::max(parent, mate) >= table.rows().size())
+      throw std::runtime_error("chose row " + std::to_string(std::max(parent, mate)) + " of " +
+                               std::to_string(table.rows().size()));
+  return pairs;
 }
 
 }  // namespace
@@ -123,10 +142,9 @@ std::vector<Individual> breed(const Experiment& experiment, const std::vector<In
   if (newcomers < count) {
     const SelectionTable table(population, experiment.objectives, generation);
     Rng rng = stream(experiment, generation, 0, place::parents);
-    const auto pairs = experiment.selection->parents(table.rows(), static_cast<std::uint32_t>(count - newcomers), rng);
-    if (pairs.size() != count - newcomers)
-      throw std::runtime_error("selection chose " + std::to_string(pairs.size()) + " pairs of parents where " +
-                               std::to_string(count - newcomers) + " were asked for");
+    const auto asked = static_cast<std::uint32_t>(count - newcomers);
+    const auto pairs =
+        call_operator(experiment, Selection::kind, 0, [&] { return chosen_parents(experiment, table, asked, rng); });
     for (const auto& [parent, mate] : pairs)
       newborns.push_back(child(experiment, population.at(parent), population.at(mate), generation, id++));
   }

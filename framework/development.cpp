@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 namespace evodevo {
 namespace {
@@ -41,6 +42,7 @@ class Editor {
         mass_gone_(marked(edits.removed_masses, living.body.masses.size(), "mass")) {}
 
   void apply() {
+    change_springs();
     const std::vector<NewSpring> arrivals = finished_springs();  // while the old indices hold
     move_masses();
     move_springs();
@@ -54,6 +56,39 @@ class Editor {
   /// Where a mass, old or new, is when life goes on.
   Vec3 place(std::uint32_t mass) const {
     return mass < old_masses() ? now_.place(mass) : edits_.new_masses[mass - old_masses()].place;
+  }
+
+  bool goes(const Spring& spring) const { return mass_gone_[spring.a] || mass_gone_[spring.b]; }
+
+  static void check_material(const std::string& what, const Material& material) {
+    if (!(material.stiffness > 0) || !std::isfinite(material.stiffness))
+      refuse(what + " by a spring of stiffness " + std::to_string(material.stiffness));
+    if (!(material.amplitude >= 0 && material.amplitude < 1))
+      refuse(what + " by a spring of amplitude " + std::to_string(material.amplitude) + "; expected 0 to below 1");
+    if (!std::isfinite(material.frequency) || !std::isfinite(material.phase))
+      refuse(what + " by a spring whose frequency or phase is not finite");
+  }
+
+  static void check_rest_length(const std::string& what, double rest_length) {
+    if (!(rest_length >= 0) || !std::isfinite(rest_length))
+      refuse(what + " by a spring of rest length " + std::to_string(rest_length));
+  }
+
+  void change_springs() {
+    Body& body = living_.body;
+    std::vector<std::uint8_t> changed(body.springs.size(), 0);
+    for (const ChangedSpring& change : edits_.changed_springs) {
+      const std::string what = "replaces spring " + std::to_string(change.spring);
+      if (change.spring >= body.springs.size())
+        refuse(what + " of a body that has " + std::to_string(body.springs.size()));
+      Spring& spring = body.springs[change.spring];
+      if (spring_gone_[change.spring] || goes(spring)) refuse(what + ", which goes");
+      if (std::exchange(changed[change.spring], 1)) refuse(what + " twice");
+      if (change.material) check_material(what, *change.material);
+      if (change.rest_length) check_rest_length(what, *change.rest_length);
+      spring.rest_length = change.rest_length.value_or(spring.rest_length);
+      if (change.material) spring.material = body.material_index(*change.material);
+    }
   }
 
   void check_end(const NewSpring& spring, std::uint32_t end) const {
@@ -70,11 +105,9 @@ class Editor {
       check_end(spring, spring.a);
       check_end(spring, spring.b);
       if (spring.a == spring.b) refuse(pair_text(spring) + ", which are one");
-      if (!(spring.material.stiffness > 0) || !std::isfinite(spring.material.stiffness))
-        refuse(pair_text(spring) + " by a spring of stiffness " + std::to_string(spring.material.stiffness));
+      check_material(pair_text(spring), spring.material);
       if (!spring.rest_length) spring.rest_length = forceless_length(spring);
-      if (!(*spring.rest_length >= 0) || !std::isfinite(*spring.rest_length))
-        refuse(pair_text(spring) + " by a spring of rest length " + std::to_string(*spring.rest_length));
+      check_rest_length(pair_text(spring), *spring.rest_length);
     }
     return springs;
   }
@@ -105,10 +138,31 @@ class Editor {
       if (!std::isfinite(norm(mass.place)) || !(mass.mass > 0) || !std::isfinite(mass.mass))
         refuse("adds a mass of " + std::to_string(mass.mass) + " kg at a distance of " +
                std::to_string(norm(mass.place)) + " m from the origin");
+      if (mass.material < no_material || mass.material >= static_cast<std::int64_t>(living_.body.materials.size()))
+        refuse("adds a mass of material " + std::to_string(mass.material) + " to a body that has " +
+               std::to_string(living_.body.materials.size()) + " materials");
       add({mass.place, mass.mass, mass.material, 0}, mass.place, {});
     }
+    pass_load_on(masses);
     living_.body.masses = std::move(masses);
     living_.state = std::move(state);
+  }
+
+  /// Spreads the load of what goes evenly over those that carry one, or over all where nobody is left who does.
+  void pass_load_on(std::vector<Mass>& masses) const {
+    double load = 0;
+    for (std::size_t i = 0; i < old_masses(); ++i)
+      if (mass_gone_[i]) load += living_.body.masses[i].load;
+    if (!(load > 0)) return;
+    const auto carries = [](const Mass& mass) { return mass.load > 0; };
+    const auto carriers = std::count_if(masses.begin(), masses.end(), carries);
+    const double part =
+        load / static_cast<double>(carriers > 0 ? carriers : static_cast<std::ptrdiff_t>(masses.size()));
+    for (Mass& mass : masses) {
+      if (carriers > 0 && !carries(mass)) continue;
+      mass.load += part;
+      mass.mass += part;
+    }
   }
 
   void move_springs() {
@@ -118,8 +172,10 @@ class Editor {
     stress.reserve(springs.capacity());
     for (std::size_t i = 0; i < living_.body.springs.size(); ++i) {
       const Spring& spring = living_.body.springs[i];
-      if (spring_gone_[i] || mass_gone_[spring.a] || mass_gone_[spring.b]) continue;
-      springs.push_back({new_index_[spring.a], new_index_[spring.b], spring.rest_length, spring.material});
+      if (spring_gone_[i] || goes(spring)) continue;
+      springs.push_back(spring);
+      springs.back().a = new_index_[spring.a];
+      springs.back().b = new_index_[spring.b];
       stress.push_back(living_.stress[i]);
     }
     mean_stress_ =
@@ -166,10 +222,7 @@ class Editor {
 }  // namespace
 
 void apply_edits(LivingBody& living, const Edits& edits, const Moment& now) {
-  if (edits.removed_springs.empty() && edits.removed_masses.empty() && edits.new_masses.empty() &&
-      edits.new_springs.empty())
-    return;
-  Editor(living, edits, now).apply();
+  if (!edits.empty()) Editor(living, edits, now).apply();
 }
 
 }  // namespace evodevo

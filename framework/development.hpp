@@ -19,8 +19,8 @@ struct LivingBody {
 
 /// Applies one operator's edits, all of them together. `now` is the moment that the operator saw; it refers to
 /// `living`. New springs carry the mean stress of the old ones. Throws std::invalid_argument, naming the edit, for an
-/// index out of range, a mass joined to itself or to one that goes, a pair joined twice, air, or a number that is not
-/// finite.
+/// index out of range, a mass joined to itself or to one that goes, a pair joined twice, a spring changed twice or one
+/// that goes, air, or a number that is not finite.
 void apply_edits(LivingBody& living, const Edits& edits, const Moment& now);
 
 }  // namespace evodevo

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "body_building.hpp"
+#include "controls.hpp"
 #include "parallel.hpp"
 #include "philox.hpp"
 
@@ -27,16 +28,20 @@ std::size_t mark_at(const std::vector<double>& marks, double time) {
   return static_cast<std::size_t>(std::lower_bound(marks.begin(), marks.end(), time - rounding) - marks.begin());
 }
 
+/// Whether edits may strain or lift a body. Turnover by springs without force does neither by much.
+bool adds_energy(const Edits& edits) {
+  return !edits.changed_springs.empty() || edits.new_masses.size() > edits.removed_masses.size() ||
+         std::any_of(edits.new_springs.begin(), edits.new_springs.end(),
+                     [](const NewSpring& spring) { return spring.rest_length.has_value(); });
+}
+
 }  // namespace
 
 Evaluation::Evaluation(const Experiment& experiment, Simulator& simulator)
     : Evaluation(experiment, simulator, Conditions(experiment)) {}
 
 Evaluation::Evaluation(const Experiment& experiment, Simulator& simulator, const Conditions& conditions)
-    : experiment_(experiment),
-      simulator_(simulator),
-      conditions_(conditions),
-      workers_(static_cast<int>(experiment.threads)) {
+    : experiment_(experiment), simulator_(simulator), conditions_(conditions) {
   set_windows();
 }
 
@@ -89,16 +94,20 @@ std::vector<Result> Evaluation::evaluate_cohort(std::span<const Newborn> newborn
 std::vector<Life> Evaluation::birth(std::span<const Newborn> newborns) const {
   const BusyClock::Span span(decode_);
   std::vector<Blueprint> blueprints(newborns.size());
-  workers_.for_each(newborns.size(), [&](std::size_t i) {
-    blueprints[i] = experiment_.encoding->decode(*newborns[i].genome, experiment_.world);
+  simulator_.workers().for_each(newborns.size(), [&](std::size_t i) {
+    call_operator(experiment_, Encoding::kind, 0, [&] {
+      blueprints[i] = experiment_.encoding->decode(*newborns[i].genome, experiment_.world);
+      if (blueprints[i].failure.empty()) check_blueprint(blueprints[i], experiment_.world);
+    });
   });
-  std::vector<BuiltBody> built = build_bodies(std::move(blueprints), simulator_.neighbours(), workers_);
+  std::vector<BuiltBody> built = build_bodies(std::move(blueprints), simulator_.neighbours(), simulator_.workers());
   std::vector<Life> lives(newborns.size());
-  workers_.for_each(lives.size(), [&](std::size_t i) {
+  simulator_.workers().for_each(lives.size(), [&](std::size_t i) {
     Life& life = lives[i];
     life.newborn = newborns[i];
     if (!built[i].failure.empty()) return end(life, Status::invalid, std::move(built[i].failure));
     life.living.body = std::move(built[i].body);
+    if (const auto& load = experiment_.load) put_load(life.living.body, load->share, load->top);
     life.living.state = state_at_birth(life.living.body, experiment_.scene);
     choose_step(life);
   });
@@ -114,14 +123,22 @@ void Evaluation::develop(std::span<Life> lives, const Progress& progress) const 
   for (int cycle = 1; cycle <= development.cycles; ++cycle) {
     simulate(lives, development.cycle_time, {.stress = !development.operators.empty()});
     const BusyClock::Span span(develop_);
-    workers_.for_each(lives.size(), [&](std::size_t i) {
+    simulator_.workers().for_each(lives.size(), [&](std::size_t i) {
       if (!lives[i].alive()) return;
       apply_operators(lives[i], cycle);
-      if (development.reset) return_to_rest(lives[i]);
+      if (development.reset) allow_energy(lives[i], [&] { return_to_rest(lives[i]); });
       if (!development.operators.empty()) choose_step(lives[i]);
     });
     progress(static_cast<double>(cycle) / static_cast<double>(development.cycles));
   }
+}
+
+template <class Action>
+void Evaluation::allow_energy(Life& life, const Action& action) const {
+  const auto energy = [&] { return total_energy(life.living.body, life.living.state, experiment_.scene); };
+  const double before = energy();
+  action();
+  life.living.state.start_energy += std::max(0.0, energy() - before);
 }
 
 Box Evaluation::bounds(const LivingBody& living) const {
@@ -136,31 +153,66 @@ Box Evaluation::bounds(const LivingBody& living) const {
 
 void Evaluation::apply_operators(Life& life, int cycle) const {
   const Development& development = experiment_.development;
-  LivingBody& living = life.living;
-  for (std::size_t i = 0; i < development.operators.size(); ++i) {
-    const Moment now{.body = living.body,
-                     .state = living.state,
-                     .stress = living.stress,
-                     .cycle = cycle,
-                     .cycles = static_cast<int>(development.cycles),
-                     .time = living.state.time,
-                     .bounds = bounds(living),
-                     .mass = experiment_.world.mass,
-                     .resets = development.reset,
-                     .genome = *life.newborn.genome,
-                     .layout = experiment_.layout};
-    Rng rng(philox, {static_cast<std::uint64_t>(experiment_.seed), life.newborn.generation, life.newborn.id,
-                     place::devo(i, cycle)});
-    try {
-      Edits edits;
-      development.operators[i]->develop(now, edits, rng);
-      apply_edits(living, edits, now);
-    } catch (const std::exception& error) {
-      throw std::runtime_error("devo operator \"" + development.names[i] + "\", individual " +
-                               std::to_string(life.newborn.id) + ", cycle " + std::to_string(cycle) + ": " +
-                               error.what());
-    }
-  }
+  if (development.control == Control::no_change) return;
+  if (development.control == Control::shuffled_stress)
+    stream(life, place::stress_shuffle(cycle)).shuffle(life.living.stress);
+  for (std::size_t i = 0; i < development.operators.size(); ++i)
+    if (development.operators[i].schedule.contains(cycle)) apply_operator(life, cycle, i);
+  shed_loose_pieces(life, cycle);
+}
+
+void Evaluation::apply_operator(Life& life, int cycle, std::size_t index) const {
+  const auto& [op, schedule] = experiment_.development.operators[index];
+  const Moment now = moment(life, cycle, schedule);
+  Rng rng = stream(life, place::devo(index, cycle));
+  const auto where = [&] {
+    return ", individual " + std::to_string(life.newborn.id) + ", cycle " + std::to_string(cycle);
+  };
+  const auto develop = [&] {
+    Edits edits;
+    op->develop(now, edits, rng);
+    if (experiment_.development.control == Control::random_places) edits = at_random_places(edits, now, rng);
+    make_change(life, edits, static_cast<std::uint32_t>(index), now);
+  };
+  call_operator(experiment_, Devo::kind, index, develop, where);
+}
+
+Rng Evaluation::stream(const Life& life, std::uint32_t place) const {
+  return Rng(philox, {static_cast<std::uint64_t>(experiment_.seed), life.newborn.generation, life.newborn.id, place});
+}
+
+Moment Evaluation::moment(const Life& life, int cycle, const Schedule& schedule) const {
+  const Development& development = experiment_.development;
+  const LivingBody& living = life.living;
+  return {.body = living.body,
+          .state = living.state,
+          .stress = living.stress,
+          .cycle = cycle,
+          .cycles = static_cast<int>(development.cycles),
+          .turn = static_cast<int>(schedule.turns(cycle)),
+          .turns = static_cast<int>(schedule.turns(development.cycles)),
+          .time = living.state.time,
+          .bounds = bounds(living),
+          .mass = experiment_.world.mass,
+          .resets = development.reset,
+          .genome = *life.newborn.genome,
+          .layout = experiment_.layout};
+}
+
+void Evaluation::make_change(Life& life, const Edits& edits, std::optional<std::uint32_t> op, const Moment& now) const {
+  if (edits.empty()) return;
+  Change change = change_by(edits, op, now);
+  const auto apply = [&] { apply_edits(life.living, edits, now); };
+  if (adds_energy(edits))
+    allow_energy(life, apply);
+  else
+    apply();
+  set_rest_lengths(change, life.living.body);
+  life.result.record.add(change);
+}
+
+void Evaluation::shed_loose_pieces(Life& life, int cycle) const {
+  make_change(life, {.removed_masses = loose_masses(life.living.body)}, std::nullopt, moment(life, cycle, {}));
 }
 
 void Evaluation::choose_step(Life& life) const {
@@ -243,7 +295,8 @@ void Evaluation::score(Life& life) const {
                                   .centre_after = after.centre,
                                   .window = request.window,
                                   .work = request.work ? after.work - before.work : 0};
-    for (const double value : fitness.score(observation)) objectives.push_back(value);
+    const auto scores = call_operator(experiment_, Fitness::kind, i, [&] { return fitness.score(observation); });
+    objectives.insert(objectives.end(), scores.begin(), scores.end());
   }
   if (objectives.size() != experiment_.objectives.size())
     throw std::runtime_error("the fitness operators gave " + std::to_string(objectives.size()) + " numbers for " +

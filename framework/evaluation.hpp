@@ -9,6 +9,7 @@
 #include "busy_clock.hpp"
 #include "development.hpp"
 #include "experiment.hpp"
+#include "life_record.hpp"
 #include "parallel.hpp"
 
 namespace evodevo {
@@ -27,6 +28,7 @@ struct Result {
   double ended_at = 0;             ///< simulated time of a divergence, s
   std::vector<double> objectives;  ///< in Experiment::objectives' order and units; empty unless ok
   std::uint64_t spring_evaluations = 0;
+  LifeRecord record;  ///< of development; kept, and archived, for those alone who reach the front
 };
 
 /// What the body showed at one point of the final evaluation.
@@ -91,7 +93,19 @@ class Evaluation {
   void simulate(std::span<Life> lives, double duration, Recording recording) const;
   /// The box around the body where it is when life goes on, cut off at the floor.
   Box bounds(const LivingBody& living) const;
+  /// Does what changes a body; the energy that it brings is no fault of the simulation, so the guard is to allow it.
+  template <class Action>
+  void allow_energy(Life& life, const Action& action) const;
+  /// What an operator sees after a cycle.
+  Moment moment(const Life& life, int cycle, const Schedule& schedule) const;
   void apply_operators(Life& life, int cycle) const;
+  void apply_operator(Life& life, int cycle, std::size_t index) const;
+  /// Makes and records edits of an operator, or of none.
+  void make_change(Life& life, const Edits& edits, std::optional<std::uint32_t> op, const Moment& now) const;
+  /// What development has torn off is no longer part of the body.
+  void shed_loose_pieces(Life& life, int cycle) const;
+  /// Random numbers for one part of a life.
+  Rng stream(const Life& life, std::uint32_t place) const;
   double development_time() const;
   /// Whether a fitness asks for the work in the time up to a mark.
   bool needs_work(std::size_t mark) const;
@@ -107,7 +121,6 @@ class Evaluation {
   };
   std::vector<double> marks_;    ///< when some fitness looks, from the start of the final evaluation, s
   std::vector<Window> windows_;  ///< of each fitness
-  mutable Workers workers_;
   mutable BusyClock decode_, simulate_, develop_;
 };
 

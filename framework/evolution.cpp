@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "breeding.hpp"
+#include "evodevo/pareto.hpp"
 #include "philox.hpp"
 #include "text.hpp"
 
@@ -17,18 +19,45 @@ void evaluate(std::vector<Individual>& newborns, const Evaluation& evaluation, c
   for (std::size_t i = 0; i < newborns.size(); ++i) newborns[i].result = std::move(results[i]);
 }
 
+std::vector<std::uint32_t> chosen_survivors(const Experiment& experiment, const SelectionTable& table,
+                                            std::uint32_t population, Rng& rng) {
+  auto rows = experiment.selection->survivors(table.rows(), population, rng);
+  std::sort(rows.begin(), rows.end());
+  const bool twice = std::adjacent_find(rows.begin(), rows.end()) != rows.end();
+  if (rows.empty() || rows.size() > population || twice || rows.back() >= table.rows().size())
+    throw std::runtime_error("must choose 1 to " + std::to_string(population) + " different survivors of " +
+                             std::to_string(table.rows().size()));
+  return rows;
+}
+
+/// Takes the records of their lives from the newborns, for which there is no room in a whole population.
+std::vector<LifeRecord> take_records(std::vector<Individual>& newborns) {
+  std::vector<LifeRecord> records;
+  for (Individual& individual : newborns) records.push_back(std::exchange(individual.result.record, {}));
+  return records;
+}
+
+/// Gives them back to those on the front: whom nobody in `everyone`, of which the newborns come last, surpasses in the
+/// objectives and in youth.
+void return_records_to_front(std::vector<Individual>& newborns, std::vector<LifeRecord> records,
+                             const std::vector<Individual>& everyone, const Experiment& experiment,
+                             std::uint32_t generation) {
+  const SelectionTable table(everyone, experiment.objectives, generation);
+  const std::vector<std::uint32_t> layer = pareto_layers(scores_and_youth(table.rows()));
+  const std::size_t first = everyone.size() - newborns.size();
+  for (std::size_t i = 0; i < newborns.size(); ++i)
+    if (newborns[i].result.status == Status::ok && layer[first + i] == 0)
+      newborns[i].result.record = std::move(records[i]);
+}
+
 /// Reduces `everyone` to the survivors, in the order of birth; returns the ids of the others.
 std::vector<std::uint32_t> select(std::vector<Individual>& everyone, const Experiment& experiment,
                                   std::uint32_t generation) {
   const auto population = static_cast<std::uint32_t>(experiment.population);
   const SelectionTable table(everyone, experiment.objectives, generation);
   Rng rng(philox, {static_cast<std::uint64_t>(experiment.seed), generation, 0, place::survivors});
-  std::vector<std::uint32_t> rows = experiment.selection->survivors(table.rows(), population, rng);
-  std::sort(rows.begin(), rows.end());
-  const bool twice = std::adjacent_find(rows.begin(), rows.end()) != rows.end();
-  if (rows.empty() || rows.size() > population || twice || rows.back() >= everyone.size())
-    throw std::runtime_error("selection must choose 1 to " + std::to_string(population) + " different survivors of " +
-                             std::to_string(everyone.size()));
+  const auto rows = call_operator(experiment, Selection::kind, 0,
+                                  [&] { return chosen_survivors(experiment, table, population, rng); });
   std::vector<Individual> survivors;
   std::vector<std::uint32_t> dropped;
   for (std::uint32_t i = 0; i < everyone.size(); ++i) {
@@ -124,7 +153,9 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
     evaluate(newborns, evaluation, observer);
     evaluations += count;
     Summary summary = summarise(newborns, generation);
+    std::vector<LifeRecord> records = take_records(newborns);
     population.insert(population.end(), newborns.begin(), newborns.end());
+    return_records_to_front(newborns, std::move(records), population, experiment, generation);
     const std::vector<std::uint32_t> dropped = select(population, experiment, generation);
     add_best_and_median(summary, population, experiment.objectives.front().maximise);
     summary.evaluations = evaluations;

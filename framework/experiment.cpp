@@ -35,6 +35,10 @@ void declare(Parameters& p, Damping& damping) {
 void declare(Parameters& p, Drag& drag) {
   p.real(drag.coefficient, "coefficient", {0, 1e6, "kg/m"}, "Drag on each mass, coefficient |v| v.");
 }
+void declare(Parameters& p, Load& load) {
+  p.real(load.share, "share", {0, 1000, "1"}, "Load that a body carries, relative to its mass at birth.");
+  p.real(load.top, "top", {0, 1, "1"}, "Upper part of the body's height at birth whose masses carry it.");
+}
 void declare(Parameters& p, Material& material) {
   p.real(material.stiffness, "stiffness", {0, 1e12, "N/m"}, "Spring constant; 0 is air.");
   p.real(material.amplitude, "amplitude", {0, 0.9}, "Relative change of length.");
@@ -57,8 +61,9 @@ fs::path folder_of(const ExperimentSource& source) { return fs::absolute(source.
 /// Reads the experiment's tables one after the other; each adds its resolved form.
 class Composer {
  public:
-  Composer(const toml::table& root, const Registry& registry, const ExperimentSource& source)
-      : top_(root, ""), registry_(registry), source_(source) {}
+  Composer(const toml::table& root, const Registry& registry, const std::vector<fs::path>& plugin_path,
+           const ExperimentSource& source)
+      : top_(root, ""), registry_(registry), plugin_path_(plugin_path), source_(source) {}
 
   Experiment compose() {
     top_.expect({"experiment", "encoding", "mutation", "crossover", "scene", "simulation", "development", "fitness",
@@ -125,7 +130,8 @@ class Composer {
     }
     std::unique_ptr<T> op = create<T>(*available);
     op->parameters(table);
-    out_.uses.push_back({available->entry->kind, name, available->manifest->version, available->file});
+    out_.uses.push_back(
+        {available->entry->kind, name, available->manifest->version, available->file, file_hash(available->file)});
     return op;
   }
 
@@ -141,16 +147,23 @@ class Composer {
 
   void read_plugins() {
     read_section("plugins", false, [&](TomlReader& t) {
-      toml::array absolute;
       for (const std::string& path : t.texts("paths")) {
         const fs::path folder = (folder_of(source_) / path).lexically_normal();
-        if (!fs::is_directory(folder)) t.fail("paths", folder.string() + " is no folder");
-        absolute.push_back(folder.string());
+        if (!is_plugin_path(folder)) t.fail("paths", folder.string() + " is no folder and no library of operators");
       }
-      t.resolve("paths", std::move(absolute));
     });
+    record_plugin_path();
     for (const FailedLibrary& failed : registry_.failed())
       out_.warnings.push_back("not usable: " + failed.file.string() + ": " + failed.reason);
+  }
+
+  /// The record names all folders but the program's own, so that the run can be resumed without the options and the
+  /// environment that it was begun with.
+  void record_plugin_path() {
+    toml::array paths;
+    for (const fs::path& path : plugin_path_)
+      if (path != builtin_plugin_folder() && is_plugin_path(path)) paths.push_back(path.lexically_normal().string());
+    if (!paths.empty()) top_.resolve("plugins", toml::table{{"paths", std::move(paths)}});
   }
 
   void read_materials() {
@@ -206,12 +219,13 @@ class Composer {
 
   void read_scene() {
     read_section("scene", false, [&](TomlReader& t) {
-      t.expect({"gravity", "floor", "friction", "damping", "drag"});
+      t.expect({"gravity", "floor", "friction", "damping", "drag", "load"});
       read_force(t, "gravity", out_.scene.gravity);
       read_force(t, "floor", out_.scene.floor);
       read_force(t, "friction", out_.scene.friction);
       read_force(t, "damping", out_.scene.damping);
       read_force(t, "drag", out_.scene.drag);
+      read_force(t, "load", out_.load);
       if (out_.scene.friction && !out_.scene.floor)
         t.fail("friction", "there is nothing to rub on; add [scene.floor] or remove [scene.friction]");
     });
@@ -255,21 +269,23 @@ class Composer {
     out_.step = chosen->step;
   }
 
-  /// Refuses a dt that the floor, or a single spring, could not bear.
+  /// Refuses a dt that the floor, or a single spring, could not bear, or at which a muscle could not be seen.
   void check_step(const TomlReader& t) const {
     const double mass = out_.world.mass, dt = *out_.step.fixed();
     const auto refuse = [&](const std::string& what, double largest) {
-      t.fail("dt", "the step " + to_text(dt) + " s is too long for " + what + " on masses of " + to_text(mass) +
-                       " kg; expected at most " + to_text(largest) + " s");
+      t.fail("dt", "the step " + to_text(dt) + " s is too long for " + what + "; expected at most " + to_text(largest) +
+                       " s");
     };
+    const std::string on_masses = " N/m on masses of " + to_text(mass) + " kg";
     const double contact = largest_contact_dt(out_.scene, mass, out_.stepping.method);
-    if (dt > contact) refuse("scene.floor.stiffness = " + to_text(out_.scene.floor->stiffness) + " N/m", contact);
+    if (dt > contact) refuse("scene.floor.stiffness = " + to_text(out_.scene.floor->stiffness) + on_masses, contact);
     for (std::size_t i = 0; i < out_.world.materials.size(); ++i) {
       const Material& material = out_.world.materials[i];
-      const double largest = largest_spring_dt(material, mass, out_.stepping.method);
-      if (dt > largest)
-        refuse("materials." + out_.world.material_names[i] + ".stiffness = " + to_text(material.stiffness) + " N/m",
-               largest);
+      const std::string key = "materials." + out_.world.material_names[i];
+      const double spring = largest_spring_dt(material, mass, out_.stepping.method),
+                   muscle = largest_muscle_dt(material);
+      if (dt > spring) refuse(key + ".stiffness = " + to_text(material.stiffness) + on_masses, spring);
+      if (dt > muscle) refuse(key + ".frequency = " + to_text(material.frequency) + " Hz", muscle);
     }
   }
 
@@ -310,11 +326,36 @@ class Composer {
              "Simulated time of one cycle.");
       t.flag(development.reset, "reset", "Whether the body goes back to its rest places after every cycle.");
       check_duration(t, "cycle_time", development.cycle_time);
+      read_control(t);
       read_array(t, "operator", [&](TomlReader& entry) {
-        development.operators.push_back(make<Devo>(entry));
-        development.names.push_back(out_.uses.back().name);
+        const Schedule schedule = read_schedule(entry);
+        development.operators.push_back({make<Devo>(entry), schedule});
       });
     });
+  }
+
+  void read_control(TomlReader& t) {
+    std::string control = "off";
+    t.choice(control, "control", {"off", "no-change", "random-places", "shuffled-stress"},
+             "What the experiment's control does to development.");
+    if (control == "no-change") out_.development.control = Control::no_change;
+    if (control == "random-places") out_.development.control = Control::random_places;
+    if (control == "shuffled-stress") out_.development.control = Control::shuffled_stress;
+  }
+
+  /// When a devo operator comes to its turn; by default after every cycle.
+  Schedule read_schedule(TomlReader& t) {
+    const std::int64_t cycles = out_.development.cycles;
+    Schedule schedule;
+    schedule.to = std::max<std::int64_t>(1, cycles);
+    t.integer(schedule.from, "from", {1, place::most_cycles}, "First cycle after which the operator comes.");
+    t.integer(schedule.to, "to", {1, place::most_cycles}, "Last cycle after which it may come.");
+    t.integer(schedule.every, "every", {1, place::most_cycles}, "Cycles from one turn to the next.");
+    if (schedule.turns(cycles) == 0 && cycles > 0)
+      out_.warnings.push_back(t.full_name("from") + " = " + std::to_string(schedule.from) + " to " +
+                              std::to_string(schedule.to) + ": the operator never comes to its turn in " +
+                              std::to_string(cycles) + " cycles");
+    return schedule;
   }
 
   void read_fitness() {
@@ -336,30 +377,42 @@ class Composer {
 
   TomlReader top_;
   const Registry& registry_;
+  const std::vector<fs::path>& plugin_path_;
   const ExperimentSource& source_;
   Experiment out_;
 };
 
 // ---- from file to experiment ----
 
-/// The program's own folder first, so that no other library can take the name of a built-in operator.
-std::vector<fs::path> plugin_folders(const toml::table& root, const fs::path& folder) {
-  std::vector<fs::path> folders = {builtin_plugin_folder()};
+std::vector<fs::path> plugin_path(const toml::table& root, const ExperimentSource& source) {
+  std::vector<fs::path> own;
   if (const toml::array* paths = root["plugins"]["paths"].as_array())
     for (const toml::node& path : *paths)
-      if (const auto text = path.value<std::string>()) folders.push_back(folder / *text);
-  return folders;
+      if (const auto text = path.value<std::string>()) own.push_back(folder_of(source) / *text);
+  for (const fs::path& path : source.plugin_path) own.push_back(fs::absolute(path));
+  return plugin_search_path(own);
 }
 
 Experiment compose(toml::table root, const ExperimentSource& source) {
   for (const Override& change : source.overrides) apply_override(change, root);
-  const Registry registry(plugin_folders(root, folder_of(source)));
-  Experiment experiment = Composer(root, registry, source).compose();
+  const std::vector<fs::path> path = plugin_path(root, source);
+  const Registry registry(path);
+  Experiment experiment = Composer(root, registry, path, source).compose();
   experiment.name = fs::path(source.file).stem().string();
   return experiment;
 }
 
 }  // namespace
+
+void blame_operator(const Experiment& experiment, std::string_view kind, std::size_t index, const std::string& where,
+                    const std::string& what) {
+  const auto use = std::find_if(experiment.uses.begin(), experiment.uses.end(),
+                                [&](const OperatorUse& other) { return other.kind == kind && index-- == 0; });
+  const std::string title =
+      use == experiment.uses.end() ? "operator" : "operator \"" + use->name + "\" of " + use->file.string();
+  throw std::runtime_error(std::string(kind) + " " + title + where + ": " + what +
+                           "; correct the operator, or leave it out of the experiment");
+}
 
 Experiment read_experiment(const ExperimentSource& source) { return compose(parse_toml_file(source.file), source); }
 

@@ -1,15 +1,18 @@
 // An experiment: the settings and operators that a TOML file composes.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "evodevo/plugin.hpp"
 #include "loader.hpp"
 #include "overrides.hpp"
+#include "philox.hpp"
 #include "simulator.hpp"
 #include "time_steps.hpp"
 
@@ -23,19 +26,47 @@ struct Varied {
   double probability = 0.5;
 };
 
+/// The cycles, from 1, after which a devo operator comes to its turn: from, from + every, ... and none after `to`.
+struct Schedule {
+  std::int64_t from = 1, to = place::most_cycles, every = 1;
+
+  bool contains(std::int64_t cycle) const { return cycle >= from && cycle <= to && (cycle - from) % every == 0; }
+  /// How many turns there are in the cycles 1 to `cycle`.
+  std::int64_t turns(std::int64_t cycle) const {
+    const std::int64_t last = std::min(cycle, to);
+    return last < from ? 0 : (last - from) / every + 1;
+  }
+};
+
+/// A devo operator and when it comes to its turn.
+struct Scheduled {
+  std::unique_ptr<Devo> op;
+  Schedule schedule;
+};
+
+/// What an experiment on development is compared with: all else stays the same, the simulated time included.
+enum class Control { off, no_change, random_places, shuffled_stress };
+
 /// A life's development: `cycles` times {simulate `cycle_time`, apply the operators} (paper, section IV-D).
 struct Development {
   std::int64_t cycles = 0;
   double cycle_time = 1;  ///< s
   bool reset = false;     ///< back to the rest places after every cycle
-  std::vector<std::unique_ptr<Devo>> operators;
-  std::vector<std::string> names;  ///< of the operators, in their order
+  Control control = Control::off;
+  std::vector<Scheduled> operators;
+};
+
+/// A load that every body carries from birth on. What masses that go carried comes on others.
+struct Load {
+  double share = 0.5;  ///< relative to the body's mass at birth
+  double top = 0.1;    ///< the upper part of the body's height that carries it
 };
 
 /// An operator that the experiment uses, for the record.
 struct OperatorUse {
   std::string kind, name, version;
   std::filesystem::path file;
+  std::string hash;  ///< of the file
 };
 
 struct Experiment {
@@ -53,6 +84,7 @@ struct Experiment {
   std::vector<Varied<Mutation>> mutations;
   std::vector<Varied<Crossover>> crossovers;
   Scene scene;
+  std::optional<Load> load;
   Stepping stepping;
   StepRule step;
   std::string device = "auto";
@@ -67,10 +99,29 @@ struct Experiment {
   std::string resolved;               ///< TOML that reads back as this very experiment, with every default written out
 };
 
+/// Throws std::runtime_error that names the operator, its file, `where` and `what`, and the remedy.
+[[noreturn]] void blame_operator(const Experiment& experiment, std::string_view kind, std::size_t index,
+                                 const std::string& where, const std::string& what);
+
+/// Calls the own code of an operator, the index-th of its kind, and blames it for what it throws. `where` may add to
+/// the operator's title.
+template <class Call, class Where = decltype([] { return std::string(); })>
+decltype(auto) call_operator(const Experiment& experiment, std::string_view kind, std::size_t index, const Call& call,
+                             const Where& where = {}) {
+  try {
+    return call();
+  } catch (const std::exception& error) {
+    blame_operator(experiment, kind, index, where(), error.what());
+  } catch (...) {
+    blame_operator(experiment, kind, index, where(), "threw something that is no std::exception");
+  }
+}
+
 /// Where an experiment comes from.
 struct ExperimentSource {
-  std::string file;                 ///< for messages, and for what paths in it are relative to
-  std::vector<Override> overrides;  ///< applied in order
+  std::string file;                                     ///< for messages, and for what paths in it are relative to
+  std::vector<Override> overrides;                      ///< applied in order
+  std::vector<std::filesystem::path> plugin_path = {};  ///< where operators are looked for beside those that it names
 };
 
 /// Reads, checks and composes an experiment. Throws ConfigError with the place, the value and the remedy.

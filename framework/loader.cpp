@@ -3,9 +3,17 @@
 #include <algorithm>
 #include <boost/dll/runtime_symbol_info.hpp>
 #include <boost/dll/shared_library.hpp>
+#include <cstdio>
+#include <cstdlib>
 #include <deque>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <sstream>
 #include <stdexcept>
 
+#include "declarations.hpp"
+#include "isolation.hpp"
 #include "text.hpp"
 
 namespace evodevo {
@@ -15,6 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* entry_symbol = "evodevo_plugin";
 constexpr std::string_view suffix = ".evodevo.so";
+constexpr unsigned seconds_to_load = 30;
 
 /// Opened libraries are never closed: objects and type information of theirs may live anywhere in the process.
 std::deque<boost::dll::shared_library>& open_libraries() {
@@ -43,7 +52,11 @@ boost::dll::shared_library open(const fs::path& file) {
   try {
     library.load(file, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
   } catch (const boost::dll::fs::system_error& error) {
-    refuse("cannot be loaded: " + loader_sentence(error));
+    const std::string sentence = loader_sentence(error);
+    const bool lacks = sentence.find("undefined symbol") != std::string::npos;
+    refuse("cannot be loaded: " + sentence +
+           (lacks ? "; link it with all that it uses (-Wl,-z,defs tells what is missing)"
+                  : "; build it for this system, or remove it"));
   }
   return library;
 }
@@ -83,9 +96,47 @@ void check_manifest(const PluginManifest* manifest) {
     refuse_mismatch("its list of build switches", manifest->switches, plugin_switches);
 }
 
+std::string title(const OperatorEntry& entry) {
+  return std::string("its ") + entry.kind + " operator \"" + entry.name + "\"";
+}
+
 void check_entry(const OperatorEntry& entry) {
   if (std::find(operator_kinds.begin(), operator_kinds.end(), entry.kind) == operator_kinds.end())
-    refuse(std::string("its operator \"") + entry.name + "\" is of the unknown kind \"" + entry.kind + "\"");
+    refuse(std::string("its operator \"") + entry.name + "\" is of the unknown kind \"" + entry.kind +
+           "\"; rebuild the plugin against this evodevo");
+  std::string fault;
+  try {
+    const std::unique_ptr<Operator> op(entry.create());
+    fault = wrong_default(*op);
+  } catch (const std::exception& error) {
+    refuse(title(entry) + " cannot be made: \"" + error.what() + "\"; its constructor and parameters() must not throw");
+  }
+  if (!fault.empty()) refuse(title(entry) + " has a default that it does not allow: " + fault);
+}
+
+/// The operators of an opened library.
+std::span<const OperatorEntry> checked_entries(const boost::dll::shared_library& library, const fs::path& file) {
+  const PluginManifest* manifest = read_manifest(library, file);
+  check_manifest(manifest);
+  const std::span<const OperatorEntry> entries(manifest->entries, manifest->entry_count);
+  for (const OperatorEntry& entry : entries) check_entry(entry);
+  return entries;
+}
+
+/// How loading the files ends a process; empty where it survives.
+std::string crash_of_loading(std::span<const fs::path> files) {
+  const auto load_and_forget = [&] {
+    for (const fs::path& file : files) {
+      try {
+        const boost::dll::shared_library library = open(file);
+        checked_entries(library, file);
+      } catch (const std::exception&) {
+        // whoever loads it for good gets the same and can report it
+      }
+    }
+    return std::string();
+  };
+  return in_child(load_and_forget, seconds_to_load).crash;
 }
 
 auto sort_key(const AvailableOperator& available) {
@@ -94,24 +145,42 @@ auto sort_key(const AvailableOperator& available) {
 
 }  // namespace
 
-Registry::Registry(const std::vector<fs::path>& folders) {
-  for (const fs::path& folder : folders) load_folder(folder);
+Registry::Registry(const std::vector<fs::path>& path) {
+  for (const fs::path& item : path) load_all(libraries_at(item));
   std::sort(operators_.begin(), operators_.end(),
             [](const auto& a, const auto& b) { return sort_key(a) < sort_key(b); });
 }
 
-void Registry::load_folder(const fs::path& folder) {
+std::vector<fs::path> Registry::libraries_at(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_regular_file(path, error)) return {fs::absolute(path)};
   std::vector<fs::path> files;
   try {
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-      if (entry.path().filename().string().ends_with(suffix)) files.push_back(entry.path());
-  } catch (const fs::filesystem_error& error) {
-    failed_.push_back({folder, "the folder cannot be read: " + error.code().message()});
+    for (const fs::directory_entry& entry : fs::directory_iterator(path))
+      if (entry.path().filename().string().ends_with(suffix)) files.push_back(fs::absolute(entry.path()));
+  } catch (const fs::filesystem_error& failure) {
+    failed_.push_back({path, "cannot be read: " + failure.code().message() +
+                                 "; make it readable, or leave it out of the plugin path"});
   }
   std::sort(files.begin(), files.end());
+  return files;
+}
+
+void Registry::load_all(const std::vector<fs::path>& files) {
+  // a library that this process has loaded already cannot crash it by being loaded
+  static std::set<fs::path> survived;
+  std::vector<fs::path> unknown;
+  for (const fs::path& file : files)
+    if (!survived.contains(file)) unknown.push_back(file);
+  const bool all_survive = unknown.empty() || crash_of_loading(unknown).empty();
   for (const fs::path& file : files) {
     try {
-      load(fs::absolute(file));
+      if (!all_survive && !survived.contains(file))
+        if (const std::string crash = crash_of_loading({&file, 1}); !crash.empty())
+          refuse("crashes while it is loaded: " + crash +
+                 "; look at its static objects, constructors and parameters() in a debugger, or remove it");
+      survived.insert(file);
+      load(file);
     } catch (const std::exception& error) {
       failed_.push_back({file, error.what()});
     }
@@ -119,18 +188,23 @@ void Registry::load_folder(const fs::path& folder) {
 }
 
 void Registry::load(const fs::path& file) {
+  std::error_code error;
+  const auto here = [&](const AvailableOperator& known) { return fs::equivalent(known.file, file, error); };
+  if (std::any_of(operators_.begin(), operators_.end(), here)) return;  // two paths lead to it
   boost::dll::shared_library library = open(file);
+  const auto entries = checked_entries(library, file);
   const PluginManifest* manifest = read_manifest(library, file);
-  check_manifest(manifest);
-  const std::span<const OperatorEntry> entries(manifest->entries, manifest->entry_count);
+  std::vector<AvailableOperator> brought;
   for (const OperatorEntry& entry : entries) {
-    check_entry(entry);
-    if (const AvailableOperator* twin = find(entry.kind, entry.name)) {
-      refuse(std::string("its ") + entry.kind + " operator \"" + entry.name + "\" is already brought by " +
-             twin->file.string() + "; rename one of them");
-    }
+    if (const AvailableOperator* twin = find(entry.kind, entry.name))
+      refuse(title(entry) + " is already brought by " + twin->file.string() +
+             ", which comes first; rename one of them, or take one off the plugin path");
+    const AvailableOperator candidate{&entry, manifest, file};
+    const auto same = [&](const AvailableOperator& other) { return sort_key(other) == sort_key(candidate); };
+    if (std::any_of(brought.begin(), brought.end(), same)) refuse(title(entry) + " is in it twice; rename one of them");
+    brought.push_back(candidate);
   }
-  for (const OperatorEntry& entry : entries) operators_.push_back({&entry, manifest, file});
+  operators_.insert(operators_.end(), brought.begin(), brought.end());
   open_libraries().push_back(std::move(library));
 }
 
@@ -150,6 +224,38 @@ std::vector<std::string> Registry::names(std::string_view kind) const {
 fs::path builtin_plugin_folder() {
   const fs::path program = boost::dll::program_location();
   return program.parent_path().parent_path() / EVODEVO_PLUGIN_DIR;
+}
+
+std::vector<fs::path> environment_plugin_folders() {
+  const char* variable = std::getenv("EVODEVO_PLUGIN_PATH");
+  std::istringstream list(variable != nullptr ? variable : "");
+  std::vector<fs::path> folders;
+  for (std::string folder; std::getline(list, folder, ':');)
+    if (!folder.empty()) folders.push_back(fs::absolute(folder));
+  return folders;
+}
+
+std::vector<fs::path> plugin_search_path(const std::vector<fs::path>& own) {
+  std::vector<fs::path> path = own;
+  const auto environment = environment_plugin_folders();
+  path.insert(path.end(), environment.begin(), environment.end());
+  path.push_back(builtin_plugin_folder());
+  return path;
+}
+
+bool is_plugin_path(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error) || (fs::is_regular_file(path, error) && path.string().ends_with(suffix));
+}
+
+std::string file_hash(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a
+  for (std::istreambuf_iterator<char> byte(stream), end; byte != end; ++byte)
+    hash = (hash ^ static_cast<unsigned char>(*byte)) * 0x100000001b3;
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
 }
 
 }  // namespace evodevo

@@ -31,9 +31,11 @@ struct FailedLibrary {
 /// All operators of the libraries in some folders.
 class Registry {
  public:
-  /// Loads every *.evodevo.so of the folders, in their order; files by name. A library that does not fit is kept in
-  /// failed() and disturbs no other. Libraries stay loaded until the process ends: an object must not outlive its code.
-  explicit Registry(const std::vector<std::filesystem::path>& folders);
+  /// Loads every *.evodevo.so of the folders, in their order; files by name. A path may also be that of one library.
+  /// Of two libraries with one operator name the first stays. A library that does not fit, or that crashes while it is
+  /// loaded, is kept in failed() and disturbs no other. Libraries stay loaded until the process ends: an object must
+  /// not outlive its code.
+  explicit Registry(const std::vector<std::filesystem::path>& path);
 
   /// Sorted by kind and name.
   const std::vector<AvailableOperator>& operators() const { return operators_; }
@@ -45,8 +47,9 @@ class Registry {
   std::vector<std::string> names(std::string_view kind) const;
 
  private:
-  void load_folder(const std::filesystem::path& folder);
+  void load_all(const std::vector<std::filesystem::path>& files);
   void load(const std::filesystem::path& file);
+  std::vector<std::filesystem::path> libraries_at(const std::filesystem::path& path);
 
   std::vector<AvailableOperator> operators_;
   std::vector<FailedLibrary> failed_;
@@ -60,5 +63,15 @@ std::unique_ptr<T> create(const AvailableOperator& available) {
 
 /// Where the operators that come with this program are.
 std::filesystem::path builtin_plugin_folder();
+/// The folders that the environment variable EVODEVO_PLUGIN_PATH names, separated by colons.
+std::vector<std::filesystem::path> environment_plugin_folders();
+/// Where operators are looked for: `own`, then EVODEVO_PLUGIN_PATH, then the program's own folder.
+std::vector<std::filesystem::path> plugin_search_path(const std::vector<std::filesystem::path>& own);
+
+/// A folder, or a library by itself.
+bool is_plugin_path(const std::filesystem::path& path);
+
+/// 64 bits in hexadecimal that tell one build of a library from another.
+std::string file_hash(const std::filesystem::path& file);
 
 }  // namespace evodevo

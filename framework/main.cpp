@@ -21,6 +21,7 @@ constexpr Command commands[] = {
     {"show", show_command, "show DIR                         what a run has come to"},
     {"verify", verify_command, "verify DIR                       whether its best robots keep their fitness"},
     {"body", body_command, "body DIR                         a robot of a run, as JSON"},
+    {"life", life_command, "life DIR                         how a robot's body developed"},
     {"simulate", simulate_command, "simulate BODY.json EXPERIMENT.toml   one body in a scene"},
     {"report", report_command, "report DIR...                    a page that shows runs and their robots"},
     {"film", film_command, "film DIR                         a film or a picture of a robot"},
@@ -28,6 +29,8 @@ constexpr Command commands[] = {
     {"check", check_command, "check EXPERIMENT.toml            whether an experiment can be run"},
     {"operators", operators_command, "operators                        the operators that are there"},
     {"describe", describe_command, "describe OPERATOR                its parameters"},
+    {"new", new_command, "new KIND NAME                    the project of a plugin"},
+    {"conform", conform_command, "conform LIBRARY...               whether plugins keep to the rules"},
 };
 
 void print_usage(std::ostream& stream) {

@@ -14,7 +14,7 @@ namespace place {
 inline constexpr std::uint32_t newborn = 1;
 inline constexpr std::uint32_t parents = 2;
 inline constexpr std::uint32_t survivors = 3;
-inline constexpr std::uint32_t variation = 4;  ///< which operators a child goes through
+inline constexpr std::uint32_t variation = 4;       ///< which operators a child goes through
 inline constexpr std::uint32_t disturbance = 0x10;  ///< and on, of a verification's starts
 inline constexpr std::uint32_t crossover = 0x100;
 inline constexpr std::uint32_t mutation = 0x200;
@@ -22,7 +22,9 @@ constexpr std::uint32_t devo(std::size_t op, std::int64_t cycle) {
   return static_cast<std::uint32_t>(op + 1) << 24 | static_cast<std::uint32_t>(cycle);
 }
 inline constexpr std::int64_t most_cycles = (1 << 24) - 1;
-inline constexpr std::size_t most_operators = 0xff;
+inline constexpr std::size_t most_operators = 0xfe;
+/// The shuffling of stress takes the place behind the last devo operator.
+constexpr std::uint32_t stress_shuffle(std::int64_t cycle) { return devo(most_operators, cycle); }
 }  // namespace place
 
 }  // namespace evodevo

@@ -12,15 +12,17 @@ physics::Triple<double> triple(Vec3 v) { return {v.x, v.y, v.z}; }
 }  // namespace
 
 double total_energy(const Body& body, const State& state, const Scene& scene) {
+  std::vector<double> relative_length;
+  for (const Material& material : body.materials) relative_length.push_back(material.relative_length(state.time));
   double energy = 0;
   for (std::size_t i = 0; i < body.masses.size(); ++i) {
     energy += physics::kinetic_energy(body.masses[i].mass, triple(state.velocity[i]));
     if (scene.gravity) energy += body.masses[i].mass * scene.gravity->acceleration * state.position[i].z;
   }
   for (const Spring& spring : body.springs) {
-    const Material& material = body.materials[spring.material];
     const auto s = physics::separation(triple(state.position[spring.a]), triple(state.position[spring.b]));
-    energy += physics::elastic_energy(s, material.stiffness, spring.rest_length * material.relative_length(state.time));
+    energy += physics::elastic_energy(s, body.materials[spring.material].stiffness,
+                                      spring.rest_length * relative_length[spring.material]);
   }
   return energy;
 }

@@ -64,14 +64,9 @@ using Tree =
 
 class CpuNeighbourSearch final : public NeighbourSearch {
  public:
-  explicit CpuNeighbourSearch(int threads) : workers_(threads) {}
-
-  void find(std::span<const PointCloud> clouds, const Use& use) override {
-    workers_.for_each(clouds.size(), [&](std::size_t i) { use(i, nearest_pairs(clouds[i].places, clouds[i].k)); });
+  void find(std::span<const PointCloud> clouds, Workers& workers, const Use& use) override {
+    workers.for_each(clouds.size(), [&](std::size_t i) { use(i, nearest_pairs(clouds[i].places, clouds[i].k)); });
   }
-
- private:
-  Workers workers_;
 };
 
 }  // namespace
@@ -91,8 +86,6 @@ std::vector<IndexPair> nearest_pairs(std::span<const Vec3> places, std::uint32_t
   return pairs;
 }
 
-std::unique_ptr<NeighbourSearch> make_cpu_neighbour_search(int threads) {
-  return std::make_unique<CpuNeighbourSearch>(threads);
-}
+std::unique_ptr<NeighbourSearch> make_cpu_neighbour_search() { return std::make_unique<CpuNeighbourSearch>(); }
 
 }  // namespace evodevo

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "evodevo/body.hpp"
+#include "parallel.hpp"
 
 namespace evodevo {
 
@@ -34,12 +35,12 @@ class NeighbourSearch {
   /// Takes a cloud's index and its pairs, which are there only during the call.
   using Use = std::function<void(std::size_t, std::span<const IndexPair>)>;
 
-  /// Calls use(i, nearest_pairs of clouds[i]) once for every cloud, in no particular order and on several threads. The
-  /// first exception that it throws is thrown again here.
-  virtual void find(std::span<const PointCloud> clouds, const Use& use) = 0;
+  /// Calls use(i, nearest_pairs of clouds[i]) once for every cloud, in no particular order and on the threads of
+  /// `workers`. The first exception that it throws is thrown again here.
+  virtual void find(std::span<const PointCloud> clouds, Workers& workers, const Use& use) = 0;
 };
 
-/// A search on `threads` cores (0: all of them).
-std::unique_ptr<NeighbourSearch> make_cpu_neighbour_search(int threads);
+/// A search on the workers alone.
+std::unique_ptr<NeighbourSearch> make_cpu_neighbour_search();
 
 }  // namespace evodevo

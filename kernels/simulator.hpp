@@ -72,6 +72,10 @@ class Simulator {
   /// A search for neighbours on the same device.
   virtual NeighbourSearch& neighbours() = 0;
 
+  /// The threads that prepare and read out bodies. What else is done between calls of run() belongs on them too, so
+  /// that no more threads than cores compete and turns hold for all work.
+  virtual Workers& workers() = 0;
+
   /// How many calls of run() at once keep the device busy: while the bodies of one move, those of others are prepared.
   virtual int concurrency() const { return 1; }
 

@@ -195,6 +195,11 @@ double largest_spring_dt(const Material& material, double mass, Method method) {
   return oscillation_limit(method) / std::sqrt(2 * material.stiffness / mass);
 }
 
+double largest_muscle_dt(const Material& material) {
+  if (material.amplitude == 0 || material.frequency == 0) return infinity;
+  return 0.5 / std::abs(material.frequency);
+}
+
 double largest_dt(const Body& body, std::span<const Vec3> places, Method method, double wanted) {
   if (!is_explicit(method)) return wanted;
   const double limit = oscillation_limit(method);

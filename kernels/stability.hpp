@@ -24,6 +24,10 @@ double largest_contact_dt(const Scene& scene, const Body& body, Method method);
 /// The largest dt (s) for one spring of `material` between two masses of `mass` kg: dt sqrt(2 k / m) within the limit.
 double largest_spring_dt(const Material& material, double mass, Method method);
 
+/// The largest dt (s) at which the muscles of `material` are seen at all, whatever the method: half a period of their
+/// actuation. Beyond it they move as muscles of another, slower actuation would; infinite where nothing is actuated.
+double largest_muscle_dt(const Material& material);
+
 /// The largest dt (s) at which `body`, its masses at `places`, is stable, or `wanted` (s) where it bears that: dt times
 /// the highest angular frequency of the undamped body within the limit; infinite where nothing swings or the method is
 /// not explicit. A bound of the frequency decides where it can: for random robots 1.35 times the true one on average

@@ -14,9 +14,13 @@ function(evodevo_add_plugin name)
     EVODEVO_PLUGIN_VERSION="${arg_VERSION}" EVODEVO_PLUGIN_LICENSE="${arg_LICENSE}")
   # a unique symbol would pin a class to whichever library was loaded first
   target_compile_options(${target} PRIVATE -ffp-contract=off $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)
-  target_link_options(${target} PRIVATE -Wl,-z,defs)
+  # hidden visibility does not reach what the standard library's templates become here
+  target_link_options(${target} PRIVATE -Wl,-z,defs
+    -Wl,--version-script=${CMAKE_CURRENT_FUNCTION_LIST_DIR}/evodevo_plugin.map)
+  set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/evodevo_plugin.map)
   set_target_properties(${target} PROPERTIES
     PREFIX "" OUTPUT_NAME ${name} SUFFIX ".evodevo.so"
     CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
-    LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/evodevo)
+    CXX_EXTENSIONS OFF LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/evodevo)
+  install(TARGETS ${target} LIBRARY DESTINATION lib/evodevo)
 endfunction()

@@ -4,10 +4,8 @@
 #include <fstream>
 #include <iomanip>
 #include <iostream>
-#include <limits>
 #include <sstream>
 
-#include "archive.hpp"
 #include "body_json.hpp"
 #include "commands/options.hpp"
 #include "text.hpp"
@@ -19,22 +17,6 @@ namespace {
 namespace po = boost::program_options;
 
 constexpr double frame_time = 0.01;  ///< between two frames of a trajectory, s
-
-ArchivedIndividual chosen_individual(const Archive& archive, const po::variables_map& given) {
-  const std::string folder = archive.folder().string();
-  if (!given.contains("individual")) {
-    const auto best = archive.best(1);
-    if (best.empty()) throw ArchiveError(folder + ": no individual has a fitness; name one with --individual");
-    return *archive.individual(best.front());
-  }
-  const auto id = given["individual"].as<std::int64_t>();
-  const bool is_id = id >= 0 && id <= std::numeric_limits<std::uint32_t>::max();
-  auto individual = is_id ? archive.individual(static_cast<std::uint32_t>(id)) : std::nullopt;
-  if (!individual)
-    throw ArchiveError(folder + ": there is no individual " + std::to_string(id) + "; see `" + program_name() +
-                       " show " + folder + "`");
-  return *individual;
-}
 
 /// Writes a body's motion frame by frame: time, mass, x, y, z, vx, vy, vz in SI units.
 class TrajectoryFile {
@@ -77,14 +59,15 @@ std::string vector_text(Vec3 v) {
 }  // namespace
 
 int body_command(const Arguments& arguments) {
-  CommandLine line{"body DIR [--individual ID] [--matured]", {"DIR"}, {}};
+  CommandLine line{"body DIR [--individual ID] [--matured] [--plugin-path P]", {"DIR"}, {}};
+  add_plugin_option(line.options);
   line.options.add_options()("individual", po::value<std::int64_t>(), "its id; default: the best")(
       "matured",
       "as it is after the development cycles of its life, in the pose that it is in then, not as it is born");
   const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
   const Archive archive = Archive::read((*given)["DIR"].as<std::string>());
-  const Experiment experiment = recorded_experiment(archive);
+  const Experiment experiment = recorded_experiment(archive, given_plugin_path(*given));
   const ArchivedIndividual individual = chosen_individual(archive, *given);
   const auto simulator = make_simulator(experiment);
   const Evaluation evaluation(experiment, *simulator);

@@ -11,21 +11,20 @@ namespace evodevo {
 namespace po = boost::program_options;
 
 int film_command(const Arguments& arguments) {
-  CommandLine line{"film DIR [--individual ID] [--at S] [--out FILE]", {"DIR"}, {}};
+  CommandLine line{"film DIR [--individual ID] [--at S] [--out FILE] [--plugin-path P]", {"DIR"}, {}};
   line.options.add_options()("individual", po::value<std::int64_t>(), "its id; default: the best")(
       "at", po::value<double>(), "of a picture: the moment since birth, s; default: midway in the last measurement")(
       "out", po::value<std::string>()->default_value("film.mp4"),
       "the film to write; a name ending in .png: a picture");
+  add_plugin_option(line.options);
   const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
   const std::string page = page_template();
   const Archive archive = Archive::read((*given)["DIR"].as<std::string>());
-  Cast cast{.best = 1, .ancestors = 0};
-  if (given->contains("individual"))
-    cast = {.best = 0, .individuals = {individual_id((*given)["individual"].as<std::int64_t>())}};
-  if (cast.best > 0 && archive.best(1).empty())
-    throw ArchiveError(archive.folder().string() + ": no individual has a fitness; name one with --individual");
-  Experiment experiment = recorded_experiment(archive);
+  const ArchivedIndividual shown = chosen_individual(archive, *given);
+  const Cast cast =
+      given->contains("individual") ? Cast{.best = 0, .individuals = {shown.id}} : Cast{.best = 1, .ancestors = 0};
+  Experiment experiment = recorded_experiment(archive, given_plugin_path(*given));
   experiment.device = "auto";  // whatever the run had, it may not be here
   const auto simulator = make_simulator(experiment);
   auto data = report_data({reported_run(archive, experiment, *simulator, cast, page_budget)});

@@ -5,6 +5,7 @@
 
 #include "commands/options.hpp"
 #include "describe.hpp"
+#include "reference.hpp"
 #include "text.hpp"
 
 namespace evodevo {
@@ -41,51 +42,93 @@ void print_description(const AvailableOperator& available) {
   std::printf("\nfrom %s\n", available.file.c_str());
 }
 
-}  // namespace
-
-int operators_command(const Arguments& arguments) {
-  CommandLine line{"operators [--kind KIND] [--json]", {}, {}};
-  line.options.add_options()("kind", po::value<std::string>(),
-                             "encoding, mutation, crossover, devo, fitness or selection")(
-      "json", "machine-readable, with all parameters");
-  const auto given = parse(std::move(line), arguments);
-  if (!given) return 0;
-  const std::string kind = given->contains("kind") ? (*given)["kind"].as<std::string>() : "";
+/// The kind that --kind names; empty for all.
+std::string given_kind(const po::variables_map& given) {
+  if (!given.contains("kind")) return "";
+  const auto kind = given["kind"].as<std::string>();
   static const std::vector<std::string> kinds(operator_kinds.begin(), operator_kinds.end());
-  if (!kind.empty() && std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+  if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
     throw UsageError("--kind " + kind + ": is not a kind of operator" + suggestion(kind, kinds));
-  const Registry registry({builtin_plugin_folder()});
+  return kind;
+}
+
+Json operator_json(const AvailableOperator& available) {
+  return {{"kind", available.entry->kind},
+          {"name", available.entry->name},
+          {"summary", available.entry->summary},
+          {"version", available.manifest->version},
+          {"license", available.manifest->license},
+          {"file", available.file.string()},
+          {"parameters", parameters_json(parameters_of(available))}};
+}
+
+void print_operators(const Registry& registry, const std::string& kind, bool as_json) {
   Json list = Json::array();
   for (const AvailableOperator& available : registry.operators()) {
     if (!kind.empty() && kind != available.entry->kind) continue;
-    if (given->contains("json"))
-      list.push_back({{"kind", available.entry->kind},
-                      {"name", available.entry->name},
-                      {"summary", available.entry->summary},
-                      {"version", available.manifest->version},
-                      {"license", available.manifest->license},
-                      {"file", available.file.string()},
-                      {"parameters", parameters_json(parameters_of(available))}});
+    if (as_json)
+      list.push_back(operator_json(available));
     else
       std::printf("%-10s %-20s %s\n", available.entry->kind, available.entry->name, available.entry->summary);
   }
-  if (given->contains("json")) std::cout << list.dump(1) << '\n';
-  for (const FailedLibrary& failed : registry.failed())
-    std::cerr << "warning: not usable: " << failed.file.string() << ": " << failed.reason << '\n';
+  if (as_json) std::cout << list.dump(1) << '\n';
+}
+
+void print_failed(const Registry& registry, bool as_json) {
+  Json list = Json::array();
+  for (const FailedLibrary& failed : registry.failed()) {
+    if (as_json)
+      list.push_back({{"file", failed.file.string()}, {"reason", failed.reason}});
+    else
+      std::cout << failed.file.string() << ": " << failed.reason << '\n';
+  }
+  if (as_json) std::cout << list.dump(1) << '\n';
+}
+
+}  // namespace
+
+int operators_command(const Arguments& arguments) {
+  CommandLine line{"operators [--kind KIND] [--failed] [--json | --markdown] [--plugin-path P]", {}, {}};
+  line.options.add_options()("kind", po::value<std::string>(),
+                             "encoding, mutation, crossover, devo, fitness or selection")(
+      "failed", "the libraries that cannot be used, and why")("json", "machine-readable, with all parameters")(
+      "markdown", "the reference page of all operators and parameters");
+  add_plugin_option(line.options);
+  const auto given = parse(std::move(line), arguments);
+  if (!given) return 0;
+  const std::string kind = given_kind(*given);
+  const Registry registry(plugin_search_path(given_plugin_path(*given)));
+  if (given->contains("failed")) {
+    print_failed(registry, given->contains("json"));
+    return 0;
+  }
+  if (given->contains("markdown"))
+    std::cout << reference_page(registry);
+  else
+    print_operators(registry, kind, given->contains("json"));
+  if (!registry.failed().empty())
+    std::cerr << "warning: " << registry.failed().size() << " not usable; see `" << program_name()
+              << " operators --failed`\n";
   return 0;
 }
 
 int describe_command(const Arguments& arguments) {
-  const auto given = parse({"describe OPERATOR", {"OPERATOR"}, {}}, arguments);
+  CommandLine line{"describe OPERATOR [--markdown] [--plugin-path P]", {"OPERATOR"}, {}};
+  line.options.add_options()("markdown", "as a section of a Markdown page");
+  add_plugin_option(line.options);
+  const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
   const auto wanted = (*given)["OPERATOR"].as<std::string>();
-  const Registry registry({builtin_plugin_folder()});
+  const Registry registry(plugin_search_path(given_plugin_path(*given)));
   std::vector<std::string> names;
   bool found = false;
   for (const AvailableOperator& available : registry.operators()) {
     names.emplace_back(available.entry->name);
     if (wanted != available.entry->name) continue;
-    print_description(available);
+    if (given->contains("markdown"))
+      std::cout << reference_of(available, 2);
+    else
+      print_description(available);
     found = true;
   }
   if (!found) throw UsageError("no operator is called \"" + wanted + "\"" + suggestion(wanted, names));

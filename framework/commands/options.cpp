@@ -18,13 +18,10 @@ std::optional<po::variables_map> parse(CommandLine line, const Arguments& argume
   po::options_description all = line.options;
   po::positional_options_description positional;
   for (const std::string& name : line.positional) {
-    const bool takes_rest = name.ends_with("...");
-    if (takes_rest)
-      all.add_options()(name.c_str(), po::value<std::vector<std::string>>());
-    else
-      all.add_options()(name.c_str(), po::value<std::string>());
-    positional.add(name.c_str(), takes_rest ? -1 : 1);
+    all.add_options()(name.c_str(), po::value<std::string>());
+    positional.add(name.c_str(), 1);
   }
+  if (!line.repeated.empty()) positional.add(line.repeated.c_str(), -1);
   po::variables_map given;
   try {
     po::store(po::command_line_parser(arguments).options(all).positional(positional).run(), given);
@@ -56,13 +53,26 @@ constexpr Shorthand shorthands[] = {
 
 }  // namespace
 
-std::uint32_t individual_id(std::int64_t number) {
-  if (number < 0 || number > std::numeric_limits<std::uint32_t>::max())
-    throw UsageError("--individual " + std::to_string(number) + ": expected the id of an individual, from 0");
-  return static_cast<std::uint32_t>(number);
+void add_plugin_option(po::options_description& options) {
+  options.add_options()("plugin-path", po::value<std::vector<std::string>>(),
+                        "folder with operators, or one library; comes after the experiment's own paths and before "
+                        "EVODEVO_PLUGIN_PATH; may be repeated");
+}
+
+std::vector<std::filesystem::path> given_plugin_path(const po::variables_map& given) {
+  std::vector<std::filesystem::path> path;
+  if (!given.contains("plugin-path")) return path;
+  for (const std::string& item : given["plugin-path"].as<std::vector<std::string>>()) {
+    if (!is_plugin_path(item))
+      throw UsageError("--plugin-path " + item +
+                       ": is no folder and no library NAME.evodevo.so; build the plugin first");
+    path.emplace_back(item);
+  }
+  return path;
 }
 
 void add_experiment_options(po::options_description& options) {
+  add_plugin_option(options);
   for (const Shorthand& shorthand : shorthands)
     options.add_options()(shorthand.option, po::value<std::string>(), shorthand.text);
   options.add_options()("set", po::value<std::vector<std::string>>(),
@@ -71,7 +81,7 @@ void add_experiment_options(po::options_description& options) {
 }
 
 ExperimentSource experiment_source(const std::string& file, const po::variables_map& given) {
-  ExperimentSource source{file, {}};
+  ExperimentSource source{file, {}, given_plugin_path(given)};
   if (given.contains("set")) {
     for (const std::string& text : given["set"].as<std::vector<std::string>>()) {
       const auto equals = text.find('=');
@@ -85,6 +95,24 @@ ExperimentSource experiment_source(const std::string& file, const po::variables_
     source.overrides.push_back({shorthand.key, value, "--" + std::string(shorthand.option) + " " + value});
   }
   return source;
+}
+
+ArchivedIndividual individual_named(const Archive& archive, std::int64_t id) {
+  const std::string folder = archive.folder().string();
+  const bool is_id = id >= 0 && id <= std::numeric_limits<std::uint32_t>::max();
+  auto individual = is_id ? archive.individual(static_cast<std::uint32_t>(id)) : std::nullopt;
+  if (!individual)
+    throw ArchiveError(folder + ": there is no individual " + std::to_string(id) + "; see `" + program_name() +
+                       " show " + folder + "`");
+  return *individual;
+}
+
+ArchivedIndividual chosen_individual(const Archive& archive, const po::variables_map& given) {
+  if (given.contains("individual")) return individual_named(archive, given["individual"].as<std::int64_t>());
+  const auto best = archive.best(1);
+  if (best.empty())
+    throw ArchiveError(archive.folder().string() + ": no individual has a fitness; name one with --individual");
+  return *archive.individual(best.front());
 }
 
 std::unique_ptr<Simulator> make_simulator(const Experiment& experiment) {

@@ -60,19 +60,43 @@ void print_warnings(const Experiment& experiment) {
   for (const std::string& warning : experiment.warnings) std::cerr << "warning: " << warning << '\n';
 }
 
-/// Says what differs from when the run began, where it may change results.
-void warn_of_differences(const Experiment& experiment, const Simulator& simulator, const Archive& archive) {
+std::string title(const OperatorUse& use) { return use.kind + " operator \"" + use.name + "\" " + use.version; }
+
+/// Calls `report(then, now)` for each operator whose library is not the one that the run began with.
+template <class Report>
+void for_each_changed_operator(const Experiment& experiment, const Archive& archive, const Report& report) {
+  const std::vector<OperatorUse> past = archive.operators();
+  // a run uses the operators of its own record, in the same order
+  for (std::size_t i = 0; i < past.size() && i < experiment.uses.size(); ++i)
+    if (past[i].hash != experiment.uses[i].hash) report(past[i], experiment.uses[i]);
+}
+
+/// Says where the run goes on elsewhere than it began, which may change results.
+void warn_of_another_device(const Simulator& simulator, const Archive& archive) {
   if (const std::string before = archive.record("device"); before != simulator.device())
     std::cerr << "warning: the run began on " << before << " and goes on on " << simulator.device()
               << "; results may differ, at first in the last bit\n";
-  for (const OperatorUse& then : archive.operators())
-    for (const OperatorUse& now : experiment.uses)
-      if (then.kind == now.kind && then.name == now.name && then.version != now.version)
-        std::cerr << "warning: the run began with " << then.kind << " operator \"" << then.name << "\" " << then.version
-                  << " and goes on with " << now.version << "\n";
+}
+
+/// Another build of the same version may do the same; another version says that it does not.
+void refuse_other_versions(const Experiment& experiment, const Archive& archive) {
+  for_each_changed_operator(experiment, archive, [&](const OperatorUse& then, const OperatorUse& now) {
+    if (then.version == now.version) return;
+    throw ArchiveError(archive.folder().string() + ": began with " + title(then) + ", but " + now.file.string() +
+                       " is version " + now.version + "; put back the version that it began with (it was " +
+                       then.file.string() + "), or go on with --allow-other-versions");
+  });
 }
 
 }  // namespace
+
+void warn_of_changed_operators(const Experiment& experiment, const Archive& archive) {
+  for_each_changed_operator(experiment, archive, [](const OperatorUse& then, const OperatorUse& now) {
+    std::cerr << "warning: the run began with " << title(then) << ", now it is "
+              << (then.version == now.version ? "another build of it" : "version " + now.version) << ", "
+              << now.file.string() << "; results may differ\n";
+  });
+}
 
 int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive) {
   std::cout << experiment.name << " on " << simulator.device() << ", "
@@ -118,12 +142,17 @@ int run_command(const Arguments& arguments) {
 }
 
 int resume_command(const Arguments& arguments) {
-  const auto given = parse({"resume DIR", {"DIR"}, {}}, arguments);
+  CommandLine line{"resume DIR [--allow-other-versions] [--plugin-path P]", {"DIR"}, {}};
+  line.options.add_options()("allow-other-versions", "go on even where an operator has another version than before");
+  add_plugin_option(line.options);
+  const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
   Archive archive = Archive::resume((*given)["DIR"].as<std::string>());
-  const Experiment experiment = recorded_experiment(archive);
+  const Experiment experiment = recorded_experiment(archive, given_plugin_path(*given));
+  if (!given->contains("allow-other-versions")) refuse_other_versions(experiment, archive);
   const auto simulator = make_simulator(experiment);
-  warn_of_differences(experiment, *simulator, archive);
+  warn_of_another_device(*simulator, archive);
+  warn_of_changed_operators(experiment, archive);
   return evolve_and_report(experiment, *simulator, archive);
 }
 

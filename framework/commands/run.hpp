@@ -1,4 +1,4 @@
-// What evodevo run and resume have in common.
+// What evodevo run, resume and verify have in common.
 #pragma once
 
 #include "archive.hpp"
@@ -9,5 +9,8 @@ namespace evodevo {
 /// as the simulator's device, it throws std::runtime_error, whose text adds up to which generation the run is complete
 /// and how it goes on.
 int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive);
+
+/// Warns of operators whose library is not the one that the run began with.
+void warn_of_changed_operators(const Experiment& experiment, const Archive& archive);
 
 }  // namespace evodevo

@@ -84,13 +84,14 @@ class Report {
 }  // namespace
 
 int show_command(const Arguments& arguments) {
-  CommandLine line{"show DIR [--json]", {"DIR"}, {}};
+  CommandLine line{"show DIR [--json] [--plugin-path P]", {"DIR"}, {}};
   line.options.add_options()("json", "machine-readable, with every generation");
+  add_plugin_option(line.options);
   const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
   const Archive archive = Archive::read((*given)["DIR"].as<std::string>());
   if (given->contains("json"))
-    std::cout << run_json(archive, recorded_experiment(archive)).dump(1) << '\n';
+    std::cout << run_json(archive, recorded_experiment(archive, given_plugin_path(*given))).dump(1) << '\n';
   else
     Report(archive).print();
   return 0;

@@ -5,6 +5,7 @@
 
 #include "archive.hpp"
 #include "commands/options.hpp"
+#include "commands/run.hpp"
 #include "commands/verification_report.hpp"
 
 namespace evodevo {
@@ -66,9 +67,10 @@ Json to_json(const Verification& verification, const Objective& objective) {
 }
 
 int verify_command(const Arguments& arguments) {
-  CommandLine line{"verify DIR [--best N] [--json]", {"DIR"}, {}};
+  CommandLine line{"verify DIR [--best N] [--json] [--plugin-path P]", {"DIR"}, {}};
   line.options.add_options()("best", po::value<std::int64_t>()->default_value(3), "how many of the best individuals")(
       "json", "machine-readable");
+  add_plugin_option(line.options);
   const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
   const auto best = (*given)["best"].as<std::int64_t>();
@@ -77,7 +79,8 @@ int verify_command(const Arguments& arguments) {
   Archive archive = Archive::annotate((*given)["DIR"].as<std::string>());
   if (archive.best(1).empty())
     throw ArchiveError(archive.folder().string() + ": no individual has a fitness to verify");
-  Experiment experiment = recorded_experiment(archive);
+  Experiment experiment = recorded_experiment(archive, given_plugin_path(*given));
+  warn_of_changed_operators(experiment, archive);
   experiment.device = "auto";  // whatever the run had, it may not be here
   const auto simulator = make_simulator(experiment);
   const auto verifications = verify_best(experiment, *simulator, archive, static_cast<std::size_t>(best));

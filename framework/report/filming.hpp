@@ -39,6 +39,7 @@ class FilmingSimulator final : public Simulator {
 
   void run(std::span<Task> tasks, Recording recording) override;
   NeighbourSearch& neighbours() override { return simulator_.neighbours(); }
+  Workers& workers() override { return simulator_.workers(); }
   std::string device() const override { return simulator_.device(); }
 
   /// What was filmed of a body; every call of run() added a shot.

@@ -19,7 +19,11 @@ Json objectives_json(const std::vector<Objective>& objectives) {
 Json operators_json(const std::vector<OperatorUse>& uses) {
   Json list = Json::array();
   for (const OperatorUse& use : uses)
-    list.push_back({{"kind", use.kind}, {"name", use.name}, {"version", use.version}, {"file", use.file.string()}});
+    list.push_back({{"kind", use.kind},
+                    {"name", use.name},
+                    {"version", use.version},
+                    {"file", use.file.string()},
+                    {"hash", use.hash}});
   return list;
 }
 

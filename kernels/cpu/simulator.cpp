@@ -14,7 +14,7 @@ class CpuSimulator final : public Simulator {
       : scene_(scene),
         stepping_(stepping),
         workers_(threads),
-        neighbours_(make_cpu_neighbour_search(threads)),
+        neighbours_(make_cpu_neighbour_search()),
         kernels_(cpu::kernels<T>()) {}
 
   void run(std::span<Task> tasks, Recording recording) override {
@@ -24,6 +24,8 @@ class CpuSimulator final : public Simulator {
   }
 
   NeighbourSearch& neighbours() override { return *neighbours_; }
+
+  Workers& workers() override { return workers_; }
 
   std::string device() const override { return std::string("cpu, ") + kernels_.instruction_set; }
 

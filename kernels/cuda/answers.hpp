@@ -36,15 +36,26 @@ inline Actuator actuator_of(const Material& material, double resolution) {
           std::remainder(material.phase, 2 * pi) / pi};
 }
 
+/// The time in which a constant acceleration would add to an undamped velocity what it adds to a damped one in `time`,
+/// s.
+inline double push(double damping_rate, double time) {
+  return damping_rate > 0 ? -std::expm1(-damping_rate * time) / damping_rate : time;
+}
+
 template <class T>
 World<T> world_of(const Scene& scene, double dt) {
   const auto as_t = [](double value) { return static_cast<T>(value); };
+  const double rate = scene.damping ? scene.damping->rate : 0;
   return {.acceleration = as_t(scene.gravity ? scene.gravity->acceleration : 0),
           .floor_stiffness = as_t(scene.floor ? scene.floor->stiffness : 0),
           .friction_dt = as_t(scene.friction ? scene.friction->coefficient : 0) * as_t(dt),
           .drag_coefficient = as_t(scene.drag ? scene.drag->coefficient : 0),
-          .decay = as_t(scene.damping ? std::exp(-scene.damping->rate * dt) : 1),
+          .decay = as_t(std::exp(-rate * dt)),
           .dt = as_t(dt),
+          .push = as_t(push(rate, dt)),
+          .half_decay = as_t(std::exp(-rate * dt / 2)),
+          .half_push = as_t(push(rate, dt / 2)),
+          .damping_rate = as_t(rate),
           .exact_dt = dt};
 }
 

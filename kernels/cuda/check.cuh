@@ -21,6 +21,15 @@ __device__ inline double block_sum(double value, double (&of_warps)[lanes]) {
   return warp > 0 ? 0 : warp_sum(lane < blockDim.x / lanes ? of_warps[lane] : 0);
 }
 
+/// The sum of a value over the block, in such an order; for all threads. Synchronises the block before and after.
+__device__ inline double sum_for_all(double value) {
+  __shared__ double of_warps[lanes], total;
+  const double sum = block_sum(value, of_warps);
+  if (threadIdx.x == 0) total = sum;
+  __syncthreads();
+  return total;
+}
+
 /// 0 where a place and a velocity are finite: zero times anything finite is zero, and a sum with one that is not stays
 /// so.
 __device__ __forceinline__ Number not_finite(const Place& place, const Place& velocity) {

@@ -1,5 +1,7 @@
 # The CUDA part of the simulation core. Kernels are compiled at run time; their sources become part of the program.
-set(embedded cuda/resident.cu cuda/streamed.cu cuda/neighbours.cu cuda/check.cuh cuda/mass_step.cuh cuda/formats.hpp
+set(embedded cuda/resident.cu cuda/streamed.cu cuda/neighbours.cu cuda/block.cuh cuda/check.cuh cuda/mass_step.cuh
+  cuda/streamed.cuh cuda/methods/implicit.cu cuda/methods/paper_euler.cuh cuda/methods/rk4.cuh
+  cuda/methods/symplectic_euler.cuh cuda/methods/velocity_verlet.cuh cuda/methods/xpbd.cu cuda/formats.hpp
   cuda/fixed_point.hpp cuda/point_clouds.hpp physics.hpp arithmetic.hpp)
 set(embedded_sources ${CMAKE_CURRENT_BINARY_DIR}/embedded_sources.cpp)
 

@@ -189,10 +189,10 @@ class Portion {
 
 class CudaNeighbourSearch final : public NeighbourSearch {
  public:
-  CudaNeighbourSearch(int threads, std::size_t memory)
-      : workers_(threads), largest_portion_(memory), store_(cuda::current_device().architecture), kernels_(store_) {}
+  explicit CudaNeighbourSearch(std::size_t memory)
+      : largest_portion_(memory), store_(cuda::current_device().architecture), kernels_(store_) {}
 
-  void find(std::span<const PointCloud> clouds, const Use& use) override {
+  void find(std::span<const PointCloud> clouds, Workers& workers, const Use& use) override {
     std::vector<Job> jobs;
     std::vector<std::size_t> without_pairs;
     for (std::size_t i = 0; i < clouds.size(); ++i) {
@@ -201,12 +201,12 @@ class CudaNeighbourSearch final : public NeighbourSearch {
       else
         jobs.push_back({i, clouds[i]});
     }
-    workers_.for_each(without_pairs.size(), [&](std::size_t i) { use(without_pairs[i], {}); });
+    workers.for_each(without_pairs.size(), [&](std::size_t i) { use(without_pairs[i], {}); });
     if (jobs.empty()) return;
     std::unique_ptr<Workspace> workspace = take_workspace();
     for (std::span<const Job> left = jobs; !left.empty();) {
       const std::size_t count = portion_from(left);
-      Portion(left.first(count), kernels_, *workspace, workers_).find(use);
+      Portion(left.first(count), kernels_, *workspace, workers).find(use);
       left = left.subspan(count);
     }
     const std::lock_guard lock(mutex_);
@@ -236,7 +236,6 @@ class CudaNeighbourSearch final : public NeighbourSearch {
     return jobs.size();
   }
 
-  Workers workers_;
   std::size_t largest_portion_;  // bytes
   cuda::KernelStore store_;
   Kernels kernels_;
@@ -246,8 +245,8 @@ class CudaNeighbourSearch final : public NeighbourSearch {
 
 }  // namespace
 
-std::unique_ptr<NeighbourSearch> make_cuda_neighbour_search(int threads, std::size_t memory) {
-  return std::make_unique<CudaNeighbourSearch>(threads, memory);
+std::unique_ptr<NeighbourSearch> make_cuda_neighbour_search(std::size_t memory) {
+  return std::make_unique<CudaNeighbourSearch>(memory);
 }
 
 }  // namespace evodevo

@@ -76,13 +76,12 @@ class DeviceSimulator final : public CudaSimulator {
         device_(cuda::current_device()),
         kernels_(device_.architecture),
         workers_(threads),
-        neighbours_(make_cuda_neighbour_search(threads)) {}
+        neighbours_(make_cuda_neighbour_search()) {}
 
   void run(std::span<Task> tasks, Recording recording) override {
     const std::vector<Task*> live = begin(tasks, recording);
     const cuda::Run run{scene_, stepping_, recording,
-                        cuda::features_of(scene_, stepping_.precision, recording, has_muscles(live)),
-                        device_.shared_bytes};
+                        cuda::features_of(scene_, stepping_, recording, has_muscles(live)), device_.shared_bytes};
     std::vector<cuda::Plan<T>> plans = plan(live, run);
     const Lanes::Loan lane(lanes_);
     // after a run with stress the host has work to do; meanwhile runs without it fill the device
@@ -100,6 +99,8 @@ class DeviceSimulator final : public CudaSimulator {
   }
 
   NeighbourSearch& neighbours() override { return *neighbours_; }
+
+  Workers& workers() override { return workers_; }
 
   int concurrency() const override { return batches_at_once; }
 
@@ -182,11 +183,6 @@ class DeviceSimulator final : public CudaSimulator {
 
 std::unique_ptr<CudaSimulator> make_cuda_simulator(const Scene& scene, const Stepping& stepping, int threads,
                                                    std::size_t memory) {
-  if (stepping.method != Method::paper_euler)
-    throw std::invalid_argument(
-        "simulation.method: \"" + std::string(name(stepping.method)) +
-        "\" runs on the CPU alone; set simulation.device to \"cpu\", or simulation.method to \"" +
-        std::string(name(Method::paper_euler)) + "\"");
   if (stepping.precision == Precision::float64)
     return std::make_unique<DeviceSimulator<double>>(scene, stepping, threads, memory);
   return std::make_unique<DeviceSimulator<float>>(scene, stepping, threads, memory);

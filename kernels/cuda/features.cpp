@@ -2,8 +2,37 @@
 
 namespace evodevo::cuda {
 
-Features features_of(const Scene& scene, Precision precision, Recording recording, bool actuation) {
-  return {.float64 = precision == Precision::float64,
+namespace {
+
+std::string number(const char* name, unsigned value) {
+  return std::string("EVODEVO_") + name + "=" + std::to_string(value);
+}
+
+}  // namespace
+
+const MethodForm& form_of(Method method) {
+  static constexpr MethodForm forms[] = {
+      {.file = "cuda/methods/paper_euler.cuh", .rows_per_step = 1, .end_rows = 0, .passes_per_step = 1},
+      {.file = "cuda/methods/symplectic_euler.cuh", .rows_per_step = 1, .end_rows = 0, .passes_per_step = 1},
+      {.file = "cuda/methods/velocity_verlet.cuh",
+       .rows_per_step = 1,
+       .end_rows = 1,
+       .opening_passes = 1,
+       .passes_per_step = 1},
+      {.file = "cuda/methods/rk4.cuh", .rows_per_step = 2, .end_rows = 1, .passes_per_step = 4, .numbers_of_mass = 13},
+      {.file = "cuda/methods/implicit.cu",
+       .rows_per_step = 1,
+       .end_rows = 1,
+       .numbers_of_mass = 24,
+       .numbers_of_joint = 5,
+       .points_on_chip = 3},
+      {.file = "cuda/methods/xpbd.cu", .rows_per_step = 1, .end_rows = 1, .points_on_chip = 2, .coloured = true}};
+  return forms[static_cast<std::size_t>(method)];
+}
+
+Features features_of(const Scene& scene, const Stepping& stepping, Recording recording, bool actuation) {
+  return {.method = stepping.method,
+          .float64 = stepping.precision == Precision::float64,
           .gravity = scene.gravity.has_value(),
           .floor = scene.floor.has_value(),
           .friction = scene.friction && scene.floor,
@@ -15,11 +44,20 @@ Features features_of(const Scene& scene, Precision precision, Recording recordin
 }
 
 std::vector<std::string> definitions(const Features& features) {
+  const MethodForm& method = form_of(features.method);
   const auto flag = [](const char* name, bool on) {
     return std::string("EVODEVO_") + name + "=" + (on ? "true" : "false");
   };
   return {features.float64 ? "EVODEVO_NUMBER=double" : "EVODEVO_NUMBER=float",
-          "EVODEVO_CHECK_THREADS=" + std::to_string(check_threads),
+          "EVODEVO_METHOD=\"" + std::string(method.file) + "\"",
+          number("ROWS_PER_STEP", method.rows_per_step),
+          number("END_ROWS", method.end_rows),
+          number("OPENING_PASSES", method.opening_passes),
+          number("PASSES_PER_STEP", method.passes_per_step),
+          number("NUMBERS_OF_MASS", method.numbers_of_mass),
+          number("NUMBERS_OF_JOINT", method.numbers_of_joint),
+          number("MAX_THREADS", 32 * largest_block(features.float64)),
+          number("CHECK_THREADS", check_threads),
           flag("ACTUATION", features.actuation),
           flag("GRAVITY", features.gravity),
           flag("FLOOR", features.floor),
@@ -31,9 +69,6 @@ std::vector<std::string> definitions(const Features& features) {
 }
 
 std::vector<std::string> definitions(const Features& features, const ResidentForm& form) {
-  const auto number = [](const char* name, unsigned value) {
-    return std::string("EVODEVO_") + name + "=" + std::to_string(value);
-  };
   std::vector<std::string> all = definitions(features);
   all.push_back(number("ROWS", form.rows));
   all.push_back(number("MASSES", form.masses_per_thread));
@@ -42,7 +77,6 @@ std::vector<std::string> definitions(const Features& features, const ResidentFor
   const unsigned shift = features.float64 ? 3 : 2;  // from numbers to bytes
   all.push_back(number("OFFSET_SHIFT", form.wide_offsets ? shift : 0));
   all.push_back(number("ENTRY_SHIFT", form.wide_table ? shift : 0));
-  all.push_back(number("MAX_THREADS", 32 * largest_block(features.float64)));
   return all;
 }
 

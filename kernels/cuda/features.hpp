@@ -5,13 +5,36 @@
 #include <string>
 #include <vector>
 
+#include "cuda/formats.hpp"
 #include "scene.hpp"
 #include "simulator.hpp"
 
 namespace evodevo::cuda {
 
+/// How a method steps bodies on the GPU.
+struct MethodForm {
+  const char* file;               ///< of an explicit method: what moves a mass; else the kernel of a whole body
+  unsigned rows_per_step;         ///< rows of the tables of lengths that time advances by in a step
+  unsigned end_rows;              ///< 1 where a step reads the row at its end, else 0
+  unsigned opening_passes = 0;    ///< over the springs, before the first of some steps; of explicit methods
+  unsigned passes_per_step = 0;   ///< likewise
+  unsigned numbers_of_mass = 0;   ///< of scratch memory that a streamed body needs for each mass
+  unsigned numbers_of_joint = 0;  ///< likewise for each joint
+  unsigned points_on_chip = 0;    ///< of each mass, in shared memory where there is room, of methods of whole bodies
+  bool coloured = false;          ///< whether it needs the springs by colour
+
+  unsigned rows(unsigned steps) const { return steps * rows_per_step + end_rows; }
+  /// Of so many steps that begin with a check; after each check the first pass is an opening one again.
+  std::uint64_t passes(std::uint64_t steps) const {
+    return (steps + guard_interval - 1) / guard_interval * opening_passes + steps * passes_per_step;
+  }
+};
+
+const MethodForm& form_of(Method method);
+
 /// What of the scene and of a run is compiled into a kernel.
 struct Features {
+  Method method = Method::paper_euler;
   bool float64 = false;
   bool gravity = false, floor = false, friction = false, damping = false, drag = false;
   bool actuation = false, stress = false, work = false;
@@ -20,7 +43,7 @@ struct Features {
 };
 
 /// `actuation`: whether some body has a muscle among its materials.
-Features features_of(const Scene& scene, Precision precision, Recording recording, bool actuation);
+Features features_of(const Scene& scene, const Stepping& stepping, Recording recording, bool actuation);
 
 /// What of a body's layout is compiled into the kernel that keeps it on the chip.
 struct ResidentForm {

@@ -40,15 +40,19 @@ struct Actuator {
   double phase;      ///< in half turns
 };
 
-/// The scene and a body's step in the arithmetic of the simulation.
+/// The scene and a body's step in the arithmetic of the simulation. What paper-euler reads comes first, some in pairs.
 template <class T>
 struct World {
   T acceleration;      ///< of gravity, m/s^2
   T floor_stiffness;   ///< N/m
   T friction_dt;       ///< friction coefficient times dt, s
   T drag_coefficient;  ///< kg/m
-  T decay;             ///< exp(-damping rate dt)
+  T decay;             ///< exp(-damping rate dt): what damping leaves of a velocity
   T dt;                ///< s
+  T push;              ///< (1 - decay)/rate, s: what a constant acceleration adds to it meanwhile
+  T half_decay;        ///< both for half a step
+  T half_push;         ///< s
+  T damping_rate;      ///< 1/s
   double exact_dt;     ///< s
 };
 
@@ -59,7 +63,7 @@ struct Answer {
   double elastic;       ///< J
   double moment;        ///< sum of mass times z, kg m
   double work;          ///< J
-  std::uint32_t diverged, finite, out_of_range, unused;
+  std::uint32_t diverged, finite, out_of_range;
 };
 
 /// A body in motion, one entry for each place; places that hold no mass weigh nothing and never move.
@@ -106,32 +110,45 @@ struct alignas(4 * sizeof(T)) Joint {
   std::uint32_t owned;  ///< whether this end counts for what is summed once per spring
 };
 
+/// A spring as a method sees it that goes through the springs by colour.
+template <class T>
+struct ColouredSpring {
+  T rest_length;        ///< m
+  std::uint32_t a, b;   ///< the masses
+  std::uint32_t entry;  ///< of the table
+  std::uint32_t joint;  ///< where its stress is summed up
+};
+
 template <class T>
 struct alignas(4 * sizeof(T)) Point {
   T x, y, z, unused;
 };
 
-/// A body that is too large for the chip: streamed.cu. Its masses lie by falling number of springs, so that those of a
-/// group have about as many.
+/// A body that is too large for the chip (streamed.cu) or whose method has no kernel there. Its masses lie by falling
+/// number of springs, so that those of a group have about as many.
 template <class T>
 struct StreamedBody {
   World<T> world;
-  const std::uint32_t* first_row;  ///< [groups of 32 masses + 1]
-  const Joint<T>* joints;          ///< [rows][lanes]; a mass's joints are in the rows of its group, in its lane
-  const Actuator* actuators;       ///< [entries]; stiffness in N/m
-  const T* mass;                   ///< [masses] kg
-  const T* inverse_mass;           ///< [masses] 1/kg, 0 for what never moves
-  Point<T>* places;                ///< [2][masses] m; a step reads one half and writes the other
-  Point<T>* velocities;            ///< [masses] m/s
-  Entry<T>* table;                 ///< [guard_interval][entries]
-  T* rates;                        ///< [guard_interval][entries] rate of L/L0, 1/s; where work is recorded
-  double* stress;                  ///< [rows][lanes] sum of |force|, N, at owned joints
-  double* power;                   ///< [masses] sum of power, W; where work is recorded
+  const std::uint32_t* first_row;        ///< [groups of 32 masses + 1]
+  const Joint<T>* joints;                ///< [rows][lanes]; a mass's joints are in the rows of its group, in its lane
+  const ColouredSpring<T>* coloured;     ///< by colour (spring_colours()); where the method asks for them
+  const std::uint32_t* first_of_colour;  ///< [colours + 1] among them
+  const Actuator* actuators;             ///< [entries]; stiffness in N/m
+  const T* mass;                         ///< [masses] kg
+  const T* inverse_mass;                 ///< [masses] 1/kg, 0 for what never moves
+  Point<T>* places;                      ///< [2][masses] m; a pass reads one half and writes the other
+  Point<T>* velocities;                  ///< [masses] m/s
+  T* scratch;                            ///< the method's own, 16 bytes aligned
+  Entry<T>* table;                       ///< [rows][entries] from one check to the next
+  T* rates;                              ///< [rows][entries] rate of L/L0, 1/s; where work is recorded
+  double* stress;                        ///< [rows][lanes] sum of |force|, N, at owned joints
+  double* power;                         ///< [masses] sum of power, W; where work is recorded
   Answer* answer;
   double start_time;    ///< since birth, s
   std::uint64_t steps;  ///< to make
   double energy_bound;  ///< J
-  std::uint32_t masses, entries;
+  std::uint32_t masses, entries, colours;
+  std::uint32_t on_chip;  ///< whether MethodForm::points_on_chip lie in shared memory
 };
 
 }  // namespace evodevo::cuda

@@ -1,4 +1,5 @@
-// What both kernels share: the features that they are compiled for, the materials in time and the step of one mass.
+// What all kernels share: the features that they are compiled for, the materials in time and what methods move a mass
+// with.
 #pragma once
 
 #include "cuda/formats.hpp"
@@ -15,6 +16,11 @@ constexpr bool damping = EVODEVO_DAMPING;
 constexpr bool drag = EVODEVO_DRAG;
 constexpr bool stress = EVODEVO_STRESS;
 constexpr bool work = EVODEVO_WORK;
+
+constexpr unsigned rows_per_step = EVODEVO_ROWS_PER_STEP;      // of the tables of lengths
+constexpr unsigned end_rows = EVODEVO_END_ROWS;                // 1 where a step reads the row at its end, else 0
+constexpr unsigned opening_passes = EVODEVO_OPENING_PASSES;    // over the springs, before the first of some steps
+constexpr unsigned passes_per_step = EVODEVO_PASSES_PER_STEP;  // over the springs
 
 using Place = physics::Triple<Number>;
 
@@ -40,41 +46,103 @@ __device__ __forceinline__ Number length_rate(const Actuator& actuator, double t
   return static_cast<Number>(rate);
 }
 
-/// All other forces, and the step of one mass.
-__device__ __forceinline__ void move(const World<Number>& world, Place& place, Place& v, Place force, Number mass,
-                                     Number inverse_mass) {
-  if constexpr (gravity) force.z += physics::weight(mass, world.acceleration);
-  Number push = 0;
+/// A mass while it is moved.
+struct Moving {
+  Place place;          ///< m
+  Place velocity;       ///< m/s
+  Place force;          ///< N
+  Number mass;          ///< kg
+  Number inverse_mass;  ///< 1/kg; 0 for what never moves
+  Number push = 0;      ///< of the floor, N
+};
+
+/// A pass over all springs, after which every mass is moved.
+struct Pass {
+  unsigned index;  ///< of some steps'
+  bool last;       ///< of them
+};
+
+/// What a method may leave as it is. It adds `move(world, pass, kept, m)`: what the forces of a pass do to a mass.
+struct OnePass {
+  /// What a mass keeps from one pass to the next.
+  struct Kept {};
+  /// The row of the tables, from the one at the beginning of the steps, that pass `index` takes the lengths from.
+  static __device__ __forceinline__ unsigned row(unsigned index) { return index; }
+  /// Whether the forces of pass `index` count for stress and work.
+  static __device__ __forceinline__ bool is_noted(unsigned) { return true; }
+};
+
+/// a + factor b
+__device__ __forceinline__ Place sum(const Place& a, Number factor, const Place& b) {
+  return {physics::multiply_add(factor, b.x, a.x), physics::multiply_add(factor, b.y, a.y),
+          physics::multiply_add(factor, b.z, a.z)};
+}
+
+__device__ __forceinline__ Place scaled(const Place& a, Number factor) {
+  return {a.x * factor, a.y * factor, a.z * factor};
+}
+
+__device__ __forceinline__ void add_gravity(const World<Number>& world, Moving& m) {
+  if constexpr (gravity) m.force.z += physics::weight(m.mass, world.acceleration);
+}
+
+__device__ __forceinline__ void add_floor(const World<Number>& world, Moving& m) {
   if constexpr (floor_on) {
-    push = physics::floor_force(world.floor_stiffness, place.z);
-    force.z += push;
+    m.push = physics::floor_force(world.floor_stiffness, m.place.z);
+    m.force.z += m.push;
   }
+}
+
+__device__ __forceinline__ void add_drag(const World<Number>& world, Moving& m) {
+  if constexpr (drag) m.force = sum(m.force, physics::drag_factor(world.drag_coefficient, m.velocity), m.velocity);
+}
+
+/// Damping as a force.
+__device__ __forceinline__ void add_damping(const World<Number>& world, Moving& m) {
+  if constexpr (damping) m.force = sum(m.force, physics::damping_factor(world.damping_rate, m.mass), m.velocity);
+}
+
+/// Drag for a time in which acceleration adds `time` (s) of itself: scales the velocity and, where forces act in it,
+/// the forces.
+template <bool forces_too>
+__device__ __forceinline__ void yield_to_drag(const World<Number>& world, Number time, Moving& m) {
   if constexpr (drag) {
-    const Number factor = physics::drag_factor(world.drag_coefficient, v);
-    force.x = physics::multiply_add(factor, v.x, force.x);
-    force.y = physics::multiply_add(factor, v.y, force.y);
-    force.z = physics::multiply_add(factor, v.z, force.z);
+    const Number coefficient = world.drag_coefficient * time * m.inverse_mass;
+    const Number kept = physics::drag_retention(coefficient, m.velocity);
+    m.velocity = scaled(m.velocity, kept);
+    if constexpr (forces_too) m.force = scaled(m.force, kept);
   }
-  const Number dt_over_mass = world.dt * inverse_mass;
-  v.x = physics::advanced_velocity(v.x, force.x, dt_over_mass);
-  v.y = physics::advanced_velocity(v.y, force.y, dt_over_mass);
-  v.z = physics::advanced_velocity(v.z, force.z, dt_over_mass);
-  if constexpr (damping) {
-    v.x *= world.decay;
-    v.y *= world.decay;
-    v.z *= world.decay;
-  }
+}
+
+/// v <- v + time F/m
+__device__ __forceinline__ void advance_velocity(Number time, Moving& m) {
+  const Number time_over_mass = time * m.inverse_mass;
+  m.velocity.x = physics::advanced_velocity(m.velocity.x, m.force.x, time_over_mass);
+  m.velocity.y = physics::advanced_velocity(m.velocity.y, m.force.y, time_over_mass);
+  m.velocity.z = physics::advanced_velocity(m.velocity.z, m.force.z, time_over_mass);
+}
+
+__device__ __forceinline__ void damp(Number decay, Moving& m) {
+  if constexpr (damping) m.velocity = scaled(m.velocity, decay);
+}
+
+/// What the floor's friction leaves of a velocity; `friction_time`: its coefficient times the time, s.
+__device__ __forceinline__ void rub(Number friction_time, const Moving& m, Place& velocity) {
   if constexpr (friction) {
     // of a mass off the floor it takes nothing, and most are
-    if (push > 0) {
-      const Number kept = physics::friction_factor(v.x, v.y, world.friction_dt * push * inverse_mass);
-      v.x *= kept;
-      v.y *= kept;
+    if (m.push > 0) {
+      const Number kept = physics::friction_factor(velocity.x, velocity.y, friction_time * m.push * m.inverse_mass);
+      velocity.x *= kept;
+      velocity.y *= kept;
     }
   }
-  place.x = physics::moved(place.x, v.x, world.dt);
-  place.y = physics::moved(place.y, v.y, world.dt);
-  place.z = physics::moved(place.z, v.z, world.dt);
+}
+
+/// x <- x + time v
+__device__ __forceinline__ void move_on(Number time, Moving& m) {
+  m.place.x = physics::moved(m.place.x, m.velocity.x, time);
+  m.place.y = physics::moved(m.place.y, m.velocity.y, time);
+  m.place.z = physics::moved(m.place.z, m.velocity.z, time);
 }
 
 }  // namespace evodevo::cuda

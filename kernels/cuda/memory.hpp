@@ -10,7 +10,8 @@
 
 namespace evodevo::cuda {
 
-/// Memory of the device together with as much on the host that copies go to and come from.
+/// Memory of the device together with as much on the host that copies go to and come from, and more that is on the
+/// device alone.
 class MirroredMemory {
  public:
   MirroredMemory() = default;
@@ -18,33 +19,35 @@ class MirroredMemory {
   MirroredMemory& operator=(const MirroredMemory&) = delete;
   ~MirroredMemory() { release(); }
 
-  /// Makes room for at least `size` bytes; what was there is lost.
-  void resize(std::size_t size) {
-    if (size <= size_) return;
+  /// Makes room for at least `mirrored` bytes on both and, behind them, `more` on the device; what was there is lost.
+  void resize(std::size_t mirrored, std::size_t more = 0) {
+    if (mirrored <= host_size_ && mirrored + more <= size_) return;
     // bodies grow by little, and taking memory makes the device wait
     constexpr std::size_t piece = std::size_t{32} << 20;
-    size = (size + piece - 1) / piece * piece;
+    mirrored = (mirrored + piece - 1) / piece * piece;
+    const std::size_t size = mirrored + (more + piece - 1) / piece * piece;
     release();
     check(cudaMalloc(&device_, size), "taking " + std::to_string(size >> 20) + " MiB of the GPU's memory");
-    check(cudaMallocHost(&host_, size), "taking " + std::to_string(size >> 20) + " MiB of the host's memory");
     size_ = size;
+    check(cudaMallocHost(&host_, mirrored), "taking " + std::to_string(mirrored >> 20) + " MiB of the host's memory");
+    host_size_ = mirrored;
   }
 
   std::byte* device() const { return static_cast<std::byte*>(device_); }
   std::byte* host() const { return static_cast<std::byte*>(host_); }
-  std::size_t size() const { return size_; }
+  std::size_t size() const { return size_; }  ///< on the device, bytes
 
  private:
   void release() {
     cudaFree(device_);
     cudaFreeHost(host_);
     device_ = host_ = nullptr;
-    size_ = 0;
+    size_ = host_size_ = 0;
   }
 
   void* device_ = nullptr;
   void* host_ = nullptr;
-  std::size_t size_ = 0;
+  std::size_t size_ = 0, host_size_ = 0;
 };
 
 /// The order in which the device works off what it is given.

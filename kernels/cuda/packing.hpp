@@ -29,24 +29,29 @@ class Extent {
   std::size_t size_ = 0;
 };
 
-/// The three kinds of memory of a body: what only the device reads, what goes there and comes back, and what begins as
-/// zeros there and comes back.
+/// The four kinds of memory of a body: what only the device reads, what goes there and comes back, what begins as zeros
+/// there and comes back, and what is nowhere but there.
 struct Sizes {
-  std::size_t input = 0, state = 0, sums = 0;
+  std::size_t input = 0, state = 0, sums = 0, scratch = 0;
 
   Sizes& operator+=(const Sizes& other) {
     input += other.input;
     state += other.state;
     sums += other.sums;
+    scratch += other.scratch;
     return *this;
   }
-  std::size_t total() const { return input + state + sums; }
+  std::size_t mirrored() const { return input + state + sums; }
+  std::size_t total() const { return mirrored() + scratch; }
 };
 
 struct Regions {
   std::byte *input, *state, *sums;
+  std::byte* scratch = nullptr;  ///< on the device alone
 
-  Regions behind(const Sizes& sizes) const { return {input + sizes.input, state + sizes.state, sums + sizes.sums}; }
+  Regions behind(const Sizes& sizes) const {
+    return {input + sizes.input, state + sizes.state, sums + sizes.sums, scratch ? scratch + sizes.scratch : nullptr};
+  }
 };
 
 }  // namespace evodevo::cuda

@@ -34,9 +34,10 @@ Plan<T>::Plan(Task& task_, const Run& run)
     : task(&task_),
       guard(*task_.body, *task_.state, run.scene, run.stepping.precision, task_.dt),
       body([&]() -> decltype(body) {
-        if (auto resident = Resident<T>::arrange(task_, run.scene, run.features, run.shared_bytes))
-          return *std::move(resident);
-        return Streamed<T>(task_, run.features);
+        if (is_explicit(run.stepping.method))
+          if (auto resident = Resident<T>::arrange(task_, run.scene, run.features, run.shared_bytes))
+            return *std::move(resident);
+        return Streamed<T>(task_, run.features, Resident<T>::largest_chip(run.shared_bytes));
       }()) {}
 
 template <class T>
@@ -57,19 +58,21 @@ Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MirroredMemory& me
     if (const auto* resident = std::get_if<Resident<T>>(&plans[i].body))
       resident_[{resident->form(), resident->threads()}].push_back(i);
     else
-      streamed_.push_back(i);
+      streamed_[std::get<Streamed<T>>(plans[i].body).threads()].push_back(i);
   }
   for (auto& [launch, members] : resident_)
     std::stable_sort(members.begin(), members.end(), [&](std::size_t a, std::size_t b) {
       return std::get<Resident<T>>(plans[a].body).slots() > std::get<Resident<T>>(plans[b].body).slots();
     });
-  memory_.resize(bytes_for(sizes_, plans.size()));
-  // descriptions, then inputs, then states, then sums
+  const std::size_t headers = plans.size() * header_bytes<T>;
+  memory_.resize(headers + sizes_.mirrored(), sizes_.scratch);
+  // descriptions, then inputs, then states, then sums, then scratch
   const auto regions = [&](std::byte* base) {
-    std::byte* input = base + plans.size() * header_bytes<T>;
+    std::byte* input = base + headers;
     return Regions{input, input + sizes_.input, input + sizes_.input + sizes_.state};
   };
   Regions host = regions(memory_.host()), device = regions(memory_.device());
+  device.scratch = memory_.device() + headers + sizes_.mirrored();
   for (const Plan<T>& plan : plans) {
     host_.push_back(host);
     device_.push_back(device);
@@ -83,17 +86,18 @@ void Portion<T>::pack(Workers& workers) {
   // resident bodies by launch, then streamed ones; all descriptions take the same room
   std::vector<std::size_t> order;
   for (const auto& [launch, bodies] : resident_) order.insert(order.end(), bodies.begin(), bodies.end());
+  const std::size_t first_streamed = order.size();
+  for (const auto& [threads, bodies] : streamed_) order.insert(order.end(), bodies.begin(), bodies.end());
   auto* resident = reinterpret_cast<ResidentBody<T>*>(memory_.host());
-  auto* streamed = reinterpret_cast<StreamedBody<T>*>(memory_.host() + order.size() * header_bytes<T>);
-  workers.for_each(plans_.size(), [&](std::size_t i) {
-    if (i < order.size()) {
-      const std::size_t at = order[i];
-      resident[i] = std::get<Resident<T>>(plans_[at].body).pack(host_[at], device_[at], plans_[at].guard, run_.scene);
-    } else {
-      const std::size_t at = streamed_[i - order.size()];
-      streamed[i - order.size()] =
-          std::get<Streamed<T>>(plans_[at].body).pack(host_[at], device_[at], plans_[at].guard, run_.scene);
-    }
+  auto* streamed = reinterpret_cast<StreamedBody<T>*>(memory_.host() + first_streamed * header_bytes<T>);
+  workers.for_each(order.size(), [&](std::size_t i) {
+    const std::size_t at = order[i];
+    const Plan<T>& plan = plans_[at];
+    if (const auto* body = std::get_if<Resident<T>>(&plan.body))
+      resident[i] = body->pack(host_[at], device_[at], plan.guard, run_.scene);
+    else
+      streamed[i - first_streamed] =
+          std::get<Streamed<T>>(plan.body).pack(host_[at], device_[at], plan.guard, run_.scene);
   });
 }
 
@@ -127,6 +131,15 @@ std::vector<typename Portion<T>::ReadyLaunch> Portion<T>::ready_launches(KernelS
   return launches;
 }
 
+/// Lets a kernel have as much shared memory as any body needs: always the most, because other threads may be about to
+/// start the same kernel.
+template <class T>
+void Portion<T>::allow_largest_chip(cudaKernel_t kernel) const {
+  check(cudaFuncSetAttribute(reinterpret_cast<const void*>(kernel), cudaFuncAttributeMaxDynamicSharedMemorySize,
+                             static_cast<int>(Resident<T>::largest_chip(run_.shared_bytes))),
+        "asking for shared memory");
+}
+
 template <class T>
 void Portion<T>::launch_resident(KernelStore& kernels, std::span<const Stream> streams, Workers& workers) {
   const Event ready;
@@ -136,10 +149,7 @@ void Portion<T>::launch_resident(KernelStore& kernels, std::span<const Stream> s
     std::size_t shared_bytes = 0;
     for (const std::size_t i : one.members)
       shared_bytes = std::max(shared_bytes, std::get<Resident<T>>(plans_[i].body).chip_bytes());
-    // always the most, because other threads may be about to start the same kernel
-    check(cudaFuncSetAttribute(reinterpret_cast<const void*>(one.kernel), cudaFuncAttributeMaxDynamicSharedMemorySize,
-                               static_cast<int>(Resident<T>::largest_chip(run_.shared_bytes))),
-          "asking for shared memory");
+    allow_largest_chip(one.kernel);
     const cudaStream_t stream = streams[next++ % streams.size()];
     check(cudaStreamWaitEvent(stream, ready), "waiting for an event");
     launch(one.kernel, dim3(static_cast<unsigned>(one.members.size())), one.launch.threads, shared_bytes, stream,
@@ -148,29 +158,52 @@ void Portion<T>::launch_resident(KernelStore& kernels, std::span<const Stream> s
 }
 
 template <class T>
-void Portion<T>::launch_streamed(KernelStore& kernels, cudaStream_t stream) {
-  if (streamed_.empty()) return;
-  constexpr unsigned step_threads = 128;
+void Portion<T>::launch_streamed(KernelStore& kernels, std::span<const Stream> streams) {
+  const Event ready;
+  check(cudaEventRecord(ready, streams[0]), "recording an event");
+  std::size_t count = 0;
+  for (const auto& [threads, members] : streamed_) count += members.size();
+  const auto* bodies =
+      reinterpret_cast<const StreamedBody<T>*>(memory_.device() + (plans_.size() - count) * header_bytes<T>);
+  std::size_t next = 0;
+  for (const auto& [threads, members] : streamed_) {
+    const cudaStream_t stream = streams[next++ % streams.size()];
+    check(cudaStreamWaitEvent(stream, ready), "waiting for an event");
+    launch_streamed(kernels, stream, members, bodies);
+    bodies += members.size();
+  }
+}
+
+/// Bodies whose blocks have equally many threads.
+template <class T>
+void Portion<T>::launch_streamed(KernelStore& kernels, cudaStream_t stream, std::span<const std::size_t> members,
+                                 const StreamedBody<T>* bodies) {
+  const MethodForm& method = form_of(run_.stepping.method);
+  const bool by_block = !is_explicit(run_.stepping.method);
   unsigned masses = 1;
   std::uint64_t steps = 0;
-  for (const std::size_t i : streamed_) {
+  std::size_t shared_bytes = 0;
+  for (const std::size_t i : members) {
     const auto& body = std::get<Streamed<T>>(plans_[i].body);
     masses = std::max(masses, body.masses());
     steps = std::max(steps, body.steps());
+    shared_bytes = std::max(shared_bytes, body.chip_bytes());
   }
+  const unsigned threads = std::get<Streamed<T>>(plans_[members.front()].body).threads();
   const auto kernel = [&](const char* name) {
-    return kernels.get("cuda/streamed.cu", name, definitions(run_.features));
+    return kernels.get(by_block ? method.file : "cuda/streamed.cu", name, definitions(run_.features));
   };
-  const cudaKernel_t fill = kernel("evodevo_fill_tables"), step = kernel("evodevo_step_streamed"),
-                     check_bodies = kernel("evodevo_check_streamed");
-  const auto* bodies =
-      reinterpret_cast<const StreamedBody<T>*>(memory_.device() + (plans_.size() - streamed_.size()) * header_bytes<T>);
-  const auto count = static_cast<unsigned>(streamed_.size());
-  const dim3 over_masses((masses + step_threads - 1) / step_threads, count);
+  const cudaKernel_t fill = kernel("evodevo_fill_tables"), check_bodies = kernel("evodevo_check_streamed"),
+                     move = kernel(by_block ? "evodevo_advance_streamed" : "evodevo_pass_streamed");
+  if (by_block) allow_largest_chip(move);
+  const auto count = static_cast<unsigned>(members.size());
+  const dim3 over_masses((masses + threads - 1) / threads, count);
   for (std::uint64_t done = 0; done < steps;) {
     const auto now = static_cast<unsigned>(std::min<std::uint64_t>(steps - done, guard_interval));
-    launch(fill, dim3(count), 256, 0, stream, bodies, done, now);
-    for (unsigned i = 0; i < now; ++i) launch(step, over_masses, step_threads, 0, stream, bodies, done, i);
+    launch(fill, dim3(count), 256, 0, stream, bodies, done, method.rows(now));
+    if (by_block) launch(move, dim3(count), threads, shared_bytes, stream, bodies, done);
+    for (unsigned pass = 0; pass < method.passes(now); ++pass)
+      launch(move, over_masses, threads, 0, stream, bodies, done, pass);
     launch(fill, dim3(count), 256, 0, stream, bodies, done + now, 1u);
     launch(check_bodies, dim3(count), check_threads, 0, stream, bodies, done, now);
     done += now;
@@ -197,7 +230,7 @@ double Portion<T>::simulate(KernelStore& kernels, std::span<const Stream> stream
     upload(streams[0]);
     check(cudaEventRecord(begin, streams[0]), "recording an event");
     launch_resident(kernels, streams, workers);
-    launch_streamed(kernels, streams[0]);
+    launch_streamed(kernels, streams);
     seconds = wait_for(streams, begin);
     download(streams[0]);
   }

@@ -69,17 +69,20 @@ class Portion {
   void pack(Workers& workers);
   void upload(cudaStream_t stream);
   std::vector<ReadyLaunch> ready_launches(KernelStore& kernels, Workers& workers) const;
+  void allow_largest_chip(cudaKernel_t kernel) const;
   void launch_resident(KernelStore& kernels, std::span<const Stream> streams, Workers& workers);
-  void launch_streamed(KernelStore& kernels, cudaStream_t stream);
+  void launch_streamed(KernelStore& kernels, std::span<const Stream> streams);
+  void launch_streamed(KernelStore& kernels, cudaStream_t stream, std::span<const std::size_t> members,
+                       const StreamedBody<T>* bodies);
   void download(cudaStream_t stream);
 
   std::span<Plan<T>> plans_;
   Run run_;
   MirroredMemory& memory_;
   Sizes sizes_;
-  std::vector<Regions> host_, device_;                   // of each plan
-  std::map<Launch, std::vector<std::size_t>> resident_;  ///< the largest bodies first
-  std::vector<std::size_t> streamed_;
+  std::vector<Regions> host_, device_;                     // of each plan
+  std::map<Launch, std::vector<std::size_t>> resident_;    ///< the largest bodies first
+  std::map<unsigned, std::vector<std::size_t>> streamed_;  ///< by the threads of their blocks
 };
 
 extern template class Portion<float>;

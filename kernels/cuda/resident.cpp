@@ -110,12 +110,14 @@ bool Resident<T>::fit(std::size_t shared_bytes) {
   const std::size_t row = entries * (sizeof(Entry<T>) + (features_.work ? sizeof(T) : 0));
   const std::size_t masses = masses_bytes<T>(arrangement().groups);
   const std::size_t records = arrangement().shape.slots() * sizeof(Record<T>);
-  const std::size_t steps = features_.actuation ? std::clamp<std::size_t>(table_bytes / row, 1, longest_table) : 1;
-  records_on_chip_ = aligned(masses) + aligned(steps * row) + 32 + records <= shared_bytes;
+  const MethodForm& method = form_of(features_.method);
+  const std::size_t steps = std::clamp<std::size_t>(table_bytes / row / method.rows_per_step, 1, longest_table);
+  const std::size_t rows = features_.actuation ? method.rows(static_cast<unsigned>(steps)) : 1;
+  records_on_chip_ = aligned(masses) + aligned(rows * row) + 32 + records <= shared_bytes;
   chip_.table_steps = static_cast<std::uint32_t>(steps);
   chip_.table_offset = aligned(masses);
-  chip_.rate_offset = aligned(chip_.table_offset + steps * entries * sizeof(Entry<T>));
-  chip_.record_offset = aligned(chip_.rate_offset + (features_.work ? steps * entries * sizeof(T) : 0));
+  chip_.rate_offset = aligned(chip_.table_offset + rows * entries * sizeof(Entry<T>));
+  chip_.record_offset = aligned(chip_.rate_offset + (features_.work ? rows * entries * sizeof(T) : 0));
   chip_.size = chip_.record_offset + (records_on_chip_ ? records : 0);
   return chip_.size <= shared_bytes;
 }

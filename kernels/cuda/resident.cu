@@ -5,7 +5,7 @@
 // each spring is computed once, and no sum depends on an order. The host compiles this file at run time, once for each
 // combination of the features below that a scene and a body ask for; what is off leaves no instruction.
 #include "cuda/check.cuh"
-#include "cuda/mass_step.cuh"
+#include EVODEVO_METHOD
 
 namespace evodevo::cuda {
 
@@ -113,10 +113,11 @@ __device__ __forceinline__ Share share_of(const Body& body) {
   return share;
 }
 
-/// Where the lengths of one step lie in shared memory, and the rates at which they change.
+/// Where the lengths of one pass lie in shared memory, and the rates at which they change.
 struct Lengths {
   unsigned table;
   unsigned rates = 0;
+  bool noted = true;  // whether its forces count for stress and work
 };
 
 /// Adds one spring's force to both of its ends; returns its size, units.
@@ -129,7 +130,7 @@ __device__ __forceinline__ Number add_force(const Spring& spring, Owner& owner, 
   sums.largest = fmax(sums.largest, fabs(tension));
   if constexpr (work) {
     const Number rate = on_chip<Number>(lengths.rates + spring.table_entry / 2) * spring.rest_length;
-    sums.power += physics::actuation_power(tension, rate);
+    if (lengths.noted) sums.power += physics::actuation_power(tension, rate);
   }
   const Integer x = bits(physics::multiply_add(-factor, s.d.x, Fixed::magic));
   const Integer y = bits(physics::multiply_add(-factor, s.d.y, Fixed::magic));
@@ -158,10 +159,11 @@ __device__ __forceinline__ void add_forces(const Body& body, const Share& share,
     const Number force = add_force(spring, owner, lengths, sums);
     if constexpr (stress) {
       // no thread waits for the sum in memory, which has no other writer and so no order
+      const Number noted = lengths.noted ? force : Number(0);
       if constexpr (chunked)
-        atomicAdd(in_memory(body.recent_stress) + slot + row * lanes, force);
+        atomicAdd(in_memory(body.recent_stress) + slot + row * lanes, noted);
       else
-        sums.row_stress[row] += force;
+        sums.row_stress[row] += noted;
     }
     if (turns >> row & 1) {
       owner.hand_in();
@@ -185,6 +187,7 @@ __device__ __forceinline__ void add_spring_forces(const Body& body, const Share&
 /// The masses that a thread moves: those at place threadIdx.x, threadIdx.x + blockDim.x, ..
 struct Movers {
   Place velocity[masses_per_thread];
+  Method::Kept kept[masses_per_thread];
 };
 
 template <class Function>
@@ -208,7 +211,7 @@ __device__ __forceinline__ void set_place(unsigned offset, Place place) {
   on_chip<Number>(offset + 2 * plane) = place.z;
 }
 
-/// The sum of the spring forces at a mass, N; made ready for the next step's sum.
+/// The sum of the spring forces at a mass, N; made ready for the next pass's sum.
 __device__ __forceinline__ Place take_force(unsigned offset, Integer start, Number resolution) {
   const auto newtons = [&](unsigned at) {
     return static_cast<Number>(static_cast<Fixed::Signed>(on_chip<Integer>(at))) * resolution;
@@ -218,15 +221,14 @@ __device__ __forceinline__ Place take_force(unsigned offset, Integer start, Numb
   return force;
 }
 
-__device__ __forceinline__ void move_masses(const Body& body, const World<Number>& world, Number resolution,
+__device__ __forceinline__ void move_masses(const Body& body, const World<Number>& world, Number resolution, Pass pass,
                                             Movers& movers) {
-  for_each_mover(body, [&](unsigned i, unsigned place_index, unsigned offset) {
-    const Place force = take_force(offset, __ldg(body.start + place_index), resolution);
-    Place place = place_at(offset);
-    Number mass = 0;
-    if constexpr (gravity) mass = __ldg(body.mass + place_index);
-    move(world, place, movers.velocity[i], force, mass, __ldg(body.inverse_mass + place_index));
-    set_place(offset, place);
+  for_each_mover(body, [&](unsigned i, unsigned place, unsigned offset) {
+    const Place force = take_force(offset, __ldg(body.start + place), resolution);
+    Moving m{place_at(offset), movers.velocity[i], force, __ldg(body.mass + place), __ldg(body.inverse_mass + place)};
+    Method::move(world, pass, movers.kept[i], m);
+    set_place(offset, m.place);
+    movers.velocity[i] = m.velocity;
   });
 }
 
@@ -264,11 +266,12 @@ __device__ __forceinline__ void store(const Body& body, const Movers& movers) {
   });
 }
 
-/// Fills in the table for `count` steps from the run's step `step` on.
+/// Fills in `count` rows of the table from the run's step `step` on.
 __device__ __noinline__ void fill_table(const Body& body, std::uint64_t step, unsigned count) {
+  const double interval = body.world.exact_dt / rows_per_step;
   for (unsigned i = threadIdx.x; i < count * body.entries; i += blockDim.x) {
     const Actuator actuator = body.actuators[i % body.entries];
-    const double time = body.start_time + static_cast<double>(step + i / body.entries) * body.world.exact_dt;
+    const double time = body.start_time + static_cast<double>(step * rows_per_step + i / body.entries) * interval;
     on_chip<Entry<Number>>(body.table_offset + i * sizeof(Entry<Number>)) = entry_of(actuator, time);
     if constexpr (work) on_chip<Number>(body.rate_offset + i * sizeof(Number)) = length_rate(actuator, time);
   }
@@ -379,19 +382,21 @@ __device__ __forceinline__ void advance(const Body& body, const World<Number>& w
   Lengths lengths{body.table_offset};
   if constexpr (work) lengths.rates = body.rate_offset;
   [[maybe_unused]] Sums sums;
-  for (unsigned step = 0; step < count; ++step) {
+  const unsigned passes = opening_passes + count * passes_per_step;
+  for (unsigned pass = 0; pass < passes; ++pass) {
+    lengths.noted = Method::is_noted(pass);
     if constexpr (has_springs) add_spring_forces(body, share, turns, lengths, sums);
     __syncthreads();
-    move_masses(body, world, resolution, movers);
+    move_masses(body, world, resolution, {pass, pass + 1 == passes}, movers);
     __syncthreads();
-    if constexpr (actuation) lengths.table += row_bytes;
-    if constexpr (actuation && work) lengths.rates += row_bytes / 2;
+    const unsigned rows_on = Method::row(pass + 1) - Method::row(pass);
+    if constexpr (actuation) lengths.table += rows_on * row_bytes;
+    if constexpr (actuation && work) lengths.rates += rows_on * row_bytes / 2;
   }
   if constexpr (has_springs) collect(body, share, sums, totals);
 }
 
-extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)
-    evodevo_run_resident(const Body* bodies) {
+extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1) evodevo_run_resident(const Body* bodies) {
   const Body& body = bodies[blockIdx.x];
   const Share share = share_of(body);
   const unsigned turns = chunked ? 0 : *share.turns;
@@ -401,12 +406,12 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)
   fill_table(body, 0, 1);
   __syncthreads();
   for (std::uint64_t done = 0; done < body.steps;) {
-    const unsigned until_check =
-        static_cast<unsigned>(min(body.steps - done, static_cast<std::uint64_t>(guard_interval) - done % guard_interval));
+    const unsigned until_check = static_cast<unsigned>(
+        min(body.steps - done, static_cast<std::uint64_t>(guard_interval) - done % guard_interval));
     unsigned now = until_check;
     if constexpr (actuation) {
       now = min(until_check, body.table_steps);
-      fill_table(body, done, now);
+      fill_table(body, done, now * rows_per_step + end_rows);
       __syncthreads();
     }
     if (share.chunks > 0)

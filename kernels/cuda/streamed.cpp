@@ -1,35 +1,28 @@
 #include "cuda/streamed.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <numeric>
 
+#include "colouring.hpp"
 #include "cuda/arrangement.hpp"
 
 namespace evodevo::cuda {
 
 template <class T>
-Streamed<T>::Streamed(const Task& task, const Features& features)
-    : task_(&task), place_of_(places_by_valence(*task.body)), first_row_(1), owned_joint_(task.body->springs.size()) {
+Streamed<T>::Streamed(const Task& task, const Features& features, std::size_t largest_chip)
+    : task_(&task),
+      features_(features),
+      chip_bytes_(form_of(features.method).points_on_chip * sizeof(Point<T>) * task.body->masses.size()),
+      place_of_(places_by_valence(*task.body)),
+      first_row_(1),
+      owned_joint_(task.body->springs.size()) {
+  if (chip_bytes_ > largest_chip) chip_bytes_ = 0;
   const Body& body = *task.body;
   std::vector<std::uint32_t> valence(body.masses.size());
   for (const Spring& spring : body.springs) ++valence[place_of_[spring.a]], ++valence[place_of_[spring.b]];
   // the first mass of a group has the most springs
   for (std::size_t i = 0; i < valence.size(); i += lanes) first_row_.push_back(first_row_.back() + valence[i]);
-
-  const std::size_t entries = body.materials.size() + 1;
-  Extent input, state, sums;
-  rows_ = input.add<std::uint32_t>(first_row_.size());
-  joints_ = input.add<Joint<T>>(joints());
-  actuators_ = input.add<Actuator>(entries);
-  mass_ = input.add<T>(body.masses.size());
-  inverse_mass_ = input.add<T>(body.masses.size());
-  places_ = state.add<Point<T>>(2 * body.masses.size());
-  velocities_ = state.add<Point<T>>(body.masses.size());
-  answer_ = state.add<Answer>(1);
-  table_ = sums.add<Entry<T>>(guard_interval * entries);
-  rates_ = sums.add<T>(features.work ? guard_interval * entries : 0);
-  stress_ = sums.add<double>(features.stress ? joints() : 0);
-  power_ = sums.add<double>(features.work ? body.masses.size() : 0);
-  sizes_ = {input.size(), state.size(), sums.size()};
 
   std::vector<std::uint32_t> next(body.masses.size());
   for (std::size_t i = 0; i < owned_joint_.size(); ++i) {
@@ -37,6 +30,40 @@ Streamed<T>::Streamed(const Task& task, const Features& features)
     owned_joint_[i] = joint_at(a, next[a]++);
     ++next[place_of_[body.springs[i].b]];
   }
+  if (form_of(features.method).coloured) colour_ = spring_colours(body);
+  if (!colour_.empty()) colours_ = *std::max_element(colour_.begin(), colour_.end()) + 1;
+  reserve();
+}
+
+template <class T>
+void Streamed<T>::reserve() {
+  const MethodForm& method = form_of(features_.method);
+  const std::size_t entries = task_->body->materials.size() + 1, table = method.rows(guard_interval) * entries;
+  Extent input, state, sums, scratch;
+  rows_ = input.add<std::uint32_t>(first_row_.size());
+  joints_ = input.add<Joint<T>>(joints());
+  coloured_ = input.add<ColouredSpring<T>>(colour_.size());
+  first_of_colour_ = input.add<std::uint32_t>(colours_ + 1);
+  actuators_ = input.add<Actuator>(entries);
+  mass_ = input.add<T>(masses());
+  inverse_mass_ = input.add<T>(masses());
+  places_ = state.add<Point<T>>(2 * masses());
+  velocities_ = state.add<Point<T>>(masses());
+  answer_ = state.add<Answer>(1);
+  table_ = sums.add<Entry<T>>(table);
+  rates_ = sums.add<T>(features_.work ? table : 0);
+  stress_ = sums.add<double>(features_.stress ? joints() : 0);
+  power_ = sums.add<double>(features_.work ? masses() : 0);
+  scratch_ = scratch.add<T>(method.numbers_of_mass * masses() + method.numbers_of_joint * joints());
+  sizes_ = {input.size(), state.size(), sums.size(), scratch.size()};
+}
+
+template <class T>
+unsigned Streamed<T>::threads() const {
+  if (is_explicit(features_.method)) return 128;
+  // a colour has at most half as many springs as there are masses, and on average about a quarter
+  const std::uint32_t busy = form_of(features_.method).coloured ? masses() / 4 : masses();
+  return std::clamp(std::bit_ceil(busy), lanes, lanes * largest_block(features_.float64));
 }
 
 template <class T>
@@ -55,12 +82,28 @@ void Streamed<T>::pack_joints(const Regions& host) const {
   }
 }
 
+/// Writes the springs by colour, in the body's order where it is the same.
+template <class T>
+void Streamed<T>::pack_colours(const Regions& host) const {
+  std::uint32_t* first = first_of_colour_.in(host.input);
+  std::fill_n(first, colours_ + 1, 0u);
+  for (const std::uint32_t colour : colour_) ++first[colour + 1];
+  std::partial_sum(first, first + colours_ + 1, first);
+  std::vector<std::uint32_t> next(first, first + colours_);
+  for (std::uint32_t i = 0; i < colour_.size(); ++i) {
+    const Spring& spring = task_->body->springs[i];
+    coloured_.in(host.input)[next[colour_[i]]++] = {static_cast<T>(spring.rest_length), place_of_[spring.a],
+                                                    place_of_[spring.b], spring.material + 1, owned_joint_[i]};
+  }
+}
+
 template <class T>
 StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, const EnergyGuard& guard,
                                   const Scene& scene) const {
   const Body& body = *task_->body;
   std::copy(first_row_.begin(), first_row_.end(), rows_.in(host.input));
   pack_joints(host);
+  pack_colours(host);
   actuators_.in(host.input)[0] = {};
   std::transform(body.materials.begin(), body.materials.end(), actuators_.in(host.input) + 1,
                  [](const Material& material) { return actuator_of(material, 1); });
@@ -80,11 +123,14 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
   return {.world = world_of<T>(scene, task_->dt),
           .first_row = rows_.in(device.input),
           .joints = joints_.in(device.input),
+          .coloured = coloured_.in(device.input),
+          .first_of_colour = first_of_colour_.in(device.input),
           .actuators = actuators_.in(device.input),
           .mass = mass_.in(device.input),
           .inverse_mass = inverse_mass_.in(device.input),
           .places = places_.in(device.state),
           .velocities = velocities_.in(device.state),
+          .scratch = scratch_.in(device.scratch),
           .table = table_.in(device.sums),
           .rates = rates_.in(device.sums),
           .stress = stress_.in(device.sums),
@@ -94,14 +140,17 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
           .steps = task_->steps,
           .energy_bound = guard.bound(),
           .masses = masses(),
-          .entries = static_cast<std::uint32_t>(body.materials.size() + 1)};
+          .entries = static_cast<std::uint32_t>(body.materials.size() + 1),
+          .colours = colours_,
+          .on_chip = chip_bytes_ > 0};
 }
 
 template <class T>
 void Streamed<T>::unpack(const Regions& host, const EnergyGuard& guard, Recording recording, Task& task) const {
   const Answer& answer = *answer_.in(host.state);
   read_answer(answer, guard, 0, recording, task);
-  const Point<T>* places = places_.in(host.state) + answer.steps % 2 * masses();
+  const std::uint64_t half = form_of(features_.method).passes(answer.steps) % 2;
+  const Point<T>* places = places_.in(host.state) + half * masses();
   const Point<T>* velocities = velocities_.in(host.state);
   for (std::size_t i = 0; i < masses(); ++i) {
     const Point<T>&x = places[place_of_[i]], &v = velocities[place_of_[i]];

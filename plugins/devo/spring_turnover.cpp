@@ -1,8 +1,9 @@
-// "Remove a chunk of the least stress springs and introduce as many new springs randomly" (paper, section IV-D2).
+// "Remove a chunk of the least stress springs and introduce as many new springs randomly" (paper, section IV-D2), or
+// "based on most stressed springs rather than randomly" (section VII).
 #include <set>
-#include <tuple>
 
 #include "evodevo/plugin.hpp"
+#include "stress.hpp"
 
 namespace {
 
@@ -16,42 +17,70 @@ using evodevo::Rng;
 /// The partners of every mass, in one block of memory.
 class Partners {
  public:
-  explicit Partners(const Body& body) : first_(body.masses.size() + 1), partners_(body.springs.size()) {
-    for (const auto& spring : body.springs) ++first_[std::min(spring.a, spring.b) + 1];
+  explicit Partners(const Body& body) : first_(body.masses.size() + 1), partners_(2 * body.springs.size()) {
+    for (const auto& spring : body.springs) {
+      ++first_[spring.a + 1];
+      ++first_[spring.b + 1];
+    }
     for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
     auto next = first_;
-    for (const auto& spring : body.springs)
-      partners_[next[std::min(spring.a, spring.b)]++] = std::max(spring.a, spring.b);
+    for (const auto& spring : body.springs) {
+      partners_[next[spring.a]++] = spring.b;
+      partners_[next[spring.b]++] = spring.a;
+    }
+  }
+
+  std::span<const std::uint32_t> of(std::uint32_t mass) const {
+    return {partners_.data() + first_[mass], first_[mass + 1] - first_[mass]};
   }
 
   bool joined(std::uint32_t a, std::uint32_t b) const {
-    const auto begin = partners_.begin() + first_[std::min(a, b)], end = partners_.begin() + first_[std::min(a, b) + 1];
-    return std::find(begin, end, std::max(a, b)) != end;
+    const auto partners = of(a);
+    return std::find(partners.begin(), partners.end(), b) != partners.end();
   }
 
  private:
-  std::vector<std::uint32_t> first_;  ///< where a mass's partners of higher index begin
+  std::vector<std::uint32_t> first_;  ///< where a mass's partners begin
   std::vector<std::uint32_t> partners_;
 };
 
-/// The `count` least stressed springs, least first, ties in random order. A stress that is not a number counts as the
-/// greatest.
-std::vector<std::uint32_t> least_stressed(std::span<const double> stress, std::size_t count, Rng& rng) {
-  std::vector<double> comparable(stress.begin(), stress.end());
-  for (double& value : comparable)
-    if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
-  std::vector<double> ordered = comparable;
-  const auto last = ordered.begin() + static_cast<std::ptrdiff_t>(count) - 1;
-  std::nth_element(ordered.begin(), last, ordered.end());
-  using Ranked = std::tuple<double, std::uint32_t, std::uint32_t>;
-  std::vector<Ranked> ranked;
-  for (std::uint32_t s = 0; s < comparable.size(); ++s)
-    if (comparable[s] <= *last) ranked.emplace_back(comparable[s], rng(), s);
-  std::sort(ranked.begin(), ranked.end());
-  std::vector<std::uint32_t> springs;
-  for (std::size_t i = 0; i < count; ++i) springs.push_back(std::get<2>(ranked[i]));
-  return springs;
-}
+using Pair = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Suggests pairs of masses for new springs, again and again.
+class Candidates {
+ public:
+  Candidates(const std::string& where, const Moment& now, const Partners& partners, std::size_t count, Rng& rng)
+      : now_(now), partners_(partners) {
+    if (where == "most-stressed") most_stressed_ = most_stressed(now.stress, count, rng);
+    if (where == "by-stress") lottery_ = StressLottery(now.stress);
+  }
+
+  Pair next(Rng& rng) {
+    if (!lottery_.empty()) return beside(lottery_.draw(rng), rng);
+    if (!most_stressed_.empty()) return beside(most_stressed_[turn_++ % most_stressed_.size()], rng);
+    const auto masses = static_cast<std::uint32_t>(now_.body.masses.size());
+    const std::uint32_t a = rng.below(masses);
+    std::uint32_t b = rng.below(masses - 1);
+    if (b >= a) ++b;
+    return std::minmax(a, b);
+  }
+
+ private:
+  /// From one end of a spring past the other end to a mass that is joined to it. May be that spring itself.
+  Pair beside(std::uint32_t index, Rng& rng) const {
+    std::uint32_t from = now_.body.springs[index].a, past = now_.body.springs[index].b;
+    if (rng.chance(0.5)) std::swap(from, past);
+    const auto partners = partners_.of(past);
+    const std::uint32_t to = partners[rng.below(static_cast<std::uint32_t>(partners.size()))];
+    return to == from ? std::minmax(from, past) : std::minmax(from, to);
+  }
+
+  const Moment& now_;
+  const Partners& partners_;
+  std::vector<std::uint32_t> most_stressed_;
+  StressLottery lottery_;
+  std::size_t turn_ = 0;
+};
 
 /// The number of springs stays: a spring goes only where another can come, so a body in which all masses are joined
 /// stays as it is, and one of fewer springs than `springs` exchanges what it has. New springs come between two masses
@@ -61,6 +90,9 @@ class SpringTurnover final : public evodevo::Devo {
  public:
   void parameters(evodevo::Parameters& p) override {
     p.integer(springs_, "springs", {1, 1'000'000, "1"}, "Least stressed springs that go, and springs that come.");
+    p.choice(where_, "where", {"random", "most-stressed", "by-stress"},
+             "Where springs come: between random masses, beside each of as many most stressed springs, or beside "
+             "springs drawn with probability by stress; one beside another closes a triangle with it.");
   }
 
   void develop(const Moment& now, Edits& edits, Rng& rng) const override {
@@ -69,10 +101,11 @@ class SpringTurnover final : public evodevo::Devo {
     if (count == 0 || body.masses.size() < 2) return;
     const auto leaving = least_stressed(now.stress, count, rng);
     const Partners partners(body);
-    std::set<std::pair<std::uint32_t, std::uint32_t>> taken;
+    Candidates candidates(where_, now, partners, count, rng);
+    std::set<Pair> taken;
     // enough to fill a body that is nearly complete; a complete one ends here
     for (std::size_t attempts = attempts_per_spring * count; attempts > 0 && taken.size() < count; --attempts) {
-      const auto [a, b] = random_pair(static_cast<std::uint32_t>(body.masses.size()), rng);
+      const auto [a, b] = candidates.next(rng);
       if (partners.joined(a, b) || taken.contains({a, b}) || !(norm(now.place(b) - now.place(a)) > 0)) continue;
       const std::uint32_t leaves = leaving[taken.size()];
       const Material material = material_between(body, a, b, leaves);
@@ -86,13 +119,6 @@ class SpringTurnover final : public evodevo::Devo {
  private:
   static constexpr std::size_t attempts_per_spring = 100;
 
-  static std::pair<std::uint32_t, std::uint32_t> random_pair(std::uint32_t masses, Rng& rng) {
-    const std::uint32_t a = rng.below(masses);
-    std::uint32_t b = rng.below(masses - 1);
-    if (b >= a) ++b;
-    return std::minmax(a, b);
-  }
-
   /// The mean of the two masses' materials; where masses have none, that of the spring that goes.
   static Material material_between(const Body& body, std::uint32_t a, std::uint32_t b, std::uint32_t leaves) {
     const std::int32_t first = body.masses[a].material, second = body.masses[b].material;
@@ -101,11 +127,12 @@ class SpringTurnover final : public evodevo::Devo {
   }
 
   std::int64_t springs_ = 125;
+  std::string where_ = "random";
 };
 
 }  // namespace
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<SpringTurnover>("spring-turnover",
-                                                       "The least stressed springs go and as many come between random "
-                                                       "masses (paper, section IV-D2)."))
+                                                       "The least stressed springs go and as many come elsewhere "
+                                                       "(paper, section IV-D2)."))

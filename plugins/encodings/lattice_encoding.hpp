@@ -37,15 +37,16 @@ class LatticeEncoding : public evodevo::Encoding {
     return body;
   }
 
-  /// Makes the lattice's spring of the material, or counts the contact where that is air.
-  static void join(evodevo::Body& body, const evodevo::LatticeSpring& spring, const evodevo::Material& material) {
+  /// Makes the lattice's spring of the material; where that is air, counts the contact and returns false.
+  static bool join(evodevo::Body& body, const evodevo::LatticeSpring& spring, const evodevo::Material& material) {
     evodevo::Mass &a = body.masses[spring.a], &b = body.masses[spring.b];
     if (is_air(material)) {
       ++a.air_contacts;
       ++b.air_contacts;
-    } else {
-      body.springs.push_back({spring.a, spring.b, norm(b.rest - a.rest), body.material_index(material)});
+      return false;
     }
+    body.springs.push_back({spring.a, spring.b, norm(b.rest - a.rest), body.material_index(material)});
+    return true;
   }
 
  private:

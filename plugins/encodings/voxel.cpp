@@ -6,12 +6,27 @@ namespace {
 
 using evodevo::Material;
 
-/// One gene for each voxel; voxels of air are absent. A spring between several voxels has the mean of their materials.
+/// One gene group for each voxel: its material and, where sizes develop, its size at birth and at the end of
+/// development (Kriegman et al. 2017: "a start and end volume", as the paper has it). Voxels of air are absent. A
+/// spring between several voxels has the mean of their materials and sizes. Masses are born in the places of a lattice
+/// of equal voxels.
 class Voxel final : public LatticeEncoding {
  public:
+  void parameters(evodevo::Parameters& p) override {
+    LatticeEncoding::parameters(p);
+    p.real(size_range_, "size_range", {0, 0.9, "1"},
+           "By how much of its edge a voxel may be larger or smaller, at birth and, with ballistic-growth, at the end "
+           "of development; 0: no genes for that.");
+  }
+
   evodevo::Layout layout(const evodevo::World& world) const override {
+    std::vector<evodevo::GeneSpec> voxel = {choice(world)};
+    if (size_range_ > 0) {
+      const auto range = static_cast<float>(size_range_);
+      voxel.insert(voxel.end(), 2, {1 - range, 1 + range});
+    }
     evodevo::Layout layout;
-    for (std::uint32_t v = 0; v < lattice().voxels(); ++v) layout.add_group(1, choice(world));
+    for (std::uint32_t v = 0; v < lattice().voxels(); ++v) layout.add_group(voxel);
     return layout;
   }
 
@@ -19,16 +34,39 @@ class Voxel final : public LatticeEncoding {
     const auto materials = chosen(world);
     if (auto reason = why_no_body(world, materials); !reason.empty()) return {{}, 0, reason};
     const evodevo::Lattice lattice = this->lattice();
+    const std::size_t genes = size_range_ > 0 ? 3 : 1;
     evodevo::Blueprint blueprint{masses(lattice, world), 0, {}};
     for (const evodevo::LatticeSpring& spring : lattice.springs) {
       std::vector<std::int32_t> around;
-      for (const std::uint32_t v : spring.voxels) around.push_back(materials[static_cast<std::size_t>(genome[v])]);
-      join(blueprint.body, spring, mean_of_solid(world.materials, std::move(around)));
+      Sizes sizes;
+      for (const std::uint32_t v : spring.voxels) {
+        const float* voxel = &genome[genes * v];
+        around.push_back(materials[static_cast<std::size_t>(voxel[0])]);
+        if (size_range_ > 0 && !is_air(world.materials[around.back()])) sizes.add(voxel[1], voxel[2]);
+      }
+      if (join(blueprint.body, spring, mean_of_solid(world.materials, std::move(around))) && size_range_ > 0)
+        sizes.apply(blueprint.body.springs.back());
     }
     return blueprint;
   }
 
  private:
+  /// The sizes of the solid voxels around a spring, summed up.
+  struct Sizes {
+    double start = 0, end = 0;
+    int count = 0;
+
+    void add(float voxel_start, float voxel_end) {
+      start += voxel_start;
+      end += voxel_end;
+      ++count;
+    }
+    void apply(evodevo::Spring& spring) const {
+      spring.rest_length *= start / count;
+      spring.growth = static_cast<float>(end / start);
+    }
+  };
+
   /// The mean of those that are not air; air where there are none. Equal shares give equal bits and one material alone
   /// is not rounded, so that a body needs few different materials.
   static Material mean_of_solid(const std::vector<Material>& materials, std::vector<std::int32_t> indices) {
@@ -47,6 +85,8 @@ class Voxel final : public LatticeEncoding {
     }
     return mean;
   }
+
+  double size_range_ = 0;
 };
 
 }  // namespace

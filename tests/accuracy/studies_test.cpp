@@ -63,7 +63,7 @@ TEST(Trials, HaveATruthThatTheSimulatorFinds) {
 TEST(Energies, AreKeptByTheSymplecticMethodsAlone) {
   const Table table = energies(quick()).front();
   std::size_t row = 0;
-  for (const Method method : Device{}.methods())
+  for (const Method method : all_methods())
     for (int precision = 0; precision < 2; ++precision) {
       double last = 0;
       for (;

@@ -30,11 +30,18 @@ TEST(Settings, NameTheCommandThatRepeatsThem) {
   EXPECT_EQ(parsed({"--json", "--body", "cube10", "--runs=3"})->command, "tools/bench --body cube10 --runs=3");
 }
 
+TEST(Settings, NameTheMethod) {
+  EXPECT_EQ(parsed({})->stepping().method, Method::paper_euler);
+  EXPECT_EQ(parsed({"--method", "implicit"})->stepping().method, Method::implicit);
+}
+
 TEST(Settings, RefuseWhatCannotBeMeasured) {
   EXPECT_THAT(complaint({"--study", "speeed"}), HasSubstr("\"speeed\" is none of speed, features"));
   EXPECT_THAT(complaint({"--study", "baselines"}), HasSubstr("--device cuda"));
   EXPECT_THAT(complaint({"--study", "features", "--robots", "some.toml"}), HasSubstr("--robots"));
   EXPECT_THAT(complaint({"--bodies", "0"}), HasSubstr("bodies from 1 to 65535"));
+  EXPECT_THAT(complaint({"--method", "rk5"}), HasSubstr("\"rk5\" is none of paper-euler, "));
+  EXPECT_THAT(complaint({"--study", "stress", "--device", "cuda", "--method", "rk4"}), HasSubstr("leave --method out"));
   EXPECT_EQ(complaint({"--study", "features"}), "");
 }
 

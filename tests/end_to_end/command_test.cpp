@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "archive.hpp"
 #include "support/experiments.hpp"
@@ -14,8 +15,8 @@ namespace evodevo {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::Finished;
 using ::testing::ContainsRegex;
+using testing::Finished;
 using ::testing::HasSubstr;
 using testing::small_experiment;
 
@@ -108,6 +109,69 @@ TEST_F(Command, FailedBodiesLoseToAnyFiniteOne) {
     ASSERT_GT(archive.statuses().at("ok"), static_cast<std::int64_t>(population.size()));
     for (const Individual& individual : population) EXPECT_EQ(individual.result.status, Status::ok) << selection;
   }
+}
+
+using Pair = std::pair<std::uint32_t, std::uint32_t>;
+using Pairs = std::set<Pair>;
+
+Pair pair_of(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
+
+TEST_F(Command, LifeTellsEveryEditFromBirthToTheMaturedBody) {
+  run_small();
+  const auto json_of = [&](std::vector<std::string> arguments) {
+    const Finished finished = evodevo(std::move(arguments));
+    EXPECT_EQ(finished.exit_code, 0) << finished.output;
+    return nlohmann::json::parse(finished.output);
+  };
+  const auto born = json_of({"body", folder_}), matured = json_of({"body", folder_, "--matured"});
+  const auto life = json_of({"life", folder_, "--json"});
+  EXPECT_EQ(life.at("born").at("springs"), born.at("springs").size());
+  EXPECT_EQ(life.at("matured").at("springs"), matured.at("springs").size());
+
+  const auto pairs_of = [](const nlohmann::json& body) {
+    Pairs pairs;
+    for (const auto& spring : body.at("springs")) pairs.insert(pair_of(spring.at("a"), spring.at("b")));
+    return pairs;
+  };
+  Pairs pairs = pairs_of(born);  // no masses come or go, so numbers are indices
+  ASSERT_EQ(life.at("edits").size(), 2u * (2 + 2)) << "two springs for two others in each of two cycles";
+  for (const auto& edit : life.at("edits")) {
+    EXPECT_EQ(edit.at("operator"), "spring-turnover");
+    const auto spring = pair_of(edit.at("spring")[0], edit.at("spring")[1]);
+    if (edit.at("event") == "gone") {
+      EXPECT_EQ(pairs.erase(spring), 1u);
+      EXPECT_GE(edit.at("stress").get<double>(), 0);
+    } else {
+      EXPECT_TRUE(pairs.insert(spring).second);
+    }
+  }
+  EXPECT_EQ(pairs, pairs_of(matured));
+
+  const std::string id = life.at("individual").dump();
+  const Finished text = evodevo({"life", folder_, "--individual", id});
+  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_THAT(text.output, HasSubstr("cycle 2  spring-turnover: spring "));
+  EXPECT_THAT(text.output, HasSubstr("individual " + id + ": born with 12 masses"));
+  EXPECT_THAT(text.output, ::testing::Not(HasSubstr("warning"))) << "lived again to the same bits";
+}
+
+TEST_F(Command, LifeSaysWhereItCannotBeSure) {
+  run_small();
+  Archive archive = Archive::annotate(folder_);
+  archive.set_record("device", "another device");
+  for (std::uint32_t id = 0; id < 24; ++id) {
+    const Finished finished = evodevo({"life", folder_, "--individual", std::to_string(id)});
+    EXPECT_EQ(finished.exit_code, 0);
+    const bool warns = finished.output.find("warning: lived again on cpu") != std::string::npos;
+    EXPECT_EQ(warns, !archive.life(id).has_value()) << finished.output;
+  }
+  std::string experiment = archive.record("experiment");
+  experiment.replace(experiment.find("seed = 7"), 8, "seed = 8");
+  const Finished before = evodevo({"life", folder_, "--json"});
+  archive.set_record("experiment", experiment);
+  const Finished after = evodevo({"life", folder_, "--json"});
+  EXPECT_THAT(after.output, HasSubstr("develops otherwise than in the run on another device"));
+  EXPECT_THAT(after.output, HasSubstr(before.output)) << "the record counts for more";
 }
 
 TEST_F(Command, ARunVerifiesItsBestAndMoreAreVerifiedAtWill) {
@@ -241,9 +305,9 @@ TEST_F(Command, FaultyBodiesAreRefusedByPlace) {
 
 TEST_F(Command, OperatorsDescribeThemselves) {
   const auto json = nlohmann::json::parse(evodevo({"operators", "--kind", "devo", "--json"}).output);
-  ASSERT_EQ(json.size(), 2u);
-  EXPECT_EQ(json[1].at("name"), "spring-turnover");
-  EXPECT_EQ(json[1].at("parameters")[0].at("default"), "125");
+  ASSERT_EQ(json.size(), 7u);
+  EXPECT_EQ(json[5].at("name"), "spring-turnover") << "in alphabetical order";
+  EXPECT_EQ(json[5].at("parameters")[0].at("default"), "125");
   const Finished described = evodevo({"describe", "spring-turnover"});
   EXPECT_EQ(described.exit_code, 0);
   EXPECT_THAT(described.output, HasSubstr("springs = 125"));

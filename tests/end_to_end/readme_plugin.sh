@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Builds the README's plugin with the README's own compiler line, and runs the README's experiment with it.
+# Builds the plugin of "Writing an operator" with the compiler line given there, and runs the README's experiment with
+# it.
 #
 #   readme_plugin.sh SOURCE_FOLDER EVODEVO_PROGRAM
 set -euo pipefail
@@ -7,17 +8,18 @@ source=$1 evodevo=$2
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-block() { sed -n "/^\`\`\`$1\$/,/^\`\`\`\$/p" "$source/README.md" | sed '1d;$d'; }
+page=$source/framework/sdk/README.md
+block() { sed -n "/^\`\`\`$1\$/,/^\`\`\`\$/p" "$2" | sed '1d;$d'; }
 mkdir "$scratch/my-plugins"
-block cpp >"$scratch/erosion.cpp"
-block toml >"$scratch/experiment.toml"
-compile=$(grep '^g++ .*erosion' "$source/README.md")
-compile=${compile//-Iframework/-I$source/framework}
-compile=${compile//-Ikernels/-I$source/kernels}
+block cpp "$page" >"$scratch/erosion.cpp"
+block toml "$source/README.md" >"$scratch/experiment.toml"
+compile=$(grep '^g++ .*erosion' "$page")
+compile=${compile//-I ~\/evodevo\/include/-I$source/framework/sdk -I$source/kernels/include}
 cd "$scratch"
+[ "$(wc -l <erosion.cpp)" -lt 30 ] || { echo "the smallest operator has 30 lines or more"; exit 1; }
 eval "$compile"
-[ "$(nm -D --defined-only my-plugins/erosion.evodevo.so | awk '$2 == "T"' | wc -l)" = 1 ] || { echo "not one export"; exit 1; }
 
+"$evodevo" conform my-plugins/erosion.evodevo.so
 "$evodevo" check experiment.toml
 "$evodevo" run experiment.toml --out run --set experiment.evaluations=4 --set experiment.population=4 \
   --set development.operator.0.name=erosion --set development.cycle_time=0.1 --set fitness.0.settle=0 \

@@ -47,6 +47,12 @@ const Features every_feature{.gravity = true,
                              .stress = true,
                              .work = true};
 
+/// Whether the kernels of a method are there in the form for bodies of any size.
+bool compiles_streamed(const Features& features) {
+  const char* source = is_explicit(features.method) ? "cuda/streamed.cu" : form_of(features.method).file;
+  return !compile(source, definitions(features), "sm_90").empty();
+}
+
 TEST_F(Compiler, CompilesEveryFormForHopper) {
   const ResidentForm forms[] = {
       {.rows = 15, .masses_per_thread = 1, .chunked = false, .records_on_chip = true},
@@ -56,8 +62,22 @@ TEST_F(Compiler, CompilesEveryFormForHopper) {
       features.float64 = float64;
       for (const ResidentForm& form : forms)
         EXPECT_FALSE(compile("cuda/resident.cu", definitions(features, form), "sm_90").empty());
-      EXPECT_FALSE(compile("cuda/streamed.cu", definitions(features), "sm_90").empty());
+      EXPECT_TRUE(compiles_streamed(features));
     }
+  }
+}
+
+TEST_F(Compiler, CompilesEveryMethodForHopper) {
+  const ResidentForm form{.rows = 4, .masses_per_thread = 1, .records_on_chip = true};
+  for (std::size_t i = 1; i < method_names.size(); ++i) {
+    Features features = every_feature;
+    features.method = static_cast<Method>(i);
+    EXPECT_TRUE(compiles_streamed(features)) << method_names[i];
+    if (is_explicit(features.method)) {
+      EXPECT_FALSE(compile("cuda/resident.cu", definitions(features, form), "sm_90").empty()) << method_names[i];
+    }
+    features = {.method = features.method, .float64 = true};
+    EXPECT_TRUE(compiles_streamed(features)) << method_names[i];
   }
 }
 

@@ -4,7 +4,7 @@
 namespace evodevo::testing_gpu {
 namespace {
 
-class Determinism : public testing::TestWithParam<Precision> {};
+class Determinism : public testing::TestWithParam<Way> {};
 
 void expect_same_bits(const Robot& a, const Robot& b) {
   EXPECT_EQ(a.answer.status, b.answer.status);
@@ -20,7 +20,7 @@ TEST_P(Determinism, AloneInAnySlotAndAgain) {
   const Recording all{.stress = true, .work = true};
   const auto simulator = make_cuda_simulator(scene, stepping(GetParam()));
   std::vector<Body> bodies;
-  for (std::uint32_t i = 0; i < 60; ++i) bodies.push_back(random_body(20 + 13 * i, 15, i));
+  for (std::uint32_t i = 0; i < 16; ++i) bodies.push_back(random_body(20 + 47 * i, 15, i));
   std::vector<State> starts;
   for (std::size_t i = 0; i < bodies.size(); ++i) starts.push_back(moving_state(bodies[i], scene, i));
 
@@ -43,7 +43,7 @@ TEST_P(Determinism, AloneInAnySlotAndAgain) {
     expect_same_bits(forwards[i], backwards[i]);
     expect_same_bits(forwards[i], again[i]);
   }
-  for (const std::size_t i : {0u, 31u, 59u}) {
+  for (const std::size_t i : {0u, 8u, 15u}) {
     Robot alone(bodies[i], starts[i]);
     simulate(*simulator, {&alone}, 500, all);
     expect_same_bits(forwards[i], alone);
@@ -115,11 +115,13 @@ TEST_P(Determinism, InternalForcesLeaveTheMomentumAlone) {
   simulate(*simulator, {&run}, 1000);
   Vec3 momentum;
   for (const Vec3& velocity : run.state.velocity) momentum = momentum + 0.25 * velocity;
-  EXPECT_LT(norm(momentum), GetParam() == Precision::float32 ? 1e-4 : 1e-12);
+  const auto [method, precision] = GetParam();
+  // implicit leaves up to a millionth of each step's equation unsolved
+  const double rest = method == Method::implicit ? 1e-5 : 1e-12;
+  EXPECT_LT(norm(momentum), precision == Precision::float32 ? 1e-4 : rest);
 }
 
-INSTANTIATE_TEST_SUITE_P(Gpu, Determinism, testing::Values(Precision::float32, Precision::float64),
-                         [](const auto& test) { return std::string(name(test.param)); });
+INSTANTIATE_TEST_SUITE_P(Gpu, Determinism, all_ways(), [](const auto& test) { return name(test.param); });
 
 }  // namespace
 }  // namespace evodevo::testing_gpu

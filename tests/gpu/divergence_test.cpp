@@ -9,7 +9,7 @@
 namespace evodevo::testing_gpu {
 namespace {
 
-class Divergence : public testing::TestWithParam<Precision> {};
+class Divergence : public testing::TestWithParam<Way> {};
 
 /// A body that its stiffness tears apart at the step of 0.5 ms.
 Body unstable_body() { return random_body(100, 15, 1, {{2e7, 0, 0, 0}}); }
@@ -46,7 +46,9 @@ TEST_P(Divergence, EndsWhenAndWhyTheCpuSaysSo) {
   EXPECT_EQ(gpu.answer.ended_at, cpu.answer.ended_at);
 }
 
-TEST_P(Divergence, NotANumber) {
+class NotFinite : public testing::TestWithParam<Way> {};
+
+TEST_P(NotFinite, IsDivergence) {
   EVODEVO_NEEDS_GPU();
   const Scene scene = walking_scene();
   const Body body = random_body(50, 10, 2);
@@ -86,8 +88,8 @@ TEST_P(Divergence, NotUnderAWeightThatSpringsCannotBear) {
   EXPECT_EQ(gpu.answer.status, Status::ok) << gpu.answer.reason;
 }
 
-INSTANTIATE_TEST_SUITE_P(Gpu, Divergence, testing::Values(Precision::float32, Precision::float64),
-                         [](const auto& test) { return std::string(name(test.param)); });
+INSTANTIATE_TEST_SUITE_P(Gpu, Divergence, explicit_ways(), [](const auto& test) { return name(test.param); });
+INSTANTIATE_TEST_SUITE_P(Gpu, NotFinite, all_ways(), [](const auto& test) { return name(test.param); });
 
 }  // namespace
 }  // namespace evodevo::testing_gpu

@@ -4,13 +4,13 @@
 namespace evodevo::testing_gpu {
 namespace {
 
-class Forms : public testing::TestWithParam<Precision> {
+class Forms : public testing::TestWithParam<Way> {
  protected:
   /// Moves a body for 0.05 s on both devices and compares places, stress and work.
   void compare(const Body& body, const State& start) {
     const Scene scene = walking_scene();
     const Recording all{.stress = true, .work = true};
-    const bool single = GetParam() == Precision::float32;
+    const bool single = std::get<Precision>(GetParam()) == Precision::float32;
     Robot cpu(body, start), gpu(body, start);
     simulate(*make_cpu_simulator(scene, stepping(GetParam()), 0), {&cpu}, 110, all);
     simulate(*make_cuda_simulator(scene, stepping(GetParam())), {&gpu}, 110, all);
@@ -116,33 +116,40 @@ TEST_P(Forms, Chain) {
   compare(body);
 }
 
-TEST_P(Forms, Masses64) {
+/// The ways that sizes take through the device are each method's own.
+class Sizes : public Forms {};
+
+TEST_P(Sizes, Masses64) {
   EVODEVO_NEEDS_GPU();
   compare(random_body(64, 25, 5));
 }
 
-TEST_P(Forms, Masses1000) {
+TEST_P(Sizes, Masses1000) {
   EVODEVO_NEEDS_GPU();
   compare(random_body(1000, 25, 5));
 }
 
-TEST_P(Forms, Masses2000SpringsStreamed) {
+TEST_P(Sizes, Masses2000SpringsStreamed) {
   EVODEVO_NEEDS_GPU();
   compare(random_body(2000, 25, 5));
 }
 
-TEST_P(Forms, Masses4000OffsetsBeyond16Bits) {
+TEST_P(Sizes, Masses4000OffsetsBeyond16Bits) {
   EVODEVO_NEEDS_GPU();
   compare(random_body(4000, 12, 5));
 }
 
-TEST_P(Forms, Masses20000BeyondTheChip) {
+TEST_P(Sizes, Masses20000BeyondTheChip) {
   EVODEVO_NEEDS_GPU();
   compare(random_body(20000, 12, 5));
 }
 
-INSTANTIATE_TEST_SUITE_P(Gpu, Forms, testing::Values(Precision::float32, Precision::float64),
-                         [](const auto& test) { return std::string(name(test.param)); });
+// one method for each kind of kernel
+INSTANTIATE_TEST_SUITE_P(Gpu, Forms,
+                         testing::Combine(testing::Values(Method::paper_euler, Method::implicit, Method::xpbd),
+                                          testing::Values(Precision::float32, Precision::float64)),
+                         [](const auto& test) { return name(test.param); });
+INSTANTIATE_TEST_SUITE_P(Gpu, Sizes, all_ways(), [](const auto& test) { return name(test.param); });
 
 }  // namespace
 }  // namespace evodevo::testing_gpu

@@ -32,7 +32,8 @@ Places shuffled(Places places) {
 void compare(NeighbourSearch& search, const std::vector<PointCloud>& clouds) {
   std::vector<std::vector<IndexPair>> found(clouds.size());
   std::vector<int> calls(clouds.size(), 0);
-  search.find(clouds, [&](std::size_t i, std::span<const IndexPair> pairs) {
+  Workers workers(2);
+  search.find(clouds, workers, [&](std::size_t i, std::span<const IndexPair> pairs) {
     found[i].assign(pairs.begin(), pairs.end());
     ++calls[i];
   });
@@ -49,7 +50,7 @@ void compare(const std::vector<Places>& all, std::initializer_list<std::uint32_t
   std::vector<PointCloud> clouds;
   for (const std::uint32_t k : ks)
     for (const Places& places : all) clouds.push_back({places, k});
-  compare(*make_cuda_neighbour_search(0), clouds);
+  compare(*make_cuda_neighbour_search(), clouds);
 }
 
 TEST(GpuNeighbours, RandomPlacesOfManySizes) {
@@ -94,15 +95,15 @@ TEST(GpuNeighbours, ACrowdFarFromAStraggler) {
 TEST(GpuNeighbours, NothingToJoin) {
   EVODEVO_NEEDS_GPU();
   const Places none, one = random_places(1, 1), some = random_places(40, 1);
-  compare(*make_cuda_neighbour_search(0), {});
-  compare(*make_cuda_neighbour_search(0), {{none, 3}, {one, 3}, {some, 0}});
-  compare(*make_cuda_neighbour_search(0), {{none, 3}, {some, 3}, {one, 3}, {some, 0}, {some, 4}});
+  compare(*make_cuda_neighbour_search(), {});
+  compare(*make_cuda_neighbour_search(), {{none, 3}, {one, 3}, {some, 0}});
+  compare(*make_cuda_neighbour_search(), {{none, 3}, {some, 3}, {one, 3}, {some, 0}, {some, 4}});
 }
 
 TEST(GpuNeighbours, LargeBodies) {
   EVODEVO_NEEDS_GPU();
   const Places places5000 = random_places(5000, 2), places50000 = random_places(50000, 3);
-  compare(*make_cuda_neighbour_search(0), {{places5000, 25}, {places50000, 25}, {places5000, 200}});
+  compare(*make_cuda_neighbour_search(), {{places5000, 25}, {places50000, 25}, {places5000, 200}});
 }
 
 TEST(GpuNeighbours, Portions) {
@@ -112,12 +113,12 @@ TEST(GpuNeighbours, Portions) {
   std::vector<PointCloud> clouds;
   for (const Places& places : all) clouds.push_back({places, 25});
   // less than the larger clouds need by themselves
-  compare(*make_cuda_neighbour_search(0, 100'000), clouds);
+  compare(*make_cuda_neighbour_search(100'000), clouds);
 }
 
 TEST(GpuNeighbours, SeveralThreadsSearchAtOnce) {
   EVODEVO_NEEDS_GPU();
-  const auto search = make_cuda_neighbour_search(2);
+  const auto search = make_cuda_neighbour_search();
   std::vector<std::jthread> threads;
   for (std::uint64_t thread = 0; thread < 4; ++thread)
     threads.emplace_back([&search, thread] {
@@ -130,10 +131,12 @@ TEST(GpuNeighbours, SeveralThreadsSearchAtOnce) {
 
 TEST(GpuNeighbours, PassesOnWhatTheCallerThrows) {
   EVODEVO_NEEDS_GPU();
-  const auto search = make_cuda_neighbour_search(0);
+  const auto search = make_cuda_neighbour_search();
   const Places places = random_places(50, 1);
   const std::vector<PointCloud> clouds{{places, 5}, {places, 6}};
-  EXPECT_THROW(search->find(clouds, [](std::size_t, auto) { throw std::range_error("no"); }), std::range_error);
+  Workers workers(2);
+  EXPECT_THROW(search->find(clouds, workers, [](std::size_t, auto) { throw std::range_error("no"); }),
+               std::range_error);
   compare(*search, clouds);
 }
 

@@ -138,7 +138,7 @@ TEST_F(ArchiveTest, ARunThatEndedBeforeItBeganIsTold) {
 TEST_F(ArchiveTest, AnotherFormatIsRefused) {
   { Archive::create(folder_, experiment_, "cpu").set_record("format", "99"); }
   EXPECT_EQ(refusal([&] { Archive::read(folder_); }),
-            folder_.string() + ": has format 99, this evodevo reads format 1; use the evodevo that wrote it, 0.1.0");
+            folder_.string() + ": has format 99, this evodevo reads format 2; use the evodevo that wrote it, 0.1.0");
 }
 
 TEST_F(ArchiveTest, ReadsWhileAnotherWrites) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <set>
 #include <tuple>
 
 namespace evodevo {
@@ -47,10 +48,54 @@ TEST(BodyBuilding, KeepsTheLargestPieceAndDropsLooseMasses) {
   EXPECT_EQ(built.body.springs[1].a, 2u);
 }
 
+TEST(BodyBuilding, NeighboursAreThoseOfThePlacesToPairAt) {
+  Blueprint blueprint = row({{0, 0}, {1, 0}, {5, 0}, {6, 0}}, 1);
+  // 0 and 3 are near, and 1 and 2, and 0 and 1 after that
+  blueprint.paired_at = {{0, 0, 0}, {2, 0, 0}, {3, 0, 0}, {0, 1, 0}};
+  blueprint.neighbours = 2;
+  const BuiltBody built = build_body(blueprint);
+  ASSERT_EQ(built.failure, "");
+  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (const Spring& spring : built.body.springs) {
+    pairs.insert({spring.a, spring.b});
+    EXPECT_EQ(spring.rest_length, norm(built.body.masses[spring.a].rest - built.body.masses[spring.b].rest));
+  }
+  EXPECT_EQ(pairs, (std::set<std::pair<std::uint32_t, std::uint32_t>>{{0, 1}, {0, 3}, {1, 2}, {0, 2}, {1, 3}}));
+
+  blueprint.paired_at.pop_back();
+  EXPECT_EQ(build_body(blueprint).failure, "no body: 3 places to pair 4 masses at");
+  blueprint.paired_at.push_back({std::numeric_limits<double>::infinity(), 0, 0});
+  EXPECT_EQ(build_body(blueprint).failure, "no body: a place to pair masses at that is not finite");
+}
+
+TEST(BodyBuilding, LooseMassesAreThoseOutsideTheLargestPiece) {
+  Body body = row({{0, 0}, {1, 0}, {10, 0}, {11, 0}, {12, 0}, {99, 0}}, 0).body;
+  body.springs = {{0, 1, 1, 0}, {3, 2, 1, 0}, {4, 3, 1, 0}};
+  EXPECT_EQ(loose_masses(body), (std::vector<std::uint32_t>{0, 1, 5}));
+  body.springs.push_back({1, 2, 1, 0});
+  EXPECT_EQ(loose_masses(body), (std::vector<std::uint32_t>{5}));
+  EXPECT_TRUE(loose_masses({}).empty());
+}
+
 TEST(BodyBuilding, StandsOnTheFloorOverTheOrigin) {
   const BuiltBody built = build_body(row({{4, 0}, {6, 0}}, 1));
   EXPECT_EQ(built.body.masses[0].rest, (Vec3{-1, 0, 0}));
   EXPECT_EQ(built.body.masses[1].rest, (Vec3{1, 0, 0}));
+}
+
+TEST(BodyBuilding, ALoadLiesOnTheTop) {
+  Body body;
+  for (const Vec3 place : {Vec3{0, 0, 0}, Vec3{2, 0, 0.79}, Vec3{0, 0, 0.81}, Vec3{3, 0, 1}})
+    body.masses.push_back({place, 0.2});
+  put_load(body, 1.5, 0.2);
+  const double carried[] = {0, 0, 0.6, 0.6};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_DOUBLE_EQ(body.masses[i].load, carried[i]);
+    EXPECT_DOUBLE_EQ(body.masses[i].mass, 0.2 + carried[i]);
+  }
+  std::vector<Vec3> places;
+  for (const Mass& mass : body.masses) places.push_back(mass.rest);
+  EXPECT_NEAR(centre_of_mass(body, places).x, 0, 1e-15) << "over the origin with its load";
 }
 
 TEST(BodyBuilding, SaysWhyThereIsNoBody) {
@@ -78,7 +123,7 @@ TEST(BodyBuilding, APopulationIsBuiltAsEachBodyAlone) {
   blueprints.back().body.springs = {{1, 2, 4, 0}};
   for (const int threads : {1, 3}) {
     Workers workers(threads);
-    const std::vector<BuiltBody> together = build_bodies(blueprints, *make_cpu_neighbour_search(threads), workers);
+    const std::vector<BuiltBody> together = build_bodies(blueprints, *make_cpu_neighbour_search(), workers);
     ASSERT_EQ(together.size(), blueprints.size());
     for (std::size_t i = 0; i < blueprints.size(); ++i) {
       const BuiltBody alone = build_body(blueprints[i]);

@@ -118,7 +118,9 @@ TEST(Breeding, AnOperatorThatLeavesTheLayoutIsNamed) {
     breed(experiment, population, 1, 2, 2);
     FAIL() << "the fault went unnoticed";
   } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(), "operator \"reset-weight\" made a genome with gene 0 = nan, which is not allowed");
+    EXPECT_EQ(error.what(), "mutation operator \"reset-weight\" of " + experiment.uses[1].file.string() +
+                                ": made a genome with gene 0 = nan, which is not allowed; correct the operator, or "
+                                "leave it out of the experiment");
   }
 }
 

@@ -21,6 +21,7 @@ class Concurrent final : public Simulator {
     simulator_->run(tasks, recording);
   }
   NeighbourSearch& neighbours() override { return simulator_->neighbours(); }
+  Workers& workers() override { return simulator_->workers(); }
   int concurrency() const override { return calls_; }
   std::string device() const override { return simulator_->device(); }
 
@@ -59,6 +60,7 @@ TEST(Cohorts, PassOnAFailure) {
     explicit Failing(std::unique_ptr<Simulator> simulator) : simulator_(std::move(simulator)) {}
     void run(std::span<Task>, Recording) override { throw std::runtime_error("the device is lost"); }
     NeighbourSearch& neighbours() override { return simulator_->neighbours(); }
+    Workers& workers() override { return simulator_->workers(); }
     int concurrency() const override { return 4; }
     std::string device() const override { return "failing"; }
 

@@ -1,7 +1,9 @@
 // Every complaint about an experiment, by its exact text.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <tuple>
 
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"
@@ -43,6 +45,28 @@ TEST(Configuration, TheSmallExperimentIsRead) {
   ASSERT_EQ(experiment.objectives.size(), 2u);
   EXPECT_EQ(experiment.objectives[0].name, "distance");
   EXPECT_FALSE(experiment.objectives[1].maximise);
+}
+
+TEST(Configuration, DevelopmentHasSchedulesAndAControl) {
+  const Experiment plain = testing::read(small_experiment);
+  EXPECT_EQ(plain.development.control, Control::off);
+  const Schedule& always = plain.development.operators.at(0).schedule;
+  EXPECT_EQ(std::tuple(always.from, always.to, always.every), std::tuple(1, 2, 1));
+  for (const auto& [name, control] : {std::pair{"off", Control::off},
+                                      {"no-change", Control::no_change},
+                                      {"random-places", Control::random_places},
+                                      {"shuffled-stress", Control::shuffled_stress}})
+    EXPECT_EQ(testing::read(small_experiment, {{"development.control", name, ""}}).development.control, control);
+  EXPECT_EQ(
+      complaint(with("cycles = 2", "cycles = 2\ncontrol = \"shuffled\"")),
+      "test.toml:31:11: development.control = \"shuffled\": is not an option; known: off, no-change, random-places, "
+      "shuffled-stress");
+  EXPECT_EQ(complaint(with("springs = 2", "every = 0")),
+            "test.toml:35:9: development.operator.0.every = 0: expected 1 to 16777215");
+  const Experiment never = testing::read(small_experiment, {{"development.operator.0.from", "3", ""}});
+  ASSERT_EQ(never.warnings.size(), 1u);
+  EXPECT_EQ(never.warnings[0],
+            "development.operator.0.from = 3 to 2: the operator never comes to its turn in 2 cycles");
 }
 
 TEST(Configuration, ResolvedTextReadsBackAsItself) {
@@ -239,17 +263,19 @@ TEST(Configuration, MissingParts) {
             "test.toml:1:1: fitness: is missing; add a table [[fitness]]");
 }
 
-TEST(Configuration, AnOperatorsNameIsNotTakenByAnother) {
+TEST(Configuration, ItsOwnOperatorsComeBeforeThoseBuiltIn) {
   const std::string folder = std::string(EVODEVO_FAULTY_PLUGINS) + "/taken_name";
   const Experiment experiment = testing::read(small_experiment + "\n[plugins]\npaths = ['" + folder + "']\n");
   EXPECT_EQ(experiment.uses.at(1).name, "reset-weight");
-  EXPECT_EQ(experiment.uses.at(1).file.parent_path(), builtin_plugin_folder());
-  EXPECT_EQ(experiment.warnings.size(), 1u);
+  EXPECT_EQ(experiment.uses.at(1).file.parent_path(), folder);
+  ASSERT_EQ(experiment.warnings.size(), 1u);
+  EXPECT_THAT(experiment.warnings[0], ::testing::HasSubstr("reset-weight.evodevo.so: its mutation operator"));
 }
 
 TEST(Configuration, ContradictoryParts) {
   EXPECT_EQ(complaint(small_experiment + "\n[plugins]\npaths = ['/no/such/folder']\n"),
-            "test.toml:51:9: plugins.paths = [ \"/no/such/folder\" ]: /no/such/folder is no folder");
+            "test.toml:51:9: plugins.paths = [ \"/no/such/folder\" ]: /no/such/folder is no folder and no library of "
+            "operators");
   EXPECT_EQ(
       complaint(small_experiment, {{"mutation.0.probability", "0", ""}, {"crossover.0.probability", "0", ""}}),
       "test.toml:13:1: mutation = a list with tables: no operator has a probability above 0, so that no child would "
@@ -271,6 +297,9 @@ TEST(Configuration, StepsThatTheSceneOrAMaterialCannotBear) {
   EXPECT_EQ(complaint(with("[simulation]\nthreads = 2", "[scene.drag]"), {{"scene.floor.stiffness", "1e9", ""}})
                 .substr(0, 60),
             "test.toml:1:1: simulation.dt: the step 0.0005 s is too long ");
+  EXPECT_EQ(complaint(with("[simulation]", "[materials.muscle]\nfrequency = 1999\n[simulation]\ndt = 0.0005")),
+            "test.toml:29:6: simulation.dt = 0.0005: the step 0.0005 s is too long for materials.muscle.frequency = "
+            "1999 Hz; expected at most 0.0002501250625312656 s");
   EXPECT_EQ(complaint(with("cycle_time = 0.05", "cycle_time = 0.0507")),
             "test.toml:31:14: development.cycle_time = 0.0507: 0.0507 s is not a whole number of steps of 0.0005 s; "
             "the nearest that is: 0.0505 s");

@@ -33,7 +33,7 @@ struct Line {
   }
 
   Moment moment(bool resets = false) const {
-    return {living.body, living.state, living.stress, 1, 2, 0.25, {}, 0.2, resets, genome, layout};
+    return {living.body, living.state, living.stress, 1, 2, 1, 2, 0.25, {}, 0.2, resets, genome, layout};
   }
 
   void apply(const Edits& edits, bool resets = false) { apply_edits(living, edits, moment(resets)); }
@@ -47,6 +47,23 @@ struct Line {
     return "accepted";
   }
 };
+
+TEST(Development, ALoadComesOnOthersWhenItsCarrierGoes) {
+  Line line;
+  for (const std::size_t carrier : {2u, 3u})
+    line.living.body.masses[carrier].load = 1, line.living.body.masses[carrier].mass += 1;
+  line.apply({.removed_masses = {3}, .new_masses = {{{0, 0, 7}, 0.5, 0}}});
+  const std::vector<Mass>& masses = line.living.body.masses;
+  ASSERT_EQ(masses.size(), 4u);
+  EXPECT_EQ(masses[2].load, 2);
+  EXPECT_DOUBLE_EQ(masses[2].mass, 2.2);
+  EXPECT_EQ(masses[0].mass, 0.2);
+  EXPECT_EQ(masses[3].mass, 0.5);
+  line.apply({.removed_masses = {2}});
+  ASSERT_EQ(masses.size(), 3u);
+  for (const Mass& mass : masses) EXPECT_DOUBLE_EQ(mass.load, 2.0 / 3) << "nobody is left who carries one";
+  EXPECT_DOUBLE_EQ(masses[2].mass, 0.5 + 2.0 / 3);
+}
 
 TEST(Development, ASpringGoesAndOneComes) {
   Line line;
@@ -96,6 +113,22 @@ TEST(Development, AMassGoesWithItsSpringsAndOneComes) {
   EXPECT_NEAR(living.body.springs[1].rest_length, norm(Vec3{6, 0, -4}), 1e-12);
 }
 
+TEST(Development, ASpringChangesWhereItIs) {
+  Line line;
+  line.living.body.springs[1].growth = 1.5f;
+  line.apply({.removed_springs = {0},
+              .changed_springs = {{.spring = 1, .rest_length = 0.5}, {.spring = 2, .material = muscle}},
+              .new_springs = {{0, 3, bone, std::nullopt}}});
+  const LivingBody& living = line.living;
+  ASSERT_EQ(living.body.springs.size(), 3u);
+  EXPECT_EQ(living.body.springs[0].rest_length, 0.5);
+  EXPECT_EQ(living.body.springs[0].growth, 1.5f) << "what encodings set stays";
+  EXPECT_EQ(living.body.materials.at(living.body.springs[0].material), bone);
+  EXPECT_EQ(living.body.springs[1].rest_length, 1);
+  EXPECT_EQ(living.body.materials.at(living.body.springs[1].material), muscle);
+  EXPECT_EQ(living.stress, (std::vector<double>{20, 30, 25}));
+}
+
 TEST(Development, NothingChangesNothing) {
   Line line, same;
   line.apply({});
@@ -123,6 +156,21 @@ TEST(Development, FaultyEditsAreRefused) {
             "joins masses 0 and 2 by a spring of rest length nan");
   EXPECT_EQ(Line().refusal({.new_masses = {{{nan, 0, 0}, 0.2, 0}}}),
             "adds a mass of 0.200000 kg at a distance of nan m from the origin");
+  EXPECT_EQ(Line().refusal({.new_masses = {{{}, 0.2, 1}}}), "adds a mass of material 1 to a body that has 1 materials");
+  EXPECT_EQ(Line().refusal({.new_springs = {{0, 2, {1, 1, 0, 0}, std::nullopt}}}),
+            "joins masses 0 and 2 by a spring of amplitude 1.000000; expected 0 to below 1");
+  EXPECT_EQ(Line().refusal({.new_springs = {{0, 2, {1, 0, 0, nan}, std::nullopt}}}),
+            "joins masses 0 and 2 by a spring whose frequency or phase is not finite");
+
+  const auto change = [](std::uint32_t spring) { return ChangedSpring{.spring = spring, .rest_length = 2.0}; };
+  EXPECT_EQ(Line().refusal({.changed_springs = {change(3)}}), "replaces spring 3 of a body that has 3");
+  EXPECT_EQ(Line().refusal({.changed_springs = {change(1), change(1)}}), "replaces spring 1 twice");
+  EXPECT_EQ(Line().refusal({.removed_springs = {1}, .changed_springs = {change(1)}}), "replaces spring 1, which goes");
+  EXPECT_EQ(Line().refusal({.removed_masses = {1}, .changed_springs = {change(1)}}), "replaces spring 1, which goes");
+  EXPECT_EQ(Line().refusal({.changed_springs = {{.spring = 1, .rest_length = -1.0}}}),
+            "replaces spring 1 by a spring of rest length -1.000000");
+  EXPECT_EQ(Line().refusal({.changed_springs = {{.spring = 1, .material = Material{}}}}),
+            "replaces spring 1 by a spring of stiffness 0.000000");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "breeding.hpp"
@@ -195,29 +196,97 @@ TEST(Evaluation, AnUnstableBodyIsInvalidOrRunsAsTheFileAsks) {
   EXPECT_NE(status("run").status, Status::invalid);
 }
 
-/// Stiffens the body: as many springs again, of a thousand times the stiffness.
+/// Stiffens the body a thousand times, by other springs or the same.
 struct Stiffener final : Devo {
+  explicit Stiffener(bool by_exchange) : exchanges(by_exchange) {}
+
   void develop(const Moment& now, Edits& edits, Rng&) const override {
     for (std::uint32_t i = 0; i < now.body.springs.size(); ++i) {
-      edits.removed_springs.push_back(i);
       Material material = now.body.materials[now.body.springs[i].material];
       material.stiffness *= 1000;
-      edits.new_springs.push_back({now.body.springs[i].a, now.body.springs[i].b, material, {}});
+      if (exchanges) {
+        edits.removed_springs.push_back(i);
+        edits.new_springs.push_back({now.body.springs[i].a, now.body.springs[i].b, material, {}});
+      } else {
+        edits.changed_springs.push_back({.spring = i, .material = material});
+      }
     }
   }
+
+  bool exchanges;  ///< the springs, instead of changing them
 };
 
 TEST(Evaluation, DevelopmentChangesTheStep) {
   Experiment experiment = testing::read(testing::small_experiment, {{"simulation.dt", "auto", ""}});
-  experiment.development.operators[0] = std::make_unique<Stiffener>();
   experiment.development.cycles = 1;
-  const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
-  EXPECT_EQ(result.status, Status::ok) << result.reason;
+  const auto result_with = [&](bool by_exchange) {
+    experiment.development.operators[0].op = std::make_unique<Stiffener>(by_exchange);
+    return evaluate(experiment, {{.genome = {1, 1}}}).front();
+  };
+  const Result exchanged = result_with(true), changed = result_with(false);
+  EXPECT_EQ(exchanged.status, Status::ok) << exchanged.reason;
+  EXPECT_EQ(changed.status, Status::ok) << changed.reason;
   experiment.development.operators.clear();
-  experiment.development.names.clear();
   const Result soft = evaluate(experiment, {{.genome = {1, 1}}}).front();
   EXPECT_EQ(soft.status, Status::ok) << soft.reason;
-  EXPECT_GT(result.spring_evaluations, 4 * soft.spring_evaluations) << "the steps that follow are shorter";
+  EXPECT_GT(exchanged.spring_evaluations, 4 * soft.spring_evaluations) << "the steps that follow are shorter";
+  EXPECT_GT(changed.spring_evaluations, 4 * soft.spring_evaluations);
+}
+
+TEST(Evaluation, DevelopmentThatAFixedStepCannotBearIsInvalid) {
+  Experiment experiment = testing::read(testing::small_experiment);
+  experiment.development.operators[0].op = std::make_unique<Stiffener>(false);
+  const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
+  EXPECT_EQ(result.status, Status::invalid);
+  EXPECT_EQ(result.reason, "unstable dt: 0.0005 s is too long for the body's springs");
+}
+
+TEST(Evaluation, ALoadSinksTheFasterInWater) {
+  // where weight and drag are equal: M g = 12 c v^2
+  Experiment experiment = testing::read(
+      testing::small_experiment,
+      {{"scene.load.share", "3", ""}, {"scene.load.top", "1", ""}, {"scene.drag.coefficient", "0.5", ""}});
+  experiment.development = {};
+  experiment.scene.floor.reset();
+  experiment.scene.friction.reset();
+  experiment.scene.damping.reset();
+  Observation seen;
+  experiment.fitness.clear();
+  experiment.fitness.push_back(std::make_unique<Watcher>(Request{.settle = 2, .window = 0.5}, seen));
+  experiment.objectives = {{"a", "", true}};
+  const auto speed = [&] {
+    EXPECT_EQ(evaluate(experiment, {{.genome = {1, 1}}}).front().status, Status::ok);
+    return (seen.centre_before.z - seen.centre_after.z) / 0.5;
+  };
+  const double unloaded = std::sqrt(12 * 0.2 * 9.81 / (12 * 0.5));
+  EXPECT_NEAR(speed(), 2 * unloaded, 0.01 * unloaded);
+  experiment.load.reset();
+  EXPECT_NEAR(speed(), unloaded, 0.01 * unloaded);
+}
+
+/// Makes every spring three times as long.
+struct Stretcher final : Devo {
+  void develop(const Moment& now, Edits& edits, Rng&) const override {
+    for (std::uint32_t i = 0; i < now.body.springs.size(); ++i)
+      edits.changed_springs.push_back({.spring = i, .rest_length = 3 * now.body.springs[i].rest_length});
+  }
+};
+
+TEST(Evaluation, ABodysLengthIsThatOfTheStartOfTheWindow) {
+  Experiment experiment = testing::read(testing::small_experiment);
+  experiment.scene.gravity.reset();
+  experiment.scene.damping->rate = 100;  // so that it has its new length soon
+  experiment.development.operators[0].op = std::make_unique<Stretcher>();
+  experiment.development.cycles = 1;
+  Observation born, grown;
+  experiment.fitness.clear();
+  experiment.fitness.push_back(std::make_unique<Watcher>(Request{.settle = 0, .window = 1}, born));
+  experiment.fitness.push_back(std::make_unique<Watcher>(Request{.settle = 1, .window = 1}, grown));
+  experiment.objectives = {{"a", "", true}, {"b", "", true}};
+  const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
+  ASSERT_EQ(result.status, Status::ok) << result.reason;
+  EXPECT_NEAR(born.box.longest_side(), 1, 0.05) << "development has just ended: two voxels of half a metre";
+  EXPECT_NEAR(grown.box.longest_side(), 3, 0.05);
 }
 
 /// Removes every spring.
@@ -236,21 +305,47 @@ struct Faulty final : Devo {
 
 TEST(Evaluation, ABodyThatDevelopmentEmptiesIsInvalid) {
   Experiment experiment = testing::read(testing::small_experiment);
-  experiment.development.operators[0] = std::make_unique<Destroyer>();
+  experiment.development.operators[0].op = std::make_unique<Destroyer>();
   const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
   EXPECT_EQ(result.status, Status::invalid);
   EXPECT_EQ(result.reason, "no springs");
 }
 
+std::string file_of(const Experiment& experiment, std::string_view kind) {
+  const auto is_it = [&](const OperatorUse& use) { return use.kind == kind; };
+  return std::find_if(experiment.uses.begin(), experiment.uses.end(), is_it)->file.string();
+}
+
 TEST(Evaluation, AFaultyOperatorIsNamed) {
   Experiment experiment = testing::read(testing::small_experiment);
-  experiment.development.operators[0] = std::make_unique<Faulty>();
+  experiment.development.operators[0].op = std::make_unique<Faulty>();
   try {
     evaluate(experiment, {{.id = 5, .genome = {1, 1}}});
     FAIL() << "the fault went unnoticed";
   } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(),
-                 "devo operator \"spring-turnover\", individual 5, cycle 1: joins masses 0 and 0, which are one");
+    EXPECT_EQ(error.what(), "devo operator \"spring-turnover\" of " + file_of(experiment, "devo") +
+                                ", individual 5, cycle 1: joins masses 0 and 0, which are one; correct the operator, "
+                                "or leave it out of the experiment");
+  }
+}
+
+/// Gives a spring to a mass that is not there.
+struct Dangling final : Encoding {
+  Layout layout(const World&) const override { return {}; }
+  Blueprint decode(const Genome&, const World& world) const override {
+    return {.body = {.masses = {{{0, 0, 0}, 1}, {{1, 0, 0}, 1}}, .springs = {{0, 2, 1}}, .materials = world.materials}};
+  }
+};
+
+TEST(Evaluation, AFaultyEncodingIsNamed) {
+  Experiment experiment = testing::read(testing::small_experiment);
+  experiment.encoding = std::make_unique<Dangling>();
+  try {
+    evaluate(experiment, {{.genome = {1, 1}}});
+    FAIL() << "the fault went unnoticed";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), "encoding operator \"voxel\" of " + file_of(experiment, "encoding") +
+                                ": spring 0 dangles; correct the operator, or leave it out of the experiment");
   }
 }
 
@@ -271,7 +366,7 @@ TEST(Evaluation, ResetPutsTheBodyBackAfterEveryCycle) {
     experiment.scene.gravity = Gravity{};
     experiment.development.reset = reset;
     std::vector<double> seen;
-    experiment.development.operators[0] = std::make_unique<Place>(seen);
+    experiment.development.operators[0].op = std::make_unique<Place>(seen);
     EXPECT_EQ(evaluate(experiment, {{.genome = {1, 1}}}).front().status, Status::ok);
     return seen;
   };

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "support/scratch.hpp"
 
@@ -43,13 +44,76 @@ TEST(Loader, LibrariesThatDoNotFit) {
             "its toolchain is another compiler, this evodevo's is " + std::string(plugin_toolchain) + remedy);
   EXPECT_EQ(refusal("switches"), "its list of build switches is -fpacked, this evodevo's is none" + remedy);
   EXPECT_EQ(refusal("no_entry"), "has no function evodevo_plugin; end one of its sources with EVODEVO_PLUGIN(...)");
-  EXPECT_EQ(refusal("unknown_kind"), "its operator \"nothing\" is of the unknown kind \"wing\"");
+  EXPECT_EQ(refusal("unknown_kind"),
+            "its operator \"nothing\" is of the unknown kind \"wing\"; rebuild the plugin against this evodevo");
+  EXPECT_EQ(refusal("twin"), "its mutation operator \"nothing\" is in it twice; rename one of them");
+  EXPECT_EQ(refusal("default"),
+            "its mutation operator \"nothing\" has a default that it does not allow: genes = 7, expected 0 to 5; "
+            "correct the default or the range");
+  EXPECT_EQ(refusal("constructor"),
+            "its mutation operator \"nothing\" cannot be made: \"no licence\"; its constructor and parameters() must "
+            "not throw");
 }
 
-TEST(Loader, ATakenNameIsRefusedWithBothFiles) {
-  EXPECT_EQ(refusal("taken_name", {builtin_plugin_folder()}),
-            "its mutation operator \"reset-weight\" is already brought by " +
-                (builtin_plugin_folder() / "reset-weight.evodevo.so").string() + "; rename one of them");
+TEST(Loader, ALibraryThatLacksASymbolIsRefusedWithItsName) {
+  EXPECT_THAT(refusal("undefined_symbol"), ::testing::MatchesRegex("cannot be loaded: .*undefined symbol.*nobody.*"));
+  EXPECT_THAT(refusal("undefined_symbol"),
+              ::testing::EndsWith("; link it with all that it uses (-Wl,-z,defs tells what "
+                                  "is missing)"));
+}
+
+TEST(Loader, TheEntryOfALinkedLibraryIsNotItsOwn) {
+  EXPECT_EQ(refusal("borrowed_entry"), "has no function evodevo_plugin of its own, only that of " +
+                                           (fs::path(EVODEVO_FAULTY_PLUGINS) / "sound/plugin.evodevo.so").string() +
+                                           " which it links; end one of its sources with EVODEVO_PLUGIN(...)");
+}
+
+TEST(Loader, ALibraryThatCrashesIsRefusedAndDisturbsNoOther) {
+  const std::string look = "; look at its static objects, constructors and parameters() in a debugger, or remove it";
+  const fs::path sound = fs::path(EVODEVO_FAULTY_PLUGINS) / "sound";
+  EXPECT_EQ(refusal("crash", {sound}), "crashes while it is loaded: Segmentation fault" + look);
+  EXPECT_EQ(refusal("exit", {sound}), "crashes while it is loaded: it ended the process with exit code 3" + look);
+  const testing::Scratch scratch;
+  fs::copy_file(fs::path(EVODEVO_FAULTY_PLUGINS) / "crash/plugin.evodevo.so", scratch / "a.evodevo.so");
+  fs::copy_file(sound / "plugin.evodevo.so", scratch / "b.evodevo.so");
+  const Registry registry({scratch / ""});
+  EXPECT_NE(registry.find("mutation", "nothing"), nullptr) << "in the same folder, behind the one that crashes";
+}
+
+TEST(Loader, ALibraryThatTwoPathsLeadToIsLoadedOnce) {
+  const fs::path folder = fs::path(EVODEVO_FAULTY_PLUGINS) / "sound";
+  const Registry registry({folder, folder / ".", folder / "plugin.evodevo.so"});
+  EXPECT_TRUE(registry.failed().empty());
+  EXPECT_EQ(registry.operators().size(), 1u);
+}
+
+TEST(Loader, WhereOperatorsAreLookedFor) {
+  setenv("EVODEVO_PLUGIN_PATH", "/one::/two", 1);
+  EXPECT_THAT(plugin_search_path({"/mine"}), ::testing::ElementsAre("/mine", "/one", "/two", builtin_plugin_folder()));
+  unsetenv("EVODEVO_PLUGIN_PATH");
+  EXPECT_THAT(plugin_search_path({}), ::testing::ElementsAre(builtin_plugin_folder()));
+}
+
+TEST(Loader, AnotherBuildHasAnotherHash) {
+  const fs::path folder(EVODEVO_FAULTY_PLUGINS);
+  const auto hash = [&](const char* name) { return file_hash(folder / name / "plugin.evodevo.so"); };
+  EXPECT_EQ(hash("sound"), hash("sound"));
+  EXPECT_NE(hash("sound"), hash("newer"));
+}
+
+TEST(Loader, OfTwoLibrariesWithOneNameTheSecondIsRefusedWithBothFiles) {
+  const fs::path own = fs::path(EVODEVO_FAULTY_PLUGINS) / "taken_name";
+  const fs::path built_in = builtin_plugin_folder() / "reset-weight.evodevo.so";
+  const auto twin = [](const fs::path& first) {
+    return "its mutation operator \"reset-weight\" is already brought by " + first.string() +
+           ", which comes first; rename one of them, or take one off the plugin path";
+  };
+  EXPECT_EQ(refusal("taken_name", {builtin_plugin_folder()}), twin(built_in));
+  const Registry registry({own, builtin_plugin_folder()});
+  ASSERT_EQ(registry.failed().size(), 1u);
+  EXPECT_EQ(registry.failed()[0].file, built_in);
+  EXPECT_EQ(registry.failed()[0].reason, twin(own / "plugin.evodevo.so"));
+  EXPECT_EQ(registry.find("mutation", "reset-weight")->file, own / "plugin.evodevo.so");
 }
 
 TEST(Loader, AFileThatIsNoLibraryDisturbsNoOther) {
@@ -57,26 +121,46 @@ TEST(Loader, AFileThatIsNoLibraryDisturbsNoOther) {
   scratch.write("text.evodevo.so", "this is no library");
   const Registry registry({scratch / "", fs::path(EVODEVO_FAULTY_PLUGINS) / "sound"});
   ASSERT_EQ(registry.failed().size(), 1u);
-  EXPECT_THAT(registry.failed()[0].reason, ::testing::HasSubstr("cannot be loaded: "));
-  EXPECT_THAT(registry.failed()[0].reason, ::testing::HasSubstr("text.evodevo.so"));
+  EXPECT_EQ(registry.failed()[0].file, scratch / "text.evodevo.so");
+  EXPECT_THAT(registry.failed()[0].reason, ::testing::MatchesRegex("cannot be loaded: .*text.evodevo.so.*"));
+  EXPECT_THAT(registry.failed()[0].reason, ::testing::EndsWith("; build it for this system, or remove it"));
   EXPECT_NE(registry.find("mutation", "nothing"), nullptr);
+}
+
+/// What the folder says to somebody who may not read it; root may, so root becomes somebody else.
+TEST(Loader, AFolderWithoutPermissionIsNamed) {
+  const testing::Scratch scratch;
+  fs::create_directory(scratch / "closed");
+  fs::permissions(scratch / "closed", fs::perms::none);
+  const bool root = geteuid() == 0;
+  ASSERT_TRUE(!root || seteuid(65534) == 0);
+  const Registry registry({scratch / "closed"});
+  ASSERT_TRUE(!root || seteuid(0) == 0);
+  ASSERT_EQ(registry.failed().size(), 1u);
+  EXPECT_EQ(registry.failed()[0].file, scratch / "closed");
+  EXPECT_EQ(registry.failed()[0].reason,
+            "cannot be read: Permission denied; make it readable, or leave it "
+            "out of the plugin path");
 }
 
 TEST(Loader, AFolderThatIsNotThereIsNamed) {
   const Registry registry({"/no/such/folder"});
   ASSERT_EQ(registry.failed().size(), 1u);
   EXPECT_EQ(registry.failed()[0].file, "/no/such/folder");
-  EXPECT_EQ(registry.failed()[0].reason, "the folder cannot be read: No such file or directory");
+  EXPECT_EQ(registry.failed()[0].reason,
+            "cannot be read: No such file or directory; make it readable, or leave it out of the plugin path");
 }
 
 TEST(Loader, AllBuiltInOperatorsAreThere) {
   const Registry registry({builtin_plugin_folder()});
   EXPECT_TRUE(registry.failed().empty());
   using ::testing::ElementsAre;
-  EXPECT_THAT(registry.names("encoding"), ElementsAre("direct", "neural", "voxel"));
+  EXPECT_THAT(registry.names("encoding"), ElementsAre("cppn", "direct", "neural", "voxel"));
   EXPECT_THAT(registry.names("mutation"), ElementsAre("reset-weight"));
   EXPECT_THAT(registry.names("crossover"), ElementsAre("swap-neuron", "two-point"));
-  EXPECT_THAT(registry.names("devo"), ElementsAre("mass-turnover", "spring-turnover"));
+  EXPECT_THAT(registry.names("devo"),
+              ElementsAre("amplitude-adaptation", "ballistic-growth", "length-adaptation", "mass-growth",
+                          "mass-turnover", "spring-turnover", "stiffness-adaptation"));
   EXPECT_THAT(registry.names("fitness"), ElementsAre("actuation-work", "distance"));
   EXPECT_THAT(registry.names("selection"), ElementsAre("age-fitness-pareto", "elitist", "pareto-layers"));
 }

@@ -31,6 +31,10 @@ TEST(TimeSteps, ABodyThatAloneExceedsAFixedStepIsTold) {
   floor.floor = Floor{1e8};
   EXPECT_EQ(longest({.dt = 0.0002}, floor).failure,
             "unstable dt: 0.0002 s is too long for the body's lightest mass on this floor");
+  Body fast = star();
+  fast.materials[0] = {1, 0.1, 1001, 0};
+  EXPECT_EQ(longest_step({.dt = 0.0005}, fast, state_at_birth(fast, {}).position, {}, Method::implicit).failure,
+            "unstable dt: 0.0005 s is too long for the body's fastest muscles");
   EXPECT_EQ(longest({.dt = 0.0005, .run_unstable = true}, floor).failure, "") << "as the file asks";
 }
 

@@ -95,11 +95,12 @@ class StrainedPair final : public Encoding {
  public:
   explicit StrainedPair(double stiffness) : stiffness_(stiffness) {}
   Layout layout(const World&) const override { return {}; }
-  Blueprint decode(const Genome&, const World&) const override {
+  Blueprint decode(const Genome&, const World& world) const override {
     Blueprint blueprint;
-    blueprint.body.materials = {{stiffness_, strain, 0, 3.14159265358979323846 / 2}};
+    blueprint.body.materials = world.materials;
+    const std::uint32_t own = blueprint.body.material_index({stiffness_, strain, 0, 3.14159265358979323846 / 2});
     blueprint.body.masses = {{{0, 0, 0}, mass}, {{1, 0, 0}, mass}};
-    blueprint.body.springs = {{0, 1, 1, 0}};
+    blueprint.body.springs = {{0, 1, 1, own}};
     return blueprint;
   }
 

@@ -55,10 +55,12 @@ class DeclarationCheck final : public Parameters {
 TEST(BuiltIn, AllOperatorsLoad) {
   EXPECT_TRUE(registry().failed().empty()) << registry().failed().front().reason;
   using testing::ElementsAre;
-  EXPECT_THAT(registry().names("encoding"), ElementsAre("direct", "neural", "voxel"));
+  EXPECT_THAT(registry().names("encoding"), ElementsAre("cppn", "direct", "neural", "voxel"));
   EXPECT_THAT(registry().names("mutation"), ElementsAre("reset-weight"));
   EXPECT_THAT(registry().names("crossover"), ElementsAre("swap-neuron", "two-point"));
-  EXPECT_THAT(registry().names("devo"), ElementsAre("mass-turnover", "spring-turnover"));
+  EXPECT_THAT(registry().names("devo"),
+              ElementsAre("amplitude-adaptation", "ballistic-growth", "length-adaptation", "mass-growth",
+                          "mass-turnover", "spring-turnover", "stiffness-adaptation"));
   EXPECT_THAT(registry().names("fitness"), ElementsAre("actuation-work", "distance"));
   EXPECT_THAT(registry().names("selection"), ElementsAre("age-fitness-pareto", "elitist", "pareto-layers"));
 }

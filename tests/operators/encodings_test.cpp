@@ -63,7 +63,7 @@ TEST_P(AnyEncoding, AirAloneIsNoBody) {
   EXPECT_EQ(encoding->decode(genome, world()).failure, "all materials to choose from are air");
 }
 
-INSTANTIATE_TEST_SUITE_P(Encodings, AnyEncoding, testing::Values("neural", "voxel", "direct"));
+INSTANTIATE_TEST_SUITE_P(Encodings, AnyEncoding, testing::Values("neural", "cppn", "voxel", "direct"));
 
 // neural -------------------------------------------------------------------------------------------------------------
 
@@ -208,6 +208,62 @@ TEST(Neural, GenesThatAreNoNumbersAreNoBody) {
   }
 }
 
+class AnyNetwork : public testing::TestWithParam<const char*> {};
+
+TEST_P(AnyNetwork, PairsBeforeTheMappingAreThoseOfThePoints) {
+  const auto after = make<Encoding>(GetParam()), before = make<Encoding>(GetParam(), "pairing = 'before-mapping'");
+  const Layout layout = after->layout(world());
+  Rng rng = stream(8);
+  const Genome genome = after->random(layout, rng), other = after->random(layout, rng);
+  Blueprint mapped = after->decode(genome, world()), paired = before->decode(genome, world());
+  EXPECT_TRUE(mapped.paired_at.empty());
+  ASSERT_EQ(paired.paired_at.size(), 1000u);
+  for (std::size_t i = 0; i < 1000; ++i) EXPECT_NEAR(norm(paired.paired_at[i] - points_of("")[i]), 0, 1e-9);
+  EXPECT_EQ(paired.paired_at, before->decode(other, world()).paired_at) << "the points are those of the run";
+  EXPECT_EQ(mapped.origins, paired.paired_at);
+  paired.paired_at.clear();
+  EXPECT_EQ(digest(paired), digest(mapped)) << "all else is the same";
+}
+
+INSTANTIATE_TEST_SUITE_P(Networks, AnyNetwork, testing::Values("neural", "cppn"));
+
+// cppn ---------------------------------------------------------------------------------------------------------------
+
+TEST(Cppn, EveryHiddenNeuronHasAFunctionOfItsOwn) {
+  const Layout layout = make<Encoding>("cppn", "hidden = 6")->layout(world());
+  ASSERT_EQ(layout.groups.size(), 6u + 6 + 8);
+  for (std::size_t n = 0; n < 20; ++n) {
+    EXPECT_EQ(layout.groups[n].count, n < 6 ? 6u : n < 12 ? 8u : 7u);
+    for (std::uint32_t g = 0; g < layout.groups[n].count; ++g)
+      EXPECT_EQ(layout.genes[layout.groups[n].first + g].choices, n < 12 && g == 0 ? 5u : 0u);
+  }
+}
+
+TEST(Cppn, FunctionsAreStanleys) {
+  // the first neuron of each hidden layer and the first output pass on its value: what comes is the function of x
+  const auto encoding = make<Encoding>("cppn", "hidden = 2\npoints = 50");
+  const Layout layout = encoding->layout(world());
+  const std::vector<Vec3> points = points_of("points = 50");
+  const std::vector<double (*)(double)> functions = {
+      [](double x) { return x; }, [](double x) { return std::tanh(x); }, [](double x) { return std::sin(x); },
+      [](double x) { return std::exp(-x * x); }, [](double x) { return std::fabs(x); }};
+  for (std::size_t f = 0; f < functions.size(); ++f) {
+    Genome genome(layout.genes.size(), 0);
+    const auto gene = [&](std::size_t neuron, std::size_t index) -> float& {
+      return genome[layout.groups[neuron].first + index];
+    };
+    gene(0, 0) = static_cast<float>(f);
+    gene(0, 1) = 0.5f;  // bias
+    gene(0, 2) = 2;     // weight of x
+    gene(0, 5) = -1;    // weight of the distance from the centre
+    gene(2, 2) = 1;
+    gene(4, 1) = 1;
+    const Body body = encoding->decode(genome, world()).body;
+    for (std::size_t i = 0; i < 50; ++i)
+      EXPECT_NEAR(body.masses[i].rest.x, std::tanh(functions[f](0.5 + 2 * points[i].x - norm(points[i]))), 1e-9);
+  }
+}
+
 // lattices -----------------------------------------------------------------------------------------------------------
 
 Genome choices(std::initializer_list<std::int32_t> options) { return Genome(options.begin(), options.end()); }
@@ -279,6 +335,33 @@ TEST(Voxel, OptionsAreTheChosenMaterials) {
   // in the order of the world: air, bone, tissue
   EXPECT_EQ(stiffnesses(encoding->decode(choices({1, 2}), world()).body),
             (std::map<double, int>{{4000, 22}, {7000, 6}, {10000, 22}}));
+}
+
+TEST(Voxel, SizesAreGenesOnlyWhereTheyDevelop) {
+  EXPECT_EQ(make<Encoding>("voxel", "size = [2, 1, 1]")->layout(world()).genes.size(), 2u);
+  const Layout layout = make<Encoding>("voxel", "size = [2, 1, 1]\nsize_range = 0.25")->layout(world());
+  ASSERT_EQ(layout.genes.size(), 6u);
+  ASSERT_EQ(layout.groups.size(), 2u);
+  EXPECT_EQ(layout.genes[3].choices, 5u);
+  for (const std::size_t gene : {1, 2, 4, 5}) {
+    EXPECT_EQ(layout.genes[gene].low, 0.75f);
+    EXPECT_EQ(layout.genes[gene].high, 1.25f);
+  }
+}
+
+TEST(Voxel, SpringsTakeTheSizesOfTheirVoxels) {
+  const auto encoding = make<Encoding>("voxel", "size = [3, 1, 1]\nedge = 0.5\nsize_range = 0.5");
+  // the last voxel is air, whose sizes count for nothing
+  const Genome genome{bone, 0.5f, 1.5f, muscle, 1.0f, 0.75f, air, 1.5f, 1.5f};
+  const Body body = encoding->decode(genome, world()).body;
+  ASSERT_EQ(body.springs.size(), 50u);
+  for (const Spring& spring : body.springs) {
+    const Vec3 a = body.masses[spring.a].rest, b = body.masses[spring.b].rest;
+    const double x = (a.x + b.x) / 2 + 0.75;
+    const double start = x < 0.49 ? 0.5 : x < 0.51 ? 0.75 : 1, end = x < 0.49 ? 1.5 : x < 0.51 ? 1.125 : 0.75;
+    EXPECT_NEAR(spring.rest_length, start * norm(b - a), 1e-12);
+    EXPECT_NEAR(spring.rest_length * spring.growth, end * norm(b - a), 1e-6);
+  }
 }
 
 TEST(Direct, EverySpringHasAGene) {

@@ -1,7 +1,9 @@
 // A moment in a life, for tests of devo operators.
 #pragma once
 
+#include <cmath>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "development.hpp"
@@ -16,11 +18,12 @@ struct Life {
   Box bounds = {{-2, -2, 0}, {2, 2, 2}};
   double mass = 0.35;  // other than that of the body's masses
   bool resets = false;
+  int turn = 3, turns = 100;
   Genome genome;
   Layout layout;
 
   Moment now() const {
-    return {living.body, living.state, living.stress, 3, 100, time, bounds, mass, resets, genome, layout};
+    return {living.body, living.state, living.stress, 3, 100, turn, turns, time, bounds, mass, resets, genome, layout};
   }
 
   void add_mass(Vec3 rest, std::int32_t material) {
@@ -44,6 +47,16 @@ inline Life life_of_masses(std::uint32_t masses, bool with_materials = true) {
   for (std::uint32_t i = 0; i < masses; ++i)
     life.add_mass({rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0, 1)},
                   with_materials ? static_cast<std::int32_t>(i % 5) : no_material);
+  return life;
+}
+
+/// Two chains of three masses each, far from each other. The springs of the first have stress 3 N, those of the second
+/// 1 N.
+inline Life two_chains() {
+  Life life = life_of_masses(6, false);
+  for (std::uint32_t i = 0; i < 6; ++i) life.living.state.position[i] = {i < 3 ? 0.0 : 100.0, double(i), 1.0};
+  for (const auto& [a, b, stress] : {std::tuple{0u, 1u, 3.0}, {1u, 2u, 3.0}, {3u, 4u, 1.0}, {4u, 5u, 1.0}})
+    life.add_spring(a, b, bone, stress);
   return life;
 }
 
@@ -72,6 +85,9 @@ inline std::vector<double> digest(const Edits& edits) {
     digest.insert(digest.end(), {m.place.x, m.place.y, m.place.z, m.mass, static_cast<double>(m.material)});
   for (const NewSpring& s : edits.new_springs)
     digest.insert(digest.end(), {double(s.a), double(s.b), s.material.stiffness, s.material.phase});
+  for (const ChangedSpring& c : edits.changed_springs)
+    digest.insert(digest.end(), {double(c.spring), c.rest_length.value_or(-1),
+                                 c.material.value_or(Material{}).stiffness, c.material.value_or(Material{}).amplitude});
   return digest;
 }
 

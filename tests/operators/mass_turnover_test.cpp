@@ -142,6 +142,27 @@ TEST(MassTurnover, NewMassesAreJoinedToDifferentMassesThatStay) {
   EXPECT_EQ(partners_of_all.size(), masses - 4);
 }
 
+TEST(MassTurnover, NewMassesAreJoinedToTheNearestThatStay) {
+  const auto devo = make<Devo>("mass-turnover", "join = 'nearest'\nsprings = 7");
+  for (const bool resets : {false, true}) {
+    Life life = ring();
+    life.resets = resets;
+    const Moment now = life.now();
+    const Edits edits = develop(*devo, life, 1);
+    ASSERT_EQ(edits.new_masses.size(), 4u);
+    ASSERT_EQ(edits.new_springs.size(), 4u * 7);
+    for (std::uint32_t m = 0; m < 4; ++m) {
+      std::vector<std::pair<double, std::uint32_t>> order;
+      for (std::uint32_t i = 4; i < masses; ++i) order.emplace_back(norm(now.place(i) - edits.new_masses[m].place), i);
+      std::sort(order.begin(), order.end());
+      for (std::size_t s = 0; s < 7; ++s)
+        EXPECT_EQ(ordered(edits.new_springs[7 * m + s].a, edits.new_springs[7 * m + s].b),
+                  Pair(order[s].second, masses + m));
+    }
+    after(life, edits);  // throws if the host would refuse
+  }
+}
+
 TEST(MassTurnover, NewSpringsAreBornWithoutForce) {
   const Life life = ring();
   const LivingBody grown = after(life, develop(*make<Devo>("mass-turnover"), life, 1));

@@ -152,7 +152,9 @@ TEST(SpringTurnover, OnlyWhatCanBeReplacedGoes) {
 
   // all are joined: nothing can come, so nothing goes
   chain.add_spring(0, 2, bone, 3);
-  EXPECT_TRUE(digest(develop(*devo, chain, 1)).empty());
+  for (const char* where : {"random", "most-stressed", "by-stress"})
+    EXPECT_TRUE(
+        digest(develop(*make<Devo>("spring-turnover", "where = '" + std::string(where) + "'"), chain, 1)).empty());
 }
 
 TEST(SpringTurnover, SmallBodiesExchangeWhatTheyHave) {
@@ -162,6 +164,67 @@ TEST(SpringTurnover, SmallBodiesExchangeWhatTheyHave) {
   const Edits edits = develop(*devo, life, 1);
   EXPECT_EQ(edits.removed_springs.size(), 29u);
   EXPECT_EQ(after(life, edits).body.springs.size(), 29u);
+}
+
+TEST(SpringTurnover, EachOfTheMostStressedGetsOneBeside) {
+  const auto devo = make<Devo>("spring-turnover", "springs = 20\nwhere = 'most-stressed'");
+  const Life life = busy_life(false);
+  const auto old = joined(life.living.body);
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Edits edits = develop(*devo, life, seed);
+    ASSERT_EQ(edits.new_springs.size(), 20u);
+    for (const NewSpring& spring : edits.new_springs) {
+      const auto closes_a_triangle_with = [&](std::size_t s) {
+        const Spring& strong = life.living.body.springs[s];
+        if (life.living.stress[s] < 380) return false;
+        for (const auto& [from, past] : {Pair(strong.a, strong.b), Pair(strong.b, strong.a)})
+          for (const auto& [from_here, to] : {Pair(spring.a, spring.b), Pair(spring.b, spring.a)})
+            if (from == from_here && old.contains(ordered(past, to))) return true;
+        return false;
+      };
+      bool found = false;
+      for (std::size_t s = 0; s < 400; ++s) found |= closes_a_triangle_with(s);
+      EXPECT_TRUE(found);
+    }
+    after(life, edits);  // throws if the host would refuse
+  }
+}
+
+/// How often of 1,000 times one spring of `two_chains` comes in the first chain.
+int times_in_first_chain(const Life& life, const std::string& where) {
+  const auto devo = make<Devo>("spring-turnover", "springs = 1\nwhere = '" + where + "'");
+  int first = 0, second = 0;
+  for (std::uint64_t seed = 0; seed < 1000; ++seed)
+    for (const NewSpring& spring : develop(*devo, life, seed).new_springs) {
+      first += ordered(spring.a, spring.b) == Pair(0, 2);
+      second += ordered(spring.a, spring.b) == Pair(3, 5);
+    }
+  EXPECT_EQ(first + second, 1000) << "there is no other triangle to close";
+  return first;
+}
+
+TEST(SpringTurnover, SpringsComeBesideOthersByTheirStress) {
+  Life life = two_chains();
+  EXPECT_EQ(times_in_first_chain(life, "most-stressed"), 1000);
+  EXPECT_NEAR(times_in_first_chain(life, "by-stress"), 750, 70);  // five standard deviations
+  life.living.stress = {0, 0, 0, 1};
+  EXPECT_EQ(times_in_first_chain(life, "by-stress"), 0);
+}
+
+TEST(SpringTurnover, WithoutStressAllSpringsAreAlike) {
+  Life life = two_chains();
+  for (const double stress : {0.0, 7.0, std::nan("")}) {
+    life.living.stress.assign(4, stress);
+    EXPECT_NEAR(times_in_first_chain(life, "by-stress"), 500, 80) << stress;
+    EXPECT_NEAR(times_in_first_chain(life, "most-stressed"), 500, 80) << stress;
+  }
+}
+
+TEST(SpringTurnover, NoSpringComesBesideOneWhoseStressIsNoNumber) {
+  Life life = two_chains();
+  life.living.stress = {std::nan(""), std::nan(""), 0.5, 0.1};
+  EXPECT_EQ(times_in_first_chain(life, "by-stress"), 0);
+  EXPECT_EQ(times_in_first_chain(life, "most-stressed"), 0);
 }
 
 TEST(SpringTurnover, DegenerateBodiesStayAsTheyAre) {

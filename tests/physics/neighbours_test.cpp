@@ -80,7 +80,8 @@ TEST(Neighbours, OfAPopulation) {
   for (std::uint32_t i = 0; i < places.size(); ++i) clouds.push_back({places[i], i});
   for (const int threads : {1, 3}) {
     std::vector<std::vector<Pairs>> found(clouds.size());
-    make_cpu_neighbour_search(threads)->find(clouds, [&](std::size_t i, std::span<const IndexPair> pairs) {
+    Workers workers(threads);
+    make_cpu_neighbour_search()->find(clouds, workers, [&](std::size_t i, std::span<const IndexPair> pairs) {
       found[i].push_back({pairs.begin(), pairs.end()});
     });
     for (std::uint32_t i = 0; i < clouds.size(); ++i)
@@ -91,8 +92,10 @@ TEST(Neighbours, OfAPopulation) {
 TEST(Neighbours, PassesOnWhatTheCallerThrows) {
   const std::vector<Vec3> places = random_places(9, 1);
   const std::vector<PointCloud> clouds{{places, 2}, {places, 3}};
-  EXPECT_THROW(make_cpu_neighbour_search(2)->find(clouds, [](std::size_t, auto) { throw std::range_error("no"); }),
-               std::range_error);
+  Workers workers(2);
+  EXPECT_THROW(
+      make_cpu_neighbour_search()->find(clouds, workers, [](std::size_t, auto) { throw std::range_error("no"); }),
+      std::range_error);
 }
 
 }  // namespace

@@ -180,6 +180,8 @@ TEST(Stability, AFixedMassAddsNothing) {
 TEST(Stability, ScenesAndMaterialsHaveTheirOwnLimits) {
   EXPECT_DOUBLE_EQ(largest_contact_dt(walking_scene(), 0.2, Method::paper_euler), 1.2 * std::sqrt(0.2 / 1e6));
   EXPECT_EQ(largest_contact_dt({}, 0.2, Method::paper_euler), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(largest_muscle_dt({5000, 0.1, 1000, 0}), 0.0005);
+  EXPECT_EQ(largest_muscle_dt({5000, 0, 1000, 0}), std::numeric_limits<double>::infinity());
   EXPECT_EQ(largest_spring_dt({0, 0, 0, 0}, 0.2, Method::paper_euler), std::numeric_limits<double>::infinity());
 }
 

@@ -1,10 +1,40 @@
-// Libraries that the host must refuse, each with the one fault that FAULT names.
+// Libraries with one fault each, which FAULT names: the host must refuse them, or stop where their operator errs.
+#include <csignal>
+#include <cstdlib>
+#include <limits>
+#include <stdexcept>
+
 #include "evodevo/plugin.hpp"
+
+#if defined(FAULT_UNDEFINED_SYMBOL)
+void nobody_defines_this();
+#endif
 
 namespace {
 
+#if defined(FAULT_CRASH)
+[[maybe_unused]] const int crash = std::raise(SIGSEGV);
+#elif defined(FAULT_EXIT)
+[[maybe_unused]] const bool gone = (std::_Exit(3), true);
+#endif
+
 struct Nothing final : evodevo::Mutation {
-  void mutate(evodevo::Genome&, const evodevo::Layout&, evodevo::Rng&) const override {}
+#if defined(FAULT_DEFAULT)
+  std::int64_t genes = 7;
+  void parameters(evodevo::Parameters& p) override { p.integer(genes, "genes", {0, 5, "1"}, "Genes that change."); }
+#elif defined(FAULT_CONSTRUCTOR)
+  Nothing() { throw std::runtime_error("no licence"); }
+#endif
+
+  void mutate([[maybe_unused]] evodevo::Genome& genome, const evodevo::Layout&, evodevo::Rng&) const override {
+#if defined(FAULT_THROWS)
+    throw std::runtime_error("nothing to mutate");
+#elif defined(FAULT_NAN)
+    genome[0] = std::numeric_limits<float>::quiet_NaN();
+#elif defined(FAULT_UNDEFINED_SYMBOL)
+    nobody_defines_this();
+#endif
+  }
 };
 
 constexpr evodevo::OperatorEntry entries[] = {
@@ -14,6 +44,9 @@ constexpr evodevo::OperatorEntry entries[] = {
     {"wing", "nothing", "Is of a kind that does not exist.", []() -> evodevo::Operator* { return new Nothing; }},
 #else
     evodevo::operator_entry<Nothing>("nothing", "Changes nothing."),
+#if defined(FAULT_TWIN)
+    evodevo::operator_entry<Nothing>("nothing", "Changes nothing either."),
+#endif
 #endif
 };
 
@@ -48,10 +81,10 @@ constexpr evodevo::PluginManifest manifest = {
 #else
     evodevo::plugin_switches,
 #endif
-    "1.0.0",
-    "MIT",
+    EVODEVO_PLUGIN_VERSION,
+    EVODEVO_PLUGIN_LICENSE,
     entries,
-    1};
+    std::size(entries)};
 
 }  // namespace
 

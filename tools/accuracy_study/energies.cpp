@@ -38,7 +38,7 @@ std::vector<Table> energies(const Settings& settings) {
   const double steps = settings.quick ? 3e4 : 1e6;
   constexpr int parts = 200;
   std::vector<Setting> runs;
-  for (const Method method : Device{}.methods())
+  for (const Method method : all_methods())
     for (const Precision precision : {Precision::float32, Precision::float64}) runs.push_back({method, precision, dt});
   std::vector<std::vector<double>> courses(runs.size());
   Workers(settings.device.threads).for_each(runs.size(), [&](std::size_t i) {

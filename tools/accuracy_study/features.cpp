@@ -10,6 +10,7 @@ std::vector<Table> features(const Settings& settings) {
   measured.threads = settings.device.threads;
   measured.body = "knn1000";
   measured.masses = 1000;
+  measured.method = name(Method::paper_euler);
   measured.precision = "float32";
   const bool on_gpu = settings.device.name == "cuda";
   measured.bodies = on_gpu ? 1056 : settings.quick ? 2 : 32;

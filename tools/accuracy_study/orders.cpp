@@ -67,7 +67,7 @@ std::vector<Table> orders(const Settings& settings) {
   workers.for_each(makers.size(), [&](std::size_t i) { trials[i] = makers[i](); });
   std::vector<Sweep> sweeps;
   for (const Trial& trial : trials)
-    for (const Method method : Device{}.methods()) sweeps.push_back({&trial, method, {}, {}});
+    for (const Method method : all_methods()) sweeps.push_back({&trial, method, {}, {}});
   workers.for_each(sweeps.size(), [&](std::size_t i) { run(sweeps[i], settings.quick ? 8 : 10); });
 
   Table errors("convergence", {"scene", "contact", "method", "dt (s)", "error (1)"});

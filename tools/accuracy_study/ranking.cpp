@@ -68,7 +68,8 @@ class Comparison {
     const Interval interval = bootstrap_interval(truth_, measured.values, 500);
     table_.add({body, kind, std::string(name(setting.method)), name(setting.precision), setting.dt, measured.cost,
                 rank_correlation(truth_, measured.values), interval.low, interval.high,
-                best_found(truth_, measured.values, 20, 3, 2000), measured.diverged});
+                best_found(truth_, measured.values, 20, 3, 2000), measured.diverged,
+                static_cast<double>(truth_.size())});
   }
 
   const Table& table() const { return table_; }
@@ -77,7 +78,7 @@ class Comparison {
   std::vector<double> truth_;
   Table table_{"ranking",
                {"body", "kind", "method", "precision", "dt (s)", "cost (s per simulated s)", "rank correlation (1)",
-                "low (1)", "high (1)", "best of 20 in reference's best 3 (1)", "diverged (1)"}};
+                "low (1)", "high (1)", "best of 20 in reference's best 3 (1)", "diverged (1)", "robots"}};
 };
 
 }  // namespace
@@ -93,7 +94,7 @@ std::vector<Table> ranking(const Settings& settings) {
   Comparison comparison(truth.values);
   comparison.add("as it is", "reference moved by 1e-9 m", reference,
                  measure(experiment, bodies, reference, host, 1e-9));
-  for (const Method method : settings.device.methods())
+  for (const Method method : all_methods())
     for (const Precision precision : {Precision::float32, Precision::float64})
       for (const double dt : time_steps(settings.quick)) {
         const Setting setting{method, precision, dt};

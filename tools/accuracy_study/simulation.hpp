@@ -22,13 +22,13 @@ struct Setting {
 
 std::string name(Precision precision);
 
+std::vector<Method> all_methods();
+
 /// Where bodies are moved.
 struct Device {
   std::string name = "cpu";  ///< or "cuda"
   int threads = 0;           ///< of the host; 0: all cores
 
-  /// The methods that it knows.
-  std::vector<Method> methods() const;
   /// In words, with the instruction set or the model.
   std::string description() const;
 };

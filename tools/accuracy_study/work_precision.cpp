@@ -52,7 +52,7 @@ void compile_kernels(const std::vector<Trial>& trials, const Device& device, Wor
   };
   std::vector<Kernel> kernels;
   for (const Trial& trial : trials)
-    for (const Method method : device.methods())
+    for (const Method method : all_methods())
       for (const Precision precision : {Precision::float32, Precision::float64})
         kernels.push_back({&trial, {method, precision, 1e-5}});
   workers.for_each(kernels.size(), [&](std::size_t i) {
@@ -71,7 +71,7 @@ std::vector<Table> work_precision(const Settings& settings) {
   const std::vector<Trial> all = trials(settings.quick, workers);
   if (settings.device.name == "cuda") compile_kernels(all, settings.device, workers);
   for (const Trial& trial : all)
-    for (const Method method : settings.device.methods())
+    for (const Method method : all_methods())
       for (const Precision precision : {Precision::float32, Precision::float64})
         for (const double dt : time_steps(settings.quick)) {
           const Measured measured = measure(trial, {method, precision, dt}, settings.device);

@@ -52,7 +52,7 @@ Report conditions(const Settings& settings, const std::string& study, const std:
           {"steps", settings.steps},
           {"runs", settings.runs},
           {"scene", description(walking_scene())},
-          {"method", "paper-euler"},
+          {"method", settings.method},
           {"precision", settings.precision},
           {"dt", time_step}};
 }

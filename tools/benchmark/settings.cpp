@@ -22,6 +22,7 @@ void check_choice(const char* option, const std::string& value, const std::vecto
 void check(const Settings& s) {
   check_choice("study", s.study, {"speed", "features", "baselines", "stress", "tallies", "neighbours"});
   check_choice("device", s.device, {"cpu", "cuda"});
+  check_choice("method", s.method, {method_names.begin(), method_names.end()});
   check_choice("precision", s.precision, {"float32", "float64"});
   check_choice("instructions", s.instructions, {"best", "avx2", "sse4", "none"});
 #ifndef EVODEVO_CUDA
@@ -31,6 +32,8 @@ void check(const Settings& s) {
   const bool beside_cuda = s.study != "speed" && s.study != "features";
   if (beside_cuda && s.device != "cuda")
     throw std::invalid_argument("--study " + s.study + " compares methods on a GPU; add --device cuda");
+  if (beside_cuda && s.method != name(Method::paper_euler))
+    throw std::invalid_argument("--study " + s.study + " has the paper's method of time stepping; leave --method out");
   if (beside_cuda && s.precision != "float32")
     throw std::invalid_argument("--study " + s.study + " has one precision; leave --precision out");
   if (s.study == "tallies" && s.robots.empty())
@@ -45,7 +48,7 @@ void check(const Settings& s) {
 }  // namespace
 
 Stepping Settings::stepping() const {
-  return {Method::paper_euler, precision == "float32" ? Precision::float32 : Precision::float64};
+  return {method_of(method), precision == "float32" ? Precision::float32 : Precision::float64};
 }
 
 std::optional<Settings> parse(int argc, const char* const* argv) {
@@ -70,6 +73,8 @@ std::optional<Settings> parse(int argc, const char* const* argv) {
   options.add_options()("bodies", po::value(&s.bodies)->default_value(8), "bodies in the batch");
   options.add_options()("steps", po::value(&s.steps)->default_value(2000), "time steps of 0.5 ms");
   options.add_options()("threads", po::value(&s.threads)->default_value(0), "threads; 0: all cores");
+  options.add_options()("method", po::value(&s.method)->default_value(std::string(name(Method::paper_euler))),
+                        "of time stepping, as [simulation] method names it");
   options.add_options()("precision", po::value(&s.precision)->default_value("float32"), "float32 | float64");
   options.add_options()("instructions", po::value(&s.instructions)->default_value("best"),
                         "at most these: best | avx2 | sse4 | none");

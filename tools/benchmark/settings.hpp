@@ -13,7 +13,7 @@ inline constexpr double time_step = 0.0005;  ///< s
 
 struct Settings {
   std::string command;  ///< the line itself
-  std::string study, device, body, robots, precision, instructions, tables;
+  std::string study, device, body, robots, method, precision, instructions, tables;
   std::uint32_t masses = 0, materials = 0, bodies = 0;
   std::uint64_t steps = 0;
   int threads = 0, runs = 0;

@@ -19,6 +19,8 @@ struct Moment {
                                    ///< since the cycle ended carry the mean of the others
   int cycle;                       ///< cycles lived so far, from 1
   int cycles;                      ///< cycles in the whole development
+  int turn;                        ///< how often this operator has come to its turn, now included
+  int turns;                       ///< how often it does so in the whole development
   double time;                     ///< since birth, s
   Box bounds;                      ///< of the body now, cut off at the floor where there is one, m
   double mass;                     ///< of a new mass, kg
@@ -44,13 +46,27 @@ struct NewSpring {
   std::optional<double> rest_length;  ///< m; without it, the one at which the spring is born without force
 };
 
+/// New properties of a spring that stays between its masses.
+struct ChangedSpring {
+  std::uint32_t spring = 0;
+  std::optional<double> rest_length = {};  ///< m; without it, that of before
+  std::optional<Material> material = {};   ///< without it, that of before
+};
+
 /// What a devo operator wants changed. All indices are those of the Moment; the masses in `new_masses` follow on from
-/// them. The host applies an operator's edits together after the call and refuses dangling, doubled and air springs.
+/// them. The host applies an operator's edits together after the call and refuses dangling, doubled and air springs and
+/// numbers that are not finite.
 struct Edits {
   std::vector<std::uint32_t> removed_springs;
-  std::vector<std::uint32_t> removed_masses;  ///< their springs go with them
+  std::vector<std::uint32_t> removed_masses;   ///< their springs go with them
+  std::vector<ChangedSpring> changed_springs;  ///< none of which goes
   std::vector<NewMass> new_masses;
   std::vector<NewSpring> new_springs;
+
+  bool empty() const {
+    return removed_springs.empty() && removed_masses.empty() && changed_springs.empty() && new_masses.empty() &&
+           new_springs.empty();
+  }
 };
 
 class Devo : public Operator {

@@ -37,8 +37,9 @@ struct Blueprint {
   std::uint32_t neighbours =
       0;                ///< > 0: every mass is joined to as many nearest ones; materials: mean of the two masses'
   std::string failure;  ///< why there is no body; empty where there is one
-  std::vector<Vec3> origins =
-      {};  ///< of an encoding that maps points to places: the point of each mass, to be looked at
+  std::vector<Vec3> paired_at = {};  ///< where neighbours are searched for, one place for each mass; empty: at the rest
+                                     ///< places
+  std::vector<Vec3> origins = {};  ///< of an encoding that maps points: the point of each mass, for pictures; or empty
 };
 
 class Encoding : public Operator {

@@ -36,6 +36,11 @@ struct Layout {
     groups.push_back({static_cast<std::uint32_t>(genes.size()), count});
     genes.insert(genes.end(), count, spec);
   }
+  /// Appends genes of several kinds as a group of their own.
+  void add_group(const std::vector<GeneSpec>& specs) {
+    groups.push_back({static_cast<std::uint32_t>(genes.size()), static_cast<std::uint32_t>(specs.size())});
+    genes.insert(genes.end(), specs.begin(), specs.end());
+  }
 };
 
 /// The values of the genes, in the layout's order.

@@ -25,7 +25,8 @@ inline constexpr std::uint32_t plugin_struct_digest = [] {
   for (const std::size_t size :
        {sizeof(Body), sizeof(Mass), sizeof(Spring), sizeof(Material), sizeof(State), sizeof(Rng), sizeof(GeneSpec),
         sizeof(Layout), sizeof(World), sizeof(Blueprint), sizeof(Moment), sizeof(Edits), sizeof(NewMass),
-        sizeof(NewSpring), sizeof(Request), sizeof(Observation), sizeof(Objective), sizeof(Candidate)})
+        sizeof(NewSpring), sizeof(ChangedSpring), sizeof(Request), sizeof(Observation), sizeof(Objective),
+        sizeof(Candidate)})
     digest = (digest ^ static_cast<std::uint32_t>(size)) * 16777619u;
   return digest;
 }();

@@ -64,12 +64,14 @@ struct Mass {
   double mass = 0;                      ///< kg
   std::int32_t material = no_material;  ///< index into Body::materials, or no_material
   std::uint32_t air_contacts = 0;       ///< neighbours to which a spring of air was left out
+  double load = 0;                      ///< how much of `mass` it carries for the scene, kg
 };
 
 struct Spring {
   std::uint32_t a = 0, b = 0;  ///< indices into Body::masses, a != b
   double rest_length = 0;      ///< L0, m
   std::uint32_t material = 0;  ///< index into Body::materials
+  float growth = 1;            ///< rest length at the end of a ballistic development relative to that at birth, 1
 };
 
 /// A body without its motion. No two springs join the same pair of masses.
@@ -92,7 +94,8 @@ struct State {
   std::vector<Vec3> position;  ///< m
   std::vector<Vec3> velocity;  ///< m/s
   double time = 0;             ///< since birth, s
-  double start_energy = 0;     ///< height + kinetic + elastic energy at birth, J; the energy guard's yardstick
+  double start_energy = 0;     ///< height + kinetic + elastic energy at birth and what development has added, J; the
+                               ///< energy guard's yardstick
 };
 
 /// The smallest box around `places`; all zero for none.

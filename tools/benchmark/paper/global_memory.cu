@@ -30,10 +30,7 @@ extern "C" __global__ void evodevo_paper_masses(const World<Number> world, const
   const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= body.masses) return;
   const unsigned mass = body.first_mass + i;
-  Place place = triple(batch.places[mass]), velocity = triple(batch.velocities[mass]);
-  cuda::move(world, place, velocity, triple(batch.forces[mass]), batch.mass[mass], batch.inverse_mass[mass]);
-  batch.places[mass] = {place.x, place.y, place.z, 0};
-  batch.velocities[mass] = {velocity.x, velocity.y, velocity.z, 0};
+  move(world, batch, mass, triple(batch.places[mass]), triple(batch.forces[mass]));
   batch.forces[mass] = {0, 0, 0, 0};
 }
 

@@ -40,14 +40,8 @@ __device__ __forceinline__ void load(const PaperBatch& batch, const PaperBody& b
 
 __device__ __forceinline__ void move_masses(const PaperBatch& batch, const PaperBody& body, const World<Number>& world,
                                             const OnChip& masses) {
-  for (unsigned i = threadIdx.x; i < body.masses; i += blockDim.x) {
-    const unsigned mass = body.first_mass + i;
-    Place place = masses.place(i), velocity = triple(batch.velocities[mass]);
-    cuda::move(world, place, velocity, {masses.fx[i], masses.fy[i], masses.fz[i]}, batch.mass[mass],
-               batch.inverse_mass[mass]);
-    batch.places[mass] = {place.x, place.y, place.z, 0};
-    batch.velocities[mass] = {velocity.x, velocity.y, velocity.z, 0};
-  }
+  for (unsigned i = threadIdx.x; i < body.masses; i += blockDim.x)
+    move(world, batch, body.first_mass + i, masses.place(i), {masses.fx[i], masses.fy[i], masses.fz[i]});
 }
 
 /// The least and the most stressed of some springs. The upper half of a number is |force|, whose bits are ordered like

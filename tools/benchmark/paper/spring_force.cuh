@@ -1,7 +1,8 @@
-// What both of the paper's methods share: the force of one spring and the materials in time.
+// What both of the paper's methods share: the force of one spring, the step of one mass and the
+// materials in time.
 #pragma once
 
-#include "cuda/mass_step.cuh"
+#include "cuda/methods/paper_euler.cuh"
 #include "paper/formats.hpp"
 
 namespace evodevo::benchmark {
@@ -25,6 +26,16 @@ __device__ __forceinline__ Pull pull_of(const PaperSpring& spring, Place a, Plac
   const Number factor =
       physics::spring_factor_by_inverse(inverse, entry.stiffness, entry.rest_force * spring.rest_length);
   return {{factor * s.d.x, factor * s.d.y, factor * s.d.z}, factor * physics::length_by_inverse(s, inverse)};
+}
+
+/// Moves the mass at `place` by a step in which springs pull with `force` (N).
+__device__ __forceinline__ void move(const World<Number>& world, const PaperBatch& batch, unsigned mass, Place place,
+                                     Place force) {
+  cuda::Method::Kept nothing;
+  cuda::Moving m{place, triple(batch.velocities[mass]), force, batch.mass[mass], batch.inverse_mass[mass]};
+  cuda::Method::move(world, {}, nothing, m);
+  batch.places[mass] = {m.place.x, m.place.y, m.place.z, 0};
+  batch.velocities[mass] = {m.velocity.x, m.velocity.y, m.velocity.z, 0};
 }
 
 /// Fills in the table for `count` steps from `step` since birth on.

@@ -1,0 +1,22 @@
+# What `cmake --install` puts where: the command, its operators, and all that a plugin's author needs.
+include(CMakePackageConfigHelpers)
+set(package_dir lib/cmake/evodevo)
+
+# CUDA's runtime stays where it was found
+set_target_properties(evodevo PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+install(TARGETS evodevo evodevo_sdk evodevo_body EXPORT evodevo RUNTIME DESTINATION bin)
+install(EXPORT evodevo NAMESPACE evodevo:: FILE evodevoTargets.cmake DESTINATION ${package_dir})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/sdk/evodevo ${PROJECT_SOURCE_DIR}/kernels/include/evodevo
+  DESTINATION include FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/template DESTINATION share/evodevo)
+install(FILES ${PROJECT_SOURCE_DIR}/framework/sdk/README.md DESTINATION share/doc/evodevo RENAME plugins.md)
+install(FILES ${PROJECT_SOURCE_DIR}/plugins/README.md DESTINATION share/doc/evodevo RENAME operators.md)
+
+# before 1.0 a minor version may change what plugins include
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/evodevoConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES
+  ${CMAKE_CURRENT_BINARY_DIR}/evodevoConfigVersion.cmake
+  ${CMAKE_CURRENT_LIST_DIR}/evodevoConfig.cmake
+  ${CMAKE_CURRENT_LIST_DIR}/evodevo_add_plugin.cmake
+  ${CMAKE_CURRENT_LIST_DIR}/evodevo_plugin.map
+  DESTINATION ${package_dir})

@@ -1,0 +1,114 @@
+// evodevo new: the project of a plugin that builds, conforms and runs as it stands.
+#include <algorithm>
+#include <boost/dll/runtime_symbol_info.hpp>
+#include <cctype>
+#include <fstream>
+#include <iostream>
+#include <regex>
+#include <sstream>
+
+#include "commands/options.hpp"
+#include "loader.hpp"
+#include "text.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Beside the program as it is built and as it is installed.
+fs::path template_folder() {
+  const fs::path program = boost::dll::program_location();
+  return program.parent_path().parent_path() / "share/evodevo/template";
+}
+
+std::string checked_kind(const std::string& kind) {
+  static const std::vector<std::string> kinds(operator_kinds.begin(), operator_kinds.end());
+  if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+    throw UsageError("new " + kind + ": is not a kind of operator" + suggestion(kind, kinds));
+  return kind;
+}
+
+std::string checked_name(const std::string& name) {
+  static const std::regex allowed("[a-z][a-z0-9]*([-.][a-z][a-z0-9]*)*");
+  if (!std::regex_match(name, allowed))
+    throw UsageError("new " + name +
+                     ": is no name for an operator; expected small letters and digits, joined by - or ., such as "
+                     "my-lab.growth");
+  return name;
+}
+
+/// What stands behind the name's last dot, as words.
+std::string last_part(const std::string& name) { return name.substr(name.rfind('.') + 1); }
+
+/// "mass_turnover" for "my-lab.mass-turnover".
+std::string file_name(const std::string& name) {
+  std::string file = last_part(name);
+  std::replace(file.begin(), file.end(), '-', '_');
+  return file;
+}
+
+/// "MassTurnover" for "my-lab.mass-turnover".
+std::string class_name(const std::string& name) {
+  std::istringstream words(last_part(name));
+  std::string text;
+  for (std::string word; std::getline(words, word, '-');) {
+    word.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(word.front())));
+    text += word;
+  }
+  return text;
+}
+
+/// Keeps the lines that are for the kind: those behind a line such as "@devo@" are for devo operators alone, up to the
+/// next line of this form; behind "@end@" they are for all again.
+std::string for_kind(std::istream& source, const std::string& kind) {
+  static const std::regex section("(@[a-z]+@)+");
+  bool wanted = true;
+  std::string text;
+  for (std::string line; std::getline(source, line);) {
+    if (std::regex_match(line, section))
+      wanted = line == "@end@" || line.find("@" + kind + "@") != std::string::npos;
+    else if (wanted)
+      text += line + "\n";
+  }
+  return text;
+}
+
+void replace_all(std::string& text, const std::string& mark, const std::string& value) {
+  for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos; at += value.size())
+    text.replace(at, mark.size(), value);
+}
+
+void write_file(const fs::path& from, const fs::path& to, const std::string& kind, const std::string& name) {
+  std::ifstream source(from);
+  if (!source) throw std::runtime_error(from.string() + ": cannot be read; install evodevo anew");
+  std::string text = for_kind(source, kind);
+  replace_all(text, "@NAME@", name);
+  replace_all(text, "@FILE@", file_name(name));
+  replace_all(text, "@CLASS@", class_name(name));
+  replace_all(text, "@A_KIND@", (kind == "encoding" ? "An " : "A ") + kind);
+  std::ofstream target(to);
+  target << text;
+  if (!target.flush()) throw UsageError(to.string() + ": cannot be written");
+}
+
+}  // namespace
+
+int new_command(const Arguments& arguments) {
+  const auto given = parse({"new KIND NAME", {"KIND", "NAME"}, {}}, arguments);
+  if (!given) return 0;
+  const std::string kind = checked_kind((*given)["KIND"].as<std::string>());
+  const std::string name = checked_name((*given)["NAME"].as<std::string>());
+  std::error_code error;
+  if (!fs::create_directory(name, error))
+    throw UsageError(name + ": cannot be made: " + (error ? error.message() : "it is there already") +
+                     "; give another name, or go elsewhere");
+  for (const char* file : {"CMakeLists.txt", "README.md", "experiment.toml"})
+    write_file(template_folder() / file, fs::path(name) / file, kind, name);
+  write_file(template_folder() / "operator.cpp", fs::path(name) / (file_name(name) + ".cpp"), kind, name);
+  std::cout << name << ": a " << kind << " operator in " << file_name(name) << ".cpp; next:\n"
+            << "  cd " << name << " && cmake -B build && cmake --build build && ctest --test-dir build\n";
+  return 0;
+}
+
+}  // namespace evodevo

@@ -1,0 +1,295 @@
+// What operators of every kind have to keep to.
+#include <unistd.h>
+
+#include <cmath>
+#include <future>
+
+#include "archive.hpp"
+#include "conformance/trials.hpp"
+#include "declarations.hpp"
+#include "describe.hpp"
+#include "evolution.hpp"
+#include "isolation.hpp"
+#include "text.hpp"
+#include "toml_reader.hpp"
+
+namespace evodevo::conformance {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint32_t inputs = 16;
+/// Encodings may make bodies of thousands of masses.
+constexpr std::uint32_t few_inputs = 4;
+
+std::string kind_of(const AvailableOperator& subject) { return subject.entry->kind; }
+
+Numbers try_new(const AvailableOperator& subject, std::uint64_t seed, std::uint32_t input) {
+  return try_out(kind_of(subject), *create<Operator>(subject), seed, input);
+}
+
+std::uint32_t inputs_for(const AvailableOperator& subject) {
+  return subject.entry->kind == Encoding::kind ? few_inputs : inputs;
+}
+
+// ---- declarations ----
+
+void declarations(const AvailableOperator& subject, std::uint64_t) {
+  const auto op = create<Operator>(subject);
+  if (const std::string fault = wrong_default(*op); !fault.empty()) throw Violation("the default " + fault);
+  if (const auto faults = declaration_faults(*op); !faults.empty()) throw Violation(joined(faults, "; "));
+  if (!std::string_view(subject.entry->summary).ends_with('.'))
+    throw Violation("its summary is no sentence that ends with a full stop");
+  const std::string_view version = subject.manifest->version, licence = subject.manifest->license;
+  if (version.empty() || licence.empty()) throw Violation("its library names no version or no licence");
+}
+
+/// For every declared parameter, values that it must refuse.
+class Refusable final : public Parameters {
+ public:
+  std::vector<std::pair<std::string, toml::table>> tables;
+
+  void real(double&, std::string_view name, Range range, std::string_view) override {
+    add(name, "text");
+    beyond(name, range);
+  }
+  void integer(std::int64_t&, std::string_view name, Range range, std::string_view) override {
+    add(name, 0.5);
+    beyond(name, range);
+  }
+  void flag(bool&, std::string_view name, std::string_view) override { add(name, 1); }
+  void choice(std::string&, std::string_view name, std::initializer_list<std::string_view>, std::string_view) override {
+    add(name, "none of the options");
+  }
+  void vector(Vec3&, std::string_view name, Range, std::string_view) override { add(name, 1.0); }
+  void counts(std::array<std::int64_t, 3>&, std::string_view name, Range, std::string_view) override { add(name, 1); }
+  void materials(std::vector<std::string>&, std::string_view name, std::string_view) override {
+    add(name, toml::array{"none of the materials"});
+  }
+
+ private:
+  template <class Value>
+  void add(std::string_view name, Value&& value) {
+    toml::table table;
+    table.insert(name, std::forward<Value>(value));
+    tables.emplace_back(name, std::move(table));
+  }
+  void beyond(std::string_view name, Range range) {
+    if (std::isfinite(range.high)) add(name, static_cast<std::int64_t>(std::min(2 * std::abs(range.high) + 1, 9e15)));
+    if (std::isfinite(range.low)) add(name, static_cast<std::int64_t>(std::max(-2 * std::abs(range.low) - 1, -9e15)));
+  }
+};
+
+bool accepts(const AvailableOperator& subject, const toml::table& table) {
+  const std::vector<std::string> materials = sample_world().material_names;
+  TomlReader reader(table, "operator", &materials);
+  try {
+    create<Operator>(subject)->parameters(reader);
+    reader.finish();
+  } catch (const ConfigError&) {
+    return false;
+  }
+  return true;
+}
+
+void refusals(const AvailableOperator& subject, std::uint64_t) {
+  if (!accepts(subject, {})) throw Violation("it does not accept its own defaults");
+  if (accepts(subject, toml::table{{"a-key-that-nobody-knows", 1}})) throw Violation("it accepts an unknown key");
+  Refusable refusable;
+  create<Operator>(subject)->parameters(refusable);
+  for (const auto& [name, table] : refusable.tables)
+    if (accepts(subject, table))
+      throw Violation("it accepts " + name + " = " + value_text(*table.get(name)) +
+                      "; what the host throws out of parameters() must pass");
+}
+
+// ---- calls ----
+
+void same_seed(const AvailableOperator& subject, std::uint64_t seed) {
+  for (std::uint32_t input = 0; input < inputs_for(subject); ++input)
+    if (!same(try_new(subject, seed, input), try_new(subject, seed, input)))
+      throw Violation("two calls with input " + std::to_string(input) +
+                      " and equal random numbers differ; draw from the Rng that is given and from nothing else");
+}
+
+void threads(const AvailableOperator& subject, std::uint64_t seed) {
+  const auto op = create<Operator>(subject);
+  const std::string kind = kind_of(subject);
+  std::vector<Numbers> alone;
+  for (std::uint32_t input = 0; input < inputs_for(subject); ++input) alone.push_back(try_out(kind, *op, seed, input));
+  const auto all = [&] {
+    std::vector<Numbers> results;
+    for (std::uint32_t input = 0; input < alone.size(); ++input) results.push_back(try_out(kind, *op, seed, input));
+    return results;
+  };
+  std::vector<std::future<std::vector<Numbers>>> others;
+  for (int i = 0; i < 8; ++i) others.push_back(std::async(std::launch::async, all));
+  for (auto& other : others) {
+    const auto results = other.get();
+    for (std::size_t i = 0; i < alone.size(); ++i)
+      if (!same(results[i], alone[i]))
+        throw Violation("input " + std::to_string(i) +
+                        " gives one result on one thread and another on eight; an operator holds parameters alone");
+  }
+}
+
+void batch(const AvailableOperator& subject, std::uint64_t seed) {
+  const auto op = create<Operator>(subject);
+  for (std::uint32_t left = inputs_for(subject); left > 0; --left) {
+    const std::uint32_t input = left - 1;
+    if (!same(try_out(kind_of(subject), *op, seed, input), try_new(subject, seed, input)))
+      throw Violation("input " + std::to_string(input) +
+                      " alone and after others gives different results; an operator holds parameters alone");
+  }
+}
+
+void untouched_inputs(const AvailableOperator& subject, std::uint64_t seed) {
+  for (std::uint32_t input = 0; input < inputs_for(subject); ++input) try_new(subject, seed, input);
+}
+
+/// Sets every parameter to another value that is allowed.
+class Changer final : public Parameters {
+ public:
+  void real(double& value, std::string_view, Range range, std::string_view) override { value = other(value, range); }
+  void integer(std::int64_t& value, std::string_view, Range range, std::string_view) override {
+    value = static_cast<std::int64_t>(other(static_cast<double>(value), range));
+  }
+  void flag(bool& value, std::string_view, std::string_view) override { value = !value; }
+  void choice(std::string& value, std::string_view, std::initializer_list<std::string_view> options,
+              std::string_view) override {
+    for (const std::string_view option : options)
+      if (option != value) return void(value = option);
+  }
+  void vector(Vec3& value, std::string_view, Range range, std::string_view) override {
+    value.x = other(value.x, range);
+  }
+  void counts(std::array<std::int64_t, 3>& value, std::string_view, Range range, std::string_view) override {
+    value[0] = static_cast<std::int64_t>(other(static_cast<double>(value[0]), range));
+  }
+  void materials(std::vector<std::string>& value, std::string_view, std::string_view) override { value = {"bone"}; }
+
+ private:
+  static double other(double value, Range range) {
+    const double end = value == range.low ? range.high : range.low;
+    return std::isfinite(end) ? end : value + 1;
+  }
+};
+
+void instances(const AvailableOperator& subject, std::uint64_t seed) {
+  const auto values = [](Operator& op) {
+    std::string text;
+    for (const ParameterDescription& p : describe_parameters(op)) text += p.name + " = " + p.fallback + "\n";
+    return text;
+  };
+  const auto one = create<Operator>(subject), other = create<Operator>(subject);
+  const std::string defaults = values(*one);
+  if (defaults.empty()) throw Skipped("it has no parameters");
+  const Numbers before = try_out(kind_of(subject), *one, seed, 0);
+  Changer changer;
+  other->parameters(changer);
+  if (values(*one) != defaults)
+    throw Violation("a parameter set in one instance changes in another; no static members");
+  if (!same(try_out(kind_of(subject), *one, seed, 0), before))
+    throw Violation("parameters set in one instance change what another does; no static members");
+}
+
+// ---- a run ----
+
+/// A small experiment that uses the operator with its defaults.
+std::string experiment_with(const AvailableOperator& subject, std::uint64_t seed) {
+  const std::string kind = kind_of(subject), own = std::string("name = \"") + subject.entry->name + "\"\n";
+  const auto either = [&](std::string_view k, const char* otherwise) {
+    return k == kind ? own : std::string(otherwise);
+  };
+  std::string text = "[experiment]\nseed = " + std::to_string(seed % (1u << 31)) +
+                     "\nevaluations = 24\npopulation = 6\n[scene.gravity]\n[scene.floor]\n[scene.friction]\n"
+                     "[scene.damping]\n[simulation]\ndevice = \"cpu\"\nthreads = 2\n";
+  text += "[encoding]\n" + either("encoding", "name = \"voxel\"\nsize = [2, 1, 1]\nedge = 0.5\n");
+  text += "[[mutation]]\n" + either("mutation", "name = \"reset-weight\"\n") + "probability = 0.8\n";
+  text += "[[crossover]]\n" + either("crossover", "name = \"two-point\"\n") + "probability = 0.5\n";
+  text += "[development]\ncycles = 2\ncycle_time = 0.05\n[[development.operator]]\n" +
+          either("devo", "name = \"spring-turnover\"\nsprings = 2\n");
+  text += "[[fitness]]\n" + either("fitness", "name = \"distance\"\nsettle = 0.0\nwindow = 0.1\n");
+  return text + "[selection]\n" + either("selection", "name = \"elitist\"\n");
+}
+
+/// Evolves from where the archive stands; where asked to, stops after the first generation that had parents.
+void live(const Experiment& experiment, Archive& archive, bool stop_early) {
+  const auto simulator =
+      make_cpu_simulator(experiment.scene, experiment.stepping, static_cast<int>(experiment.threads));
+  std::atomic<bool> stop = false;
+  Observer observer;
+  observer.generation_done = [&](const Summary& summary) { stop = stop_early && summary.generation == 1; };
+  evolve(experiment, *simulator, archive, stop, observer);
+}
+
+std::string transcript(const Archive& archive) {
+  std::string text;
+  for (std::uint32_t id = 0; const auto individual = archive.individual(id); ++id) {
+    text += std::to_string(id) + " " + name(individual->result.status) + " ";
+    for (const float gene : individual->genome) text += to_text(gene) + " ";
+    for (const double value : individual->result.objectives) text += to_text(value) + " ";
+    text += individual->died ? std::to_string(*individual->died) + "\n" : "lives\n";
+  }
+  return text;
+}
+
+/// What `work` returns in a process that has not called the operator yet, as after a restart.
+std::string in_new_process(const std::function<std::string()>& work) {
+  const auto guarded = [&] {
+    try {
+      return "+" + work();
+    } catch (const std::exception& error) {
+      return "-" + std::string(error.what());
+    }
+  };
+  const ChildEnd end = in_child(guarded, 60);
+  if (!end.crash.empty()) throw Violation("a run with it crashes: " + end.crash);
+  if (end.text.starts_with('-')) throw Violation(end.text.substr(1));
+  return end.text.substr(1);
+}
+
+/// A folder for a run, removed in the end.
+struct RunFolder {
+  fs::path path;
+  RunFolder() {
+    std::string pattern = (fs::temp_directory_path() / "evodevo-conform-XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error(pattern + ": cannot be made");
+    path = pattern;
+  }
+  ~RunFolder() { fs::remove_all(path); }
+  RunFolder(const RunFolder&) = delete;
+  RunFolder& operator=(const RunFolder&) = delete;
+};
+
+void resuming(const AvailableOperator& subject, std::uint64_t seed) {
+  const RunFolder folder;
+  const std::string text = experiment_with(subject, seed);
+  const ExperimentSource source{"the conformance kit's experiment", {}, {subject.file}};
+  const auto begin = [&](const char* name, bool stop_early) {
+    return in_new_process([&] {
+      const Experiment experiment = read_experiment(text, source);
+      Archive archive = Archive::create(folder.path / name, experiment, "cpu");
+      live(experiment, archive, stop_early);
+      return transcript(archive);
+    });
+  };
+  const std::string straight = begin("straight", false);
+  begin("stopped", true);
+  const std::string resumed = in_new_process([&] {
+    Archive archive = Archive::resume(folder.path / "stopped");
+    live(recorded_experiment(archive), archive, false);
+    return transcript(archive);
+  });
+  if (straight != resumed) throw Violation("a run that was stopped and resumed ends otherwise than one that was not");
+}
+
+}  // namespace
+
+std::vector<Case> general_cases() {
+  return {{"declarations", declarations}, {"refusals", refusals}, {"same-seed", same_seed},
+          {"threads", threads},           {"batch", batch},       {"inputs", untouched_inputs},
+          {"instances", instances},       {"resuming", resuming}};
+}
+
+}  // namespace evodevo::conformance

@@ -1,0 +1,79 @@
+#include "conformance/conformance.hpp"
+
+#include <chrono>
+#include <ctime>
+
+#include "conformance/exports.hpp"
+#include "isolation.hpp"
+#include "text.hpp"
+
+namespace evodevo::conformance {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr unsigned seconds_per_case = 120;
+constexpr double listing_limit = 0.1;  ///< CPU time, s
+
+/// What a child says of a check: the outcome, and behind a newline the reason.
+std::string tell(const std::function<void()>& check) {
+  try {
+    check();
+    return "passed\n";
+  } catch (const Skipped& reason) {
+    return std::string("skipped\n") + reason.what();
+  } catch (const std::exception& error) {
+    return std::string("failed\n") + error.what();
+  } catch (...) {
+    return "failed\nit threw something that is no std::exception";
+  }
+}
+
+Verdict judge(const std::string& subject, const char* name, const std::function<void()>& check) {
+  const ChildEnd end = in_child([&] { return tell(check); }, seconds_per_case);
+  if (!end.crash.empty()) return {subject, name, "crashed", end.crash};
+  const auto newline = end.text.find('\n');
+  return {subject, name, end.text.substr(0, newline), end.text.substr(newline + 1)};
+}
+
+void loads(const fs::path& library) {
+  const Registry registry({library});
+  if (!registry.failed().empty()) throw Violation(registry.failed().front().reason);
+  if (registry.operators().empty()) throw Violation("it brings no operator");
+}
+
+void exports_one_function(const fs::path& library) {
+  const std::vector<std::string> found = exports(library);
+  if (found != std::vector<std::string>{"evodevo_plugin"})
+    throw Violation("exports " + joined(found) +
+                    "; expected evodevo_plugin alone: build it with evodevo_add_plugin or -fvisibility=hidden");
+}
+
+void lists_quickly(const fs::path& library) {
+  const std::clock_t start = std::clock();
+  const Registry registry({library});
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  if (seconds > listing_limit)
+    throw Violation("listing it takes " + to_text(seconds * 1000) +
+                    " ms; expected less than 100: work belongs into the calls, not into constructors");
+}
+
+}  // namespace
+
+void examine(const fs::path& library, std::uint64_t seed, const std::function<void(const Verdict&)>& report) {
+  const std::string file = library.filename().string();
+  const Verdict loaded = judge(file, "loads", [&] { loads(library); });
+  report(loaded);
+  if (loaded.outcome != "passed") return;
+  report(judge(file, "exports", [&] { exports_one_function(library); }));
+  report(judge(file, "listing", [&] { lists_quickly(library); }));
+
+  const Registry registry({library});
+  for (const AvailableOperator& subject : registry.operators()) {
+    const std::string title = std::string(subject.entry->kind) + " " + subject.entry->name;
+    for (const auto& cases : {general_cases(), laws_of(subject.entry->kind)})
+      for (const Case& one : cases) report(judge(title, one.name, [&] { one.check(subject, seed); }));
+  }
+}
+
+}  // namespace evodevo::conformance

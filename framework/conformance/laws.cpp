@@ -1,0 +1,271 @@
+// What operators of one kind have to keep to.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
+
+#include "body_building.hpp"
+#include "conformance/trials.hpp"
+#include "text.hpp"
+
+namespace evodevo::conformance {
+namespace {
+
+std::string numbered(const char* what, std::uint32_t input) { return std::string(what) + " " + std::to_string(input); }
+
+// ---- encodings ----
+
+/// In a run the host does without the search for doubled pairs, which takes long, and drops a body that is not finite.
+void require_sound(const Blueprint& blueprint, const World& world) {
+  check_blueprint(blueprint, world);
+  for (const Mass& mass : blueprint.body.masses)
+    if (!std::isfinite(norm(mass.rest))) throw Violation("a mass has a place that is not finite");
+  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (const Spring& spring : blueprint.body.springs)
+    if (!pairs.insert(std::minmax(spring.a, spring.b)).second) throw Violation("two springs join one pair of masses");
+}
+
+/// Every genome gives a sound body, or a reason.
+void decodes(const AvailableOperator& subject, std::uint64_t seed) {
+  const auto op = create<Encoding>(subject);
+  const World world = sample_world();
+  const Layout layout = op->layout(world);
+  std::string reason;
+  std::uint32_t bodies = 0;
+  for (std::uint32_t input = 0; input < 12; ++input) {
+    Rng rng = stream(seed, input);
+    Genome genome = op->random(layout, rng);
+    require_within(genome, layout);
+    const auto genes = static_cast<std::uint32_t>(genome.size());
+    for (std::uint32_t changed = 0; changed < std::min(genes, input); ++changed) {
+      const std::uint32_t gene = rng.below(genes);
+      genome[gene] = layout.genes[gene].draw(rng);
+    }
+    const Blueprint blueprint = op->decode(genome, world);
+    reason = blueprint.failure;
+    if (!reason.empty()) continue;
+    if (blueprint.body.masses.empty()) throw Violation("there is neither a body nor a reason why there is none");
+    require_sound(blueprint, world);
+    ++bodies;
+  }
+  if (bodies == 0) throw Skipped("none of its genomes gives a body: " + reason);
+}
+
+void layout_is_whole(const AvailableOperator& subject, std::uint64_t) {
+  const Layout layout = create<Encoding>(subject)->layout(sample_world());
+  std::vector<int> groups(layout.genes.size(), 0);
+  for (const GeneGroup& group : layout.groups)
+    for (std::uint32_t i = group.first; i < group.first + group.count; ++i)
+      if (i >= groups.size() || ++groups[i] > 1) throw Violation("its groups overlap or go beyond the genes");
+  for (const GeneSpec& gene : layout.genes)
+    if (!gene.is_choice() && !(gene.low <= gene.high)) throw Violation("a gene's bounds are no range");
+}
+
+// ---- variation ----
+
+void nothing_stays_nothing(const AvailableOperator& subject, std::uint64_t seed) {
+  Genome nothing;
+  Rng rng = stream(seed, 0);
+  create<Mutation>(subject)->mutate(nothing, Layout{}, rng);
+  if (!nothing.empty()) throw Violation("it makes genes of no genes");
+}
+
+void mutants_fit(const AvailableOperator& subject, std::uint64_t seed) {
+  const auto op = create<Mutation>(subject);
+  const Layout layout = sample_layout();
+  Rng rng = stream(seed, 0);
+  Genome genome = random_genome(layout, rng);
+  for (int i = 0; i < 200; ++i) {
+    op->mutate(genome, layout, rng);
+    require_within(genome, layout);
+  }
+}
+
+void twins_stay_twins(const AvailableOperator& subject, std::uint64_t seed) {
+  const auto op = create<Crossover>(subject);
+  const Layout layout = sample_layout();
+  for (std::uint32_t input = 0; input < 50; ++input) {
+    Rng rng = stream(seed, input);
+    const Genome genome = random_genome(layout, rng);
+    Genome one = genome, other = genome;
+    op->cross(one, other, layout, rng);
+    if (one != genome || other != genome) throw Violation("of two equal genomes it makes others");
+  }
+}
+
+void children_fit(const AvailableOperator& subject, std::uint64_t seed) {
+  const auto op = create<Crossover>(subject);
+  const Layout layout = sample_layout();
+  Rng rng = stream(seed, 0);
+  for (int i = 0; i < 200; ++i) {
+    Genome one = random_genome(layout, rng), other = random_genome(layout, rng);
+    op->cross(one, other, layout, rng);
+    require_within(one, layout);
+    require_within(other, layout);
+  }
+}
+
+// ---- development ----
+
+/// Cycle after cycle the host can apply the edits, and new masses lie within the bounds.
+void bodies_stay_sound(const AvailableOperator& subject, std::uint64_t seed) {
+  const auto op = create<Devo>(subject);
+  bool edited = false;
+  for (std::uint32_t input = 0; input < 24; ++input) {
+    SampleLife life = sample_life(seed, input);
+    for (life.cycle = 1; life.cycle <= 10; ++life.cycle) {
+      Edits edits;
+      Rng rng = stream(seed, input, static_cast<std::uint32_t>(life.cycle));
+      const Moment now = life.now();
+      op->develop(now, edits, rng);
+      edited = edited || !numbers_of(edits).empty();
+      for (const NewMass& mass : edits.new_masses) {
+        const Vec3 p = mass.place, low = life.bounds.low, high = life.bounds.high;
+        // written so that NaN fails
+        if (!(p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z))
+          throw Violation(numbered("body", input) + ": a new mass lies beyond the bounds");
+      }
+      try {
+        apply_edits(life.living, edits, now);
+      } catch (const std::invalid_argument& error) {
+        throw Violation(numbered("body", input) + ", " + numbered("cycle", std::uint32_t(life.cycle)) + ": it " +
+                        error.what());
+      }
+    }
+  }
+  if (!edited) throw Skipped("it edits none of the bodies");
+}
+
+// ---- fitness ----
+
+/// Along the ground: heights are those above the floor. By powers of two, so that little is rounded.
+void unmoved_by_translation(const AvailableOperator& subject, std::uint64_t seed) {
+  const auto op = create<Fitness>(subject);
+  for (std::uint32_t input = 0; input < 20; ++input) {
+    const Observation here = sample_observation(seed, input);
+    Observation there = here;
+    const Vec3 by{8, -4, 0};
+    for (Vec3* place : {&there.box.low, &there.box.high, &there.centre_before, &there.centre_after})
+      *place = *place + by;
+    const auto a = op->score(here), b = op->score(there);
+    for (std::size_t i = 0; i < a.size(); ++i)
+      if (!(std::abs(a[i] - b[i]) <= 1e-9 * (1 + std::abs(a[i]))))
+        throw Violation("a body that does the same elsewhere scores " + to_text(b[i]) + " instead of " + to_text(a[i]));
+  }
+}
+
+void honest_about_nan(const AvailableOperator& subject, std::uint64_t) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Vec3 nowhere{nan, nan, nan};
+  for (const double score : create<Fitness>(subject)->score({{nowhere, nowhere}, nowhere, nowhere, 1, nan}))
+    if (std::isfinite(score)) throw Violation("an observation without a single number scores " + to_text(score));
+}
+
+void scores_every_objective(const AvailableOperator& subject, std::uint64_t seed) {
+  const auto op = create<Fitness>(subject);
+  const Request request = op->observes();
+  if (!(request.settle >= 0) || !(request.window > 0)) throw Violation("it asks for a window that is none");
+  const auto objectives = op->objectives();
+  const auto scores = op->score(sample_observation(seed, 0));
+  if (objectives.empty()) throw Violation("it has no objective");
+  if (scores.size() != objectives.size())
+    throw Violation("it gives " + std::to_string(scores.size()) + " scores for " + std::to_string(objectives.size()) +
+                    " objectives");
+  for (const Objective& objective : objectives)
+    if (objective.name.empty() || objective.unit.empty()) throw Violation("an objective has no name or no unit");
+}
+
+// ---- selection ----
+
+/// The table in another order of birth; `order[i]` is the old row of the new row i.
+SampleTable reordered(const SampleTable& table, const std::vector<std::uint32_t>& order) {
+  std::vector<std::uint32_t> place(order.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
+  SampleTable other;
+  for (const std::uint32_t row : order) other.scores.push_back(table.scores[row]);
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    Candidate row = table.rows[order[i]];
+    row.scores = other.scores[i];
+    if (row.challenges) row.challenges = place[*row.challenges];
+    other.rows.push_back(row);
+  }
+  return other;
+}
+
+void order_does_not_matter(const AvailableOperator& subject, std::uint64_t seed) {
+  const auto op = create<Selection>(subject);
+  for (std::uint32_t input = 0; input < 20; ++input) {
+    const SampleTable table = sample_table(seed, input, 24, 4);
+    std::vector<std::uint32_t> order(24);
+    std::iota(order.begin(), order.end(), 0u);
+    Rng shuffler = stream(seed, input, 2);
+    shuffler.shuffle(order);
+    const SampleTable other = reordered(table, order);
+    Rng rng = stream(seed, input, 1), same_rng = stream(seed, input, 1);
+    auto living = op->survivors(table.rows, 10, rng), living_too = op->survivors(other.rows, 10, same_rng);
+    for (std::uint32_t& row : living_too) row = order.at(row);
+    std::sort(living.begin(), living.end());
+    std::sort(living_too.begin(), living_too.end());
+    if (living != living_too) throw Violation("who lives on depends on the order of birth");
+    const auto pairs = op->parents(table.rows, 20, rng), pairs_too = op->parents(other.rows, 20, same_rng);
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      if (pairs[i] != std::pair(order.at(pairs_too.at(i).first), order.at(pairs_too.at(i).second)))
+        throw Violation("who breeds depends on the order of birth");
+  }
+}
+
+/// The rows that live on, checked to be as many and as different as they have to be.
+std::vector<std::uint32_t> survivors(const Selection& op, const SampleTable& table, Rng& rng) {
+  const auto living = op.survivors(table.rows, 10, rng);
+  const std::set<std::uint32_t> different(living.begin(), living.end());
+  if (living.empty() || living.size() > 10 || different.size() != living.size() ||
+      *different.rbegin() >= table.rows.size())
+    throw Violation("of " + std::to_string(table.rows.size()) + " rows it lets " + std::to_string(living.size()) +
+                    " live on, not 1 to 10 different ones");
+  return living;
+}
+
+void keeps_its_elite(const AvailableOperator& subject, std::uint64_t seed) {
+  const auto op = create<Selection>(subject);
+  for (std::uint32_t input = 0; input < 40; ++input) {
+    const SampleTable table = sample_table(seed, input, 24, 4);
+    const auto best = std::max_element(table.scores.begin(), table.scores.end());
+    Rng rng = stream(seed, input, 1);
+    const auto living = survivors(*op, table, rng);
+    if (std::find(living.begin(), living.end(), best - table.scores.begin()) == living.end())
+      throw Violation("the row with the best first score does not live on");
+  }
+}
+
+/// Twelve of twenty rows are sound and ten live on, so no failed one has to.
+void failed_rows_lose(const AvailableOperator& subject, std::uint64_t seed) {
+  const auto op = create<Selection>(subject);
+  for (std::uint32_t input = 0; input < 20; ++input) {
+    const SampleTable table = sample_table(seed, input, 20, 8);
+    Rng rng = stream(seed, input, 1);
+    for (const std::uint32_t row : survivors(*op, table, rng))
+      if (!table.rows[row].ok()) throw Violation("a failed row lives on instead of a sound one");
+    for (const auto& [parent, mate] : op->parents(table.rows, 20, rng))
+      if (!table.rows.at(parent).ok() || !table.rows.at(mate).ok())
+        throw Violation("a failed row breeds instead of a sound one");
+  }
+  const SampleTable hopeless = sample_table(seed, 0, 20, 20);
+  Rng rng = stream(seed, 0, 1);
+  survivors(*op, hopeless, rng);
+  if (op->parents(hopeless.rows, 5, rng).size() != 5) throw Violation("where all rows failed there are no parents");
+}
+
+}  // namespace
+
+std::vector<Case> laws_of(std::string_view kind) {
+  if (kind == Encoding::kind) return {{"layout", layout_is_whole}, {"decoding", decodes}};
+  if (kind == Mutation::kind) return {{"nothing", nothing_stays_nothing}, {"layout", mutants_fit}};
+  if (kind == Crossover::kind) return {{"twins", twins_stay_twins}, {"layout", children_fit}};
+  if (kind == Devo::kind) return {{"bodies", bodies_stay_sound}};
+  if (kind == Fitness::kind)
+    return {{"objectives", scores_every_objective}, {"translation", unmoved_by_translation}, {"nan", honest_about_nan}};
+  return {{"order", order_does_not_matter}, {"elite", keeps_its_elite}, {"failed", failed_rows_lose}};
+}
+
+}  // namespace evodevo::conformance

@@ -1,0 +1,280 @@
+#include "conformance/trials.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <set>
+
+#include "philox.hpp"
+#include "text.hpp"
+
+namespace evodevo::conformance {
+namespace {
+
+using conformance::numbers_of;  // the overloads below would hide them
+
+void append(Numbers& numbers, std::initializer_list<double> more) { numbers.insert(numbers.end(), more); }
+void append(Numbers& numbers, Vec3 v) { append(numbers, {v.x, v.y, v.z}); }
+
+void append(Numbers& numbers, const Material& m) { append(numbers, {m.stiffness, m.amplitude, m.frequency, m.phase}); }
+
+void append(Numbers& numbers, const Body& body) {
+  for (const Mass& m : body.masses) {
+    append(numbers, m.rest);
+    append(numbers, {m.mass, double(m.material), double(m.air_contacts)});
+  }
+  for (const Spring& s : body.springs)
+    append(numbers, {double(s.a), double(s.b), s.rest_length, double(s.material), s.growth});
+  for (const Material& m : body.materials) append(numbers, m);
+}
+
+Numbers numbers_of(const Layout& layout) {
+  Numbers numbers;
+  for (const GeneSpec& gene : layout.genes) append(numbers, {gene.low, gene.high, double(gene.choices)});
+  for (const GeneGroup& group : layout.groups) append(numbers, {double(group.first), double(group.count)});
+  return numbers;
+}
+
+Numbers numbers_of(const World& world) {
+  Numbers numbers{world.mass};
+  for (const Material& material : world.materials) append(numbers, material);
+  return numbers;
+}
+
+Numbers numbers_of(const SampleLife& life) {
+  Numbers numbers(life.living.stress);
+  append(numbers, life.living.body);
+  for (const Vec3& place : life.living.state.position) append(numbers, place);
+  for (const Vec3& velocity : life.living.state.velocity) append(numbers, velocity);
+  const Numbers genome = numbers_of(life.genome), layout = numbers_of(life.layout);
+  numbers.insert(numbers.end(), genome.begin(), genome.end());
+  numbers.insert(numbers.end(), layout.begin(), layout.end());
+  return numbers;
+}
+
+void require_untouched(const char* what, const Numbers& before, const Numbers& after) {
+  if (!same(before, after)) throw Violation(std::string("it changes ") + what + ", which it may only read");
+}
+
+Numbers try_encoding(const Encoding& op, std::uint64_t seed, std::uint32_t input) {
+  const World world = sample_world();
+  const Layout layout = op.layout(world);
+  const Numbers layout_before = numbers_of(layout);
+  Rng rng = stream(seed, input);
+  const Genome genome = op.random(layout, rng);
+  const Numbers genome_before = numbers_of(genome);
+  const Blueprint blueprint = op.decode(genome, world);
+  require_untouched("the world", numbers_of(sample_world()), numbers_of(world));
+  require_untouched("the layout", layout_before, numbers_of(layout));
+  require_untouched("the genome that it decodes", genome_before, numbers_of(genome));
+  Numbers result = genome_before;
+  append(result, blueprint.body);
+  for (const Vec3& place : blueprint.paired_at) append(result, place);
+  for (const Vec3& place : blueprint.origins) append(result, place);
+  append(result, {double(blueprint.neighbours), double(blueprint.failure.size())});
+  return result;
+}
+
+Numbers try_mutation(const Mutation& op, std::uint64_t seed, std::uint32_t input) {
+  const Layout layout = sample_layout();
+  Rng rng = stream(seed, input);
+  Genome genome = random_genome(layout, rng);
+  op.mutate(genome, layout, rng);
+  require_untouched("the layout", numbers_of(sample_layout()), numbers_of(layout));
+  return numbers_of(genome);
+}
+
+Numbers try_crossover(const Crossover& op, std::uint64_t seed, std::uint32_t input) {
+  const Layout layout = sample_layout();
+  Rng rng = stream(seed, input);
+  Genome one = random_genome(layout, rng), other = random_genome(layout, rng);
+  op.cross(one, other, layout, rng);
+  require_untouched("the layout", numbers_of(sample_layout()), numbers_of(layout));
+  one.insert(one.end(), other.begin(), other.end());
+  return numbers_of(one);
+}
+
+Numbers try_devo(const Devo& op, std::uint64_t seed, std::uint32_t input) {
+  const SampleLife life = sample_life(seed, input);
+  Edits edits;
+  Rng rng = stream(seed, input, 1);
+  op.develop(life.now(), edits, rng);
+  require_untouched("the body, its state or its genes", numbers_of(sample_life(seed, input)), numbers_of(life));
+  return numbers_of(edits);
+}
+
+Numbers try_fitness(const Fitness& op, std::uint64_t seed, std::uint32_t input) {
+  const Observation observation = sample_observation(seed, input);
+  const auto digest = [](const Observation& o) {
+    Numbers numbers{o.window, o.work};
+    for (const Vec3& v : {o.box.low, o.box.high, o.centre_before, o.centre_after}) append(numbers, v);
+    return numbers;
+  };
+  const Numbers before = digest(observation);
+  Numbers result = op.score(observation);
+  require_untouched("the observation", before, digest(observation));
+  const Request request = op.observes();
+  append(result, {request.settle, request.window, double(request.work), double(op.objectives().size())});
+  return result;
+}
+
+Numbers try_selection(const Selection& op, std::uint64_t seed, std::uint32_t input) {
+  const SampleTable table = sample_table(seed, input, 24, 4), before = sample_table(seed, input, 24, 4);
+  Rng rng = stream(seed, input, 1);
+  Numbers result;
+  for (const auto& [parent, mate] : op.parents(table.rows, 20, rng)) append(result, {double(parent), double(mate)});
+  for (const std::uint32_t row : op.survivors(table.rows, 10, rng)) result.push_back(row);
+  for (std::size_t i = 0; i < table.scores.size(); ++i)
+    require_untouched("the scores", before.scores[i], table.scores[i]);
+  return result;
+}
+
+}  // namespace
+
+bool same(const Numbers& a, const Numbers& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
+    return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+  });
+}
+
+Rng stream(std::uint64_t seed, std::uint32_t input, std::uint32_t part) { return Rng(philox, {seed, input, part, 0}); }
+
+World sample_world() {
+  World world;
+  for (const auto& [name, material] : base_materials()) {
+    world.material_names.push_back(name);
+    world.materials.push_back(material);
+  }
+  world.philox = philox;
+  return world;
+}
+
+Layout sample_layout() {
+  Layout layout;
+  layout.add_group(7, {-1, 1});
+  layout.add_group(1, {0, 0, 5});
+  layout.add_group(3, {0, 0.25});
+  layout.add_group(6, {0, 0, 2});
+  return layout;
+}
+
+void require_within(const Genome& genome, const Layout& layout) {
+  if (genome.size() != layout.genes.size())
+    throw Violation("a genome has " + std::to_string(genome.size()) + " genes where the layout has " +
+                    std::to_string(layout.genes.size()));
+  for (std::size_t i = 0; i < genome.size(); ++i) {
+    const GeneSpec& spec = layout.genes[i];
+    const bool fits = spec.is_choice() ? genome[i] >= 0 && genome[i] < static_cast<float>(spec.choices) &&
+                                             genome[i] == std::floor(genome[i])
+                                       : genome[i] >= spec.low && genome[i] <= spec.high;
+    if (!fits) throw Violation("gene " + std::to_string(i) + " = " + to_text(genome[i]) + " is not of the layout");
+  }
+}
+
+Numbers numbers_of(const Genome& genome) { return {genome.begin(), genome.end()}; }
+
+Numbers numbers_of(const Edits& edits) {
+  Numbers numbers(edits.removed_springs.begin(), edits.removed_springs.end());
+  numbers.insert(numbers.end(), edits.removed_masses.begin(), edits.removed_masses.end());
+  for (const ChangedSpring& s : edits.changed_springs) {
+    append(numbers, {double(s.spring), s.rest_length.value_or(-1)});
+    append(numbers, s.material.value_or(Material{}));
+  }
+  for (const NewMass& m : edits.new_masses) {
+    append(numbers, m.place);
+    append(numbers, {m.mass, double(m.material)});
+  }
+  for (const NewSpring& s : edits.new_springs) {
+    append(numbers, {double(s.a), double(s.b), s.rest_length.value_or(-1)});
+    append(numbers, s.material);
+  }
+  return numbers;
+}
+
+Moment SampleLife::now() const {
+  return {.body = living.body,
+          .state = living.state,
+          .stress = living.stress,
+          .cycle = cycle,
+          .cycles = 20,
+          .turn = cycle,
+          .turns = 20,
+          .time = 0.5 * cycle,
+          .bounds = bounds,
+          .mass = 0.2,
+          .resets = resets,
+          .genome = genome,
+          .layout = layout};
+}
+
+SampleLife sample_life(std::uint64_t seed, std::uint32_t input) {
+  Rng rng = stream(seed, input);
+  SampleLife life;
+  life.layout = sample_layout();
+  life.genome = random_genome(life.layout, rng);
+  life.resets = input % 3 == 2;
+  Body& body = life.living.body;
+  body.materials = sample_world().materials;
+  const auto materials = static_cast<std::uint32_t>(body.materials.size());
+  // every eighth body has next to nothing, which is where operators forget to look
+  const std::uint32_t masses = input % 8 == 7 ? 2 : 12 + rng.below(24);
+  const bool masses_have_materials = input % 2 == 0;
+  for (std::uint32_t i = 0; i < masses; ++i) {
+    const Vec3 place{rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0, 1)};
+    body.masses.push_back({place, 0.2, masses_have_materials ? std::int32_t(rng.below(materials)) : no_material, 0});
+    life.living.state.position.push_back(life.resets ? place : 1.25 * place);
+    life.living.state.velocity.push_back({rng.uniform(-1, 1), 0, 0});
+  }
+  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (std::uint32_t i = 0; i < 5 * masses; ++i) {
+    const std::uint32_t a = rng.below(masses), b = rng.below(masses);
+    if (a == b || !pairs.insert(std::minmax(a, b)).second) continue;
+    const double length = norm(body.masses[a].rest - body.masses[b].rest);
+    const Material stiff{1000.0 + rng.below(3), 0.1, 1, 0};
+    const auto growth = static_cast<float>(rng.uniform(0.8, 1.25));
+    body.springs.push_back({a, b, length, body.material_index(stiff), growth});
+    life.living.stress.push_back(rng.uniform(0, 100));
+  }
+  life.bounds = bounding_box(life.living.state.position);
+  return life;
+}
+
+Observation sample_observation(std::uint64_t seed, std::uint32_t input) {
+  Rng rng = stream(seed, input);
+  const auto place = [&] { return Vec3{rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0, 1)}; };
+  const Vec3 low = place(), size = place() + Vec3{2, 2, 1};
+  return {{low, low + size}, low + 0.5 * size, place(), 2.0, rng.uniform(0, 50)};
+}
+
+SampleTable sample_table(std::uint64_t seed, std::uint32_t input, std::size_t rows, std::size_t failed) {
+  Rng rng = stream(seed, input);
+  SampleTable table;
+  std::vector<std::uint8_t> fails(rows, 0);
+  std::fill_n(fails.begin(), failed, 1);
+  rng.shuffle(fails);
+  for (std::size_t i = 0; i < rows; ++i) {
+    Numbers scores;
+    for (std::uint32_t objective = 0; objective < 1 + input % 2; ++objective) scores.push_back(rng.uniform(-5, 5));
+    table.scores.push_back(fails[i] ? Numbers{} : scores);
+  }
+  for (std::size_t i = 0; i < rows; ++i) {
+    Candidate row;
+    row.scores = table.scores[i];
+    row.age = rng.below(6);
+    // the later half are newborns, most of them children of the earlier
+    if (i >= rows / 2 && rng.chance(0.8)) row.challenges = rng.below(static_cast<std::uint32_t>(rows / 2));
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+Numbers try_out(std::string_view kind, const Operator& op, std::uint64_t seed, std::uint32_t input) {
+  if (kind == Encoding::kind) return try_encoding(static_cast<const Encoding&>(op), seed, input);
+  if (kind == Mutation::kind) return try_mutation(static_cast<const Mutation&>(op), seed, input);
+  if (kind == Crossover::kind) return try_crossover(static_cast<const Crossover&>(op), seed, input);
+  if (kind == Devo::kind) return try_devo(static_cast<const Devo&>(op), seed, input);
+  if (kind == Fitness::kind) return try_fitness(static_cast<const Fitness&>(op), seed, input);
+  return try_selection(static_cast<const Selection&>(op), seed, input);
+}
+
+}  // namespace evodevo::conformance

@@ -1,0 +1,19 @@
+// Runs code that may crash in a process of its own.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace evodevo {
+
+/// How a child process ended.
+struct ChildEnd {
+  std::string text;   ///< what the work returned
+  std::string crash;  ///< how the process ended instead, such as "Segmentation fault"; empty where work returned
+};
+
+/// Runs `work` in a copy of this process, which it can neither change nor bring down. What it prints is dropped. It is
+/// ended after `seconds`. Throws std::system_error where no process can be made.
+ChildEnd in_child(const std::function<std::string()>& work, unsigned seconds);
+
+}  // namespace evodevo

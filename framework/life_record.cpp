@@ -1,0 +1,233 @@
+#include "life_record.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include "development.hpp"
+
+namespace evodevo {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
+
+std::vector<std::uint32_t> ascending(std::vector<std::uint32_t> indices) {
+  std::sort(indices.begin(), indices.end());
+  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+  return indices;
+}
+
+/// Appends changes to bytes. Whole numbers take seven bits to a byte, the highest bit says that more follow.
+class Writer {
+ public:
+  Writer(std::string& bytes, std::vector<Material>& materials) : bytes_(bytes), materials_(materials) {}
+
+  void write(const Change& change) {
+    const Edits& edits = change.edits;
+    whole(change.cycle);
+    whole(change.op ? *change.op + 1 : 0);
+    ascending_indices(edits.removed_masses);
+    ascending_indices(edits.removed_springs);
+    for (const float stress : change.removed_stress) raw(stress);
+    whole(edits.changed_springs.size());
+    for (const ChangedSpring& spring : edits.changed_springs) changed(spring);
+    for (const float stress : change.changed_stress) raw(stress);
+    whole(edits.new_masses.size());
+    for (const NewMass& mass : edits.new_masses) {
+      raw(mass.place), raw(mass.mass);
+      whole(static_cast<std::uint64_t>(mass.material - no_material));
+    }
+    whole(edits.new_springs.size());
+    for (const NewSpring& spring : edits.new_springs) {
+      whole(spring.a), whole(spring.b);
+      material(spring.material);
+      raw(spring.rest_length.value());
+    }
+  }
+
+ private:
+  void whole(std::uint64_t value) {
+    for (; value >= 0x80; value >>= 7) bytes_.push_back(static_cast<char>(value | 0x80));
+    bytes_.push_back(static_cast<char>(value));
+  }
+
+  template <class T>
+  void raw(const T& value) {
+    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+
+  void ascending_indices(const std::vector<std::uint32_t>& indices) {
+    whole(indices.size());
+    std::uint32_t before = 0;
+    for (const std::uint32_t index : indices) whole(index - before), before = index;
+  }
+
+  void changed(const ChangedSpring& spring) {
+    whole(spring.spring);
+    whole((spring.rest_length ? 1u : 0u) | (spring.material ? 2u : 0u));
+    if (spring.rest_length) raw(*spring.rest_length);
+    if (spring.material) material(*spring.material);
+  }
+
+  /// Its number, and the first time what it is.
+  void material(const Material& material) {
+    const auto found = std::find(materials_.begin(), materials_.end(), material);
+    whole(static_cast<std::uint64_t>(found - materials_.begin()));
+    if (found != materials_.end()) return;
+    raw(material);
+    materials_.push_back(material);
+  }
+
+  std::string& bytes_;
+  std::vector<Material>& materials_;
+};
+
+/// Reads what a Writer has written.
+class Reader {
+ public:
+  Reader(const std::string& bytes, std::vector<Material>& materials) : bytes_(bytes), materials_(materials) {}
+
+  bool at_end() const { return at_ == bytes_.size(); }
+
+  Change read() {
+    Change change;
+    Edits& edits = change.edits;
+    change.cycle = index();
+    if (const std::uint32_t op = index(); op > 0) change.op = op - 1;
+    edits.removed_masses = ascending_indices();
+    edits.removed_springs = ascending_indices();
+    change.removed_stress = stresses(edits.removed_springs.size());
+    for (std::uint32_t left = index(); left > 0; --left) edits.changed_springs.push_back(changed());
+    change.changed_stress = stresses(edits.changed_springs.size());
+    for (std::uint32_t left = index(); left > 0; --left) {
+      NewMass& mass = edits.new_masses.emplace_back();
+      mass.place = raw<Vec3>();
+      mass.mass = raw<double>();
+      mass.material = static_cast<std::int32_t>(index()) + no_material;
+    }
+    for (std::uint32_t left = index(); left > 0; --left) {
+      NewSpring& spring = edits.new_springs.emplace_back();
+      spring.a = index(), spring.b = index();
+      spring.material = material();
+      spring.rest_length = raw<double>();
+    }
+    return change;
+  }
+
+ private:
+  [[noreturn]] static void fail() { throw std::invalid_argument("the record of a life is damaged"); }
+
+  std::uint32_t index() {
+    std::uint64_t value = 0;
+    for (int shift = 0; shift < 35; shift += 7) {
+      const auto byte = raw<std::uint8_t>();
+      value |= static_cast<std::uint64_t>(byte & 0x7f) << shift;
+      if (byte < 0x80) return value > 0xffffffff ? (fail(), 0) : static_cast<std::uint32_t>(value);
+    }
+    fail();
+  }
+
+  template <class T>
+  T raw() {
+    if (bytes_.size() - at_ < sizeof(T)) fail();
+    T value;
+    std::memcpy(&value, bytes_.data() + at_, sizeof value);
+    at_ += sizeof value;
+    return value;
+  }
+
+  std::vector<std::uint32_t> ascending_indices() {
+    std::vector<std::uint32_t> indices;
+    std::uint32_t before = 0;
+    for (std::uint32_t left = index(); left > 0; --left) indices.push_back(before += index());
+    return indices;
+  }
+
+  std::vector<float> stresses(std::size_t count) {
+    std::vector<float> stresses;
+    while (stresses.size() < count) stresses.push_back(raw<float>());
+    return stresses;
+  }
+
+  ChangedSpring changed() {
+    ChangedSpring spring{.spring = index()};
+    const std::uint32_t parts = index();
+    if ((parts & 1) != 0) spring.rest_length = raw<double>();
+    if ((parts & 2) != 0) spring.material = material();
+    return spring;
+  }
+
+  Material material() {
+    const std::uint32_t number = index();
+    if (number > materials_.size()) fail();
+    if (number == materials_.size()) materials_.push_back(raw<Material>());
+    return materials_[number];
+  }
+
+  const std::string& bytes_;
+  std::vector<Material>& materials_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace
+
+Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const Moment& now) {
+  Change change{static_cast<std::uint32_t>(now.cycle), op, edits, {}, {}};
+  change.edits.removed_masses = ascending(edits.removed_masses);
+  change.edits.removed_springs = ascending(edits.removed_springs);
+  // an index out of range is refused where the edits are applied
+  const auto stress_of = [&](std::uint32_t spring) {
+    return spring < now.stress.size() ? static_cast<float>(now.stress[spring]) : std::nanf("");
+  };
+  for (const std::uint32_t spring : change.edits.removed_springs) change.removed_stress.push_back(stress_of(spring));
+  for (const ChangedSpring& spring : edits.changed_springs) change.changed_stress.push_back(stress_of(spring.spring));
+  return change;
+}
+
+void set_rest_lengths(Change& change, const Body& after) {
+  std::vector<NewSpring>& springs = change.edits.new_springs;
+  const std::size_t first = after.springs.size() - springs.size();
+  for (std::size_t i = 0; i < springs.size(); ++i) springs[i].rest_length = after.springs[first + i].rest_length;
+}
+
+LifeRecord::LifeRecord(std::string bytes) : bytes_(std::move(bytes)) {
+  for (Reader reader(bytes_, materials_); !reader.at_end();) reader.read();
+}
+
+void LifeRecord::add(const Change& change) { Writer(bytes_, materials_).write(change); }
+
+std::vector<Change> LifeRecord::changes() const {
+  std::vector<Change> changes;
+  std::vector<Material> materials;
+  for (Reader reader(bytes_, materials); !reader.at_end();) changes.push_back(reader.read());
+  return changes;
+}
+
+void replay(Body& body, const Change& change) {
+  const Genome genome;
+  const Layout layout;
+  LivingBody living{.body = std::move(body)};
+  living.state.position.resize(living.body.masses.size());
+  living.state.velocity.resize(living.body.masses.size());
+  living.stress.resize(living.body.springs.size());
+  // rest lengths are given, so nothing depends on where masses are and when
+  apply_edits(living, change.edits,
+              {.body = living.body,
+               .state = living.state,
+               .stress = living.stress,
+               .cycle = static_cast<int>(change.cycle),
+               .cycles = 0,
+               .turn = 0,
+               .turns = 0,
+               .time = 0,
+               .bounds = {},
+               .mass = 0,
+               .resets = false,
+               .genome = genome,
+               .layout = layout});
+  body = std::move(living.body);
+}
+
+}  // namespace evodevo

@@ -1,0 +1,51 @@
+// What development did to a body in the course of its life, compactly.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "evodevo/devo.hpp"
+
+namespace evodevo {
+
+/// Edits that were made together after a cycle. All indices are those of the body before them.
+struct Change {
+  std::uint32_t cycle = 0;          ///< from 1
+  std::optional<std::uint32_t> op;  ///< place in Development::operators; none: of what was torn off
+  Edits edits;                      ///< what goes in ascending order and once; every new spring has its rest length
+  /// Of the springs that `edits` names, as the operator saw it, N; NaN where it did not ask.
+  std::vector<float> removed_stress, changed_stress;
+};
+
+/// The change that `edits`, wanted by operator `op`, are about to make. Rest lengths are still as the operator left
+/// them; see set_rest_lengths().
+Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const Moment& now);
+
+/// Takes the rest lengths of a change's new springs from the body that it was made to.
+void set_rest_lengths(Change& change, const Body& after);
+
+/// All changes of a life, in their order: about 20 bytes for a spring that goes and one that comes.
+class LifeRecord {
+ public:
+  LifeRecord() = default;
+  /// A record that bytes() gave. Throws std::invalid_argument where it is none.
+  explicit LifeRecord(std::string bytes);
+
+  void add(const Change& change);
+  std::vector<Change> changes() const;
+
+  bool empty() const { return bytes_.empty(); }
+  const std::string& bytes() const { return bytes_; }
+
+  friend bool operator==(const LifeRecord& a, const LifeRecord& b) { return a.bytes_ == b.bytes_; }
+
+ private:
+  std::string bytes_;
+  std::vector<Material> materials_;  ///< those written so far, which others refer to
+};
+
+/// Makes a change to a body again; its motion is none of it.
+void replay(Body& body, const Change& change);
+
+}  // namespace evodevo

@@ -1,0 +1,48 @@
+// What the operators share that change a property of the most stressed springs: "Modify the tension of highest stress
+// springs rather than adding new springs" (paper, section VII).
+#pragma once
+
+#include "evodevo/devo.hpp"
+#include "stress.hpp"
+
+/// Multiplies a property of the most stressed of the springs that have it, within bounds. A spring that lies beyond a
+/// bound already goes no further.
+class Adaptation : public evodevo::Devo {
+ public:
+  void develop(const evodevo::Moment& now, evodevo::Edits& edits, evodevo::Rng& rng) const final {
+    std::vector<std::uint32_t> springs;
+    std::vector<double> stress;
+    for (std::uint32_t s = 0; s < now.body.springs.size(); ++s) {
+      if (!(value(now.body, s) > 0)) continue;
+      springs.push_back(s);
+      stress.push_back(now.stress[s]);
+    }
+    for (const std::uint32_t i : most_stressed(stress, static_cast<std::size_t>(springs_), rng)) {
+      const double before = value(now.body, springs[i]), after = adapted(before);
+      if (after != before) change(now.body, springs[i], after, edits);
+    }
+  }
+
+ protected:
+  Adaptation(double factor, double low, double high) : factor_(factor), low_(low), high_(high) {}
+
+  void declare(evodevo::Parameters& p, evodevo::Range range, std::string_view low_text, std::string_view high_text) {
+    p.integer(springs_, "springs", {1, 1'000'000, "1"}, "Most stressed springs that change at each turn.");
+    p.real(factor_, "factor", {0.5, 2, "1"}, "By what the property is multiplied, above or below 1.");
+    p.real(low_, "low", range, low_text);
+    p.real(high_, "high", range, high_text);
+  }
+
+ private:
+  /// The property of a spring; 0 where it has none.
+  virtual double value(const evodevo::Body& body, std::uint32_t spring) const = 0;
+  virtual void change(const evodevo::Body& body, std::uint32_t spring, double value, evodevo::Edits& edits) const = 0;
+
+  double adapted(double before) const {
+    const double after = factor_ * before;
+    return factor_ < 1 ? std::max(after, std::min(before, low_)) : std::min(after, std::max(before, high_));
+  }
+
+  std::int64_t springs_ = 125;
+  double factor_, low_, high_;
+};

@@ -1,0 +1,34 @@
+// Tension by the muscles' amplitude (paper, section VII): used muscles grow, or tire.
+#include "adaptation.hpp"
+#include "evodevo/plugin.hpp"
+
+namespace {
+
+/// Springs without amplitude are no muscles and are passed over.
+class AmplitudeAdaptation final : public Adaptation {
+ public:
+  AmplitudeAdaptation() : Adaptation(1.05, 0.02, 0.3) {}
+
+  void parameters(evodevo::Parameters& p) override {
+    declare(p, {0, 0.9, "1"}, "Relative amplitude below which no muscle is weakened.",
+            "Relative amplitude above which no muscle is strengthened.");
+  }
+
+ private:
+  double value(const evodevo::Body& body, std::uint32_t spring) const override {
+    return body.materials[body.springs[spring].material].amplitude;
+  }
+
+  void change(const evodevo::Body& body, std::uint32_t spring, double value, evodevo::Edits& edits) const override {
+    evodevo::Material material = body.materials[body.springs[spring].material];
+    material.amplitude = value;
+    edits.changed_springs.push_back({.spring = spring, .material = material});
+  }
+};
+
+}  // namespace
+
+EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
+               evodevo::operator_entry<AmplitudeAdaptation>("amplitude-adaptation",
+                                                            "The most stressed muscles get stronger or weaker (paper, "
+                                                            "section VII)."))

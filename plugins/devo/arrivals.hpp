@@ -1,0 +1,134 @@
+// What the operators that add masses share: where a new mass comes, and what it is joined to.
+#pragma once
+
+#include "evodevo/devo.hpp"
+#include "stress.hpp"
+
+/// How new masses come, as parameters: the paper's way (section IV-D3), or one that it proposes (section VII).
+struct ArrivalRule {
+  std::int64_t springs = 25;
+  double min_distance = 0.02;  ///< m
+  std::string where = "random";
+  std::string join = "random";
+
+  void declare(evodevo::Parameters& p) {
+    p.integer(springs, "springs", {1, 100'000, "1"}, "Springs of a new mass, to masses that stay.");
+    p.real(min_distance, "min_distance", {0, 100, "m"}, "Distance of a new mass from any other at least.");
+    p.choice(where, "where", {"random", "by-stress"},
+             "Where a new mass comes: anywhere in the body's box, or on a spring drawn with probability by stress.");
+    p.choice(join, "join", {"random", "nearest"}, "Which masses a new one is joined to.");
+  }
+};
+
+/// New masses on their way into a body, which has springs. A new mass has the material of a random mass that stays and
+/// is not air; where masses have no material, its springs have those of random springs of the body.
+class Arrivals {
+ public:
+  Arrivals(const ArrivalRule& rule, const evodevo::Moment& now)
+      : rule_(rule), now_(now), stays_(now.body.masses.size(), true) {
+    if (rule.where == "by-stress") lottery_ = StressLottery(now.stress);
+  }
+
+  /// Whether a mass stays; one that goes takes up no room and is not joined to.
+  void set_staying(std::uint32_t mass, bool stays) { stays_[mass] = stays; }
+
+  /// Finds a place for one more mass; false where many tries fail.
+  bool find_place(evodevo::Rng& rng) {
+    for (int attempt = 0; attempt < attempts_per_place; ++attempt) {
+      const evodevo::Vec3 place = lottery_.empty() ? place_in_bounds(rng) : place_on_spring(lottery_.draw(rng), rng);
+      if (!is_free(place)) continue;
+      places_.push_back(place);
+      return true;
+    }
+    return false;
+  }
+
+  /// Adds the masses and their springs. False where all that stays is air, to which nothing can be joined.
+  bool come(evodevo::Edits& edits, evodevo::Rng& rng) const {
+    auto partners = masses_where([&](std::uint32_t i) { return stays_[i]; });
+    const auto models = masses_where([&](std::uint32_t i) { return stays_[i] && !is_air(i); });
+    if (models.empty()) return false;
+    for (const evodevo::Vec3& place : places_) {
+      const auto model = models[rng.below(static_cast<std::uint32_t>(models.size()))];
+      edits.new_masses.push_back({place, now_.mass, now_.body.masses[model].material});
+      join(partners, edits, rng);
+    }
+    return true;
+  }
+
+ private:
+  static constexpr int attempts_per_place = 100;
+
+  evodevo::Vec3 place_in_bounds(evodevo::Rng& rng) const {
+    const auto& [low, high] = now_.bounds;
+    return {rng.uniform(low.x, high.x), rng.uniform(low.y, high.y), rng.uniform(low.z, high.z)};
+  }
+
+  /// Anywhere between the spring's ends; not below the floor, into which masses may have sunk.
+  evodevo::Vec3 place_on_spring(std::uint32_t index, evodevo::Rng& rng) const {
+    const evodevo::Spring& spring = now_.body.springs[index];
+    const evodevo::Vec3 a = now_.place(spring.a), b = now_.place(spring.b);
+    evodevo::Vec3 place = a + rng.uniform() * (b - a);
+    place.z = std::max(place.z, now_.bounds.low.z);
+    return place;
+  }
+
+  /// Far enough from all masses that stay and from the new ones.
+  bool is_free(const evodevo::Vec3& place) const {
+    const auto is_near = [&](const evodevo::Vec3& other) { return !(norm(place - other) >= rule_.min_distance); };
+    if (std::any_of(places_.begin(), places_.end(), is_near)) return false;
+    for (std::uint32_t i = 0; i < stays_.size(); ++i)
+      if (stays_[i] && is_near(now_.place(i))) return false;
+    return true;
+  }
+
+  /// Springs from the newest mass to different ones of `partners`, whose order changes.
+  void join(std::vector<std::uint32_t>& partners, evodevo::Edits& edits, evodevo::Rng& rng) const {
+    const evodevo::Body& body = now_.body;
+    const auto newest = static_cast<std::uint32_t>(body.masses.size() + edits.new_masses.size() - 1);
+    const std::int32_t own = edits.new_masses.back().material;
+    const auto count = static_cast<std::uint32_t>(partners.size());
+    if (rule_.join == "nearest") sort_by_distance(partners, edits.new_masses.back().place);
+    for (std::uint32_t i = 0; i < std::min<std::int64_t>(count, rule_.springs); ++i) {
+      if (rule_.join == "random") std::swap(partners[i], partners[i + rng.below(count - i)]);
+      const std::int32_t others = body.masses[partners[i]].material;
+      const evodevo::Material material = own == evodevo::no_material || others == evodevo::no_material
+                                             ? random_spring_material(rng)
+                                             : mean(body.materials[own], body.materials[others]);
+      edits.new_springs.push_back({partners[i], newest, material, {}});
+    }
+  }
+
+  /// Nearest first, as far as they are needed; equally distant ones by their index.
+  void sort_by_distance(std::vector<std::uint32_t>& partners, const evodevo::Vec3& place) const {
+    std::vector<std::pair<double, std::uint32_t>> order;
+    for (const std::uint32_t i : partners) order.emplace_back(norm(now_.place(i) - place), i);
+    const auto needed = std::min(order.size(), static_cast<std::size_t>(rule_.springs));
+    std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(needed), order.end());
+    std::transform(order.begin(), order.end(), partners.begin(), [](const auto& item) { return item.second; });
+  }
+
+  evodevo::Material random_spring_material(evodevo::Rng& rng) const {
+    const auto& springs = now_.body.springs;
+    return now_.body.materials[springs[rng.below(static_cast<std::uint32_t>(springs.size()))].material];
+  }
+
+  bool is_air(std::uint32_t mass) const {
+    const std::int32_t material = now_.body.masses[mass].material;
+    return material != evodevo::no_material && !(now_.body.materials[material].stiffness > 0);
+  }
+
+  template <class Predicate>
+  std::vector<std::uint32_t> masses_where(Predicate predicate) const {
+    std::vector<std::uint32_t> indices;
+    for (std::uint32_t i = 0; i < stays_.size(); ++i)
+      if (predicate(i)) indices.push_back(i);
+    return indices;
+  }
+
+  const ArrivalRule& rule_;
+  const evodevo::Moment& now_;
+  StressLottery lottery_;
+  std::vector<bool> stays_;
+  std::vector<evodevo::Vec3> places_;
+};

@@ -1,0 +1,37 @@
+// "Add new-masses during devo on a timer rather than or in addition to when we remove a mass. This allows the robot to
+// potentially grow more masses than it started with" (paper, section VII). The timer is the operator's schedule.
+#include "arrivals.hpp"
+#include "evodevo/plugin.hpp"
+
+namespace {
+
+/// A mass for which no free place is found does not come.
+class MassGrowth final : public evodevo::Devo {
+ public:
+  void parameters(evodevo::Parameters& p) override {
+    p.integer(masses_, "masses", {0, 100'000, "1"}, "Masses that come at each turn.");
+    p.integer(limit_, "limit", {0, 10'000'000, "1"}, "Masses beyond which a body does not grow.");
+    arrival_.declare(p);
+  }
+
+  void develop(const evodevo::Moment& now, evodevo::Edits& edits, evodevo::Rng& rng) const override {
+    if (now.body.springs.empty()) return;
+    const std::int64_t room = limit_ - static_cast<std::int64_t>(now.body.masses.size());
+    Arrivals arrivals(arrival_, now);
+    for (std::int64_t i = 0; i < std::min(masses_, room); ++i)
+      if (!arrivals.find_place(rng)) break;
+    arrivals.come(edits, rng);
+  }
+
+ private:
+  std::int64_t masses_ = 5;
+  std::int64_t limit_ = 2000;
+  ArrivalRule arrival_;
+};
+
+}  // namespace
+
+EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
+               evodevo::operator_entry<MassGrowth>("mass-growth",
+                                                   "Masses come and none goes, so that a body outgrows its start "
+                                                   "(paper, section VII)."))

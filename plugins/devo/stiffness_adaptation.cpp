@@ -1,0 +1,36 @@
+// Tension by stiffness (paper, section VII). Stiffness that follows stress in life made evolved robots robust in
+// Kriegman, Cheney, Corucci & Bongard 2018, "Interoceptive robustness through environment-mediated morphological
+// development".
+#include "adaptation.hpp"
+#include "evodevo/plugin.hpp"
+
+namespace {
+
+/// A body that becomes too stiff for the time step ends as invalid, so `high` is to be chosen with it.
+class StiffnessAdaptation final : public Adaptation {
+ public:
+  StiffnessAdaptation() : Adaptation(1.05, 1000, 20'000) {}
+
+  void parameters(evodevo::Parameters& p) override {
+    declare(p, {1e-3, 1e9, "N/m"}, "Stiffness below which no spring is softened.",
+            "Stiffness above which no spring is stiffened.");
+  }
+
+ private:
+  double value(const evodevo::Body& body, std::uint32_t spring) const override {
+    return body.materials[body.springs[spring].material].stiffness;
+  }
+
+  void change(const evodevo::Body& body, std::uint32_t spring, double value, evodevo::Edits& edits) const override {
+    evodevo::Material material = body.materials[body.springs[spring].material];
+    material.stiffness = value;
+    edits.changed_springs.push_back({.spring = spring, .material = material});
+  }
+};
+
+}  // namespace
+
+EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
+               evodevo::operator_entry<StiffnessAdaptation>("stiffness-adaptation",
+                                                            "The most stressed springs get stiffer or softer (paper, "
+                                                            "section VII)."))

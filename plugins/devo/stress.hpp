@@ -1,0 +1,65 @@
+// What the devo operators share: springs chosen by their stress.
+#pragma once
+
+#include <tuple>
+
+#include "evodevo/devo.hpp"
+
+/// The `count` springs of least `key`, or all, least first, ties in random order. No key may be NaN.
+inline std::vector<std::uint32_t> springs_of_least(const std::vector<double>& key, std::size_t count,
+                                                   evodevo::Rng& rng) {
+  count = std::min(count, key.size());
+  if (count == 0) return {};
+  std::vector<double> ordered = key;
+  const auto last = ordered.begin() + static_cast<std::ptrdiff_t>(count) - 1;
+  std::nth_element(ordered.begin(), last, ordered.end());
+  using Ranked = std::tuple<double, std::uint32_t, std::uint32_t>;
+  std::vector<Ranked> ranked;
+  for (std::uint32_t s = 0; s < key.size(); ++s)
+    if (key[s] <= *last) ranked.emplace_back(key[s], rng(), s);
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<std::uint32_t> springs;
+  for (std::size_t i = 0; i < count; ++i) springs.push_back(std::get<2>(ranked[i]));
+  return springs;
+}
+
+/// The least stressed springs, least first. A stress that is not a number counts as the greatest.
+inline std::vector<std::uint32_t> least_stressed(std::span<const double> stress, std::size_t count, evodevo::Rng& rng) {
+  std::vector<double> key(stress.begin(), stress.end());
+  for (double& value : key)
+    if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
+  return springs_of_least(key, count, rng);
+}
+
+/// The most stressed springs, most first. A stress that is not a number counts as the least.
+inline std::vector<std::uint32_t> most_stressed(std::span<const double> stress, std::size_t count, evodevo::Rng& rng) {
+  std::vector<double> key(stress.begin(), stress.end());
+  for (double& value : key) value = std::isnan(value) ? std::numeric_limits<double>::infinity() : -value;
+  return springs_of_least(key, count, rng);
+}
+
+/// Draws springs with probability in proportion to their stress; all alike where no spring has any. A stress that is
+/// not finite counts as none.
+class StressLottery {
+ public:
+  /// Without springs; nothing can be drawn.
+  StressLottery() = default;
+  explicit StressLottery(std::span<const double> stress) {
+    double sum = 0;
+    for (const double value : stress) sums_.push_back(sum += value > 0 && std::isfinite(value) ? value : 0);
+  }
+
+  bool empty() const { return sums_.empty(); }
+
+  std::uint32_t draw(evodevo::Rng& rng) const {
+    const double total = sums_.back();
+    if (!(total > 0) || !std::isfinite(total)) return rng.below(static_cast<std::uint32_t>(sums_.size()));
+    const auto drawn = std::upper_bound(sums_.begin(), sums_.end(), rng.uniform() * total);
+    // rounding may make the product as great as the total
+    const auto last = std::lower_bound(sums_.begin(), sums_.end(), total);
+    return static_cast<std::uint32_t>(std::min(drawn, last) - sums_.begin());
+  }
+
+ private:
+  std::vector<double> sums_;  ///< of the stress up to each spring, N
+};

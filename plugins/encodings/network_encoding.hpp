@@ -1,0 +1,99 @@
+// What the encodings share that map points to masses by a network (paper, section IV-A1).
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "chosen.hpp"
+#include "evodevo/encoding.hpp"
+
+/// A network from the points of a ball to places in a cube and materials; neighbours are joined. Where the paper is
+/// silent: the points are uniform in the ball, and places lie in [-side/2, side/2]^3. Neighbours are those of the
+/// places, or, as the paper proposes in section VII, those of the points.
+class NetworkEncoding : public evodevo::Encoding {
+ public:
+  void parameters(evodevo::Parameters& p) override {
+    p.integer(points_, "points", {2, 100'000, "1"}, "Points in the ball, each of which becomes a mass.");
+    p.integer(points_seed_, "points_seed", {0, 4294967295.0, "1"}, "Seed from which the points are drawn.");
+    p.integer(neighbours_, "neighbours", {1, 1000, "1"}, "Nearest neighbours that every mass is joined to.");
+    p.choice(pairing_, "pairing", {"after-mapping", "before-mapping"},
+             "Whether masses whose places are near are joined, or masses whose points are near in the ball.");
+    p.integer(hidden_, "hidden", {1, 1000, "1"}, "Neurons in each of the two hidden layers.");
+    p.real(side_, "side", {0.001, 1000, "m"}, "Side of the cube in which the masses lie.");
+    p.materials(materials_, "materials", "Materials that a mass may have; an empty list stands for all.");
+  }
+
+  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::World& world) const final {
+    const auto chosen = world.material_indices(materials_);
+    if (auto reason = why_no_body(world, chosen); !reason.empty()) return {{}, 0, reason};
+    if (!std::all_of(genome.begin(), genome.end(), [](float gene) { return std::isfinite(gene); }))
+      return {{}, 0, "a gene is not finite"};
+
+    const Matrix points = ball(world);
+    const Matrix outputs = map(genome.data(), points, outputs_in(world));
+    const auto materials = static_cast<Eigen::Index>(chosen.size());
+    evodevo::Blueprint blueprint;
+    blueprint.body.materials = world.materials;
+    blueprint.neighbours = static_cast<std::uint32_t>(neighbours_);
+    for (const auto& output : outputs.colwise()) {
+      // softmax, which the paper puts before the maximum, does not change where the maximum is
+      Eigen::Index material = 0;
+      output.tail(materials).maxCoeff(&material);
+      blueprint.body.masses.push_back(
+          {{place(output[0]), place(output[1]), place(output[2])}, world.mass, chosen[static_cast<size_t>(material)]});
+    }
+    for (const auto& point : points.colwise()) blueprint.origins.push_back({point[0], point[1], point[2]});
+    if (pairing_ == "before-mapping") blueprint.paired_at = blueprint.origins;
+    return blueprint;
+  }
+
+ protected:
+  using Matrix = Eigen::MatrixXd;
+
+  /// Neurons in each of the two hidden layers.
+  std::int64_t hidden() const { return hidden_; }
+  /// x, y and z, and one value for each material to choose from, of which the greatest wins.
+  std::int64_t outputs_in(const evodevo::World& world) const {
+    return 3 + static_cast<std::int64_t>(world.material_indices(materials_).size());
+  }
+
+  /// What a layer of neurons sums up, one column for each point: `rows` holds each neuron's bias, then its weights.
+  static Matrix sums(const Matrix& rows, const Matrix& input) {
+    // a lazy product sums in one order, the blocked one in an order that depends on the size of the caches
+    return rows.rightCols(input.rows()).lazyProduct(input).colwise() + rows.col(0);
+  }
+
+  /// The next `neurons` groups of `count` genes as rows; `genes` moves on behind them.
+  static Matrix next_rows(const float*& genes, Eigen::Index neurons, Eigen::Index count) {
+    using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const Matrix rows = Eigen::Map<const Rows>(genes, neurons, count).cast<double>();
+    genes += rows.size();
+    return rows;
+  }
+
+ private:
+  /// The network's outputs, one column for each point.
+  virtual Matrix map(const float* genes, const Matrix& points, Eigen::Index outputs) const = 0;
+
+  /// The run's points, uniform in the unit ball, as columns.
+  Matrix ball(const evodevo::World& world) const {
+    evodevo::Rng rng = world.rng(static_cast<std::uint64_t>(points_seed_));
+    Matrix points(3, points_);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      do {
+        for (Eigen::Index axis = 0; axis < 3; ++axis) points(axis, i) = rng.uniform(-1, 1);
+      } while (points.col(i).squaredNorm() > 1);
+    }
+    return points;
+  }
+
+  double place(double output) const { return side_ / 2 * std::tanh(output); }
+
+  std::int64_t points_ = 1000;
+  std::int64_t points_seed_ = 1;
+  std::int64_t neighbours_ = 25;
+  std::string pairing_ = "after-mapping";
+  std::int64_t hidden_ = 25;
+  double side_ = 2;
+  std::vector<std::string> materials_;
+};

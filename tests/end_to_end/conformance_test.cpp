@@ -1,0 +1,122 @@
+// The conformance kit: all built-in operators keep to it, and each wrong plugin is caught by the case meant for it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "loader.hpp"
+#include "support/process.hpp"
+#include "support/scratch.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::Finished;
+
+/// The outcome of every case, "case: outcome" with the reason behind where there is one.
+std::map<std::string, std::string> verdicts(const fs::path& library, int expected_exit) {
+  const Finished finished = testing::run({EVODEVO_PROGRAM, "conform", library.string(), "--json"});
+  EXPECT_EQ(finished.exit_code, expected_exit) << finished.output;
+  std::map<std::string, std::string> outcomes;
+  for (const json& verdict : json::parse(finished.output))
+    outcomes[verdict.at("case")] =
+        verdict.at("outcome").get<std::string>() + " " + verdict.at("reason").get<std::string>();
+  return outcomes;
+}
+
+fs::path wrong(const std::string& rule) {
+  return fs::path(EVODEVO_FAULTY_PLUGINS) / ("wrong_" + rule) / "plugin.evodevo.so";
+}
+
+class BuiltIn : public ::testing::TestWithParam<fs::path> {};
+
+TEST_P(BuiltIn, KeepsToAllRules) {
+  const auto outcomes = verdicts(GetParam(), 0);
+  EXPECT_GE(outcomes.size(), 12u);
+  for (const auto& [name, outcome] : outcomes)
+    EXPECT_THAT(outcome, ::testing::AnyOf("passed ", "skipped it has no parameters")) << name;
+}
+
+std::set<fs::path> built_in_libraries() {
+  const fs::directory_iterator folder(builtin_plugin_folder());
+  return {begin(folder), end(folder)};
+}
+
+INSTANTIATE_TEST_SUITE_P(Conformance, BuiltIn, ::testing::ValuesIn(built_in_libraries()), [](const auto& library) {
+  std::string name = library.param.stem().stem();
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+struct Broken {
+  const char* plugin;
+  const char* rule;
+  const char* verdict;  ///< how the verdict begins
+};
+
+class Wrong : public ::testing::TestWithParam<Broken> {};
+
+TEST_P(Wrong, IsCaughtByTheCaseMeantForIt) {
+  const auto outcomes = verdicts(wrong(GetParam().plugin), 1);
+  EXPECT_EQ(outcomes.at("loads"), "passed ");
+  EXPECT_THAT(outcomes.at(GetParam().rule), ::testing::StartsWith(GetParam().verdict));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Conformance, Wrong,
+    ::testing::Values(
+        Broken{"exports", "exports", "failed exports another_export, evodevo_plugin; expected evodevo_plugin alone"},
+        Broken{"listing", "listing", "failed listing it takes "},
+        Broken{"declarations", "declarations", "failed parameter \"genes\" has no sentence"},
+        Broken{"refusals", "refusals", "failed it accepts genes = 0.5"},
+        Broken{"same_seed", "same-seed", "failed two calls with input "},
+        Broken{"threads", "threads", "failed input 0 gives one result on one thread and another on eight"},
+        Broken{"batch", "batch", "failed input 12 alone and after others gives different results"},
+        Broken{"inputs", "inputs", "failed it changes the layout, which it may only read"},
+        Broken{"instances", "instances", "failed a parameter set in one instance changes in another"},
+        Broken{"resuming", "resuming", "failed a run that was stopped and resumed ends otherwise"},
+        Broken{"nothing", "nothing", "failed it makes genes of no genes"},
+        Broken{"layout", "layout", "failed gene 0 = 2 is not of the layout"},
+        Broken{"twins", "twins", "failed of two equal genomes it makes others"},
+        Broken{"decoding", "decoding", "failed spring 0 dangles"},
+        Broken{"bodies", "bodies", "failed body 0, cycle 1: it joins masses "},
+        Broken{"bodies_dangling", "bodies", "failed body 0, cycle 1: it joins masses 0 and "},
+        Broken{"bodies_nan", "bodies", "failed body 0, cycle 1: it joins masses 0 and 1 by a spring of stiffness nan"},
+        Broken{"bodies_beyond", "bodies", "failed body 0: a new mass lies beyond the bounds"},
+        Broken{"translation", "translation", "failed a body that does the same elsewhere scores "},
+        Broken{"nan_hidden", "nan", "failed an observation without a single number scores 0"},
+        Broken{"objectives", "objectives", "failed it gives 2 scores for 1 objectives"},
+        Broken{"order", "order", "failed who lives on depends on the order of birth"},
+        Broken{"elite", "elite", "failed the row with the best first score does not live on"},
+        Broken{"failed", "failed", "failed a failed row lives on instead of a sound one"},
+        Broken{"crashing", "same-seed", "crashed Segmentation fault"}),
+    [](const auto& broken) { return std::string(broken.param.plugin); });
+
+TEST(Conformance, ALibraryThatDoesNotLoadIsToldAlone) {
+  const auto outcomes = verdicts(fs::path(EVODEVO_FAULTY_PLUGINS) / "undefined_symbol" / "plugin.evodevo.so", 1);
+  ASSERT_EQ(outcomes.size(), 1u);
+  EXPECT_THAT(outcomes.at("loads"), ::testing::StartsWith("failed cannot be loaded: "));
+  const Finished none = testing::run({EVODEVO_PROGRAM, "conform", "/no/such"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_EQ(none.output, "evodevo: conform /no/such: is no file; give the libraries to check, NAME.evodevo.so\n");
+}
+
+TEST(Conformance, ACaseThatCannotSayAnythingIsSkipped) {
+  const auto outcomes = verdicts(fs::path(EVODEVO_FAULTY_PLUGINS) / "sound" / "plugin.evodevo.so", 0);
+  EXPECT_EQ(outcomes.at("instances"), "skipped it has no parameters");
+}
+
+TEST(Reference, ThePageIsWhatThePluginsSay) {
+  const Finished finished = testing::run({EVODEVO_PROGRAM, "operators", "--markdown"});
+  ASSERT_EQ(finished.exit_code, 0);
+  std::ifstream page(EVODEVO_REFERENCE_PAGE);
+  const std::string text{std::istreambuf_iterator<char>(page), {}};
+  EXPECT_EQ(text, finished.output) << "renew it: tools/evodevo operators --markdown > plugins/README.md";
+}
+
+}  // namespace
+}  // namespace evodevo

@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Installs evodevo, and writes, builds, checks and runs a plugin of a kind outside the source tree, with the package
+# alone.
+#
+#   outside_plugin.sh BUILD_FOLDER KIND
+set -euo pipefail
+build=$(realpath "$1") kind=$2
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+unset EVODEVO_COMMAND EVODEVO_PLUGIN_PATH
+
+cmake --install "$build" --prefix "$scratch/package" >/dev/null
+PATH=$scratch/package/bin:$PATH
+# what a plugin includes needs nothing but the standard library
+if grep -rhE '^#include' "$scratch/package/include" | grep -vE '<[a-z_0-9]+>|"evodevo/'; then
+  echo "the SDK includes more than the C++ standard library"
+  exit 1
+fi
+
+cd "$scratch"
+evodevo new "$kind" my-lab.growth
+cd my-lab.growth
+cmake -B build >/dev/null
+cmake --build build
+ctest --test-dir build --output-on-failure
+evodevo run experiment.toml --out run
+evodevo show run --json | grep -q '"my-lab.growth"' || { echo "the run does not use the operator"; exit 1; }
+
+# after a change one file is compiled
+touch growth.cpp
+[ "$(cmake --build build | grep -c 'Building')" = 1 ] || { echo "a change of one file builds others"; exit 1; }
+
+table() { sed -n '/^## /,$p' "$1"; }
+evodevo describe my-lab.growth --markdown --plugin-path build/lib/evodevo >described.md
+diff <(table README.md) <(table described.md | sed '$d') || { echo "README.md is not what the operator says"; exit 1; }
+
+cmake --install build --prefix "$scratch/package" >/dev/null
+evodevo operators | grep -q my-lab.growth || { echo "the installed plugin is not found"; exit 1; }

@@ -1,0 +1,158 @@
+// Plugins as a user meets them: where they are found, what the record keeps of them, and what a faulty one does to a
+// run.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "archive.hpp"
+#include "support/experiments.hpp"
+#include "support/process.hpp"
+#include "support/scratch.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Finished;
+using ::testing::HasSubstr;
+
+const fs::path plugins = EVODEVO_FAULTY_PLUGINS;
+
+class Plugins : public ::testing::Test {
+ protected:
+  testing::Scratch scratch_;
+  std::string file_ = scratch_.write("small.toml", testing::small_experiment);
+  std::string folder_ = (scratch_ / "run").string();
+  fs::path library_ = scratch_ / "own" / "plugin.evodevo.so";
+
+  void SetUp() override { fs::create_directory(scratch_ / "own"); }
+
+  /// Puts a library from tests/plugins where the user keeps plugins.
+  void install(const std::string& which) {
+    fs::copy_file(plugins / which / "plugin.evodevo.so", library_, fs::copy_options::overwrite_existing);
+  }
+  std::string own() const { return (scratch_ / "own").string(); }
+
+  static Finished evodevo(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), EVODEVO_PROGRAM);
+    return testing::run(arguments);
+  }
+  Finished run_with(const std::string& mutation, std::vector<std::string> more) const {
+    more.insert(more.begin(),
+                {"run", file_, "--set", "mutation.0.name=" + mutation, "--set", "mutation.0.probability=1"});
+    if (std::find(more.begin(), more.end(), "--out") == more.end()) more.insert(more.end(), {"--out", folder_});
+    return evodevo(more);
+  }
+};
+
+TEST_F(Plugins, AreFoundByOptionVariableAndExperiment) {
+  install("sound");
+  EXPECT_EQ(evodevo({"check", file_, "--set", "mutation.0.name=nothing"}).exit_code, 2);
+  EXPECT_EQ(evodevo({"check", file_, "--set", "mutation.0.name=nothing", "--plugin-path", own()}).exit_code, 0);
+  EXPECT_EQ(evodevo({"check", file_, "--set", "mutation.0.name=nothing", "--set", "plugins.paths=['own']"}).exit_code,
+            0);
+  EXPECT_THAT(evodevo({"operators", "--plugin-path", own()}).output, HasSubstr("nothing"));
+  EXPECT_THAT(evodevo({"describe", "nothing", "--plugin-path", own()}).output, HasSubstr("from " + library_.string()));
+  setenv("EVODEVO_PLUGIN_PATH", own().c_str(), 1);
+  EXPECT_EQ(evodevo({"check", file_, "--set", "mutation.0.name=nothing"}).exit_code, 0);
+  unsetenv("EVODEVO_PLUGIN_PATH");
+  EXPECT_EQ(evodevo({"check", file_, "--plugin-path", "/no/such"}).output,
+            "evodevo: --plugin-path /no/such: is no folder and no library NAME.evodevo.so; build the plugin first\n");
+}
+
+TEST_F(Plugins, TheExperimentsPathsComeBeforeTheOptionsAndThoseBeforeTheVariables) {
+  const std::string older = (plugins / "sound").string(), newer = (plugins / "newer").string();
+  const auto version = [&](const std::string& experiment, const std::string& option) {
+    const Override name{"mutation.0.name", "nothing", ""}, paths{"plugins.paths", "[" + experiment + "]", ""};
+    const Experiment read = read_experiment({file_, {name, paths}, {option}});
+    const auto is_it = [](const OperatorUse& use) { return use.name == "nothing"; };
+    return std::find_if(read.uses.begin(), read.uses.end(), is_it)->version;
+  };
+  EXPECT_EQ(version("'" + older + "'", newer), "1.0.0");
+  EXPECT_EQ(version("'" + newer + "'", older), "2.0.0");
+  setenv("EVODEVO_PLUGIN_PATH", newer.c_str(), 1);
+  EXPECT_EQ(version("", older), "1.0.0");
+  unsetenv("EVODEVO_PLUGIN_PATH");
+}
+
+TEST_F(Plugins, TheRecordKeepsFileVersionAndHash) {
+  install("sound");
+  ASSERT_EQ(run_with("nothing", {"--plugin-path", own()}).exit_code, 0);
+  for (const OperatorUse& use : Archive::read(folder_).operators()) {
+    EXPECT_EQ(use.hash, file_hash(use.file)) << use.name;
+    if (use.name != "nothing") continue;
+    EXPECT_EQ(use.file, library_);
+    EXPECT_EQ(use.version, "1.0.0");
+  }
+  EXPECT_EQ(evodevo({"resume", folder_}).exit_code, 0) << "the record knows the folder";
+}
+
+TEST_F(Plugins, ResumeRefusesAnotherVersionUnlessTold) {
+  install("sound");
+  ASSERT_EQ(run_with("nothing", {"--plugin-path", own()}).exit_code, 0);
+  install("newer");
+  const std::string now = library_.lexically_normal().string();
+  const Finished refused = evodevo({"resume", folder_});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_EQ(refused.output, "evodevo: " + folder_ + ": began with mutation operator \"nothing\" 1.0.0, but " + now +
+                                " is version 2.0.0; put back the version that it began with (it was " +
+                                library_.string() + "), or go on with --allow-other-versions\n");
+  const Finished allowed = evodevo({"resume", folder_, "--allow-other-versions"});
+  EXPECT_EQ(allowed.exit_code, 0) << allowed.output;
+  EXPECT_THAT(allowed.output, HasSubstr("warning: the run began with mutation operator \"nothing\" 1.0.0, now it is "
+                                        "version 2.0.0, " +
+                                        now + "; results may differ\n"));
+}
+
+TEST_F(Plugins, AnUnusableLibraryStopsNoRunThatDoesNotUseIt) {
+  install("crash");
+  const Finished finished =
+      evodevo({"run", file_, "--out", folder_, "--plugin-path", own(), "--set", "experiment.evaluations=6"});
+  EXPECT_EQ(finished.exit_code, 0) << finished.output;
+  EXPECT_THAT(finished.output, HasSubstr("warning: not usable: " + library_.string() + ": crashes while it is loaded"));
+  const Finished failed = evodevo({"operators", "--failed", "--plugin-path", own()});
+  EXPECT_EQ(failed.exit_code, 0);
+  EXPECT_EQ(failed.output, library_.string() +
+                               ": crashes while it is loaded: Segmentation fault; look at its static objects, "
+                               "constructors and parameters() in a debugger, or remove it\n");
+  EXPECT_EQ(evodevo({"operators", "--failed"}).output, "");
+}
+
+TEST_F(Plugins, OfTwoLibrariesWithOneNameTheFirstIsUsedAndTheOtherNamed) {
+  install("taken_name");
+  const Finished finished = run_with("reset-weight", {"--plugin-path", own()});
+  EXPECT_EQ(finished.exit_code, 0) << finished.output;
+  EXPECT_THAT(finished.output,
+              HasSubstr("warning: not usable: " + (builtin_plugin_folder() / "reset-weight.evodevo.so").string() +
+                        ": its mutation operator \"reset-weight\" is already brought by " + library_.string() +
+                        ", which comes first; rename one of them, or take one "
+                        "off the plugin path\n"));
+  const auto uses = Archive::read(folder_).operators();
+  const auto mutation = std::find_if(uses.begin(), uses.end(), [](const auto& use) { return use.kind == "mutation"; });
+  ASSERT_NE(mutation, uses.end());
+  EXPECT_EQ(mutation->file, library_);
+}
+
+TEST_F(Plugins, AnOperatorThatErrsIsNamedWithItsFile) {
+  const std::string remedy = "; correct the operator, or leave it out of the experiment\n";
+  install("throws");
+  const Finished thrown = run_with("nothing", {"--plugin-path", own()});
+  EXPECT_EQ(thrown.exit_code, 1);
+  EXPECT_THAT(thrown.output,
+              HasSubstr("mutation operator \"nothing\" of " + library_.string() + ": nothing to mutate" + remedy));
+  install("nan");
+  const Finished poisoned = run_with("nothing", {"--plugin-path", own(), "--out", folder_ + "2"});
+  EXPECT_EQ(poisoned.exit_code, 1);
+  EXPECT_THAT(poisoned.output, HasSubstr("mutation operator \"nothing\" of " + library_.string() +
+                                         ": made a genome with gene 0 = nan, which is not allowed" + remedy));
+}
+
+TEST_F(Plugins, AnOperatorOfAnUnusableLibraryIsMissedWithTheReason) {
+  install("epoch");
+  const Finished finished = run_with("nothing", {"--plugin-path", own()});
+  EXPECT_EQ(finished.exit_code, 2);
+  EXPECT_THAT(finished.output, HasSubstr("no mutation operator has this name"));
+  EXPECT_THAT(finished.output, HasSubstr(library_.string() + ": its ABI epoch is 99, this evodevo's is 1"));
+}
+
+}  // namespace
+}  // namespace evodevo

@@ -1,0 +1,286 @@
+// Controls of development, schedules of its operators, and what becomes of torn bodies.
+#include "controls.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "evaluation.hpp"
+#include "philox.hpp"
+#include "support/experiments.hpp"
+
+namespace evodevo {
+namespace {
+
+const Material bone{10000, 0, 0, 0};
+const Material muscle{5000, 0.14, 1, 0};
+
+// changes at random places -------------------------------------------------------------------------------------------
+
+/// A ring of 40 masses, each joined to its two nearest on either side; springs of bone and muscle in turn.
+struct Ring {
+  LivingBody living;
+  Genome genome;
+  Layout layout;
+
+  Ring() {
+    Rng rng(philox, {5, 0, 0, 0});
+    living.body.materials = {bone, muscle};
+    for (int i = 0; i < 40; ++i) {
+      const Vec3 place{rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0, 1)};
+      living.body.masses.push_back({place, 0.2, 0, 0});
+      living.state.position.push_back(place);
+      living.state.velocity.push_back({});
+    }
+    for (std::uint32_t i = 0; i < 80; ++i) {
+      const std::uint32_t a = i / 2, b = (a + 1 + i % 2) % 40;
+      living.body.springs.push_back({a, b, norm(place(a) - place(b)), i % 4 < 2 ? 0u : 1u});
+      living.stress.push_back(i);
+    }
+  }
+
+  Vec3 place(std::uint32_t mass) const { return living.state.position[mass]; }
+  Moment now() const {
+    return {living.body, living.state, living.stress, 1,     2, 1, 2, 0.25, {{-1, -1, 0}, {1, 1, 1}},
+            0.2,         false,        genome,        layout};
+  }
+  Edits moved(const Edits& edits, std::uint64_t seed) const {
+    Rng rng(philox, {seed, 1, 2, 3});
+    return at_random_places(edits, now(), rng);
+  }
+};
+
+/// Something of everything; springs 3 and 4 are of muscle and bone.
+Edits some_of_everything() {
+  return {
+      .removed_springs = {0, 1, 2},
+      .removed_masses = {7, 8},
+      .changed_springs = {{.spring = 40, .rest_length = 1.0}, {.spring = 42, .material = Material{6000, 0.2, 1, 0}}},
+      .new_masses = {{{5, 5, 5}, 0.3, 1}, {{6, 6, 6}, 0.4, 0}},
+      .new_springs = {{40, 0, muscle, {}}, {41, 0, bone, 2.0}, {0, 20, muscle, {}}, {1, 20, muscle, {}}}};
+}
+
+TEST(RandomPlaces, AsMuchChangesAsBefore) {
+  const Ring ring;
+  const Edits edits = some_of_everything();
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const Edits moved = ring.moved(edits, seed);
+    EXPECT_EQ(moved.removed_springs.size(), 3u);
+    EXPECT_EQ(moved.removed_masses.size(), 2u);
+    EXPECT_EQ(moved.changed_springs.size(), 2u);
+    EXPECT_EQ(moved.new_masses.size(), 2u);
+    ASSERT_EQ(moved.new_springs.size(), 4u);
+    EXPECT_EQ(moved.new_masses[1].mass, 0.4);
+    EXPECT_EQ(moved.new_masses[1].material, 0);
+    for (std::size_t s = 0; s < 4; ++s) EXPECT_EQ(moved.new_springs[s].material, edits.new_springs[s].material);
+    EXPECT_TRUE(moved.new_springs[0].a == 40 || moved.new_springs[0].b == 40) << "new masses get their springs";
+    Ring changed = ring;
+    ASSERT_NO_THROW(apply_edits(changed.living, moved, changed.now()));
+    EXPECT_EQ(changed.living.body.masses.size(), 40u);
+  }
+}
+
+TEST(RandomPlaces, AllPlacesAreReachedAlike) {
+  const Ring ring;
+  std::vector<int> gone_springs(80, 0), gone_masses(40, 0), joined(40, 0);
+  double height = 0;
+  constexpr int rounds = 2000;
+  for (std::uint64_t seed = 0; seed < rounds; ++seed) {
+    const Edits springs = ring.moved({.removed_springs = {0, 1, 2, 3}}, seed);
+    for (const std::uint32_t s : springs.removed_springs) ++gone_springs[s];
+    const Edits masses = ring.moved({.removed_masses = {0, 1}, .new_masses = {{{}, 0.2, 0}}}, seed);
+    for (const std::uint32_t m : masses.removed_masses) ++gone_masses[m];
+    height += masses.new_masses[0].place.z / rounds;
+    for (const NewSpring& spring : ring.moved({.new_springs = {{0, 20, bone, {}}}}, seed).new_springs) {
+      ++joined[spring.a];
+      ++joined[spring.b];
+    }
+  }
+  for (const int count : gone_springs) EXPECT_NEAR(count, 100, 50);  // five standard deviations
+  for (const int count : gone_masses) EXPECT_NEAR(count, 100, 50);
+  for (const int count : joined) EXPECT_NEAR(count, 100, 50);
+  EXPECT_NEAR(height, 0.5, 0.04);
+}
+
+TEST(RandomPlaces, SpringsOfTheSameMaterialChangeByTheSameFactors) {
+  const Ring ring;
+  std::set<std::uint32_t> reached;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    const Spring& before = ring.living.body.springs[3];
+    ASSERT_EQ(before.material, 1u);
+    const Material stronger{5000, 0.2, 1, 0};
+    const Edits moved = ring.moved(
+        {.changed_springs = {{.spring = 3, .rest_length = 0.9 * before.rest_length, .material = stronger}}}, seed);
+    ASSERT_EQ(moved.changed_springs.size(), 1u);
+    const ChangedSpring& change = moved.changed_springs[0];
+    const Spring& other = ring.living.body.springs[change.spring];
+    EXPECT_EQ(other.material, 1u);
+    EXPECT_EQ(change.material, stronger);
+    EXPECT_NEAR(*change.rest_length, 0.9 * other.rest_length, 1e-12);
+    reached.insert(change.spring);
+  }
+  EXPECT_EQ(reached.size(), 40u);
+}
+
+TEST(RandomPlaces, FewerComeWhereThereIsNoRoom) {
+  Ring ring;
+  ring.living.body.masses.resize(3);
+  ring.living.body.springs = {{0, 1, 1, 0}, {1, 2, 1, 0}};
+  ring.living.stress = {1, 2};
+  const Edits moved = ring.moved({.new_springs = {{0, 2, bone, {}}, {0, 2, bone, {}}}}, 1);
+  EXPECT_EQ(moved.new_springs.size(), 1u);
+  EXPECT_TRUE(ring.moved({}, 1).empty());
+}
+
+// controls of an experiment ------------------------------------------------------------------------------------------
+
+/// What an operator saw in a life.
+struct Seen {
+  std::vector<std::vector<double>> stress;
+  std::vector<std::pair<int, int>> turns;
+  std::vector<int> cycles;
+};
+
+/// Watches, and changes nothing.
+class Watcher final : public Devo {
+ public:
+  explicit Watcher(Seen& seen) : seen_(seen) {}
+  void develop(const Moment& now, Edits&, Rng&) const override {
+    seen_.stress.emplace_back(now.stress.begin(), now.stress.end());
+    seen_.turns.emplace_back(now.turn, now.turns);
+    seen_.cycles.push_back(now.cycle);
+  }
+
+ private:
+  Seen& seen_;
+};
+
+/// Edits that do not depend on what is there.
+class Fixed final : public Devo {
+ public:
+  explicit Fixed(Edits edits) : edits_(std::move(edits)) {}
+  void develop(const Moment&, Edits& edits, Rng&) const override { edits = edits_; }
+
+ private:
+  Edits edits_;
+};
+
+Life matured(const Experiment& experiment, std::uint32_t id = 0) {
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  static const Genome genome = {1, 2};
+  const Newborn newborn{id, 0, &genome};
+  const Evaluation evaluation(experiment, *simulator);
+  std::vector<Life> lives = evaluation.birth({&newborn, 1});
+  evaluation.develop(lives, [](double) {});
+  return std::move(lives.front());
+}
+
+Experiment with_control(const char* control) {
+  return testing::read(testing::small_experiment, {{"development.control", control, "--set"}});
+}
+
+Seen watch(Experiment experiment, std::uint32_t id = 0) {
+  Seen seen;
+  for (Scheduled& scheduled : experiment.development.operators) scheduled.op = std::make_unique<Watcher>(seen);
+  EXPECT_EQ(matured(experiment, id).result.status, Status::ok);
+  return seen;
+}
+
+TEST(Control, NoChangeTakesTheSameTime) {
+  Seen seen;
+  Experiment experiment = with_control("no-change");
+  experiment.development.operators[0].op = std::make_unique<Watcher>(seen);
+  const Life still = matured(experiment), developed = matured(with_control("off"));
+  EXPECT_TRUE(seen.stress.empty());
+  EXPECT_EQ(still.living.state.time, developed.living.state.time);
+  EXPECT_NEAR(still.living.state.time, 0.1, 1e-12);
+  ASSERT_EQ(still.living.body.springs.size(), developed.living.body.springs.size());
+  EXPECT_NE(still.living.state.position, developed.living.state.position);
+}
+
+TEST(Control, ShuffledStressIsTheSameStressInAnotherOrder) {
+  const Seen off = watch(with_control("off")), shuffled = watch(with_control("shuffled-stress"));
+  ASSERT_EQ(off.stress.size(), 2u);
+  ASSERT_EQ(shuffled.stress.size(), 2u);
+  for (std::size_t cycle = 0; cycle < 2; ++cycle) {
+    EXPECT_NE(shuffled.stress[cycle], off.stress[cycle]);
+    EXPECT_THAT(shuffled.stress[cycle], ::testing::UnorderedElementsAreArray(off.stress[cycle]));
+  }
+  EXPECT_EQ(watch(with_control("shuffled-stress")).stress, shuffled.stress) << "the same when lived again";
+  EXPECT_NE(watch(with_control("shuffled-stress"), 1).stress, shuffled.stress) << "but not for another individual";
+}
+
+TEST(Control, RandomPlacesMoveWhatOperatorsWant) {
+  Experiment experiment = with_control("random-places");
+  const Edits edits{.removed_springs = {4}};
+  experiment.development.operators[0].op = std::make_unique<Fixed>(edits);
+  experiment.development.cycles = 1;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> gone;
+  const auto pairs_of = [](const Body& body) {
+    std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    for (const Spring& spring : body.springs) pairs.insert(std::minmax(spring.a, spring.b));
+    return pairs;
+  };
+  Experiment undeveloped = with_control("no-change");
+  const auto all = pairs_of(matured(undeveloped).living.body);
+  ASSERT_EQ(all.size(), 50u);
+  for (std::uint32_t id = 0; id < 40; ++id) {
+    const auto left = pairs_of(matured(experiment, id).living.body);
+    ASSERT_EQ(left.size(), 49u);
+    for (const auto& pair : all)
+      if (!left.contains(pair)) ++gone[pair];
+  }
+  EXPECT_GT(gone.size(), 15u) << "40 draws out of 50";
+}
+
+// schedules ----------------------------------------------------------------------------------------------------------
+
+/// The cycles in which an operator with this schedule comes, of eight.
+Seen scheduled(std::vector<Override> overrides) {
+  overrides.insert(overrides.begin(), {{"development.cycles", "8", "--set"}, {"development.cycle_time", "0.001", ""}});
+  return watch(testing::read(testing::small_experiment, std::move(overrides)));
+}
+
+TEST(Schedule, EarlyLateOnceAndNowAndThen) {
+  using ::testing::ElementsAre;
+  const std::string key = "development.operator.0.";
+  EXPECT_THAT(scheduled({}).cycles, ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+  EXPECT_THAT(scheduled({{key + "to", "3", ""}}).cycles, ElementsAre(1, 2, 3));
+  EXPECT_THAT(scheduled({{key + "from", "7", ""}}).cycles, ElementsAre(7, 8));
+  EXPECT_THAT(scheduled({{key + "from", "5", ""}, {key + "to", "5", ""}}).cycles, ElementsAre(5));
+  EXPECT_THAT(scheduled({{key + "every", "3", ""}}).cycles, ElementsAre(1, 4, 7));
+  EXPECT_THAT(scheduled({{key + "from", "2", ""}, {key + "every", "3", ""}, {key + "to", "7", ""}}).cycles,
+              ElementsAre(2, 5));
+}
+
+TEST(Schedule, OperatorsKnowTheirTurns) {
+  const std::string key = "development.operator.0.";
+  using Turns = std::vector<std::pair<int, int>>;
+  EXPECT_EQ(scheduled({{key + "every", "3", ""}}).turns, (Turns{{1, 3}, {2, 3}, {3, 3}}));
+  EXPECT_EQ(scheduled({{key + "from", "7", ""}, {key + "to", "100", ""}}).turns, (Turns{{1, 2}, {2, 2}}));
+}
+
+// torn bodies --------------------------------------------------------------------------------------------------------
+
+TEST(Development, TheLargestPieceGoesOn) {
+  Experiment experiment = with_control("off");
+  // the springs of a corner mass, and with them the mass
+  const Body newborn = matured(with_control("no-change")).living.body;
+  Edits edits;
+  for (std::uint32_t s = 0; s < newborn.springs.size(); ++s)
+    if (newborn.springs[s].a == 0 || newborn.springs[s].b == 0) edits.removed_springs.push_back(s);
+  ASSERT_EQ(edits.removed_springs.size(), 7u);
+  experiment.development.operators[0].op = std::make_unique<Fixed>(edits);
+  experiment.development.cycles = 1;
+  const Life life = matured(experiment);
+  EXPECT_EQ(life.result.status, Status::ok);
+  EXPECT_EQ(life.living.body.masses.size(), newborn.masses.size() - 1);
+  EXPECT_EQ(life.living.state.position.size(), newborn.masses.size() - 1);
+  EXPECT_EQ(life.living.body.springs.size(), newborn.springs.size() - 7);
+}
+
+}  // namespace
+}  // namespace evodevo

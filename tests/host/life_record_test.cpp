@@ -1,0 +1,220 @@
+// Records of lives: what goes in comes out, replaying gives the matured body to the bit, and runs keep those of the
+// front.
+#include "life_record.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+
+#include "breeding.hpp"
+#include "evolution.hpp"
+#include "support/experiments.hpp"
+#include "support/scratch.hpp"
+
+namespace evodevo {
+namespace {
+
+/// As many operators as possible, on bodies of some dozens of masses.
+Experiment all_operators(bool reset) {
+  std::string text = testing::small_experiment;
+  const std::string operators = R"(
+[[development.operator]]
+name = "mass-turnover"
+threshold = 100
+limit = 2
+springs = 4
+[[development.operator]]
+name = "mass-growth"
+masses = 1
+springs = 5
+where = "by-stress"
+join = "nearest"
+[[development.operator]]
+name = "length-adaptation"
+springs = 3
+[[development.operator]]
+name = "stiffness-adaptation"
+springs = 3
+[[development.operator]]
+name = "amplitude-adaptation"
+springs = 3
+[[development.operator]]
+name = "ballistic-growth"
+)";
+  text.insert(text.find("[[fitness]]"), operators);
+  return testing::read(text, {{"encoding.size", "[3, 2, 2]", ""},
+                              {"scene.load.share", "0.5", ""},
+                              {"encoding.size_range", "0.2", ""},
+                              {"development.cycles", "4", ""},
+                              {"development.reset", reset ? "true" : "false", ""}});
+}
+
+struct Lived {
+  Body born;
+  Life life;
+};
+
+std::vector<Lived> matured(const Experiment& experiment, std::size_t count) {
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, count);
+  std::vector<Newborn> newborns;
+  for (const Individual& individual : individuals) newborns.push_back({individual.id, 0, &individual.genome});
+  const Evaluation evaluation(experiment, *simulator);
+  std::vector<Life> lives = evaluation.birth(newborns);
+  std::vector<Lived> lived;
+  for (const Life& life : lives) lived.push_back({life.living.body, {}});
+  evaluation.develop(lives, [](double) {});
+  for (std::size_t i = 0; i < count; ++i) lived[i].life = std::move(lives[i]);
+  return lived;
+}
+
+void expect_same(const Body& a, const Body& b) {
+  EXPECT_EQ(a.materials, b.materials);
+  ASSERT_EQ(a.masses.size(), b.masses.size());
+  for (std::size_t i = 0; i < a.masses.size(); ++i) {
+    const Mass &m = a.masses[i], &n = b.masses[i];
+    ASSERT_EQ(std::tie(m.rest, m.mass, m.material, m.air_contacts, m.load),
+              std::tie(n.rest, n.mass, n.material, n.air_contacts, n.load))
+        << "mass " << i;
+  }
+  ASSERT_EQ(a.springs.size(), b.springs.size());
+  for (std::size_t i = 0; i < a.springs.size(); ++i) {
+    const Spring &s = a.springs[i], &t = b.springs[i];
+    ASSERT_EQ(std::tie(s.a, s.b, s.rest_length, s.material, s.growth),
+              std::tie(t.a, t.b, t.rest_length, t.material, t.growth))
+        << "spring " << i;
+  }
+}
+
+TEST(LifeRecord, ReplayedFromTheBodyAtBirthGivesTheMaturedOneToTheBit) {
+  for (const bool reset : {false, true}) {
+    const Experiment experiment = all_operators(reset);
+    std::size_t alive = 0, removed_masses = 0, new_masses = 0, changed = 0, new_springs = 0;
+    for (const Lived& lived : matured(experiment, 6)) {
+      if (!lived.life.alive()) continue;
+      ++alive;
+      Body body = lived.born;
+      for (const Change& change : LifeRecord(lived.life.result.record.bytes()).changes()) {
+        replay(body, change);
+        removed_masses += change.edits.removed_masses.size();
+        new_masses += change.edits.new_masses.size();
+        changed += change.edits.changed_springs.size();
+        new_springs += change.edits.new_springs.size();
+      }
+      expect_same(body, lived.life.living.body);
+    }
+    EXPECT_GE(alive, 3u);
+    EXPECT_GT(std::min({removed_masses, new_masses, changed, new_springs}), 10u) << "there must be something to replay";
+  }
+}
+
+Change change_of_all_kinds() {
+  Change change;
+  change.cycle = 300;
+  change.op = 2;
+  change.edits.removed_masses = {0, 7, 100'000};
+  change.edits.removed_springs = {3, 4, 70'000};
+  change.removed_stress = {0, 1.5f, 1e30f};
+  const Material one{5000, 0.14, 1, 0.1 + 0.2}, other{1, 0, 0, 0};
+  change.edits.changed_springs = {{.spring = 9, .rest_length = 1e-300}, {.spring = 8, .material = one}};
+  change.changed_stress = {2, 3};
+  change.edits.new_masses = {{{-1, 0.1, 2}, 0.2, no_material}, {{0, 0, 0}, 0.3, 4}};
+  change.edits.new_springs = {{1, 200, one, 0.1}, {2, 0xfffffffe, other, 0.0}, {5, 6, other, 7.0}};
+  return change;
+}
+
+void expect_same(const Change& a, const Change& b) {
+  EXPECT_EQ(a.cycle, b.cycle);
+  EXPECT_EQ(a.op, b.op);
+  EXPECT_EQ(a.edits.removed_masses, b.edits.removed_masses);
+  EXPECT_EQ(a.edits.removed_springs, b.edits.removed_springs);
+  EXPECT_EQ(a.removed_stress, b.removed_stress);
+  EXPECT_EQ(a.changed_stress, b.changed_stress);
+  ASSERT_EQ(a.edits.changed_springs.size(), b.edits.changed_springs.size());
+  for (std::size_t i = 0; i < a.edits.changed_springs.size(); ++i) {
+    const ChangedSpring &s = a.edits.changed_springs[i], &t = b.edits.changed_springs[i];
+    EXPECT_EQ(std::tie(s.spring, s.rest_length, s.material), std::tie(t.spring, t.rest_length, t.material));
+  }
+  ASSERT_EQ(a.edits.new_masses.size(), b.edits.new_masses.size());
+  for (std::size_t i = 0; i < a.edits.new_masses.size(); ++i) {
+    const NewMass &m = a.edits.new_masses[i], &n = b.edits.new_masses[i];
+    EXPECT_EQ(std::tie(m.place, m.mass, m.material), std::tie(n.place, n.mass, n.material));
+  }
+  ASSERT_EQ(a.edits.new_springs.size(), b.edits.new_springs.size());
+  for (std::size_t i = 0; i < a.edits.new_springs.size(); ++i) {
+    const NewSpring &s = a.edits.new_springs[i], &t = b.edits.new_springs[i];
+    EXPECT_EQ(std::tie(s.a, s.b, s.material, s.rest_length), std::tie(t.a, t.b, t.material, t.rest_length));
+  }
+}
+
+TEST(LifeRecord, GivesBackWhatItWasGiven) {
+  const Change change = change_of_all_kinds();
+  Change torn_off;
+  torn_off.cycle = 301;
+  torn_off.edits.removed_masses = {5};
+  LifeRecord record;
+  EXPECT_TRUE(record.empty());
+  for (const Change& each : {change, torn_off, change}) record.add(each);
+  const std::vector<Change> back = LifeRecord(record.bytes()).changes();
+  ASSERT_EQ(back.size(), 3u);
+  expect_same(back[0], change);
+  expect_same(back[1], torn_off);
+  expect_same(back[2], change);
+}
+
+TEST(LifeRecord, RefusesADamagedOne) {
+  LifeRecord record;
+  record.add(change_of_all_kinds());
+  for (std::size_t length = 1; length < record.bytes().size(); ++length)
+    EXPECT_THROW(LifeRecord(record.bytes().substr(0, length)), std::invalid_argument) << length;
+  EXPECT_THROW(LifeRecord(std::string(20, '\xff')), std::invalid_argument);
+}
+
+TEST(LifeRecord, ASpringThatGoesAndOneThatComesTakeSome20Bytes) {
+  const Experiment experiment =
+      testing::read(testing::small_experiment, {{"encoding.size", "[4, 4, 4]", ""},
+                                                {"development.cycles", "8", ""},
+                                                {"development.operator.0.springs", "50", ""}});
+  for (const Lived& lived : matured(experiment, 2)) {
+    ASSERT_TRUE(lived.life.alive());
+    EXPECT_LT(lived.life.result.record.bytes().size(), 8 * 50 * 22u + 1000) << "and a few materials";
+  }
+}
+
+TEST(LifeRecord, ARunKeepsThoseOfTheFrontAlone) {
+  const testing::Scratch scratch;
+  const Experiment experiment =
+      testing::read(testing::small_experiment,
+                    {{"experiment.evaluations", "60", ""}, {"development.operator.0.name", "length-adaptation", ""}});
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  Archive archive = Archive::create(scratch / "run", experiment, simulator->device());
+  const std::atomic<bool> stop = false;
+  evolve(experiment, *simulator, archive, stop, Observer{});
+
+  std::vector<ArchivedIndividual> all;
+  for (std::uint32_t id = 0; id < 60; ++id) all.push_back(archive.individual(id).value());
+  const auto surpasses = [&](const ArchivedIndividual& a, const ArchivedIndividual& b) {
+    const std::vector<double>&x = a.result.objectives, &y = b.result.objectives;
+    if (x.empty() || x[0] < y[0] || x[1] > y[1] || a.origin < b.origin) return false;  // distance, work, youth
+    return x[0] > y[0] || x[1] < y[1] || a.origin > b.origin;
+  };
+  int kept = 0;
+  for (const ArchivedIndividual& one : all) {
+    const bool on_front =
+        one.result.status == Status::ok && std::none_of(all.begin(), all.end(), [&](const ArchivedIndividual& other) {
+          const bool there = other.born <= one.born && (!other.died || *other.died >= one.born);
+          return there && surpasses(other, one);
+        });
+    const std::optional<LifeRecord> record = archive.life(one.id);
+    EXPECT_EQ(record.has_value(), on_front) << "individual " << one.id;
+    if (!record) continue;
+    ++kept;
+    EXPECT_EQ(record->changes().size(), 2u) << "two cycles";
+  }
+  EXPECT_GT(kept, 3);
+  EXPECT_LT(kept, 57);
+}
+
+}  // namespace
+}  // namespace evodevo

@@ -1,0 +1,138 @@
+// The operators that change a property of the most stressed springs.
+#include <cmath>
+#include <functional>
+
+#include "life.hpp"
+
+namespace evodevo::test {
+namespace {
+
+/// 40 springs of bone and muscle in turn along a chain; spring s has a stress of s N.
+Life chain() {
+  Life life = life_of_masses(41, false);
+  for (std::uint32_t s = 0; s < 40; ++s) life.add_spring(s, s + 1, s % 2 ? muscle : bone, s);
+  return life;
+}
+
+double relative_length(const Body& body, std::uint32_t s) {
+  const Spring& spring = body.springs[s];
+  return spring.rest_length / norm(body.masses[spring.a].rest - body.masses[spring.b].rest);
+}
+double stiffness(const Body& body, std::uint32_t s) { return body.materials[body.springs[s].material].stiffness; }
+double amplitude(const Body& body, std::uint32_t s) { return body.materials[body.springs[s].material].amplitude; }
+
+struct Property {
+  const char* name;
+  double (*value)(const Body&, std::uint32_t);
+  bool of_muscles_alone;
+  double low, high;  ///< bounds for the tests, around what the chain has
+};
+
+class Adaptation : public testing::TestWithParam<Property> {
+ protected:
+  std::unique_ptr<Devo> make_with(double factor, std::int64_t springs = 5) const {
+    return make<Devo>(GetParam().name, "springs = " + std::to_string(springs) + "\nfactor = " + std::to_string(factor) +
+                                           "\nlow = " + std::to_string(GetParam().low) +
+                                           "\nhigh = " + std::to_string(GetParam().high));
+  }
+  double value(const Body& body, std::uint32_t s) const { return GetParam().value(body, s); }
+};
+
+TEST_P(Adaptation, MultipliesThePropertyOfTheMostStressedAlone) {
+  const Life life = chain();
+  for (const double factor : {0.9, 1.1}) {
+    const LivingBody grown = after(life, develop(*make_with(factor), life, 1));
+    ASSERT_EQ(grown.body.springs.size(), 40u);
+    const std::uint32_t last_unchanged = GetParam().of_muscles_alone ? 40 - 11 : 40 - 6;
+    for (std::uint32_t s = 0; s < 40; ++s) {
+      const bool changes = s > last_unchanged && (s % 2 == 1 || !GetParam().of_muscles_alone);
+      EXPECT_NEAR(value(grown.body, s), (changes ? factor : 1) * value(life.living.body, s), 1e-9) << s;
+    }
+  }
+}
+
+TEST_P(Adaptation, ChangesNothingElse) {
+  const Life life = chain();
+  const LivingBody grown = after(life, develop(*make_with(1.1, 1000), life, 1));
+  for (std::uint32_t s = 0; s < 40; ++s) {
+    const Spring &before = life.living.body.springs[s], &now = grown.body.springs[s];
+    EXPECT_EQ(now.a, before.a);
+    EXPECT_EQ(now.b, before.b);
+    EXPECT_EQ(grown.stress[s], life.living.stress[s]);
+    EXPECT_EQ(grown.body.materials[now.material].phase, life.living.body.materials[before.material].phase);
+    EXPECT_EQ(grown.body.materials[now.material].frequency, life.living.body.materials[before.material].frequency);
+    for (const auto& other : {relative_length, stiffness, amplitude})
+      if (other != GetParam().value) {
+        EXPECT_EQ(other(grown.body, s), other(life.living.body, s));
+      }
+  }
+}
+
+TEST_P(Adaptation, StaysWithinItsBoundsForALifetime) {
+  for (const double factor : {0.9, 1.1}) {
+    Life life = chain();
+    for (std::uint64_t cycle = 0; cycle < 60; ++cycle)
+      life.living = after(life, develop(*make_with(factor, 1000), life, cycle));
+    for (std::uint32_t s = 0; s < 40; ++s) {
+      if (GetParam().of_muscles_alone && s % 2 == 0) continue;
+      EXPECT_NEAR(value(life.living.body, s), factor < 1 ? GetParam().low : GetParam().high, 1e-9);
+    }
+    EXPECT_TRUE(digest(develop(*make_with(factor, 1000), life, 1)).empty()) << "nothing is left to change";
+  }
+}
+
+TEST_P(Adaptation, WhatLiesBeyondABoundGoesNoFurtherAndIsNotPulledBack) {
+  Life life = chain();
+  for (Spring& spring : life.living.body.springs) spring.rest_length *= 10;
+  life.living.body.materials[bone] = {50'000, 0, 0, 0};
+  life.living.body.materials[muscle] = {50'000, 0.9, 1, 0};
+  EXPECT_TRUE(digest(develop(*make_with(1.1, 1000), life, 1)).empty());
+  const LivingBody grown = after(life, develop(*make_with(0.9, 1000), life, 1));
+  EXPECT_NEAR(value(grown.body, 39), 0.9 * value(life.living.body, 39), 1e-9) << "but it may come back";
+}
+
+TEST_P(Adaptation, BreaksTiesAtRandom) {
+  Life life = chain();
+  for (const double stress : {0.0, 5.0, std::nan("")}) {
+    life.living.stress.assign(40, stress);
+    std::vector<int> changed(40, 0);
+    for (std::uint64_t seed = 0; seed < 400; ++seed)
+      for (const ChangedSpring& change : develop(*make_with(1.1, 10), life, seed).changed_springs)
+        ++changed[change.spring];
+    for (std::uint32_t s = 0; s < 40; ++s) {
+      const double expected = !GetParam().of_muscles_alone ? 100 : s % 2 ? 200 : 0;
+      EXPECT_NEAR(changed[s], expected, 50) << s;  // five standard deviations
+    }
+  }
+}
+
+TEST_P(Adaptation, StressThatIsNoNumberCountsAsTheLeast) {
+  Life life = chain();
+  for (std::uint32_t s = 20; s < 40; ++s) life.living.stress[s] = std::nan("");
+  for (const ChangedSpring& change : develop(*make_with(1.1), life, 1).changed_springs) EXPECT_LT(change.spring, 20u);
+}
+
+TEST_P(Adaptation, DegenerateBodiesStayAsTheyAre) {
+  EXPECT_TRUE(digest(develop(*make_with(1.1), Life{}, 1)).empty());
+  EXPECT_TRUE(digest(develop(*make_with(1.1), life_of_masses(1), 1)).empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Properties, Adaptation,
+                         testing::Values(Property{"length-adaptation", relative_length, false, 0.5, 2},
+                                         Property{"stiffness-adaptation", stiffness, false, 2000, 30'000},
+                                         Property{"amplitude-adaptation", amplitude, true, 0.05, 0.5}),
+                         [](const auto& tested) {
+                           std::string name = tested.param.name;
+                           return name.substr(0, name.find('-'));
+                         });
+
+TEST(LengthAdaptation, SpringsWhoseMassesRestInOnePlaceStay) {
+  Life life = chain();
+  life.living.body.masses[40].rest = life.living.body.masses[39].rest;
+  const Edits edits = develop(*make<Devo>("length-adaptation", "springs = 1"), life, 1);
+  ASSERT_EQ(edits.changed_springs.size(), 1u);
+  EXPECT_EQ(edits.changed_springs[0].spring, 38u);
+}
+
+}  // namespace
+}  // namespace evodevo::test

@@ -1,0 +1,184 @@
+// Plugins that load and break one rule each, which WRONG names.
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <ctime>
+#include <numeric>
+#include <random>
+
+#include "evodevo/plugin.hpp"
+
+namespace {
+
+using evodevo::Candidate;
+using evodevo::Genome;
+using evodevo::Layout;
+using evodevo::Rng;
+
+#if defined(WRONG_TWINS)
+
+struct Wrong final : evodevo::Crossover {
+  void cross(Genome& one, Genome&, const Layout& layout, Rng& rng) const override { one = random_genome(layout, rng); }
+};
+
+#elif defined(WRONG_DECODING)
+
+struct Wrong final : evodevo::Encoding {
+  Layout layout(const evodevo::World&) const override {
+    Layout layout;
+    layout.add_group(2, {0, 1});
+    return layout;
+  }
+  evodevo::Blueprint decode(const Genome&, const evodevo::World& world) const override {
+    evodevo::Blueprint blueprint;
+    blueprint.body.materials = world.materials;
+    blueprint.body.masses = {{{0, 0, 0}, 1}, {{1, 0, 0}, 1}};
+    blueprint.body.springs = {{0, 2, 1, 1}};  // there is no mass 2
+    return blueprint;
+  }
+};
+
+#elif defined(WRONG_BODIES) || defined(WRONG_BODIES_DANGLING) || defined(WRONG_BODIES_NAN) || \
+    defined(WRONG_BODIES_BEYOND)
+
+struct Wrong final : evodevo::Devo {
+  void develop([[maybe_unused]] const evodevo::Moment& now, evodevo::Edits& edits, Rng&) const override {
+#if defined(WRONG_BODIES)
+    if (now.body.springs.empty()) return;
+    const evodevo::Spring& twin = now.body.springs[0];
+    edits.new_springs.push_back({twin.a, twin.b, now.body.materials[twin.material], {}});
+#elif defined(WRONG_BODIES_DANGLING)
+    const auto beyond = static_cast<std::uint32_t>(now.body.masses.size());
+    edits.new_springs.push_back({0, beyond, {1000, 0, 0, 0}, {}});
+#elif defined(WRONG_BODIES_NAN)
+    edits.new_springs.push_back({0, 1, {std::nan(""), 0, 0, 0}, {}});
+#else
+    edits.new_masses.push_back({now.bounds.high + evodevo::Vec3{0, 0, 1}, now.mass});
+#endif
+  }
+};
+
+#elif defined(WRONG_TRANSLATION) || defined(WRONG_NAN_HIDDEN) || defined(WRONG_OBJECTIVES)
+
+struct Wrong final : evodevo::Fitness {
+  evodevo::Request observes() const override { return {0, 0.1, false}; }
+  std::vector<evodevo::Objective> objectives() const override { return {{"way", "m", true}}; }
+  std::vector<double> score(const evodevo::Observation& seen) const override {
+    const double way = seen.centre_after.x - seen.centre_before.x;
+#if defined(WRONG_TRANSLATION)
+    return {way + seen.centre_after.x};
+#elif defined(WRONG_NAN_HIDDEN)
+    return {std::isnan(way) ? 0 : way};
+#else
+    return {way, way};
+#endif
+  }
+};
+
+#elif defined(WRONG_ORDER) || defined(WRONG_ELITE) || defined(WRONG_FAILED)
+
+struct Wrong final : evodevo::Selection {
+  static std::vector<std::uint32_t> best_first(std::span<const Candidate> rows) {
+    std::vector<std::uint32_t> order(rows.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+#if defined(WRONG_FAILED)
+      if (rows[i].ok() != rows[j].ok()) return rows[j].ok();
+#else
+      if (rows[i].ok() != rows[j].ok()) return rows[i].ok();
+#endif
+      return rows[i].ok() && rows[i].scores[0] > rows[j].scores[0];
+    });
+#if defined(WRONG_ORDER)
+    std::sort(order.begin(), order.end(),
+              [&](auto i, auto j) { return rows[i].ok() != rows[j].ok() ? rows[i].ok() : i < j; });
+#elif defined(WRONG_ELITE)
+    if (order.size() > 1) order.erase(order.begin());
+#endif
+    return order;
+  }
+  std::vector<std::pair<std::uint32_t, std::uint32_t> > parents(std::span<const Candidate> rows, std::uint32_t count,
+                                                                Rng&) const override {
+    const std::uint32_t best = best_first(rows).front();
+    return {count, {best, best}};
+  }
+  std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population, Rng&) const override {
+    auto order = best_first(rows);
+    order.resize(std::min<std::size_t>(order.size(), population));
+    return order;
+  }
+};
+
+#else
+
+#if defined(WRONG_LISTING)
+[[maybe_unused]] const bool slow = [] {
+  while (std::clock() < CLOCKS_PER_SEC / 5) {
+  }
+  return true;
+}();
+#endif
+
+thread_local bool made_here = false;
+int calls_in_this_process = 0;
+
+struct Wrong final : evodevo::Mutation {
+  Wrong() { made_here = true; }
+
+#if defined(WRONG_INSTANCES)
+  static inline std::int64_t genes_ = 1;
+#else
+  std::int64_t genes_ = 1;
+#endif
+  mutable int calls_ = 0;
+
+  void parameters(evodevo::Parameters& p) override {
+#if defined(WRONG_DECLARATIONS)
+    p.integer(genes_, "genes", {0, 5, "1"}, "");
+#elif defined(WRONG_REFUSALS)
+    try {
+      p.integer(genes_, "genes", {0, 5, "1"}, "Genes that change.");
+    } catch (const std::exception&) {
+    }
+#else
+    p.integer(genes_, "genes", {0, 5, "1"}, "Genes that change.");
+#endif
+  }
+
+  void mutate(Genome& genome, const Layout& layout, [[maybe_unused]] Rng& rng) const override {
+    ++calls_;
+    ++calls_in_this_process;
+#if defined(WRONG_NOTHING)
+    if (genome.empty()) genome.push_back(1);
+#endif
+    if (layout.genes.empty()) return;
+    float& gene = genome[0];
+    gene = layout.genes[0].draw(rng);
+#if defined(WRONG_SAME_SEED)
+    gene = static_cast<float>(std::random_device()() % 1000) / 1000;
+#elif defined(WRONG_THREADS)
+    if (!made_here) gene = layout.genes[0].low;
+#elif defined(WRONG_BATCH)
+    if (calls_ > 3) gene = layout.genes[0].low;
+#elif defined(WRONG_INPUTS)
+    const_cast<Layout&>(layout).genes[0].high *= 0.5F;
+#elif defined(WRONG_RESUMING)
+    if (calls_in_this_process > 5) gene = layout.genes[0].draw(rng);
+#elif defined(WRONG_LAYOUT)
+    gene = layout.genes[0].high + 1;
+#elif defined(WRONG_CRASHING)
+    std::raise(SIGSEGV);
+#endif
+  }
+};
+
+#endif
+
+}  // namespace
+
+#if defined(WRONG_EXPORTS)
+extern "C" __attribute__((visibility("default"), weak)) int another_export() { return 1; }  // as inline functions are
+#endif
+
+EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
+               evodevo::operator_entry<Wrong>("wrong", "Breaks one rule."))
