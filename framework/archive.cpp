@@ -222,7 +222,9 @@ Archive Archive::annotate(const fs::path& folder) {
 
 Archive Archive::read(const fs::path& folder) {
   require_run(folder);
-  return opened(folder, SQLite::OPEN_READONLY);
+  Archive archive = opened(folder, SQLite::OPEN_READONLY);
+  archive.files_->database.exec("BEGIN");
+  return archive;
 }
 
 Archive Archive::opened(const fs::path& folder, int flags) try {
@@ -355,6 +357,12 @@ void Archive::set_record(const std::string& key, const std::string& value) {
   SQLite::Statement insert(files_->database, "INSERT OR REPLACE INTO record VALUES(?, ?)");
   SQLite::bind(insert, key, value);
   insert.exec();
+}
+
+void Archive::set_records(const std::map<std::string, std::string>& entries) {
+  SQLite::Transaction transaction(files_->database);
+  for (const auto& [key, value] : entries) set_record(key, value);
+  transaction.commit();
 }
 
 std::vector<OperatorUse> Archive::operators() const {

@@ -117,10 +117,12 @@ void for_each_time(Time& time, const Use& use) {
 }  // namespace
 
 void record_time_spent(Archive& archive, const TimeSpent& time) {
+  std::map<std::string, std::string> entries;
   for_each_time(time, [&](const char* key, double seconds) {
     const double before = std::stod(archive.find_record(key).value_or("0"));
-    archive.set_record(key, to_text(before + seconds));
+    entries[key] = to_text(before + seconds);
   });
+  archive.set_records(entries);
 }
 
 std::optional<TimeSpent> recorded_time_spent(const Archive& archive) {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
+#include <numeric>
 #include <stdexcept>
 
 #include "development.hpp"
@@ -179,7 +179,7 @@ Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const Mome
   change.edits.removed_springs = ascending(edits.removed_springs);
   // an index out of range is refused where the edits are applied
   const auto stress_of = [&](std::uint32_t spring) {
-    return spring < now.stress.size() ? static_cast<float>(now.stress[spring]) : std::nanf("");
+    return spring < now.stress.size() ? static_cast<float>(now.stress[spring]) : 0.0f;
   };
   for (const std::uint32_t spring : change.edits.removed_springs) change.removed_stress.push_back(stress_of(spring));
   for (const ChangedSpring& spring : edits.changed_springs) change.changed_stress.push_back(stress_of(spring.spring));
@@ -190,6 +190,19 @@ void set_rest_lengths(Change& change, const Body& after) {
   std::vector<NewSpring>& springs = change.edits.new_springs;
   const std::size_t first = after.springs.size() - springs.size();
   for (std::size_t i = 0; i < springs.size(); ++i) springs[i].rest_length = after.springs[first + i].rest_length;
+}
+
+MassNumbers::MassNumbers(std::size_t born) : numbers_(born), next_(static_cast<std::uint32_t>(born)) {
+  std::iota(numbers_.begin(), numbers_.end(), 0u);
+}
+
+void MassNumbers::come(const Edits& edits) {
+  for (std::size_t i = 0; i < edits.new_masses.size(); ++i) numbers_.push_back(next_++);
+}
+
+void MassNumbers::go(const Edits& edits) {
+  for (auto mass = edits.removed_masses.rbegin(); mass != edits.removed_masses.rend(); ++mass)
+    numbers_.erase(numbers_.begin() + *mass);
 }
 
 LifeRecord::LifeRecord(std::string bytes) : bytes_(std::move(bytes)) {

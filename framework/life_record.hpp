@@ -14,8 +14,7 @@ struct Change {
   std::uint32_t cycle = 0;          ///< from 1
   std::optional<std::uint32_t> op;  ///< place in Development::operators; none: of what was torn off
   Edits edits;                      ///< what goes in ascending order and once; every new spring has its rest length
-  /// Of the springs that `edits` names, as the operator saw it, N; NaN where it did not ask.
-  std::vector<float> removed_stress, changed_stress;
+  std::vector<float> removed_stress, changed_stress;  ///< of the springs that `edits` names, as the operator saw it, N
 };
 
 /// The change that `edits`, wanted by operator `op`, are about to make. Rest lengths are still as the operator left
@@ -24,6 +23,23 @@ Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const Mome
 
 /// Takes the rest lengths of a change's new springs from the body that it was made to.
 void set_rest_lengths(Change& change, const Body& after);
+
+/// The numbers that masses keep through a life: at birth their indices; each that comes has the next number.
+class MassNumbers {
+ public:
+  explicit MassNumbers(std::size_t born);
+
+  /// What a change's edits do: first the new masses come, then others go.
+  void come(const Edits& edits);
+  void go(const Edits& edits);
+
+  /// Of each mass of the body as it is, ascending.
+  const std::vector<std::uint32_t>& all() const { return numbers_; }
+
+ private:
+  std::vector<std::uint32_t> numbers_;
+  std::uint32_t next_;
+};
 
 /// All changes of a life, in their order: about 20 bytes for a spring that goes and one that comes.
 class LifeRecord {

@@ -1,10 +1,8 @@
 // evodevo life: what development did to a robot, edit by edit.
-#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "archive.hpp"
 #include "commands/options.hpp"
@@ -14,9 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 namespace po = boost::program_options;
-
-/// Nothing where the operator did not ask for stress.
-std::optional<float> seen(float stress) { return std::isnan(stress) ? std::nullopt : std::optional(stress); }
 
 /// What happened to one mass or spring.
 struct Event {
@@ -32,16 +27,11 @@ struct Event {
   bool is_spring() const { return masses.size() == 2; }
 };
 
-/// A life as it goes on. Masses have numbers that they keep: those at birth their index, later ones the next numbers.
+/// A life as it goes on.
 class Chronicle {
  public:
   Chronicle(Body born, std::vector<std::string> operators)
-      : body_(std::move(born)),
-        operators_(std::move(operators)),
-        number_(body_.masses.size()),
-        next_number_(static_cast<std::uint32_t>(number_.size())) {
-    std::iota(number_.begin(), number_.end(), 0u);
-  }
+      : body_(std::move(born)), operators_(std::move(operators)), numbers_(body_.masses.size()) {}
 
   void add(const Change& change) {
     const Edits& edits = change.edits;
@@ -49,21 +39,20 @@ class Chronicle {
     for (std::size_t i = 0; i < edits.changed_springs.size(); ++i) {
       const ChangedSpring& spring = edits.changed_springs[i];
       Event& event = add_event(change, "changed", ends(spring.spring));
-      event.stress = seen(change.changed_stress[i]);
+      event.stress = change.changed_stress[i];
       event.rest_length = spring.rest_length;
       event.material = spring.material;
     }
-    for (const NewMass& mass : edits.new_masses) {
-      number_.push_back(next_number_++);
-      add_event(change, "come", {number_.back()}).place = mass.place;
-    }
+    const std::size_t before = numbers_.all().size();
+    numbers_.come(edits);
+    for (std::size_t i = 0; i < edits.new_masses.size(); ++i)
+      add_event(change, "come", {number(before + i)}).place = edits.new_masses[i].place;
     for (const NewSpring& spring : edits.new_springs) {
-      Event& event = add_event(change, "come", {number_.at(spring.a), number_.at(spring.b)});
+      Event& event = add_event(change, "come", {number(spring.a), number(spring.b)});
       event.rest_length = spring.rest_length;
       event.material = spring.material;
     }
-    for (auto mass = edits.removed_masses.rbegin(); mass != edits.removed_masses.rend(); ++mass)
-      number_.erase(number_.begin() + *mass);
+    numbers_.go(edits);
     replay(body_, change);
   }
 
@@ -85,20 +74,21 @@ class Chronicle {
     for (std::uint32_t s = 0; s < body_.springs.size(); ++s)
       if (goes(body_.springs[s].a) || goes(body_.springs[s].b)) gone[s] = std::nullopt;
     for (std::size_t i = 0; i < edits.removed_springs.size(); ++i)
-      gone[edits.removed_springs[i]] = seen(change.removed_stress[i]);
-    for (const std::uint32_t mass : edits.removed_masses) add_event(change, "gone", {number_.at(mass)});
+      gone[edits.removed_springs[i]] = change.removed_stress[i];
+    for (const std::uint32_t mass : edits.removed_masses) add_event(change, "gone", {number(mass)});
     for (const auto& [spring, stress] : gone) add_event(change, "gone", ends(spring)).stress = stress;
   }
 
   std::vector<std::uint32_t> ends(std::uint32_t index) const {
     const Spring& spring = body_.springs.at(index);
-    return {number_.at(spring.a), number_.at(spring.b)};
+    return {number(spring.a), number(spring.b)};
   }
+
+  std::uint32_t number(std::size_t mass) const { return numbers_.all().at(mass); }
 
   Body body_;
   std::vector<std::string> operators_;
-  std::vector<std::uint32_t> number_;  ///< of each mass of `body_`
-  std::uint32_t next_number_;
+  MassNumbers numbers_;
   std::vector<Event> events_;
 };
 

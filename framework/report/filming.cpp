@@ -62,6 +62,21 @@ InParts begin(Task& task, Film& film, double rate) {
   return in_parts;
 }
 
+/// The i-th shot comes after as many cycles, and all behind the last cycle show the same body.
+void number_masses(Film& film, const LifeRecord& record) {
+  if (film.empty()) return;
+  MassNumbers numbers(film.front().body.masses.size());
+  const std::vector<Change> changes = record.changes();
+  auto next = changes.begin();
+  for (std::size_t i = 0; i < film.size(); ++i) {
+    for (; next != changes.end() && next->cycle <= i; ++next) {
+      numbers.come(next->edits);
+      numbers.go(next->edits);
+    }
+    film[i].numbers = numbers.all();
+  }
+}
+
 }  // namespace
 
 void FilmingSimulator::run(std::span<Task> tasks, Recording recording) {
@@ -101,6 +116,7 @@ std::vector<FilmedLife> film_lives(const Experiment& experiment, Simulator& simu
   std::vector<FilmedLife> filmed;
   for (Life& life : lives) {
     Film film = camera.take(life.living.body);
+    number_masses(film, life.result.record);
     const std::size_t cycles = std::min(film.size(), static_cast<std::size_t>(experiment.development.cycles));
     filmed.push_back({std::move(life.result), std::move(film), cycles});
   }

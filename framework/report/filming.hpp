@@ -24,8 +24,9 @@ struct Frame {
 /// A stretch of a life in which the body stays the same.
 struct Shot {
   Body body;
-  std::vector<Frame> frames;   ///< from the beginning of the stretch to its end
-  std::vector<double> stress;  ///< of each spring, N; empty after a divergence
+  std::vector<Frame> frames;                ///< from the beginning of the stretch to its end
+  std::vector<double> stress;               ///< of each spring, N; empty after a divergence
+  std::vector<std::uint32_t> numbers = {};  ///< of the masses, which they keep through the film, ascending
 };
 
 using Film = std::vector<Shot>;
@@ -42,7 +43,7 @@ class FilmingSimulator final : public Simulator {
   Workers& workers() override { return simulator_.workers(); }
   std::string device() const override { return simulator_.device(); }
 
-  /// What was filmed of a body; every call of run() added a shot.
+  /// What was filmed of a body; every call of run() added a shot. Its masses have no numbers yet.
   Film take(const Body& body) { return std::move(films_[&body]); }
 
  private:

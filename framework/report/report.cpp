@@ -1,6 +1,7 @@
 #include "report/report.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "body_building.hpp"
 #include "breeding.hpp"
@@ -8,7 +9,6 @@
 #include "report/filming.hpp"
 #include "report/robot_json.hpp"
 #include "report/run_json.hpp"
-#include "text.hpp"
 
 namespace evodevo {
 namespace {
@@ -36,11 +36,7 @@ class Casting {
  private:
   void add(std::uint32_t id, const std::string& role) {
     if (std::any_of(roles_.begin(), roles_.end(), [&](const Role& r) { return r.individual.id == id; })) return;
-    auto individual = archive_.individual(id);
-    if (!individual)
-      throw ArchiveError(archive_.folder().string() + ": there is no individual " + std::to_string(id) + "; see `" +
-                         program_name() + " show " + archive_.folder().string() + "`");
-    roles_.push_back({std::move(*individual), role});
+    roles_.push_back({archive_.individual(id).value(), role});
   }
 
   /// `line` begins with the descendant and ends with the founder.
@@ -108,6 +104,8 @@ Film mapping_film(const Blueprint& blueprint, BuiltBody built) {
   if (!blueprint.origins.empty()) {
     Shot& mapping = film.emplace_back();
     mapping.body.masses = masses;
+    mapping.numbers.resize(masses.size());
+    std::iota(mapping.numbers.begin(), mapping.numbers.end(), 0u);
     for (int f = 0; f <= frames; ++f) {
       const double t = static_cast<double>(f) / frames, part = t * t * (3 - 2 * t);  // slow at both ends
       Frame& frame = mapping.frames.emplace_back(Frame{duration * t, {}});
@@ -117,7 +115,7 @@ Film mapping_film(const Blueprint& blueprint, BuiltBody built) {
   }
   const double end = film.empty() ? 0 : duration;
   for (std::size_t i = 0; i < built.kept.size(); ++i) built.body.masses[i].rest = masses[built.kept[i]].rest;
-  Shot& body = film.emplace_back(Shot{std::move(built.body), {}, {}});
+  Shot& body = film.emplace_back(Shot{std::move(built.body), {}, {}, std::move(built.kept)});
   body.stress.resize(body.body.springs.size());
   for (const double time : {end, end + 1}) {
     Frame& frame = body.frames.emplace_back(Frame{time, {}});
@@ -128,6 +126,7 @@ Film mapping_film(const Blueprint& blueprint, BuiltBody built) {
 
 Json random_robot(const Experiment& experiment, const Individual& individual, std::size_t budget) {
   const Blueprint blueprint = experiment.encoding->decode(individual.genome, experiment.world);
+  if (blueprint.failure.empty()) check_blueprint(blueprint, experiment.world);
   BuiltBody built = build_body(blueprint);
   Json robot = {{"individual", individual.id}, {"role", "random"}, {"reason", built.failure}};
   robot["status"] = name(built.failure.empty() ? Status::ok : Status::invalid);

@@ -9,18 +9,18 @@
 
 namespace evodevo {
 
-/// Bytes that the places of all robots of a page may take together.
-inline constexpr std::size_t page_budget = 22'000'000;
+/// Bytes that the films of all robots of a page may take together, so that it stays under 30 MB.
+inline constexpr std::size_t page_budget = 27'000'000;
 
 /// Which robots of a run are shown.
 struct Cast {
   std::size_t best = 3;                    ///< champions, by the first objective
   std::size_t ancestors = 3;               ///< of the best one, spread over its line, the founder first
-  std::vector<std::uint32_t> individuals;  ///< these as well
+  std::vector<std::uint32_t> individuals;  ///< these as well; all are in the archive
 };
 
 /// A run as a report shows it: its numbers, its population, and its cast lived again on `simulator`. `budget` is for
-/// its robots' places. Throws ArchiveError for an individual that is not there.
+/// its robots' films.
 nlohmann::ordered_json reported_run(const Archive& archive, const Experiment& experiment, Simulator& simulator,
                                     const Cast& cast, std::size_t budget);
 

@@ -13,51 +13,26 @@ using Json = nlohmann::ordered_json;
 
 constexpr double parts_of_length = 8192;   ///< places are whole multiples of so small a part of the body's longest side
 constexpr std::size_t least_left_out = 2;  ///< 30 frames a second look smooth
-constexpr std::size_t most_left_out = 12;
 
-/// Numbers masses and springs through a life, in which a body's own numbers change with every edit. Masses that stay
-/// keep their order and rest places, and springs are the pairs that they join.
-class Census {
+/// Numbers springs through a film, by the masses that they join.
+class SpringNumbers {
  public:
-  void add(const Body& body) {
-    count_masses(body);
-    std::vector<std::uint32_t> springs;
-    for (const Spring& spring : body.springs) {
-      const auto pair = std::minmax(masses_.back()[spring.a], masses_.back()[spring.b]);
+  std::vector<std::uint32_t> of(const Shot& shot) {
+    std::vector<std::uint32_t> numbers;
+    for (const Spring& spring : shot.body.springs) {
+      const auto pair = std::minmax(shot.numbers.at(spring.a), shot.numbers.at(spring.b));
       const auto [found, is_new] = numbers_.try_emplace(pair, static_cast<std::uint32_t>(numbers_.size()));
-      if (is_new) {
-        ends_.push_back(pair.first);
-        ends_.push_back(pair.second);
-      }
-      springs.push_back(found->second);
+      if (is_new) ends_.insert(ends_.end(), {pair.first, pair.second});
+      numbers.push_back(found->second);
     }
-    springs_.push_back(std::move(springs));
+    return numbers;
   }
 
-  std::uint32_t mass_count() const { return mass_count_; }
   const std::vector<std::int64_t>& ends() const { return ends_; }
-  const std::vector<std::uint32_t>& masses(std::size_t shot) const { return masses_[shot]; }
-  const std::vector<std::uint32_t>& springs(std::size_t shot) const { return springs_[shot]; }
 
  private:
-  void count_masses(const Body& body) {
-    std::vector<std::uint32_t> numbers;
-    std::size_t old = 0;
-    for (const Mass& mass : body.masses) {
-      std::size_t match = old;
-      while (match < last_.size() && !(last_[match].rest == mass.rest)) ++match;
-      numbers.push_back(match < last_.size() ? masses_.back()[match] : mass_count_++);
-      if (match < last_.size()) old = match + 1;
-    }
-    masses_.push_back(std::move(numbers));
-    last_ = body.masses;
-  }
-
-  std::vector<Mass> last_;
-  std::uint32_t mass_count_ = 0;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> numbers_;
   std::vector<std::int64_t> ends_;
-  std::vector<std::vector<std::uint32_t>> masses_, springs_;
 };
 
 std::vector<const Frame*> kept_frames(const Shot& shot, std::size_t every) {
@@ -112,17 +87,11 @@ double longest_side(const Frame& frame) {
   return bounding_box(places).longest_side();
 }
 
-/// The places of all shots, each packed.
-std::vector<std::string> packed_shots(const Film& film, std::size_t every, double step) {
-  std::vector<std::string> texts;
-  for (const Shot& shot : film) texts.push_back(packed_places(kept_frames(shot, every), step));
-  return texts;
-}
-
-std::size_t size_of(const std::vector<std::string>& texts) {
-  std::size_t size = 0;
-  for (const std::string& text : texts) size += text.size();
-  return size;
+std::uint32_t mass_count(const Film& film) {
+  std::uint32_t count = 0;
+  for (const Shot& shot : film)
+    if (!shot.numbers.empty()) count = std::max(count, shot.numbers.back() + 1);
+  return count;
 }
 
 std::string packed_materials(const Body& body) {
@@ -154,19 +123,58 @@ Json materials_json(const Body& body) {
   return materials;
 }
 
-/// The mass' materials by their number in the census; -1 where a mass has none.
-std::string packed_mass_materials(const Film& film, const Census& census) {
-  std::vector<std::int64_t> materials(census.mass_count(), no_material);
-  for (std::size_t s = 0; s < film.size(); ++s)
-    for (std::size_t i = 0; i < film[s].body.masses.size(); ++i)
-      materials[census.masses(s)[i]] = film[s].body.masses[i].material;
+/// The masses' materials by their numbers; -1 where a mass has none.
+std::string packed_mass_materials(const Film& film) {
+  std::vector<std::int64_t> materials(mass_count(film), no_material);
+  for (const Shot& shot : film)
+    for (std::size_t i = 0; i < shot.numbers.size(); ++i) materials[shot.numbers[i]] = shot.body.masses[i].material;
   return packed(materials);
 }
 
-std::vector<double> times(const Shot& shot, std::size_t every) {
+std::vector<double> times(const std::vector<const Frame*>& frames) {
   std::vector<double> times;
-  for (const Frame* frame : kept_frames(shot, every)) times.push_back(std::round(1e6 * frame->time) / 1e6);
+  for (const Frame* frame : frames) times.push_back(std::round(1e6 * frame->time) / 1e6);
   return times;
+}
+
+/// When and where the masses of each shot are.
+Json motion_json(const Film& film, std::size_t every, double step) {
+  Json motion = Json::array();
+  for (const Shot& shot : film) {
+    const std::vector<const Frame*> kept = kept_frames(shot, every);
+    motion.push_back({{"times", times(kept)}, {"places", packed_places(kept, step)}});
+  }
+  return motion;
+}
+
+/// As many frames as `budget` bytes hold, though never fewer than the first and the last of each shot.
+struct Decimation {
+  std::size_t every = least_left_out;
+  Json motion;
+
+  Decimation(const Film& film, double step, std::size_t budget) {
+    std::size_t longest = least_left_out;
+    for (const Shot& shot : film) longest = std::max(longest, shot.frames.size());
+    for (;;) {
+      motion = motion_json(film, every, step);
+      const std::size_t size = motion.dump().size();
+      if (size <= budget || every >= longest) return;
+      // what is further apart takes more bits, so this never leaves out too much
+      every = budget == 0 ? longest : std::clamp(every * size / budget, every + 1, longest);
+    }
+  }
+};
+
+/// Who is there in each shot, and how hard it works.
+Json shots_json(const Film& film, const std::vector<std::string>& names, double most, SpringNumbers& springs) {
+  Json shots = Json::array();
+  for (std::size_t i = 0; i < film.size(); ++i)
+    shots.push_back({{"name", names.at(i)},
+                     {"masses", packed_differences(film[i].numbers)},
+                     {"springs", packed_differences(springs.of(film[i]))},
+                     {"materials", packed_materials(film[i].body)},
+                     {"stress", packed_stress(film[i], most)}});
+  return shots;
 }
 
 }  // namespace
@@ -176,37 +184,27 @@ Json film_json(const Film& filmed, const std::vector<std::string>& names, std::s
   for (const Shot& shot : filmed)
     if (!shot.frames.empty()) film.push_back(shot);
   if (film.empty()) return {{"shots", Json::array()}};
-  Census census;
-  for (const Shot& shot : film) census.add(shot.body);
-
   const double side = longest_side(film.front().frames.front());
   const double step = (side > 0 ? side : 1) / parts_of_length;
-  std::size_t every = least_left_out;
-  std::vector<std::string> places = packed_shots(film, every, step);
-  while (size_of(places) > budget && every < most_left_out) places = packed_shots(film, ++every, step);
-  ErrorSum errors;
-  for (const Shot& shot : film) errors.add(shot, every, step);
-  const ViewError error = errors.error();
-
   const double most = most_stress(film);
-  Json shots = Json::array();
-  for (std::size_t s = 0; s < film.size(); ++s)
-    shots.push_back({{"name", names.at(s)},
-                     {"times", times(film[s], every)},
-                     {"masses", packed_differences(census.masses(s))},
-                     {"springs", packed_differences(census.springs(s))},
-                     {"materials", packed_materials(film[s].body)},
-                     {"stress", packed_stress(film[s], most)},
-                     {"places", places[s]}});
-  return {{"masses", census.mass_count()},
-          {"mass_materials", packed_mass_materials(film, census)},
-          {"ends", packed(census.ends())},
-          {"materials", materials_json(film.back().body)},
-          {"most_stress", most},
-          {"step", step},
-          {"every", every},
-          {"error", {{"largest", error.largest}, {"most", error.most}}},
-          {"shots", std::move(shots)}};
+  SpringNumbers springs;
+  Json shots = shots_json(film, names, most, springs);
+  Json json = {{"masses", mass_count(film)},
+               {"mass_materials", packed_mass_materials(film)},
+               {"ends", packed(springs.ends())},
+               {"materials", materials_json(film.back().body)},
+               {"most_stress", most},
+               {"step", step}};
+  const std::size_t taken = json.dump().size() + shots.dump().size();
+  const Decimation decimation(film, step, budget - std::min(budget, taken));
+  for (std::size_t i = 0; i < film.size(); ++i) shots[i].update(decimation.motion[i]);
+  ErrorSum errors;
+  for (const Shot& shot : film) errors.add(shot, decimation.every, step);
+  const ViewError error = errors.error();
+  json["every"] = decimation.every;
+  json["error"] = {{"largest", error.largest}, {"most", error.most}};
+  json["shots"] = std::move(shots);
+  return json;
 }
 
 }  // namespace evodevo

@@ -14,7 +14,8 @@ struct ViewError {
 };
 
 /// A film as JSON: its springs and masses numbered through the whole life, the shots with who is there, the springs'
-/// materials and stress, and the places, of which so many frames are left out that they take about `budget` bytes.
+/// materials and stress, and the places, of which so many frames are left out that all takes at most `budget` bytes.
+/// What is there and the first and last frame of each shot are never left out, whatever they take.
 /// `names` are those of the shots. A film without frames gives no shots.
 ///
 ///   masses      how many there ever are

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <map>
+#include <numeric>
+
 #include "breeding.hpp"
 #include "report/filming.hpp"
 #include "report/packing.hpp"
@@ -25,7 +28,7 @@ std::vector<Newborn> newborns_of(const std::vector<Individual>& individuals) {
 /// What a page does with a packed text.
 std::vector<std::int64_t> unpacked(const std::string& text) {
   const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::vector<unsigned char> deflated, plain(1 << 20);
+  std::vector<unsigned char> deflated, plain(1 << 22);
   std::uint32_t bits = 0, count = 0;
   for (const char c : text) {
     if (c == '=') break;
@@ -86,6 +89,31 @@ TEST(Filming, ReachesFromBirthToTheEndWithoutAGap) {
   EXPECT_GT(lives, 4u);
 }
 
+TEST(Filming, MassesKeepTheirNumbers) {
+  std::string text = testing::small_experiment;
+  text.insert(text.find("[[fitness]]"), "[[development.operator]]\nname = 'mass-turnover'\nlimit = 2\nsprings = 4\n");
+  const Experiment experiment = testing::read(text);
+  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 12);
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
+  std::size_t come = 0, gone = 0;
+  for (const FilmedLife& life : film_lives(experiment, *simulator, newborns_of(individuals))) {
+    std::map<std::uint32_t, Mass> known;
+    for (const Shot& shot : life.film) {
+      ASSERT_EQ(shot.numbers.size(), shot.body.masses.size());
+      EXPECT_EQ(std::adjacent_find(shot.numbers.begin(), shot.numbers.end(), std::greater_equal<>()),
+                shot.numbers.end());
+      for (std::size_t i = 0; i < shot.numbers.size(); ++i) {
+        const auto [found, is_new] = known.try_emplace(shot.numbers[i], shot.body.masses[i]);
+        come += is_new && &shot != &life.film.front();
+        EXPECT_EQ(found->second.rest, shot.body.masses[i].rest);
+      }
+    }
+    if (!life.film.empty()) gone += known.size() - life.film.back().numbers.size();
+  }
+  EXPECT_GT(come, 0u);
+  EXPECT_GT(gone, 0u);
+}
+
 TEST(Filming, SeesTheStressOfTheWholeStretch) {
   const Experiment experiment = testing::read(testing::small_experiment);
   const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 1);
@@ -118,10 +146,12 @@ TEST(Packing, KeepsWhatIsLeftOfStraightLines) {
   EXPECT_THAT(unpacked(packed_places(frames, 0.5)), ElementsAre(2, 2, 4, 0, 6, 0, 2, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 8));
 }
 
-/// A body with masses at these x, joined by these pairs.
-Shot shot_of(const std::vector<double>& places, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {
+/// A body with masses at these x, of these numbers, joined by these pairs.
+Shot shot_of(const std::vector<double>& places, std::vector<std::uint32_t> numbers,
+             const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {
   Shot shot;
   shot.body.materials = {{.stiffness = 1}};
+  shot.numbers = std::move(numbers);
   Frame& frame = shot.frames.emplace_back();
   for (const double x : places) {
     shot.body.masses.push_back({.rest = {x, 0, 0}, .mass = 1, .material = 0});
@@ -134,7 +164,7 @@ Shot shot_of(const std::vector<double>& places, const std::vector<std::pair<std:
 
 TEST(FilmJson, KnowsMassesAndSpringsAgainAfterEdits) {
   // the first mass goes with its spring, the others move up by one; a new mass and a spring to it come
-  const Film film = {shot_of({0, 1, 2}, {{0, 1}, {1, 2}}), shot_of({1, 2, 5}, {{0, 1}, {2, 0}})};
+  const Film film = {shot_of({0, 1, 2}, {0, 1, 2}, {{0, 1}, {1, 2}}), shot_of({1, 2, 5}, {1, 2, 3}, {{0, 1}, {2, 0}})};
   const auto json = film_json(film, {"before", "after"}, 1000);
   EXPECT_EQ(json["masses"], 4);
   EXPECT_THAT(unpacked(json["ends"]), ElementsAre(0, 1, 1, 2, 1, 3));
@@ -144,9 +174,44 @@ TEST(FilmJson, KnowsMassesAndSpringsAgainAfterEdits) {
   EXPECT_THAT(unpacked(json["shots"][1]["springs"]), ElementsAre(1, 1));
 }
 
+/// Masses in a row that swing, each at a rate of its own, for so many frames.
+Shot swinging(std::size_t masses, std::size_t frames) {
+  std::vector<double> places(masses);
+  std::vector<std::uint32_t> numbers(masses);
+  std::iota(places.begin(), places.end(), 0.0);
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  Shot shot = shot_of(places, numbers, {{0, 1}});
+  shot.frames.clear();
+  for (std::size_t f = 0; f < frames; ++f) {
+    Frame& frame = shot.frames.emplace_back(Frame{static_cast<double>(f) / filmed_frames_per_second, {}});
+    for (const double x : places) frame.places.push_back(seen({x, std::sin((1 + x) * frame.time), std::cos(x)}));
+  }
+  return shot;
+}
+
+TEST(FilmJson, LongLivesTakeNoMoreThanTheirBudget) {
+  constexpr std::size_t budget = 200'000;
+  for (const std::size_t minutes : {1u, 8u}) {
+    const auto json = film_json({swinging(40, minutes * 3600 + 1)}, {"long"}, budget);
+    const auto times = json["shots"][0]["times"].get<std::vector<double>>();
+    EXPECT_LT(json.dump().size(), budget + 200);
+    EXPECT_GT(json.dump().size(), budget / 2) << "what there is room for is kept";
+    EXPECT_EQ(times.front(), 0);
+    EXPECT_NEAR(times.back(), 60.0 * static_cast<double>(minutes), 1e-6);
+    EXPECT_EQ(unpacked(json["shots"][0]["places"]).size(), times.size() * 3 * 40);
+  }
+}
+
+TEST(FilmJson, KeepsTheEndsOfEachShotWhateverTheyTake) {
+  const auto json = film_json({swinging(40, 61), swinging(40, 121)}, {"one", "two"}, 0);
+  EXPECT_EQ(json["shots"][0]["times"], (std::vector<double>{0, 1}));
+  EXPECT_EQ(json["shots"][1]["times"], (std::vector<double>{0, 2}));
+  EXPECT_GT(json["error"]["largest"].get<double>(), 0.5);
+}
+
 TEST(FilmJson, StatesTheErrorOfWhatItLeavesOut) {
   // a mass that jumps by 1 m in the middle of a stretch of which every other frame is kept
-  Shot shot = shot_of({0, 4}, {{0, 1}});
+  Shot shot = shot_of({0, 4}, {0, 1}, {{0, 1}});
   for (int i = 1; i <= 4; ++i) {
     shot.frames.push_back(shot.frames.front());
     shot.frames.back().time = i;
