@@ -27,7 +27,7 @@ async function film(tab, out) {
   const frames = Math.round((end - begin) * framesPerSecond);
   for (let i = 0; i <= frames; ++i) {
     await draw(tab, begin + i / framesPerSecond);
-    const { data } = await camera.send("Page.captureScreenshot", { format: "png", optimizeForSpeed: true });
+    const { data } = await camera.send("Page.captureScreenshot", { format: "jpeg", quality: 95, optimizeForSpeed: true });
     if (!ffmpeg.stdin.write(Buffer.from(data, "base64"))) await Promise.race([once(ffmpeg.stdin, "drain"), closed]);
     if (process.stderr.isTTY) process.stderr.write(`\r${i + 1} of ${frames + 1} frames${i === frames ? "\n" : ""}`);
   }

@@ -1,6 +1,7 @@
 // One robot in its world, drawn by three.js. Springs and masses are flat pieces that face the camera and are shaded as
 // cylinders and balls: two triangles each, their ends looked up in a texture of places, so that a frame costs the
-// program no more than writing the places of the masses.
+// program no more than writing the places of the masses. They are no instances, since without a GPU each instance costs
+// as much as a draw of its own.
 import * as THREE from "three";
 import { materialColour, springColours } from "./colours.js";
 import { style } from "./elements.js";
@@ -176,20 +177,26 @@ void main() {
 const material = (vertexShader, fragmentShader, uniforms, options = {}) =>
   new THREE.ShaderMaterial({ glslVersion: THREE.GLSL3, vertexShader, fragmentShader, uniforms, ...options });
 
-/** Instances of a square whose corners are at ±1 across and 0 … 1, or ±1, along. */
-function pieces(low) {
-  const geometry = new THREE.InstancedBufferGeometry();
-  const corners = [-1, low, 0, 1, low, 0, 1, 1, 0, -1, 1, 0];
-  geometry.setAttribute("position", new THREE.Float32BufferAttribute(corners, 3));
-  geometry.setIndex([0, 1, 2, 0, 2, 3]);
-  geometry.instanceCount = 0;
-  return geometry;
-}
-
-function setInstances(geometry, count, attributes) {
+/** Fills a geometry with squares whose corners are at ±1 across and `low` … 1 along. `attributes` holds for each name
+ *  the size of a value and the values, one for each square. */
+function setSquares(geometry, low, count, attributes) {
+  geometry.dispose();
+  const fill = (name, size, valuesOf) => {
+    const values = new Float32Array(4 * count * size);
+    for (let i = 0; i < 4 * count; ++i) values.set(valuesOf(i >> 2, i & 3), i * size);
+    geometry.setAttribute(name, new THREE.BufferAttribute(values, size));
+  };
+  const corners = [
+    [-1, low, 0],
+    [1, low, 0],
+    [1, 1, 0],
+    [-1, 1, 0],
+  ];
+  fill("position", 3, (_, corner) => corners[corner]);
   for (const [name, [size, values]] of Object.entries(attributes))
-    geometry.setAttribute(name, new THREE.InstancedBufferAttribute(values, size));
-  geometry.instanceCount = count;
+    fill(name, size, (square) => values.subarray(size * square, size * (square + 1)));
+  const triangles = Uint32Array.from({ length: 6 * count }, (_, i) => 4 * Math.floor(i / 6) + [0, 1, 2, 0, 2, 3][i % 6]);
+  geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
 }
 
 const colour = (name) => new THREE.Color().setStyle(style(name), THREE.LinearSRGBColorSpace);
@@ -254,12 +261,12 @@ export class Stage {
         { ...this.shared, opacity: { value: opacity } },
         { side: THREE.DoubleSide, ...options },
       );
-    this.springs = pieces(0);
+    this.springs = new THREE.BufferGeometry();
     this.#add(this.springs, springs(1, {}), 2);
-    this.gone = pieces(0);
+    this.gone = new THREE.BufferGeometry();
     this.goneMaterial = springs(0, { transparent: true, depthWrite: false });
     this.#add(this.gone, this.goneMaterial, 4);
-    this.masses = pieces(-1);
+    this.masses = new THREE.BufferGeometry();
     this.#add(
       this.masses,
       material(massVertex, massFragment, { ...this.shared, radius: { value: 1.7 * this.shared.radius.value } }),
@@ -344,26 +351,28 @@ export class Stage {
     const shot = life.shots[index];
     const colourOf = springColours(life, this.mode);
     const there = Array.from(shot.springs, (_, i) => i);
-    setInstances(
+    setSquares(
       this.springs,
+      0,
       there.length,
-      this.#instances(shot, there, colourOf, (i) => shot.isNew[i]),
+      this.#squares(shot, there, colourOf, (i) => shot.isNew[i]),
     );
-    setInstances(
+    setSquares(
       this.gone,
+      0,
       shot.gone.length,
-      this.#instances(life.shots[index - 1], shot.gone, colourOf, () => 1),
+      this.#squares(life.shots[index - 1], shot.gone, colourOf, () => 1),
     );
     this.baseColours = this.springs.attributes.colour.array.slice();
-    setInstances(this.masses, shot.masses.length, {
+    setSquares(this.masses, -1, shot.masses.length, {
       mass: [1, Float32Array.from(shot.masses)],
       colour: [3, this.#massColours(shot)],
     });
     this.#shown = index;
   }
 
-  /** What the buffers hold of some of a shot's springs. */
-  #instances(shot, list, colourOf, freshOf) {
+  /** What the squares of some of a shot's springs have. */
+  #squares(shot, list, colourOf, freshOf) {
     const ends = new Float32Array(2 * list.length);
     const colour = new Float32Array(3 * list.length);
     list.forEach((i, k) => {
@@ -394,9 +403,9 @@ export class Stage {
     const { colour: colours, fresh } = this.springs.attributes;
     shot.isNew.forEach((isNew, i) => {
       if (!isNew) return;
-      fresh.array[i] = left;
-      for (let k = 0; k < 3; ++k)
-        colours.array[3 * i + k] = this.baseColours[3 * i + k] + left * (glow[k] - this.baseColours[3 * i + k]);
+      fresh.array.fill(left, 4 * i, 4 * (i + 1));
+      for (let at = 12 * i; at < 12 * (i + 1); ++at)
+        colours.array[at] = this.baseColours[at] + left * (glow[at % 3] - this.baseColours[at]);
     });
     colours.needsUpdate = fresh.needsUpdate = true;
   }

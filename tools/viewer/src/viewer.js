@@ -366,6 +366,7 @@ export class Viewer {
 
   /** Draws the moment. */
   draw() {
+    this.dirty = false;
     const width = this.stage.clientWidth;
     const height = this.stage.clientHeight;
     if (width === 0 || this.stages.length === 0) return;
@@ -412,10 +413,7 @@ export class Viewer {
       this.seek(this.time + passed * this.speed);
       if (this.time >= this.end) this.pause();
     }
-    if (this.dirty) {
-      this.dirty = false;
-      this.draw();
-    }
+    if (this.dirty) this.draw();
     requestAnimationFrame((next) => this.#tick(next));
   }
 }
