@@ -9,7 +9,7 @@ const viewport = { width: 1280, height: 720 };
 
 function encoder(out) {
   const input = ["-f", "image2pipe", "-framerate", String(framesPerSecond), "-i", "-"];
-  const output = ["-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", "-movflags", "+faststart", out];
+  const output = ["-c:v", "libx264", "-preset", "veryfast", "-pix_fmt", "yuv420p", "-crf", "20", "-movflags", "+faststart", out];
   const ffmpeg = spawn(program(["ffmpeg"]), ["-y", "-loglevel", "error", ...input, ...output], {
     stdio: ["pipe", "inherit", "inherit"],
   });
@@ -25,13 +25,17 @@ async function film(tab, out) {
   const { ffmpeg, closed } = encoder(out);
   const camera = await tab.context().newCDPSession(tab); // Playwright's own pictures take longer
   const frames = Math.round((end - begin) * framesPerSecond);
-  for (let i = 0; i <= frames; ++i) {
-    await draw(tab, begin + i / framesPerSecond);
-    const { data } = await camera.send("Page.captureScreenshot", { format: "jpeg", quality: 95, optimizeForSpeed: true });
-    if (!ffmpeg.stdin.write(Buffer.from(data, "base64"))) await Promise.race([once(ffmpeg.stdin, "drain"), closed]);
-    if (process.stderr.isTTY) process.stderr.write(`\r${i + 1} of ${frames + 1} frames${i === frames ? "\n" : ""}`);
+  try {
+    for (let i = 0; i <= frames; ++i) {
+      await draw(tab, begin + i / framesPerSecond);
+      const picture = { format: "jpeg", quality: 95, optimizeForSpeed: true };
+      const { data } = await camera.send("Page.captureScreenshot", picture);
+      if (!ffmpeg.stdin.write(Buffer.from(data, "base64"))) await Promise.race([once(ffmpeg.stdin, "drain"), closed]);
+      if (process.stderr.isTTY) process.stderr.write(`\r${i + 1} of ${frames + 1} frames${i === frames ? "\n" : ""}`);
+    }
+  } finally {
+    ffmpeg.stdin.end(); // it would keep this process alive
   }
-  ffmpeg.stdin.end();
   if ((await closed)[0] !== 0) throw new Error("ffmpeg failed");
 }
 
