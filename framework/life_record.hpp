@@ -57,8 +57,10 @@ class MassNumbers {
   std::uint32_t add();
   /// Lets masses go, by their indices in ascending order.
   void remove(const std::vector<std::uint32_t>& masses);
+  /// All that a change does: its new masses come, then others go.
+  void follow(const Edits& edits);
 
-  /// By the masses' indices.
+  /// By the masses' indices, ascending.
   const std::vector<std::uint32_t>& numbers() const { return numbers_; }
 
  private:

@@ -25,6 +25,9 @@ int operators_command(const Arguments& arguments);
 int describe_command(const Arguments& arguments);
 int new_command(const Arguments& arguments);
 int conform_command(const Arguments& arguments);
+int report_command(const Arguments& arguments);
+int gallery_command(const Arguments& arguments);
+int film_command(const Arguments& arguments);
 
 /// A command line that does not make sense.
 struct UsageError : std::runtime_error {
