@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "momentum.hpp"
 #include "random_lives.hpp"
 
 namespace evodevo::test {
@@ -114,24 +115,6 @@ class ExactProperty : public testing::TestWithParam<Method> {
 
 INSTANTIATE_TEST_SUITE_P(Methods, ExactProperty, testing::ValuesIn(all_methods),
                          [](const auto& instance) { return name_of(instance.param); });
-
-Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-
-struct Momentum {
-  Vec3 linear, angular;  ///< kg m/s, kg m^2/s about the origin
-  double scale = 0;      ///< sum of |m v|, kg m/s
-};
-
-Momentum momentum(const Body& body, const State& state) {
-  Momentum sum;
-  for (std::size_t i = 0; i < body.masses.size(); ++i) {
-    const Vec3 p = body.masses[i].mass * state.velocity[i];
-    sum.linear = sum.linear + p;
-    sum.angular = sum.angular + cross(state.position[i], p);
-    sum.scale += norm(p);
-  }
-  return sum;
-}
 
 double total_mass(const Body& body) {
   double sum = 0;
