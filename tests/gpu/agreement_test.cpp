@@ -84,8 +84,9 @@ TEST_P(AgreementOfRecords, StressAndWorkOf150Steps) {
               std::abs(gpu.answer.work - cpu.answer.work), cpu.answer.work);
   EXPECT_GT(cpu.answer.work, 0);
   const double accuracy = bound(way, scene.floor.has_value());
-  // N, some ten times what is seen: 0.2 in float32, and in float64 7e-5 where one touch of the floor is a step later
-  EXPECT_LT(largest, std::get<Precision>(way) == Precision::float32 ? 3 : 1e-3);
+  // N; seen are at most 0.2 in float32 and 6e-9 in float64, but for one touch of the floor that comes a step later
+  const bool late_touch = way == Way{Method::symplectic_euler, Precision::float64};
+  EXPECT_LT(largest, std::get<Precision>(way) == Precision::float32 ? 3 : late_touch ? 1e-3 : 3e-5);
   EXPECT_LT(largest_peak, std::get<Precision>(way) == Precision::float32 ? 60 : 1e-1);
   EXPECT_NEAR(gpu.answer.work, cpu.answer.work, 10 * accuracy * cpu.answer.work);
   EXPECT_NEAR(sum, gpu.answer.work, (std::get<Precision>(way) == Precision::float32 ? 1e-5 : 1e-12) * sum);
