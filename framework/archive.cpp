@@ -222,7 +222,9 @@ Archive Archive::annotate(const fs::path& folder) {
 
 Archive Archive::read(const fs::path& folder) {
   require_run(folder);
-  return opened(folder, SQLite::OPEN_READONLY);
+  Archive archive = opened(folder, SQLite::OPEN_READONLY);
+  archive.files_->database.exec("BEGIN");
+  return archive;
 }
 
 Archive Archive::opened(const fs::path& folder, int flags) try {
@@ -339,9 +341,15 @@ std::optional<Verification> Archive::verification(std::uint32_t id) const {
 }
 
 std::string Archive::record(const std::string& key) const {
+  auto value = find_record(key);
+  if (!value) throw ArchiveError(folder_.string() + ": its record has no \"" + key + "\"");
+  return std::move(*value);
+}
+
+std::optional<std::string> Archive::find_record(const std::string& key) const {
   SQLite::Statement query(files_->database, "SELECT value FROM record WHERE key = ?");
   query.bind(1, key);
-  if (!query.executeStep()) throw ArchiveError(folder_.string() + ": its record has no \"" + key + "\"");
+  if (!query.executeStep()) return std::nullopt;
   return query.getColumn(0).getString();
 }
 
@@ -349,6 +357,12 @@ void Archive::set_record(const std::string& key, const std::string& value) {
   SQLite::Statement insert(files_->database, "INSERT OR REPLACE INTO record VALUES(?, ?)");
   SQLite::bind(insert, key, value);
   insert.exec();
+}
+
+void Archive::set_records(const std::map<std::string, std::string>& entries) {
+  SQLite::Transaction transaction(files_->database);
+  for (const auto& [key, value] : entries) set_record(key, value);
+  transaction.commit();
 }
 
 std::vector<OperatorUse> Archive::operators() const {

@@ -32,7 +32,8 @@ class Archive {
   static Archive resume(const std::filesystem::path& folder);
   /// Opens a record to add what is found out about its individuals. Does not disturb a process that writes it.
   static Archive annotate(const std::filesystem::path& folder);
-  /// Opens a record to read. Does not disturb a process that writes it.
+  /// Opens a record to read: all that it says is of the moment at which it is first asked. Does not disturb a process
+  /// that writes it.
   static Archive read(const std::filesystem::path& folder);
 
   Archive(Archive&&) noexcept;
@@ -48,7 +49,11 @@ class Archive {
   const std::filesystem::path& folder() const { return folder_; }
   /// An entry of the run's record, such as "seed" or "device". Throws ArchiveError if there is none.
   std::string record(const std::string& key) const;
+  /// The same; nothing if there is none.
+  std::optional<std::string> find_record(const std::string& key) const;
   void set_record(const std::string& key, const std::string& value);
+  /// The same for several entries, all of them or none.
+  void set_records(const std::map<std::string, std::string>& entries);
   std::vector<OperatorUse> operators() const;
   std::vector<Objective> objectives() const;
   std::vector<Summary> generations() const;

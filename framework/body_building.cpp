@@ -58,22 +58,25 @@ std::uint32_t largest_piece(const std::vector<std::uint32_t>& leader) {
   return static_cast<std::uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
 }
 
-void keep_largest_piece(Body& body) {
+/// Returns the masses kept.
+std::vector<std::uint32_t> keep_largest_piece(Body& body) {
   const std::vector<std::uint32_t> leader = pieces(body);
   const std::uint32_t largest = largest_piece(leader);
-  std::vector<std::uint32_t> new_index(body.masses.size(), 0);
-  std::vector<Mass> kept;
+  std::vector<std::uint32_t> new_index(body.masses.size(), 0), kept;
+  std::vector<Mass> masses;
   for (std::uint32_t i = 0; i < leader.size(); ++i) {
     if (leader[i] != largest) continue;
-    new_index[i] = static_cast<std::uint32_t>(kept.size());
-    kept.push_back(body.masses[i]);
+    new_index[i] = static_cast<std::uint32_t>(masses.size());
+    kept.push_back(i);
+    masses.push_back(body.masses[i]);
   }
   std::erase_if(body.springs, [&](const Spring& spring) { return leader[spring.a] != largest; });
   for (Spring& spring : body.springs) {
     spring.a = new_index[spring.a];
     spring.b = new_index[spring.b];
   }
-  body.masses = std::move(kept);
+  body.masses = std::move(masses);
+  return kept;
 }
 
 void place_on_origin(Body& body) {
@@ -108,10 +111,10 @@ std::vector<Vec3> pairing_places(const Blueprint& blueprint) {
 /// What is left to do once neighbours are joined.
 BuiltBody finish(Body body) {
   leave_out_air(body);
-  if (body.springs.empty()) return {{}, "no springs"};
-  keep_largest_piece(body);
+  if (body.springs.empty()) return {{}, "no springs", {}};
+  std::vector<std::uint32_t> kept = keep_largest_piece(body);
   place_on_origin(body);
-  return {std::move(body), ""};
+  return {std::move(body), "", std::move(kept)};
 }
 
 }  // namespace
@@ -143,10 +146,13 @@ void check_blueprint(const Blueprint& blueprint, const World& world) {
     require(spring.rest_length >= 0 && std::isfinite(spring.rest_length), "spring", i, "has no finite rest length");
     require(spring.material < materials, "spring", i, "is of a material that is not there");
   }
+  if (!blueprint.origins.empty() && blueprint.origins.size() != body.masses.size())
+    throw std::invalid_argument(std::to_string(blueprint.origins.size()) + " origins for " +
+                                std::to_string(body.masses.size()) + " masses");
 }
 
 BuiltBody build_body(Blueprint blueprint) {
-  if (std::string failure = blueprint_failure(blueprint); !failure.empty()) return {{}, std::move(failure)};
+  if (std::string failure = blueprint_failure(blueprint); !failure.empty()) return {{}, std::move(failure), {}};
   join(blueprint.body, nearest_pairs(pairing_places(blueprint), blueprint.neighbours));
   return finish(std::move(blueprint.body));
 }

@@ -14,7 +14,8 @@ namespace evodevo {
 /// A finished body, or why there is none.
 struct BuiltBody {
   Body body;
-  std::string failure;  ///< empty where there is a body
+  std::string failure;              ///< empty where there is a body
+  std::vector<std::uint32_t> kept;  ///< which of the blueprint's masses the body's are, ascending
 };
 
 /// Throws std::invalid_argument, naming the fault, where the blueprint's indices or numbers make no body at all. Places

@@ -160,7 +160,7 @@ void Evaluation::allow_energy(Life& life, const Action& action) const {
 Box Evaluation::bounds(const LivingBody& living) const {
   Box box =
       experiment_.development.reset ? bounding_box(rest_places(living.body)) : bounding_box(living.state.position);
-  if (experiment_.scene.floor) box.low.z = std::max(box.low.z, 0.0);
+  if (const auto& floor = experiment_.scene.floor) box.low.z = std::max(box.low.z, floor->roughness);
   box.high.z = std::max(box.high.z, box.low.z);
   return box;
 }

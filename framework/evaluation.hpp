@@ -95,7 +95,7 @@ class Evaluation {
   void simulate(std::span<Life> lives, double duration, const Move& move) const;
   /// The simulation of a cycle of development, with what its operators ask for recorded as the probe does it.
   void simulate_cycle(std::span<Life> lives, int cycle) const;
-  /// The box around the body where it is when life goes on, cut off at the floor.
+  /// The box around the body where it is when life goes on, cut off at the floor's highest place.
   Box bounds(const LivingBody& living) const;
   /// Does what changes a body; the energy that it brings is no fault of the simulation, so the guard is to allow it.
   template <class Action>

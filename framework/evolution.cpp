@@ -7,6 +7,7 @@
 #include "breeding.hpp"
 #include "evodevo/pareto.hpp"
 #include "philox.hpp"
+#include "text.hpp"
 
 namespace evodevo {
 namespace {
@@ -99,6 +100,36 @@ bool is_finished(const Experiment& experiment, const std::vector<Summary>& gener
   for (const Summary& summary : generations) spring_evaluations += static_cast<double>(summary.spring_evaluations);
   return generations.back().evaluations >= experiment.evaluations ||
          (experiment.spring_evaluations > 0 && spring_evaluations >= experiment.spring_evaluations);
+}
+
+namespace {
+
+/// The entries of the record that hold a run's times.
+template <class Time, class Use>
+void for_each_time(Time& time, const Use& use) {
+  use("seconds", time.whole);
+  use("seconds_archive", time.archive);
+  use("seconds_decode", time.evaluation.decode);
+  use("seconds_simulate", time.evaluation.simulate);
+  use("seconds_develop", time.evaluation.develop);
+}
+
+}  // namespace
+
+void record_time_spent(Archive& archive, const TimeSpent& time) {
+  std::map<std::string, std::string> entries;
+  for_each_time(time, [&](const char* key, double seconds) {
+    const double before = std::stod(archive.find_record(key).value_or("0"));
+    entries[key] = to_text(before + seconds);
+  });
+  archive.set_records(entries);
+}
+
+std::optional<TimeSpent> recorded_time_spent(const Archive& archive) {
+  if (!archive.find_record("seconds")) return std::nullopt;
+  TimeSpent time;
+  for_each_time(time, [&](const char* key, double& seconds) { seconds = std::stod(archive.record(key)); });
+  return time;
 }
 
 TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& archive, const std::atomic<bool>& stop,

@@ -22,6 +22,11 @@ struct TimeSpent {
   PhaseTimes evaluation;
 };
 
+/// Adds what a process has spent to the run's record. A process that is killed adds nothing.
+void record_time_spent(Archive& archive, const TimeSpent& time);
+/// The sum of what was added; nothing where that is nothing yet.
+std::optional<TimeSpent> recorded_time_spent(const Archive& archive);
+
 /// Whether a run that has come to these generations has spent the experiment's evaluations or spring evaluations.
 bool is_finished(const Experiment& experiment, const std::vector<Summary>& generations);
 

@@ -22,9 +22,13 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 void declare(Parameters& p, Gravity& gravity) {
   p.real(gravity.acceleration, "acceleration", {0, 1000, "m/s^2"}, "Gravity, downwards.");
+  p.real(gravity.slope, "slope", {-80, 80, "degrees"}, "Slope of the floor; +x is downhill where it is above 0.");
 }
 void declare(Parameters& p, Floor& floor) {
   p.real(floor.stiffness, "stiffness", {0, 1e12, "N/m"}, "Upward force on a mass for each metre below the floor.");
+  p.real(floor.roughness, "roughness", {0, 100, "m"}, "Largest height and depth of rough ground; 0 is level.");
+  p.real(floor.wavelength, "wavelength", {1e-3, 1e6, "m"}, "From one hill of rough ground to the next.");
+  p.integer(floor.seed, "seed", {0, 0x1p32 - 1}, "Seed of rough ground.");
 }
 void declare(Parameters& p, Friction& friction) {
   p.real(friction.coefficient, "coefficient", {0, 100}, "Coulomb friction between masses and floor.");

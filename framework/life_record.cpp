@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <stdexcept>
 
 #include "development.hpp"
@@ -228,6 +229,27 @@ void replay(Body& body, const Change& change) {
                .genome = genome,
                .layout = layout});
   body = std::move(living.body);
+}
+
+MassNumbers::MassNumbers(std::size_t born) : numbers_(born), next_(static_cast<std::uint32_t>(born)) {
+  std::iota(numbers_.begin(), numbers_.end(), 0u);
+}
+
+std::uint32_t MassNumbers::add() { return numbers_.emplace_back(next_++); }
+
+void MassNumbers::remove(const std::vector<std::uint32_t>& masses) {
+  for (auto mass = masses.rbegin(); mass != masses.rend(); ++mass) numbers_.erase(numbers_.begin() + *mass);
+}
+
+void MassNumbers::follow(const Edits& edits) {
+  for (std::size_t i = 0; i < edits.new_masses.size(); ++i) add();
+  remove(edits.removed_masses);
+}
+
+std::vector<std::uint32_t> mass_numbers(std::size_t born, const LifeRecord& record) {
+  MassNumbers masses(born);
+  for (const Change& change : record.changes()) masses.follow(change.edits);
+  return masses.numbers();
 }
 
 }  // namespace evodevo

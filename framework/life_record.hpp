@@ -48,4 +48,27 @@ class LifeRecord {
 /// Makes a change to a body again; its motion is none of it.
 void replay(Body& body, const Change& change);
 
+/// The numbers that masses keep through a life: those at birth their index, later ones the next numbers.
+class MassNumbers {
+ public:
+  explicit MassNumbers(std::size_t born);
+
+  /// The number of a new mass, which follows the others.
+  std::uint32_t add();
+  /// Lets masses go, by their indices in ascending order.
+  void remove(const std::vector<std::uint32_t>& masses);
+  /// All that a change does: its new masses come, then others go.
+  void follow(const Edits& edits);
+
+  /// By the masses' indices, ascending.
+  const std::vector<std::uint32_t>& numbers() const { return numbers_; }
+
+ private:
+  std::vector<std::uint32_t> numbers_;
+  std::uint32_t next_;
+};
+
+/// The numbers of a body's masses after the changes of its life.
+std::vector<std::uint32_t> mass_numbers(std::size_t born, const LifeRecord& record);
+
 }  // namespace evodevo

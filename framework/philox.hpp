@@ -15,7 +15,7 @@ inline constexpr std::uint32_t newborn = 1;
 inline constexpr std::uint32_t parents = 2;
 inline constexpr std::uint32_t survivors = 3;
 inline constexpr std::uint32_t variation = 4;       ///< which operators a child goes through
-inline constexpr std::uint32_t disturbance = 0x10;  ///< and on, of a verification's starts
+inline constexpr std::uint32_t disturbance = 0x10;  ///< and on, of starts that differ by noise
 inline constexpr std::uint32_t crossover = 0x100;
 inline constexpr std::uint32_t mutation = 0x200;
 constexpr std::uint32_t devo(std::size_t op, std::int64_t cycle) {

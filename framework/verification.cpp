@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "philox.hpp"
+#include "disturbance.hpp"
 
 namespace evodevo {
 namespace {
 
 constexpr double enough = 0.5;  ///< of the fitness
 constexpr int disturbed_starts = 3;
-constexpr double disturbance = 1e-4;  ///< of the longest side
 constexpr double more_settling = 10;  ///< s
 constexpr std::int64_t step_parts = 4;
 
@@ -23,18 +22,6 @@ std::vector<Life> matured(const Evaluation& evaluation, std::span<const Individu
   std::vector<Life> lives = evaluation.birth(newborns);
   evaluation.develop(lives, unwatched);
   return lives;
-}
-
-void disturb(Life& life, const Experiment& experiment, std::uint32_t start) {
-  State& state = life.living.state;
-  const double most = disturbance * bounding_box(state.position).longest_side();
-  Rng rng(philox, {static_cast<std::uint64_t>(experiment.seed), life.newborn.generation, life.newborn.id,
-                   place::disturbance + start});
-  const auto offset = [&] { return most * (2 * rng.uniform() - 1); };
-  for (Vec3& place : state.position) {
-    const double x = offset(), y = offset(), z = offset();
-    place = place + Vec3{x, y, z};
-  }
 }
 
 void still_muscles(Life& life) {

@@ -1,5 +1,6 @@
 // The energy of a body and the start of its life.
 #include <algorithm>
+#include <limits>
 
 #include "physics.hpp"
 #include "simulator.hpp"
@@ -17,7 +18,9 @@ double total_energy(const Body& body, const State& state, const Scene& scene) {
   double energy = 0;
   for (std::size_t i = 0; i < body.masses.size(); ++i) {
     energy += physics::kinetic_energy(body.masses[i].mass, triple(state.velocity[i]));
-    if (scene.gravity) energy += body.masses[i].mass * scene.gravity->acceleration * state.position[i].z;
+    if (scene.gravity)
+      energy += body.masses[i].mass * scene.gravity->downwards() *
+                physics::height(state.position[i].x, state.position[i].z, scene.gravity->grade());
   }
   for (const Spring& spring : body.springs) {
     const auto s = physics::separation(triple(state.position[spring.a]), triple(state.position[spring.b]));
@@ -27,13 +30,22 @@ double total_energy(const Body& body, const State& state, const Scene& scene) {
   return energy;
 }
 
+double ground_height(const Scene& scene, const Vec3& place) {
+  if (!scene.floor || !scene.floor->rough()) return 0;
+  const physics::Roughness<double> rough{scene.floor->roughness, 2 / scene.floor->wavelength,
+                                         static_cast<std::uint32_t>(scene.floor->seed)};
+  return physics::ground_at(place.x, place.y, rough).height;
+}
+
 State state_at_birth(const Body& body, const Scene& scene) {
   State state;
   for (const Mass& mass : body.masses) state.position.push_back(mass.rest);
   state.velocity.resize(body.masses.size());
   const Vec3 centre = centre_of_mass(body, state.position);
-  const double lowest = bounding_box(state.position).low.z;
-  for (Vec3& place : state.position) place = place - Vec3{centre.x, centre.y, lowest};
+  for (Vec3& place : state.position) place = place - Vec3{centre.x, centre.y, 0};
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Vec3& place : state.position) lowest = std::min(lowest, place.z - ground_height(scene, place));
+  for (Vec3& place : state.position) place.z -= lowest;
   state.start_energy = total_energy(body, state, scene);
   return state;
 }

@@ -34,7 +34,7 @@ double strain_allowance(const Body& body, double rounding, double places) {
 
 double sag_allowance(const Body& body, const Scene& scene, double dt) {
   if (!scene.gravity || !scene.floor || scene.floor->stiffness <= 0) return 0;
-  const double g = scene.gravity->acceleration;
+  const double g = scene.gravity->downwards();
   double sum = 0;
   for (const Mass& mass : body.masses) sum += mass.mass * g * (mass.mass * g / scene.floor->stiffness + g * dt * dt);
   return sum;
@@ -51,7 +51,7 @@ std::string with_number(const char* format, double a, double b) {
 EnergyGuard::EnergyGuard(const Body& body, const State& state, const Scene& scene, Precision precision, double dt)
     : bound_(10 * (std::max(state.start_energy, 0.0) +
                    strain_allowance(body, 16384 * epsilon(precision), extent(state)) + sag_allowance(body, scene, dt))),
-      acceleration_(scene.gravity ? scene.gravity->acceleration : 0) {}
+      acceleration_(scene.gravity ? scene.gravity->downwards() : 0) {}
 
 std::string EnergyGuard::verdict(double kinetic, double elastic, double moment, bool finite) const {
   const double energy = kinetic + elastic;

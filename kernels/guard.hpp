@@ -15,16 +15,17 @@ class EnergyGuard {
   static constexpr std::uint64_t interval = 100;
 
   /// The bound for one run is ten times the sum of State::start_energy, all muscles' strain sum k (2 amplitude L0)^2/2,
-  /// what falling below z = 0 sets free where no floor is and, so that a body for which all these are zero may rest,
-  /// what rounding (16,384 units in the last place of each spring and its place) and the sagging of masses into the
-  /// floor (m g (m g/k + g dt^2) each) can bring.
+  /// what falling below z = 0, where no floor is or down a slope, sets free and, so that a body for which all these are
+  /// zero may rest, what rounding (16,384 units in the last place of each spring and its place) and the sagging of
+  /// masses into the floor (m g (m g/k + g dt^2) each) can bring.
   EnergyGuard(const Body& body, const State& state, const Scene& scene, Precision precision, double dt);
 
-  /// What kinetic plus elastic energy must not pass, J; falling below z = 0 raises it tenfold of what it sets free.
+  /// What kinetic plus elastic energy must not pass, J; falling below the origin raises it tenfold of what it sets
+  /// free.
   double bound() const { return bound_; }
 
   /// Why the body has diverged; empty where it has not. `kinetic` and `elastic` in J; `moment`: the sum of mass times
-  /// z, kg m; `finite`: whether all places and velocities are.
+  /// physics::height(), kg m; `finite`: whether all places and velocities are.
   std::string verdict(double kinetic, double elastic, double moment, bool finite) const;
 
  private:

@@ -10,6 +10,8 @@
 #define EVODEVO_PHYSICS_HPP
 #endif
 
+#include <cstdint>
+
 #ifdef HWY_TARGET_INCLUDE
 #include "cpu/vectors-inl.hpp"
 HWY_BEFORE_NAMESPACE();
@@ -142,16 +144,87 @@ EVODEVO_HD T kinetic_energy(T mass, const Triple<T>& velocity) {
   return constant<T>(0.5) * mass * squared;
 }
 
+/// How high a place lies where the ground falls by `grade` for each metre along x, m: for energies.
+template <class T>
+EVODEVO_HD T height(T x, T z, T grade) {
+  return negative_multiply_add(grade, x, z);
+}
+
 /// The weight of a mass, N along z (paper, section IV-C).
 template <class T>
 EVODEVO_HD T weight(T mass, T acceleration) {
   return constant<T>(0) - mass * acceleration;
 }
 
+/// What pulls a mass of `weight` (N along z) downhill, N along x.
+template <class T>
+EVODEVO_HD T downhill_force(T weight, T grade) {
+  return constant<T>(0) - grade * weight;
+}
+
 /// The floor's push k max(0, -z), N along z (paper, section IV-C1).
 template <class T>
 EVODEVO_HD T floor_force(T stiffness, T z) {
   return stiffness * maximum(constant<T>(0) - z, constant<T>(0));
+}
+
+/// Rough ground: random heights, of at most `roughness`, at the corners of square cells.
+template <class T>
+struct Roughness {
+  T roughness;  ///< m
+  T cells;      ///< in a metre: two for each wavelength
+  std::uint32_t seed;
+};
+
+/// The ground under a place.
+template <class T>
+struct Ground {
+  T height;            ///< m
+  T slope_x, slope_y;  ///< how much it rises for each metre
+};
+
+/// How the ground goes from one corner to the next, and its slope: p^3 (10 - 15 p + 6 p^2), level at both and without a
+/// step in slope or curvature (Perlin, Improving noise, 2002).
+template <class T>
+struct Fade {
+  T value, rise;
+
+  EVODEVO_HD explicit Fade(T p)
+      : value(p * p * p * multiply_add(p, multiply_add(p, constant<T>(6), constant<T>(-15)), constant<T>(10))),
+        rise(constant<T>(30) * (p * (constant<T>(1) - p)) * (p * (constant<T>(1) - p))) {}
+};
+
+/// The height and slope of rough ground; it has no end and does not repeat.
+template <class T>
+EVODEVO_HD Ground<T> ground_at(T x, T y, const Roughness<T>& shape) {
+  const T one = constant<T>(1), u = x * shape.cells, v = y * shape.cells, i = whole_below(u), j = whole_below(v);
+  const Fade<T> p(u - i), q(v - j);
+  const T here = random_of(i, j, shape.seed), right = random_of(i + one, j, shape.seed);
+  const T behind = random_of(i, j + one, shape.seed), across = random_of(i + one, j + one, shape.seed);
+  const T near = multiply_add(p.value, right - here, here), far = multiply_add(p.value, across - behind, behind);
+  const T along_x = multiply_add(q.value, (across - behind) - (right - here), right - here);
+  const T steepness = shape.roughness * shape.cells;
+  return {shape.roughness * multiply_add(q.value, far - near, near), steepness * p.rise * along_x,
+          steepness * q.rise * (far - near)};
+}
+
+/// The part of a velocity along the ground's normal (-slope_x, -slope_y, 1), m/s.
+template <class T>
+EVODEVO_HD T off_ground(const Ground<T>& ground, const Triple<T>& v) {
+  return negative_multiply_add(ground.slope_x, v.x, negative_multiply_add(ground.slope_y, v.y, v.z));
+}
+
+/// The square of that normal.
+template <class T>
+EVODEVO_HD T normal_squared(const Ground<T>& ground) {
+  return multiply_add(ground.slope_x, ground.slope_x, multiply_add(ground.slope_y, ground.slope_y, constant<T>(1)));
+}
+
+/// Adds to a force (N) or velocity (m/s) what a push along the ground's normal, `up` along z, has along x and y. With
+/// a push of k times the depth along z the force has the potential k depth^2/2.
+template <class T>
+EVODEVO_HD Triple<T> leaned(const Ground<T>& ground, const Triple<T>& v, T up) {
+  return {negative_multiply_add(ground.slope_x, up, v.x), negative_multiply_add(ground.slope_y, up, v.y), v.z};
 }
 
 /// What quadratic drag multiplies the velocity by: the force is -coefficient |v| v (README, What is simulated), kg/s.

@@ -114,12 +114,15 @@ class Simulator {
 /// A simulator on `threads` cores (0: all of them) with the best instruction set that this processor has.
 std::unique_ptr<Simulator> make_cpu_simulator(const Scene& scene, const Stepping& stepping, int threads);
 
-/// Sets `state` to the start of a life: the rest places moved so that the lowest mass is at z = 0 and the centre of
-/// mass over the origin, at rest, at t = 0; `start_energy` for the scene.
+/// Sets `state` to the start of a life: the rest places moved so that the lowest mass is on the ground and the centre
+/// of mass over the origin, at rest, at t = 0; `start_energy` for the scene.
 State state_at_birth(const Body& body, const Scene& scene);
 
-/// The kinetic, elastic and, with gravity, height energy (above z = 0) of a body, J: `State::start_energy` for a body
-/// that does not start by state_at_birth().
+/// How high the ground is under a place, m; 0 without a floor.
+double ground_height(const Scene& scene, const Vec3& place);
+
+/// The kinetic, elastic and, with gravity, height energy (above the origin) of a body, J: `State::start_energy` for a
+/// body that does not start by state_at_birth().
 double total_energy(const Body& body, const State& state, const Scene& scene);
 
 }  // namespace evodevo

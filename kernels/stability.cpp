@@ -180,7 +180,9 @@ double oscillation_limit(Method method) {
 
 double largest_contact_dt(const Scene& scene, double mass, Method method) {
   if (!is_explicit(method) || !scene.floor || scene.floor->stiffness <= 0) return infinity;
-  return 1.2 * std::sqrt(mass / scene.floor->stiffness);
+  // rough ground pushes sideways too
+  const double stiffness = scene.floor->stiffness * (1 + std::pow(scene.floor->steepest(), 2));
+  return 1.2 * std::sqrt(mass / stiffness);
 }
 
 double largest_contact_dt(const Scene& scene, const Body& body, Method method) {

@@ -20,10 +20,14 @@ int show_command(const Arguments& arguments);
 int body_command(const Arguments& arguments);
 int life_command(const Arguments& arguments);
 int simulate_command(const Arguments& arguments);
+int environments_command(const Arguments& arguments);
 int operators_command(const Arguments& arguments);
 int describe_command(const Arguments& arguments);
 int new_command(const Arguments& arguments);
 int conform_command(const Arguments& arguments);
+int report_command(const Arguments& arguments);
+int gallery_command(const Arguments& arguments);
+int film_command(const Arguments& arguments);
 
 /// A command line that does not make sense.
 struct UsageError : std::runtime_error {

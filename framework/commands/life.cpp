@@ -4,7 +4,6 @@
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "archive.hpp"
 #include "commands/options.hpp"
@@ -32,16 +31,11 @@ struct Event {
   bool is_spring() const { return masses.size() == 2; }
 };
 
-/// A life as it goes on. Masses have numbers that they keep: those at birth their index, later ones the next numbers.
+/// A life as it goes on.
 class Chronicle {
  public:
   Chronicle(Body born, std::vector<std::string> operators)
-      : body_(std::move(born)),
-        operators_(std::move(operators)),
-        number_(body_.masses.size()),
-        next_number_(static_cast<std::uint32_t>(number_.size())) {
-    std::iota(number_.begin(), number_.end(), 0u);
-  }
+      : body_(std::move(born)), operators_(std::move(operators)), masses_(body_.masses.size()) {}
 
   void add(const Change& change) {
     const Edits& edits = change.edits;
@@ -53,17 +47,13 @@ class Chronicle {
       event.rest_length = spring.rest_length;
       event.material = spring.material;
     }
-    for (const NewMass& mass : edits.new_masses) {
-      number_.push_back(next_number_++);
-      add_event(change, "come", {number_.back()}).place = mass.place;
-    }
+    for (const NewMass& mass : edits.new_masses) add_event(change, "come", {masses_.add()}).place = mass.place;
     for (const NewSpring& spring : edits.new_springs) {
-      Event& event = add_event(change, "come", {number_.at(spring.a), number_.at(spring.b)});
+      Event& event = add_event(change, "come", {number(spring.a), number(spring.b)});
       event.rest_length = spring.rest_length;
       event.material = spring.material;
     }
-    for (auto mass = edits.removed_masses.rbegin(); mass != edits.removed_masses.rend(); ++mass)
-      number_.erase(number_.begin() + *mass);
+    masses_.remove(edits.removed_masses);
     replay(body_, change);
   }
 
@@ -86,19 +76,20 @@ class Chronicle {
       if (goes(body_.springs[s].a) || goes(body_.springs[s].b)) gone[s] = std::nullopt;
     for (std::size_t i = 0; i < edits.removed_springs.size(); ++i)
       gone[edits.removed_springs[i]] = seen(change.removed_stress[i]);
-    for (const std::uint32_t mass : edits.removed_masses) add_event(change, "gone", {number_.at(mass)});
+    for (const std::uint32_t mass : edits.removed_masses) add_event(change, "gone", {number(mass)});
     for (const auto& [spring, stress] : gone) add_event(change, "gone", ends(spring)).stress = stress;
   }
 
   std::vector<std::uint32_t> ends(std::uint32_t index) const {
     const Spring& spring = body_.springs.at(index);
-    return {number_.at(spring.a), number_.at(spring.b)};
+    return {number(spring.a), number(spring.b)};
   }
+
+  std::uint32_t number(std::uint32_t mass) const { return masses_.numbers().at(mass); }
 
   Body body_;
   std::vector<std::string> operators_;
-  std::vector<std::uint32_t> number_;  ///< of each mass of `body_`
-  std::uint32_t next_number_;
+  MassNumbers masses_;  ///< of `body_`
   std::vector<Event> events_;
 };
 

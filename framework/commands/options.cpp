@@ -97,20 +97,22 @@ ExperimentSource experiment_source(const std::string& file, const po::variables_
   return source;
 }
 
-ArchivedIndividual chosen_individual(const Archive& archive, const po::variables_map& given) {
+ArchivedIndividual individual_named(const Archive& archive, std::int64_t id) {
   const std::string folder = archive.folder().string();
-  if (!given.contains("individual")) {
-    const auto best = archive.best(1);
-    if (best.empty()) throw ArchiveError(folder + ": no individual has a fitness; name one with --individual");
-    return *archive.individual(best.front());
-  }
-  const auto id = given["individual"].as<std::int64_t>();
   const bool is_id = id >= 0 && id <= std::numeric_limits<std::uint32_t>::max();
   auto individual = is_id ? archive.individual(static_cast<std::uint32_t>(id)) : std::nullopt;
   if (!individual)
     throw ArchiveError(folder + ": there is no individual " + std::to_string(id) + "; see `" + program_name() +
                        " show " + folder + "`");
   return *individual;
+}
+
+ArchivedIndividual chosen_individual(const Archive& archive, const po::variables_map& given) {
+  if (given.contains("individual")) return individual_named(archive, given["individual"].as<std::int64_t>());
+  const auto best = archive.best(1);
+  if (best.empty())
+    throw ArchiveError(archive.folder().string() + ": no individual has a fitness; name one with --individual");
+  return *archive.individual(best.front());
 }
 
 std::unique_ptr<Simulator> make_simulator(const Experiment& experiment) {

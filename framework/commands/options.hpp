@@ -30,6 +30,8 @@ void add_experiment_options(boost::program_options::options_description& options
 /// The experiment that `file` and the options above name.
 ExperimentSource experiment_source(const std::string& file, const boost::program_options::variables_map& given);
 
+/// Throws ArchiveError where there is no individual `id`, which may be any number.
+ArchivedIndividual individual_named(const Archive& archive, std::int64_t id);
 /// The individual that --individual names, or else the best. Throws ArchiveError where there is none.
 ArchivedIndividual chosen_individual(const Archive& archive, const boost::program_options::variables_map& given);
 

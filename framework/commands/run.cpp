@@ -112,6 +112,7 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
     throw std::runtime_error(std::string(error.what()) + "\n" + state_of(archive));
   }
   progress.finish();
+  record_time_spent(archive, time);
   print_outcome(experiment, archive, progress);
   print_time_spent(time, simulator);
   if (is_finished(experiment, archive.generations())) {

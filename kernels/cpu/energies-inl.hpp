@@ -35,22 +35,23 @@ double elastic_energy_of(const cpu::Motion<T>& m, const cpu::Actuation<T>& actua
 }
 
 template <class T>
-cpu::Energies energies(const cpu::Motion<T>& m, const cpu::Actuation<T>& actuation) {
+cpu::Energies energies(const cpu::Motion<T>& m, const cpu::World<T>& world, const cpu::Actuation<T>& actuation) {
   const hn::ScalableTag<T> d;
   using V = hn::Vec<decltype(d)>;
-  V kinetic = hn::Zero(d), height = hn::Zero(d), not_finite = hn::Zero(d);
+  const V grade = hn::Set(d, world.grade);
+  V kinetic = hn::Zero(d), moment = hn::Zero(d), not_finite = hn::Zero(d);
   for (std::size_t i = 0; i < m.groups * hn::Lanes(d); i += hn::Lanes(d)) {
     const Triple<V> v{hn::Load(d, m.vx + i), hn::Load(d, m.vy + i), hn::Load(d, m.vz + i)};
-    const V mass = hn::Load(d, m.mass + i), z = hn::Load(d, m.z + i);
+    const V mass = hn::Load(d, m.mass + i), x = hn::Load(d, m.x + i), z = hn::Load(d, m.z + i);
     kinetic = kinetic + kinetic_energy(mass, v);
-    height = multiply_add(mass, z, height);
+    moment = multiply_add(mass, height(x, z, grade), moment);
     // zero times anything finite is zero, and a sum with one that is not stays so
-    const V total = (hn::Load(d, m.x + i) + hn::Load(d, m.y + i) + z) + (v.x + v.y + v.z);
+    const V total = (x + hn::Load(d, m.y + i) + z) + (v.x + v.y + v.z);
     not_finite = multiply_add(total, hn::Zero(d), not_finite);
   }
   const bool finite = hn::GetLane(hn::SumOfLanes(d, not_finite)) == T(0);
   return {static_cast<double>(hn::GetLane(hn::SumOfLanes(d, kinetic))), elastic_energy_of(m, actuation),
-          static_cast<double>(hn::GetLane(hn::SumOfLanes(d, height))), finite};
+          static_cast<double>(hn::GetLane(hn::SumOfLanes(d, moment))), finite};
 }
 
 }  // namespace evodevo::HWY_NAMESPACE

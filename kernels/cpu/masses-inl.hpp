@@ -19,10 +19,49 @@ HWY_INLINE void add_gravity(const cpu::Motion<T>& m, const cpu::World<T>& world,
   const auto acceleration = hn::Set(d, world.acceleration);
   for (std::size_t i = 0; i < masses; i += hn::Lanes(d))
     hn::Store(hn::Load(d, m.fz + i) + weight(hn::Load(d, m.mass + i), acceleration), d, m.fz + i);
+  if (!world.slope) return;
+  const auto grade = hn::Set(d, world.grade);
+  for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
+    const auto pull = downhill_force(weight(hn::Load(d, m.mass + i), acceleration), grade);
+    hn::Store(hn::Load(d, m.fx + i) + pull, d, m.fx + i);
+  }
+}
+
+/// The rough ground under the masses from i on.
+template <class T>
+HWY_INLINE auto ground_under(const cpu::Motion<T>& m, const cpu::World<T>& world, std::size_t i) {
+  const hn::ScalableTag<T> d;
+  return ground_at(hn::Load(d, m.x + i), hn::Load(d, m.y + i),
+                   Roughness<hn::Vec<decltype(d)>>{hn::Set(d, world.roughness), hn::Set(d, world.cells), world.seed});
+}
+
+/// Adds the ground's push along its normal, `push` along z.
+template <class V>
+HWY_INLINE Triple<V> pushed_off(const Ground<V>& ground, const Triple<V>& v, V push) {
+  const Triple<V> sum = leaned(ground, v, push);
+  return {sum.x, sum.y, sum.z + push};
+}
+
+template <class T>
+HWY_INLINE void add_rough_floor(const cpu::Motion<T>& m, const cpu::World<T>& world, std::size_t masses) {
+  const hn::ScalableTag<T> d;
+  using V = hn::Vec<decltype(d)>;
+  const V stiffness = hn::Set(d, world.floor_stiffness);
+  for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
+    const Ground<V> ground = ground_under(m, world, i);
+    const V push = floor_force(stiffness, hn::Load(d, m.z + i) - ground.height);
+    const Triple<V> force{hn::Load(d, m.fx + i), hn::Load(d, m.fy + i), hn::Load(d, m.fz + i)};
+    const Triple<V> sum = pushed_off(ground, force, push);
+    hn::Store(push, d, m.floor_force + i);
+    hn::Store(sum.x, d, m.fx + i);
+    hn::Store(sum.y, d, m.fy + i);
+    hn::Store(sum.z, d, m.fz + i);
+  }
 }
 
 template <class T>
 HWY_INLINE void add_floor(const cpu::Motion<T>& m, const cpu::World<T>& world, std::size_t masses) {
+  if (world.rough) return add_rough_floor(m, world, masses);
   const hn::ScalableTag<T> d;
   const auto stiffness = hn::Set(d, world.floor_stiffness);
   for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {

@@ -20,12 +20,18 @@ template <class T>
 World<T> world_of(const Scene& scene, double dt) {
   const auto as_t = [](double value) { return static_cast<T>(value); };
   return {.gravity = scene.gravity.has_value(),
+          .slope = scene.gravity && scene.gravity->slope != 0,
           .floor = scene.floor.has_value(),
+          .rough = scene.floor && scene.floor->rough(),
           .friction = scene.friction && scene.floor,
           .drag = scene.drag.has_value(),
           .damping = scene.damping.has_value(),
-          .acceleration = as_t(scene.gravity ? scene.gravity->acceleration : 0),
+          .acceleration = as_t(scene.gravity ? scene.gravity->downwards() : 0),
+          .grade = as_t(scene.gravity ? scene.gravity->grade() : 0),
           .floor_stiffness = as_t(scene.floor ? scene.floor->stiffness : 0),
+          .roughness = as_t(scene.floor ? scene.floor->roughness : 0),
+          .cells = as_t(scene.floor ? 2 / scene.floor->wavelength : 0),
+          .seed = static_cast<std::uint32_t>(scene.floor ? scene.floor->seed : 0),
           .friction_coefficient = as_t(scene.friction ? scene.friction->coefficient : 0),
           .drag_coefficient = as_t(scene.drag ? scene.drag->coefficient : 0),
           .damping_rate = as_t(scene.damping ? scene.damping->rate : 0),
@@ -205,8 +211,8 @@ void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels
     done += now;
     state.time = start + static_cast<double>(done) * task.dt;
     task.spring_evaluations += now * body.springs.size();
-    const Energies e = kernels.energies(moving.view(), tables.view(now * rows));
-    task.reason = guard.verdict(e.kinetic, e.elastic, e.height, e.finite);
+    const Energies e = kernels.energies(moving.view(), world, tables.view(now * rows));
+    task.reason = guard.verdict(e.kinetic, e.elastic, e.moment, e.finite);
     if (!task.reason.empty()) {
       task.status = Status::diverged;
       task.ended_at = state.time;

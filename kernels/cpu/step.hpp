@@ -22,9 +22,13 @@ struct TimeSpan {
 /// The scene and the step in the arithmetic of the simulation; a force that is off is not computed.
 template <class T>
 struct World {
-  bool gravity, floor, friction, drag, damping;
-  T acceleration;     ///< of gravity, m/s^2
-  T floor_stiffness;  ///< N/m
+  bool gravity, slope, floor, rough, friction, drag, damping;
+  T acceleration;      ///< of gravity along -z, m/s^2
+  T grade;             ///< Gravity::grade()
+  T floor_stiffness;   ///< N/m
+  T roughness;         ///< m
+  T cells;             ///< of rough ground, in a metre
+  std::uint32_t seed;  ///< of rough ground
   T friction_coefficient;
   T drag_coefficient;  ///< kg/m
   T damping_rate;      ///< 1/s
@@ -89,7 +93,7 @@ struct Actuation {
 
 struct Energies {
   double kinetic, elastic;  ///< J
-  double height;            ///< sum of mass times z, kg m
+  double moment;            ///< sum of mass times height, kg m
   bool finite;              ///< whether all places and velocities are
 };
 
@@ -115,7 +119,7 @@ struct Kernels {
   void (*actuate)(const Actuation<T>&, double start, std::uint64_t first, std::size_t rows, double dt);
   Integrator<T> integrator[method_names.size()];  ///< by Method
   /// The energies now, with the relative lengths of the table's row 0.
-  Energies (*energies)(const Motion<T>&, const Actuation<T>& actuation);
+  Energies (*energies)(const Motion<T>&, const World<T>&, const Actuation<T>& actuation);
 };
 
 /// The functions for the best instruction set that this processor has.

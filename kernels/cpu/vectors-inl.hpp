@@ -53,6 +53,46 @@ HWY_INLINE V zero_unless_greater(V a, V threshold, V value) {
   return hn::IfThenElseZero(hn::Gt(a, threshold), value);
 }
 
+template <class V>
+HWY_INLINE V whole_below(V a) {
+  return hn::Floor(a);
+}
+
+template <class U>
+HWY_INLINE U mixed(U n) {
+  const hn::DFromV<U> d;
+  n = hn::Xor(n, hn::ShiftRight<16>(n)) * hn::Set(d, 0x7feb352du);
+  n = hn::Xor(n, hn::ShiftRight<15>(n)) * hn::Set(d, 0x846ca68bu);
+  return hn::Xor(n, hn::ShiftRight<16>(n));
+}
+
+/// The lanes as 32-bit numbers, and back.
+template <class V>
+HWY_INLINE auto as_bits(V whole) {
+  const hn::Rebind<std::int32_t, hn::DFromV<V>> d;
+  const hn::Rebind<std::uint32_t, hn::DFromV<V>> bits;
+  if constexpr (sizeof(hn::TFromV<V>) == sizeof(float))
+    return hn::BitCast(bits, hn::ConvertTo(d, whole));
+  else
+    return hn::BitCast(bits, hn::DemoteTo(d, whole));
+}
+template <class V, class U>
+HWY_INLINE V as_number(U bits) {
+  const hn::DFromV<V> d;
+  const auto whole = hn::BitCast(hn::Rebind<std::int32_t, hn::DFromV<V>>(), bits);
+  if constexpr (sizeof(hn::TFromV<V>) == sizeof(float))
+    return hn::ConvertTo(d, whole);
+  else
+    return hn::PromoteTo(d, whole);
+}
+
+template <class V>
+HWY_INLINE V random_of(V i, V j, std::uint32_t seed) {
+  const auto row = mixed(as_bits(j) + hn::Set(hn::Rebind<std::uint32_t, hn::DFromV<V>>(), seed));
+  const auto bits = mixed(row + as_bits(i));
+  return multiply_add(as_number<V>(hn::ShiftRight<8>(bits)), constant<V>(0x1p-23), constant<V>(-1));
+}
+
 }  // namespace evodevo::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

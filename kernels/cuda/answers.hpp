@@ -46,7 +46,7 @@ template <class T>
 World<T> world_of(const Scene& scene, double dt) {
   const auto as_t = [](double value) { return static_cast<T>(value); };
   const double rate = scene.damping ? scene.damping->rate : 0;
-  return {.acceleration = as_t(scene.gravity ? scene.gravity->acceleration : 0),
+  return {.acceleration = as_t(scene.gravity ? scene.gravity->downwards() : 0),
           .floor_stiffness = as_t(scene.floor ? scene.floor->stiffness : 0),
           .friction_dt = as_t(scene.friction ? scene.friction->coefficient : 0) * as_t(dt),
           .drag_coefficient = as_t(scene.drag ? scene.drag->coefficient : 0),
@@ -56,6 +56,10 @@ World<T> world_of(const Scene& scene, double dt) {
           .half_decay = as_t(std::exp(-rate * dt / 2)),
           .half_push = as_t(push(rate, dt / 2)),
           .damping_rate = as_t(rate),
+          .grade = as_t(scene.gravity ? scene.gravity->grade() : 0),
+          .roughness = as_t(scene.floor ? scene.floor->roughness : 0),
+          .cells = as_t(scene.floor ? 2 / scene.floor->wavelength : 0),
+          .seed = static_cast<std::uint32_t>(scene.floor ? scene.floor->seed : 0),
           .exact_dt = dt};
 }
 

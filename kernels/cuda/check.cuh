@@ -36,7 +36,14 @@ __device__ __forceinline__ Number not_finite(const Place& place, const Place& ve
   return Number(0) * ((place.x + place.y + place.z) + (velocity.x + velocity.y + velocity.z));
 }
 
-/// What falling below z = 0 has set free, J. `moment`: the sum of mass times z, kg m.
+/// A mass's part of the moment, kg m: mass times height.
+__device__ __forceinline__ double moment_of(Number mass, const Place& place, const World<Number>& world) {
+  double height = place.z;
+  if constexpr (slope) height = physics::height<double>(place.x, place.z, world.grade);
+  return mass * height;
+}
+
+/// What falling below the origin has set free, J. `moment`: the sum of mass times height, kg m.
 __device__ __forceinline__ double fallen_energy(double moment, const World<Number>& world) {
   return physics::maximum(0.0, -static_cast<double>(world.acceleration) * moment);
 }

@@ -18,7 +18,7 @@ void check(nvrtcResult result, const char* what) {
 
 // what the sources include of the standard library, which the run-time compiler does not bring
 constexpr EmbeddedSource standard_headers[] = {
-    {"cmath", "namespace std { using ::fma; using ::sqrt; }\n"},
+    {"cmath", "namespace std { using ::floor; using ::fma; using ::sqrt; }\n"},
     {"cstdint",
      "#pragma once\n"
      "namespace std { using int32_t = int; using uint32_t = unsigned int; using uint64_t = unsigned long long; }\n"}};

@@ -36,7 +36,7 @@ const MethodForm& form_of(Method method);
 struct Features {
   Method method = Method::paper_euler;
   bool float64 = false;
-  bool gravity = false, floor = false, friction = false, damping = false, drag = false;
+  bool gravity = false, slope = false, floor = false, rough = false, friction = false, damping = false, drag = false;
   bool actuation = false, stress = false, work = false;
   bool peak_force = false, muscle_work = false, tension = false;  ///< muscle_work: only with work
 

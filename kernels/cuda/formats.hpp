@@ -43,7 +43,7 @@ struct Actuator {
 /// The scene and a body's step in the arithmetic of the simulation. What paper-euler reads comes first, some in pairs.
 template <class T>
 struct World {
-  T acceleration;      ///< of gravity, m/s^2
+  T acceleration;      ///< of gravity along -z, m/s^2
   T floor_stiffness;   ///< N/m
   T friction_dt;       ///< friction coefficient times dt, s
   T drag_coefficient;  ///< kg/m
@@ -53,6 +53,10 @@ struct World {
   T half_decay;        ///< both for half a step
   T half_push;         ///< s
   T damping_rate;      ///< 1/s
+  T grade;             ///< Gravity::grade()
+  T roughness;         ///< m
+  T cells;             ///< of rough ground, in a metre
+  std::uint32_t seed;  ///< of rough ground
   double exact_dt;     ///< s
 };
 
@@ -61,7 +65,7 @@ struct Answer {
   std::uint64_t steps;  ///< that were made
   double kinetic;       ///< J
   double elastic;       ///< J
-  double moment;        ///< sum of mass times z, kg m
+  double moment;        ///< sum of mass times height, kg m
   double work;          ///< J
   std::uint32_t diverged, finite, out_of_range;
 };

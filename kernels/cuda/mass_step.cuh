@@ -10,7 +10,9 @@ namespace evodevo::cuda {
 using Number = EVODEVO_NUMBER;
 constexpr bool actuation = EVODEVO_ACTUATION;
 constexpr bool gravity = EVODEVO_GRAVITY;
+constexpr bool slope = EVODEVO_SLOPE;
 constexpr bool floor_on = EVODEVO_FLOOR;
+constexpr bool rough = EVODEVO_ROUGH;
 constexpr bool friction = EVODEVO_FRICTION;
 constexpr bool damping = EVODEVO_DAMPING;
 constexpr bool drag = EVODEVO_DRAG;
@@ -87,12 +89,43 @@ __device__ __forceinline__ Place scaled(const Place& a, Number factor) {
 
 __device__ __forceinline__ void add_gravity(const World<Number>& world, Moving& m) {
   if constexpr (gravity) m.force.z += physics::weight(m.mass, world.acceleration);
+  if constexpr (slope) m.force.x += physics::downhill_force(physics::weight(m.mass, world.acceleration), world.grade);
+}
+
+/// The rough ground under a place.
+__device__ __forceinline__ auto ground_under(const World<Number>& world, const Place& place) {
+  return physics::ground_at(place.x, place.y, physics::Roughness<Number>{world.roughness, world.cells, world.seed});
+}
+
+/// How far a mass is above the ground, m.
+__device__ __forceinline__ Number clearance(const World<Number>& world, const Place& place) {
+  Number z = place.z;
+  if constexpr (rough) z -= ground_under(world, place).height;
+  return z;
+}
+
+/// A mass's velocity away from the ground, as far as z counts, m/s.
+__device__ __forceinline__ Number rise(const World<Number>& world, const Place& place, const Place& velocity) {
+  Number up = velocity.z;
+  if constexpr (rough) up = physics::off_ground(ground_under(world, place), velocity);
+  return up;
+}
+
+/// Where a mass is above the ground after a step, m, the ground going on as it is at its beginning.
+__device__ __forceinline__ Number next_clearance(const World<Number>& world, const Moving& m) {
+  return physics::moved(clearance(world, m.place), rise(world, m.place, m.velocity), world.dt);
+}
+
+/// Adds what the ground's push, `up` along z, has along x and y where the ground is not level.
+__device__ __forceinline__ void lean(const World<Number>& world, const Place& place, Number up, Place& v) {
+  if constexpr (rough) v = physics::leaned(ground_under(world, place), v, up);
 }
 
 __device__ __forceinline__ void add_floor(const World<Number>& world, Moving& m) {
   if constexpr (floor_on) {
-    m.push = physics::floor_force(world.floor_stiffness, m.place.z);
+    m.push = physics::floor_force(world.floor_stiffness, clearance(world, m.place));
     m.force.z += m.push;
+    lean(world, m.place, m.push, m.force);
   }
 }
 

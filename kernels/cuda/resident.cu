@@ -319,7 +319,7 @@ __device__ __forceinline__ Check check_of(const Body& body, const Movers& movers
     const Place place = place_at(offset), v = movers.velocity[i];
     const Number mass = body.mass[place_index];
     check.kinetic += physics::kinetic_energy(mass, v);
-    if constexpr (gravity) check.moment += static_cast<double>(mass) * place.z;
+    if constexpr (gravity) check.moment += moment_of(mass, place, body.world);
     check.not_finite += not_finite(place, v);
   });
   return check;

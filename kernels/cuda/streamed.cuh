@@ -58,7 +58,7 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_CHECK_THREADS)
   for (unsigned mass = threadIdx.x; mass < body.masses; mass += EVODEVO_CHECK_THREADS) {
     const Place place = triple(places[mass]), v = triple(body.velocities[mass]);
     kinetic += physics::kinetic_energy(body.mass[mass], v);
-    if constexpr (gravity) moment += static_cast<double>(body.mass[mass]) * place.z;
+    if constexpr (gravity) moment += moment_of(body.mass[mass], place, world);
     broken += not_finite(place, v);
     if constexpr (work) {
       power += body.power[mass];

@@ -42,8 +42,8 @@ class NetworkEncoding : public evodevo::Encoding {
       blueprint.body.masses.push_back(
           {{place(output[0]), place(output[1]), place(output[2])}, world.mass, chosen[static_cast<size_t>(material)]});
     }
-    if (pairing_ == "before-mapping")
-      for (const auto& point : points.colwise()) blueprint.paired_at.push_back({point[0], point[1], point[2]});
+    for (const auto& point : points.colwise()) blueprint.origins.push_back({point[0], point[1], point[2]});
+    if (pairing_ == "before-mapping") blueprint.paired_at = blueprint.origins;
     return blueprint;
   }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 #include <tuple>
 
 #include "archive.hpp"
@@ -36,7 +37,22 @@ TEST(Experiments, EachRunsForTwoGenerationsWhenShrunk) {
     EXPECT_EQ(archive.generations().size(), 2u);
     EXPECT_GT(archive.statuses().at("ok"), 0);
   }
-  EXPECT_EQ(count, 13);
+  EXPECT_EQ(count, 20);
+}
+
+TEST(Experiments, TheEnvironmentsDifferInTheirSceneAlone) {
+  const auto without_scene = [](const Experiment& experiment) {
+    const std::string& text = experiment.resolved;
+    return text.substr(0, text.find("[scene")) + text.substr(text.find("\n[selection"));
+  };
+  const Experiment flat = read_experiment({experiment_file("environments/flat.toml"), {}});
+  std::set<std::string> scenes;
+  for (const fs::directory_entry& entry : fs::directory_iterator(experiment_file("environments"))) {
+    SCOPED_TRACE(entry.path());
+    const Experiment experiment = read_experiment({entry.path(), {}});
+    EXPECT_EQ(without_scene(experiment), without_scene(flat));
+    EXPECT_TRUE(scenes.insert(experiment.resolved).second) << "as another one";
+  }
 }
 
 /// What the paper gives, value by value.

@@ -4,8 +4,10 @@
 
 #include <nlohmann/json.hpp>
 #include <random>
+#include <set>
 
 #include "archive.hpp"
+#include "report/report.hpp"
 #include "support/experiments.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"
@@ -13,6 +15,7 @@
 namespace evodevo {
 namespace {
 
+namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using testing::Process;
 
@@ -126,6 +129,32 @@ TEST_F(Interruption, ASecondProcessOnOneFolderIsRefused) {
             "evodevo: " + folder + ": another evodevo process is writing this run; wait for it or stop it first\n");
   EXPECT_EQ(testing::run({EVODEVO_PROGRAM, "show", folder}).exit_code, 0) << "looking is allowed";
   EXPECT_EQ(first.wait(), 0) << "and disturbs nobody";
+}
+
+TEST_F(Interruption, ReportsOfARunThatGoesOnDisturbItNotAtAll) {
+  ASSERT_EQ(testing::run(run_command("straight")).exit_code, 0);
+  const fs::path folder = scratch_ / "run";
+  Process process(run_command("run"));
+  process.read_line();
+  process.read_line();  // the first generation
+  std::set<std::int64_t> seen;
+  do {
+    const Archive archive = Archive::read(folder);
+    const Experiment experiment = recorded_experiment(archive);
+    const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+    const auto run = reported_run(archive, experiment, *simulator, {.best = 1}, 1'000'000);
+    seen.insert(run["evaluations"].get<std::int64_t>());
+    // everything is of one moment
+    std::int64_t evaluations = 0;
+    for (const auto& count : run["statuses"]) evaluations += count.get<std::int64_t>();
+    EXPECT_EQ(run["evaluations"], evaluations);
+    for (const auto& individual : run["population"])
+      EXPECT_LE(individual["age"].get<std::size_t>(), run["generations"].size());
+  } while (process.read_line());
+  EXPECT_EQ(process.wait(), 0) << process.output();
+  EXPECT_GT(seen.size(), 1u) << "nothing was seen of it going on";
+  EXPECT_LT(*seen.begin(), 75);
+  expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(folder));
 }
 
 TEST_F(Interruption, AFinishedRunHasNothingToResume) {

@@ -22,11 +22,13 @@ struct Case {
 std::vector<Case> cases() {
   return {{"nothing", {}},
           {"gravity", {Gravity{}, {}, {}, {}, {}}},
+          {"slope", {Gravity{9.81, 12}, {}, {}, {}, {}}},
           {"floor", {Gravity{}, Floor{}, {}, {}, {}}},
+          {"rough_ground", {Gravity{}, Floor{1e6, 0.05}, {}, {}, {}}},
           {"friction", {Gravity{}, Floor{}, Friction{}, {}, {}}},
           {"damping", {{}, {}, {}, Damping{}, {}}},
           {"drag", {{}, {}, {}, {}, Drag{0.5}}},
-          {"everything", {Gravity{}, Floor{}, Friction{}, Damping{}, Drag{0.5}}}};
+          {"everything", {Gravity{9.81, 12}, Floor{1e6, 0.05}, Friction{}, Damping{}, Drag{0.5}}}};
 }
 
 class AgreementOfPlaces : public testing::TestWithParam<std::tuple<Case, Way>> {};

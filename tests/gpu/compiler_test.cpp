@@ -39,7 +39,9 @@ class Compiler : public testing::Test {
 };
 
 const Features every_feature{.gravity = true,
+                             .slope = true,
                              .floor = true,
+                             .rough = true,
                              .friction = true,
                              .damping = true,
                              .drag = true,

@@ -26,9 +26,16 @@ struct Subject {
 };
 
 const std::vector<Subject> subjects{
-    {"gravity", &Features::gravity, {"gravity"}, {"moment"}, {"weight", "fallen_energy"}},
-    // friction needs the floor's push
-    {"floor", &Features::floor, {"floor_on", "friction"}, {"push"}, {"floor_force", "friction_factor"}},
+    // a slope needs gravity
+    {"gravity",
+     &Features::gravity,
+     {"gravity", "slope"},
+     {"moment"},
+     {"weight", "downhill_force", "moment_of", "fallen_energy"}},
+    {"slope", &Features::slope, {"slope"}, {}, {"downhill_force"}},
+    // rough ground and friction need the floor
+    {"floor", &Features::floor, {"floor_on", "friction", "rough"}, {"push"}, {"floor_force", "friction_factor"}},
+    {"rough ground", &Features::rough, {"rough"}, {}, {"ground_under"}},
     {"friction", &Features::friction, {"friction"}, {}, {"friction_factor"}},
     {"damping", &Features::damping, {"damping"}, {}, {}},
     {"drag", &Features::drag, {"drag"}, {}, {"drag_factor"}},
@@ -52,6 +59,8 @@ Features every_feature() {
 Features without(const Subject& subject) {
   Features features = every_feature();
   features.*subject.on = false;
+  features.slope = features.slope && features.gravity;
+  features.rough = features.rough && features.floor;
   features.friction = features.friction && features.floor;
   features.muscle_work = features.muscle_work && features.work;
   return features;
@@ -237,8 +246,10 @@ TEST_P(FeatureCode, IsNotThereWhereTheFeatureIsOff) {
 TEST_P(FeatureCode, IsNotThereWhereAllAreOff) {
   Sources sources;
   for (const Subject& subject : subjects)
-    // some are gone with the floor and the body's work
-    if (subject.on != &Features::friction && subject.on != &Features::muscle_work) sources.remove(subject);
+    // the others are gone with gravity, the floor and the body's work
+    if (subject.on != &Features::slope && subject.on != &Features::rough && subject.on != &Features::friction &&
+        subject.on != &Features::muscle_work)
+      sources.remove(subject);
   const Operations bare = code({}, {});
   std::printf("%s: %zu instructions without any\n", GetParam().name, bare.size());
   EXPECT_TRUE(bare == code(sources, every_feature()));

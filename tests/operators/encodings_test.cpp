@@ -220,6 +220,7 @@ TEST_P(AnyNetwork, PairsBeforeTheMappingAreThoseOfThePoints) {
   ASSERT_EQ(paired.paired_at.size(), 1000u);
   for (std::size_t i = 0; i < 1000; ++i) EXPECT_NEAR(norm(paired.paired_at[i] - points_of("")[i]), 0, 1e-9);
   EXPECT_EQ(paired.paired_at, before->decode(other, world()).paired_at) << "the points are those of the run";
+  EXPECT_EQ(mapped.origins, paired.paired_at);
   paired.paired_at.clear();
   EXPECT_EQ(digest(paired), digest(mapped)) << "all else is the same";
 }

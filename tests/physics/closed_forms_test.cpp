@@ -208,6 +208,69 @@ TEST_P(ClosedForm, FrictionHoldsInsideTheConeAndOnlyThere) {
                                                                   : slipping.masses[1].rest.x));
 }
 
+/// On a slope of so many degrees.
+Scene inclined(double slope, double friction) { return {Gravity{g, slope}, Floor{}, Friction{friction}, {}, {}}; }
+
+TEST_P(ClosedForm, AMassGoesDownASlopeFasterThanFrictionHolds) {
+  const double slope = 30, mu = 0.3, dt = 0.0005, angle = slope * pi / 180;
+  const Body body = single_mass(0.2, {0, 0, -0.2 * g * std::cos(angle) / 1e6});
+  const Scene scene = inclined(slope, mu);
+  const Answer a = simulate(body, resting(body, scene), scene, stepping(dt), 2000);
+  const double acceleration = g * (std::sin(angle) - mu * std::cos(angle));
+  EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+  EXPECT_NEAR(a.state.velocity[0].x, acceleration, 1e-3 * acceleration);
+  EXPECT_NEAR(a.state.position[0].x, acceleration / 2, (1e-3 + dt) * acceleration);
+  EXPECT_EQ(a.state.position[0].y, 0);
+}
+
+TEST_P(ClosedForm, AMassRestsOnASlopeWithinTheAngleOfFrictionAndOnlyThere) {
+  const double mu = 0.5, cone = std::atan(mu) * 180 / pi;
+  for (const double slope : {0.99 * cone, -0.99 * cone, 1.01 * cone, -1.01 * cone}) {
+    const Body body = single_mass(0.2, {0, 0, -0.2 * g * std::cos(slope * pi / 180) / 1e6});
+    const Scene scene = inclined(slope, mu);
+    const Answer a = simulate(body, resting(body, scene), scene, stepping(), 1000);
+    if (std::abs(slope) < cone)
+      EXPECT_EQ(a.state.position[0].x, 0) << slope << " degrees";
+    else
+      EXPECT_GT(std::copysign(1, slope) * a.state.position[0].x, 1e-3) << slope << " degrees";
+  }
+}
+
+TEST_P(ClosedForm, ABlockGoesDownASlopeFasterThanFrictionHolds) {
+  const double slope = 35, mu = 0.5, angle = slope * pi / 180, t = 0.5;
+  const Body body = block(2, {10000, 0, 0, 0});
+  const Scene scene = inclined(slope, mu);
+  State start = simulate(body, state_at_birth(body, walking_scene()), walking_scene(), stepping(), 6000).state;
+  const double from = centre_of_mass(body, start.position).x;
+  start.start_energy = total_energy(body, start, scene);
+  const Answer a = simulate(body, start, scene, stepping(), 1000);
+  EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+  const double distance = g * (std::sin(angle) - mu * std::cos(angle)) * t * t / 2;
+  EXPECT_NEAR(centre_of_mass(body, a.state.position).x - from, distance, 0.05 * distance);
+}
+
+TEST_P(ClosedForm, ABlockRestsOnASlopeWithinTheAngleOfFriction) {
+  const Body body = block(2, {10000, 0, 0, 0});
+  Scene scene = inclined(0.9 * std::atan(0.5) * 180 / pi, 0.5);
+  scene.damping.emplace();
+  const Answer settled = simulate(body, state_at_birth(body, scene), scene, stepping(), 6000);
+  const Answer later = simulate(body, settled.state, scene, stepping(), 2000);
+  EXPECT_EQ(later.task.status, Status::ok) << later.task.reason;
+  EXPECT_LT(largest_difference(settled.state, later.state), 1e-5);
+}
+
+TEST_P(ClosedForm, GoingFarDownASlopeIsNoDivergence) {
+  const double angle = 20 * pi / 180;
+  const Body body = single_mass(0.2, {0, 0, -0.2 * g * std::cos(angle) / 1e6});
+  const Scene scene{Gravity{g, 20}, Floor{}, {}, {}, {}};
+  const State start = resting(body, scene);
+  const Answer a = simulate(body, start, scene, stepping(), 20000);
+  EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+  EXPECT_NEAR(a.state.velocity[0].x, 10 * g * std::sin(angle), 0.05);
+  const double kinetic = 0.1 * std::pow(norm(a.state.velocity[0]), 2);
+  EXPECT_NEAR(total_energy(body, a.state, scene), start.start_energy, 1e-3 * kinetic) << "what it fell is what it has";
+}
+
 TEST_P(ClosedForm, FrictionNeedsAFloor) {
   const Scene scene{Gravity{}, {}, Friction{0.5}, {}, {}};
   const Body body = single_mass(0.2, {0, 0, -1});

@@ -78,7 +78,10 @@ TEST_P(Property, AMirroredBodyMovesAsTheMirrorImage) {
     };
     std::vector<Life> images = lives;
     for (Life& life : images) life.start = mirrored(life.start);
-    const std::vector<Answer> real = simulate(*simulator(scene), lives), image = simulate(*simulator(scene), images);
+    Scene mirrored_scene = scene;
+    if (scene.gravity) mirrored_scene.gravity->slope = -scene.gravity->slope;
+    const std::vector<Answer> real = simulate(*simulator(scene), lives),
+                              image = simulate(*simulator(mirrored_scene), images);
     for (std::size_t i = 0; i < lives.size(); ++i) {
       EXPECT_EQ(mirrored(image[i].state).position, real[i].state.position) << trace(lives[i]);
       EXPECT_EQ(mirrored(image[i].state).velocity, real[i].state.velocity) << trace(lives[i]);

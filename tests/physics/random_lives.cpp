@@ -70,6 +70,7 @@ Scene random_scene(std::uint64_t seed) {
   if (random.chance(0.5)) scene.friction = Friction{random.between(0, 1)};
   if (random.chance(0.4)) scene.damping = Damping{random.between(0, 50)};
   if (random.chance(0.4)) scene.drag = Drag{random.between(0, 2)};
+  if (scene.gravity && random.chance(0.5)) scene.gravity->slope = random.between(-40, 40);
   return scene;
 }
 

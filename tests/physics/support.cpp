@@ -113,7 +113,10 @@ Reference reference(const Body& body, State state, const Scene& scene, double dt
       Vec3& x = state.position[i];
       Vec3& v = state.velocity[i];
       double floor = 0;
-      if (scene.gravity) force[i].z -= mass * scene.gravity->acceleration;
+      if (scene.gravity) {
+        const double angle = pi / 180 * scene.gravity->slope, weight = mass * scene.gravity->acceleration;
+        force[i] = force[i] + Vec3{weight * std::sin(angle), 0, -weight * std::cos(angle)};
+      }
       if (scene.floor && x.z < 0) floor = -scene.floor->stiffness * x.z;
       force[i].z += floor;
       if (scene.drag) force[i] = force[i] - scene.drag->coefficient * norm(v) * v;

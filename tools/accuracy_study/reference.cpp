@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/numeric/odeint.hpp>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
@@ -50,7 +51,11 @@ class EquationOfMotion {
     const double drag = scene_.drag ? scene_.drag->coefficient * speed / mass : 0;
     const double damping = scene_.damping ? scene_.damping->rate : 0;
     for (std::size_t c = 0; c < 3; ++c) rate[c] -= (drag + damping) * v[c];
-    if (scene_.gravity) rate[2] -= scene_.gravity->acceleration;
+    if (scene_.gravity) {
+      const double angle = scene_.gravity->slope * (std::numbers::pi / 180);
+      rate[0] += scene_.gravity->acceleration * std::sin(angle);
+      rate[2] -= scene_.gravity->acceleration * std::cos(angle);
+    }
     if (scene_.floor) rate[2] += scene_.floor->stiffness * std::max(0.0, -z) / mass;
   }
 
@@ -63,6 +68,7 @@ class EquationOfMotion {
 State solution(const Body& body, const State& start, const Scene& scene, double time) {
   namespace odeint = boost::numeric::odeint;
   if (scene.friction) throw std::invalid_argument("Coulomb friction is no force law that could be integrated");
+  if (scene.floor && scene.floor->rough()) throw std::invalid_argument("rough ground is not in the reference");
   std::vector<double> y;
   for (const auto* vectors : {&start.position, &start.velocity})
     for (const Vec3& v : *vectors) y.insert(y.end(), {v.x, v.y, v.z});

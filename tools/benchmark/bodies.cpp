@@ -95,6 +95,7 @@ std::string description(const Scene& scene) {
     text << (text.tellp() > 0 ? ", " : "") << force << ' ' << value << unit;
   };
   if (scene.gravity) add("gravity", scene.gravity->acceleration, " m/s^2");
+  if (scene.gravity && scene.gravity->slope != 0) add("slope", scene.gravity->slope, " degrees");
   if (scene.floor) add("floor", scene.floor->stiffness, " N/m");
   if (scene.friction) add("friction", scene.friction->coefficient, "");
   if (scene.damping) add("damping", scene.damping->rate, " 1/s");

@@ -39,6 +39,7 @@ struct Blueprint {
   std::string failure;  ///< why there is no body; empty where there is one
   std::vector<Vec3> paired_at = {};  ///< where neighbours are searched for, one place for each mass; empty: at the rest
                                      ///< places
+  std::vector<Vec3> origins = {};  ///< of an encoding that maps points: the point of each mass, for pictures; or empty
 };
 
 class Encoding : public Operator {

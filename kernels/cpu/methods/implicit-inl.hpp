@@ -15,7 +15,8 @@ namespace evodevo::HWY_NAMESPACE {
 ///   (M + push (dt K+ + R)) c = push (F - (dt K + R) u),   then x <- x + dt v',
 /// F the forces at these places with the springs' lengths and K their stiffness at the end of the step (Baraff and
 /// Witkin, Large steps in cloth simulation, 1998). R is diagonal: drag, c |v|, and for each mass that touches the
-/// floor, z + dt v_z < 0, dt times the floor's stiffness along z, so that the floor pushes with k (-z - dt v'_z). K+ is
+/// floor, z + dt v_z < 0, dt times the floor's stiffness along z, so that the floor pushes with k (-z - dt v'_z); on
+/// rough ground along its normal, which is no longer diagonal. K+ is
 /// spring_stiffness(), without what would be negative, so the matrix is symmetric and positive definite at any dt; K
 /// is spring_force_rate(), with it, or springs under tension would brake every turn of a body.
 struct Implicit : StepMethod {
@@ -28,6 +29,7 @@ struct Implicit : StepMethod {
     if (s.world.gravity) add_gravity(s.motion, s.world, s.masses);
     set_resistance(s, memory);
     if (s.world.damping) damp(s.motion, s.world.step.decay, s.masses);
+    if (s.world.rough) lean_resistance(s, memory);
     set_stiffness(s, memory, row + 1);
     set_residual(s, memory);
     solve(s, memory);
@@ -87,13 +89,56 @@ struct Implicit : StepMethod {
       V across = zero, touching = zero;
       if (s.world.drag)
         across = zero - drag_factor(coefficient, Triple<V>{hn::Load(d, m.vx + i), hn::Load(d, m.vy + i), vz});
-      if (s.world.floor) {
+      if (s.world.rough) {
+        touching = add_ground(s, i);
+      } else if (s.world.floor) {
         const V z = hn::Load(d, m.z + i);
         touching = zero_unless_greater(zero - moved(z, vz, dt), zero, floor);
         hn::Store(negative_multiply_add(touching, z, hn::Load(d, m.fz + i)), d, m.fz + i);
       }
       hn::Store(across, d, memory.resistance + i);
       hn::Store(multiply_add(dt, touching, across), d, memory.vertical_resistance + i);
+    }
+  }
+
+  /// Adds what rough ground does to the masses from i on that touch it; returns its stiffness, 0 for the others.
+  template <class T>
+  static HWY_INLINE hn::Vec<hn::ScalableTag<T>> add_ground(const Stepper<T>& s, std::size_t i) {
+    const hn::ScalableTag<T> d;
+    using V = hn::Vec<decltype(d)>;
+    const cpu::Motion<T>& m = s.motion;
+    const Ground<V> ground = ground_under(m, s.world, i);
+    const V depth = ground.height - hn::Load(d, m.z + i);
+    const V end = negative_multiply_add(hn::Set(d, s.world.step.dt),
+                                        off_ground(ground, load(m.vx + i, m.vy + i, m.vz + i)), depth);
+    const V touching = zero_unless_greater(end, hn::Zero(d), hn::Set(d, s.world.floor_stiffness));
+    const Triple<V> force = pushed_off(ground, load(m.fx + i, m.fy + i, m.fz + i), touching * depth);
+    hn::Store(force.x, d, m.fx + i);
+    hn::Store(force.y, d, m.fy + i);
+    hn::Store(force.z, d, m.fz + i);
+    return touching;
+  }
+
+  /// What rough ground adds to R times v for the masses from i on: that it pushes along its normal instead of z.
+  template <class T, class V>
+  static HWY_INLINE Triple<V> lean(const Stepper<T>& s, const Memory<T>& memory, std::size_t i, const Triple<V>& v) {
+    const hn::ScalableTag<T> d;
+    const V touching = hn::Load(d, memory.vertical_resistance + i) - hn::Load(d, memory.resistance + i);
+    const Ground<V> ground = ground_under(s.motion, s.world, i);
+    const V zero = hn::Zero(d);
+    return pushed_off(ground, Triple<V>{zero, zero, zero - touching * v.z}, touching * off_ground(ground, v));
+  }
+
+  /// Takes from the forces what lean() is of the velocities.
+  template <class T>
+  static void lean_resistance(const Stepper<T>& s, const Memory<T>& memory) {
+    const hn::ScalableTag<T> d;
+    const cpu::Motion<T>& m = s.motion;
+    for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
+      const auto resisted = lean(s, memory, i, load(m.vx + i, m.vy + i, m.vz + i));
+      hn::Store(hn::Load(d, m.fx + i) - resisted.x, d, m.fx + i);
+      hn::Store(hn::Load(d, m.fy + i) - resisted.y, d, m.fy + i);
+      hn::Store(hn::Load(d, m.fz + i) - resisted.z, d, m.fz + i);
     }
   }
 
@@ -205,6 +250,12 @@ struct Implicit : StepMethod {
       sum = {sum.x + force.x, sum.y + force.y, sum.z + force.z};
     }
     const V dt = hn::Set(d, s.world.step.dt), push = hn::Set(d, s.world.step.push);
+    if (s.world.rough) {
+      const Triple<V> leaning = lean(s, memory, i, own);
+      const V inverse_dt = hn::Set(d, 1 / s.world.step.dt);
+      sum = {multiply_add(inverse_dt, leaning.x, sum.x), multiply_add(inverse_dt, leaning.y, sum.y),
+             multiply_add(inverse_dt, leaning.z, sum.z)};
+    }
     const V across = hn::Load(d, memory.resistance + i), vertical = hn::Load(d, memory.vertical_resistance + i);
     return {push * multiply_add(dt, sum.x, across * own.x), push * multiply_add(dt, sum.y, across * own.y),
             push * multiply_add(dt, sum.z, vertical * own.z)};
@@ -307,7 +358,12 @@ struct Implicit : StepMethod {
     const cpu::Motion<T>& m = s.motion;
     const auto stiffness = hn::Set(d, s.world.floor_stiffness), dt = hn::Set(d, s.world.step.dt);
     for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
-      const auto z = moved(hn::Load(d, m.z + i), hn::Load(d, m.vz + i), dt);
+      auto z = moved(hn::Load(d, m.z + i), hn::Load(d, m.vz + i), dt);
+      if (s.world.rough) {
+        const auto ground = ground_under(m, s.world, i);
+        const auto velocity = off_ground(ground, load(m.vx + i, m.vy + i, m.vz + i));
+        z = moved(hn::Load(d, m.z + i), velocity, dt) - ground.height;
+      }
       const auto touches = hn::Load(d, memory.vertical_resistance + i) - hn::Load(d, memory.resistance + i);
       hn::Store(zero_unless_greater(touches, hn::Zero(d), floor_force(stiffness, z)), d, m.floor_force + i);
     }

@@ -27,7 +27,7 @@ struct Xpbd : StepMethod {
     for (std::size_t at = 0; at < s.motion.coloured.size; at += hn::Lanes(hn::ScalableTag<T>()))
       solve_springs(s, row + 1, at);
     take_velocities(s);
-    if (s.world.floor) solve_floor(s);
+    if (s.world.floor) s.world.rough ? solve_rough_floor(s) : solve_floor(s);
     if (s.world.friction) rub(s.motion, s.world, s.world.step.dt, s.motion.vx, s.motion.vy, s.masses);
     move(s.motion, s.world.step.dt, s.masses);
   }
@@ -147,6 +147,29 @@ struct Xpbd : StepMethod {
       if (!is_spring(s, at + lane)) continue;
       T& slot = noted[s.motion.coloured.slot[at + lane]];
       slot = join(slot, numbers[lane]);
+    }
+  }
+
+  /// The same on rough ground, as steep as it is at the beginning of the step.
+  template <class T>
+  static void solve_rough_floor(const Stepper<T>& s) {
+    const hn::ScalableTag<T> d;
+    using V = hn::Vec<decltype(d)>;
+    const cpu::Motion<T>& m = s.motion;
+    const V dt = hn::Set(d, s.world.step.dt), push = hn::Set(d, s.world.step.push);
+    const V stiffness = hn::Set(d, s.world.floor_stiffness);
+    for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
+      const Ground<V> ground = ground_under(m, s.world, i);
+      const Triple<V> v{hn::Load(d, m.vx + i), hn::Load(d, m.vy + i), hn::Load(d, m.vz + i)};
+      const V depth = ground.height - moved(hn::Load(d, m.z + i), off_ground(ground, v), dt);
+      const V inverse_mass = hn::Load(d, m.inverse_mass + i);
+      const V force =
+          compliant_force(stiffness, maximum(depth, hn::Zero(d)), dt * push, inverse_mass * normal_squared(ground));
+      const Triple<V> pushed = pushed_off(ground, v, force * push * inverse_mass);
+      hn::Store(force, d, m.floor_force + i);
+      hn::Store(pushed.x, d, m.vx + i);
+      hn::Store(pushed.y, d, m.vy + i);
+      hn::Store(pushed.z, d, m.vz + i);
     }
   }
 

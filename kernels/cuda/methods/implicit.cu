@@ -46,11 +46,26 @@ __device__ __forceinline__ Place resistance_of(const World<Number>& world, Movin
   Number across = 0, touching = 0;
   if constexpr (drag) across = -physics::drag_factor(world.drag_coefficient, m.velocity);
   if constexpr (floor_on) {
-    const Number z = physics::moved(m.place.z, m.velocity.z, world.dt);
-    touching = physics::zero_unless_greater(-z, Number(0), world.floor_stiffness);
-    m.force.z = physics::negative_multiply_add(touching, m.place.z, m.force.z);
+    touching = physics::zero_unless_greater(-next_clearance(world, m), Number(0), world.floor_stiffness);
+    const Number above = clearance(world, m.place);
+    m.force.z = physics::negative_multiply_add(touching, above, m.force.z);
+    lean(world, m.place, -touching * above, m.force);
   }
   return {across, across, physics::multiply_add(world.dt, touching, across)};
+}
+
+/// R times a vector.
+__device__ __forceinline__ Place resisted(const World<Number>& world, const Place& place, const Place& resistance,
+                                          const Place& v) {
+  Place all = product(resistance, v);
+  if constexpr (rough) {
+    // along the ground's normal, not z
+    const Number touching = resistance.z - resistance.x;
+    const Number up = touching * rise(world, place, v);
+    all.z += up - touching * v.z;
+    lean(world, place, up, all);
+  }
+  return all;
 }
 
 /// Adds F + dt K u to the force, u the damped velocity, and sets K+; returns its diagonal.
@@ -96,7 +111,7 @@ __device__ __forceinline__ double begin(const World<Number>& world, const Body& 
     damp(world.decay, m);
     const Place all = sum(resistance, world.dt, add_springs(world, body, memory, row, mass, m));
     const Place inverse_diagonal{inverse(world, m, all.x), inverse(world, m, all.y), inverse(world, m, all.z)};
-    const Place residual = scaled(difference(m.force, product(resistance, m.velocity)), world.push);
+    const Place residual = scaled(difference(m.force, resisted(world, m.place, resistance, m.velocity)), world.push);
     const Place direction = product(inverse_diagonal, residual);
     memory.resistance[mass] = point(resistance);
     memory.inverse_diagonal[mass] = point(inverse_diagonal);
@@ -118,8 +133,9 @@ __device__ __forceinline__ double apply(const World<Number>& world, const Body& 
       const Place across = difference(own, triple(memory.direction[memory.other[i]]));
       force = sum(force, Number(1), physics::times(memory.stiffness[i], across));
     });
-    const Place resisted = sum(product(triple(memory.resistance[mass]), own), world.dt, force);
-    const Place applied = sum(scaled(resisted, world.push), body.mass[mass], own);
+    const Place all =
+        sum(resisted(world, triple(body.places[mass]), triple(memory.resistance[mass]), own), world.dt, force);
+    const Place applied = sum(scaled(all, world.push), body.mass[mass], own);
     memory.applied[mass] = point(applied);
     curvature += dot(own, applied);
   });
@@ -167,7 +183,7 @@ __device__ __forceinline__ void move(const World<Number>& world, const Body& bod
     m.velocity = sum(m.velocity, Number(1), triple(memory.correction[mass]));
     if constexpr (friction) {
       // the floor's push at the end of the step; it does not hold on to what leaves it
-      const Number z = physics::moved(m.place.z, m.velocity.z, world.dt);
+      const Number z = next_clearance(world, m);
       const Number touches = memory.resistance[mass].z - memory.resistance[mass].x;
       m.push = physics::zero_unless_greater(touches, Number(0), physics::floor_force(world.floor_stiffness, z));
     }

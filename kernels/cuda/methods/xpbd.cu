@@ -44,13 +44,16 @@ __device__ __forceinline__ void solve_springs(const World<Number>& world, const 
   }
 }
 
-/// Pushes up what would end below the floor.
+/// Pushes up what would end below the floor, which is as steep as at the beginning of the step.
 __device__ __forceinline__ void solve_floor(const World<Number>& world, Moving& m) {
   if constexpr (floor_on) {
-    const Number z = physics::moved(m.place.z, m.velocity.z, world.dt);
+    const Number z = next_clearance(world, m);
+    Number inverse_mass = m.inverse_mass;
+    if constexpr (rough) inverse_mass *= physics::normal_squared(ground_under(world, m.place));
     m.push = physics::compliant_force(world.floor_stiffness, physics::maximum(-z, Number(0)), world.dt * world.push,
-                                      m.inverse_mass);
+                                      inverse_mass);
     m.velocity.z = physics::advanced_velocity(m.velocity.z, m.push, world.push * m.inverse_mass);
+    lean(world, m.place, m.push * (world.push * m.inverse_mass), m.velocity);
   }
 }
 

@@ -1,0 +1,68 @@
+#include "report/camera.hpp"
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <vector>
+
+#include "report/page.hpp"
+#include "text.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder that goes with this object.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (fs::temp_directory_path() / "evodevo-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr)
+      throw std::runtime_error(name + ": no temporary folder can be made: " + std::strerror(errno));
+    path_ = name;
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// Runs a program of the search path to its end and returns its exit code.
+int run_program(std::vector<std::string> words) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  pid_t process = 0;
+  if (const int error = posix_spawnp(&process, arguments[0], nullptr, nullptr, arguments.data(), environ); error != 0)
+    throw std::runtime_error(
+        words[0] + ": cannot be started: " + std::strerror(error) +
+        "; films need Node.js, Chromium and ffmpeg (Debian: apt-get install nodejs chromium ffmpeg)");
+  int status = 0;
+  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+}
+
+}  // namespace
+
+void shoot(const std::string& page, const fs::path& file, std::optional<double> at) {
+  const TemporaryFolder folder;
+  const fs::path html = folder.path() / "page.html";
+  write_page(html, page);
+  std::vector<std::string> words = {"node", (viewer_folder() / "film.mjs").string(), html.string(), file.string()};
+  if (at) words.push_back(to_text(*at));
+  if (run_program(std::move(words)) != 0) throw std::runtime_error(file.string() + ": has not been made");
+}
+
+}  // namespace evodevo

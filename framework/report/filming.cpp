@@ -1,0 +1,159 @@
+#include "report/filming.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evodevo {
+namespace {
+
+bool is_finite(const SeenPlace& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
+
+/// What a divergence leaves cannot be shown. Where runs are shorter than frames, as between the tallies of skip-shift,
+/// the end of one gives way to that of the next.
+void add_frame(std::vector<Frame>& frames, const State& state, double rate) {
+  Frame frame{state.time, {}};
+  for (const Vec3& place : state.position) frame.places.push_back(seen(place));
+  if (!std::all_of(frame.places.begin(), frame.places.end(), is_finite)) return;
+  const std::size_t count = frames.size();
+  if (count > 1 && frames[count - 1].time - frames[count - 2].time < 0.5 / rate) frames.pop_back();
+  frames.push_back(std::move(frame));
+}
+
+/// Adds what was recorded in `part`, which made up `share` of the steps, to what `whole` was asked for.
+void add_records(SpringRecords& whole, const SpringRecords& part, double share) {
+  for (std::size_t s = 0; s < whole.stress.size(); ++s) whole.stress[s] += share * part.stress[s];
+  for (std::size_t s = 0; s < whole.tension.size(); ++s) whole.tension[s] += share * part.tension[s];
+  for (std::size_t s = 0; s < whole.muscle_work.size(); ++s) whole.muscle_work[s] += part.muscle_work[s];
+  for (std::size_t s = 0; s < whole.peak_force.size(); ++s)
+    whole.peak_force[s] = std::max(whole.peak_force[s], part.peak_force[s]);
+}
+
+/// A task that is done in parts, each up to the next frame.
+class InParts {
+ public:
+  InParts(Task& task, Recording recording, Reel& reel, double rate)
+      : whole_(task), reel_(reel), rate_(rate), start_(task.state->time) {
+    whole_.clear(recording, task.body->springs.size());
+    whole_.work = 0;
+    whole_.spring_evaluations = 0;
+    const double frames = std::ceil(static_cast<double>(task.steps) * task.dt * rate - 1e-9);
+    parts_ = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(frames), 1, std::max<std::uint64_t>(1, task.steps));
+    if (reel_.steps > 0) return;
+    reel_.film.push_back({*task.body, {}, std::vector<double>(task.body->springs.size(), 0.0)});
+    add_frame(shot().frames, *task.state, rate);
+  }
+
+  bool is_over() const { return whole_.status != Status::ok || done_ == whole_.steps; }
+
+  /// What is next.
+  Task part() {
+    Task part{.body = whole_.body, .state = whole_.state, .dt = whole_.dt};
+    part.steps = boundary(++begun_) - done_;
+    part.preparation = std::move(whole_.preparation);
+    return part;
+  }
+
+  /// Takes the answer to a part, in which stress was recorded whether asked for or not.
+  void take(Task&& part) {
+    whole_.status = part.status;
+    whole_.ended_at = part.ended_at;
+    whole_.reason = std::move(part.reason);
+    whole_.preparation = std::move(part.preparation);
+    whole_.spring_evaluations += part.spring_evaluations;
+    if (whole_.status == Status::ok)
+      add(part);
+    else
+      lose_records();
+    add_frame(shot().frames, *whole_.state, rate_);
+  }
+
+ private:
+  Shot& shot() { return reel_.film.back(); }
+
+  /// The steps up to the end of the i-th part, as evenly as whole steps allow.
+  std::uint64_t boundary(std::uint64_t i) const { return whole_.steps * i / parts_; }
+
+  void add(const Task& part) {
+    const auto steps = static_cast<double>(part.steps);
+    done_ += part.steps;
+    reel_.steps += part.steps;
+    // not a sum of sums, so that the time is the same as after one run
+    whole_.state->time = start_ + static_cast<double>(done_) * whole_.dt;
+    whole_.work += part.work;
+    add_records(whole_, part, steps / static_cast<double>(whole_.steps));
+    std::vector<double>& mean = shot().stress;
+    for (std::size_t s = 0; s < mean.size(); ++s)
+      mean[s] += (part.stress[s] - mean[s]) * (steps / static_cast<double>(reel_.steps));
+  }
+
+  void lose_records() {
+    whole_.clear({}, 0);
+    whole_.work = 0;
+    shot().stress.clear();
+  }
+
+  Task& whole_;
+  Reel& reel_;
+  double rate_;   ///< of frames, 1/s
+  double start_;  ///< s
+  std::uint64_t parts_ = 1, begun_ = 0;
+  std::uint64_t done_ = 0;  ///< steps
+};
+
+/// The i-th shot comes after as many cycles, and all behind the last cycle show the same body.
+void number_masses(Film& film, const LifeRecord& record) {
+  if (film.empty()) return;
+  MassNumbers numbers(film.front().body.masses.size());
+  const std::vector<Change> changes = record.changes();
+  auto next = changes.begin();
+  for (std::size_t i = 0; i < film.size(); ++i) {
+    for (; next != changes.end() && next->cycle <= i; ++next) numbers.follow(next->edits);
+    film[i].numbers = numbers.numbers();
+  }
+}
+
+}  // namespace
+
+void FilmingSimulator::run(std::span<Task> tasks, Recording recording) {
+  Recording with_stress = recording;
+  with_stress.stress = true;
+  std::vector<InParts> all;
+  for (Task& task : tasks)
+    if (task.status == Status::ok) all.emplace_back(task, recording, reels_[task.body], rate_);
+  for (;;) {
+    std::vector<Task> parts;
+    std::vector<InParts*> owners;
+    for (InParts& in_parts : all) {
+      if (in_parts.is_over()) continue;
+      owners.push_back(&in_parts);
+      parts.push_back(in_parts.part());
+    }
+    if (parts.empty()) return;
+    simulator_.run(parts, with_stress);
+    for (std::size_t i = 0; i < parts.size(); ++i) owners[i]->take(std::move(parts[i]));
+  }
+}
+
+void FilmingSimulator::cut() {
+  for (auto& [body, reel] : reels_) reel.steps = 0;
+}
+
+std::vector<FilmedLife> film_lives(const Experiment& experiment, Simulator& simulator,
+                                   std::span<const Newborn> newborns) {
+  FilmingSimulator camera(simulator, filmed_frames_per_second);
+  const Evaluation evaluation(experiment, camera);
+  std::vector<Life> lives = evaluation.birth(newborns);
+  const auto cut = [&](double) { camera.cut(); };
+  evaluation.develop(lives, cut);
+  evaluation.measure(lives, cut);
+  std::vector<FilmedLife> filmed;
+  for (Life& life : lives) {
+    Film film = camera.take(life.living.body);
+    number_masses(film, life.result.record);
+    const std::size_t cycles = std::min(film.size(), static_cast<std::size_t>(experiment.development.cycles));
+    filmed.push_back({std::move(life.result), std::move(film), cycles});
+  }
+  return filmed;
+}
+
+}  // namespace evodevo

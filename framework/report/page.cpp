@@ -1,0 +1,68 @@
+#include "report/page.hpp"
+
+#include <boost/dll/runtime_symbol_info.hpp>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* page_name = "page.html";
+constexpr std::string_view place_of_data = "EVODEVO_DATA";  ///< in the template, alone in a script element
+
+std::string escaped(const std::string& json) {
+  std::string text;
+  text.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<')
+      text += "\\u003c";  // "<" is found inside JSON's strings alone; there "</script>" must not end the element
+    else
+      text += c;
+  }
+  return text;
+}
+
+}  // namespace
+
+fs::path viewer_folder() {
+  const fs::path prefix = fs::path(boost::dll::program_location().string()).parent_path().parent_path();
+  fs::path folder = prefix / EVODEVO_VIEWER_DIR;
+  if (!fs::exists(folder / page_name))
+    throw std::runtime_error(folder.string() +
+                             ": the viewer has not been built. It needs Node.js 18 or newer with npm (Debian: apt-get "
+                             "install nodejs npm); then `cmake --build " +
+                             prefix.string() + " --target evodevo_viewer`, or use tools/evodevo, which does both");
+  return folder;
+}
+
+std::string page_template() {
+  std::ifstream stream(viewer_folder() / page_name);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+std::string filled_page(const std::string& page, const nlohmann::ordered_json& data) {
+  const auto at = page.find(place_of_data);
+  if (at == std::string::npos) throw std::runtime_error("the page of the viewer has no place for data; build it anew");
+  const std::string json = data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return page.substr(0, at) + escaped(json) + page.substr(at + place_of_data.size());
+}
+
+void write_page(const fs::path& file, const std::string& page) {
+  const fs::path unfinished = file.string() + ".unfinished";
+  std::ofstream stream(unfinished, std::ios::binary);
+  stream << page;
+  stream.close();
+  std::error_code error;
+  if (stream) fs::rename(unfinished, file, error);
+  if (!stream || error) {
+    fs::remove(unfinished, error);
+    throw std::runtime_error(file.string() + ": cannot be written; give another --out");
+  }
+}
+
+}  // namespace evodevo

@@ -1,0 +1,191 @@
+#include "report/report.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "body_building.hpp"
+#include "breeding.hpp"
+#include "evolution.hpp"
+#include "report/filming.hpp"
+#include "report/robot_json.hpp"
+#include "report/run_json.hpp"
+
+namespace evodevo {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// An individual and why it is shown.
+struct Role {
+  ArchivedIndividual individual;
+  std::string role;
+};
+
+class Casting {
+ public:
+  explicit Casting(const Archive& archive) : archive_(archive) {}
+
+  std::vector<Role> choose(const Cast& cast) {
+    const std::vector<std::uint32_t> best = archive_.best(cast.best);
+    for (std::size_t i = 0; i < best.size(); ++i) add(best[i], i == 0 ? "best" : "best " + std::to_string(i + 1));
+    for (const std::uint32_t id : cast.individuals) add(id, "chosen");
+    if (!best.empty()) add_ancestors(ancestry(archive_, best.front()), cast.ancestors);
+    return std::move(roles_);
+  }
+
+ private:
+  void add(std::uint32_t id, const std::string& role) {
+    if (std::any_of(roles_.begin(), roles_.end(), [&](const Role& r) { return r.individual.id == id; })) return;
+    roles_.push_back({archive_.individual(id).value(), role});
+  }
+
+  /// `line` begins with the descendant and ends with the founder.
+  void add_ancestors(const std::vector<ArchivedIndividual>& line, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t back = (line.size() - 1) * (count - i) / count;
+      if (back > 0) add(line[back].id, back + 1 == line.size() ? "founder" : "ancestor");
+    }
+  }
+
+  const Archive& archive_;
+  std::vector<Role> roles_;
+};
+
+double first_window(const Experiment& experiment) {
+  double opens = experiment.fitness.front()->observes().settle;
+  for (const auto& fitness : experiment.fitness) opens = std::min(opens, fitness->observes().settle);
+  return opens;
+}
+
+std::vector<std::string> shot_names(const FilmedLife& life, const Experiment& experiment) {
+  const double measured_from =
+      static_cast<double>(life.cycles) * experiment.development.cycle_time + first_window(experiment) - 1e-6;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < life.film.size(); ++i) {
+    const auto& frames = life.film[i].frames;
+    if (frames.empty()) continue;
+    if (i < life.cycles)
+      names.push_back("cycle " + std::to_string(i + 1));
+    else
+      names.emplace_back(frames.front().time < measured_from ? "settling" : "measured");
+  }
+  return names;
+}
+
+Json scene_json(const Experiment& experiment) {
+  return {{"floor", experiment.scene.floor.has_value()}, {"water", experiment.scene.drag.has_value()}};
+}
+
+Json population_json(const Archive& archive, std::uint32_t generation) {
+  Json list = Json::array();
+  for (const Individual& individual : archive.population())
+    if (individual.result.status == Status::ok)
+      list.push_back(
+          {{"id", individual.id}, {"age", individual.age(generation)}, {"values", individual.result.objectives}});
+  return list;
+}
+
+Json time_json(const Archive& archive) {
+  const std::optional<TimeSpent> time = recorded_time_spent(archive);
+  if (!time) return nullptr;
+  return {{"whole", time->whole},
+          {"archive", time->archive},
+          {"decode", time->evaluation.decode},
+          {"simulate", time->evaluation.simulate},
+          {"develop", time->evaluation.develop}};
+}
+
+/// A film of how points become places and then a body. A body whose encoding maps no points is just there.
+Film mapping_film(const Blueprint& blueprint, BuiltBody built) {
+  constexpr int frames = 60;
+  constexpr double duration = 2;  // s
+  const std::vector<Mass>& masses = blueprint.body.masses;
+  Film film;
+  if (!blueprint.origins.empty()) {
+    Shot& mapping = film.emplace_back();
+    mapping.body.masses = masses;
+    mapping.numbers.resize(masses.size());
+    std::iota(mapping.numbers.begin(), mapping.numbers.end(), 0u);
+    for (int f = 0; f <= frames; ++f) {
+      const double t = static_cast<double>(f) / frames, part = t * t * (3 - 2 * t);  // slow at both ends
+      Frame& frame = mapping.frames.emplace_back(Frame{duration * t, {}});
+      for (std::size_t i = 0; i < masses.size(); ++i)
+        frame.places.push_back(seen((1 - part) * blueprint.origins[i] + part * masses[i].rest));
+    }
+  }
+  const double end = film.empty() ? 0 : duration;
+  for (std::size_t i = 0; i < built.kept.size(); ++i) built.body.masses[i].rest = masses[built.kept[i]].rest;
+  Shot& body = film.emplace_back(Shot{std::move(built.body), {}, {}, std::move(built.kept)});
+  body.stress.resize(body.body.springs.size());
+  for (const double time : {end, end + 1}) {
+    Frame& frame = body.frames.emplace_back(Frame{time, {}});
+    for (const Mass& mass : body.body.masses) frame.places.push_back(seen(mass.rest));
+  }
+  return film;
+}
+
+Json random_robot(const Experiment& experiment, const Individual& individual, std::size_t budget) {
+  const Blueprint blueprint = experiment.encoding->decode(individual.genome, experiment.world);
+  if (blueprint.failure.empty()) check_blueprint(blueprint, experiment.world);
+  BuiltBody built = build_body(blueprint);
+  Json robot = {{"individual", individual.id}, {"role", "random"}, {"reason", built.failure}};
+  robot["status"] = name(built.failure.empty() ? Status::ok : Status::invalid);
+  Film film;
+  if (built.failure.empty()) film = mapping_film(blueprint, std::move(built));
+  std::vector<std::string> names = {"ball to cube", "body"};
+  if (film.size() == 1) names.erase(names.begin());
+  robot["film"] = film_json(film, names, budget);
+  return robot;
+}
+
+Json robot_json(const Archive& archive, const Role& role, const FilmedLife& life, const Experiment& experiment,
+                std::size_t budget) {
+  Json robot = individual_json(archive, role.individual);
+  robot["role"] = role.role;
+  robot["reason"] = role.individual.result.reason;
+  robot["again"] = life.result.objectives;
+  robot["film"] = film_json(life.film, shot_names(life, experiment), budget);
+  return robot;
+}
+
+}  // namespace
+
+Json reported_run(const Archive& archive, const Experiment& experiment, Simulator& simulator, const Cast& cast,
+                  std::size_t budget) {
+  const std::vector<Role> roles = Casting(archive).choose(cast);
+  std::vector<Newborn> newborns;
+  for (const Role& role : roles)
+    newborns.push_back({role.individual.id, role.individual.born, &role.individual.genome});
+  const std::vector<FilmedLife> lives = film_lives(experiment, simulator, newborns);
+
+  Json run = run_json(archive, experiment);
+  run["resolved"] = archive.record("experiment");
+  run["scene"] = scene_json(experiment);
+  run["material_names"] = experiment.world.material_names;
+  run["population"] = population_json(
+      archive, run["generations"].empty() ? 0 : run["generations"].back()["generation"].get<std::uint32_t>());
+  run["time"] = time_json(archive);
+  run["robots"] = Json::array();
+  for (std::size_t i = 0; i < roles.size(); ++i)
+    run["robots"].push_back(robot_json(archive, roles[i], lives[i], experiment, budget / roles.size()));
+  return run;
+}
+
+Json report_data(std::vector<Json> runs) {
+  return {{"kind", "report"}, {"evodevo", EVODEVO_VERSION}, {"runs", std::move(runs)}};
+}
+
+Json gallery_data(const Experiment& experiment, std::size_t count) {
+  Json robots = Json::array();
+  for (const Individual& individual : breed(experiment, {}, 0, 0, count))
+    robots.push_back(random_robot(experiment, individual, page_budget / count));
+  Json run = {{"experiment", experiment.name},
+              {"seed", experiment.seed},
+              {"resolved", experiment.resolved},
+              {"scene", {{"floor", false}, {"water", false}}},
+              {"material_names", experiment.world.material_names},
+              {"robots", std::move(robots)}};
+  return {{"kind", "gallery"}, {"evodevo", EVODEVO_VERSION}, {"runs", Json::array({std::move(run)})}};
+}
+
+}  // namespace evodevo

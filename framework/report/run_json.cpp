@@ -1,0 +1,100 @@
+#include "report/run_json.hpp"
+
+#include "commands/verification_report.hpp"
+#include "evolution.hpp"
+
+namespace evodevo {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json optional_json(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+Json objectives_json(const std::vector<Objective>& objectives) {
+  Json list = Json::array();
+  for (const Objective& o : objectives) list.push_back({{"name", o.name}, {"unit", o.unit}, {"maximise", o.maximise}});
+  return list;
+}
+
+Json operators_json(const std::vector<OperatorUse>& uses) {
+  Json list = Json::array();
+  for (const OperatorUse& use : uses)
+    list.push_back({{"kind", use.kind},
+                    {"name", use.name},
+                    {"version", use.version},
+                    {"file", use.file.string()},
+                    {"hash", use.hash}});
+  return list;
+}
+
+Json generations_json(const std::vector<Summary>& generations) {
+  Json list = Json::array();
+  for (const Summary& s : generations)
+    list.push_back({{"generation", s.generation},
+                    {"evaluations", s.evaluations},
+                    {"best", optional_json(s.best)},
+                    {"median", optional_json(s.median)},
+                    {"diverged", s.diverged},
+                    {"invalid", s.invalid},
+                    {"spring_evaluations", s.spring_evaluations},
+                    {"wall_time", s.wall_time}});
+  return list;
+}
+
+}  // namespace
+
+std::vector<ArchivedIndividual> ancestry(const Archive& archive, std::uint32_t id) {
+  std::vector<ArchivedIndividual> line;
+  for (std::optional<std::uint32_t> next = id; next;) {
+    line.push_back(archive.individual(*next).value());
+    next = line.back().parents.empty() ? std::nullopt : std::optional(line.back().parents.front());
+  }
+  return line;
+}
+
+std::uint32_t last_age(const ArchivedIndividual& individual, std::uint32_t last_generation) {
+  return individual.age(individual.died.value_or(last_generation));
+}
+
+Json individual_json(const Archive& archive, const ArchivedIndividual& individual) {
+  const std::vector<Objective> objectives = archive.objectives();
+  const auto line = ancestry(archive, individual.id);
+  const std::vector<Summary> generations = archive.generations();
+  Json values = Json::object();
+  for (std::size_t i = 0; i < individual.result.objectives.size(); ++i)
+    values[objectives[i].name] = individual.result.objectives[i];
+  Json ancestors = Json::array();
+  for (std::size_t i = 1; i < line.size(); ++i) ancestors.push_back(line[i].id);
+  const auto verification = archive.verification(individual.id);
+  return {{"individual", individual.id},
+          {"generation", individual.born},
+          {"age", last_age(individual, generations.empty() ? 0 : generations.back().generation)},
+          {"status", name(individual.result.status)},
+          {"objectives", std::move(values)},
+          {"parents", individual.parents},
+          {"made_by", individual.made_by},
+          {"ancestry", std::move(ancestors)},
+          {"verification", verification ? to_json(*verification, objectives.front()) : Json(nullptr)}};
+}
+
+Json run_json(const Archive& archive, const Experiment& experiment) {
+  const std::vector<Summary> generations = archive.generations();
+  Json root = {{"folder", archive.folder().string()},
+               {"experiment", archive.record("name")},
+               {"seed", std::stoll(archive.record("seed"))},
+               {"device", archive.record("device")},
+               {"evodevo", archive.record("evodevo")},
+               {"created", archive.record("created")},
+               {"evaluations", generations.empty() ? 0 : generations.back().evaluations},
+               {"evaluations_asked", experiment.evaluations},
+               {"finished", is_finished(experiment, generations)},
+               {"statuses", archive.statuses()},
+               {"objectives", objectives_json(archive.objectives())},
+               {"operators", operators_json(archive.operators())},
+               {"generations", generations_json(generations)}};
+  const auto best = archive.best(1);
+  root["best"] = best.empty() ? Json(nullptr) : individual_json(archive, *archive.individual(best.front()));
+  return root;
+}
+
+}  // namespace evodevo

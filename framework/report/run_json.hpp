@@ -1,0 +1,22 @@
+// A run in numbers, as JSON: what `show --json` prints and a report's page holds.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "archive.hpp"
+
+namespace evodevo {
+
+/// An individual and its first parents, back to the random individual that it comes from.
+std::vector<ArchivedIndividual> ancestry(const Archive& archive, std::uint32_t id);
+
+/// The age of its oldest genes when it was last in the population, generations.
+std::uint32_t last_age(const ArchivedIndividual& individual, std::uint32_t last_generation);
+
+/// An individual with its objectives, parents, ancestors and verification. One without fitness has no objectives.
+nlohmann::ordered_json individual_json(const Archive& archive, const ArchivedIndividual& individual);
+
+/// The whole run: where from, how far, every generation, and the best individual.
+nlohmann::ordered_json run_json(const Archive& archive, const Experiment& experiment);
+
+}  // namespace evodevo

@@ -1,0 +1,293 @@
+// What pages of the viewer hold: lives as they were, and numbers that can be unpacked.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <map>
+#include <numeric>
+
+#include "breeding.hpp"
+#include "report/filming.hpp"
+#include "report/packing.hpp"
+#include "report/page.hpp"
+#include "report/robot_json.hpp"
+#include "support/experiments.hpp"
+
+namespace evodevo {
+namespace {
+
+using ::testing::ElementsAre;
+
+std::vector<Newborn> newborns_of(const std::vector<Individual>& individuals) {
+  std::vector<Newborn> newborns;
+  for (const Individual& individual : individuals)
+    newborns.push_back({individual.id, individual.born, &individual.genome});
+  return newborns;
+}
+
+/// What a page does with a packed text.
+std::vector<std::int64_t> unpacked(const std::string& text) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::vector<unsigned char> deflated, plain(1 << 22);
+  std::uint32_t bits = 0, count = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    bits = bits << 6 | static_cast<std::uint32_t>(digits.find(c));
+    if ((count += 6) >= 8) deflated.push_back(static_cast<unsigned char>(bits >> (count -= 8)));
+  }
+  uLongf size = plain.size();
+  EXPECT_EQ(uncompress(plain.data(), &size, deflated.data(), static_cast<uLong>(deflated.size())), Z_OK);
+  std::vector<std::int64_t> numbers;
+  std::uint64_t number = 0, shift = 0;
+  for (uLongf i = 0; i < size; ++i) {
+    number |= static_cast<std::uint64_t>(plain[i] & 0x7f) << shift;
+    shift += 7;
+    if (plain[i] & 0x80) continue;
+    numbers.push_back(static_cast<std::int64_t>(number >> 1) ^ -static_cast<std::int64_t>(number & 1));
+    number = shift = 0;
+  }
+  return numbers;
+}
+
+/// The small experiment, with other operators and more to say about development.
+std::string with_development(const std::string& keys, const std::string& operators) {
+  std::string text = testing::small_experiment;
+  const std::size_t first = text.find("[[development.operator]]");
+  text.replace(first, text.find("[[fitness]]") - first, keys + operators);
+  return text;
+}
+
+void expect_filming_changes_no_result(const std::string& text) {
+  const Experiment experiment = testing::read(text);
+  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 12);
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
+  const std::vector<Newborn> newborns = newborns_of(individuals);
+  const std::vector<Result> plain = Evaluation(experiment, *simulator).evaluate(newborns, [](double) {});
+  const std::vector<FilmedLife> filmed = film_lives(experiment, *simulator, newborns);
+  ASSERT_EQ(filmed.size(), plain.size());
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    EXPECT_EQ(filmed[i].result.status, plain[i].status);
+    EXPECT_EQ(filmed[i].result.spring_evaluations, plain[i].spring_evaluations);
+    ASSERT_EQ(filmed[i].result.objectives.size(), plain[i].objectives.size());
+    for (std::size_t k = 0; k < plain[i].objectives.size(); ++k)
+      EXPECT_NEAR(filmed[i].result.objectives[k], plain[i].objectives[k], 1e-5 * std::abs(plain[i].objectives[k]));
+  }
+}
+
+TEST(Filming, ChangesNoResult) { expect_filming_changes_no_result(testing::small_experiment); }
+
+TEST(Filming, ChangesNoResultOfOperatorsThatAskForMoreThanStress) {
+  for (const char* by : {"peak", "tension", "compression", "work"}) {
+    SCOPED_TRACE(by);
+    expect_filming_changes_no_result(with_development(
+        "", "[[development.operator]]\nname = 'length-adaptation'\nsprings = 3\nby = '" + std::string(by) + "'\n"));
+  }
+}
+
+const std::string turnover = "[[development.operator]]\nname = 'spring-turnover'\nsprings = 2\n";
+
+TEST(Filming, ChangesNoResultOfTallies) {
+  expect_filming_changes_no_result(with_development("probe = 'skip-shift'\nskip = 7\n", turnover));
+}
+
+TEST(Filming, ReachesFromBirthToTheEndWithoutAGap) {
+  const Experiment experiment = testing::read(testing::small_experiment);
+  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 12);
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
+  std::size_t lives = 0;
+  for (const FilmedLife& life : film_lives(experiment, *simulator, newborns_of(individuals))) {
+    if (life.result.status != Status::ok) continue;
+    ++lives;
+    ASSERT_EQ(life.film.size(), 4u);  // two cycles, settling, the window
+    EXPECT_EQ(life.cycles, 2u);
+    double time = 0;
+    for (const Shot& shot : life.film) {
+      EXPECT_NEAR(shot.frames.front().time, time, 1e-9);
+      for (const Frame& frame : shot.frames) EXPECT_EQ(frame.places.size(), shot.body.masses.size());
+      EXPECT_EQ(shot.stress.size(), shot.body.springs.size());
+      time = shot.frames.back().time;
+    }
+    EXPECT_NEAR(time, 2 * 0.05 + 0.15, 1e-9);
+    EXPECT_EQ(life.film.back().frames.size(), 7u);  // 60 a second in 0.1 s, and the first
+  }
+  EXPECT_GT(lives, 4u);
+}
+
+TEST(Filming, MassesKeepTheirNumbers) {
+  std::string text = testing::small_experiment;
+  text.insert(text.find("[[fitness]]"), "[[development.operator]]\nname = 'mass-turnover'\nlimit = 2\nsprings = 4\n");
+  const Experiment experiment = testing::read(text);
+  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 12);
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
+  std::size_t come = 0, gone = 0;
+  for (const FilmedLife& life : film_lives(experiment, *simulator, newborns_of(individuals))) {
+    std::map<std::uint32_t, Mass> known;
+    for (const Shot& shot : life.film) {
+      ASSERT_EQ(shot.numbers.size(), shot.body.masses.size());
+      EXPECT_EQ(std::adjacent_find(shot.numbers.begin(), shot.numbers.end(), std::greater_equal<>()),
+                shot.numbers.end());
+      for (std::size_t i = 0; i < shot.numbers.size(); ++i) {
+        const auto [found, is_new] = known.try_emplace(shot.numbers[i], shot.body.masses[i]);
+        come += is_new && &shot != &life.film.front();
+        EXPECT_EQ(found->second.rest, shot.body.masses[i].rest);
+      }
+    }
+    if (!life.film.empty()) gone += known.size() - life.film.back().numbers.size();
+  }
+  EXPECT_GT(come, 0u);
+  EXPECT_GT(gone, 0u);
+}
+
+TEST(Filming, ACycleOfManyRunsIsOneShot) {
+  const auto film = [](const std::string& keys) {
+    const Experiment experiment = testing::read(with_development(keys, turnover));
+    const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 1);
+    const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+    return film_lives(experiment, *simulator, newborns_of(individuals)).front().film;
+  };
+  const Film exact = film(""), tallied = film("probe = 'skip-shift'\nskip = 7\n");  // runs of 3.5 ms
+  ASSERT_EQ(exact.size(), 4u);
+  ASSERT_EQ(tallied.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::vector<Frame>& frames = tallied[i].frames;
+    EXPECT_EQ(frames.front().time, exact[i].frames.front().time);
+    EXPECT_NEAR(frames.back().time, exact[i].frames.back().time, 1e-12);
+    for (std::size_t f = 1; f < frames.size(); ++f) EXPECT_GT(frames[f].time, frames[f - 1].time);
+    EXPECT_GE(frames.size(), exact[i].frames.size());
+    EXPECT_LE(frames.size(), 2 * exact[i].frames.size());
+  }
+  // the body at birth is the same, so it works as hard
+  ASSERT_EQ(tallied.front().stress.size(), exact.front().stress.size());
+  for (std::size_t s = 0; s < exact.front().stress.size(); ++s)
+    EXPECT_NEAR(tallied.front().stress[s], exact.front().stress[s], 1e-4 * exact.front().stress[s] + 1e-6);
+}
+
+void expect_near(const std::vector<double>& filmed, const std::vector<double>& whole) {
+  ASSERT_EQ(filmed.size(), whole.size());
+  for (std::size_t i = 0; i < whole.size(); ++i)
+    EXPECT_NEAR(filmed[i], whole[i], 1e-4 * std::abs(whole[i]) + 1e-5) << i;
+}
+
+TEST(Filming, RecordsWhatARunInOneGoRecords) {
+  const Experiment experiment = testing::read(testing::small_experiment);
+  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 1);
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  FilmingSimulator camera(*simulator, filmed_frames_per_second);
+  Life life = Evaluation(experiment, *simulator).birth(newborns_of(individuals)).front();
+  ASSERT_TRUE(life.alive());
+  const auto answer = [&](Simulator& by, const Recording& recording) {
+    State state = life.living.state;
+    Task task{.body = &life.living.body, .state = &state, .steps = 333};
+    by.run({&task, 1}, recording);
+    return task;
+  };
+  const Recording everything{.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};
+  const Task whole = answer(*simulator, everything), filmed = answer(camera, everything);
+  for (const auto list : SpringRecords::lists) expect_near(filmed.*list, whole.*list);
+  EXPECT_GT(whole.work, 0);
+  EXPECT_NEAR(filmed.work, whole.work, 1e-4 * whole.work);
+  EXPECT_EQ(filmed.spring_evaluations, whole.spring_evaluations);
+  const Task nothing = answer(camera, {});
+  for (const auto list : SpringRecords::lists) EXPECT_TRUE((nothing.*list).empty());
+}
+
+TEST(Packing, KeepsNumbers) {
+  const std::vector<std::int64_t> numbers = {0, -1, 1, 63, -64, 64, 8191, -8193, 1'000'000'007, -(1LL << 40)};
+  for (std::size_t count = 0; count <= numbers.size(); ++count) {
+    const std::vector<std::int64_t> some(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(count));
+    EXPECT_EQ(unpacked(packed(some)), some);
+  }
+}
+
+TEST(Packing, KeepsWhatIsLeftOfStraightLines) {
+  const Frame a{0, {{1, 2, 3}, {2, 2, 3}}}, b{1, {{2, 2, 3}, {3, 2, 3}}}, c{2, {{3, 2, 3}, {4, 2, 7}}};
+  const std::vector<const Frame*> frames = {&a, &b, &c};
+  EXPECT_THAT(unpacked(packed_places(frames, 0.5)), ElementsAre(2, 2, 4, 0, 6, 0, 2, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 8));
+}
+
+/// A body with masses at these x, of these numbers, joined by these pairs.
+Shot shot_of(const std::vector<double>& places, std::vector<std::uint32_t> numbers,
+             const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {
+  Shot shot;
+  shot.body.materials = {{.stiffness = 1}};
+  shot.numbers = std::move(numbers);
+  Frame& frame = shot.frames.emplace_back();
+  for (const double x : places) {
+    shot.body.masses.push_back({.rest = {x, 0, 0}, .mass = 1, .material = 0});
+    frame.places.push_back(seen({x, 0, 0}));
+  }
+  for (const auto& [a, b] : pairs) shot.body.springs.push_back({a, b, 1, 0});
+  shot.stress.assign(pairs.size(), 1.0);
+  return shot;
+}
+
+TEST(FilmJson, KnowsMassesAndSpringsAgainAfterEdits) {
+  // the first mass goes with its spring, the others move up by one; a new mass and a spring to it come
+  const Film film = {shot_of({0, 1, 2}, {0, 1, 2}, {{0, 1}, {1, 2}}), shot_of({1, 2, 5}, {1, 2, 3}, {{0, 1}, {2, 0}})};
+  const auto json = film_json(film, {"before", "after"}, 1000);
+  EXPECT_EQ(json["masses"], 4);
+  EXPECT_THAT(unpacked(json["ends"]), ElementsAre(0, 1, 1, 2, 1, 3));
+  EXPECT_THAT(unpacked(json["shots"][0]["masses"]), ElementsAre(0, 1, 1));
+  EXPECT_THAT(unpacked(json["shots"][0]["springs"]), ElementsAre(0, 1));
+  EXPECT_THAT(unpacked(json["shots"][1]["masses"]), ElementsAre(1, 1, 1));
+  EXPECT_THAT(unpacked(json["shots"][1]["springs"]), ElementsAre(1, 1));
+}
+
+/// Masses in a row that swing, each at a rate of its own, for so many frames.
+Shot swinging(std::size_t masses, std::size_t frames) {
+  std::vector<double> places(masses);
+  std::vector<std::uint32_t> numbers(masses);
+  std::iota(places.begin(), places.end(), 0.0);
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  Shot shot = shot_of(places, numbers, {{0, 1}});
+  shot.frames.clear();
+  for (std::size_t f = 0; f < frames; ++f) {
+    Frame& frame = shot.frames.emplace_back(Frame{static_cast<double>(f) / filmed_frames_per_second, {}});
+    for (const double x : places) frame.places.push_back(seen({x, std::sin((1 + x) * frame.time), std::cos(x)}));
+  }
+  return shot;
+}
+
+TEST(FilmJson, LongLivesTakeNoMoreThanTheirBudget) {
+  constexpr std::size_t budget = 200'000;
+  for (const std::size_t minutes : {1u, 8u}) {
+    const auto json = film_json({swinging(40, minutes * 3600 + 1)}, {"long"}, budget);
+    const auto times = json["shots"][0]["times"].get<std::vector<double>>();
+    EXPECT_LT(json.dump().size(), budget + 200);
+    EXPECT_GT(json.dump().size(), budget / 2) << "what there is room for is kept";
+    EXPECT_EQ(times.front(), 0);
+    EXPECT_NEAR(times.back(), 60.0 * static_cast<double>(minutes), 1e-6);
+    EXPECT_EQ(unpacked(json["shots"][0]["places"]).size(), times.size() * 3 * 40);
+  }
+}
+
+TEST(FilmJson, KeepsTheEndsOfEachShotWhateverTheyTake) {
+  const auto json = film_json({swinging(40, 61), swinging(40, 121)}, {"one", "two"}, 0);
+  EXPECT_EQ(json["shots"][0]["times"], (std::vector<double>{0, 1}));
+  EXPECT_EQ(json["shots"][1]["times"], (std::vector<double>{0, 2}));
+  EXPECT_GT(json["error"]["largest"].get<double>(), 0.5);
+}
+
+TEST(FilmJson, StatesTheErrorOfWhatItLeavesOut) {
+  // a mass that jumps by 1 m in the middle of a stretch of which every other frame is kept
+  Shot shot = shot_of({0, 4}, {0, 1}, {{0, 1}});
+  for (int i = 1; i <= 4; ++i) {
+    shot.frames.push_back(shot.frames.front());
+    shot.frames.back().time = i;
+  }
+  shot.frames[1].places[0] = {0, 1, 0};
+  const auto json = film_json({shot}, {"jump"}, 1'000'000);
+  EXPECT_EQ(json["shots"][0]["times"], (std::vector<double>{0, 2, 4}));
+  EXPECT_NEAR(json["error"]["largest"].get<double>(), 1, 1e-3);
+  EXPECT_EQ(json["every"], 2);
+}
+
+TEST(Page, HoldsDataThatNothingReadsAsMarkup) {
+  const std::string page = filled_page("<script>EVODEVO_DATA</script>", {{"name", "</script><script>harm()"}});
+  const std::string data = page.substr(8, page.rfind("</script>") - 8);
+  EXPECT_EQ(data.find('<'), std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(data)["name"], "</script><script>harm()");
+}
+
+}  // namespace
+}  // namespace evodevo

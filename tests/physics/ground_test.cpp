@@ -1,0 +1,177 @@
+// Rough ground: its shape, and masses on it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "physics.hpp"
+#include "stability.hpp"
+#include "support.hpp"
+
+namespace evodevo::test {
+namespace {
+
+constexpr double g = 9.81;
+
+Floor rough_floor(double roughness = 0.05, std::int64_t seed = 3) { return {1e6, roughness, 1, seed}; }
+
+physics::Ground<double> ground(const Floor& floor, double x, double y) {
+  return physics::ground_at(
+      x, y, physics::Roughness<double>{floor.roughness, 2 / floor.wavelength, static_cast<std::uint32_t>(floor.seed)});
+}
+
+TEST(Ground, StaysWithinItsRoughnessAndSteepness) {
+  const Floor floor = rough_floor();
+  double highest = 0, steepest = 0;
+  for (int i = 0; i < 200000; ++i) {
+    const auto here = ground(floor, std::fmod(0.618034 * i, 211) - 100, std::fmod(0.754878 * i, 197) - 100);
+    highest = std::max(highest, std::abs(here.height));
+    steepest = std::max(steepest, std::hypot(here.slope_x, here.slope_y));
+  }
+  EXPECT_LE(highest, floor.roughness);
+  EXPECT_GT(highest, 0.9 * floor.roughness);
+  EXPECT_LE(steepest, floor.steepest());
+  EXPECT_GT(steepest, 0.7 * floor.steepest());
+}
+
+TEST(Ground, SlopesAreTheHeightsDerivatives) {
+  const Floor floor = rough_floor();
+  for (int i = 0; i < 1000; ++i) {
+    const double x = 0.0317 * i - 10, y = 7 - 0.0173 * i, step = 1e-6;
+    const auto here = ground(floor, x, y);
+    EXPECT_NEAR(here.slope_x, (ground(floor, x + step, y).height - ground(floor, x - step, y).height) / (2 * step),
+                1e-8);
+    EXPECT_NEAR(here.slope_y, (ground(floor, x, y + step).height - ground(floor, x, y - step).height) / (2 * step),
+                1e-8);
+  }
+}
+
+TEST(Ground, ComesFromItsSeedAlone) {
+  const auto difference = [](std::int64_t seed) {
+    double largest = 0;
+    for (int i = 0; i < 100; ++i)
+      largest = std::max(largest, std::abs(ground(rough_floor(0.05, seed), 0.3 * i, 0.2 * i).height -
+                                           ground(rough_floor(0.05, 3), 0.3 * i, 0.2 * i).height));
+    return largest;
+  };
+  EXPECT_EQ(difference(3), 0);
+  for (const std::int64_t seed : {1, 2, 4, 1000003}) EXPECT_GT(difference(seed), 0.01) << seed;
+}
+
+TEST(Ground, ABodyIsBornOnIt) {
+  const Scene scene{Gravity{}, rough_floor(), {}, {}, {}};
+  const State state = state_at_birth(random_body(100, 8, 5, 2), scene);
+  double lowest = 1;
+  for (const Vec3& place : state.position)
+    lowest = std::min(lowest, place.z - ground(*scene.floor, place.x, place.y).height);
+  EXPECT_NEAR(lowest, 0, 1e-15);
+}
+
+TEST(Ground, SidewaysPushesShortenTheStepThatContactBears) {
+  const Scene flat{Gravity{}, Floor{}, {}, {}, {}}, steep{Gravity{}, rough_floor(0.1), {}, {}, {}};
+  EXPECT_DOUBLE_EQ(largest_contact_dt(steep, 0.2, Method::rk4),
+                   largest_contact_dt(flat, 0.2, Method::rk4) / std::sqrt(1 + 0.75 * 0.75));
+}
+
+class OnRoughGround : public testing::TestWithParam<Arithmetic> {
+ protected:
+  static Method method() { return std::get<Method>(GetParam()); }
+  static Precision precision() { return std::get<Precision>(GetParam()); }
+  static Steps stepping(double dt = 0.0005) { return {method(), precision(), dt}; }
+
+  /// The corner (m) of the ground's cells next to (x, y) that is a hollow: lower than all four around.
+  static Vec3 hollow(const Floor& floor, double x, double y) {
+    const auto height = [&](double i, double j) { return ground(floor, i / 2, j / 2).height; };
+    for (double i = std::round(2 * x);; ++i) {
+      const double j = std::round(2 * y), here = height(i, j);
+      if (here < std::min({height(i - 1, j), height(i + 1, j), height(i, j - 1), height(i, j + 1)}))
+        return {i / 2, j / 2, here};
+    }
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Methods, OnRoughGround,
+                         testing::Combine(testing::ValuesIn(all_methods),
+                                          testing::Values(Precision::float32, Precision::float64)),
+                         [](const auto& instance) { return name_of(instance.param); });
+
+TEST_P(OnRoughGround, AMassRestsInAHollow) {
+  const Scene scene{Gravity{}, rough_floor(), {}, Damping{}, {}};
+  // near and far, on either side
+  for (const double at : {0.0, -37.0, 300.0}) {
+    const Vec3 bottom = hollow(*scene.floor, at, -at);
+    const Body body = single_mass(0.2, bottom);
+    const Answer a = simulate(body, resting(body, scene), scene, stepping(), 6000);
+    EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+    EXPECT_EQ(a.state.position[0].x, bottom.x);
+    EXPECT_EQ(a.state.position[0].y, bottom.y);
+    EXPECT_NEAR(a.state.position[0].z, bottom.z - 0.2 * g / 1e6, precision() == Precision::float32 ? 5e-8 : 1e-9);
+  }
+}
+
+/// A place of the ground, sunk in by the weight, that rises by about `slope` for each metre.
+Vec3 place_of_slope(const Floor& floor, double slope) {
+  for (double x = 0;; x += 1e-3) {
+    const auto here = ground(floor, x, 0.3);
+    if (std::abs(std::hypot(here.slope_x, here.slope_y) - slope) < 0.01 * slope)
+      return {x, 0.3, here.height - 0.2 * g / 1e6};
+  }
+}
+
+TEST_P(OnRoughGround, FrictionHoldsAMassInsideTheConeAndOnlyThere) {
+  const Scene scene{Gravity{}, rough_floor(), Friction{0.15}, {}, {}};
+  const Body held = single_mass(0.2, place_of_slope(*scene.floor, 0.14));
+  const Answer a = simulate(held, resting(held, scene), scene, stepping(), 1000);
+  EXPECT_LT(norm(a.state.position[0] - held.masses[0].rest), 1e-5);
+  const Body slipping = single_mass(0.2, place_of_slope(*scene.floor, 0.17));
+  const Answer b = simulate(slipping, resting(slipping, scene), scene, stepping(), 1000);
+  EXPECT_GT(norm(b.state.position[0] - slipping.masses[0].rest), 1e-3);
+}
+
+/// With the energy that the ground holds, J.
+double whole_energy(const Body& body, const State& state, const Scene& scene) {
+  double energy = total_energy(body, state, scene);
+  for (const Vec3& x : state.position)
+    energy += scene.floor->stiffness * std::pow(std::max(0.0, ground_height(scene, x) - x.z), 2) / 2;
+  return energy;
+}
+
+TEST_P(OnRoughGround, AMassWithoutFrictionKeepsItsEnergy) {
+  const Scene scene{Gravity{}, rough_floor(), {}, {}, {}};
+  const Body body = single_mass(0.2, place_of_slope(*scene.floor, 0.2));
+  const State start = resting(body, scene);
+  const double scale = 0.2 * g * 0.05;
+  const Answer a = simulate(body, start, scene, stepping(0.0001), 20000);
+  EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+  EXPECT_GT(norm(a.state.position[0] - start.position[0]), 0.05);
+  const double gained = (whole_energy(body, a.state, scene) - whole_energy(body, start, scene)) / scale;
+  EXPECT_NEAR(gained, 0, 1e-4);
+}
+
+TEST_P(OnRoughGround, AllMethodsLetABlockFallAlike) {
+  const Scene scene{Gravity{}, rough_floor(), Friction{}, Damping{}, {}};
+  const Body body = block(2, {10000, 0, 0, 0});
+  State start = state_at_birth(body, scene);
+  for (Vec3& place : start.position) place.z += 0.01;
+  start.start_energy = total_energy(body, start, scene);
+  const Answer fine = simulate(body, start, scene, {Method::velocity_verlet, Precision::float64, 0.000025}, 12000);
+  const Answer a = simulate(body, start, scene, stepping(0.0001), 3000);
+  EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+  const double off = largest_difference(fine.state, a.state);
+  EXPECT_GT(largest_difference(fine.state, start), 0.01);
+  EXPECT_LT(off, is_explicit(method()) ? 2e-4 : 1.5e-3);
+}
+
+TEST(ImplicitOnRoughGround, BearsStepsBeyondTheExplicitMethods) {
+  const Scene scene{Gravity{}, rough_floor(0.1), Friction{}, Damping{}, {}};
+  const Body body = block(2, {10000, 0, 0, 0});
+  for (const Method method : {Method::implicit, Method::xpbd}) {
+    const Answer a = simulate(body, state_at_birth(body, scene), scene, {method, Precision::float32, 0.01}, 1000);
+    EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+    double speed = 0;
+    for (const Vec3& v : a.state.velocity) speed = std::max(speed, norm(v));
+    EXPECT_LT(speed * speed / (2 * g), 0.1 / 4) << "leaps over the ground";
+  }
+}
+
+}  // namespace
+}  // namespace evodevo::test

@@ -1,0 +1,257 @@
+// The report's page, in a browser.
+import assert from "node:assert/strict";
+import { statSync } from "node:fs";
+import { pathToFileURL } from "node:url";
+import { after, before, test } from "node:test";
+import {
+  amber,
+  archived,
+  cycles,
+  cycleTime,
+  differing,
+  evodevo,
+  experimentName,
+  inPage,
+  launch,
+  materialName,
+  opened,
+  picture,
+  Scratch,
+  sum,
+  until,
+} from "./support.mjs";
+
+const scratch = new Scratch();
+const report = scratch.path("report.html");
+let browser, page;
+
+before(async () => {
+  evodevo("run", scratch.file, "--out", scratch.run);
+  evodevo("report", scratch.run, "--individual", "0", "--out", report);
+  browser = await launch();
+  page = await opened(browser, report);
+});
+after(async () => {
+  await browser?.close();
+  scratch.remove();
+});
+
+test("it opens from its file, fetches nothing, and complains of nothing", async () => {
+  assert.deepEqual(
+    page.requests.filter((url) => !url.startsWith("data:")),
+    [pathToFileURL(report).href],
+  );
+  assert.deepEqual(page.complaints, []);
+});
+
+test("charts hold the archive's numbers", async () => {
+  const rows = archived(
+    scratch.run,
+    "SELECT evaluations, best, median, spring_evaluations, generation, diverged, invalid FROM generations ORDER BY generation",
+  );
+  const charts = await inPage(page, ({ charts }) =>
+    Object.fromEntries(Object.entries(charts.byName).map(([name, { data }]) => [name, data])),
+  );
+  const column = (i) => rows.map((row) => row[i]);
+  assert.deepEqual(charts.evaluations, [column(0), column(1), column(2)]);
+  let springs = 0;
+  assert.deepEqual(charts.springs, [column(3).map((n) => (springs += n)), column(1), column(2)]);
+  const count = rows.map((row, i) => row[0] - (i > 0 ? rows[i - 1][0] : 0));
+  assert.deepEqual(charts.statuses, [
+    column(4),
+    rows.map(() => 100),
+    rows.map((r, i) => (100 * (r[5] + r[6])) / count[i]),
+    rows.map((r, i) => (100 * r[5]) / count[i]),
+  ]);
+});
+
+test("the chart of ages holds the living, and its front is what none of them beats", async () => {
+  const last = archived(scratch.run, "SELECT max(generation) FROM generations")[0][0];
+  const living = archived(
+    scratch.run,
+    `SELECT ${last} - origin, value FROM individuals JOIN scores ON id = individual WHERE died IS NULL AND objective = 0 AND status = 'ok'`,
+  );
+  const [ages, dots, front] = await inPage(page, ({ charts }) => charts.byName.ages.data);
+  const points = (values) =>
+    values
+      .flatMap((value, i) => (value === null ? [] : [[Math.round(ages[i]), value]]))
+      .sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+  const sorted = (list) => [...list].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+  assert.deepEqual(points(dots), sorted(living));
+  const unbeaten = living.filter(
+    ([age, value]) => !living.some(([a, v]) => a <= age && v >= value && (a < age || v > value)),
+  );
+  const distinct = unbeaten.filter(([age, value], i) => unbeaten.findIndex(([a, v]) => a === age && v === value) === i);
+  assert.deepEqual(points(front), sorted(distinct));
+});
+
+test("it says where the time went", async () => {
+  const recorded = Number(archived(scratch.run, "SELECT value FROM record WHERE key = 'seconds_simulate'")[0][0]);
+  assert.ok(recorded > 0);
+  const shown = await inPage(page, ({ data }) => data.runs[0].time.simulate);
+  assert.equal(shown, recorded);
+  assert.deepEqual(await page.locator(".bar > span:first-child").allTextContents(), [
+    "simulate",
+    "develop",
+    "decode",
+    "archive",
+  ]);
+});
+
+test("a name with markup in it is shown as text", async () => {
+  assert.equal(await page.locator("h1").textContent(), experimentName);
+  assert.ok((await page.locator(".legend").textContent()).includes(materialName));
+  assert.ok((await page.locator("pre").textContent()).includes("[materials."));
+  assert.equal(await page.evaluate(() => window.harmed), undefined);
+  assert.equal(await page.locator("img").count(), 0);
+});
+
+test("masses are where the matured body has them", async () => {
+  const body = JSON.parse(evodevo("body", scratch.run, "--matured"));
+  const { places, step, springs } = await inPage(
+    page,
+    ({ viewer }, [time, count]) => {
+      const { life } = viewer.stages[0];
+      const all = new Float32Array(4 * life.massCount);
+      life.writePlaces(time, all);
+      const shot = life.shots[count];
+      const places = Array.from(shot.masses, (mass) => Array.from(all.slice(4 * mass, 4 * mass + 3)));
+      return { places, step: life.robot.film.step, springs: shot.springs.length };
+    },
+    [cycles * cycleTime, cycles],
+  );
+  assert.equal(springs, body.springs.length);
+  assert.equal(places.length, body.masses.length);
+  places.forEach((place, i) =>
+    place.forEach((x, axis) => assert.ok(Math.abs(x - body.masses[i].position[axis]) <= 0.501 * step + 1e-6)),
+  );
+});
+
+test("the robot moves, and stands still while it is paused", async () => {
+  await inPage(page, ({ viewer }) => viewer.seek(2.2));
+  const first = await picture(page);
+  await inPage(page, () => {});
+  assert.deepEqual(await differing(first, await picture(page)), [0, 0]);
+  await inPage(page, ({ viewer }) => viewer.seek(0.2));
+  assert.ok(sum(await differing(first, await picture(page))) > 200);
+});
+
+test("play goes on in time, and stops at the end", async () => {
+  await inPage(page, ({ viewer }) => (viewer.setSpeed(4), viewer.seek(2.8)));
+  await page.getByRole("button", { name: "Play" }).click();
+  await until(page, ({ viewer }) => viewer.time === viewer.end && !viewer.playing);
+});
+
+test("each colour mode looks different and says what it shows", async () => {
+  await inPage(page, ({ viewer }) => viewer.seek(1.4));
+  const seen = [];
+  for (const [mode, words] of [
+    ["Material", "muscle"],
+    ["Stress", " N"],
+    ["Came in", "there from birth"],
+  ]) {
+    await page.locator(".modes label", { hasText: mode }).click();
+    await inPage(page, () => {});
+    assert.ok((await page.locator(".legend").textContent()).includes(words));
+    seen.push(await picture(page));
+  }
+  for (const [a, b] of [
+    [0, 1],
+    [1, 2],
+    [0, 2],
+  ])
+    assert.ok(sum(await differing(seen[a], seen[b])) > 200, `${a} and ${b}`);
+});
+
+test("the life slider goes to cycles, where vanished springs fade and new ones light up", async () => {
+  await page.locator(".modes label", { hasText: "Came in" }).click();
+  const slider = page.getByLabel("Cycle of life");
+  await slider.fill("1");
+  assert.equal(await page.locator(".cycle-name").textContent(), "cycle 2");
+  const edits = await inPage(page, ({ viewer }) => ({
+    time: viewer.time,
+    gone: viewer.stages[0].life.shots[1].gone.length,
+    came: viewer.stages[0].life.shots[1].isNew.reduce((a, b) => a + b),
+  }));
+  assert.equal(edits.time, cycleTime);
+  assert.ok(edits.gone >= 6 && edits.came >= 6, JSON.stringify(edits));
+  assert.ok((await page.locator(".caption").first().textContent()).includes(`−${edits.gone} +${edits.came}`));
+  const at = await amber(await picture(page));
+  await inPage(page, ({ viewer }) => viewer.seek(0.999));
+  const later = await amber(await picture(page));
+  assert.ok(at > 50 + 5 * later, `${at} then ${later}`);
+  await inPage(page, ({ viewer }) => viewer.seek(0.5));
+  const goneNow = await inPage(page, ({ viewer }) => viewer.stages[0].goneMaterial.uniforms.opacity.value);
+  await inPage(page, ({ viewer }) => viewer.seek(0.999));
+  const goneLater = await inPage(page, ({ viewer }) => viewer.stages[0].goneMaterial.uniforms.opacity.value);
+  assert.ok(goneNow > 0.5 && goneLater < 0.01);
+});
+
+test("two robots stand side by side, in step", async () => {
+  await page.getByLabel("beside").selectOption("1");
+  await until(page, ({ viewer }) => viewer.stages.length === 2);
+  await inPage(page, ({ viewer }) => viewer.seek(1.0));
+  const captions = await page.locator(".caption span").allTextContents();
+  assert.ok(captions.length === 2 && captions.every((text) => text.startsWith("cycle 3")), captions.join("; "));
+  const both = await picture(page);
+  await inPage(page, ({ viewer }) => viewer.seek(2.5));
+  for (const count of await differing(both, await picture(page))) assert.ok(count > 100);
+  await page.getByLabel("beside").selectOption("");
+  await until(page, ({ viewer }) => viewer.stages.length === 1);
+});
+
+test("keys steer it", async () => {
+  await inPage(page, ({ viewer }) => viewer.seek(0));
+  await page.locator(".stage canvas").focus();
+  await page.keyboard.press("]");
+  assert.equal(await inPage(page, ({ viewer }) => viewer.time), cycleTime);
+  await page.keyboard.press("Shift+ArrowRight");
+  assert.equal(await inPage(page, ({ viewer }) => viewer.time), cycleTime + 1);
+  await page.keyboard.press("f");
+  assert.equal(await page.getByLabel("Follow").isChecked(), false);
+  await page.keyboard.press("f");
+});
+
+test("it fits a phone, where a finger turns the robot", async () => {
+  const phone = await opened(browser, report, {
+    viewport: { width: 360, height: 740 },
+    hasTouch: true,
+    isMobile: true,
+    colorScheme: "dark",
+  });
+  const width = await phone.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
+  assert.ok(width[0] <= width[1], `${width[0]} wide`);
+  const box = await (await phone.$(".stage canvas")).boundingBox();
+  const before = await inPage(phone, ({ viewer }) => viewer.camera.position.toArray());
+  const finger = await phone.context().newCDPSession(phone);
+  const touch = (type, x) =>
+    finger.send("Input.dispatchTouchEvent", {
+      type,
+      touchPoints: type === "touchEnd" ? [] : [{ x, y: box.y + box.height / 2 }],
+    });
+  await touch("touchStart", 200);
+  for (const x of [190, 170, 140, 110]) await touch("touchMove", x);
+  await touch("touchEnd");
+  const turned = await inPage(phone, ({ viewer }) => viewer.camera.position.toArray());
+  assert.ok(Math.hypot(...turned.map((x, i) => x - before[i])) > 0.1);
+  assert.deepEqual(phone.complaints, []);
+  await phone.close();
+});
+
+test("several runs give one page that compares them", async () => {
+  const other = scratch.path("other");
+  evodevo("run", scratch.file, "--out", other, "--seed", "8");
+  evodevo("report", scratch.run, other, "--best", "1", "--out", scratch.path("both.html"));
+  const both = await opened(browser, scratch.path("both.html"));
+  const labels = await inPage(both, ({ charts }) => charts.byName.evaluations.plot.series.map((s) => s.label));
+  assert.deepEqual(labels.slice(1), ["run best", "run median", "other best", "other median"]);
+  const best = (folder) => archived(folder, "SELECT best FROM generations ORDER BY generation").map(([value]) => value);
+  const data = await inPage(both, ({ charts }) => charts.byName.evaluations.data);
+  assert.deepEqual([data[1], data[3]], [best(scratch.run), best(other)]);
+  assert.deepEqual(both.complaints, []);
+  await both.close();
+});
+
+test("it is no larger than it has to be", () => {
+  assert.ok(statSync(report).size < 3_000_000);
+});

@@ -1,0 +1,146 @@
+// What the tests of the page share: a small run, a browser, and ways to look at pictures.
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+
+export const { launch } = await import(pathToFileURL(join(process.env.EVODEVO_VIEWER, "browser.mjs")).href);
+
+/** Names that would do harm, were they read as markup. */
+export const experimentName = `<img src=x onerror="window.harmed=1">`;
+export const materialName = `</script><script>window.harmed=1</script>`;
+
+const experiment = (cycles) => `
+[experiment]
+seed = 3
+evaluations = 48
+population = 12
+[encoding]
+name = "neural"
+points = 40
+neighbours = 8
+[[mutation]]
+name = "reset-weight"
+[materials.${JSON.stringify(materialName)}]
+stiffness = 3000
+[scene.gravity]
+[scene.floor]
+[scene.friction]
+[scene.damping]
+[simulation]
+device = "cpu"
+[development]
+cycles = ${cycles}
+cycle_time = 0.5
+[[development.operator]]
+name = "spring-turnover"
+springs = 6
+[[development.operator]]
+name = "mass-turnover"
+springs = 9
+[[fitness]]
+name = "distance"
+settle = 0.5
+window = 1.0
+[selection]
+name = "age-fitness-pareto"
+`;
+
+export const cycles = 3;
+export const cycleTime = 0.5;
+
+export class Scratch {
+  constructor() {
+    this.folder = mkdtempSync(join(tmpdir(), "evodevo-viewer-"));
+    this.file = join(this.folder, `${experimentName}.toml`);
+    this.run = join(this.folder, "run");
+    writeFileSync(this.file, experiment(cycles));
+  }
+
+  path(name) {
+    return join(this.folder, name);
+  }
+
+  remove() {
+    rmSync(this.folder, { recursive: true });
+  }
+}
+
+export function evodevo(...words) {
+  return execFileSync(process.env.EVODEVO_PROGRAM, words, { encoding: "utf8", maxBuffer: 1 << 28 });
+}
+
+/** What a query finds in a run's archive, read by SQLite itself. */
+export function archived(folder, query) {
+  const program =
+    "import json,sqlite3,sys; print(json.dumps(sqlite3.connect(sys.argv[1]).execute(sys.argv[2]).fetchall()))";
+  return JSON.parse(execFileSync("python3", ["-c", program, join(folder, "run.sqlite"), query], { encoding: "utf8" }));
+}
+
+/** A page opened from its file; what it asks for and complains of is kept in `requests` and `complaints`. */
+export async function opened(browser, file, options = {}) {
+  const page = await browser.newPage({ viewport: { width: 640, height: 600 }, ...options });
+  page.requests = [];
+  page.complaints = [];
+  page.on("request", (request) => page.requests.push(request.url()));
+  page.on("console", (message) => page.complaints.push(`${message.type()}: ${message.text()}`));
+  page.on("pageerror", (error) => page.complaints.push(error.message));
+  await page.goto(pathToFileURL(file).href);
+  await page.evaluate(async () => void (await window.evodevo));
+  return page;
+}
+
+/** Calls a function in the page with its parts {viewer, charts, data}, then waits until the moment is drawn. */
+export async function inPage(page, action, argument) {
+  return page.evaluate(
+    async ([text, given]) => {
+      const result = await new Function(`return (${text})`)()(await window.evodevo, given);
+      await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+      return result;
+    },
+    [action.toString(), argument],
+  );
+}
+
+/** Waits until a function of the page's parts gives true. */
+export async function until(page, condition) {
+  while (!(await inPage(page, condition)));
+}
+
+/** Takes a picture of the stage without what is written over it; kept in the page, which counts faster than it tells. */
+export async function picture(page) {
+  await page.addStyleTag({ content: ".caption { visibility: hidden }" });
+  const png = (await (await page.$(".stage")).screenshot()).toString("base64");
+  return page.evaluateHandle(async (base64) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${base64}`;
+    await image.decode();
+    const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
+    context.drawImage(image, 0, 0);
+    return context.getImageData(0, 0, image.width, image.height);
+  }, png);
+}
+
+/** How many pixels of two pictures differ clearly, in the left and in the right half. */
+export async function differing(a, b) {
+  return a.evaluate(({ data, width }, other) => {
+    const counts = [0, 0];
+    for (let i = 0; i < data.length; i += 4)
+      if ([0, 1, 2].some((k) => Math.abs(data[i + k] - other.data[i + k]) > 24))
+        ++counts[2 * ((i / 4) % width) < width ? 0 : 1];
+    return counts;
+  }, b);
+}
+
+/** How many pixels have the amber of new springs. */
+export async function amber(picture) {
+  return picture.evaluate(({ data }) => {
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4)
+      if (data[i] > 150 && data[i] > 1.2 * data[i + 1] && data[i + 1] > 2.5 * data[i + 2]) ++count;
+    return count;
+  });
+}
+
+export const sum = (numbers) => numbers.reduce((a, b) => a + b, 0);

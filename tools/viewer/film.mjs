@@ -1,0 +1,64 @@
+// Takes a film or a picture of a page of the viewer: node film.mjs PAGE.html OUT.mp4|OUT.png [AT]
+import { spawn } from "node:child_process";
+import { once } from "node:events";
+import { writeFile } from "node:fs/promises";
+import { draw, launch, opened, program } from "./browser.mjs";
+
+const framesPerSecond = 30;
+const viewport = { width: 1280, height: 720 };
+
+function encoder(out) {
+  const input = ["-f", "image2pipe", "-framerate", String(framesPerSecond), "-i", "-"];
+  const output = ["-c:v", "libx264", "-preset", "veryfast", "-pix_fmt", "yuv420p", "-crf", "20", "-movflags", "+faststart", out];
+  const ffmpeg = spawn(program(["ffmpeg"]), ["-y", "-loglevel", "error", ...input, ...output], {
+    stdio: ["pipe", "inherit", "inherit"],
+  });
+  ffmpeg.stdin.on("error", () => {}); // its exit code says it
+  return { ffmpeg, closed: once(ffmpeg, "close") };
+}
+
+async function film(tab, out) {
+  const { begin, end } = await tab.evaluate(async () => {
+    const { viewer } = await window.evodevo;
+    return { begin: viewer.begin, end: viewer.end };
+  });
+  const { ffmpeg, closed } = encoder(out);
+  const camera = await tab.context().newCDPSession(tab); // Playwright's own pictures take longer
+  const frames = Math.round((end - begin) * framesPerSecond);
+  try {
+    for (let i = 0; i <= frames; ++i) {
+      await draw(tab, begin + i / framesPerSecond);
+      const picture = { format: "jpeg", quality: 95, optimizeForSpeed: true };
+      const { data } = await camera.send("Page.captureScreenshot", picture);
+      if (!ffmpeg.stdin.write(Buffer.from(data, "base64"))) await Promise.race([once(ffmpeg.stdin, "drain"), closed]);
+      if (process.stderr.isTTY) process.stderr.write(`\r${i + 1} of ${frames + 1} frames${i === frames ? "\n" : ""}`);
+    }
+  } finally {
+    ffmpeg.stdin.end(); // it would keep this process alive
+  }
+  if ((await closed)[0] !== 0) throw new Error("ffmpeg failed");
+}
+
+async function still(tab, out, at) {
+  const moment = await tab.evaluate(async (asked) => {
+    const { viewer } = await window.evodevo;
+    return asked ?? (viewer.stages[0].life.shots.at(-1).begin + viewer.end) / 2;
+  }, at);
+  await draw(tab, moment);
+  await writeFile(out, await ((await tab.$(".gallery")) ?? tab).screenshot());
+}
+
+const [page, out, at] = process.argv.slice(2);
+try {
+  const browser = await launch();
+  try {
+    const tab = await opened(browser, page, { viewport }, "#film");
+    if (out.endsWith(".png")) await still(tab, out, at === undefined ? undefined : Number(at));
+    else await film(tab, out);
+  } finally {
+    await browser.close();
+  }
+} catch (error) {
+  console.error(`evodevo: ${out}: ${error.message}`);
+  process.exitCode = 1;
+}

@@ -1,0 +1,226 @@
+// The charts of a report.
+import uPlot from "uplot";
+import { element, short, style } from "./elements.js";
+
+const height = 250;
+
+/** The individuals that no other one beats in both youth and fitness, by age. */
+export function paretoFront(population, maximise) {
+  const better = (a, b) => (maximise ? a > b : a < b);
+  const sorted = [...population].sort((a, b) => a.age - b.age || (better(a.values[0], b.values[0]) ? -1 : 1));
+  const front = [];
+  for (const one of sorted) if (front.length === 0 || better(one.values[0], front.at(-1).values[0])) front.push(one);
+  return front;
+}
+
+/** Columns over one list of x, from series that each have their own: null where a series has no value. */
+function joined(series) {
+  const xs = [...new Set(series.flatMap(({ x }) => x))].sort((a, b) => a - b);
+  const columns = series.map(({ x, y }) => {
+    const at = new Map(x.map((value, i) => [value, y[i]]));
+    return xs.map((value) => at.get(value) ?? null);
+  });
+  return [xs, ...columns];
+}
+
+const line = (name, stroke, dash) => ({
+  label: name,
+  stroke,
+  width: 2,
+  dash,
+  spanGaps: true,
+  points: { show: false },
+  value: (_, v) => short(v),
+});
+const runColour = (index) => style("--series").split(/\s+/)[index % style("--series").split(/\s+/).length];
+const runName = (run, runs) => (runs.length > 1 ? `${run.label} ` : "");
+
+/** A figure with a chart that fills its width; `describe` gives {data, series, axes}. Kept in `charts` by its name. */
+class Chart {
+  constructor(name, title, describe) {
+    this.name = name;
+    this.describe = describe;
+    this.box = element("div", { className: "plot" });
+    this.root = element("figure", {}, element("figcaption", { textContent: title }), this.box);
+    new ResizeObserver(() => this.plot?.setSize({ width: this.box.clientWidth, height })).observe(this.box);
+  }
+
+  draw() {
+    this.plot?.destroy();
+    const { data, series, x, y, options } = this.describe();
+    this.data = data;
+    const axis = (label, size) => ({
+      label,
+      size,
+      stroke: style("--soft"),
+      grid: { stroke: style("--rule"), width: 1 },
+      ticks: { show: false },
+      font: "12px system-ui",
+      labelFont: "12px system-ui",
+      labelSize: 18,
+      values: (_, ticks) => ticks.map(short),
+    });
+    this.plot = new uPlot(
+      {
+        width: this.box.clientWidth || 400,
+        height,
+        scales: { x: { time: false } },
+        axes: [axis(x, 36), axis(y, 52)],
+        legend: { live: true },
+        cursor: { drag: { x: true, y: false } },
+        ...options,
+        series: [{ label: x, value: (_, v) => short(v) }, ...series],
+      },
+      data,
+      this.box,
+    );
+  }
+}
+
+function progress(runs, name, title, x, xOf) {
+  return new Chart(name, title, () => {
+    const all = runs.flatMap((run, index) => {
+      const xs = xOf(run.generations);
+      const of = (key) => ({ x: xs, y: run.generations.map((g) => g[key]) });
+      const colours = runs.length > 1 ? [runColour(index), runColour(index)] : [runColour(0), runColour(1)];
+      return [
+        [of("best"), line(`${runName(run, runs)}best`, colours[0])],
+        [of("median"), line(`${runName(run, runs)}median`, colours[1], runs.length > 1 ? [5, 4] : undefined)],
+      ];
+    });
+    return {
+      data: joined(all.map(([values]) => values)),
+      series: all.map(([, series]) => series),
+      x,
+      y: objectiveText(runs[0]),
+    };
+  });
+}
+
+const objectiveText = (run) => `${run.objectives[0].name} (${run.objectives[0].unit})`;
+
+function cumulative(numbers) {
+  let sum = 0;
+  return numbers.map((number) => (sum += number));
+}
+
+function agesAndFitness(runs) {
+  return new Chart("ages", "Age and fitness of the living, and the front of the best", () => {
+    const all = runs.flatMap((run, index) => {
+      const front = paretoFront(run.population, run.objectives[0].maximise);
+      const dots = {
+        stroke: undefined,
+        fill: runColour(index),
+        points: { show: true, size: 7, fill: runColour(index), stroke: "transparent" },
+        paths: () => null,
+      };
+      // several may have one age, but a chart has one value for each x: the rest of them move by too little to see
+      const seen = new Map();
+      const x = run.population.map(({ age }) => {
+        const times = seen.get(age) ?? 0;
+        seen.set(age, times + 1);
+        return age + times * 1e-7;
+      });
+      return [
+        [
+          { x, y: run.population.map(({ values }) => values[0]) },
+          { label: `${runName(run, runs)}individual`, value: (_, v) => short(v), ...dots },
+        ],
+        [
+          { x: front.map(({ age }) => age + 1e-8), y: front.map(({ values }) => values[0]) },
+          { ...line(`${runName(run, runs)}front`, runColour(index)), paths: uPlot.paths.stepped({ align: 1 }) },
+        ],
+      ];
+    });
+    return {
+      data: joined(all.map(([values]) => values)),
+      series: all.map(([, series]) => series),
+      x: "age (generations)",
+      y: objectiveText(runs[0]),
+    };
+  });
+}
+
+/** What became of the evaluations of each generation, as shares stacked on each other. */
+function statuses(run, title) {
+  return new Chart("statuses", title, () => {
+    const of = run.generations;
+    const count = of.map((g, i) => g.evaluations - (i > 0 ? of[i - 1].evaluations : 0));
+    const share = (bad) => of.map((g, i) => (100 * bad(g)) / count[i]);
+    const area = (label, name, number) => ({
+      label,
+      stroke: style(name),
+      fill: style(name),
+      width: 1,
+      points: { show: false },
+      value: (_, v, k, i) => (i === null ? "–" : number(of[i], count[i])),
+    });
+    return {
+      data: [
+        of.map((g) => g.generation),
+        share(() => 0).map(() => 100),
+        share((g) => g.invalid + g.diverged),
+        share((g) => g.diverged),
+      ],
+      series: [
+        area("ok", "--good", (g, all) => all - g.invalid - g.diverged),
+        area("invalid", "--warn", (g) => g.invalid),
+        area("diverged", "--bad", (g) => g.diverged),
+      ],
+      x: "generation",
+      y: "% of evaluations",
+      options: { scales: { x: { time: false }, y: { range: [0, 100] } } },
+    };
+  });
+}
+
+/** Bars of where the time went. Phases overlap, so that they may add up to more than the whole. */
+function timeSpent(run) {
+  const whole = run.time?.whole ?? run.generations.reduce((sum, g) => sum + g.wall_time, 0);
+  const row = (name, seconds) =>
+    element(
+      "div",
+      { className: "bar" },
+      element("span", { textContent: name }),
+      element("i", {}, element("b", { style: `width:${Math.min(100, (100 * seconds) / whole)}%` })),
+      element("span", { textContent: `${short(seconds)} s · ${Math.round((100 * seconds) / whole)} %` }),
+    );
+  const phases = run.time
+    ? ["simulate", "develop", "decode", "archive"].map((phase) => row(phase, run.time[phase]))
+    : [];
+  return element(
+    "figure",
+    {},
+    element("figcaption", { textContent: "Where the time went" }),
+    element("p", {
+      className: "note",
+      textContent: run.time
+        ? `${short(whole)} s in all; phases overlap`
+        : `${short(whole)} s in all; this run's record does not hold its phases`,
+    }),
+    ...phases,
+  );
+}
+
+/** The charts of some runs, as figures; drawn by draw(), and named in `byName`. */
+export class Charts {
+  constructor(runs) {
+    const list = [
+      progress(runs, "evaluations", "Fitness over evaluations", "evaluations", (g) => g.map((s) => s.evaluations)),
+      progress(runs, "springs", "Fitness over springs simulated", "spring evaluations", (g) =>
+        cumulative(g.map((s) => s.spring_evaluations)),
+      ),
+      agesAndFitness(runs),
+      ...runs.map((run) =>
+        statuses(run, runs.length > 1 ? `How evaluations ended: ${run.label}` : "How evaluations ended"),
+      ),
+    ];
+    this.list = list;
+    this.byName = Object.fromEntries(list.map((chart) => [chart.name, chart]));
+    this.root = element("section", { className: "charts" }, ...list.map((chart) => chart.root), ...runs.map(timeSpent));
+  }
+
+  draw() {
+    this.list.forEach((chart) => chart.draw());
+  }
+}

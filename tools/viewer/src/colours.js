@@ -1,0 +1,57 @@
+// What the colours of springs mean.
+import { style } from "./elements.js";
+
+const mix = (a, b, t) => a.map((x, i) => x + (b[i] - x) * t);
+const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
+const ramp = (stops, t) => {
+  const at = Math.min(0.9999, Math.max(0, t)) * (stops.length - 1);
+  return mix(stops[Math.floor(at)], stops[Math.floor(at) + 1], at % 1);
+};
+export const css = (colour) => `rgb(${colour.map((x) => Math.round(255 * x)).join(" ")})`;
+
+// read once for every theme
+let palette;
+export function readPalette() {
+  const list = (name) => style(name).split(/\s+/).map(rgb);
+  palette = {
+    muscles: list("--muscles"),
+    passive: list("--passive"),
+    stress: list("--stress"),
+    cycles: list("--cycles"),
+    born: rgb(style("--born")),
+  };
+}
+
+/** Muscles by phase, the more they move the stronger; what does not move by stiffness. */
+export function materialColour(material, all) {
+  const most = Math.max(...all.map((m) => m.amplitude));
+  const stiffest = Math.max(...all.map((m) => m.stiffness));
+  const passive = ramp(palette.passive, stiffest > 0 ? material.stiffness / stiffest : 0);
+  if (!(material.amplitude > 0)) return passive;
+  const phase = Math.abs(((material.phase / Math.PI + 1) % 2) - 1); // 0 … 1: in phase … in counter-phase
+  return mix(passive, ramp(palette.muscles, phase), 0.35 + 0.65 * (material.amplitude / most));
+}
+
+export const stressColour = (level) => ramp(palette.stress, level / 255);
+
+export const cycleColour = (cameWith, shots) =>
+  cameWith <= 0 ? palette.born : ramp(palette.cycles, shots > 2 ? (cameWith - 1) / (shots - 2) : 1);
+
+/** How many of the first shots hold all in which springs come. */
+export const developing = (life) => 1 + life.cameWith.reduce((last, index) => Math.max(last, index), 0);
+
+/** A function that gives the colour of the i-th spring of a shot. */
+export function springColours(life, mode) {
+  const { materials } = life.robot.film;
+  if (mode === "stress") {
+    const levels = Array.from({ length: 256 }, (_, level) => stressColour(level));
+    return (shot, i) => levels[shot.stress[i] ?? 0];
+  }
+  if (mode === "cycle") {
+    const cycles = developing(life);
+    const colours = life.shots.map((_, index) => cycleColour(index, cycles));
+    return (shot, i) => colours[life.cameWith[shot.springs[i]]];
+  }
+  const colours = materials.map((made) => materialColour(made, materials));
+  return (shot, i) => colours[shot.materials[i]];
+}

@@ -1,0 +1,31 @@
+// Small helpers for building the page. Text is always text, never markup.
+
+/** An element with properties, and children that are elements or text. */
+export function element(tag, properties = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (name in made) made[name] = value;
+    else made.setAttribute(name, value);
+  }
+  made.append(...children.filter((child) => child !== null));
+  return made;
+}
+
+/** A number with four significant digits, without trailing zeros. */
+export function short(value) {
+  if (value === null || value === undefined) return "–";
+  if (value !== 0 && (Math.abs(value) >= 1e5 || Math.abs(value) < 1e-3)) {
+    const [digits, power] = value.toExponential(2).split("e");
+    return `${Number(digits)}·10${superscript(Number(power))}`;
+  }
+  return String(Number(value.toPrecision(4)));
+}
+
+function superscript(number) {
+  return [...String(number)].map((c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(c)])).join("");
+}
+
+/** The value of a colour or other variable of the style sheet. */
+export function style(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+}

@@ -1,0 +1,143 @@
+// A robot's life: which masses and springs are there at a time, and where.
+import { integers, places, sums } from "./unpack.js";
+
+const smoothing = 0.5; // s, to either side: what follows a robot should not shake with its steps
+
+export class Life {
+  /** Unpacks a robot of the page's data. */
+  static async of(robot) {
+    const life = new Life();
+    const film = robot.film;
+    life.robot = robot;
+    life.massCount = film.masses ?? 0;
+    life.massMaterials = film.shots.length ? await integers(film.mass_materials) : new Int32Array();
+    life.ends = film.shots.length ? await integers(film.ends) : new Int32Array();
+    life.shots = await Promise.all(film.shots.map((shot) => life.#unpacked(shot)));
+    life.begin = life.shots[0]?.begin ?? 0;
+    life.end = life.shots.at(-1)?.end ?? 0;
+    life.#markArrivals();
+    life.#follow();
+    return life;
+  }
+
+  async #unpacked(shot) {
+    const masses = await sums(shot.masses);
+    return {
+      name: shot.name,
+      times: shot.times,
+      begin: shot.times[0],
+      end: shot.times.at(-1),
+      masses,
+      springs: await sums(shot.springs),
+      materials: await integers(shot.materials),
+      stress: await integers(shot.stress),
+      places: await places(shot.places, masses.length, shot.times.length),
+    };
+  }
+
+  /** Finds the shot in which each spring came; for each shot which of its springs are new, and which of the one before
+   *  have gone. */
+  #markArrivals() {
+    this.cameWith = new Int32Array(this.ends.length / 2).fill(-1);
+    let before = new Map();
+    this.shots.forEach((shot, index) => {
+      const now = new Map();
+      shot.springs.forEach((spring, i) => {
+        if (this.cameWith[spring] < 0) this.cameWith[spring] = index;
+        now.set(spring, i);
+      });
+      shot.isNew = Uint8Array.from(shot.springs, (spring) => (index > 0 && !before.has(spring) ? 1 : 0));
+      shot.gone = [...before].filter(([spring]) => !now.has(spring)).map(([, i]) => i);
+      before = now;
+    });
+  }
+
+  /** Computes the path of the middle of all masses, and a smooth one to follow. */
+  #follow() {
+    const step = this.robot.film.step;
+    this.path = this.shots.flatMap((shot) =>
+      shot.times.map((time, frame) => {
+        const n = shot.masses.length;
+        const middle = [0, 1, 2].map((axis) => {
+          let sum = 0;
+          for (let i = 0, at = (3 * frame + axis) * n; i < n; ++i, ++at) sum += shot.places[at];
+          return (sum / n) * step;
+        });
+        return { time, middle };
+      }),
+    );
+    let from = 0;
+    let to = 0;
+    this.smoothPath = this.path.map(({ time }) => {
+      while (this.path[from].time < time - smoothing) ++from;
+      while (to < this.path.length && this.path[to].time <= time + smoothing) ++to;
+      const near = this.path.slice(from, to);
+      return { time, middle: [0, 1, 2].map((axis) => near.reduce((sum, p) => sum + p.middle[axis], 0) / near.length) };
+    });
+  }
+
+  /** The index of the shot at a time; where one ends and the next begins, the next. */
+  shotAt(time) {
+    let index = this.shots.length - 1;
+    while (index > 0 && this.shots[index].begin > time + 1e-9) --index;
+    return index;
+  }
+
+  middleAt(time, path = this.path) {
+    if (path.length === 0) return [0, 0, 0];
+    const [i, part] = between(path.length, (k) => path[k].time, time);
+    return path[i].middle.map((x, axis) => x + part * (path[Math.min(i + 1, path.length - 1)].middle[axis] - x));
+  }
+
+  /** Writes places (m) of all masses at a time, four numbers for each; masses that have just gone stay where they were. */
+  writePlaces(time, out) {
+    const index = this.shotAt(time);
+    if (index < 0) return;
+    if (index > 0) this.#write(this.shots[index - 1], this.shots[index - 1].times.length - 1, 0, out);
+    const shot = this.shots[index];
+    const [frame, part] = between(shot.times.length, (k) => shot.times[k], time);
+    this.#write(shot, frame, part, out);
+  }
+
+  #write(shot, frame, part, out) {
+    const n = shot.masses.length;
+    const step = this.robot.film.step;
+    const next = Math.min(frame + 1, shot.times.length - 1);
+    for (let axis = 0; axis < 3; ++axis) {
+      const a = (3 * frame + axis) * n;
+      const b = (3 * next + axis) * n;
+      for (let i = 0; i < n; ++i)
+        out[4 * shot.masses[i] + axis] = step * (shot.places[a + i] * (1 - part) + shot.places[b + i] * part);
+    }
+  }
+
+  /** The box around the body at the beginning of a shot: its longest side and its middle, m. */
+  boxIn(index) {
+    const shot = this.shots[index];
+    if (!shot) return { size: 1, middle: [0, 0, 0] };
+    const n = shot.masses.length;
+    const step = this.robot.film.step;
+    const ranges = [0, 1, 2].map((axis) => {
+      const row = shot.places.subarray(axis * n, (axis + 1) * n);
+      return [row.reduce((a, b) => Math.min(a, b)) * step, row.reduce((a, b) => Math.max(a, b)) * step];
+    });
+    return {
+      size: Math.max(step, ...ranges.map(([low, high]) => high - low)),
+      middle: ranges.map(([low, high]) => (low + high) / 2),
+    };
+  }
+}
+
+/** The last index whose time is not after `time`, and how much of the way to the next one has passed. */
+function between(count, timeOf, time) {
+  let low = 0;
+  let high = count - 1;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (timeOf(middle) <= time) low = middle;
+    else high = middle - 1;
+  }
+  const next = Math.min(low + 1, count - 1);
+  const span = timeOf(next) - timeOf(low);
+  return [low, span > 0 ? Math.min(1, Math.max(0, (time - timeOf(low)) / span)) : 0];
+}

@@ -1,0 +1,450 @@
+// One robot in its world, drawn by three.js. Springs and masses are flat pieces that face the camera and are shaded as
+// cylinders and balls: two triangles each, their ends looked up in a texture of places, so that a frame costs the
+// program no more than writing the places of the masses. They are no instances, since without a GPU each instance costs
+// as much as a draw of its own.
+import * as THREE from "three";
+import { materialColour, springColours } from "./colours.js";
+import { style } from "./elements.js";
+
+const textureWidth = 256;
+const effectTime = 0.7; // s in which vanished springs fade and new ones cool
+
+const placeOf = /* glsl */ `
+uniform sampler2D places;
+vec3 placeOf(float mass) {
+  int i = int(mass);
+  return texelFetch(places, ivec2(i % ${textureWidth}, i / ${textureWidth}), 0).xyz;
+}`;
+
+const shade = /* glsl */ `
+uniform vec3 haze;
+uniform vec2 hazeRange;
+vec3 shade(vec3 colour, vec3 normal, float depth) {
+  float light = 0.58 + 0.42 * max(0.0, dot(normal, normalize(vec3(-0.35, 0.75, 0.55))));
+  return mix(colour * light, haze, 0.55 * smoothstep(hazeRange.x, hazeRange.y, depth));
+}`;
+
+const springVertex = /* glsl */ `
+in vec2 ends;
+in vec3 colour;
+in float fresh;
+uniform float radius;
+uniform float pixel; // at a distance of 1
+out vec3 vColour;
+out vec3 vSide;
+out vec3 vFront;
+out float vAcross;
+out float vDepth;
+${placeOf}
+void main() {
+  vec4 a = modelViewMatrix * vec4(placeOf(ends.x), 1.0);
+  vec4 b = modelViewMatrix * vec4(placeOf(ends.y), 1.0);
+  vec3 along = b.xyz - a.xyz;
+  vec3 at = mix(a.xyz, b.xyz, position.y);
+  vSide = normalize(cross(along, -at) + vec3(1e-9, 0.0, 0.0));
+  vFront = normalize(cross(vSide, along) + vec3(0.0, 0.0, 1e-9));
+  if (dot(vFront, -at) < 0.0) vFront = -vFront;
+  vAcross = position.x;
+  vColour = colour;
+  vDepth = -at.z;
+  // what is thinner than a pixel would come and go
+  float wide = max(radius * (1.0 + 1.2 * fresh), 0.6 * pixel * vDepth);
+  gl_Position = projectionMatrix * vec4(at + vSide * position.x * wide, 1.0);
+}`;
+
+const springFragment = /* glsl */ `
+in vec3 vColour;
+in vec3 vSide;
+in vec3 vFront;
+in float vAcross;
+in float vDepth;
+uniform float opacity;
+out vec4 fragment;
+${shade}
+void main() {
+  vec3 normal = vSide * vAcross + vFront * sqrt(max(0.0, 1.0 - vAcross * vAcross));
+  fragment = vec4(shade(vColour, normal, vDepth), opacity);
+}`;
+
+const massVertex = /* glsl */ `
+in float mass;
+in vec3 colour;
+uniform float radius;
+out vec2 vAt;
+out vec3 vColour;
+out float vDepth;
+${placeOf}
+void main() {
+  vec4 at = modelViewMatrix * vec4(placeOf(mass), 1.0);
+  vAt = position.xy;
+  vColour = colour;
+  vDepth = -at.z;
+  gl_Position = projectionMatrix * (at + vec4(position.xy * radius, 0.0, 0.0));
+}`;
+
+const massFragment = /* glsl */ `
+in vec2 vAt;
+in vec3 vColour;
+in float vDepth;
+out vec4 fragment;
+${shade}
+void main() {
+  float r = dot(vAt, vAt);
+  if (r > 1.0) discard;
+  fragment = vec4(shade(vColour, vec3(vAt, sqrt(1.0 - r)), vDepth), 1.0);
+}`;
+
+// springs laid on the floor along the light; the stencil lets each pixel darken once
+const shadowVertex = /* glsl */ `
+in vec2 ends;
+uniform float radius;
+${placeOf}
+vec3 onFloor(vec3 p) { return vec3(p.xy + max(0.0, p.z) * vec2(-0.18, 0.3), 0.0); }
+void main() {
+  vec3 a = onFloor(placeOf(ends.x)), b = onFloor(placeOf(ends.y));
+  vec2 along = normalize(b.xy - a.xy + vec2(1e-9, 0.0));
+  vec3 at = mix(a, b, position.y) + vec3(-along.y, along.x, 0.0) * position.x * radius * 2.2;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1.0);
+}`;
+
+const shadowFragment = /* glsl */ `
+uniform vec4 shadow;
+out vec4 fragment;
+void main() { fragment = shadow; }`;
+
+const skyVertex = /* glsl */ `
+out vec2 vAt;
+void main() {
+  vAt = position.xy;
+  gl_Position = vec4(position.xy, 0.0, 1.0);
+}`;
+
+const skyFragment = /* glsl */ `
+in vec2 vAt;
+uniform vec3 near;
+uniform vec3 far;
+out vec4 fragment;
+void main() { fragment = vec4(mix(near, far, smoothstep(0.0, 1.5, length(vAt - vec2(0.0, 0.2)))), 1.0); }`;
+
+const floorVertex = /* glsl */ `
+out vec2 vAt;
+void main() {
+  vec4 at = modelMatrix * vec4(position, 1.0);
+  vAt = at.xy;
+  gl_Position = projectionMatrix * viewMatrix * at;
+}`;
+
+const floorFragment = /* glsl */ `
+in vec2 vAt;
+uniform vec3 line;
+uniform vec2 focus;
+uniform float reach;
+out vec4 fragment;
+float grid(float cell, float width) {
+  vec2 at = vAt / cell;
+  vec2 edge = abs(fract(at - 0.5) - 0.5) / (fwidth(at) * width);
+  return 1.0 - min(min(edge.x, edge.y), 1.0);
+}
+void main() {
+  float fade = 1.0 - smoothstep(0.25 * reach, reach, distance(vAt, focus));
+  float strength = max(0.32 * grid(0.25, 1.0), 0.85 * grid(1.0, 1.4));
+  fragment = vec4(line, strength * fade);
+}`;
+
+// motes that drift past: what a swimmer moves through, repeated around the focus
+const moteVertex = /* glsl */ `
+uniform vec3 focus;
+uniform float reach;
+uniform float pixels;
+out float vFade;
+void main() {
+  vec3 at = mod(position * 2.0 * reach - focus + reach, 2.0 * reach) - reach;
+  vFade = 1.0 - smoothstep(0.4 * reach, reach, length(at));
+  vec4 view = viewMatrix * vec4(at + focus, 1.0);
+  gl_Position = projectionMatrix * view;
+  gl_PointSize = clamp(0.012 * reach * pixels / -view.z, 1.0, 7.0);
+}`;
+
+const moteFragment = /* glsl */ `
+in float vFade;
+uniform vec3 line;
+out vec4 fragment;
+void main() {
+  float r = length(gl_PointCoord - 0.5) * 2.0;
+  fragment = vec4(line, vFade * (1.0 - smoothstep(0.4, 1.0, r)));
+}`;
+
+const material = (vertexShader, fragmentShader, uniforms, options = {}) =>
+  new THREE.ShaderMaterial({ glslVersion: THREE.GLSL3, vertexShader, fragmentShader, uniforms, ...options });
+
+/** Fills a geometry with squares whose corners are at ±1 across and `low` … 1 along. `attributes` holds for each name
+ *  the size of a value and the values, one for each square. */
+function setSquares(geometry, low, count, attributes) {
+  geometry.dispose();
+  const fill = (name, size, valuesOf) => {
+    const values = new Float32Array(4 * count * size);
+    for (let i = 0; i < 4 * count; ++i) values.set(valuesOf(i >> 2, i & 3), i * size);
+    geometry.setAttribute(name, new THREE.BufferAttribute(values, size));
+  };
+  const corners = [
+    [-1, low, 0],
+    [1, low, 0],
+    [1, 1, 0],
+    [-1, 1, 0],
+  ];
+  fill("position", 3, (_, corner) => corners[corner]);
+  for (const [name, [size, values]] of Object.entries(attributes))
+    fill(name, size, (square) => values.subarray(size * square, size * (square + 1)));
+  const triangles = Uint32Array.from({ length: 6 * count }, (_, i) => 4 * Math.floor(i / 6) + [0, 1, 2, 0, 2, 3][i % 6]);
+  geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
+}
+
+const colour = (name) => new THREE.Color().setStyle(style(name), THREE.LinearSRGBColorSpace);
+
+export class Stage {
+  /** A robot in its scene, which may have a floor, or water. */
+  constructor(life, scene) {
+    this.life = life;
+    this.scene = new THREE.Scene();
+    this.mode = "material";
+    const { size, middle } = life.boxIn(0);
+    this.size = size;
+    this.start = middle;
+    this.focus = new THREE.Vector3();
+    const rows = Math.max(1, Math.ceil(life.massCount / textureWidth));
+    this.places = new THREE.DataTexture(
+      new Float32Array(4 * textureWidth * rows),
+      textureWidth,
+      rows,
+      THREE.RGBAFormat,
+      THREE.FloatType,
+    );
+    this.#makeUniforms();
+    this.#addSky();
+    this.#addFloor(scene.floor);
+    if (scene.water) this.#addMotes();
+    this.#addBody(scene.floor);
+    this.readTheme();
+  }
+
+  #makeUniforms() {
+    const springs = Math.max(1, ...this.life.shots.map((shot) => shot.springs.length));
+    const radius = this.size * Math.min(0.0075, 0.09 / Math.sqrt(springs));
+    this.shared = {
+      places: { value: this.places },
+      radius: { value: radius },
+      pixel: { value: 0 },
+      haze: { value: new THREE.Color() },
+      hazeRange: { value: new THREE.Vector2() },
+    };
+    this.world = {
+      line: { value: new THREE.Color() },
+      focus: { value: new THREE.Vector3() },
+      reach: { value: 6 * this.size },
+    };
+    this.shadow = { value: new THREE.Vector4() };
+  }
+
+  #add(geometry, made, order) {
+    const mesh = new THREE.Mesh(geometry, made);
+    mesh.frustumCulled = false;
+    mesh.renderOrder = order;
+    this.scene.add(mesh);
+    return mesh;
+  }
+
+  #addBody(hasFloor) {
+    const springs = (opacity, options) =>
+      material(
+        springVertex,
+        springFragment,
+        { ...this.shared, opacity: { value: opacity } },
+        { side: THREE.DoubleSide, ...options },
+      );
+    this.springs = new THREE.BufferGeometry();
+    this.#add(this.springs, springs(1, {}), 2);
+    this.gone = new THREE.BufferGeometry();
+    this.goneMaterial = springs(0, { transparent: true, depthWrite: false });
+    this.#add(this.gone, this.goneMaterial, 4);
+    this.masses = new THREE.BufferGeometry();
+    this.#add(
+      this.masses,
+      material(massVertex, massFragment, { ...this.shared, radius: { value: 1.7 * this.shared.radius.value } }),
+      3,
+    );
+    if (!hasFloor) return;
+    const stencil = {
+      stencilWrite: true,
+      stencilRef: 0,
+      stencilFunc: THREE.EqualStencilFunc,
+      stencilZPass: THREE.IncrementStencilOp,
+    };
+    this.#add(
+      this.springs,
+      material(
+        shadowVertex,
+        shadowFragment,
+        { ...this.shared, shadow: this.shadow },
+        { transparent: true, depthWrite: false, side: THREE.DoubleSide, ...stencil },
+      ),
+      1,
+    );
+  }
+
+  #addSky() {
+    this.sky = { near: { value: new THREE.Color() }, far: { value: new THREE.Color() } };
+    this.#add(
+      new THREE.PlaneGeometry(2, 2),
+      material(skyVertex, skyFragment, this.sky, { depthWrite: false, depthTest: false }),
+      -1,
+    );
+  }
+
+  #addFloor(there) {
+    if (!there) return;
+    this.floor = this.#add(
+      new THREE.PlaneGeometry(1, 1),
+      material(floorVertex, floorFragment, this.world, { transparent: true, depthWrite: false }),
+      0,
+    );
+    this.floor.scale.setScalar(4 * this.world.reach.value);
+  }
+
+  #addMotes() {
+    const geometry = new THREE.BufferGeometry();
+    let seed = 1; // a generator of its own: every page shows the same water
+    const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute(Array.from({ length: 3 * 2500 }, random), 3));
+    this.pixels = { value: 1 };
+    const motes = new THREE.Points(
+      geometry,
+      material(
+        moteVertex,
+        moteFragment,
+        { ...this.world, pixels: this.pixels },
+        { transparent: true, depthWrite: false },
+      ),
+    );
+    motes.frustumCulled = false;
+    this.scene.add(motes);
+  }
+
+  readTheme() {
+    this.shared.haze.value.copy(colour(this.pixels ? "--water" : "--stage"));
+    this.sky.near.value.copy(colour(this.pixels ? "--water" : "--stage"));
+    this.sky.far.value.copy(colour(this.pixels ? "--water-low" : "--stage-low"));
+    this.world.line.value.copy(colour("--grid"));
+    const dark = colour("--shadow");
+    this.shadow.value.set(dark.r, dark.g, dark.b, Number(style("--shadow-strength")));
+    this.#shown = undefined;
+  }
+
+  setMode(mode) {
+    this.mode = mode;
+    this.#shown = undefined;
+  }
+
+  #shown; // the shot whose springs are in the buffers
+
+  #fill(index) {
+    const { life } = this;
+    const shot = life.shots[index];
+    const colourOf = springColours(life, this.mode);
+    const there = Array.from(shot.springs, (_, i) => i);
+    setSquares(
+      this.springs,
+      0,
+      there.length,
+      this.#squares(shot, there, colourOf, (i) => shot.isNew[i]),
+    );
+    setSquares(
+      this.gone,
+      0,
+      shot.gone.length,
+      this.#squares(life.shots[index - 1], shot.gone, colourOf, () => 1),
+    );
+    this.baseColours = this.springs.attributes.colour.array.slice();
+    setSquares(this.masses, -1, shot.masses.length, {
+      mass: [1, Float32Array.from(shot.masses)],
+      colour: [3, this.#massColours(shot)],
+    });
+    this.#shown = index;
+  }
+
+  /** What the squares of some of a shot's springs have. */
+  #squares(shot, list, colourOf, freshOf) {
+    const ends = new Float32Array(2 * list.length);
+    const colour = new Float32Array(3 * list.length);
+    list.forEach((i, k) => {
+      const spring = shot.springs[i];
+      ends.set(this.life.ends.subarray(2 * spring, 2 * spring + 2), 2 * k);
+      colour.set(colourOf(shot, i), 3 * k);
+    });
+    return { ends: [2, ends], colour: [3, colour], fresh: [1, Float32Array.from(list, freshOf)] };
+  }
+
+  /** Points that no springs join have the colours of their materials. */
+  #massColours(shot) {
+    const { materials } = this.life.robot.film;
+    const plain = colour("--mass").toArray();
+    const colours = shot.springs.length === 0 ? materials.map((made) => materialColour(made, materials)) : [];
+    return Float32Array.from(
+      Array.from(shot.masses).flatMap((mass) => colours[this.life.massMaterials[mass]] ?? plain),
+    );
+  }
+
+  /** Lets new springs glow, and vanished ones fade, by the time since the shot began. */
+  #light(shot, time) {
+    const left =
+      1 - Math.min(1, (time - shot.begin) / Math.min(effectTime, 0.7 * (shot.end - shot.begin) || effectTime));
+    this.goneMaterial.uniforms.opacity.value = 0.75 * left;
+    if (!shot.isNew.includes(1)) return;
+    const glow = colour("--fresh").toArray();
+    const { colour: colours, fresh } = this.springs.attributes;
+    shot.isNew.forEach((isNew, i) => {
+      if (!isNew) return;
+      fresh.array.fill(left, 4 * i, 4 * (i + 1));
+      for (let at = 12 * i; at < 12 * (i + 1); ++at)
+        colours.array[at] = this.baseColours[at] + left * (glow[at % 3] - this.baseColours[at]);
+    });
+    colours.needsUpdate = fresh.needsUpdate = true;
+  }
+
+  /** Puts the robot where it is at a time, and the camera's focus with it. */
+  seek(time, follow) {
+    const { life } = this;
+    if (life.shots.length === 0) return;
+    const index = life.shotAt(time);
+    if (index !== this.#shown) this.#fill(index);
+    life.writePlaces(time, this.places.image.data);
+    this.places.needsUpdate = true;
+    this.#light(life.shots[index], time);
+    const middle = follow ? this.#followed(time) : this.start;
+    this.focus.set(...middle);
+    this.world.focus.value.copy(this.focus);
+    this.floor?.position.set(this.focus.x, this.focus.y, 0);
+  }
+
+  /** Where the body's middle has moved from where it was at birth. */
+  #followed(time) {
+    const { life, start } = this;
+    const from = life.middleAt(life.begin, life.smoothPath);
+    const now = life.middleAt(time, life.smoothPath);
+    const height = this.floor && from[2] > 0 ? (start[2] * now[2]) / from[2] : start[2] + now[2] - from[2];
+    return [start[0] + now[0] - from[0], start[1] + now[1] - from[1], height];
+  }
+
+  /** Draws what camera sees to a picture of so many pixels' height. */
+  draw(renderer, camera, height) {
+    const distance = camera.position.distanceTo(this.focus);
+    this.shared.hazeRange.value.set(distance - 0.5 * this.size, distance + 1.1 * this.size);
+    this.shared.pixel.value = (2 * Math.tan((camera.fov * Math.PI) / 360)) / height;
+    if (this.pixels) this.pixels.value = height;
+    renderer.render(this.scene, camera);
+  }
+
+  dispose() {
+    this.scene.traverse((object) => (object.geometry?.dispose(), object.material?.dispose()));
+    this.places.dispose();
+  }
+}

@@ -1,0 +1,421 @@
+// The 3D viewer: one or two robots, a clock, and what steers them.
+import * as THREE from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { css, cycleColour, developing, materialColour, readPalette, stressColour } from "./colours.js";
+import { element, short } from "./elements.js";
+import { Life } from "./life.js";
+import { Stage } from "./stage.js";
+
+const speeds = [0.1, 0.25, 0.5, 1, 2, 4];
+const framing = 2.7; // distance of the camera, in sizes of the body
+
+export class Viewer {
+  /** A viewer of robots: {label, robot, run} each. */
+  constructor(robots) {
+    this.robots = robots;
+    this.lives = new Map();
+    this.stages = [];
+    this.chosen = [];
+    this.time = 0;
+    this.playing = false;
+    this.speed = 1;
+    this.follow = true;
+    this.mode = "material";
+    this.#build();
+    this.#makeRenderer();
+    this.#listen();
+    requestAnimationFrame((now) => this.#tick(now));
+  }
+
+  #build() {
+    const choose = (label, which, options) =>
+      element(
+        "label",
+        { className: "choice" },
+        element("span", { textContent: label }),
+        element("select", { onchange: (e) => this.#pick(which, e.target.value) }, ...options),
+      );
+    const options = () =>
+      this.robots.map(({ label }, i) => element("option", { value: String(i), textContent: label }));
+    this.first = choose("Robot", 0, options());
+    this.second = choose("beside", 1, [element("option", { value: "", textContent: "none" }), ...options()]);
+    this.canvas = element("canvas", {
+      tabIndex: 0,
+      ariaLabel: "The robot. Drag to turn, pinch or wheel to come nearer.",
+    });
+    this.captions = [0, 1].map(() => element("div", { className: "caption" }));
+    this.play = element("button", { className: "play", type: "button", onclick: () => this.toggle() });
+    this.scrub = element("input", {
+      type: "range",
+      min: "0",
+      max: "1",
+      step: "any",
+      value: "0",
+      ariaLabel: "Time",
+      oninput: (e) => this.#scrubbed(Number(e.target.value)),
+    });
+    this.clock = element("output", { className: "clock" });
+    this.speedSelect = element(
+      "select",
+      { ariaLabel: "Speed", onchange: (e) => (this.speed = Number(e.target.value)) },
+      ...speeds.map((s) => element("option", { value: String(s), textContent: `${s}×`, selected: s === 1 })),
+    );
+    this.modes = element(
+      "fieldset",
+      { className: "modes" },
+      element("legend", { textContent: "Colour" }),
+      ...[
+        ["material", "Material"],
+        ["stress", "Stress"],
+        ["cycle", "Came in"],
+      ].map(([mode, label]) =>
+        element(
+          "label",
+          {},
+          element("input", {
+            type: "radio",
+            name: "colour",
+            value: mode,
+            checked: mode === this.mode,
+            onchange: () => this.setMode(mode),
+          }),
+          element("span", { textContent: label }),
+        ),
+      ),
+    );
+    this.cycle = element("input", {
+      type: "range",
+      min: "0",
+      max: "0",
+      step: "1",
+      value: "0",
+      ariaLabel: "Cycle of life",
+      oninput: (e) => this.#jumped(Number(e.target.value)),
+    });
+    this.cycleName = element("output", { className: "cycle-name" });
+    this.followBox = element("input", {
+      type: "checkbox",
+      checked: true,
+      onchange: (e) => this.setFollow(e.target.checked),
+    });
+    this.legend = element("div", { className: "legend" });
+    this.note = element("p", { className: "note" });
+    this.stage = element("div", { className: "stage" }, this.canvas, ...this.captions);
+    this.root = element(
+      "section",
+      { className: "viewer" },
+      element("div", { className: "pickers" }, this.first, this.robots.length > 1 ? this.second : null),
+      this.stage,
+      element("div", { className: "transport" }, this.play, this.scrub, this.clock, this.speedSelect),
+      element(
+        "div",
+        { className: "life" },
+        element("label", {}, element("span", { textContent: "Life" }), this.cycle),
+        this.cycleName,
+        element("label", { className: "check" }, this.followBox, element("span", { textContent: "Follow" })),
+      ),
+      element("div", { className: "looks" }, this.modes, this.legend),
+      this.note,
+      element(
+        "details",
+        { className: "keys" },
+        element("summary", { textContent: "Keys" }),
+        element("p", {
+          textContent:
+            "Space plays and pauses. ← and → step by a frame, with Shift by a second. [ and ] go from cycle to cycle. + and − change the speed. C changes the colour, F follows, R turns the camera back. Drag turns, the wheel or two fingers zoom, right drag or two fingers move.",
+        }),
+      ),
+    );
+    this.#showPlaying();
+  }
+
+  #makeRenderer() {
+    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, stencil: true });
+    this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace; // colours are those of the style sheet
+    this.renderer.autoClear = false;
+    this.camera = new THREE.PerspectiveCamera(32, 1, 0.01, 1000);
+    this.camera.up.set(0, 0, 1);
+    this.orbit = new OrbitControls(this.camera, this.canvas);
+    this.orbit.addEventListener("change", () => (this.dirty = true));
+    new ResizeObserver(() => (this.dirty = true)).observe(this.stage);
+  }
+
+  #listen() {
+    document.addEventListener("keydown", (event) => {
+      if (
+        event.target.closest?.("input:not([type=range]),select,textarea") ||
+        event.ctrlKey ||
+        event.metaKey ||
+        event.altKey
+      )
+        return;
+      const action = this.#keys()[event.key];
+      if (!action || (event.target.closest?.("button,summary") && event.key === " ")) return;
+      event.preventDefault();
+      action(event);
+    });
+  }
+
+  #keys() {
+    const step = (sign) => (event) => (this.pause(), this.seek(this.time + sign * (event.shiftKey ? 1 : 1 / 30)));
+    const speed = (by) => () =>
+      this.setSpeed(speeds[Math.min(speeds.length - 1, Math.max(0, speeds.indexOf(this.speed) + by))]);
+    return {
+      " ": () => this.toggle(),
+      ArrowLeft: step(-1),
+      ArrowRight: step(1),
+      "[": () => this.#jumped(this.#shotIndex() - 1),
+      "]": () => this.#jumped(this.#shotIndex() + 1),
+      "+": speed(1),
+      "-": speed(-1),
+      c: () => this.setMode({ material: "stress", stress: "cycle", cycle: "material" }[this.mode]),
+      f: () => this.setFollow(!this.follow),
+      r: () => this.#frameBody(),
+    };
+  }
+
+  async #pick(which, value) {
+    const chosen = [...this.chosen];
+    chosen[which] = value === "" ? undefined : Number(value);
+    await this.show(chosen[0], chosen[1]);
+  }
+
+  /** Shows a robot, and another beside it. */
+  async show(first, second) {
+    this.chosen = [first, second];
+    const indices = this.chosen.filter((i) => i !== undefined);
+    const lives = await Promise.all(indices.map((i) => this.#life(i)));
+    if (this.chosen[0] !== first || this.chosen[1] !== second) return; // another choice was faster
+    this.stages.forEach((stage) => stage.dispose());
+    this.stages = lives.map((life, k) => new Stage(life, this.robots[indices[k]].run.scene));
+    this.first.querySelector("select").value = String(first);
+    this.second.querySelector("select").value = second === undefined ? "" : String(second);
+    this.stage.classList.toggle("two", indices.length > 1);
+    this.end = Math.max(...lives.map((life) => life.end));
+    this.begin = Math.min(...lives.map((life) => life.begin));
+    this.scrub.min = String(this.begin);
+    this.scrub.max = String(this.end);
+    this.cycle.max = String(Math.max(0, this.#leading().shots.length - 1));
+    this.stages.forEach((stage) => stage.setMode(this.mode));
+    this.#frameBody();
+    this.#explain();
+    this.seek(this.begin);
+  }
+
+  async #life(index) {
+    if (!this.lives.has(index)) this.lives.set(index, Life.of(this.robots[index].robot));
+    return this.lives.get(index);
+  }
+
+  /** The robot whose cycles the slider shows. */
+  #leading() {
+    return this.stages.map((stage) => stage.life).reduce((a, b) => (b.shots.length > a.shots.length ? b : a));
+  }
+
+  #shotIndex() {
+    return Math.max(0, this.#leading().shotAt(this.time));
+  }
+
+  #frameBody() {
+    const size = Math.max(...this.stages.map((stage) => stage.size));
+    this.orbit.target.set(0, 0, 0);
+    this.camera.position
+      .set(0.55, -1, 0.42)
+      .normalize()
+      .multiplyScalar(framing * size);
+    this.camera.near = 0.01 * size;
+    this.camera.far = 60 * size;
+    this.orbit.minDistance = 0.3 * size;
+    this.orbit.maxDistance = 25 * size;
+    this.orbit.update();
+    this.dirty = true;
+  }
+
+  seek(time) {
+    this.time = Math.min(this.end, Math.max(this.begin, time));
+    this.scrub.value = String(this.time);
+    this.dirty = true;
+    this.clock.value = `${this.time.toFixed(2)} s of ${this.end.toFixed(1)}`;
+    const shots = this.#leading().shots;
+    if (shots.length === 0) return;
+    const index = this.#shotIndex();
+    this.cycle.value = String(index);
+    this.cycleName.value = shots[index].name;
+  }
+
+  #scrubbed(time) {
+    this.pause();
+    this.seek(time);
+  }
+
+  #jumped(index) {
+    const shots = this.#leading().shots;
+    if (shots.length === 0) return;
+    this.pause();
+    this.seek(shots[Math.min(shots.length - 1, Math.max(0, index))].begin);
+  }
+
+  toggle() {
+    if (!this.playing && this.time >= this.end) this.seek(this.begin);
+    this.playing = !this.playing;
+    this.#showPlaying();
+  }
+
+  pause() {
+    this.playing = false;
+    this.#showPlaying();
+  }
+
+  #showPlaying() {
+    this.play.textContent = this.playing ? "❚❚" : "▶";
+    this.play.ariaLabel = this.playing ? "Pause" : "Play";
+  }
+
+  setSpeed(speed) {
+    this.speed = speed;
+    this.speedSelect.value = String(speed);
+  }
+
+  setMode(mode) {
+    this.mode = mode;
+    this.modes.querySelector(`[value=${mode}]`).checked = true;
+    this.stages.forEach((stage) => stage.setMode(mode));
+    this.#explain();
+    this.dirty = true;
+  }
+
+  setFollow(follow) {
+    this.follow = this.followBox.checked = follow;
+    this.dirty = true;
+  }
+
+  readTheme() {
+    readPalette();
+    this.stages.forEach((stage) => stage.readTheme());
+    if (this.stages.length > 0) this.#explain();
+    this.dirty = true;
+  }
+
+  /** Says what the colours mean, and how exact the picture is. */
+  #explain() {
+    const shown = this.stages.filter((stage) => stage.life.shots.length > 0);
+    this.legend.replaceChildren(
+      ...(shown.length > 0 ? this.#legend(shown[0].life, this.robots[this.chosen[0]].run) : []),
+    );
+    const error = shown
+      .map((stage) => stage.life.robot.film.error)
+      .reduce((a, b) => (b.largest > (a?.largest ?? -1) ? b : a), undefined);
+    this.note.textContent = error
+      ? `Places are shown to within ${short(1000 * error.most)} mm 99 times in 100, and to within ${short(1000 * error.largest)} mm always.`
+      : "";
+  }
+
+  #legend(life, run) {
+    const film = life.robot.film;
+    const swatch = (colour, text) =>
+      element(
+        "span",
+        { className: "swatch" },
+        element("i", { style: `background:${css(colour)}` }),
+        element("span", { textContent: text }),
+      );
+    const scale = (colour, low, high) => {
+      const stops = Array.from({ length: 9 }, (_, i) => css(colour(i / 8)));
+      return [
+        element("span", { textContent: low }),
+        element("i", { className: "scale", style: `background:linear-gradient(90deg,${stops.join(",")})` }),
+        element("span", { textContent: high }),
+      ];
+    };
+    if (this.mode === "stress")
+      return scale((t) => stressColour(255 * t), "0 N", `${short(film.most_stress)} N (root scale)`);
+    if (this.mode === "cycle") {
+      const cycles = developing(life);
+      const born = swatch(cycleColour(0, cycles), "there from birth");
+      return cycles > 1
+        ? [
+            born,
+            ...scale((t) => cycleColour(1 + t * (cycles - 2), cycles), "after cycle 1", `after cycle ${cycles - 1}`),
+          ]
+        : [born];
+    }
+    return run.material_names
+      .map((name, i) => [film.materials[i], name])
+      .filter(([made]) => made?.stiffness > 0)
+      .map(([made, name]) => swatch(materialColour(made, film.materials), name));
+  }
+
+  #caption(k) {
+    const stage = this.stages[k];
+    const index = this.chosen.filter((i) => i !== undefined)[k];
+    const { life } = stage;
+    const name = element("strong", { textContent: this.robots[index].label });
+    if (life.shots.length === 0)
+      return [name, element("span", { textContent: `${life.robot.status}: ${life.robot.reason}` })];
+    const shot = life.shots[life.shotAt(this.time)];
+    const measured = life.shots.find(({ name: n }) => n === "measured");
+    const moved =
+      measured && this.time > measured.begin ? distance(life.middleAt(this.time), life.middleAt(measured.begin)) : null;
+    const gone = shot.gone.length;
+    const came = shot.isNew.reduce((sum, isNew) => sum + isNew, 0);
+    const text = [shot.name, `${shot.springs.length} springs`];
+    if (gone + came > 0) text.push(`−${gone} +${came}`);
+    if (moved !== null) text.push(`moved ${moved.toFixed(2)} m`);
+    return [name, element("span", { textContent: text.join(" · ") })];
+  }
+
+  /** Draws the moment. */
+  draw() {
+    this.dirty = false;
+    const width = this.stage.clientWidth;
+    const height = this.stage.clientHeight;
+    if (width === 0 || this.stages.length === 0) return;
+    const ratio = Math.min(devicePixelRatio, 2);
+    const size = this.renderer.getSize(new THREE.Vector2());
+    if (size.x !== width || size.y !== height || this.renderer.getPixelRatio() !== ratio) {
+      this.renderer.setPixelRatio(ratio);
+      this.renderer.setSize(width, height, false);
+    }
+    this.renderer.setScissorTest(true);
+    const stacked = this.stages.length > 1 && height > 1.1 * width;
+    this.stage.classList.toggle("stacked", stacked);
+    this.stages.forEach((stage, k) => this.#drawStage(stage, this.#viewport(k, width, height, stacked), ratio));
+    this.captions.forEach((caption, k) => caption.replaceChildren(...(k < this.stages.length ? this.#caption(k) : [])));
+  }
+
+  #viewport(k, width, height, stacked) {
+    const n = this.stages.length;
+    return stacked ? [0, ((n - 1 - k) * height) / n, width, height / n] : [(k * width) / n, 0, width / n, height];
+  }
+
+  #drawStage(stage, [x, y, width, height], ratio) {
+    stage.seek(this.time, this.follow);
+    this.renderer.setViewport(x, y, width, height);
+    this.renderer.setScissor(x, y, width, height);
+    this.renderer.clear();
+    const camera = this.camera.clone();
+    camera.aspect = width / height;
+    // a narrow picture shows as much of the body as a wide one
+    camera.fov =
+      camera.aspect < 1
+        ? 2 * Math.atan(Math.tan((camera.fov * Math.PI) / 360) / camera.aspect) * (180 / Math.PI)
+        : camera.fov;
+    camera.position.add(stage.focus);
+    camera.updateProjectionMatrix();
+    camera.updateMatrixWorld();
+    stage.draw(this.renderer, camera, height * ratio);
+  }
+
+  #tick(now) {
+    const passed = Math.min(0.1, (now - (this.last ?? now)) / 1000);
+    this.last = now;
+    if (this.playing) {
+      this.seek(this.time + passed * this.speed);
+      if (this.time >= this.end) this.pause();
+    }
+    if (this.dirty) this.draw();
+    requestAnimationFrame((next) => this.#tick(next));
+  }
+}
+
+const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
