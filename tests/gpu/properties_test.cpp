@@ -10,6 +10,7 @@ namespace {
 
 using test::Answer;
 using test::Life;
+using test::mirrored;
 
 class Property : public testing::TestWithParam<test::Arithmetic> {
  protected:
@@ -65,15 +66,10 @@ TEST_P(Property, TheSameBitsInAnyOrder) {
 TEST_P(Property, AMirroredBodyMovesAsTheMirrorImage) {
   EVODEVO_NEEDS_GPU();
   for_random_scenes([&](const Scene& scene, const std::vector<Life>& lives) {
-    const auto mirrored = [](State state) {
-      for (Vec3& x : state.position) x.x = -x.x;
-      for (Vec3& v : state.velocity) v.x = -v.x;
-      return state;
-    };
     std::vector<Life> images = lives;
     for (Life& life : images) life.start = mirrored(life.start);
     const std::vector<Answer> real = test::simulate(*simulator(scene), lives);
-    const std::vector<Answer> image = test::simulate(*simulator(scene), images);
+    const std::vector<Answer> image = test::simulate(*simulator(mirrored(scene)), images);
     for (std::size_t i = 0; i < lives.size(); ++i)
       EXPECT_LT(distance(mirrored(image[i].state), real[i].state), rounding()) << trace(lives[i]);
   });

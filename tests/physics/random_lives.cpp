@@ -89,6 +89,17 @@ std::vector<Life> random_lives(const Scene& scene, std::uint64_t seed, std::size
   return lives;
 }
 
+State mirrored(State state) {
+  for (Vec3& x : state.position) x.x = -x.x;
+  for (Vec3& v : state.velocity) v.x = -v.x;
+  return state;
+}
+
+Scene mirrored(Scene scene) {
+  if (scene.gravity) scene.gravity->slope = -scene.gravity->slope;
+  return scene;
+}
+
 std::vector<Answer> simulate(Simulator& simulator, const std::vector<Life>& lives, Recording recording) {
   std::vector<Answer> answers(lives.size());
   std::vector<Task> tasks(lives.size());

@@ -24,6 +24,10 @@ Scene random_scene(std::uint64_t seed);
 /// kg, masses that coincide, and masses without springs.
 std::vector<Life> random_lives(const Scene& scene, std::uint64_t seed, std::size_t count);
 
+/// A state and a scene as seen in a mirror across the x axis.
+State mirrored(State state);
+Scene mirrored(Scene scene);
+
 /// All lives in one batch.
 std::vector<Answer> simulate(Simulator& simulator, const std::vector<Life>& lives, Recording recording = {});
 
