@@ -27,7 +27,9 @@ std::optional<Settings> parse(int argc, const char* const* argv) {
   bool quick = false;
   po::options_description options(
       "tools/stress FOLDER [EXPERIMENT.toml]... [options] finds the shortest cycle after which the least and the most "
-      "stressed springs of random robots are those of 10 s. Options");
+      "stressed springs are known: those of the first 10 s, of which the cycle is the beginning. Robots are random, "
+      "with "
+      "a muscle and 1,250 springs at least. Options");
   options.add_options()("help", "this text");
   options.add_options()("folder", po::value(&s.folder), "for data and the chart; may be named without --folder");
   options.add_options()("experiment", po::value(&s.experiments),

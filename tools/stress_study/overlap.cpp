@@ -9,11 +9,11 @@
 #include "benchmark/agreement.hpp"
 #include "benchmark/robots.hpp"
 #include "commands/options.hpp"
+#include "evaluation.hpp"
 
 namespace evodevo::stress_study {
 namespace {
 
-constexpr double dt = 0.0005;  // s; paper, Table II
 // that a robot must have for those that are sought to be few
 constexpr std::size_t fewest_springs = 10 * least_sought;
 
@@ -31,27 +31,31 @@ double quantile(std::vector<double> values, double share) {
   return std::lerp(values[below], values[above], at - static_cast<double>(below));
 }
 
-/// Robots that move on together; what is recorded of each adds up.
-class Lives {
+/// Robots that live on together, without development; what is recorded of each adds up.
+class Robots {
  public:
-  Lives(const Experiment& experiment, const std::vector<Body>& bodies)
-      : simulator_(make_simulator(experiment)), bodies_(bodies), sums_(bodies.size()), over_time_(bodies.size()) {
-    for (const Body& body : bodies) states_.push_back(state_at_birth(body, experiment.scene));
-    tasks_.resize(bodies.size());
+  Robots(const Experiment& experiment, Simulator& simulator, std::vector<Life> born)
+      : experiment_(experiment), simulator_(simulator), lives_(std::move(born)) {
+    std::erase_if(lives_, [](const Life& life) { return !life.alive(); });
+    tasks_.resize(lives_.size());
+    sums_.resize(lives_.size());
+    over_time_.resize(lives_.size());
   }
 
   void move_to(double time) {
-    const auto steps = static_cast<std::uint64_t>(std::llround(time / dt)) - done_;
+    const double duration = time - now_;
     for (std::size_t i = 0; i < tasks_.size(); ++i) {
-      tasks_[i].body = &bodies_[i];
-      tasks_[i].state = &states_[i];
-      tasks_[i].dt = dt;
-      tasks_[i].steps = steps;
+      LivingBody& living = lives_[i].living;
+      const Pace pace = pace_over(duration, experiment_.step, living.longest_dt);
+      tasks_[i].body = &living.body;
+      tasks_[i].state = &living.state;
+      tasks_[i].dt = pace.dt;
+      tasks_[i].steps = pace.steps;
     }
-    simulator_->run(tasks_, {.stress = true});
-    done_ += steps;
+    simulator_.run(tasks_, {.stress = true});
+    now_ = time;
     for (std::size_t i = 0; i < tasks_.size(); ++i)
-      if (tasks_[i].status == Status::ok) add(tasks_[i].stress, static_cast<double>(steps), i);
+      if (tasks_[i].status == Status::ok) add(tasks_[i].stress, duration, i);
   }
 
   /// Of those that have not diverged.
@@ -63,20 +67,20 @@ class Lives {
   }
 
  private:
-  void add(const std::vector<double>& stress, double steps, std::size_t robot) {
+  void add(const std::vector<double>& stress, double duration, std::size_t robot) {
     std::vector<double>& sum = sums_[robot];
     sum.resize(stress.size());
-    for (std::size_t s = 0; s < sum.size(); ++s) sum[s] += steps * stress[s];
+    for (std::size_t s = 0; s < sum.size(); ++s) sum[s] += duration * stress[s];
     std::vector<double>& mean = over_time_[robot].emplace_back(sum);
-    for (double& value : mean) value /= static_cast<double>(done_);
+    for (double& value : mean) value /= now_;
   }
 
-  std::unique_ptr<Simulator> simulator_;
-  const std::vector<Body>& bodies_;
-  std::vector<State> states_;
+  const Experiment& experiment_;
+  Simulator& simulator_;
+  std::vector<Life> lives_;
   std::vector<Task> tasks_;
-  std::uint64_t done_ = 0;
-  std::vector<std::vector<double>> sums_;  // N, over steps
+  double now_ = 0;                         // s since birth
+  std::vector<std::vector<double>> sums_;  // N s
   std::vector<StressOverTime> over_time_;
 };
 
@@ -106,13 +110,17 @@ std::vector<double> cycle_times() { return {0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10}; }
 
 std::vector<StressOverTime> simulate(const Case& one, std::size_t robots, const std::string& device) {
   const Experiment experiment = read_experiment({one.experiment, {{"simulation.device", device, "--device"}}});
-  std::vector<Body> bodies = benchmark::random_robots(experiment, robots, fewest_springs);
+  const std::vector<Genome> genomes = benchmark::random_genomes(experiment, robots, fewest_springs);
+  std::vector<Newborn> newborns;
+  for (const Genome& genome : genomes) newborns.push_back({static_cast<std::uint32_t>(newborns.size()), 0, &genome});
+  const auto simulator = make_simulator(experiment);
+  std::vector<Life> born = Evaluation(experiment, *simulator).birth(newborns);
   if (one.muscles_still)
-    for (Body& body : bodies)
-      for (Material& material : body.materials) material.amplitude = 0;
-  Lives lives(experiment, bodies);
-  for (const double time : cycle_times()) lives.move_to(time);
-  return lives.take();
+    for (Life& life : born)
+      for (Material& material : life.living.body.materials) material.amplitude = 0;
+  Robots living(experiment, *simulator, std::move(born));
+  for (const double time : cycle_times()) living.move_to(time);
+  return living.take();
 }
 
 accuracy::Table overlap_table() {

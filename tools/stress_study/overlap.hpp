@@ -36,7 +36,8 @@ std::vector<Case> cases(const std::vector<std::string>& experiments);
 /// Cycle times, s; the last is that which the others are compared with.
 std::vector<double> cycle_times();
 
-/// The stress of `robots` random robots of a case; of those alone that have not diverged.
+/// The stress of `robots` random robots of a case, which have a muscle and enough springs, from birth on as their
+/// experiment simulates them; of those alone that have not diverged.
 std::vector<StressOverTime> simulate(const Case& one, std::size_t robots, const std::string& device);
 
 /// The rows of a case: for each cycle time, the shares found by all its robots.
