@@ -148,6 +148,16 @@ class Comparison(unittest.TestCase):
         self.assertLess(max(before.values()), budget)
         self.assertLess(len(rows), 16)
 
+    def test_experiments_are_added_without_a_folder_named(self):
+        # what is set for the second does not concern the first, whose run is there
+        for more in ([], [self.developing, "--set", "development.cycles=1"]):
+            command = [*COMPARE, PROGRAM, self.plain, *more, "--seeds", "1"]
+            done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        out = self.folder / "runs" / "compare-plain"
+        self.assertEqual({folder.name for folder in (out / "runs").iterdir()}, {"plain", "developing"})
+        self.assertIn("| `developing` |", (out / "report.md").read_text())
+
     def test_runs_of_something_else_are_refused(self):
         self.assertEqual(self.compare().returncode, 0)
         refused = self.compare("--set", "experiment.population=4")
@@ -163,6 +173,10 @@ class Comparison(unittest.TestCase):
         self.assertEqual(refused.returncode, 2)
         self.assertIn('did you mean "cycle_time"?', refused.stderr)
         self.assertFalse((self.folder / "out").exists())
+        for seeds in ("0", "-1", "two", "1.5"):
+            refused = self.compare(f"--seeds={seeds}")
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn(f"--seeds: {seeds}: expected a whole number of at least 1", refused.stderr)
 
     def test_different_objectives_are_not_compared(self):
         self.developing.write_text(DEVELOPING.replace('"distance"', '"actuation-work"'))
@@ -178,6 +192,15 @@ class Comparison(unittest.TestCase):
         refused = self.compare()
         self.assertEqual(refused.returncode, 2)
         self.assertIn("seed-1", refused.stderr)
+        self.assertIn("mend that and give the same command again", refused.stderr)
+
+    def test_a_run_that_is_killed_stops_the_comparison(self):
+        killed = self.folder / "killed"
+        killed.write_text(f'#!/bin/sh\n[ "$1" = run ] && kill -9 $$\nexec {PROGRAM} "$@"\n')
+        killed.chmod(0o755)
+        refused = subprocess.run([*COMPARE, killed, *self.command()[4:]], capture_output=True, text=True)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("ended with -9", refused.stderr)
         self.assertIn("the same command goes on from there", refused.stderr)
 
 
