@@ -1,10 +1,12 @@
 """Whole comparisons of experiments that take moments, also stopped ones."""
 
+import contextlib
 import csv
 import os
 import pathlib
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -85,6 +87,8 @@ class Comparison(unittest.TestCase):
         for name in names:
             self.assertEqual(report.count(f"| `{name}` |"), 3, report)
         self.assertIn("## After 20 evaluations", report)
+        self.assertRegex(report, r"\| `plain` \| 8 \| 40 \|.* of 2 \| . of 2 \| . of 2 \|")
+        self.assertNotIn("Not all runs", report)
         xml.etree.ElementTree.parse(self.folder / "out" / "chart.svg")
         header, *rows = self.results()
         self.assertEqual(len(rows), len(names) * 2 * 4)  # variants, seeds, generations
@@ -157,6 +161,15 @@ class Comparison(unittest.TestCase):
         out = self.folder / "runs" / "compare-plain"
         self.assertEqual({folder.name for folder in (out / "runs").iterdir()}, {"plain", "developing"})
         self.assertIn("| `developing` |", (out / "report.md").read_text())
+
+    def test_runs_of_another_build_are_named(self):
+        self.assertEqual(self.compare().returncode, 0)
+        with contextlib.closing(sqlite3.connect(self.folder / "out/runs/plain/seed-2/run.sqlite")) as run, run:
+            run.execute("UPDATE operators SET hash = 'another' WHERE kind = 'fitness'")
+        done = self.compare()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("**Not all runs were made by the same builds", done.stdout)
+        self.assertIn("  - 0.1.0 (another): 1 of `plain`\n", done.stdout)
 
     def test_runs_of_something_else_are_refused(self):
         self.assertEqual(self.compare().returncode, 0)

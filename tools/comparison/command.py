@@ -12,7 +12,7 @@ from .runs import Failure, Interrupted, Runs, make_variants, parse_setting, pars
 
 DESCRIPTION = """\
 Runs experiments over seeds and reports how their best robots compare, at equal evaluations and at equal spring
-evaluations: medians with bootstrap intervals, rank tests against the first experiment, effect sizes, failures, a chart.
+evaluations: medians and effect sizes with intervals, rank tests against the first experiment, failures, a chart.
 A stopped comparison goes on with the same command; more seeds, experiments or values may be added."""
 
 
@@ -67,8 +67,7 @@ def compare(arguments, program):
     setting = report.Setting(
         command=shlex.join(["tools/compare", *map(str, arguments)]),
         seeds=given.seeds,
-        devices=sorted({run["device"] for run in shown.values()}),
-        versions=sorted({run["evodevo"] for run in shown.values()}),
+        builds=report.builds(shown),
     )
     text = report.markdown(histories, objective, setting)
     (out / "report.md").write_text(text)
