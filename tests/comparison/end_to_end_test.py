@@ -1,10 +1,12 @@
 """Whole comparisons of experiments that take moments, also stopped ones."""
 
+import contextlib
 import csv
 import os
 import pathlib
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -85,6 +87,8 @@ class Comparison(unittest.TestCase):
         for name in names:
             self.assertEqual(report.count(f"| `{name}` |"), 3, report)
         self.assertIn("## After 20 evaluations", report)
+        self.assertRegex(report, r"\| `plain` \| 8 \| 40 \|.* of 2 \| . of 2 \| . of 2 \|")
+        self.assertNotIn("Not all runs", report)
         xml.etree.ElementTree.parse(self.folder / "out" / "chart.svg")
         header, *rows = self.results()
         self.assertEqual(len(rows), len(names) * 2 * 4)  # variants, seeds, generations
@@ -148,6 +152,25 @@ class Comparison(unittest.TestCase):
         self.assertLess(max(before.values()), budget)
         self.assertLess(len(rows), 16)
 
+    def test_experiments_are_added_without_a_folder_named(self):
+        # what is set for the second does not concern the first, whose run is there
+        for more in ([], [self.developing, "--set", "development.cycles=1"]):
+            command = [*COMPARE, PROGRAM, self.plain, *more, "--seeds", "1"]
+            done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        out = self.folder / "runs" / "compare-plain"
+        self.assertEqual({folder.name for folder in (out / "runs").iterdir()}, {"plain", "developing"})
+        self.assertIn("| `developing` |", (out / "report.md").read_text())
+
+    def test_runs_of_another_build_are_named(self):
+        self.assertEqual(self.compare().returncode, 0)
+        with contextlib.closing(sqlite3.connect(self.folder / "out/runs/plain/seed-2/run.sqlite")) as run, run:
+            run.execute("UPDATE operators SET hash = 'another' WHERE kind = 'fitness'")
+        done = self.compare()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("**Not all runs were made by the same builds", done.stdout)
+        self.assertIn("  - 0.1.0 (another): 1 of `plain`\n", done.stdout)
+
     def test_runs_of_something_else_are_refused(self):
         self.assertEqual(self.compare().returncode, 0)
         refused = self.compare("--set", "experiment.population=4")
@@ -163,6 +186,10 @@ class Comparison(unittest.TestCase):
         self.assertEqual(refused.returncode, 2)
         self.assertIn('did you mean "cycle_time"?', refused.stderr)
         self.assertFalse((self.folder / "out").exists())
+        for seeds in ("0", "-1", "two", "1.5"):
+            refused = self.compare(f"--seeds={seeds}")
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn(f"--seeds: {seeds}: expected a whole number of at least 1", refused.stderr)
 
     def test_different_objectives_are_not_compared(self):
         self.developing.write_text(DEVELOPING.replace('"distance"', '"actuation-work"'))
@@ -178,6 +205,15 @@ class Comparison(unittest.TestCase):
         refused = self.compare()
         self.assertEqual(refused.returncode, 2)
         self.assertIn("seed-1", refused.stderr)
+        self.assertIn("mend that and give the same command again", refused.stderr)
+
+    def test_a_run_that_is_killed_stops_the_comparison(self):
+        killed = self.folder / "killed"
+        killed.write_text(f'#!/bin/sh\n[ "$1" = run ] && kill -9 $$\nexec {PROGRAM} "$@"\n')
+        killed.chmod(0o755)
+        refused = subprocess.run([*COMPARE, killed, *self.command()[4:]], capture_output=True, text=True)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("ended with -9", refused.stderr)
         self.assertIn("the same command goes on from there", refused.stderr)
 
 

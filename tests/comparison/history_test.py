@@ -7,15 +7,17 @@ import xml.etree.ElementTree
 
 from comparison import chart, report
 from comparison.history import Objective, common_span, history
-from comparison.runs import Variant
+from comparison.runs import Run, Variant
 
 FAR = Objective("distance", "m", True)
 CHEAP = Objective("work", "J", False)
 
 
-def shown(best, springs=10, evaluations=5):
+def shown(best, springs=10, evaluations=5, marks=None):
     """What `show --json` says of a run in which every generation costs the same."""
+    verification = None if marks is None else {"marks": marks}
     return {
+        "best": None if set(best) == {None} else {"verification": verification},
         "generations": [
             {
                 "evaluations": evaluations * (i + 1),
@@ -73,6 +75,93 @@ class Reports(unittest.TestCase):
         second = report.standings(histories, FAR, "evaluations", 5)[1]
         self.assertIn("no difference is shown", second.verdict("first"))
 
+    def report(self, histories):
+        seeds = len(next(iter(histories.values())))
+        made = {"device": {"cpu": {}}, "evodevo": {"1": {}}}
+        return report.markdown(histories, FAR, report.Setting("tools/compare", seeds, made))
+
+    def test_too_few_seeds_bear_neither_interval_nor_verdict(self):
+        # the least p of 3 and 3 is 2 of C(6, 3) = 20, and two tests double that of 4 and 4, 2 of 70
+        cases = ((3, 2, "that takes 4."), (4, 2, None), (4, 3, "that takes 5."), (5, 3, None), (6, 3, None))
+        for seeds, experiments, need in cases:
+            some = {f"e{i}": [[i + seed / 10] for seed in range(seeds)] for i in range(experiments)}
+            text = self.report(self.histories(FAR, **some))
+            self.assertEqual(f"No verdicts: whatever the runs come to, {seeds} seeds" in text, need is not None, text)
+            self.assertEqual("`e1`, beside `e0`: better (A12 1.00," in text, need is None, text)
+            self.assertIn(need or "", text)
+            self.assertEqual("No intervals of medians: they take 6 seeds" in text, seeds < 6, text)
+            row = next(line for line in text.splitlines() if line.startswith("| `e1` |")).split(" | ")
+            self.assertEqual(row[2] == "-", seeds < 6, row)  # the median's interval
+            self.assertEqual(row[6] == "-", need is not None, row)  # that of A12
+
+    def test_a_single_experiment_is_compared_with_nothing(self):
+        text = self.report(self.histories(FAR, alone=[[i, i + 1] for i in range(6)]))
+        self.assertIn("## After 10 evaluations\n\n|  | median distance |", text)
+        for absent in ("A12", "Holm", "beside", "\n\n\n"):
+            self.assertNotIn(absent, text)
+
+    def test_no_cost_is_compared_at_which_a_run_has_no_generation(self):
+        # all of the first is over before the first generation of the second
+        histories = {
+            Variant(pathlib.Path("small")): [history(shown([1, 2], springs=10), FAR)] * 6,
+            Variant(pathlib.Path("large")): [history(shown([5, 6], springs=30), FAR)] * 6,
+        }
+        text = self.report(histories)
+        springs, evaluations = text.split("## After ")[1:3]
+        self.assertIn("20 spring evaluations\n\nNot compared: a run of `small` ends before the first", springs)
+        self.assertIn("every run of `large` is complete. Let `small` run longer", springs)
+        self.assertNotIn("none", springs)
+        self.assertNotIn("worse", text)
+        self.assertIn("- `large`, beside `small`: better", evaluations)
+        self.assertEqual(chart.svg(histories, FAR).count('stroke-dasharray="1 4"'), 1)  # where evaluations are compared
+
+    def test_no_cost_is_compared_within_one_experiment_either(self):
+        runs = [history(shown([1], springs=10), FAR), history(shown([1], springs=11), FAR)]
+        histories = {Variant(pathlib.Path("uneven")): runs}
+        self.assertIn("Not compared: a run of `uneven`", report.section(histories, FAR, "spring_evaluations"))
+        self.assertEqual(chart.svg(histories, FAR).count("<polyline"), 1)  # that over evaluations
+
+    def test_generations_are_told(self):
+        histories = {
+            Variant(pathlib.Path("cheap")): [history(shown([1] * 9, springs=10), FAR)] * 2,
+            Variant(pathlib.Path("dear")): [history(shown([1] * 2, springs=30), FAR)] * 2,
+        }
+        text = report.section(histories, FAR, "spring_evaluations")
+        self.assertIn("| evaluations by then | generations |", text)
+        self.assertIn("| `cheap` | 1 | - | 30 | 6 |", text)
+        self.assertIn("| `dear` | 1 | - | 10 | 2 |", text)
+        self.assertIn("| `cheap` | 18 | 90 |", report.whole_runs(histories))
+
+    def test_what_became_of_the_best(self):
+        marks = [[], [], ["artefact"], ["passive"], ["artefact", "passive"], None]
+        runs = [history(shown([1], marks=some), FAR) for some in marks]
+        histories = {
+            Variant(pathlib.Path("some")): [*runs, history(shown([None]), FAR)],
+            Variant(pathlib.Path("none")): runs[-1:],
+        }
+        some, none = (line.split(" | ")[-3:] for line in report.whole_runs(histories).splitlines()[-2:])
+        self.assertEqual(some, ["2 of 5", "2 of 5", "2 of 5 |"])
+        self.assertEqual(none, ["not verified", "-", "- |"])
+
+    def test_other_builds_are_named(self):
+        def made(run_hash, version="0.1.0", device="cpu"):
+            operator = {"kind": "fitness", "name": "distance", "version": "0.1.0", "hash": run_hash}
+            return {"device": device, "evodevo": version, "operators": [operator]}
+
+        evo, devo = Variant(pathlib.Path("evo")), Variant(pathlib.Path("devo"))
+        runs = [Run(variant, seed, pathlib.Path()) for seed in (1, 2) for variant in (evo, devo)]
+        alike = report.builds({run: made("aa") for run in runs})
+        self.assertEqual(report.differences(alike), "")
+        text = report.differences(report.builds(dict(zip(runs, [made("aa"), made("bb"), made("bb"), made("bb")]))))
+        self.assertIn("- fitness `distance`:\n  - 0.1.0 (aa): 1 of `evo`\n", text)
+        self.assertIn("  - 0.1.0 (bb): 2 of `devo`, 1 of `evo`\n", text)
+        self.assertNotIn("device:", text)
+        others = [made("aa"), made("aa", version="0.2.0"), made("aa", device="cuda"), made("aa")]
+        text = report.differences(report.builds(dict(zip(runs, others))))
+        self.assertIn("- device:\n  - cpu: 1 of `evo`, 2 of `devo`\n  - cuda: 1 of `evo`\n", text)
+        self.assertIn("- evodevo:\n  - 0.1.0: 2 of `evo`, 1 of `devo`\n  - 0.2.0: 1 of `devo`\n", text)
+        self.assertNotIn("distance", text)
+
     def test_costs_differ_between_the_axes(self):
         # the second spends three times as much on each generation, so it has a third of them at equal cost
         first = [history(shown([1, 2, 3], springs=10), FAR)]
@@ -80,11 +169,11 @@ class Reports(unittest.TestCase):
         histories = {Variant(pathlib.Path("first")): first, Variant(pathlib.Path("second")): second}
         text = report.section(histories, FAR, "spring_evaluations")
         self.assertIn("## After 30 spring evaluations", text)
-        self.assertIn("| `second` | 10 | 10 to 10 | 5 | 1.00 |", text)
+        self.assertIn("| `second` | 10 | - | 5 | 1 | 1.00 |", text)
         self.assertIn("| `second` | 30 |", report.section(histories, FAR, "evaluations"))
 
     def test_runs_without_a_fitness_are_named_so(self):
-        histories = self.histories(FAR, first=[[1, 2], [1, 2]], second=[[None, None], [None, None]])
+        histories = self.histories(FAR, first=[[1, 2]] * 6, second=[[None, None]] * 6)
         text = report.section(histories, FAR, "evaluations")
         self.assertIn("| `second` | none | none to none |", text)
         self.assertNotIn("inf", text + chart.svg(histories, FAR))

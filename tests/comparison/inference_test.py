@@ -1,7 +1,9 @@
 """Statistics against closed forms, published values and enumeration."""
 
+import collections
 import itertools
 import math
+import random
 import unittest
 
 from comparison import inference
@@ -84,23 +86,76 @@ class Medians(unittest.TestCase):
         self.assertEqual(inference.median([4, 1, 3, 2]), 2.5)
         self.assertEqual(inference.median([-math.inf, -math.inf, 1]), -math.inf)
 
-    def test_resamples_are_distributed_as_the_binomial_says(self):
-        # with n odd the median of a resample is at most the k-th value where most of the n draws are
-        for n in (5, 11):
-            middles = inference.resampled_middles(n)
-            for k in range(1, n):
-                share = sum(count for (place, _), count in middles.items() if place < k) / inference.RESAMPLES
-                exact = sum(
-                    math.comb(n, i) * (k / n) ** i * (1 - k / n) ** (n - i) for i in range((n + 1) // 2, n + 1)
-                )
-                deviation = math.sqrt(exact * (1 - exact) / inference.RESAMPLES)
-                self.assertLess(abs(share - exact), 5 * deviation, f"n {n}, k {k}")
+    def test_the_middles_are_those_of_all_resamples(self):
+        for size in range(1, 7):
+            resamples = [sorted(places) for places in itertools.product(range(size), repeat=size)]
+            counts = collections.Counter((places[(size - 1) // 2], places[size // 2]) for places in resamples)
+            middles = inference.resampled_middles(size)
+            for places in {*counts, *middles}:
+                share = counts[places] / len(resamples)
+                self.assertAlmostEqual(middles.get(places, 0), share, places=14, msg=f"{size}: {places}")
+
+    def test_the_middles_of_many_values(self):
+        # their mean place is the middle one, by symmetry; the deviation of a median of n tends to 1 / (2 sqrt n)
+        for size in (40, 99, 200):
+            middles = inference.resampled_middles(size)
+            self.assertAlmostEqual(math.fsum(middles.values()), 1, places=12)
+            mean = math.fsum((i + j) / 2 * p for (i, j), p in middles.items())
+            self.assertAlmostEqual(mean, (size - 1) / 2, places=9)
+            variance = math.fsum(((i + j) / 2 - mean) ** 2 * p for (i, j), p in middles.items()) / size**2
+            self.assertAlmostEqual(math.sqrt(variance) * 2 * math.sqrt(size), 1, delta=2 / size)
 
     def test_intervals(self):
         # by the binomial, a resample's median is at most the 2nd of 11 values with 0.7 %, at most the 3rd with 5.1 %
         self.assertEqual(inference.median_interval(range(11, 0, -1)), (3, 9))
-        self.assertEqual(inference.median_interval([5]), (5, 5))
-        self.assertEqual(inference.median_interval([-math.inf, 1, 2])[0], -math.inf)
+        self.assertEqual(inference.median_interval([-math.inf] * 5 + [1, 2])[0], -math.inf)
+
+    def test_too_few_values_have_no_interval(self):
+        # the median lies outside of all n values with probability 2 / 2^n: 6.3 % of 5, 3.1 % of 6
+        self.assertIsNone(inference.median_interval(range(5)))
+        low, high = inference.median_interval(range(6))
+        self.assertLess(low, high)
+
+
+class Superiority(unittest.TestCase):
+    def test_the_bounds_are_where_a_standard_deviation_of_hanley_and_mcneil_says(self):
+        for size, a12 in itertools.product((4, 10, 25), (0, 0.3, 0.5, 0.97)):
+            for bound in inference.superiority_interval(a12, size):
+                if bound in (0, 1):
+                    self.assertEqual(bound, a12)  # nothing lies beyond
+                    continue
+                q1, q2 = bound / (2 - bound), 2 * bound**2 / (1 + bound)
+                others = (size - 1) * (q1 - bound**2) + (size - 1) * (q2 - bound**2)
+                deviation = math.sqrt(bound * (1 - bound) + others) / size
+                self.assertAlmostEqual(abs(a12 - bound) / deviation, 1.959964, places=6)
+
+    def test_at_no_difference_it_agrees_with_the_rank_sum_test(self):
+        # without ties and continuity correction, that test's z is (A12 - 0.5) / sqrt((2 n + 1) / (12 n^2))
+        for size in (5, 10, 20):
+            step = 1.959964 * math.sqrt((2 * size + 1) / (12 * size**2))
+            self.assertGreater(inference.superiority_interval(0.5 + 1.001 * step, size)[0], 0.5)
+            self.assertLess(inference.superiority_interval(0.5 + 0.999 * step, size)[0], 0.5)
+
+    def test_it_holds_the_truth_as_often_as_it_says(self):
+        # of exponential samples, whose A12 is known: the second one's rate over the sum of both
+        draw = random.Random(1)
+        size, samples = 10, 2000
+        for rate in (1, 3, 10):
+            truth, held = rate / (1 + rate), 0
+            for _ in range(samples):
+                a, b = ([draw.expovariate(r) for _ in range(size)] for r in (1, rate))
+                low, high = inference.superiority_interval(inference.superiority(a, b), size)
+                held += low <= truth <= high
+            self.assertAlmostEqual(held / samples, 0.95, delta=0.02, msg=f"rate {rate}")
+
+
+class FewRuns(unittest.TestCase):
+    def test_verdicts_take_as_many_runs_as_the_most_extreme_outcome_does(self):
+        for tests in (1, 2, 5, 30):
+            size = inference.runs_for_verdict(tests)
+            for runs, possible in ((size - 1, False), (size, True)):
+                p = inference.rank_sum_test(range(runs), range(runs, 2 * runs))
+                self.assertEqual(inference.holm([p] * tests)[0] < inference.SIGNIFICANT, possible, f"{tests}, {runs}")
 
 
 if __name__ == "__main__":

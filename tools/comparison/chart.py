@@ -1,4 +1,4 @@
-"""The chart of a comparison: the median of the best so far, with its bootstrap interval, over both kinds of cost."""
+"""The chart of a comparison: the median of the best so far, with its interval, over both kinds of cost."""
 
 import html
 import itertools
@@ -6,7 +6,7 @@ import math
 
 from . import inference
 from .history import common_span
-from .report import AXES, number
+from .report import AXES, INTERVAL, number
 
 # told apart by people with any kind of colour vision (Okabe & Ito 2008); then dashed
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"]
@@ -34,11 +34,14 @@ def curve(runs, axis):
     """(cost, median, low, high) from where all of a variant's runs have a fitness, until the first of them ends."""
     start, end = common_span(runs, axis)
     points = []
+    if end < start:
+        return points
     for i in range(POINTS + 1):
         cost = start + (end - start) * i / POINTS
         scores = [run.at(axis, cost) for run in runs]
         if all(map(math.isfinite, scores)):
-            points.append((cost, inference.median(scores), *inference.median_interval(scores)))
+            middle = inference.median(scores)
+            points.append((cost, middle, *(inference.median_interval(scores) or (middle, middle))))
     return points
 
 
@@ -124,7 +127,10 @@ def panel(histories, curves, axis, x, low, high):
     """One panel; `curves` leave out variants in which not every run has a fitness."""
     ends = [common_span(runs, axis)[1] for runs in histories.values()]
     axes = Panel(x, max(ends), low, high)
-    parts = axes.frame(AXES[axis]) + axes.compared_at(min(ends))
+    parts = axes.frame(AXES[axis])
+    start, end = common_span([run for runs in histories.values() for run in runs], axis)
+    if start <= end:
+        parts += axes.compared_at(end)
     for _, points, style in curves:
         parts += axes.draw(points, *style)
     return parts + axes.labels([(label, points) for label, points, _ in curves], [style for *_, style in curves])
@@ -145,7 +151,9 @@ def svg(histories, objective):
     margin = 60 + 7 * max(len(variant.label) for variant in histories)  # for the labels
     step = LEFT + WIDTH + margin + GAP
     width, height = 2 * step - GAP, TOP + HEIGHT + BOTTOM
-    parts = [text(LEFT, TOP - 22, f"best {objective.name} so far ({objective.unit}), median and 95 % interval", 13)]
+    seeds = len(next(iter(histories.values())))
+    drawn = f"median and {INTERVAL}" if seeds >= inference.INTERVAL_FROM else "median"
+    parts = [text(LEFT, TOP - 22, f"best {objective.name} so far ({objective.unit}), {drawn}", 13)]
     for column, axis in enumerate(AXES):
         parts += panel(histories, curves[axis], axis, LEFT + column * step, low, high)
     return (

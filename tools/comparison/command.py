@@ -8,19 +8,18 @@ import sys
 
 from . import chart, report
 from .history import Objective, history
-from .runs import Failure, Interrupted, Runs, make_variants, parse_sweep
+from .runs import Failure, Interrupted, Runs, make_variants, parse_setting, parse_sweep
 
 DESCRIPTION = """\
 Runs experiments over seeds and reports how their best robots compare, at equal evaluations and at equal spring
-evaluations: medians with bootstrap intervals, rank tests against the first experiment, effect sizes, failures, a chart.
+evaluations: medians and effect sizes with intervals, rank tests against the first experiment, failures, a chart.
 A stopped comparison goes on with the same command; more seeds, experiments or values may be added."""
 
 
 def positive(text):
-    value = int(text)
-    if value < 1:
-        raise ValueError
-    return value
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text}: expected a whole number of at least 1")
+    return int(text)
 
 
 def parse(arguments):
@@ -36,9 +35,9 @@ def parse(arguments):
     add(
         "--sweep", metavar="KEY=V,V,…", action="append", default=[], help="values in turn, where KEY's table is there"
     )
-    add("--set", metavar="KEY=VALUE", action="append", default=[], help="a key of all experiments")
+    add("--set", metavar="KEY=VALUE", action="append", default=[], help="a value, where KEY's table is there")
     add("--jobs", metavar="N", type=positive, default=1, help="runs at once, which share the cores (%(default)s)")
-    add("--out", metavar="DIR", type=pathlib.Path, help="default: runs/compare-EXPERIMENT-EXPERIMENT…")
+    add("--out", metavar="DIR", type=pathlib.Path, help="default: runs/compare-FIRST, FIRST the first experiment")
     return parser.parse_args(arguments)
 
 
@@ -53,9 +52,10 @@ def first_objective(shown):
 
 def compare(arguments, program):
     given = parse(arguments)
-    variants = make_variants(given.experiments, [parse_sweep(text) for text in given.sweep])
-    out = given.out or pathlib.Path("runs") / "-".join(["compare", *(file.stem for file in given.experiments)])
-    runs = Runs(program, out, variants, given.seeds, given.set)
+    sweeps, settings = map(parse_sweep, given.sweep), map(parse_setting, given.set)
+    variants = make_variants(given.experiments, list(sweeps), list(settings))
+    out = given.out or pathlib.Path("runs") / f"compare-{given.experiments[0].stem}"
+    runs = Runs(program, out, variants, given.seeds)
     runs.check()
     runs.make(given.jobs, lambda line: print(line, flush=True))
 
@@ -67,8 +67,7 @@ def compare(arguments, program):
     setting = report.Setting(
         command=shlex.join(["tools/compare", *map(str, arguments)]),
         seeds=given.seeds,
-        devices=sorted({run["device"] for run in shown.values()}),
-        versions=sorted({run["evodevo"] for run in shown.values()}),
+        builds=report.builds(shown),
     )
     text = report.markdown(histories, objective, setting)
     (out / "report.md").write_text(text)

@@ -26,12 +26,14 @@ class Objective:
 class History:
     """One run. Each list begins before the first generation; all but `best` add up over generations."""
 
+    generations: list
     evaluations: list
     spring_evaluations: list
     best: list
     diverged: list
     invalid: list
     seconds: list
+    marks: list | None  # of the whole run's best robot, such as "artefact"; None where it was not verified
 
     def at(self, axis, cost, what="best"):
         """`what` after the last generation that was complete at that cost."""
@@ -47,16 +49,19 @@ def history(shown, objective):
 
     better = max if objective.maximise else min
     scores = [objective.worst if generation["best"] is None else generation["best"] for generation in generations]
+    verification = (shown["best"] or {}).get("verification")
     return History(
+        generations=list(range(len(generations) + 1)),
         evaluations=[0, *(generation["evaluations"] for generation in generations)],
         spring_evaluations=summed("spring_evaluations"),
         best=list(itertools.accumulate(scores, better, initial=objective.worst)),
         diverged=summed("diverged"),
         invalid=summed("invalid"),
         seconds=summed("wall_time"),
+        marks=verification and verification["marks"],
     )
 
 
 def common_span(histories, axis):
-    """From where on each of these runs has a generation, and until where all of them go."""
+    """The cost from which on each of these runs has a generation, and that which all reach, which may be less."""
     return max(getattr(h, axis)[1] for h in histories), min(getattr(h, axis)[-1] for h in histories)

@@ -1,5 +1,6 @@
 """A comparison as text: report.md for readers, results.csv for other programs."""
 
+import collections
 import csv
 import dataclasses
 import math
@@ -9,7 +10,7 @@ from . import inference
 from .history import common_span
 
 AXES = {"spring_evaluations": "spring evaluations", "evaluations": "evaluations"}
-SIGNIFICANT = 0.05
+INTERVAL = f"{100 * inference.LEVEL:.0f} % interval"
 
 METHOD = f"""\
 ## How to read this
@@ -18,15 +19,20 @@ A run's score is the best first objective of any robot so far, counted at the en
 is that of the last generation complete by then, without interpolation between generations. A run without a fitness is
 below all others. One spring evaluation is one spring in one time step, so development pays for its simulation.
 
-Intervals are of the median over seeds: {100 * inference.LEVEL:.0f} %, percentile bootstrap, {inference.RESAMPLES} \
-resamples of the runs with a fixed seed.
+Intervals of medians over seeds are by the percentile bootstrap, from the exact distribution of the median over all
+resamples of the runs.
 
+The best robot of a whole run, where it was verified (`[experiment] verify`), held, or is an artefact of the time step,
+passive, or both.
+"""
+
+TESTS = f"""\
 A12 is the probability that a run is better than one of the first experiment, ties counting half: 0.5 is no difference;
-0.56, 0.64 and 0.71 (or 0.44, 0.36 and 0.29) count as a small, medium and large one (Vargha & Delaney 2000).
+0.56, 0.64 and 0.71 (or 0.44, 0.36 and 0.29) count as a small, medium and large one (Vargha & Delaney 2000). Its
+interval is that of Newcombe (2006, method 5) and allows for this row alone.
 
-p is that of the two-sided Mann-Whitney U test, exact up to {inference.EXACT_UP_TO} runs of both together, else by the \
-normal approximation,
-always with ties. p (Holm) allows for all rows of its table. Below {SIGNIFICANT} a difference counts as shown.
+p is that of the two-sided Mann-Whitney U test, exact up to {inference.EXACT_UP_TO} runs of both together, else normal,
+always with ties. p (Holm) allows for all rows of its table. Below {inference.SIGNIFICANT} a difference counts as shown.
 """
 
 
@@ -36,8 +42,19 @@ class Setting:
 
     command: str
     seeds: int
-    devices: list
-    versions: list
+    builds: dict  # of devices, evodevo and operators: which there are, and of each how many runs of which variant
+
+
+def builds(shown):
+    """What runs were made by, from what `evodevo show --json` says of each."""
+    made = collections.defaultdict(lambda: collections.defaultdict(collections.Counter))
+    for run, said in shown.items():
+        by = {"device": said["device"], "evodevo": said["evodevo"]}
+        for operator in said["operators"]:
+            by[f"{operator['kind']} `{operator['name']}`"] = f"{operator['version']} ({operator['hash']})"
+        for what, build in by.items():
+            made[what][build][run.variant.name] += 1
+    return made
 
 
 def number(value):
@@ -67,11 +84,25 @@ class Standing:
     p: float
     holm: float
 
+    def achieved(self, spent, generations):
+        """Its row of a table: what it came to, and at what median cost."""
+        bounds = inference.median_interval(self.scores)
+        interval = "{} to {}".format(*map(number, bounds)) if bounds else "-"
+        score, *costs = (number(inference.median(values)) for values in (self.scores, spent, generations))
+        return [f"`{self.name}`", score, interval, *costs]
+
+    def interval(self):
+        return "{:.2f} to {:.2f}".format(*inference.superiority_interval(self.a12, len(self.scores)))
+
+    def tests(self, judged):
+        """The rest of its row: how it stands beside the first."""
+        return [f"{self.a12:.2f}", self.interval() if judged else "-", f"{self.p:.2g}", f"{self.holm:.2g}"]
+
     def verdict(self, baseline):
         """One sentence that claims no more than the test bears."""
         beside = f"`{self.name}`, beside `{baseline}`: "
-        numbers = f"A12 {self.a12:.2f}, p (Holm) {self.holm:.2g}"
-        if self.holm >= SIGNIFICANT:
+        numbers = f"A12 {self.a12:.2f}, {self.interval()}, p (Holm) {self.holm:.2g}"
+        if self.holm >= inference.SIGNIFICANT:
             return f"- {beside}no difference is shown ({numbers})."
         return f"- {beside}{'better' if self.a12 > 0.5 else 'worse'} ({numbers})."
 
@@ -88,22 +119,62 @@ def standings(histories, objective, axis, cost):
     ]
 
 
+def verdicts_possible(seeds, experiments):
+    return seeds >= inference.runs_for_verdict(experiments - 1)
+
+
+def too_few_seeds(seeds, experiments):
+    """What is left out because so few runs could not bear it."""
+    said = ""
+    if seeds < inference.INTERVAL_FROM:
+        said += f"No intervals of medians: they take {inference.INTERVAL_FROM} seeds (`--seeds`).\n"
+    if not verdicts_possible(seeds, experiments):
+        said += (
+            f"No verdicts: whatever the runs come to, {seeds} seeds cannot show a difference between {experiments} "
+            f"experiments; that takes {inference.runs_for_verdict(experiments - 1)}.\n"
+        )
+    return said
+
+
+def too_early(histories, axis, cost):
+    """Why nothing is compared at a cost at which some run has no complete generation yet."""
+    late = " and ".join(f"`{variant.name}`" for variant, runs in histories.items() if common_span(runs, axis)[0] > cost)
+    ending = min(histories, key=lambda variant: common_span(histories[variant], axis)[1]).name
+    return (
+        f"Not compared: a run of `{ending}` ends before the first generation of every run of {late} is complete. "
+        f"Let `{ending}` run longer (`experiment.evaluations`, `experiment.spring_evaluations`), or give {late} a "
+        "smaller `experiment.population`.\n"
+    )
+
+
 def section(histories, objective, axis):
     """The comparison at the cost that every run has reached."""
-    other = next(name for name in AXES if name != axis)
-    _, cost = common_span([history for runs in histories.values() for history in runs], axis)
+    start, cost = common_span([history for runs in histories.values() for history in runs], axis)
+    title = f"## After {number(cost)} {AXES[axis]}\n\n"
+    if cost < start:
+        return title + too_early(histories, axis, cost)
     first, *others = all_standings = standings(histories, objective, axis, cost)
-    rows = []
-    for standing, runs in zip(all_standings, histories.values()):
-        low, high = inference.median_interval(standing.scores)
-        tests = [f"{standing.a12:.2f}", f"{standing.p:.2g}", f"{standing.holm:.2g}"]
-        spent = inference.median([history.at(axis, cost, other) for history in runs])
-        median = number(inference.median(standing.scores))
-        beside = ["-"] * 3 if standing is first else tests
-        rows.append([f"`{standing.name}`", median, f"{number(low)} to {number(high)}", number(spent), *beside])
-    header = ["", f"median {objective.name}", "95 % interval", f"{AXES[other]} by then", "A12", "p", "p (Holm)"]
-    verdicts = "\n".join(standing.verdict(first.name) for standing in others)
-    return f"## After {number(cost)} {AXES[axis]}\n\n{verdicts}\n\n{table(header, rows)}"
+    other = next(name for name in AXES if name != axis)
+    header = ["", f"median {objective.name}", INTERVAL, f"{AXES[other]} by then", "generations"]
+    rows = [
+        standing.achieved(*([history.at(axis, cost, what) for history in runs] for what in (other, "generations")))
+        for standing, runs in zip(all_standings, histories.values())
+    ]
+    if not others:
+        return title + table(header, rows)
+    judged = verdicts_possible(len(first.scores), len(histories))
+    verdicts = "".join(f"{standing.verdict(first.name)}\n" for standing in others) + "\n" if judged else ""
+    tests = [["-"] * 4, *(standing.tests(judged) for standing in others)]
+    return title + verdicts + table(header + ["A12", INTERVAL, "p", "p (Holm)"], map(list.__add__, rows, tests))
+
+
+def verified(runs):
+    """Of the best robots that were verified, how many held, are artefacts and are passive."""
+    marks = [history.marks for history in runs if history.marks is not None]
+    if not marks:
+        return ["not verified", "-", "-"]
+    counts = [marks.count([]), *(sum(mark in some for some in marks) for mark in ("artefact", "passive"))]
+    return [f"{count} of {len(marks)}" for count in counts]
 
 
 def whole_runs(histories):
@@ -114,25 +185,50 @@ def whole_runs(histories):
         rows.append(
             [
                 f"`{variant.name}`",
+                str(sum(history.generations[-1] for history in runs)),
                 str(evaluations),
                 number(sum(history.spring_evaluations[-1] for history in runs)),
                 share(sum(history.diverged[-1] for history in runs), evaluations),
                 share(sum(history.invalid[-1] for history in runs), evaluations),
                 f"{sum(history.seconds[-1] for history in runs) / 3600:.2f}",
+                *verified(runs),
             ]
         )
-    header = ["", "evaluations", "spring evaluations", "diverged", "invalid", "hours"]
+    header = ["", "generations", "evaluations", "spring evaluations", "diverged", "invalid", "hours"]
+    header += ["best held", "artefact", "passive"]
     return f"## All runs, each to its end\n\n{table(header, rows)}"
+
+
+def differences(made):
+    """Where runs were not all made by the same: there, differences between experiments may come from it."""
+    lines = ""
+    for what in [what for what, several in made.items() if len(several) > 1]:
+        lines += f"- {what}:\n"
+        for build, runs in made[what].items():
+            lines += f"  - {build}: " + ", ".join(f"{count} of `{name}`" for name, count in runs.items()) + "\n"
+    return lines and (
+        "**Not all runs were made by the same builds and devices.** What the experiments differ in may come from that. "
+        f"To make runs anew, remove their folders and give the same command.\n\n{lines}"
+    )
 
 
 def markdown(histories, objective, setting):
     head = (
         f"# {objective.name} ({objective.unit}, {'more' if objective.maximise else 'less'} is better)\n\n"
-        f"{setting.seeds} seeds of each experiment, on {' and '.join(setting.devices)}, evodevo "
-        f"{' and '.join(setting.versions)}. Made by\n\n```sh\n{setting.command}\n```\n\n"
-        "![Best so far over spring evaluations and over evaluations](chart.svg)\n"
+        f"{setting.seeds} seeds of each experiment, on {' and '.join(sorted(setting.builds['device']))}, evodevo "
+        f"{' and '.join(sorted(setting.builds['evodevo']))}. Made by\n\n```sh\n{setting.command}\n```\n"
     )
-    return "\n".join([head, *(section(histories, objective, axis) for axis in AXES), whole_runs(histories), METHOD])
+    parts = [
+        head,
+        differences(setting.builds),
+        too_few_seeds(setting.seeds, len(histories)),
+        "![Best so far over spring evaluations and over evaluations](chart.svg)\n",
+        *(section(histories, objective, axis) for axis in AXES),
+        whole_runs(histories),
+        METHOD,
+        TESTS if len(histories) > 1 else "",
+    ]
+    return "\n".join(part for part in parts if part)
 
 
 def write_csv(file, histories):

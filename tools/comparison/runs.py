@@ -1,5 +1,6 @@
 """Which runs a comparison is made of, and making them."""
 
+import collections
 import dataclasses
 import itertools
 import json
@@ -10,6 +11,11 @@ import signal
 import subprocess
 import tomllib
 import urllib.parse
+
+STOPPED = 130  # exit status of a run that finished its generation and can go on
+
+# what these hold has defaults where they are left out, while any other table brings something into being
+TABLES_WITH_DEFAULTS = ("materials", "plugins", "simulation")
 
 
 class Failure(Exception):
@@ -22,16 +28,17 @@ class Interrupted(Exception):
 
 @dataclasses.dataclass(frozen=True)
 class Variant:
-    """An experiment with values of the swept keys."""
+    """An experiment with values of the swept keys and of those that are set."""
 
     experiment: pathlib.Path
     swept: tuple = ()  # of (key, value)
+    settings: tuple = ()  # likewise
 
     @property
     def name(self):
         """Also the name of its folder."""
         parts = [self.experiment.stem, *(f"{key}={value}" for key, value in self.swept)]
-        return ",".join(urllib.parse.quote(part, safe="=+ ") for part in parts)
+        return ",".join(urllib.parse.quote(part, safe="=+ [],") for part in parts)
 
     @property
     def label(self):
@@ -50,21 +57,53 @@ class Run:
         return self.folder.with_name(self.folder.name + ".log")
 
 
+def split_values(text):
+    """What stands between commas outside brackets and quotes; nothing where one of these is not closed."""
+    values, depth, quote = [""], 0, ""
+    for character in text:
+        if quote:
+            quote = "" if character == quote else quote
+        elif character in "\"'":
+            quote = character
+        else:
+            depth += (character in "[{") - (character in "]}")
+        if character == "," and depth == 0 and not quote:
+            values.append("")
+        else:
+            values[-1] += character
+    return [] if depth or quote else values
+
+
+def refuse_seed(key, option):
+    if key == "experiment.seed":
+        raise Failure(f"{option}: every run has a seed of its own; say how many with --seeds")
+
+
 def parse_sweep(text):
     """`KEY=VALUE,VALUE,…` as the key and its values."""
     key, _, values = text.partition("=")
-    values = values.split(",")
-    if not key or not all(values):
+    values = split_values(values)
+    if not key or not values or not all(values):
         raise Failure(f"--sweep {text}: expected KEY=VALUE,VALUE,…")
     if len(set(values)) < len(values):
         raise Failure(f"--sweep {text}: a value is there twice")
-    if key == "experiment.seed":
-        raise Failure(f"--sweep {text}: every run has a seed of its own; say how many with --seeds")
+    refuse_seed(key, f"--sweep {text}")
     return key, values
 
 
+def parse_setting(text):
+    """`KEY=VALUE` as the key and its value."""
+    key, equals, value = text.partition("=")
+    if not key or not equals:
+        raise Failure(f"--set {text}: expected KEY=VALUE")
+    refuse_seed(key, f"--set {text}")
+    return key, value
+
+
 def has_table_of(experiment, key):
-    """Whether the file has the table that the key belongs to."""
+    """Whether the experiment has the table that the key belongs to; it has those with defaults without naming them."""
+    if key.split(".")[0] in TABLES_WITH_DEFAULTS:
+        return True
     node = experiment
     for part in key.split(".")[:-1]:
         if isinstance(node, list):
@@ -81,28 +120,48 @@ def read_toml(file):
         raise Failure(f"{file}: cannot be read: {error}") from None
 
 
-def make_variants(files, sweeps):
-    """Each experiment with all combinations of the values of those keys whose table it has."""
-    variants = []
+def read_experiments(files):
+    experiments = {}
     for file in files:
-        if any(file.stem == other.experiment.stem for other in variants):
+        if any(file.stem == other.stem for other in experiments):
             raise Failure(f"{file}: another experiment has the name {file.stem} already; rename one of them")
-        experiment = read_toml(file)
-        here = [[(key, value) for value in values] for key, values in sweeps if has_table_of(experiment, key)]
-        variants += [Variant(file, swept) for swept in itertools.product(*here)]
-    for key, _ in sweeps:
-        if not any(key in dict(variant.swept) for variant in variants):
+        experiments[file] = read_toml(file)
+    return experiments
+
+
+def refuse_keys(experiments, sweeps, settings):
+    """Refuses a key that is given twice, and one that nothing would come of."""
+    given = [*((key, "--sweep") for key, _ in sweeps), *((key, "--set") for key, _ in settings)]
+    for key, count in collections.Counter(key for key, _ in given).items():
+        if count > 1:
+            raise Failure(f"{key}: given {count} times by --sweep and --set; give it once")
+    for key, option in given:
+        if not any(has_table_of(experiment, key) for experiment in experiments):
             table = key.rpartition(".")[0]
-            raise Failure(f"--sweep {key}: no experiment has a table [{table}]; add it to those that are to be swept")
+            raise Failure(f"{option} {key}: no experiment has a table [{table}]; add it to those that should have it")
+
+
+def make_variants(files, sweeps, settings):
+    """Each experiment with all combinations of the values of those keys whose table it has."""
+    experiments = read_experiments(files)
+    refuse_keys(experiments.values(), sweeps, settings)
+    variants = []
+    for file, experiment in experiments.items():
+        values = [[(key, value) for value in values] for key, values in sweeps if has_table_of(experiment, key)]
+        fixed = tuple((key, value) for key, value in settings if has_table_of(experiment, key))
+        variants += [Variant(file, swept, fixed) for swept in itertools.product(*values)]
     return variants
+
+
+def overrides(variant):
+    return [word for key, value in (*variant.settings, *variant.swept) for word in ("--set", f"{key}={value}")]
 
 
 class Runs:
     """The runs of a comparison, in a folder of their own for each variant. What is there is not made again."""
 
-    def __init__(self, program, out, variants, seeds, settings):
+    def __init__(self, program, out, variants, seeds):
         self._program = str(program)
-        self._settings = settings
         self._variants = variants
         # seed by seed, so that what is there at any time compares all variants
         self.all = [
@@ -114,9 +173,10 @@ class Runs:
     def check(self):
         """Refuses experiments that cannot be run, and folders with runs of something else."""
         for variant in self._variants:
-            self._evodevo("check", variant.experiment, *self._overrides(variant))
+            self._evodevo("check", variant.experiment, *overrides(variant))
         for variant, folder in {run.variant: run.folder.parent for run in self.all}.items():
-            made_from = {"experiment": variant.experiment.read_text(), "set": self._settings}
+            settings = [f"{key}={value}" for key, value in variant.settings]
+            made_from = {"experiment": variant.experiment.read_text(), "set": settings}
             record = folder / "made-from.json"
             if not record.exists():
                 folder.mkdir(parents=True, exist_ok=True)
@@ -164,16 +224,12 @@ class Runs:
         else:
             shutil.rmtree(run.folder, ignore_errors=True)
             threads = ["--threads", max(1, (os.cpu_count() or 1) // jobs)] if jobs > 1 else []
-            overrides = [*self._overrides(run.variant), "--seed", run.seed, *threads]
-            arguments = ["run", run.variant.experiment, "--out", run.folder, *overrides]
+            options = [*overrides(run.variant), "--seed", run.seed, *threads]
+            arguments = ["run", run.variant.experiment, "--out", run.folder, *options]
         with open(run.log, "a") as log:
             # a group of its own: Ctrl-C reaches this process alone, which then asks each run to stop
             command = [self._program, *map(str, arguments)]
             return subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, process_group=0)
-
-    def _overrides(self, variant):
-        pairs = [*self._settings, *(f"{key}={value}" for key, value in variant.swept)]
-        return [word for pair in pairs for word in ("--set", pair)]
 
     def _evodevo(self, *arguments):
         command = [self._program, *map(str, arguments)]
@@ -186,7 +242,10 @@ class Runs:
     def _require_success(run, code):
         if code != 0:
             last = "\n  ".join(run.log.read_text().splitlines()[-3:])
-            raise Failure(f"{run.folder}: the run ended with {code}:\n  {last}\nthe same command goes on from there")
+            # by a signal, or asked to stop; else it has said what was wrong, which would be so again
+            stopped = code < 0 or code == STOPPED
+            remedy = "the same command goes on from there" if stopped else "mend that and give the same command again"
+            raise Failure(f"{run.folder}: the run ended with {code}:\n  {last}\n{remedy}")
 
 
 def stop(processes):
