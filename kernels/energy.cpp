@@ -33,7 +33,7 @@ double total_energy(const Body& body, const State& state, const Scene& scene) {
 double ground_height(const Scene& scene, const Vec3& place) {
   if (!scene.floor || !scene.floor->rough()) return 0;
   const physics::Roughness<double> rough{scene.floor->roughness, 2 / scene.floor->wavelength,
-                                         static_cast<std::uint32_t>(scene.floor->seed)};
+                                         scene.floor->first_line()};
   return physics::ground_at(place.x, place.y, rough).height;
 }
 
