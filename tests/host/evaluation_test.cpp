@@ -435,5 +435,22 @@ TEST(Evaluation, ResetPutsTheBodyBackAfterEveryCycle) {
   EXPECT_NEAR(reset[1], reset[0], 1e-6) << "falls anew";
 }
 
+TEST(Evaluation, ResetPutsTheBodyOnRoughGroundAsAtBirth) {
+  for (const char* seed : {"1", "2", "3", "4"}) {  // hills and hollows
+    const Experiment experiment = testing::read(
+        testing::small_experiment,
+        {{"development.reset", "true", ""}, {"scene.floor.roughness", "0.05", ""}, {"scene.floor.seed", seed, ""}});
+    const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+    const Individual bone{.genome = {1, 1}};
+    const Evaluation evaluation(experiment, *simulator);
+    std::vector<Life> lives = evaluation.birth(std::vector<Newborn>{{0, 0, &bone.genome}});
+    const std::vector<Vec3> born = lives[0].living.state.position;
+    evaluation.develop(lives, unwatched);
+    ASSERT_TRUE(lives[0].alive()) << lives[0].result.reason;
+    for (std::size_t i = 0; i < born.size(); ++i)
+      EXPECT_NEAR(norm(lives[0].living.state.position[i] - born[i]), 0, 1e-12) << "seed " << seed;
+  }
+}
+
 }  // namespace
 }  // namespace evodevo
