@@ -24,7 +24,15 @@ void leave_out_air(Body& body) {
   });
 }
 
-void join(Body& body, std::span<const IndexPair> pairs) {
+void set_size(Spring& spring, const Size& a, const Size& b) {
+  const double start = (a.start + b.start) / 2, end = (a.end + b.end) / 2;
+  spring.rest_length *= start;
+  spring.growth = static_cast<float>(end / start);
+}
+
+void join(Blueprint& blueprint, std::span<const IndexPair> pairs) {
+  Body& body = blueprint.body;
+  const std::vector<Size>& sizes = blueprint.sizes;
   body.springs.reserve(body.springs.size() + pairs.size());
   for (const auto& [a, b] : pairs) {
     const Mass &mass_a = body.masses[a], &mass_b = body.masses[b];
@@ -32,6 +40,7 @@ void join(Body& body, std::span<const IndexPair> pairs) {
     const Material of_a = body.materials.at(static_cast<std::size_t>(mass_a.material));
     const Material of_b = body.materials.at(static_cast<std::size_t>(mass_b.material));
     body.springs.push_back({a, b, norm(mass_a.rest - mass_b.rest), body.material_index(mean(of_a, of_b))});
+    if (!sizes.empty()) set_size(body.springs.back(), sizes[a], sizes[b]);
   }
 }
 
@@ -88,6 +97,10 @@ void place_on_origin(Body& body) {
 
 bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
+bool is_sound(const Size& size) {
+  return size.start > 0 && size.end > 0 && std::isfinite(size.start) && std::isfinite(size.end);
+}
+
 /// Why a blueprint cannot become a body; empty where it may.
 std::string blueprint_failure(const Blueprint& blueprint) {
   const std::vector<Mass>& masses = blueprint.body.masses;
@@ -95,11 +108,10 @@ std::string blueprint_failure(const Blueprint& blueprint) {
   if (masses.empty()) return "no body: no masses";
   if (!std::all_of(masses.begin(), masses.end(), [](const Mass& mass) { return is_finite(mass.rest); }))
     return "no body: a place that is not finite";
-  if (!blueprint.paired_at.empty() && blueprint.paired_at.size() != masses.size())
-    return "no body: " + std::to_string(blueprint.paired_at.size()) + " places to pair " +
-           std::to_string(masses.size()) + " masses at";
   if (!std::all_of(blueprint.paired_at.begin(), blueprint.paired_at.end(), is_finite))
     return "no body: a place to pair masses at that is not finite";
+  if (!std::all_of(blueprint.sizes.begin(), blueprint.sizes.end(), is_sound))
+    return "no body: a size that is not finite or not above 0";
   return "";
 }
 
@@ -146,14 +158,19 @@ void check_blueprint(const Blueprint& blueprint, const World& world) {
     require(spring.rest_length >= 0 && std::isfinite(spring.rest_length), "spring", i, "has no finite rest length");
     require(spring.material < materials, "spring", i, "is of a material that is not there");
   }
-  if (!blueprint.origins.empty() && blueprint.origins.size() != body.masses.size())
-    throw std::invalid_argument(std::to_string(blueprint.origins.size()) + " origins for " +
-                                std::to_string(body.masses.size()) + " masses");
+  const auto require_one_for_each_mass = [&](const auto& list, const char* what) {
+    if (!list.empty() && list.size() != body.masses.size())
+      throw std::invalid_argument(std::to_string(list.size()) + " " + what + " for " +
+                                  std::to_string(body.masses.size()) + " masses");
+  };
+  require_one_for_each_mass(blueprint.paired_at, "places to pair at");
+  require_one_for_each_mass(blueprint.sizes, "sizes");
+  require_one_for_each_mass(blueprint.origins, "origins");
 }
 
 BuiltBody build_body(Blueprint blueprint) {
   if (std::string failure = blueprint_failure(blueprint); !failure.empty()) return {{}, std::move(failure), {}};
-  join(blueprint.body, nearest_pairs(pairing_places(blueprint), blueprint.neighbours));
+  join(blueprint, nearest_pairs(pairing_places(blueprint), blueprint.neighbours));
   return finish(std::move(blueprint.body));
 }
 
@@ -168,7 +185,7 @@ std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, Neighbour
   for (std::size_t i = 0; i < blueprints.size(); ++i) clouds.push_back({places[i], blueprints[i].neighbours});
   search.find(clouds, workers, [&](std::size_t i, std::span<const IndexPair> pairs) {
     if (!built[i].failure.empty()) return;
-    join(blueprints[i].body, pairs);
+    join(blueprints[i], pairs);
     built[i] = finish(std::move(blueprints[i].body));
   });
   return built;

@@ -19,7 +19,7 @@ struct BuiltBody {
 };
 
 /// Throws std::invalid_argument, naming the fault, where the blueprint's indices or numbers make no body at all. Places
-/// that are not finite are no such fault: networks may give them, and the body is then an invalid one.
+/// and sizes that are not finite are no such fault: networks may give them, and the body is then an invalid one.
 void check_blueprint(const Blueprint& blueprint, const World& world);
 
 /// Joins the neighbours that the blueprint asks for, leaves out springs of air (and counts them as contacts), drops

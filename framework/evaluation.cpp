@@ -259,6 +259,9 @@ void Evaluation::return_to_rest(Life& life) const {
     state.position[i] = life.living.body.masses[i].rest;
     state.velocity[i] = {};
   }
+  // rest places are those on level ground
+  if (const auto& floor = experiment_.scene.floor; floor && floor->rough())
+    put_on_ground(state.position, experiment_.scene);
 }
 
 template <class Move>

@@ -171,9 +171,9 @@ EVODEVO_HD T floor_force(T stiffness, T z) {
 /// Rough ground: random heights, of at most `roughness`, at the corners of square cells.
 template <class T>
 struct Roughness {
-  T roughness;  ///< m
-  T cells;      ///< in a metre: two for each wavelength
-  std::uint32_t seed;
+  T roughness;         ///< m
+  T cells;             ///< in a metre: two for each wavelength
+  std::uint32_t seed;  ///< Floor::first_line()
 };
 
 /// The ground under a place.

@@ -28,6 +28,9 @@ struct Floor {
   std::int64_t seed = 1;   ///< of the heights
 
   bool rough() const { return roughness > 0; }
+  /// What the heights are drawn by. Each line of heights along x has a number, counted from this one: were it the seed,
+  /// the ground of the next seed would be the same one, moved by half a wavelength.
+  std::uint32_t first_line() const { return static_cast<std::uint32_t>(seed) * 2654435769u; }  // 2^32/golden ratio
   /// The most that the ground rises for each metre: between heights half a wavelength apart.
   double steepest() const { return 7.5 * roughness / wavelength; }
 };

@@ -121,6 +121,9 @@ State state_at_birth(const Body& body, const Scene& scene);
 /// How high the ground is under a place, m; 0 without a floor.
 double ground_height(const Scene& scene, const Vec3& place);
 
+/// Moves places up or down, all alike, until the lowest is on the ground.
+void put_on_ground(std::vector<Vec3>& places, const Scene& scene);
+
 /// The kinetic, elastic and, with gravity, height energy (above the origin) of a body, J: `State::start_energy` for a
 /// body that does not start by state_at_birth().
 double total_energy(const Body& body, const State& state, const Scene& scene);

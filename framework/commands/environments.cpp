@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "body_distance.hpp"
@@ -145,21 +146,26 @@ Json to_json(const std::vector<Environment>& environments) {
   return {{"scenes", std::move(scenes)}, {"distances", std::move(distances)}};
 }
 
-/// One genome must mean the same in all scenes.
-void expect_same_genes(const Experiment& experiment, const std::string& file, const Experiment& first,
-                       const std::string& first_file) {
+/// One genome must mean the same body at birth in all scenes.
+void expect_same_encoding(const Experiment& experiment, const std::string& file, const Experiment& first,
+                          const std::string& first_file) {
   const auto same = [](const GeneSpec& a, const GeneSpec& b) {
     return a.low == b.low && a.high == b.high && a.choices == b.choices;
   };
   if (!std::ranges::equal(experiment.layout.genes, first.layout.genes, same))
     throw ConfigError(file + ": encoding: has other genes than that of " + first_file + "; make them equal");
+  const auto encoding = [](const Experiment& e) {
+    return parse_toml(e.resolved, e.name)["encoding"].ref<toml::table>();
+  };
+  if (encoding(experiment) != encoding(first))
+    throw ConfigError(file + ": encoding: has other parameters than that of " + first_file + "; make them equal");
 }
 
 std::vector<Experiment> read_experiments(const std::vector<std::string>& files, const po::variables_map& given) {
   std::vector<Experiment> experiments;
   for (const std::string& file : files) {
     experiments.push_back(read_experiment(experiment_source(file, given)));
-    expect_same_genes(experiments.back(), file, experiments.front(), files.front());
+    expect_same_encoding(experiments.back(), file, experiments.front(), files.front());
   }
   return experiments;
 }
@@ -176,7 +182,7 @@ Individual chosen_genome(std::vector<Experiment>& experiments, const po::variabl
   }
   const Archive archive = Archive::read(given["run"].as<std::string>());
   const Experiment recorded = recorded_experiment(archive, given_plugin_path(given));
-  expect_same_genes(recorded, archive.folder().string(), experiments.front(), "the first experiment");
+  expect_same_encoding(recorded, archive.folder().string(), experiments.front(), "the first experiment");
   for (Experiment& experiment : experiments) experiment.seed = recorded.seed;
   return chosen_individual(archive, given);
 }

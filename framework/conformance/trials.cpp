@@ -72,6 +72,7 @@ Numbers try_encoding(const Encoding& op, std::uint64_t seed, std::uint32_t input
   Numbers result = genome_before;
   append(result, blueprint.body);
   for (const Vec3& place : blueprint.paired_at) append(result, place);
+  for (const Size& size : blueprint.sizes) append(result, {size.start, size.end});
   for (const Vec3& place : blueprint.origins) append(result, place);
   append(result, {double(blueprint.neighbours), double(blueprint.failure.size())});
   return result;

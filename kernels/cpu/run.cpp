@@ -31,7 +31,7 @@ World<T> world_of(const Scene& scene, double dt) {
           .floor_stiffness = as_t(scene.floor ? scene.floor->stiffness : 0),
           .roughness = as_t(scene.floor ? scene.floor->roughness : 0),
           .cells = as_t(scene.floor ? 2 / scene.floor->wavelength : 0),
-          .seed = static_cast<std::uint32_t>(scene.floor ? scene.floor->seed : 0),
+          .seed = scene.floor ? scene.floor->first_line() : 0,
           .friction_coefficient = as_t(scene.friction ? scene.friction->coefficient : 0),
           .drag_coefficient = as_t(scene.drag ? scene.drag->coefficient : 0),
           .damping_rate = as_t(scene.damping ? scene.damping->rate : 0),

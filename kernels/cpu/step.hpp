@@ -28,7 +28,7 @@ struct World {
   T floor_stiffness;   ///< N/m
   T roughness;         ///< m
   T cells;             ///< of rough ground, in a metre
-  std::uint32_t seed;  ///< of rough ground
+  std::uint32_t seed;  ///< Floor::first_line()
   T friction_coefficient;
   T drag_coefficient;  ///< kg/m
   T damping_rate;      ///< 1/s

@@ -59,7 +59,7 @@ World<T> world_of(const Scene& scene, double dt) {
           .grade = as_t(scene.gravity ? scene.gravity->grade() : 0),
           .roughness = as_t(scene.floor ? scene.floor->roughness : 0),
           .cells = as_t(scene.floor ? 2 / scene.floor->wavelength : 0),
-          .seed = static_cast<std::uint32_t>(scene.floor ? scene.floor->seed : 0),
+          .seed = scene.floor ? scene.floor->first_line() : 0,
           .exact_dt = dt};
 }
 

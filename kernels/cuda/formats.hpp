@@ -56,7 +56,7 @@ struct World {
   T grade;             ///< Gravity::grade()
   T roughness;         ///< m
   T cells;             ///< of rough ground, in a metre
-  std::uint32_t seed;  ///< of rough ground
+  std::uint32_t seed;  ///< Floor::first_line()
   double exact_dt;     ///< s
 };
 

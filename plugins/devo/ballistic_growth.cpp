@@ -6,8 +6,8 @@
 namespace {
 
 /// The way from a spring's rest length at birth to Spring::growth times it is gone in equal parts, one at each turn. By
-/// factors, so that what other operators do to a rest length stays. Encodings set `growth`, such as voxel by its
-/// `size_range`; springs that come later have none.
+/// factors, so that what other operators do to a rest length stays. Encodings set `growth`, by their `size_range`;
+/// springs that come later have none.
 class BallisticGrowth final : public evodevo::Devo {
  public:
   evodevo::SpringRequest observes() const override { return {}; }

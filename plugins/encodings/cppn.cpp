@@ -15,7 +15,7 @@ constexpr std::array<double (*)(double), 5> functions = {
     [](double x) { return std::abs(x); },
 };
 
-/// A network 4 - hidden - hidden - (3 + materials); its inputs are a point's coordinates and its distance from the
+/// A network 4 - hidden - hidden - outputs_in(world); its inputs are a point's coordinates and its distance from the
 /// centre. One gene group for each neuron: its function (that of an output neuron is the identity and no gene), its
 /// bias, then the weights that come in, up to 3 as usual with such networks, so that a sine repeats itself.
 class Cppn final : public NetworkEncoding {

@@ -9,7 +9,8 @@
 
 /// A network from the points of a ball to places in a cube and materials; neighbours are joined. Where the paper is
 /// silent: the points are uniform in the ball, and places lie in [-side/2, side/2]^3. Neighbours are those of the
-/// places, or, as the paper proposes in section VII, those of the points.
+/// places, or, as the paper proposes in section VII, those of the points. Where sizes develop, each mass has one at
+/// birth and one at the end of development (Kriegman et al. 2017).
 class NetworkEncoding : public evodevo::Encoding {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -21,6 +22,9 @@ class NetworkEncoding : public evodevo::Encoding {
     p.integer(hidden_, "hidden", {1, 1000, "1"}, "Neurons in each of the two hidden layers.");
     p.real(side_, "side", {0.001, 1000, "m"}, "Side of the cube in which the masses lie.");
     p.materials(materials_, "materials", "Materials that a mass may have; an empty list stands for all.");
+    p.real(size_range_, "size_range", {0, 0.9, "1"},
+           "By how much of their length a mass may make its springs longer or shorter, at birth and, with "
+           "ballistic-growth, at the end of development; 0: no genes for that.");
   }
 
   evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::World& world) const final {
@@ -38,9 +42,10 @@ class NetworkEncoding : public evodevo::Encoding {
     for (const auto& output : outputs.colwise()) {
       // softmax, which the paper puts before the maximum, does not change where the maximum is
       Eigen::Index material = 0;
-      output.tail(materials).maxCoeff(&material);
+      output.segment(3, materials).maxCoeff(&material);
       blueprint.body.masses.push_back(
           {{place(output[0]), place(output[1]), place(output[2])}, world.mass, chosen[static_cast<size_t>(material)]});
+      if (size_range_ > 0) blueprint.sizes.push_back({size(output[3 + materials]), size(output[4 + materials])});
     }
     for (const auto& point : points.colwise()) blueprint.origins.push_back({point[0], point[1], point[2]});
     if (pairing_ == "before-mapping") blueprint.paired_at = blueprint.origins;
@@ -52,9 +57,10 @@ class NetworkEncoding : public evodevo::Encoding {
 
   /// Neurons in each of the two hidden layers.
   std::int64_t hidden() const { return hidden_; }
-  /// x, y and z, and one value for each material to choose from, of which the greatest wins.
+  /// x, y and z, one value for each material to choose from, of which the greatest wins, and the sizes where they
+  /// develop.
   std::int64_t outputs_in(const evodevo::World& world) const {
-    return 3 + static_cast<std::int64_t>(world.material_indices(materials_).size());
+    return 3 + static_cast<std::int64_t>(world.material_indices(materials_).size()) + (size_range_ > 0 ? 2 : 0);
   }
 
   /// What a layer of neurons sums up, one column for each point: `rows` holds each neuron's bias, then its weights.
@@ -88,6 +94,7 @@ class NetworkEncoding : public evodevo::Encoding {
   }
 
   double place(double output) const { return side_ / 2 * std::tanh(output); }
+  double size(double output) const { return 1 + size_range_ * std::tanh(output); }
 
   std::int64_t points_ = 1000;
   std::int64_t points_seed_ = 1;
@@ -96,4 +103,5 @@ class NetworkEncoding : public evodevo::Encoding {
   std::int64_t hidden_ = 25;
   double side_ = 2;
   std::vector<std::string> materials_;
+  double size_range_ = 0;
 };

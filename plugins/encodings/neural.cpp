@@ -5,7 +5,7 @@
 
 namespace {
 
-/// A network 3 - hidden - hidden - (3 + materials), ReLU within, one gene group for each neuron: its bias, then the
+/// A network 3 - hidden - hidden - outputs_in(world), ReLU within, one gene group for each neuron: its bias, then the
 /// weights that come in. Where the paper is silent: biases are genes like the weights.
 class Neural final : public NetworkEncoding {
  public:

@@ -86,6 +86,9 @@ TEST_F(Environments, OneGenomeNeedsOneEncoding) {
   const testing::Finished finished = environments({flat_, sized});
   EXPECT_EQ(finished.exit_code, 2);
   EXPECT_THAT(finished.output, HasSubstr("sized.toml: encoding: has other genes than that of " + flat_));
+  const std::string wide = other("wide.toml", "edge = 0.5", "edge = 0.6");
+  EXPECT_THAT(environments({flat_, wide}).output,
+              HasSubstr("wide.toml: encoding: has other parameters than that of " + flat_));
 }
 
 TEST_F(Environments, BadNumbersAreRefused) {

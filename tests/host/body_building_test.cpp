@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <set>
 #include <tuple>
@@ -62,10 +63,51 @@ TEST(BodyBuilding, NeighboursAreThoseOfThePlacesToPairAt) {
   }
   EXPECT_EQ(pairs, (std::set<std::pair<std::uint32_t, std::uint32_t>>{{0, 1}, {0, 3}, {1, 2}, {0, 2}, {1, 3}}));
 
-  blueprint.paired_at.pop_back();
-  EXPECT_EQ(build_body(blueprint).failure, "no body: 3 places to pair 4 masses at");
-  blueprint.paired_at.push_back({std::numeric_limits<double>::infinity(), 0, 0});
+  blueprint.paired_at.back() = {std::numeric_limits<double>::infinity(), 0, 0};
   EXPECT_EQ(build_body(blueprint).failure, "no body: a place to pair masses at that is not finite");
+}
+
+TEST(BodyBuilding, SpringsToNeighboursHaveTheMeanSizeOfTheirMasses) {
+  Blueprint blueprint = row({{0, 0}, {1, 0}, {3, 0}}, 1);
+  blueprint.body.springs = {{0, 2, 5, 0}};
+  blueprint.sizes = {{1.5, 0.5}, {0.5, 1.0}, {0.75, 1.25}};
+  const BuiltBody built = build_body(blueprint);
+  ASSERT_EQ(built.body.springs.size(), 3u);
+  const auto expect_length = [&](std::size_t spring, double start, double end) {
+    const auto& [a, b, rest_length, material, growth] = built.body.springs[spring];
+    EXPECT_DOUBLE_EQ(rest_length, start);
+    EXPECT_FLOAT_EQ(growth, static_cast<float>(end / start));
+  };
+  expect_length(0, 5, 5);  // the encoding's own
+  expect_length(1, 1.0 * 1, 0.75 * 1);
+  expect_length(2, 0.625 * 2, 1.125 * 2);
+  EXPECT_EQ(norm(built.body.masses[2].rest - built.body.masses[1].rest), 2) << "rest places stay";
+
+  for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), HUGE_VAL}) {
+    blueprint.sizes[1] = {1, bad};
+    EXPECT_EQ(build_body(blueprint).failure, "no body: a size that is not finite or not above 0");
+    blueprint.sizes[1] = {bad, 1};
+    EXPECT_EQ(build_body(blueprint).failure, "no body: a size that is not finite or not above 0");
+  }
+}
+
+TEST(BodyBuilding, ListsHoldAnEntryForEachMass) {
+  const Blueprint sound = row({{0, 0}, {1, 0}, {3, 0}}, 1);
+  const World world{.materials = sound.body.materials};
+  const auto fault = [&](auto Blueprint::*list, std::size_t entries) -> std::string {
+    Blueprint blueprint = sound;
+    (blueprint.*list).resize(entries);
+    try {
+      check_blueprint(blueprint, world);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(fault(&Blueprint::sizes, 2), "2 sizes for 3 masses");
+  EXPECT_EQ(fault(&Blueprint::paired_at, 4), "4 places to pair at for 3 masses");
+  EXPECT_EQ(fault(&Blueprint::origins, 1), "1 origins for 3 masses");
+  for (const std::size_t entries : {0u, 3u}) EXPECT_EQ(fault(&Blueprint::sizes, entries), "");
 }
 
 TEST(BodyBuilding, LooseMassesAreThoseOutsideTheLargestPiece) {
@@ -121,6 +163,8 @@ TEST(BodyBuilding, APopulationIsBuiltAsEachBodyAlone) {
   // a body that comes with springs of its own
   blueprints.push_back(row({{0, 0}, {1, 0}, {5, 0}}, 0));
   blueprints.back().body.springs = {{1, 2, 4, 0}};
+  blueprints.push_back(blueprints.front());
+  blueprints.back().sizes = {{1, 1.25}, {0.75, 1}, {1.25, 0.75}, {1.5, 1}};
   for (const int threads : {1, 3}) {
     Workers workers(threads);
     const std::vector<BuiltBody> together = build_bodies(blueprints, *make_cpu_neighbour_search(), workers);
@@ -135,7 +179,9 @@ TEST(BodyBuilding, APopulationIsBuiltAsEachBodyAlone) {
       ASSERT_EQ(together[i].body.springs.size(), alone.body.springs.size()) << i;
       for (std::size_t s = 0; s < alone.body.springs.size(); ++s) {
         const Spring &a = together[i].body.springs[s], &b = alone.body.springs[s];
-        EXPECT_EQ(std::tie(a.a, a.b, a.rest_length, a.material), std::tie(b.a, b.b, b.rest_length, b.material)) << i;
+        EXPECT_EQ(std::tie(a.a, a.b, a.rest_length, a.material, a.growth),
+                  std::tie(b.a, b.b, b.rest_length, b.material, b.growth))
+            << i;
       }
     }
   }

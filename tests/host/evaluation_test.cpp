@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
+#include "body_building.hpp"
 #include "breeding.hpp"
 #include "support/experiments.hpp"
 
@@ -289,6 +291,62 @@ TEST(Evaluation, ABodysLengthIsThatOfTheStartOfTheWindow) {
   EXPECT_NEAR(grown.box.longest_side(), 3, 0.05);
 }
 
+/// The robots of a network that grow ballistically in the cycles of `schedule`, of four.
+Experiment ballistic(const std::string& encoding, const std::string& schedule) {
+  std::string text = testing::small_experiment;
+  const auto replace = [&](const char* from, const char* to, const std::string& by) {
+    const std::size_t first = text.find(from);
+    text.replace(first, text.find(to, first) - first, by);
+  };
+  replace("[encoding]", "[[mutation]]", R"([encoding]
+points = 40
+neighbours = 6
+materials = ["bone", "muscle"]
+size_range = 0.25
+)" + encoding);
+  replace("[[development.operator]]", "[[fitness]]",
+          "[[development.operator]]\nname = 'ballistic-growth'\n" + schedule + "\n");
+  return testing::read(text, {{"development.cycles", "4", ""}});
+}
+
+/// The cycles in which something changed.
+std::set<std::uint32_t> cycles_of_change(const Life& life) {
+  std::set<std::uint32_t> cycles;
+  for (const Change& change : LifeRecord(life.result.record.bytes()).changes()) cycles.insert(change.cycle);
+  return cycles;
+}
+
+TEST(Evaluation, BallisticSpringsHaveTheLengthsThatANetworkGivesThem) {
+  const std::pair<const char*, std::set<std::uint32_t>> schedules[] = {
+      {"", {1, 2, 3, 4}}, {"to = 2", {1, 2}}, {"from = 3", {3, 4}}, {"every = 3", {1, 4}}, {"from = 2\nto = 2", {2}}};
+  for (const std::string network : {"name = 'neural'\n", "name = 'cppn'\n"})
+    for (const std::string pairing : {"pairing = 'after-mapping'\n", "pairing = 'before-mapping'\n"})
+      for (const auto& [schedule, cycles] : schedules) {
+        SCOPED_TRACE(network + pairing + schedule);
+        const Experiment experiment = ballistic(network + pairing, schedule);
+        const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+        const Individual individual = breed(experiment, {}, 0, 0, 1).front();
+        const Blueprint blueprint = experiment.encoding->decode(individual.genome, experiment.world);
+        const std::vector<std::uint32_t> kept = build_body(blueprint).kept;
+        const auto expect_lengths = [&](const Body& body, double Size::*size, double tolerance) {
+          ASSERT_GT(body.springs.size(), 100u);
+          for (const Spring& spring : body.springs) {
+            const std::uint32_t a = kept.at(spring.a), b = kept.at(spring.b);
+            const double distance = norm(blueprint.body.masses[a].rest - blueprint.body.masses[b].rest);
+            const double expected = distance * (blueprint.sizes[a].*size + blueprint.sizes[b].*size) / 2;
+            ASSERT_NEAR(spring.rest_length, expected, tolerance);
+          }
+        };
+        const Evaluation evaluation(experiment, *simulator);
+        std::vector<Life> lives = evaluation.birth(std::vector<Newborn>{{0, 0, &individual.genome}});
+        expect_lengths(lives[0].living.body, &Size::start, 1e-12);
+        evaluation.develop(lives, unwatched);
+        ASSERT_TRUE(lives[0].alive()) << lives[0].result.reason;
+        expect_lengths(lives[0].living.body, &Size::end, 1e-6);
+        EXPECT_EQ(cycles_of_change(lives[0]), cycles);
+      }
+}
+
 /// Removes every spring.
 struct Destroyer final : Devo {
   void develop(const Moment& now, Edits& edits, Rng&) const override {
@@ -375,6 +433,23 @@ TEST(Evaluation, ResetPutsTheBodyBackAfterEveryCycle) {
   ASSERT_EQ(reset.size(), 2u);
   EXPECT_NEAR(kept[1], 4 * kept[0], 0.02 * -kept[0]) << "falls on";
   EXPECT_NEAR(reset[1], reset[0], 1e-6) << "falls anew";
+}
+
+TEST(Evaluation, ResetPutsTheBodyOnRoughGroundAsAtBirth) {
+  for (const char* seed : {"1", "2", "3", "4"}) {  // hills and hollows
+    const Experiment experiment = testing::read(
+        testing::small_experiment,
+        {{"development.reset", "true", ""}, {"scene.floor.roughness", "0.05", ""}, {"scene.floor.seed", seed, ""}});
+    const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+    const Individual bone{.genome = {1, 1}};
+    const Evaluation evaluation(experiment, *simulator);
+    std::vector<Life> lives = evaluation.birth(std::vector<Newborn>{{0, 0, &bone.genome}});
+    const std::vector<Vec3> born = lives[0].living.state.position;
+    evaluation.develop(lives, unwatched);
+    ASSERT_TRUE(lives[0].alive()) << lives[0].result.reason;
+    for (std::size_t i = 0; i < born.size(); ++i)
+      EXPECT_NEAR(norm(lives[0].living.state.position[i] - born[i]), 0, 1e-12) << "seed " << seed;
+  }
 }
 
 }  // namespace

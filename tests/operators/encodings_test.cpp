@@ -16,6 +16,7 @@ std::vector<double> digest(const Blueprint& blueprint) {
   for (const Spring& s : blueprint.body.springs)
     digest.insert(digest.end(), {double(s.a), double(s.b), s.rest_length, double(s.material)});
   for (const Material& m : blueprint.body.materials) digest.push_back(m.stiffness + m.phase);
+  for (const Size& s : blueprint.sizes) digest.insert(digest.end(), {s.start, s.end});
   return digest;
 }
 
@@ -157,13 +158,13 @@ TEST(Neural, PointsDependOnTheirSeedAlone) {
 std::vector<double> network(const Genome& genome, const Layout& layout, Vec3 point) {
   std::vector<double> values{point.x, point.y, point.z};
   std::size_t group = 0;
-  for (const std::size_t neurons : {25, 25, 8}) {
+  for (const std::size_t last : {25u, 50u, static_cast<unsigned>(layout.groups.size())}) {
     std::vector<double> next;
-    for (std::size_t n = 0; n < neurons; ++n, ++group) {
+    for (; group < last; ++group) {
       const float* gene = &genome[layout.groups[group].first];
       double sum = gene[0];
       for (std::size_t i = 0; i < values.size(); ++i) sum += gene[1 + i] * values[i];
-      next.push_back(neurons == 25 ? std::max(0.0, sum) : sum);
+      next.push_back(last <= 50 ? std::max(0.0, sum) : sum);
     }
     values = next;
   }
@@ -187,6 +188,22 @@ TEST(Neural, IsThePapersNetwork) {
       const double greatest = *std::max_element(outputs.begin() + 3, outputs.end());
       EXPECT_NEAR(outputs[3 + static_cast<std::size_t>(body.masses[i].material)], greatest, 1e-9);
     }
+  }
+}
+
+TEST(Neural, SizesAreTheLastTwoOutputs) {
+  const auto encoding = make<Encoding>("neural", "size_range = 0.25");
+  const Layout layout = encoding->layout(world());
+  const auto points = points_of("");
+  Rng rng = stream(9);
+  const Genome genome = encoding->random(layout, rng);
+  const Blueprint blueprint = encoding->decode(genome, world());
+  ASSERT_EQ(blueprint.sizes.size(), points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto outputs = network(genome, layout, points[i]);
+    ASSERT_EQ(outputs.size(), 3u + 5 + 2);
+    EXPECT_NEAR(blueprint.sizes[i].start, 1 + 0.25 * std::tanh(outputs[8]), 1e-9);
+    EXPECT_NEAR(blueprint.sizes[i].end, 1 + 0.25 * std::tanh(outputs[9]), 1e-9);
   }
 }
 
@@ -223,6 +240,43 @@ TEST_P(AnyNetwork, PairsBeforeTheMappingAreThoseOfThePoints) {
   EXPECT_EQ(mapped.origins, paired.paired_at);
   paired.paired_at.clear();
   EXPECT_EQ(digest(paired), digest(mapped)) << "all else is the same";
+}
+
+TEST_P(AnyNetwork, SizesAreTwoMoreNeuronsThatChangeNothingElse) {
+  for (const std::string pairing : {"pairing = 'after-mapping'", "pairing = 'before-mapping'"}) {
+    const auto fixed = make<Encoding>(GetParam(), pairing);
+    const auto sized = make<Encoding>(GetParam(), pairing + "\nsize_range = 0.9");
+    const Layout less = fixed->layout(world()), more = sized->layout(world());
+    ASSERT_EQ(more.groups.size(), less.groups.size() + 2);
+    EXPECT_EQ(more.genes.size(), less.genes.size() + 2 * less.groups.back().count);
+    expect_groups_cover_genes_once(more);
+
+    Rng rng = stream(10);
+    const Genome genome = sized->random(more, rng);
+    Blueprint blueprint = sized->decode(genome, world());
+    ASSERT_EQ(blueprint.sizes.size(), 1000u);
+    for (const Size& size : blueprint.sizes) {
+      EXPECT_NEAR(size.start, 1, 0.9 + 1e-12);
+      EXPECT_NEAR(size.end, 1, 0.9 + 1e-12);
+    }
+    blueprint.sizes.clear();
+    const Genome without(genome.begin(), genome.begin() + static_cast<std::ptrdiff_t>(less.genes.size()));
+    EXPECT_EQ(digest(blueprint), digest(fixed->decode(without, world())));
+  }
+}
+
+TEST_P(AnyNetwork, SizesStayInTheirRangeWhateverTheGenes) {
+  const auto encoding = make<Encoding>(GetParam(), "size_range = 0.5\npoints = 20");
+  const Layout layout = encoding->layout(world());
+  for (const float value : {0.0f, 1.0f, 1e30f}) {
+    Genome genome(layout.genes.size(), value);
+    for (std::size_t i = 0; i < genome.size(); ++i)
+      if (layout.genes[i].is_choice()) genome[i] = 0;
+    for (const Size& size : encoding->decode(genome, world()).sizes) {
+      EXPECT_TRUE(size.start >= 0.5 && size.start <= 1.5) << size.start;
+      EXPECT_TRUE(size.end >= 0.5 && size.end <= 1.5) << size.end;
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Networks, AnyNetwork, testing::Values("neural", "cppn"));

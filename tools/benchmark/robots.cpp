@@ -19,7 +19,9 @@ bool has_muscle(const Body& body) {
 }  // namespace
 
 std::optional<Body> robot_of(const Experiment& experiment, const Genome& genome) {
-  BuiltBody built = build_body(experiment.encoding->decode(genome, experiment.world));
+  Blueprint blueprint = experiment.encoding->decode(genome, experiment.world);
+  if (blueprint.failure.empty()) check_blueprint(blueprint, experiment.world);
+  BuiltBody built = build_body(std::move(blueprint));
   if (!built.failure.empty()) return std::nullopt;
   const State birth = state_at_birth(built.body, experiment.scene);
   const LongestStep step =

@@ -30,6 +30,13 @@ struct World {
   }
 };
 
+/// What the distance of two rest places is multiplied by for the rest length of a spring between them: the mean of both
+/// masses' sizes.
+struct Size {
+  double start = 1;  ///< at birth
+  double end = 1;    ///< at the end of a ballistic development
+};
+
 /// A body as an encoding leaves it. The host joins neighbours, drops springs of air and masses without springs, keeps
 /// the largest piece, and puts it on the floor.
 struct Blueprint {
@@ -39,6 +46,7 @@ struct Blueprint {
   std::string failure;  ///< why there is no body; empty where there is one
   std::vector<Vec3> paired_at = {};  ///< where neighbours are searched for, one place for each mass; empty: at the rest
                                      ///< places
+  std::vector<Size> sizes = {};      ///< for the springs to neighbours, one for each mass; empty: all are 1
   std::vector<Vec3> origins = {};  ///< of an encoding that maps points: the point of each mass, for pictures; or empty
 };
 
