@@ -32,9 +32,10 @@ export const launch = async () =>
     ],
   });
 
-/** A page of the viewer, ready. `options` are Playwright's. */
-export async function opened(browser, file, options, hash = "") {
+/** A page of the viewer, ready. `options` are Playwright's; `before` is what the page does first. */
+export async function opened(browser, file, options, { hash = "", before } = {}) {
   const tab = await browser.newPage(options);
+  if (before) await tab.addInitScript(before);
   tab.on("pageerror", (error) => console.error(`evodevo: the page says: ${error.message}`));
   await tab.goto(pathToFileURL(file) + hash);
   await tab.evaluate(async () => void (await window.evodevo));

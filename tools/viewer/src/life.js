@@ -47,6 +47,7 @@ export class Life {
         now.set(spring, i);
       });
       shot.isNew = Uint8Array.from(shot.springs, (spring) => (index > 0 && !before.has(spring) ? 1 : 0));
+      shot.came = shot.isNew.reduce((sum, isNew) => sum + isNew, 0);
       shot.gone = [...before].filter(([spring]) => !now.has(spring)).map(([, i]) => i);
       before = now;
     });
