@@ -335,6 +335,12 @@ TEST(SceneJson, SaysWhatIsThere) {
   EXPECT_EQ(scene_json(scene, {}).dump(), R"({"floor":true,"water":true,"slope":12.0,"ground":null})");
 }
 
+TEST(Page, SaysWhereItIsTooLarge) {
+  EXPECT_EQ(size_note("r.html", 29'999'999, "--best"), "");
+  EXPECT_THAT(size_note("r.html", 41'000'000, "--best"),
+              ::testing::AllOf(::testing::HasSubstr("r.html: has 41 MB"), ::testing::HasSubstr("--best\n")));
+}
+
 TEST(Page, HoldsDataThatNothingReadsAsMarkup) {
   const std::string page = filled_page("<script>EVODEVO_DATA</script>", {{"name", "</script><script>harm()"}});
   const std::string data = page.substr(8, page.rfind("</script>") - 8);

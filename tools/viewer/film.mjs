@@ -2,7 +2,7 @@
 import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { writeFile } from "node:fs/promises";
-import { draw, launch, opened, program } from "./browser.mjs";
+import { draw, ffmpegProgram, launch, opened } from "./browser.mjs";
 
 const framesPerSecond = 30;
 const viewport = { width: 1280, height: 720 };
@@ -10,7 +10,7 @@ const viewport = { width: 1280, height: 720 };
 function encoder(out) {
   const input = ["-f", "image2pipe", "-framerate", String(framesPerSecond), "-i", "-"];
   const output = ["-c:v", "libx264", "-preset", "veryfast", "-pix_fmt", "yuv420p", "-crf", "20", "-movflags", "+faststart", out];
-  const ffmpeg = spawn(program(["ffmpeg"]), ["-y", "-loglevel", "error", ...input, ...output], {
+  const ffmpeg = spawn(ffmpegProgram(), ["-y", "-loglevel", "error", ...input, ...output], {
     stdio: ["pipe", "inherit", "inherit"],
   });
   ffmpeg.stdin.on("error", () => {}); // its exit code says it
