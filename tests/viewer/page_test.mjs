@@ -196,6 +196,10 @@ test("two robots stand side by side, in step", async () => {
   const both = await picture(page);
   await inPage(page, ({ viewer }) => viewer.seek(2.5));
   for (const count of await differing(both, await picture(page))) assert.ok(count > 100);
+  await page.locator(".modes label", { hasText: "Stress" }).click();
+  const most = await inPage(page, ({ viewer }) => viewer.stages.map(({ life }) => life.robot.film.most_stress));
+  const legend = await page.locator(".legend").textContent();
+  assert.equal(Number.parseFloat(legend.slice("0 N".length)), Number(Math.max(...most).toPrecision(4)), legend);
   await page.getByLabel("beside").selectOption("");
   await until(page, ({ viewer }) => viewer.stages.length === 1);
 });
@@ -294,6 +298,18 @@ test("several runs give one page that compares them", async () => {
   assert.deepEqual([data[1], data[3]], [best(scratch.run), best(other)]);
   assert.deepEqual(both.complaints, []);
   await both.close();
+});
+
+test("where nothing ended with a fitness, charts say so", async () => {
+  const run = scratch.path("barren");
+  const soft = ["muscle", "muscle2", "tissue", "bone"].flatMap((name) => ["--set", `materials.${name}.stiffness=0`]);
+  evodevo("run", scratch.file, "--out", run, ...soft, "--set", `materials."${materialName}".stiffness=0`);
+  evodevo("report", run, "--individual", "0", "--out", scratch.path("barren.html"));
+  const barren = await opened(browser, scratch.path("barren.html"));
+  assert.equal(await barren.getByText("no individual has ended with a fitness").count(), 3);
+  assert.ok((await barren.locator(".caption").first().textContent()).includes("invalid: no body"));
+  assert.deepEqual(barren.complaints, []);
+  await barren.close();
 });
 
 test("it is no larger than it has to be", () => {

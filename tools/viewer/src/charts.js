@@ -3,6 +3,7 @@ import uPlot from "uplot";
 import { element, short, style } from "./elements.js";
 
 const height = 250;
+const nothing = "Nothing to show: no individual has ended with a fitness.";
 
 /** The individuals that no other one beats in both youth and fitness, by age. */
 export function paretoFront(population, maximise) {
@@ -51,8 +52,12 @@ class Chart {
 
   draw() {
     this.plot?.destroy();
+    this.plot = undefined;
     const { data, series, x, y, wholeX, options } = this.describe();
     this.data = data;
+    const isEmpty = data.slice(1).every((column) => column.every((value) => value === null));
+    this.box.replaceChildren(...(isEmpty ? [element("p", { className: "note", textContent: nothing })] : []));
+    if (isEmpty) return;
     const axis = (label, size) => ({
       label,
       size,

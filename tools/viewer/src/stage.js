@@ -448,21 +448,12 @@ export class Stage {
     life.writePlaces(time, this.places.image.data);
     this.places.needsUpdate = true;
     this.#light(life.shots[index], time);
-    this.lookAt(follow ? this.#followed(time) : this.start);
+    this.lookAt(follow ? life.middleAt(time, life.smoothPath) : this.start);
   }
 
   lookAt([x, y, z]) {
     this.focus.set(x, y, z);
     this.target.copy(this.focus).applyEuler(this.scene.rotation);
-  }
-
-  /** Where the body's middle has moved from where it was at birth. */
-  #followed(time) {
-    const { life, start } = this;
-    const from = life.middleAt(life.begin, life.smoothPath);
-    const now = life.middleAt(time, life.smoothPath);
-    const height = this.floor && from[2] > 0 ? (start[2] * now[2]) / from[2] : start[2] + now[2] - from[2];
-    return [start[0] + now[0] - from[0], start[1] + now[1] - from[1], height];
   }
 
   /** Draws what camera sees to a picture of so many pixels' height. */

@@ -8,7 +8,7 @@ import { Life } from "./life.js";
 import { Stage } from "./stage.js";
 
 const speeds = [0.1, 0.25, 0.5, 1, 2, 4];
-const framing = 2.7; // distance of the camera, in sizes of the body
+const framing = 2.9; // distance of the camera, in sizes of the body
 
 export class Viewer {
   /** A viewer of robots: {label, robot, run} each. */
@@ -425,7 +425,7 @@ export class Viewer {
         ? 2 * Math.atan(Math.tan((camera.fov * Math.PI) / 360) / camera.aspect) * (180 / Math.PI)
         : camera.fov;
     camera.position.add(stage.target);
-    camera.position.z += 0.07 * stage.size; // the caption stands above the body
+    camera.position.z += 0.05 * stage.size; // the caption stands above the body
     camera.updateProjectionMatrix();
     camera.updateMatrixWorld();
     stage.draw(this.renderer, camera, height * ratio);
