@@ -25,10 +25,12 @@ int gallery_command(const Arguments& arguments) {
       read_experiment(experiment_source((*given)["EXPERIMENT.toml"].as<std::string>(), *given));
   const std::string filled = filled_page(page, gallery_data(experiment, static_cast<std::size_t>(count)));
   const auto file = (*given)["out"].as<std::string>();
-  if (file.ends_with(".png"))
+  if (file.ends_with(".png")) {
     shoot(filled, file, std::nullopt);
-  else
+  } else {
     write_page(file, filled);
+    std::cerr << size_note(file, filled.size(), "--count");
+  }
   std::cout << file << '\n';
   return 0;
 }

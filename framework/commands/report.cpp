@@ -44,8 +44,10 @@ int report_command(const Arguments& arguments) {
   std::vector<nlohmann::ordered_json> runs;
   for (const std::string& folder : folders) runs.push_back(reported(folder, *given, page_budget / folders.size()));
   const auto file = (*given)["out"].as<std::string>();
-  write_page(file, filled_page(page, report_data(std::move(runs))));
+  const std::string filled = filled_page(page, report_data(std::move(runs)));
+  write_page(file, filled);
   std::cout << file << '\n';
+  std::cerr << size_note(file, filled.size(), "--best");
   return 0;
 }
 

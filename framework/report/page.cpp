@@ -10,6 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t largest_page = 30'000'000;  ///< bytes
 constexpr const char* page_name = "page.html";
 constexpr std::string_view place_of_data = "EVODEVO_DATA";  ///< in the template, alone in a script element
 
@@ -50,6 +51,13 @@ std::string filled_page(const std::string& page, const nlohmann::ordered_json& d
   if (at == std::string::npos) throw std::runtime_error("the page of the viewer has no place for data; build it anew");
   const std::string json = data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   return page.substr(0, at) + escaped(json) + page.substr(at + place_of_data.size());
+}
+
+std::string size_note(const std::string& file, std::size_t bytes, const std::string& option) {
+  if (bytes <= largest_page) return {};
+  return "evodevo: " + file + ": has " + std::to_string(bytes / 1'000'000) + " MB, though only the beginning and the " +
+         "end of each motion are kept: more than " + std::to_string(largest_page / 1'000'000) +
+         " MB load slowly; show fewer robots with " + option + "\n";
 }
 
 void write_page(const fs::path& file, const std::string& page) {

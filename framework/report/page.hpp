@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
 
 namespace evodevo {
 
@@ -14,6 +15,10 @@ std::string page_template();
 
 /// The page with `data` in it. Nothing in the data is read as markup.
 std::string filled_page(const std::string& page, const nlohmann::ordered_json& data);
+
+/// A line that says how large a page of more than 30 MB is, and the option with which it would show fewer robots; of a
+/// smaller one, nothing.
+std::string size_note(const std::string& file, std::size_t bytes, const std::string& option);
 
 /// Writes `page` to `file`, all of it or nothing. Throws std::runtime_error where it cannot be written.
 void write_page(const std::filesystem::path& file, const std::string& page);

@@ -9,6 +9,7 @@
 #include "report/filming.hpp"
 #include "report/robot_json.hpp"
 #include "report/run_json.hpp"
+#include "report/scene_json.hpp"
 
 namespace evodevo {
 namespace {
@@ -70,10 +71,6 @@ std::vector<std::string> shot_names(const FilmedLife& life, const Experiment& ex
       names.emplace_back(frames.front().time < measured_from ? "settling" : "measured");
   }
   return names;
-}
-
-Json scene_json(const Experiment& experiment) {
-  return {{"floor", experiment.scene.floor.has_value()}, {"water", experiment.scene.drag.has_value()}};
 }
 
 Json population_json(const Archive& archive, std::uint32_t generation) {
@@ -160,7 +157,7 @@ Json reported_run(const Archive& archive, const Experiment& experiment, Simulato
 
   Json run = run_json(archive, experiment);
   run["resolved"] = archive.record("experiment");
-  run["scene"] = scene_json(experiment);
+  run["scene"] = scene_json(experiment.scene, lives);
   run["material_names"] = experiment.world.material_names;
   run["population"] = population_json(
       archive, run["generations"].empty() ? 0 : run["generations"].back()["generation"].get<std::uint32_t>());
@@ -182,7 +179,7 @@ Json gallery_data(const Experiment& experiment, std::size_t count) {
   Json run = {{"experiment", experiment.name},
               {"seed", experiment.seed},
               {"resolved", experiment.resolved},
-              {"scene", {{"floor", false}, {"water", false}}},
+              {"scene", scene_json({}, {})},
               {"material_names", experiment.world.material_names},
               {"robots", std::move(robots)}};
   return {{"kind", "gallery"}, {"evodevo", EVODEVO_VERSION}, {"runs", Json::array({std::move(run)})}};

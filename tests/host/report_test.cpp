@@ -11,6 +11,7 @@
 #include "report/packing.hpp"
 #include "report/page.hpp"
 #include "report/robot_json.hpp"
+#include "report/scene_json.hpp"
 #include "support/experiments.hpp"
 
 namespace evodevo {
@@ -280,6 +281,64 @@ TEST(FilmJson, StatesTheErrorOfWhatItLeavesOut) {
   EXPECT_EQ(json["shots"][0]["times"], (std::vector<double>{0, 2, 4}));
   EXPECT_NEAR(json["error"]["largest"].get<double>(), 1, 1e-3);
   EXPECT_EQ(json["every"], 2);
+}
+
+/// A life in which one body was seen at these places.
+FilmedLife life_at(const std::vector<SeenPlace>& places, Status status = Status::ok) {
+  FilmedLife life;
+  life.result.status = status;
+  life.film.push_back({{}, {{0, places}}, {}});
+  return life;
+}
+
+TEST(SceneJson, HoldsTheGroundAroundWhatIsSeen) {
+  Scene scene;
+  scene.floor = Floor{.roughness = 0.1, .wavelength = 0.9, .seed = 7};
+  FilmedLife walker = life_at({{-3, 1, 0}, {-1, 1, 1}});
+  walker.film.front().frames.push_back({1, {{3, 2, 0}, {5, 2, 1}}});
+  const auto json = scene_json(scene, {walker});
+  const auto& ground = json["ground"];
+  const double x = ground["x"], y = ground["y"], spacing = ground["spacing"];
+  const std::size_t columns = ground["columns"], rows = ground["rows"];
+  EXPECT_NEAR(x, -3 - 3 * 2, 1e-6);
+  EXPECT_NEAR(y, 1 - 3 * 2, 1e-6);
+  EXPECT_GE(x + spacing * static_cast<double>(columns - 1), 5 + 3 * 2);
+  EXPECT_GE(y + spacing * static_cast<double>(rows - 1), 2 + 3 * 2);
+  const std::vector<std::int64_t> differences = unpacked(ground["heights"]);
+  ASSERT_EQ(differences.size(), columns * rows);
+  std::int64_t level = 0;
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    level += differences[i];
+    const Vec3 at{x + spacing * static_cast<double>(i % columns), y + spacing * static_cast<double>(i / columns), 0};
+    ASSERT_NEAR(0.1 * (static_cast<double>(level) / 127 - 1), ground_height(scene, at), 0.51 * 0.1 / 127) << i;
+  }
+}
+
+TEST(SceneJson, GroundStaysSmallWhereverBodiesGo) {
+  Scene scene;
+  scene.floor = Floor{.roughness = 0.1, .wavelength = 0.001};
+  const FilmedLife born = life_at({{0, 0, 0}, {1, 0, 0}});
+  FilmedLife lost = life_at({{0, 0, 0}, {1, 0, 0}}, Status::diverged);
+  lost.film.front().frames.push_back({1, {{1e30F, 0, 0}, {0, 1e30F, 0}}});
+  const auto ground = scene_json(scene, {lost})["ground"];
+  EXPECT_EQ(ground, scene_json(scene, {born})["ground"]);
+  EXPECT_EQ(ground["columns"], 256);
+  EXPECT_LE(ground["rows"], 256);
+}
+
+TEST(SceneJson, SaysWhatIsThere) {
+  EXPECT_EQ(scene_json({}, {}).dump(), R"({"floor":false,"water":false,"slope":0.0,"ground":null})");
+  Scene scene;
+  scene.gravity = Gravity{.slope = 12};
+  scene.floor = Floor{};
+  scene.drag = Drag{};
+  EXPECT_EQ(scene_json(scene, {}).dump(), R"({"floor":true,"water":true,"slope":12.0,"ground":null})");
+}
+
+TEST(Page, SaysWhereItIsTooLarge) {
+  EXPECT_EQ(size_note("r.html", 29'999'999, "--best"), "");
+  EXPECT_THAT(size_note("r.html", 41'000'000, "--best"),
+              ::testing::AllOf(::testing::HasSubstr("r.html: has 41 MB"), ::testing::HasSubstr("--best\n")));
 }
 
 TEST(Page, HoldsDataThatNothingReadsAsMarkup) {

@@ -1,9 +1,10 @@
 // Films, pictures and the gallery.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { existsSync, readFileSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, symlinkSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { cycles, cycleTime, differing, evodevo, inPage, launch, opened, picture, Scratch, sum } from "./support.mjs";
+import { chromiumProgram, cycles, cycleTime, differing, evodevo, inPage, launch, opened, picture, Scratch, sum } from "./support.mjs";
 
 const scratch = new Scratch();
 let browser;
@@ -74,6 +75,27 @@ test("a gallery shows as many robots as asked for, and how balls become bodies",
   await inPage(page, ({ viewer }) => viewer.seek(2.5));
   assert.ok(sum(await differing(ball, await picture(page))) > 200);
   await page.close();
+});
+
+test("a snap, which could not read the pages, is no browser", () => {
+  const { PATH, EVODEVO_CHROMIUM } = process.env;
+  const [asking, snap, real] = ["asking", "snap/bin", "real"].map((name) => scratch.path(name));
+  for (const folder of [asking, snap, real]) mkdirSync(folder, { recursive: true });
+  const program = (path, text) => writeFileSync(path, text, { mode: 0o755 });
+  program(join(asking, "chromium-browser"), "#!/bin/sh\necho 'Please install it: snap install chromium'\nexit 1\n");
+  program(join(snap, "started"), "");
+  symlinkSync(join(snap, "started"), join(asking, "chromium"));
+  program(join(real, "google-chrome"), "");
+  try {
+    delete process.env.EVODEVO_CHROMIUM;
+    process.env.PATH = asking;
+    assert.throws(chromiumProgram, /Ubuntu.*EVODEVO_CHROMIUM/);
+    process.env.PATH = `${asking}:${real}`;
+    assert.equal(chromiumProgram(), join(real, "google-chrome"));
+  } finally {
+    process.env.PATH = PATH;
+    if (EVODEVO_CHROMIUM !== undefined) process.env.EVODEVO_CHROMIUM = EVODEVO_CHROMIUM;
+  }
 });
 
 test("a gallery can be a picture", () => {

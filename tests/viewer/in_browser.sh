@@ -8,8 +8,7 @@ skip() {
   exit 77
 }
 command -v node >/dev/null || skip "there is no Node.js"
-EVODEVO_CHROMIUM=${EVODEVO_CHROMIUM:-$(command -v chromium || true)}
-[ -n "$EVODEVO_CHROMIUM" ] || skip "there is no chromium"
-export EVODEVO_CHROMIUM
 [ -e "$EVODEVO_VIEWER/page.html" ] || skip "the target evodevo_viewer has not been built"
+find_chromium='const { chromiumProgram } = await import(process.env.EVODEVO_VIEWER + "/browser.mjs"); chromiumProgram();'
+node --input-type=module --eval "$find_chromium" || skip "there is no Chromium"
 exec node --test "$test_file"

@@ -1,6 +1,6 @@
 // The report's page, in a browser.
 import assert from "node:assert/strict";
-import { statSync } from "node:fs";
+import { readFileSync, statSync, writeFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 import { after, before, test } from "node:test";
 import {
@@ -171,7 +171,7 @@ test("the life slider goes to cycles, where vanished springs fade and new ones l
   const edits = await inPage(page, ({ viewer }) => ({
     time: viewer.time,
     gone: viewer.stages[0].life.shots[1].gone.length,
-    came: viewer.stages[0].life.shots[1].isNew.reduce((a, b) => a + b),
+    came: viewer.stages[0].life.shots[1].came,
   }));
   assert.equal(edits.time, cycleTime);
   assert.ok(edits.gone >= 6 && edits.came >= 6, JSON.stringify(edits));
@@ -196,6 +196,10 @@ test("two robots stand side by side, in step", async () => {
   const both = await picture(page);
   await inPage(page, ({ viewer }) => viewer.seek(2.5));
   for (const count of await differing(both, await picture(page))) assert.ok(count > 100);
+  await page.locator(".modes label", { hasText: "Stress" }).click();
+  const most = await inPage(page, ({ viewer }) => viewer.stages.map(({ life }) => life.robot.film.most_stress));
+  const legend = await page.locator(".legend").textContent();
+  assert.equal(Number.parseFloat(legend.slice("0 N".length)), Number(Math.max(...most).toPrecision(4)), legend);
   await page.getByLabel("beside").selectOption("");
   await until(page, ({ viewer }) => viewer.stages.length === 1);
 });
@@ -238,6 +242,50 @@ test("it fits a phone, where a finger turns the robot", async () => {
   await phone.close();
 });
 
+/** In the page: how high the lowest mass of a life stands over the ground that is drawn, at a time, m. */
+function gap({ viewer }, time) {
+  const { life, floor } = viewer.stages[0];
+  const { array } = floor.geometry.attributes.position;
+  let columns = 1;
+  while (array[3 * columns + 1] === array[1]) ++columns;
+  const spacing = array[3] - array[0];
+  const places = new Float32Array(4 * life.massCount);
+  life.writePlaces(time, places);
+  const above = Array.from(life.shots[life.shotAt(time)].masses, (mass) => {
+    const [x, y, z] = places.subarray(4 * mass);
+    const u = (x - array[0]) / spacing;
+    const v = (y - array[1]) / spacing;
+    const height = (i, j) => array[3 * (columns * (Math.floor(v) + j) + Math.floor(u) + i) + 2];
+    const row = (j) => height(0, j) + (u % 1) * (height(1, j) - height(0, j));
+    return z - row(0) - (v % 1) * (row(1) - row(0));
+  });
+  return Math.min(...above);
+}
+
+test("rough ground is drawn where bodies stand on it, and slopes lean", async () => {
+  const run = scratch.path("hills");
+  const roughness = 0.2;
+  const scene = [`floor.roughness=${roughness}`, "floor.wavelength=0.8", "gravity.slope=10"];
+  const keys = [...scene.map((key) => `scene.${key}`), "simulation.dt=auto"];
+  evodevo("run", scratch.file, "--out", run, ...keys.flatMap((key) => ["--set", key]));
+  evodevo("report", run, "--out", scratch.path("hills.html"));
+  const hills = await opened(browser, scratch.path("hills.html"));
+  const robots = await inPage(hills, ({ viewer }) => viewer.robots.length);
+  for (let i = 0; i < robots; ++i) {
+    await inPage(hills, ({ viewer }, robot) => viewer.show(robot), i);
+    // bodies are born touching the ground; 1/25 of the roughness is lost between samples, 1/254 by rounding
+    assert.ok(Math.abs(await inPage(hills, gap, 0)) < 0.05 * roughness, `robot ${i}`);
+    assert.ok((await inPage(hills, gap, 3)) > -0.1 * roughness, `robot ${i}`);
+  }
+  const downhill = await inPage(hills, ({ viewer }) => viewer.stages[0].scene.matrixWorld.elements.slice(0, 3));
+  assert.ok(Math.abs(downhill[2] + Math.sin((10 * Math.PI) / 180)) < 1e-6, `+x points to ${downhill}`);
+  const shown = await picture(hills);
+  await inPage(hills, ({ viewer }) => ((viewer.stages[0].floor.visible = false), viewer.draw()));
+  assert.ok(sum(await differing(shown, await picture(hills))) > 5000);
+  assert.deepEqual(hills.complaints, []);
+  await hills.close();
+});
+
 test("several runs give one page that compares them", async () => {
   const other = scratch.path("other");
   evodevo("run", scratch.file, "--out", other, "--seed", "8");
@@ -250,6 +298,20 @@ test("several runs give one page that compares them", async () => {
   assert.deepEqual([data[1], data[3]], [best(scratch.run), best(other)]);
   assert.deepEqual(both.complaints, []);
   await both.close();
+});
+
+test("where nothing ended with a fitness, charts say so", async () => {
+  const run = scratch.path("barren");
+  const file = scratch.path("barren.toml");
+  writeFileSync(file, readFileSync(scratch.file, "utf8").replace("stiffness = 3000", "stiffness = 0"));
+  const soft = ["muscle", "muscle2", "tissue", "bone"].flatMap((name) => ["--set", `materials.${name}.stiffness=0`]);
+  evodevo("run", file, "--out", run, ...soft);
+  evodevo("report", run, "--individual", "0", "--out", scratch.path("barren.html"));
+  const barren = await opened(browser, scratch.path("barren.html"));
+  assert.equal(await barren.getByText("no individual has ended with a fitness").count(), 3);
+  assert.ok((await barren.locator(".caption").first().textContent()).includes("invalid: no body"));
+  assert.deepEqual(barren.complaints, []);
+  await barren.close();
 });
 
 test("it is no larger than it has to be", () => {

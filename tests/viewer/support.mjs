@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 
-export const { launch } = await import(pathToFileURL(join(process.env.EVODEVO_VIEWER, "browser.mjs")).href);
+export const { chromiumProgram, launch } = await import(pathToFileURL(join(process.env.EVODEVO_VIEWER, "browser.mjs")).href);
 
 /** Names that would do harm, were they read as markup. */
 export const experimentName = `<img src=x onerror="window.harmed=1">`;

@@ -1,40 +1,61 @@
 // The headless browser that draws pages without a display.
-import { accessSync, constants } from "node:fs";
+import { accessSync, constants, readFileSync, realpathSync, statSync } from "node:fs";
 import { delimiter, join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 
-/** The path of the first of these programs that is there. */
-export function program(names) {
-  const folders = (process.env.PATH ?? "").split(delimiter);
-  for (const path of names.flatMap((name) => folders.map((folder) => join(folder, name)))) {
-    try {
-      accessSync(path, constants.X_OK);
-      return path;
-    } catch {
-      // the next one
-    }
+function isThere(path) {
+  try {
+    accessSync(path, constants.X_OK);
+    return true;
+  } catch {
+    return false;
   }
-  throw new Error(`this needs ${names[0]}, which is not there (Debian: apt-get install ${names[0]})`);
+}
+
+/** The paths of those of these programs that are there. */
+function programs(names) {
+  const folders = (process.env.PATH ?? "").split(delimiter);
+  return names.flatMap((name) => folders.map((folder) => join(folder, name))).filter(isThere);
+}
+
+/** A snap cannot read the pages, which lie in /tmp; and what Ubuntu's package chromium-browser holds does no more than
+ *  ask for one. */
+function isSnap(path) {
+  const target = realpathSync(path);
+  if (target.includes("/snap")) return true;
+  return statSync(target).size < 10_000 && readFileSync(target, "utf8").includes("snap install");
+}
+
+export function ffmpegProgram() {
+  const [found] = programs(["ffmpeg"]);
+  if (!found) throw new Error("this needs ffmpeg, which is not there (Debian and Ubuntu: apt-get install ffmpeg)");
+  return found;
+}
+
+export function chromiumProgram() {
+  if (process.env.EVODEVO_CHROMIUM) return process.env.EVODEVO_CHROMIUM;
+  const found = programs(["chromium", "chromium-browser", "google-chrome"]).find((path) => !isSnap(path));
+  if (found) return found;
+  throw new Error(
+    "this needs Chromium, which is not there (Debian: apt-get install chromium; Ubuntu has it as a snap alone, which " +
+      "cannot read the pages: install Google Chrome, or set EVODEVO_CHROMIUM to the program of any Chromium)",
+  );
 }
 
 export const launch = async () =>
   chromium.launch({
-    executablePath: process.env.EVODEVO_CHROMIUM ?? program(["chromium", "chromium-browser", "google-chrome"]),
+    executablePath: chromiumProgram(),
+    chromiumSandbox: false, // root has none, nor have many containers; only pages of our own are opened
     // Mesa draws, by a GPU or without one, then twice as fast as Chromium's own SwiftShader, which steps in where there
-    // is no Mesa; root, as in a container, has no sandbox
-    args: [
-      "--use-gl=angle",
-      "--use-angle=gl-egl",
-      "--ignore-gpu-blocklist",
-      "--enable-unsafe-swiftshader",
-      ...(process.getuid?.() === 0 ? ["--no-sandbox"] : []),
-    ],
+    // is no Mesa
+    args: ["--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist", "--enable-unsafe-swiftshader"],
   });
 
-/** A page of the viewer, ready. `options` are Playwright's. */
-export async function opened(browser, file, options, hash = "") {
+/** A page of the viewer, ready. `options` are Playwright's; `before` is what the page does first. */
+export async function opened(browser, file, options, { hash = "", before } = {}) {
   const tab = await browser.newPage(options);
+  if (before) await tab.addInitScript(before);
   tab.on("pageerror", (error) => console.error(`evodevo: the page says: ${error.message}`));
   await tab.goto(pathToFileURL(file) + hash);
   await tab.evaluate(async () => void (await window.evodevo));

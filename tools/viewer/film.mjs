@@ -2,7 +2,7 @@
 import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { writeFile } from "node:fs/promises";
-import { draw, launch, opened, program } from "./browser.mjs";
+import { draw, ffmpegProgram, launch, opened } from "./browser.mjs";
 
 const framesPerSecond = 30;
 const viewport = { width: 1280, height: 720 };
@@ -10,7 +10,7 @@ const viewport = { width: 1280, height: 720 };
 function encoder(out) {
   const input = ["-f", "image2pipe", "-framerate", String(framesPerSecond), "-i", "-"];
   const output = ["-c:v", "libx264", "-preset", "veryfast", "-pix_fmt", "yuv420p", "-crf", "20", "-movflags", "+faststart", out];
-  const ffmpeg = spawn(program(["ffmpeg"]), ["-y", "-loglevel", "error", ...input, ...output], {
+  const ffmpeg = spawn(ffmpegProgram(), ["-y", "-loglevel", "error", ...input, ...output], {
     stdio: ["pipe", "inherit", "inherit"],
   });
   ffmpeg.stdin.on("error", () => {}); // its exit code says it
@@ -25,6 +25,7 @@ async function film(tab, out) {
   const { ffmpeg, closed } = encoder(out);
   const camera = await tab.context().newCDPSession(tab); // Playwright's own pictures take longer
   const frames = Math.round((end - begin) * framesPerSecond);
+  const started = performance.now();
   try {
     for (let i = 0; i <= frames; ++i) {
       await draw(tab, begin + i / framesPerSecond);
@@ -37,6 +38,8 @@ async function film(tab, out) {
     ffmpeg.stdin.end(); // it would keep this process alive
   }
   if ((await closed)[0] !== 0) throw new Error("ffmpeg failed");
+  const rate = (1000 * (frames + 1)) / (performance.now() - started);
+  console.error(`evodevo: ${frames + 1} frames, ${rate.toPrecision(2)} a second`);
 }
 
 async function still(tab, out, at) {
@@ -52,7 +55,7 @@ const [page, out, at] = process.argv.slice(2);
 try {
   const browser = await launch();
   try {
-    const tab = await opened(browser, page, { viewport }, "#film");
+    const tab = await opened(browser, page, { viewport }, { hash: "#film" });
     if (out.endsWith(".png")) await still(tab, out, at === undefined ? undefined : Number(at));
     else await film(tab, out);
   } finally {

@@ -3,6 +3,7 @@ import uPlot from "uplot";
 import { element, short, style } from "./elements.js";
 
 const height = 250;
+const nothing = "Nothing to show: no individual has ended with a fitness.";
 
 /** The individuals that no other one beats in both youth and fitness, by age. */
 export function paretoFront(population, maximise) {
@@ -23,6 +24,10 @@ function joined(series) {
   return [xs, ...columns];
 }
 
+/** A value in the legend, which is there while the mouse is over the chart. */
+const shown = (_, value, series, index) => (index === null ? "" : short(value));
+const counts = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4, 1e5, 2e5, 5e5, 1e6]; // between ticks
+
 const line = (name, stroke, dash) => ({
   label: name,
   stroke,
@@ -30,7 +35,7 @@ const line = (name, stroke, dash) => ({
   dash,
   spanGaps: true,
   points: { show: false },
-  value: (_, v) => short(v),
+  value: shown,
 });
 const runColour = (index) => style("--series").split(/\s+/)[index % style("--series").split(/\s+/).length];
 const runName = (run, runs) => (runs.length > 1 ? `${run.label} ` : "");
@@ -47,8 +52,12 @@ class Chart {
 
   draw() {
     this.plot?.destroy();
-    const { data, series, x, y, options } = this.describe();
+    this.plot = undefined;
+    const { data, series, x, y, wholeX, options } = this.describe();
     this.data = data;
+    const isEmpty = data.slice(1).every((column) => column.every((value) => value === null));
+    this.box.replaceChildren(...(isEmpty ? [element("p", { className: "note", textContent: nothing })] : []));
+    if (isEmpty) return;
     const axis = (label, size) => ({
       label,
       size,
@@ -65,11 +74,11 @@ class Chart {
         width: this.box.clientWidth || 400,
         height,
         scales: { x: { time: false } },
-        axes: [axis(x, 36), axis(y, 52)],
+        axes: [{ ...axis(x, 36), ...(wholeX ? { incrs: counts } : {}) }, axis(y, 52)],
         legend: { live: true },
         cursor: { drag: { x: true, y: false } },
         ...options,
-        series: [{ label: x, value: (_, v) => short(v) }, ...series],
+        series: [{ label: x, value: shown }, ...series],
       },
       data,
       this.box,
@@ -92,12 +101,13 @@ function progress(runs, name, title, x, xOf) {
       data: joined(all.map(([values]) => values)),
       series: all.map(([, series]) => series),
       x,
-      y: objectiveText(runs[0]),
+      y: objectiveText(runs),
     };
   });
 }
 
-const objectiveText = (run) => `${run.objectives[0].name} (${run.objectives[0].unit})`;
+const objectiveText = (runs) =>
+  [...new Set(runs.map(({ objectives: [first] }) => `${first.name} (${first.unit})`))].join(", ");
 
 function cumulative(numbers) {
   let sum = 0;
@@ -124,7 +134,7 @@ function agesAndFitness(runs) {
       return [
         [
           { x, y: run.population.map(({ values }) => values[0]) },
-          { label: `${runName(run, runs)}individual`, value: (_, v) => short(v), ...dots },
+          { label: `${runName(run, runs)}individual`, value: shown, ...dots },
         ],
         [
           { x: front.map(({ age }) => age + 1e-8), y: front.map(({ values }) => values[0]) },
@@ -136,7 +146,8 @@ function agesAndFitness(runs) {
       data: joined(all.map(([values]) => values)),
       series: all.map(([, series]) => series),
       x: "age (generations)",
-      y: objectiveText(runs[0]),
+      wholeX: true,
+      y: objectiveText(runs),
     };
   });
 }
@@ -153,7 +164,7 @@ function statuses(run, title) {
       fill: style(name),
       width: 1,
       points: { show: false },
-      value: (_, v, k, i) => (i === null ? "–" : number(of[i], count[i])),
+      value: (_, v, k, i) => (i === null ? "" : number(of[i], count[i])),
     });
     return {
       data: [
@@ -168,6 +179,7 @@ function statuses(run, title) {
         area("diverged", "--bad", (g) => g.diverged),
       ],
       x: "generation",
+      wholeX: true,
       y: "% of evaluations",
       options: { scales: { x: { time: false }, y: { range: [0, 100] } } },
     };
@@ -175,7 +187,7 @@ function statuses(run, title) {
 }
 
 /** Bars of where the time went. Phases overlap, so that they may add up to more than the whole. */
-function timeSpent(run) {
+function timeSpent(run, title) {
   const whole = run.time?.whole ?? run.generations.reduce((sum, g) => sum + g.wall_time, 0);
   const row = (name, seconds) =>
     element(
@@ -191,7 +203,7 @@ function timeSpent(run) {
   return element(
     "figure",
     {},
-    element("figcaption", { textContent: "Where the time went" }),
+    element("figcaption", { textContent: title }),
     element("p", {
       className: "note",
       textContent: run.time
@@ -205,19 +217,23 @@ function timeSpent(run) {
 /** The charts of some runs, as figures; drawn by draw(), and named in `byName`. */
 export class Charts {
   constructor(runs) {
-    const list = [
+    const titleOf = (title, run) => (runs.length > 1 ? `${title}: ${run.label}` : title);
+    const shared = [
       progress(runs, "evaluations", "Fitness over evaluations", "evaluations", (g) => g.map((s) => s.evaluations)),
       progress(runs, "springs", "Fitness over springs simulated", "spring evaluations", (g) =>
         cumulative(g.map((s) => s.spring_evaluations)),
       ),
       agesAndFitness(runs),
-      ...runs.map((run) =>
-        statuses(run, runs.length > 1 ? `How evaluations ended: ${run.label}` : "How evaluations ended"),
-      ),
     ];
-    this.list = list;
-    this.byName = Object.fromEntries(list.map((chart) => [chart.name, chart]));
-    this.root = element("section", { className: "charts" }, ...list.map((chart) => chart.root), ...runs.map(timeSpent));
+    const ends = runs.map((run) => statuses(run, titleOf("How evaluations ended", run)));
+    this.list = [...shared, ...ends];
+    this.byName = Object.fromEntries(this.list.map((chart) => [chart.name, chart]));
+    this.root = element(
+      "section",
+      { className: "charts" },
+      ...shared.map((chart) => chart.root),
+      ...runs.flatMap((run, i) => [ends[i].root, timeSpent(run, titleOf("Where the time went", run))]),
+    );
   }
 
   draw() {

@@ -40,16 +40,17 @@ export const cycleColour = (cameWith, shots) =>
 /** How many of the first shots hold all in which springs come. */
 export const developing = (life) => 1 + life.cameWith.reduce((last, index) => Math.max(last, index), 0);
 
-/** A function that gives the colour of the i-th spring of a shot. */
-export function springColours(life, mode) {
-  const { materials } = life.robot.film;
+/** A function that gives the colour of the i-th spring of a shot; `scale` holds the stress (N) and the number of cycles
+ *  that have the last colours. */
+export function springColours(life, mode, scale) {
+  const { materials, most_stress } = life.robot.film;
   if (mode === "stress") {
-    const levels = Array.from({ length: 256 }, (_, level) => stressColour(level));
+    const own = scale.stress > 0 ? Math.sqrt(most_stress / scale.stress) : 0;
+    const levels = Array.from({ length: 256 }, (_, level) => stressColour(own * level));
     return (shot, i) => levels[shot.stress[i] ?? 0];
   }
   if (mode === "cycle") {
-    const cycles = developing(life);
-    const colours = life.shots.map((_, index) => cycleColour(index, cycles));
+    const colours = life.shots.map((_, index) => cycleColour(index, scale.cycles));
     return (shot, i) => colours[life.cameWith[shot.springs[i]]];
   }
   const colours = materials.map((made) => materialColour(made, materials));

@@ -35,18 +35,18 @@ export class Gallery {
     renderer.setSize(side, side, false);
     for (const [i, { robot, run }] of this.robots.entries()) {
       if (robot.film.shots.length === 0) continue;
-      const stage = new Stage(await Life.of(robot), run.scene);
+      const stage = new Stage(await Life.of(robot), run);
       stage.seek(stage.life.end, true);
       const { size, middle } = stage.life.boxIn(stage.life.shots.length - 1);
-      stage.focus.set(...middle);
+      stage.lookAt(middle);
       const camera = new THREE.PerspectiveCamera(30, 1, 0.01, 100);
       camera.up.set(0, 0, 1);
       camera.position
         .set(0.55, -1, 0.5)
         .normalize()
         .multiplyScalar(2.6 * size)
-        .add(stage.focus);
-      camera.lookAt(stage.focus);
+        .add(stage.target);
+      camera.lookAt(stage.target);
       stage.draw(renderer, camera, side);
       const picture = this.pictures[i].getContext("2d");
       picture.clearRect(0, 0, side, side);

@@ -47,23 +47,24 @@ export class Life {
         now.set(spring, i);
       });
       shot.isNew = Uint8Array.from(shot.springs, (spring) => (index > 0 && !before.has(spring) ? 1 : 0));
+      shot.came = shot.isNew.reduce((sum, isNew) => sum + isNew, 0);
       shot.gone = [...before].filter(([spring]) => !now.has(spring)).map(([, i]) => i);
       before = now;
     });
   }
 
-  /** Computes the path of the middle of all masses, and a smooth one to follow. */
+  /** Computes the path of the middle of all masses, and a smooth one of the middle of the box around them. */
   #follow() {
     const step = this.robot.film.step;
     this.path = this.shots.flatMap((shot) =>
       shot.times.map((time, frame) => {
         const n = shot.masses.length;
-        const middle = [0, 1, 2].map((axis) => {
-          let sum = 0;
-          for (let i = 0, at = (3 * frame + axis) * n; i < n; ++i, ++at) sum += shot.places[at];
-          return (sum / n) * step;
-        });
-        return { time, middle };
+        const rows = [0, 1, 2].map((axis) => shot.places.subarray((3 * frame + axis) * n, (3 * frame + axis + 1) * n));
+        return {
+          time,
+          middle: rows.map((row) => (row.reduce((a, b) => a + b, 0) / n) * step),
+          boxMiddle: rows.map((row) => rangeOf(row).reduce((a, b) => a + b) * 0.5 * step),
+        };
       }),
     );
     let from = 0;
@@ -72,7 +73,8 @@ export class Life {
       while (this.path[from].time < time - smoothing) ++from;
       while (to < this.path.length && this.path[to].time <= time + smoothing) ++to;
       const near = this.path.slice(from, to);
-      return { time, middle: [0, 1, 2].map((axis) => near.reduce((sum, p) => sum + p.middle[axis], 0) / near.length) };
+      const mean = (axis) => near.reduce((sum, { boxMiddle }) => sum + boxMiddle[axis], 0) / near.length;
+      return { time, middle: [0, 1, 2].map(mean) };
     });
   }
 
@@ -117,15 +119,25 @@ export class Life {
     if (!shot) return { size: 1, middle: [0, 0, 0] };
     const n = shot.masses.length;
     const step = this.robot.film.step;
-    const ranges = [0, 1, 2].map((axis) => {
-      const row = shot.places.subarray(axis * n, (axis + 1) * n);
-      return [row.reduce((a, b) => Math.min(a, b)) * step, row.reduce((a, b) => Math.max(a, b)) * step];
-    });
+    const ranges = [0, 1, 2].map((axis) =>
+      rangeOf(shot.places.subarray(axis * n, (axis + 1) * n)).map((bound) => bound * step),
+    );
     return {
       size: Math.max(step, ...ranges.map(([low, high]) => high - low)),
       middle: ranges.map(([low, high]) => (low + high) / 2),
     };
   }
+}
+
+/** The least and the greatest of some numbers. */
+function rangeOf(numbers) {
+  let low = numbers[0];
+  let high = low;
+  for (const number of numbers) {
+    if (number < low) low = number;
+    if (number > high) high = number;
+  }
+  return [low, high];
 }
 
 /** The last index whose time is not after `time`, and how much of the way to the next one has passed. */

@@ -42,6 +42,7 @@ function facts(run) {
   return element(
     "dl",
     { className: "facts" },
+    runs.length > 1 ? fact("Run", run.label, `${run.experiment}, seed ${run.seed}`) : null,
     fact(`Best ${objective.name}`, short(run.best?.objectives[objective.name]), objective.unit),
     fact(
       "Evaluations",
@@ -161,7 +162,7 @@ async function begin() {
   const main = element("main");
   document.body.append(main);
   main.append(header());
-  if (!isGallery && runs.length === 1) main.append(facts(runs[0]));
+  if (!isGallery) main.append(...runs.map(facts));
   const page = { data, film: location.hash === "#film" };
   if (robots.length > 0) {
     page.viewer = new Viewer(robots);

@@ -5,6 +5,7 @@
 import * as THREE from "three";
 import { materialColour, springColours } from "./colours.js";
 import { style } from "./elements.js";
+import { heightOf, heightUniforms } from "./ground.js";
 
 const textureWidth = 256;
 const effectTime = 0.7; // s in which vanished springs fade and new ones cool
@@ -30,6 +31,8 @@ in vec3 colour;
 in float fresh;
 uniform float radius;
 uniform float pixel; // at a distance of 1
+uniform float glow; // of what is fresh
+uniform vec3 freshColour;
 out vec3 vColour;
 out vec3 vSide;
 out vec3 vFront;
@@ -45,10 +48,10 @@ void main() {
   vFront = normalize(cross(vSide, along) + vec3(0.0, 0.0, 1e-9));
   if (dot(vFront, -at) < 0.0) vFront = -vFront;
   vAcross = position.x;
-  vColour = colour;
+  vColour = mix(colour, freshColour, glow * fresh);
   vDepth = -at.z;
   // what is thinner than a pixel would come and go
-  float wide = max(radius * (1.0 + 1.2 * fresh), 0.6 * pixel * vDepth);
+  float wide = max(radius * (1.0 + 1.2 * glow * fresh), 0.6 * pixel * vDepth);
   gl_Position = projectionMatrix * vec4(at + vSide * position.x * wide, 1.0);
 }`;
 
@@ -99,7 +102,11 @@ const shadowVertex = /* glsl */ `
 in vec2 ends;
 uniform float radius;
 ${placeOf}
-vec3 onFloor(vec3 p) { return vec3(p.xy + max(0.0, p.z) * vec2(-0.18, 0.3), 0.0); }
+${heightOf}
+vec3 onFloor(vec3 p) {
+  vec2 at = p.xy + max(0.0, p.z - heightOf(p.xy)) * vec2(-0.18, 0.3);
+  return vec3(at, heightOf(at));
+}
 void main() {
   vec3 a = onFloor(placeOf(ends.x)), b = onFloor(placeOf(ends.y));
   vec2 along = normalize(b.xy - a.xy + vec2(1e-9, 0.0));
@@ -127,17 +134,23 @@ out vec4 fragment;
 void main() { fragment = vec4(mix(near, far, smoothstep(0.0, 1.5, length(vAt - vec2(0.0, 0.2)))), 1.0); }`;
 
 const floorVertex = /* glsl */ `
+uniform vec3 centre; // of level ground, which goes with what is looked at
 out vec2 vAt;
+out vec3 vNormal;
 void main() {
-  vec4 at = modelMatrix * vec4(position, 1.0);
+  vec3 at = position + vec3(centre.xy, 0.0);
   vAt = at.xy;
-  gl_Position = projectionMatrix * viewMatrix * at;
+  vNormal = normal;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1.0);
 }`;
 
 const floorFragment = /* glsl */ `
 in vec2 vAt;
+in vec3 vNormal;
 uniform vec3 line;
-uniform vec2 focus;
+uniform vec3 earth;
+uniform float relief; // 0: nothing but lines; 1: hills that hide what is behind them
+uniform vec3 focus;
 uniform float reach;
 out vec4 fragment;
 float grid(float cell, float width) {
@@ -146,9 +159,11 @@ float grid(float cell, float width) {
   return 1.0 - min(min(edge.x, edge.y), 1.0);
 }
 void main() {
-  float fade = 1.0 - smoothstep(0.25 * reach, reach, distance(vAt, focus));
+  float fade = 1.0 - smoothstep(0.25 * reach, reach, distance(vAt, focus.xy));
   float strength = max(0.32 * grid(0.25, 1.0), 0.85 * grid(1.0, 1.4));
-  fragment = vec4(line, strength * fade);
+  float light = dot(normalize(vNormal), vec3(0.5, -0.8, 1.0)); // 1 where it is level
+  vec3 hills = earth * clamp(0.3 + 0.7 * light, 0.0, 1.12);
+  fragment = vec4(mix(mix(line, hills, relief), line, strength), mix(strength, 1.0, relief) * fade);
 }`;
 
 // motes that drift past: what a swimmer moves through, repeated around the focus
@@ -160,7 +175,7 @@ out float vFade;
 void main() {
   vec3 at = mod(position * 2.0 * reach - focus + reach, 2.0 * reach) - reach;
   vFade = 1.0 - smoothstep(0.4 * reach, reach, length(at));
-  vec4 view = viewMatrix * vec4(at + focus, 1.0);
+  vec4 view = modelViewMatrix * vec4(at + focus, 1.0);
   gl_Position = projectionMatrix * view;
   gl_PointSize = clamp(0.012 * reach * pixels / -view.z, 1.0, 7.0);
 }`;
@@ -181,36 +196,48 @@ const material = (vertexShader, fragmentShader, uniforms, options = {}) =>
  *  the size of a value and the values, one for each square. */
 function setSquares(geometry, low, count, attributes) {
   geometry.dispose();
-  const fill = (name, size, valuesOf) => {
-    const values = new Float32Array(4 * count * size);
-    for (let i = 0; i < 4 * count; ++i) values.set(valuesOf(i >> 2, i & 3), i * size);
-    geometry.setAttribute(name, new THREE.BufferAttribute(values, size));
-  };
-  const corners = [
-    [-1, low, 0],
-    [1, low, 0],
-    [1, 1, 0],
-    [-1, 1, 0],
-  ];
-  fill("position", 3, (_, corner) => corners[corner]);
-  for (const [name, [size, values]] of Object.entries(attributes))
-    fill(name, size, (square) => values.subarray(size * square, size * (square + 1)));
-  const triangles = Uint32Array.from({ length: 6 * count }, (_, i) => 4 * Math.floor(i / 6) + [0, 1, 2, 0, 2, 3][i % 6]);
+  const set = (name, size, values) => geometry.setAttribute(name, new THREE.BufferAttribute(values, size));
+  const corners = [-1, low, 0, 1, low, 0, 1, 1, 0, -1, 1, 0];
+  const positions = new Float32Array(12 * count);
+  for (let i = 0; i < positions.length; ++i) positions[i] = corners[i % 12];
+  set("position", 3, positions);
+  for (const [name, [size, values]] of Object.entries(attributes)) set(name, size, atCorners(values, size, count));
+  const triangles = new Uint32Array(6 * count);
+  for (let i = 0, at = 0; i < 4 * count; i += 4) {
+    triangles[at++] = i;
+    triangles[at++] = i + 1;
+    triangles[at++] = i + 2;
+    triangles[at++] = i;
+    triangles[at++] = i + 2;
+    triangles[at++] = i + 3;
+  }
   geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
+}
+
+/** Each square's value at its four corners. */
+function atCorners(values, size, count) {
+  const all = new Float32Array(4 * size * count);
+  for (let i = 0, at = 0; i < size * count; i += size)
+    for (let corner = 0; corner < 4; ++corner) for (let k = 0; k < size; ++k) all[at++] = values[i + k];
+  return all;
 }
 
 const colour = (name) => new THREE.Color().setStyle(style(name), THREE.LinearSRGBColorSpace);
 
 export class Stage {
-  /** A robot in its scene, which may have a floor, or water. */
-  constructor(life, scene) {
+  /** A robot in its scene, which may have a floor, with rough ground or without, or water. On a slope everything is
+   *  turned so that gravity, which leans there, points down. */
+  constructor(life, { scene, material_names }, ground) {
     this.life = life;
+    this.materialNames = material_names;
     this.scene = new THREE.Scene();
+    this.scene.rotation.y = THREE.MathUtils.degToRad(scene.slope);
     this.mode = "material";
     const { size, middle } = life.boxIn(0);
     this.size = size;
     this.start = middle;
-    this.focus = new THREE.Vector3();
+    this.focus = new THREE.Vector3(); // what is looked at, in the ground's frame
+    this.target = new THREE.Vector3(); // and as seen
     const rows = Math.max(1, Math.ceil(life.massCount / textureWidth));
     this.places = new THREE.DataTexture(
       new Float32Array(4 * textureWidth * rows),
@@ -219,29 +246,34 @@ export class Stage {
       THREE.RGBAFormat,
       THREE.FloatType,
     );
-    this.#makeUniforms();
+    this.#makeUniforms(ground);
     this.#addSky();
-    this.#addFloor(scene.floor);
+    if (scene.floor) this.#addFloor(ground);
     if (scene.water) this.#addMotes();
-    this.#addBody(scene.floor);
+    this.#addBody();
+    if (scene.floor) this.#addShadow(ground);
     this.readTheme();
   }
 
-  #makeUniforms() {
+  #makeUniforms(ground) {
     const springs = Math.max(1, ...this.life.shots.map((shot) => shot.springs.length));
     const radius = this.size * Math.min(0.0075, 0.09 / Math.sqrt(springs));
     this.shared = {
       places: { value: this.places },
       radius: { value: radius },
       pixel: { value: 0 },
+      glow: { value: 0 },
+      freshColour: { value: new THREE.Color() },
       haze: { value: new THREE.Color() },
       hazeRange: { value: new THREE.Vector2() },
     };
     this.world = {
       line: { value: new THREE.Color() },
-      focus: { value: new THREE.Vector3() },
-      reach: { value: 6 * this.size },
+      earth: { value: new THREE.Color() },
+      focus: { value: this.focus },
+      reach: { value: (ground ? 3 : 6) * this.size }, // rough ground is not known any further
     };
+    this.massRadius = { value: 0 };
     this.shadow = { value: new THREE.Vector4() };
   }
 
@@ -253,42 +285,40 @@ export class Stage {
     return mesh;
   }
 
-  #addBody(hasFloor) {
-    const springs = (opacity, options) =>
+  #addBody() {
+    const springs = (uniforms, options) =>
       material(
         springVertex,
         springFragment,
-        { ...this.shared, opacity: { value: opacity } },
+        { ...this.shared, opacity: { value: 1 }, ...uniforms },
         { side: THREE.DoubleSide, ...options },
       );
     this.springs = new THREE.BufferGeometry();
-    this.#add(this.springs, springs(1, {}), 2);
+    this.#add(this.springs, springs({}, {}), 2);
     this.gone = new THREE.BufferGeometry();
-    this.goneMaterial = springs(0, { transparent: true, depthWrite: false });
+    this.goneMaterial = springs(
+      { radius: { value: 2.2 * this.shared.radius.value } },
+      { transparent: true, depthWrite: false },
+    );
     this.#add(this.gone, this.goneMaterial, 4);
     this.masses = new THREE.BufferGeometry();
-    this.#add(
-      this.masses,
-      material(massVertex, massFragment, { ...this.shared, radius: { value: 1.7 * this.shared.radius.value } }),
-      3,
-    );
-    if (!hasFloor) return;
-    const stencil = {
+    this.#add(this.masses, material(massVertex, massFragment, { ...this.shared, radius: this.massRadius }), 3);
+  }
+
+  #addShadow(ground) {
+    this.heights = heightUniforms(ground);
+    const shown = {
+      transparent: true,
+      depthWrite: false,
+      depthTest: !ground, // straight shadows would sink into hills
+      side: THREE.DoubleSide,
       stencilWrite: true,
       stencilRef: 0,
       stencilFunc: THREE.EqualStencilFunc,
       stencilZPass: THREE.IncrementStencilOp,
     };
-    this.#add(
-      this.springs,
-      material(
-        shadowVertex,
-        shadowFragment,
-        { ...this.shared, shadow: this.shadow },
-        { transparent: true, depthWrite: false, side: THREE.DoubleSide, ...stencil },
-      ),
-      1,
-    );
+    const uniforms = { ...this.shared, ...this.heights, shadow: this.shadow };
+    this.#add(this.springs, material(shadowVertex, shadowFragment, uniforms, shown), 1);
   }
 
   #addSky() {
@@ -300,14 +330,22 @@ export class Stage {
     );
   }
 
-  #addFloor(there) {
-    if (!there) return;
+  #addFloor(ground) {
+    const side = 4 * this.world.reach.value;
     this.floor = this.#add(
-      new THREE.PlaneGeometry(1, 1),
-      material(floorVertex, floorFragment, this.world, { transparent: true, depthWrite: false }),
+      ground ? ground.geometry() : new THREE.PlaneGeometry(side, side),
+      material(
+        floorVertex,
+        floorFragment,
+        {
+          ...this.world,
+          relief: { value: ground ? 1 : 0 },
+          centre: ground ? { value: new THREE.Vector3() } : this.world.focus,
+        },
+        { transparent: true, depthWrite: Boolean(ground) },
+      ),
       0,
     );
-    this.floor.scale.setScalar(4 * this.world.reach.value);
   }
 
   #addMotes() {
@@ -333,7 +371,9 @@ export class Stage {
     this.shared.haze.value.copy(colour(this.pixels ? "--water" : "--stage"));
     this.sky.near.value.copy(colour(this.pixels ? "--water" : "--stage"));
     this.sky.far.value.copy(colour(this.pixels ? "--water-low" : "--stage-low"));
+    this.shared.freshColour.value.copy(colour("--fresh"));
     this.world.line.value.copy(colour("--grid"));
+    this.world.earth.value.copy(colour("--earth"));
     const dark = colour("--shadow");
     this.shadow.value.set(dark.r, dark.g, dark.b, Number(style("--shadow-strength")));
     this.#shown = undefined;
@@ -349,38 +389,38 @@ export class Stage {
   #fill(index) {
     const { life } = this;
     const shot = life.shots[index];
-    const colourOf = springColours(life, this.mode);
-    const there = Array.from(shot.springs, (_, i) => i);
-    setSquares(
-      this.springs,
-      0,
-      there.length,
-      this.#squares(shot, there, colourOf, (i) => shot.isNew[i]),
-    );
-    setSquares(
-      this.gone,
-      0,
-      shot.gone.length,
-      this.#squares(life.shots[index - 1], shot.gone, colourOf, () => 1),
-    );
-    this.baseColours = this.springs.attributes.colour.array.slice();
+    const colourOf = springColours(life, this.mode, this.scale);
+    const there = shot.springs.map((_, i) => i);
+    setSquares(this.springs, 0, there.length, {
+      ...this.#squares(shot, there, colourOf),
+      fresh: [1, shot.isNew],
+    });
+    setSquares(this.gone, 0, shot.gone.length, {
+      ...this.#squares(life.shots[index - 1], shot.gone, colourOf),
+      fresh: [1, new Uint8Array(shot.gone.length)],
+    });
     setSquares(this.masses, -1, shot.masses.length, {
-      mass: [1, Float32Array.from(shot.masses)],
+      mass: [1, shot.masses],
       colour: [3, this.#massColours(shot)],
     });
+    // points that no springs join have to be seen by themselves
+    const alone = there.length > 0 ? 0 : (0.09 * this.size) / Math.cbrt(shot.masses.length);
+    this.massRadius.value = Math.max(1.7 * this.shared.radius.value, alone);
     this.#shown = index;
   }
 
   /** What the squares of some of a shot's springs have. */
-  #squares(shot, list, colourOf, freshOf) {
+  #squares(shot, list, colourOf) {
     const ends = new Float32Array(2 * list.length);
     const colour = new Float32Array(3 * list.length);
-    list.forEach((i, k) => {
-      const spring = shot.springs[i];
-      ends.set(this.life.ends.subarray(2 * spring, 2 * spring + 2), 2 * k);
-      colour.set(colourOf(shot, i), 3 * k);
-    });
-    return { ends: [2, ends], colour: [3, colour], fresh: [1, Float32Array.from(list, freshOf)] };
+    for (let k = 0; k < list.length; ++k) {
+      const spring = shot.springs[list[k]];
+      ends[2 * k] = this.life.ends[2 * spring];
+      ends[2 * k + 1] = this.life.ends[2 * spring + 1];
+      const its = colourOf(shot, list[k]);
+      for (let i = 0; i < 3; ++i) colour[3 * k + i] = its[i];
+    }
+    return { ends: [2, ends], colour: [3, colour] };
   }
 
   /** Points that no springs join have the colours of their materials. */
@@ -388,9 +428,7 @@ export class Stage {
     const { materials } = this.life.robot.film;
     const plain = colour("--mass").toArray();
     const colours = shot.springs.length === 0 ? materials.map((made) => materialColour(made, materials)) : [];
-    return Float32Array.from(
-      Array.from(shot.masses).flatMap((mass) => colours[this.life.massMaterials[mass]] ?? plain),
-    );
+    return Array.from(shot.masses).flatMap((mass) => colours[this.life.massMaterials[mass]] ?? plain);
   }
 
   /** Lets new springs glow, and vanished ones fade, by the time since the shot began. */
@@ -398,16 +436,7 @@ export class Stage {
     const left =
       1 - Math.min(1, (time - shot.begin) / Math.min(effectTime, 0.7 * (shot.end - shot.begin) || effectTime));
     this.goneMaterial.uniforms.opacity.value = 0.75 * left;
-    if (!shot.isNew.includes(1)) return;
-    const glow = colour("--fresh").toArray();
-    const { colour: colours, fresh } = this.springs.attributes;
-    shot.isNew.forEach((isNew, i) => {
-      if (!isNew) return;
-      fresh.array.fill(left, 4 * i, 4 * (i + 1));
-      for (let at = 12 * i; at < 12 * (i + 1); ++at)
-        colours.array[at] = this.baseColours[at] + left * (glow[at % 3] - this.baseColours[at]);
-    });
-    colours.needsUpdate = fresh.needsUpdate = true;
+    this.shared.glow.value = left;
   }
 
   /** Puts the robot where it is at a time, and the camera's focus with it. */
@@ -419,24 +448,17 @@ export class Stage {
     life.writePlaces(time, this.places.image.data);
     this.places.needsUpdate = true;
     this.#light(life.shots[index], time);
-    const middle = follow ? this.#followed(time) : this.start;
-    this.focus.set(...middle);
-    this.world.focus.value.copy(this.focus);
-    this.floor?.position.set(this.focus.x, this.focus.y, 0);
+    this.lookAt(follow ? life.middleAt(time, life.smoothPath) : this.start);
   }
 
-  /** Where the body's middle has moved from where it was at birth. */
-  #followed(time) {
-    const { life, start } = this;
-    const from = life.middleAt(life.begin, life.smoothPath);
-    const now = life.middleAt(time, life.smoothPath);
-    const height = this.floor && from[2] > 0 ? (start[2] * now[2]) / from[2] : start[2] + now[2] - from[2];
-    return [start[0] + now[0] - from[0], start[1] + now[1] - from[1], height];
+  lookAt([x, y, z]) {
+    this.focus.set(x, y, z);
+    this.target.copy(this.focus).applyEuler(this.scene.rotation);
   }
 
   /** Draws what camera sees to a picture of so many pixels' height. */
   draw(renderer, camera, height) {
-    const distance = camera.position.distanceTo(this.focus);
+    const distance = camera.position.distanceTo(this.target);
     this.shared.hazeRange.value.set(distance - 0.5 * this.size, distance + 1.1 * this.size);
     this.shared.pixel.value = (2 * Math.tan((camera.fov * Math.PI) / 360)) / height;
     if (this.pixels) this.pixels.value = height;
@@ -446,5 +468,6 @@ export class Stage {
   dispose() {
     this.scene.traverse((object) => (object.geometry?.dispose(), object.material?.dispose()));
     this.places.dispose();
+    this.heights?.heights.value.dispose();
   }
 }

@@ -3,11 +3,12 @@ import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { css, cycleColour, developing, materialColour, readPalette, stressColour } from "./colours.js";
 import { element, short } from "./elements.js";
+import { Ground } from "./ground.js";
 import { Life } from "./life.js";
 import { Stage } from "./stage.js";
 
 const speeds = [0.1, 0.25, 0.5, 1, 2, 4];
-const framing = 2.7; // distance of the camera, in sizes of the body
+const framing = 2.9; // distance of the camera, in sizes of the body
 
 export class Viewer {
   /** A viewer of robots: {label, robot, run} each. */
@@ -21,6 +22,7 @@ export class Viewer {
     this.speed = 1;
     this.follow = true;
     this.mode = "material";
+    this.works = robots.some(({ robot }) => robot.film.most_stress > 0); // random robots are only looked at
     this.#build();
     this.#makeRenderer();
     this.#listen();
@@ -43,7 +45,7 @@ export class Viewer {
       tabIndex: 0,
       ariaLabel: "The robot. Drag to turn, pinch or wheel to come nearer.",
     });
-    this.captions = [0, 1].map(() => element("div", { className: "caption" }));
+    this.captions = [0, 1].map(() => element("div", { className: "caption" }, element("strong"), element("span")));
     this.play = element("button", { className: "play", type: "button", onclick: () => this.toggle() });
     this.scrub = element("input", {
       type: "range",
@@ -114,7 +116,7 @@ export class Viewer {
         this.cycleName,
         element("label", { className: "check" }, this.followBox, element("span", { textContent: "Follow" })),
       ),
-      element("div", { className: "looks" }, this.modes, this.legend),
+      element("div", { className: "looks" }, this.works ? this.modes : null, this.legend),
       this.note,
       element(
         "details",
@@ -137,7 +139,14 @@ export class Viewer {
     this.camera.up.set(0, 0, 1);
     this.orbit = new OrbitControls(this.camera, this.canvas);
     this.orbit.addEventListener("change", () => (this.dirty = true));
-    new ResizeObserver(() => (this.dirty = true)).observe(this.stage);
+    new ResizeObserver(() => this.#measure()).observe(this.stage);
+  }
+
+  /** Asked for in every frame, the size would lay out the page each time. */
+  #measure() {
+    this.width = this.stage.clientWidth;
+    this.height = this.stage.clientHeight;
+    this.dirty = true;
   }
 
   #listen() {
@@ -168,7 +177,7 @@ export class Viewer {
       "]": () => this.#jumped(this.#shotIndex() + 1),
       "+": speed(1),
       "-": speed(-1),
-      c: () => this.setMode({ material: "stress", stress: "cycle", cycle: "material" }[this.mode]),
+      c: () => this.works && this.setMode({ material: "stress", stress: "cycle", cycle: "material" }[this.mode]),
       f: () => this.setFollow(!this.follow),
       r: () => this.#frameBody(),
     };
@@ -185,9 +194,16 @@ export class Viewer {
     this.chosen = [first, second];
     const indices = this.chosen.filter((i) => i !== undefined);
     const lives = await Promise.all(indices.map((i) => this.#life(i)));
+    const grounds = await Promise.all(indices.map((i) => Ground.of(this.robots[i].run.scene)));
     if (this.chosen[0] !== first || this.chosen[1] !== second) return; // another choice was faster
     this.stages.forEach((stage) => stage.dispose());
-    this.stages = lives.map((life, k) => new Stage(life, this.robots[indices[k]].run.scene));
+    this.stages = lives.map((life, k) => new Stage(life, this.robots[indices[k]].run, grounds[k]));
+    // one for both, so that they can be compared
+    this.scale = {
+      stress: Math.max(...lives.map((life) => life.robot.film.most_stress ?? 0)),
+      cycles: Math.max(...lives.map(developing)),
+    };
+    this.stages.forEach((stage) => (stage.scale = this.scale));
     this.first.querySelector("select").value = String(first);
     this.second.querySelector("select").value = second === undefined ? "" : String(second);
     this.stage.classList.toggle("two", indices.length > 1);
@@ -300,7 +316,7 @@ export class Viewer {
   #explain() {
     const shown = this.stages.filter((stage) => stage.life.shots.length > 0);
     this.legend.replaceChildren(
-      ...(shown.length > 0 ? this.#legend(shown[0].life, this.robots[this.chosen[0]].run) : []),
+      ...(shown.length > 0 ? this.#legend() : []),
     );
     const error = shown
       .map((stage) => stage.life.robot.film.error)
@@ -310,8 +326,7 @@ export class Viewer {
       : "";
   }
 
-  #legend(life, run) {
-    const film = life.robot.film;
+  #legend() {
     const swatch = (colour, text) =>
       element(
         "span",
@@ -328,9 +343,9 @@ export class Viewer {
       ];
     };
     if (this.mode === "stress")
-      return scale((t) => stressColour(255 * t), "0 N", `${short(film.most_stress)} N (root scale)`);
+      return scale((t) => stressColour(255 * t), "0 N", `${short(this.scale.stress)} N (root scale)`);
     if (this.mode === "cycle") {
-      const cycles = developing(life);
+      const { cycles } = this.scale;
       const born = swatch(cycleColour(0, cycles), "there from birth");
       return cycles > 1
         ? [
@@ -339,36 +354,45 @@ export class Viewer {
           ]
         : [born];
     }
-    return run.material_names
-      .map((name, i) => [film.materials[i], name])
-      .filter(([made]) => made?.stiffness > 0)
-      .map(([made, name]) => swatch(materialColour(made, film.materials), name));
+    const materials = new Map();
+    for (const { life, materialNames } of this.stages)
+      materialNames.forEach((name, i) => {
+        const all = life.robot.film.materials ?? [];
+        if (all[i]?.stiffness > 0 && !materials.has(name)) materials.set(name, materialColour(all[i], all));
+      });
+    return [...materials].map(([name, colour]) => swatch(colour, name));
   }
 
+  /** The name of a robot, and what it does. */
   #caption(k) {
-    const stage = this.stages[k];
-    const index = this.chosen.filter((i) => i !== undefined)[k];
-    const { life } = stage;
-    const name = element("strong", { textContent: this.robots[index].label });
-    if (life.shots.length === 0)
-      return [name, element("span", { textContent: `${life.robot.status}: ${life.robot.reason}` })];
+    const { life } = this.stages[k];
+    const name = this.robots[this.chosen.filter((i) => i !== undefined)[k]].label;
+    if (life.shots.length === 0) return [name, `${life.robot.status}: ${life.robot.reason}`];
     const shot = life.shots[life.shotAt(this.time)];
     const measured = life.shots.find(({ name: n }) => n === "measured");
-    const moved =
-      measured && this.time > measured.begin ? distance(life.middleAt(this.time), life.middleAt(measured.begin)) : null;
     const gone = shot.gone.length;
-    const came = shot.isNew.reduce((sum, isNew) => sum + isNew, 0);
-    const text = [shot.name, `${shot.springs.length} springs`];
-    if (gone + came > 0) text.push(`−${gone} +${came}`);
-    if (moved !== null) text.push(`moved ${moved.toFixed(2)} m`);
-    return [name, element("span", { textContent: text.join(" · ") })];
+    const { springs, masses } = shot;
+    const text = [shot.name, springs.length > 0 ? `${springs.length} springs` : `${masses.length} points`];
+    if (gone + shot.came > 0) text.push(`−${gone} +${shot.came}`);
+    if (measured && this.time > measured.begin)
+      text.push(`moved ${distance(life.middleAt(this.time), life.middleAt(measured.begin)).toFixed(2)} m`);
+    return [name, text.join(" · ")];
+  }
+
+  #writeCaptions() {
+    this.captions.forEach((caption, k) => {
+      const texts = k < this.stages.length ? this.#caption(k) : ["", ""];
+      texts.forEach((text, line) => {
+        if (caption.children[line].textContent !== text) caption.children[line].textContent = text;
+      });
+    });
   }
 
   /** Draws the moment. */
   draw() {
     this.dirty = false;
-    const width = this.stage.clientWidth;
-    const height = this.stage.clientHeight;
+    if (!this.width) this.#measure();
+    const { width, height } = this;
     if (width === 0 || this.stages.length === 0) return;
     const ratio = Math.min(devicePixelRatio, 2);
     const size = this.renderer.getSize(new THREE.Vector2());
@@ -380,7 +404,7 @@ export class Viewer {
     const stacked = this.stages.length > 1 && height > 1.1 * width;
     this.stage.classList.toggle("stacked", stacked);
     this.stages.forEach((stage, k) => this.#drawStage(stage, this.#viewport(k, width, height, stacked), ratio));
-    this.captions.forEach((caption, k) => caption.replaceChildren(...(k < this.stages.length ? this.#caption(k) : [])));
+    this.#writeCaptions();
   }
 
   #viewport(k, width, height, stacked) {
@@ -400,7 +424,8 @@ export class Viewer {
       camera.aspect < 1
         ? 2 * Math.atan(Math.tan((camera.fov * Math.PI) / 360) / camera.aspect) * (180 / Math.PI)
         : camera.fov;
-    camera.position.add(stage.focus);
+    camera.position.add(stage.target);
+    camera.position.z += 0.05 * stage.size; // the caption stands above the body
     camera.updateProjectionMatrix();
     camera.updateMatrixWorld();
     stage.draw(this.renderer, camera, height * ratio);

@@ -1,0 +1,73 @@
+#include "report/scene_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/packing.hpp"
+
+namespace evodevo {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double margin = 3;                  ///< of ground around the films, in longest sides of the largest body
+constexpr double samples_in_wavelength = 12;  ///< straight lines between them are off by at most 1/25 of the roughness
+constexpr double most_samples = 256;          ///< along each side
+
+Vec3 place(const SeenPlace& p) { return {p[0], p[1], p[2]}; }
+
+/// Everywhere that masses are seen, m, and as much around it as is looked at. What diverges goes anywhere: of such a
+/// life only the beginning counts.
+Box seen_box(const std::vector<FilmedLife>& lives) {
+  std::vector<Vec3> corners;
+  double side = 0;
+  for (const FilmedLife& life : lives)
+    for (const Shot& shot : life.film)
+      for (const Frame& frame : shot.frames) {
+        const bool first = &shot == &life.film.front() && &frame == &shot.frames.front();
+        if (!first && life.result.status != Status::ok) continue;
+        std::vector<Vec3> places;
+        std::transform(frame.places.begin(), frame.places.end(), std::back_inserter(places), place);
+        const Box box = bounding_box(places);
+        if (first) side = std::max(side, box.longest_side());
+        corners.insert(corners.end(), {box.low, box.high});
+      }
+  const Box box = bounding_box(corners);
+  const Vec3 around{margin * side, margin * side, 0};
+  return {box.low - around, box.high + around};
+}
+
+Json ground_json(const Scene& scene, const Box& box) {
+  const double width = box.high.x - box.low.x, depth = box.high.y - box.low.y;
+  const double spacing =
+      std::max(scene.floor->wavelength / samples_in_wavelength, std::max(width, depth) / (most_samples - 1));
+  const auto samples = [&](double length) { return static_cast<std::size_t>(std::ceil(length / spacing - 1e-9)) + 1; };
+  const std::size_t columns = samples(width), rows = samples(depth);
+  std::vector<std::uint32_t> heights;
+  for (std::size_t row = 0; row < rows; ++row)
+    for (std::size_t column = 0; column < columns; ++column) {
+      const Vec3 at{box.low.x + static_cast<double>(column) * spacing, box.low.y + static_cast<double>(row) * spacing,
+                    0};
+      const double part = ground_height(scene, at) / scene.floor->roughness;
+      heights.push_back(static_cast<std::uint32_t>(std::lround(127 * (1 + part))));
+    }
+  return {{"x", box.low.x},
+          {"y", box.low.y},
+          {"spacing", spacing},
+          {"columns", columns},
+          {"rows", rows},
+          {"roughness", scene.floor->roughness},
+          {"heights", packed_differences(heights)}};
+}
+
+}  // namespace
+
+Json scene_json(const Scene& scene, const std::vector<FilmedLife>& lives) {
+  const bool rough = scene.floor && scene.floor->rough();
+  return {{"floor", scene.floor.has_value()},
+          {"water", scene.drag.has_value()},
+          {"slope", scene.gravity ? scene.gravity->slope : 0.0},
+          {"ground", rough ? ground_json(scene, seen_box(lives)) : Json(nullptr)}};
+}
+
+}  // namespace evodevo
