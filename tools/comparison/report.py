@@ -215,7 +215,7 @@ def differences(made):
 def markdown(histories, objective, setting):
     head = (
         f"# {objective.name} ({objective.unit}, {'more' if objective.maximise else 'less'} is better)\n\n"
-        f"{setting.seeds} seeds of each experiment, on {' and '.join(sorted(setting.builds['device']))}, evodevo "
+        f"{setting.seeds} {'seed' if setting.seeds == 1 else 'seeds'} of each experiment, on {' and '.join(sorted(setting.builds['device']))}, evodevo "
         f"{' and '.join(sorted(setting.builds['evodevo']))}. Made by\n\n```sh\n{setting.command}\n```\n"
     )
     parts = [
