@@ -4,10 +4,10 @@
 #include <numeric>
 #include <unordered_set>
 
+#include "development.hpp"
+
 namespace evodevo {
 namespace {
-
-constexpr int attempts_per_spring = 100;
 
 /// One application of edits at other places than those that they name.
 class Relocation {
@@ -64,11 +64,12 @@ class Relocation {
   void add_springs() {
     if (edits_.new_springs.empty() || staying_masses_.empty()) return;
     std::unordered_set<std::uint64_t> joined;
-    for (const std::uint32_t s : staying_springs_) joined.insert(key(now_.body.springs[s].a, now_.body.springs[s].b));
+    for (const std::uint32_t s : staying_springs_)
+      joined.insert(pair_key(now_.body.springs[s].a, now_.body.springs[s].b));
     for (const NewSpring& spring : edits_.new_springs)
-      for (int attempt = 0; attempt < attempts_per_spring; ++attempt) {
+      for (std::size_t attempt = 0; attempt < attempts_per_spring; ++attempt) {
         const std::uint32_t a = other_end(spring.a), b = other_end(spring.b);
-        if (a == b || !(norm(place(b) - place(a)) > 0) || !joined.insert(key(a, b)).second) continue;
+        if (a == b || !(norm(place(b) - place(a)) > 0) || !joined.insert(pair_key(a, b)).second) continue;
         out_.new_springs.push_back({a, b, spring.material, {}});
         break;
       }
@@ -83,10 +84,6 @@ class Relocation {
   Vec3 place(std::uint32_t mass) const {
     const std::size_t old = now_.body.masses.size();
     return mass < old ? now_.place(mass) : out_.new_masses.at(mass - old).place;
-  }
-
-  static std::uint64_t key(std::uint32_t a, std::uint32_t b) {
-    return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
   }
 
   static std::size_t distinct(const std::vector<std::uint32_t>& indices) {
