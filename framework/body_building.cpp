@@ -15,7 +15,7 @@ namespace {
 
 void leave_out_air(Body& body) {
   std::erase_if(body.springs, [&](const Spring& spring) {
-    const bool air = body.materials[spring.material].stiffness == 0;
+    const bool air = is_air(body.materials[spring.material]);
     if (air) {
       ++body.masses[spring.a].air_contacts;
       ++body.masses[spring.b].air_contacts;

@@ -1,18 +1,76 @@
 #include "controls.hpp"
 
+#include <algorithm>
 #include <map>
 #include <numeric>
 #include <unordered_set>
 
+#include "development.hpp"
+
 namespace evodevo {
 namespace {
 
-constexpr int attempts_per_spring = 100;
+std::vector<std::uint8_t> marked(const std::vector<std::uint32_t>& indices, std::size_t count) {
+  std::vector<std::uint8_t> marks(count, 0);
+  for (const std::uint32_t index : indices) marks.at(index) = 1;
+  return marks;
+}
 
-/// One application of edits at other places than those that they name.
+std::optional<Material> mass_material(const Body& body, std::int32_t index) {
+  if (index == no_material) return std::nullopt;
+  return body.materials.at(static_cast<std::size_t>(index));
+}
+
+/// The index of a material; one past the last where the body has no such material.
+std::int32_t index_of(const Material& material, const Body& body) {
+  return static_cast<std::int32_t>(std::find(body.materials.begin(), body.materials.end(), material) -
+                                   body.materials.begin());
+}
+
+/// Springs or masses to draw from by their material. What is drawn is gone.
+class Pools {
+ public:
+  void add(std::int32_t material, std::uint32_t item) {
+    pools_[material].push_back(item);
+    ++left_;
+  }
+
+  /// One of this material, of any where none of it is left; none where nothing is left at all.
+  std::optional<std::uint32_t> draw(std::int32_t material, Rng& rng) {
+    if (left_ == 0) return std::nullopt;
+    const auto own = pools_.find(material);
+    std::vector<std::uint32_t>& pool = own != pools_.end() && !own->second.empty() ? own->second : any(rng);
+    std::swap(pool[rng.below(static_cast<std::uint32_t>(pool.size()))], pool.back());
+    const std::uint32_t item = pool.back();
+    pool.pop_back();
+    --left_;
+    return item;
+  }
+
+ private:
+  /// The pool of a random item.
+  std::vector<std::uint32_t>& any(Rng& rng) {
+    std::uint32_t item = rng.below(static_cast<std::uint32_t>(left_));
+    auto pool = pools_.begin();
+    for (; item >= pool->second.size(); ++pool) item -= static_cast<std::uint32_t>(pool->second.size());
+    return pool->second;
+  }
+
+  std::map<std::int32_t, std::vector<std::uint32_t>> pools_;
+  std::size_t left_ = 0;
+};
+
+/// One amount of change on its way into a body.
 class Relocation {
  public:
-  Relocation(const Edits& edits, const Moment& now, Rng& rng) : edits_(edits), now_(now), rng_(rng) {}
+  Relocation(const Amount& amount, const Moment& now, std::size_t& surplus, Rng& rng)
+      : amount_(amount),
+        now_(now),
+        body_(now.body),
+        surplus_(surplus),
+        rng_(rng),
+        mass_goes_(body_.masses.size(), 0),
+        spring_goes_(body_.springs.size(), 0) {}
 
   Edits relocate() {
     remove_masses();
@@ -25,96 +83,149 @@ class Relocation {
 
  private:
   void remove_masses() {
-    staying_masses_.resize(now_.body.masses.size());
-    std::iota(staying_masses_.begin(), staying_masses_.end(), 0u);
-    out_.removed_masses = take(staying_masses_, distinct(edits_.removed_masses));
+    Pools masses;
+    for (std::uint32_t i = 0; i < body_.masses.size(); ++i) masses.add(body_.masses[i].material, i);
+    for (const std::optional<Material>& material : amount_.masses_gone)
+      if (const auto mass = masses.draw(index_in_body(material), rng_)) {
+        out_.removed_masses.push_back(*mass);
+        mass_goes_[*mass] = 1;
+      }
   }
 
   void remove_springs() {
-    const std::unordered_set<std::uint32_t> gone(out_.removed_masses.begin(), out_.removed_masses.end());
-    const auto& springs = now_.body.springs;
-    for (std::uint32_t s = 0; s < springs.size(); ++s)
-      if (!gone.contains(springs[s].a) && !gone.contains(springs[s].b)) staying_springs_.push_back(s);
-    out_.removed_springs = take(staying_springs_, distinct(edits_.removed_springs));
+    for (const std::int32_t material : springs_due())
+      if (const auto spring = staying_springs_.draw(material, rng_)) {
+        out_.removed_springs.push_back(*spring);
+        spring_goes_[*spring] = 1;
+      }
+  }
+
+  /// The materials of the springs that have to go beside those of the masses that go.
+  std::vector<std::int32_t> springs_due() {
+    std::vector<std::int32_t> due;
+    for (const Material& material : amount_.springs_gone) due.push_back(index_of(material, body_));
+    for (std::uint32_t s = 0; s < body_.springs.size(); ++s) {
+      const Spring& spring = body_.springs[s];
+      const auto material = static_cast<std::int32_t>(spring.material);
+      spring_goes_[s] = mass_goes_[spring.a] | mass_goes_[spring.b];
+      if (spring_goes_[s] == 0)
+        staying_springs_.add(material, s);
+      else if (const auto same = std::find(due.begin(), due.end(), material); same != due.end())
+        due.erase(same);
+      else
+        ++surplus_;
+    }
+    const std::size_t made_up = std::min(surplus_, due.size());
+    rng_.shuffle(due);
+    due.resize(due.size() - made_up);
+    surplus_ -= made_up;
+    return due;
   }
 
   void change_springs() {
-    if (edits_.changed_springs.empty()) return;
-    const auto& springs = now_.body.springs;
-    std::map<std::uint32_t, std::vector<std::uint32_t>> of_material;
-    for (const std::uint32_t s : staying_springs_) of_material[springs[s].material].push_back(s);
-    for (const ChangedSpring& change : edits_.changed_springs) {
-      const Spring& before = springs.at(change.spring);
-      for (const std::uint32_t s : take(of_material[before.material], 1)) {
-        ChangedSpring& moved = out_.changed_springs.emplace_back(change);
-        moved.spring = s;
-        if (change.rest_length && before.rest_length > 0)
-          moved.rest_length = springs[s].rest_length * (*change.rest_length / before.rest_length);
+    for (const Amount::SpringChange& change : amount_.springs_changed)
+      if (const auto spring = staying_springs_.draw(index_of(change.before, body_), rng_)) {
+        ChangedSpring& changed = out_.changed_springs.emplace_back(ChangedSpring{.spring = *spring});
+        changed.material = change.after;
+        if (change.factor) changed.rest_length = *change.factor * body_.springs[*spring].rest_length;
       }
-    }
   }
 
   void add_masses() {
     const auto& [low, high] = now_.bounds;
-    out_.new_masses = edits_.new_masses;
-    for (NewMass& mass : out_.new_masses)
-      mass.place = {rng_.uniform(low.x, high.x), rng_.uniform(low.y, high.y), rng_.uniform(low.z, high.z)};
+    for (const Amount::MassCome& mass : amount_.masses_come) {
+      const Vec3 place{rng_.uniform(low.x, high.x), rng_.uniform(low.y, high.y), rng_.uniform(low.z, high.z)};
+      const std::int32_t material = index_in_body(mass.material);
+      const bool is_known = material < static_cast<std::int32_t>(body_.materials.size());
+      out_.new_masses.push_back({place, mass.mass, is_known ? material : no_material});
+    }
   }
 
   void add_springs() {
-    if (edits_.new_springs.empty() || staying_masses_.empty()) return;
+    std::vector<std::uint32_t> staying;
+    for (std::uint32_t i = 0; i < mass_goes_.size(); ++i)
+      if (mass_goes_[i] == 0) staying.push_back(i);
+    if (amount_.springs_come.empty() || staying.empty()) return;
     std::unordered_set<std::uint64_t> joined;
-    for (const std::uint32_t s : staying_springs_) joined.insert(key(now_.body.springs[s].a, now_.body.springs[s].b));
-    for (const NewSpring& spring : edits_.new_springs)
-      for (int attempt = 0; attempt < attempts_per_spring; ++attempt) {
-        const std::uint32_t a = other_end(spring.a), b = other_end(spring.b);
-        if (a == b || !(norm(place(b) - place(a)) > 0) || !joined.insert(key(a, b)).second) continue;
+    for (std::uint32_t s = 0; s < spring_goes_.size(); ++s)
+      if (spring_goes_[s] == 0) joined.insert(pair_key(body_.springs[s].a, body_.springs[s].b));
+    const auto end = [&](const std::optional<std::uint32_t>& come) {
+      if (come) return static_cast<std::uint32_t>(body_.masses.size() + *come);
+      return staying[rng_.below(static_cast<std::uint32_t>(staying.size()))];
+    };
+    for (const Amount::SpringCome& spring : amount_.springs_come)
+      for (std::size_t attempt = 0; attempt < attempts_per_spring; ++attempt) {
+        const std::uint32_t a = end(spring.a), b = end(spring.b);
+        if (a == b || !(norm(place(b) - place(a)) > 0) || !joined.insert(pair_key(a, b)).second) continue;
         out_.new_springs.push_back({a, b, spring.material, {}});
         break;
       }
   }
 
-  /// A random mass that stays in the place of an old one; a new one stays what it is.
-  std::uint32_t other_end(std::uint32_t end) {
-    if (end >= now_.body.masses.size()) return end;
-    return staying_masses_[rng_.below(static_cast<std::uint32_t>(staying_masses_.size()))];
-  }
-
+  /// Where a mass, old or new, is when life goes on.
   Vec3 place(std::uint32_t mass) const {
-    const std::size_t old = now_.body.masses.size();
+    const std::size_t old = body_.masses.size();
     return mass < old ? now_.place(mass) : out_.new_masses.at(mass - old).place;
   }
 
-  static std::uint64_t key(std::uint32_t a, std::uint32_t b) {
-    return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
+  std::int32_t index_in_body(const std::optional<Material>& material) const {
+    return material ? index_of(*material, body_) : no_material;
   }
 
-  static std::size_t distinct(const std::vector<std::uint32_t>& indices) {
-    return std::unordered_set<std::uint32_t>(indices.begin(), indices.end()).size();
-  }
-
-  /// Takes `count` random ones, or all, out of `pool`, whose order changes.
-  std::vector<std::uint32_t> take(std::vector<std::uint32_t>& pool, std::size_t count) {
-    std::vector<std::uint32_t> taken;
-    while (taken.size() < count && !pool.empty()) {
-      std::swap(pool[rng_.below(static_cast<std::uint32_t>(pool.size()))], pool.back());
-      taken.push_back(pool.back());
-      pool.pop_back();
-    }
-    return taken;
-  }
-
-  const Edits& edits_;
+  const Amount& amount_;
   const Moment& now_;
+  const Body& body_;
+  std::size_t& surplus_;
   Rng& rng_;
   Edits out_;
-  std::vector<std::uint32_t> staying_masses_, staying_springs_;
+  std::vector<std::uint8_t> mass_goes_, spring_goes_;
+  Pools staying_springs_;
 };
 
 }  // namespace
 
-Edits at_random_places(const Edits& edits, const Moment& now, Rng& rng) {
-  return Relocation(edits, now, rng).relocate();
+Amount amount_of(const Edits& edits, const Body& body, std::uint32_t op) {
+  const std::vector<std::uint8_t> mass_goes = marked(edits.removed_masses, body.masses.size()),
+                                  spring_goes = marked(edits.removed_springs, body.springs.size());
+  Amount amount{.op = op};
+  for (std::size_t s = 0; s < body.springs.size(); ++s) {
+    const Spring& spring = body.springs[s];
+    if (spring_goes[s] || mass_goes[spring.a] || mass_goes[spring.b])
+      amount.springs_gone.push_back(body.materials[spring.material]);
+  }
+  for (std::size_t i = 0; i < body.masses.size(); ++i)
+    if (mass_goes[i]) amount.masses_gone.push_back(mass_material(body, body.masses[i].material));
+  for (const ChangedSpring& change : edits.changed_springs) {
+    const Spring& spring = body.springs.at(change.spring);
+    std::optional<double> factor;
+    if (change.rest_length && spring.rest_length > 0) factor = *change.rest_length / spring.rest_length;
+    amount.springs_changed.push_back({body.materials[spring.material], factor, change.material});
+  }
+  for (const NewMass& mass : edits.new_masses)
+    amount.masses_come.push_back({mass.mass, mass_material(body, mass.material)});
+  const auto new_mass = [&](std::uint32_t end) -> std::optional<std::uint32_t> {
+    if (end < body.masses.size()) return std::nullopt;
+    return static_cast<std::uint32_t>(end - body.masses.size());
+  };
+  for (const NewSpring& spring : edits.new_springs)
+    amount.springs_come.push_back({spring.material, new_mass(spring.a), new_mass(spring.b)});
+  return amount;
+}
+
+Edits at_random_places(const Amount& amount, const Moment& now, std::size_t& surplus, Rng& rng) {
+  return Relocation(amount, now, surplus, rng).relocate();
+}
+
+std::vector<Amount> Yoke::amounts_after(int cycle) {
+  std::vector<Amount> amounts;
+  for (; next_ < changes_.size() && changes_[next_].cycle == static_cast<std::uint32_t>(cycle); ++next_) {
+    const Change& change = changes_[next_];
+    if (change.op) amounts.push_back(amount_of(change.edits, body_, *change.op));
+    replay(body_, change);
+  }
+  std::stable_partition(amounts.begin(), amounts.end(),
+                        [](const Amount& amount) { return !amount.masses_gone.empty(); });
+  return amounts;
 }
 
 }  // namespace evodevo

@@ -23,10 +23,6 @@ std::vector<std::uint8_t> marked(const std::vector<std::uint32_t>& indices, std:
   return marks;
 }
 
-std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) {
-  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
-}
-
 std::string pair_text(const NewSpring& spring) {
   return "joins masses " + std::to_string(spring.a) + " and " + std::to_string(spring.b);
 }
@@ -61,7 +57,7 @@ class Editor {
   bool goes(const Spring& spring) const { return mass_gone_[spring.a] || mass_gone_[spring.b]; }
 
   static void check_material(const std::string& what, const Material& material) {
-    if (!(material.stiffness > 0) || !std::isfinite(material.stiffness))
+    if (is_air(material) || !std::isfinite(material.stiffness))
       refuse(what + " by a spring of stiffness " + std::to_string(material.stiffness));
     if (!(material.amplitude >= 0 && material.amplitude < 1))
       refuse(what + " by a spring of amplitude " + std::to_string(material.amplitude) + "; expected 0 to below 1");

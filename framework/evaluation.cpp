@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "body_building.hpp"
-#include "controls.hpp"
 #include "parallel.hpp"
 #include "philox.hpp"
 #include "skip_shift.hpp"
@@ -116,17 +115,39 @@ std::vector<Life> Evaluation::birth(std::span<const Newborn> newborns) const {
 }
 
 double Evaluation::development_time() const {
-  return static_cast<double>(experiment_.development.cycles) * experiment_.development.cycle_time;
+  const Development& development = experiment_.development;
+  const int times_lived = development.control == Control::random_places ? 2 : 1;
+  return times_lived * static_cast<double>(development.cycles) * development.cycle_time;
 }
 
 void Evaluation::develop(std::span<Life> lives, const Progress& progress) const {
+  if (experiment_.development.control == Control::random_places) return develop_yoked(lives, progress);
+  const auto change = [&](std::size_t i, int cycle) { apply_operators(lives[i], cycle); };
+  live_cycles(lives, true, change, progress);
+}
+
+void Evaluation::develop_yoked(std::span<Life> lives, const Progress& progress) const {
+  std::vector<Yoke> yokes;
+  {
+    std::vector<Life> before(lives.begin(), lives.end());
+    const auto change = [&](std::size_t i, int cycle) { apply_operators(before[i], cycle); };
+    live_cycles(before, true, change, [&](double done) { progress(done / 2); });
+    for (std::size_t i = 0; i < lives.size(); ++i) yokes.emplace_back(lives[i].living.body, before[i].result.record);
+  }
+  const auto change = [&](std::size_t i, int cycle) { follow(yokes[i], lives[i], cycle); };
+  live_cycles(lives, false, change, [&](double done) { progress((1 + done) / 2); });
+}
+
+template <class Action>
+void Evaluation::live_cycles(std::span<Life> lives, bool observed, const Action& change,
+                             const Progress& progress) const {
   const Development& development = experiment_.development;
   for (int cycle = 1; cycle <= development.cycles; ++cycle) {
-    simulate_cycle(lives, cycle);
+    simulate_cycle(lives, cycle, observed ? development.recording(cycle) : Recording{});
     const BusyClock::Span span(develop_);
     simulator_.workers().for_each(lives.size(), [&](std::size_t i) {
       if (!lives[i].alive()) return;
-      apply_operators(lives[i], cycle);
+      change(i, cycle);
       if (development.reset) allow_energy(lives[i], [&] { return_to_rest(lives[i]); });
       if (!development.operators.empty()) choose_step(lives[i]);
     });
@@ -134,9 +155,8 @@ void Evaluation::develop(std::span<Life> lives, const Progress& progress) const 
   }
 }
 
-void Evaluation::simulate_cycle(std::span<Life> lives, int cycle) const {
+void Evaluation::simulate_cycle(std::span<Life> lives, int cycle, Recording recording) const {
   const Development& development = experiment_.development;
-  const Recording recording = development.recording(cycle);
   const auto tally = [&](std::span<Task> tasks, std::span<Life* const> alive) {
     std::vector<Rng> random;
     for (const Life* life : alive) random.push_back(stream(*life, place::stress_tallies(cycle)));
@@ -197,10 +217,18 @@ void Evaluation::apply_operator(Life& life, int cycle, std::size_t index) const 
   const auto develop = [&] {
     Edits edits;
     op->develop(now, edits, rng);
-    if (experiment_.development.control == Control::random_places) edits = at_random_places(edits, now, rng);
     make_change(life, edits, static_cast<std::uint32_t>(index), now);
   };
   call_operator(experiment_, Devo::kind, index, develop, where);
+}
+
+void Evaluation::follow(Yoke& yoke, Life& life, int cycle) const {
+  Rng rng = stream(life, place::random_places(cycle));
+  for (const Amount& amount : yoke.amounts_after(cycle)) {
+    const Moment now = moment(life, cycle, {}, {});
+    make_change(life, at_random_places(amount, now, yoke.surplus, rng), amount.op, now);
+  }
+  shed_loose_pieces(life, cycle);
 }
 
 Rng Evaluation::stream(const Life& life, std::uint32_t place) const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "busy_clock.hpp"
+#include "controls.hpp"
 #include "development.hpp"
 #include "experiment.hpp"
 #include "life_record.hpp"
@@ -93,8 +94,14 @@ class Evaluation {
   /// Lets the bodies that are alive do something for `duration` s. `move` is to run the tasks of these lives.
   template <class Move>
   void simulate(std::span<Life> lives, double duration, const Move& move) const;
-  /// The simulation of a cycle of development, with what its operators ask for recorded as the probe does it.
-  void simulate_cycle(std::span<Life> lives, int cycle) const;
+  /// All cycles of development; `change(i, cycle)` changes the i-th life after a cycle. Where `observed`, what the
+  /// operators of a cycle ask for is recorded for them.
+  template <class Action>
+  void live_cycles(std::span<Life> lives, bool observed, const Action& change, const Progress& progress) const;
+  /// The control of random places: each life is lived once before, with the operators, and then follows that.
+  void develop_yoked(std::span<Life> lives, const Progress& progress) const;
+  /// The simulation of a cycle of development, recorded as the probe does it.
+  void simulate_cycle(std::span<Life> lives, int cycle, Recording recording) const;
   /// The box around the body where it is when life goes on, cut off at the floor's highest place.
   Box bounds(const LivingBody& living) const;
   /// Does what changes a body; the energy that it brings is no fault of the simulation, so the guard is to allow it.
@@ -106,12 +113,15 @@ class Evaluation {
   void shuffle_records(Life& life, int cycle) const;
   void apply_operators(Life& life, int cycle) const;
   void apply_operator(Life& life, int cycle, std::size_t index) const;
+  /// Changes as much as the operators did in the life to which this one is yoked, at random places.
+  void follow(Yoke& yoke, Life& life, int cycle) const;
   /// Makes and records edits of an operator, or of none.
   void make_change(Life& life, const Edits& edits, std::optional<std::uint32_t> op, const Moment& now) const;
   /// What development has torn off is no longer part of the body.
   void shed_loose_pieces(Life& life, int cycle) const;
   /// Random numbers for one part of a life.
   Rng stream(const Life& life, std::uint32_t place) const;
+  /// Of all that is simulated of development, s.
   double development_time() const;
   /// Whether a fitness asks for the work in the time up to a mark.
   bool needs_work(std::size_t mark) const;

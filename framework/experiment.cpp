@@ -337,7 +337,17 @@ class Composer {
         development.operators.push_back({make<Devo>(entry), schedule});
         check_request(entry, ask(entry, [&] { return development.operators.back().op->observes(); }));
       });
+      if (development.operators.empty()) check_without_operators(t);
     });
+  }
+
+  void check_without_operators(const TomlReader& t) {
+    const Development& development = out_.development;
+    const std::string remedy = "no operator develops anything; add a table [[development.operator]]";
+    if (development.control != Control::off) t.fail("control", remedy + ", or set control = \"off\"");
+    if (development.cycles > 0)
+      out_.warnings.push_back("development.cycles = " + std::to_string(development.cycles) + ": " + remedy +
+                              ", or leave [development] out");
   }
 
   void read_probe(TomlReader& t) {

@@ -50,7 +50,7 @@ class Arrivals {
   /// Adds the masses and their springs. False where all that stays is air, to which nothing can be joined.
   bool come(evodevo::Edits& edits, evodevo::Rng& rng) const {
     auto partners = masses_where([&](std::uint32_t i) { return stays_[i]; });
-    const auto models = masses_where([&](std::uint32_t i) { return stays_[i] && !is_air(i); });
+    const auto models = masses_where([&](std::uint32_t i) { return stays_[i] && !is_of_air(i); });
     if (models.empty()) return false;
     for (const evodevo::Vec3& place : places_) {
       const auto model = models[rng.below(static_cast<std::uint32_t>(models.size()))];
@@ -117,9 +117,9 @@ class Arrivals {
     return now_.body.materials[springs[rng.below(static_cast<std::uint32_t>(springs.size()))].material];
   }
 
-  bool is_air(std::uint32_t mass) const {
+  bool is_of_air(std::uint32_t mass) const {
     const std::int32_t material = now_.body.masses[mass].material;
-    return material != evodevo::no_material && !(now_.body.materials[material].stiffness > 0);
+    return material != evodevo::no_material && is_air(now_.body.materials[material]);
   }
 
   template <class Predicate>

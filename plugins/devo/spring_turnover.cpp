@@ -109,12 +109,13 @@ class SpringTurnover final : public evodevo::Devo {
     Candidates candidates(where_, now, stress, partners, count, rng);
     std::set<Pair> taken;
     // enough to fill a body that is nearly complete; a complete one ends here
-    for (std::size_t attempts = attempts_per_spring * count; attempts > 0 && taken.size() < count; --attempts) {
+    for (std::size_t attempts = evodevo::attempts_per_spring * count; attempts > 0 && taken.size() < count;
+         --attempts) {
       const auto [a, b] = candidates.next(rng);
       if (partners.joined(a, b) || taken.contains({a, b}) || !(norm(now.place(b) - now.place(a)) > 0)) continue;
       const std::uint32_t leaves = leaving[taken.size()];
       const Material material = material_between(body, a, b, leaves);
-      if (!(material.stiffness > 0)) continue;
+      if (is_air(material)) continue;
       taken.insert({a, b});
       edits.removed_springs.push_back(leaves);
       edits.new_springs.push_back({a, b, material, {}});
@@ -122,8 +123,6 @@ class SpringTurnover final : public evodevo::Devo {
   }
 
  private:
-  static constexpr std::size_t attempts_per_spring = 100;
-
   /// The mean of the two masses' materials; where masses have none, that of the spring that goes.
   static Material material_between(const Body& body, std::uint32_t a, std::uint32_t b, std::uint32_t leaves) {
     const std::int32_t first = body.masses[a].material, second = body.masses[b].material;

@@ -8,8 +8,6 @@
 
 #include "evodevo/encoding.hpp"
 
-inline bool is_air(const evodevo::Material& material) { return !(material.stiffness > 0); }
-
 /// Why no body can be made of these of the world's materials; empty where one can.
 inline std::string why_no_body(const evodevo::World& world, const std::vector<std::int32_t>& chosen) {
   const bool solid = std::any_of(chosen.begin(), chosen.end(), [&](auto i) { return !is_air(world.materials[i]); });

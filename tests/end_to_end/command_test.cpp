@@ -155,6 +155,20 @@ TEST_F(Command, LifeTellsEveryEditFromBirthToTheMaturedBody) {
   EXPECT_THAT(text.output, ::testing::Not(HasSubstr("warning"))) << "lived again to the same bits";
 }
 
+TEST_F(Command, AYokedLifeIsLivedAgainToTheSameBits) {
+  const Finished run =
+      evodevo({"run", file_, "--out", folder_, "--set", "development.control=random-places", "--threads", "1"});
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  const Finished life = evodevo({"life", folder_});
+  EXPECT_EQ(life.exit_code, 0);
+  EXPECT_THAT(life.output, HasSubstr("cycle 2  spring-turnover: spring "));
+  EXPECT_THAT(life.output, ::testing::Not(HasSubstr("warning")));
+  const auto best = nlohmann::json::parse(evodevo({"show", folder_, "--json"}).output).at("best");
+  const auto again = best.at("verification").at("trials")[0];
+  EXPECT_EQ(again.at("name"), "again");
+  EXPECT_EQ(again.at("value"), best.at("verification").at("value")) << again;
+}
+
 TEST_F(Command, LifeSaysWhereItCannotBeSure) {
   run_small();
   Archive archive = Archive::annotate(folder_);

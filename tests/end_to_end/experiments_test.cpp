@@ -94,7 +94,7 @@ std::tuple<std::string, std::int64_t, std::int64_t, double, std::int64_t> terms(
           experiment.evaluations};
 }
 
-TEST(Experiments, TheStudysCostTheSameAndDifferInDevelopmentAlone) {
+TEST(Experiments, TheStudysDifferInDevelopmentAlone) {
   for (const fs::directory_entry& study : fs::directory_iterator(experiment_file("study"))) {
     const Experiment evo = read_experiment({study.path() / "evo.toml", {}});
     EXPECT_GT(evo.spring_evaluations, 0);
@@ -107,6 +107,41 @@ TEST(Experiments, TheStudysCostTheSameAndDifferInDevelopmentAlone) {
   }
   EXPECT_EQ(rest_of(read_experiment({experiment_file("study/neural/evo.toml"), {}})),
             rest_of(read_experiment({experiment_file("evo.toml"), {}})));
+}
+
+TEST(Experiments, TheStudysControlsDifferInTheControlAlone) {
+  const Experiment developed = read_experiment({experiment_file("study/neural/evo-devo.toml"), {}});
+  for (const std::string control : {"no-change", "random-places", "shuffled-stress"}) {
+    std::string text = read_experiment({experiment_file("study/neural/" + control + ".toml"), {}}).resolved;
+    const std::string line = "control = '" + control + "'";
+    ASSERT_NE(text.find(line), std::string::npos) << text;
+    text.replace(text.find(line), line.size(), "control = 'off'");
+    EXPECT_EQ(text, developed.resolved);
+  }
+}
+
+TEST(Experiments, TheStudysEndAtTheSameCost) {
+  constexpr double cost = 1e7;
+  const testing::Scratch scratch;
+  for (const fs::directory_entry& entry : fs::directory_iterator(experiment_file("study/neural"))) {
+    SCOPED_TRACE(entry.path());
+    const std::string folder = (scratch / entry.path().stem().string()).string();
+    std::vector<std::string> command = {EVODEVO_PROGRAM, "run", entry.path(), "--out", folder};
+    std::vector<std::string> shrunk = {"experiment.spring_evaluations=1e7", "experiment.population=4",
+                                       "encoding.points=60", "fitness.0.settle=0.1", "fitness.0.window=0.1"};
+    if (entry.path().stem() != "evo")
+      shrunk.insert(shrunk.end(), {"development.cycles=2", "development.cycle_time=0.1"});
+    for (const std::string& set : shrunk) command.insert(command.end(), {"--set", set});
+    const testing::Finished finished = testing::run(command);
+    ASSERT_EQ(finished.exit_code, 0) << finished.output;
+    double before = 0, spent = 0;
+    for (const Summary& generation : Archive::read(folder).generations()) {
+      before = spent;
+      spent += static_cast<double>(generation.spring_evaluations);
+    }
+    EXPECT_LT(before, cost) << "one generation more than needed";
+    EXPECT_GE(spent, cost);
+  }
 }
 
 TEST(Experiments, EveryWalkerButThePapersSettlesTenSeconds) {

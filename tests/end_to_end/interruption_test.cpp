@@ -98,6 +98,22 @@ TEST_F(Interruption, KilledAtAnyLineAndResumedEndsTheSame) {
   }
 }
 
+TEST_F(Interruption, AYokedRunGoesOnTheSame) {
+  const auto yoked = [&](const std::string& folder) {
+    std::vector<std::string> command = run_command(folder);
+    command.insert(command.end(), {"--set", "development.control=random-places"});
+    return command;
+  };
+  ASSERT_EQ(testing::run(yoked("straight")).exit_code, 0);
+  Process process(yoked("killed"));
+  for (int line = 0; line < 3; ++line) process.read_line();
+  process.send(SIGKILL);
+  process.wait();
+  const testing::Finished finished = testing::run(resume_command("killed"));
+  ASSERT_EQ(finished.exit_code, 0) << finished.output;
+  expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(scratch_ / "killed"));
+}
+
 TEST_F(Interruption, CtrlCCommitsAndSaysHowToGoOn) {
   ASSERT_EQ(testing::run(run_command("straight")).exit_code, 0);
   Process process(run_command("stopped"));

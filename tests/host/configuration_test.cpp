@@ -69,6 +69,23 @@ TEST(Configuration, DevelopmentHasSchedulesAndAControl) {
             "development.operator.0.from = 3 to 2: the operator never comes to its turn in 2 cycles");
 }
 
+TEST(Configuration, DevelopmentWithoutOperatorsWarnsAndHasNoControl) {
+  std::string text = small_experiment;
+  const std::size_t first = text.find("[[development.operator]]");
+  text.erase(first, text.find("[[fitness]]") - first);
+  const Experiment still = testing::read(text);
+  ASSERT_EQ(still.warnings.size(), 1u);
+  EXPECT_EQ(still.warnings[0],
+            "development.cycles = 2: no operator develops anything; add a table [[development.operator]], or leave "
+            "[development] out");
+  EXPECT_TRUE(testing::read(text, {{"development.cycles", "0", "--set"}}).warnings.empty());
+  for (const char* control : {"no-change", "random-places", "shuffled-stress"})
+    EXPECT_THAT(complaint(text, {{"development.control", control, "--set"}}),
+                ::testing::HasSubstr("development.control = \"" + std::string(control) +
+                                     "\": no operator develops anything; add a table [[development.operator]], or set "
+                                     "control = \"off\""));
+}
+
 TEST(Configuration, DevelopmentHasAProbe) {
   const Experiment exact = testing::read(small_experiment);
   EXPECT_EQ(exact.development.probe, Probe::exact);

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "breeding.hpp"
 #include "evaluation.hpp"
 #include "philox.hpp"
 #include "support/experiments.hpp"
@@ -47,13 +48,22 @@ struct Ring {
     return {living.body, living.state, living.stress, 1,     2, 1, 2, 0.25, {{-1, -1, 0}, {1, 1, 1}},
             0.2,         false,        genome,        layout};
   }
-  Edits moved(const Edits& edits, std::uint64_t seed) const {
+  Edits moved(const Amount& amount, std::uint64_t seed, std::size_t& surplus) const {
     Rng rng(philox, {seed, 1, 2, 3});
-    return at_random_places(edits, now(), rng);
+    return at_random_places(amount, now(), surplus, rng);
+  }
+  Edits moved(const Edits& edits, std::uint64_t seed) const {
+    std::size_t surplus = 0;
+    return moved(amount_of(edits, living.body, 0), seed, surplus);
+  }
+  Body after(const Edits& edits) const {
+    Ring changed = *this;
+    apply_edits(changed.living, edits, changed.now());
+    return changed.living.body;
   }
 };
 
-/// Something of everything; springs 3 and 4 are of muscle and bone.
+/// Something of everything. Springs 40, of bone, and 42, of muscle, change; seven springs go with the two masses.
 Edits some_of_everything() {
   return {
       .removed_springs = {0, 1, 2},
@@ -68,7 +78,6 @@ TEST(RandomPlaces, AsMuchChangesAsBefore) {
   const Edits edits = some_of_everything();
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     const Edits moved = ring.moved(edits, seed);
-    EXPECT_EQ(moved.removed_springs.size(), 3u);
     EXPECT_EQ(moved.removed_masses.size(), 2u);
     EXPECT_EQ(moved.changed_springs.size(), 2u);
     EXPECT_EQ(moved.new_masses.size(), 2u);
@@ -77,10 +86,50 @@ TEST(RandomPlaces, AsMuchChangesAsBefore) {
     EXPECT_EQ(moved.new_masses[1].material, 0);
     for (std::size_t s = 0; s < 4; ++s) EXPECT_EQ(moved.new_springs[s].material, edits.new_springs[s].material);
     EXPECT_TRUE(moved.new_springs[0].a == 40 || moved.new_springs[0].b == 40) << "new masses get their springs";
-    Ring changed = ring;
-    ASSERT_NO_THROW(apply_edits(changed.living, moved, changed.now()));
-    EXPECT_EQ(changed.living.body.masses.size(), 40u);
+    const Body after = ring.after(moved);
+    EXPECT_EQ(after.masses.size(), 40u);
+    EXPECT_EQ(after.springs.size(), 80u - 10 + 4) << "those of the masses that go count";
   }
+}
+
+TEST(RandomPlaces, TheMixOfMaterialsStays) {
+  Ring ring;
+  for (std::size_t i = 0; i < 40; ++i) ring.living.body.masses[i].material = i % 2 == 0 ? 0 : 1;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    std::vector<int> count(2, 0);
+    for (const Spring& spring : ring.after(ring.moved({.removed_springs = {0, 1, 2, 4}}, seed)).springs)
+      ++count.at(spring.material);
+    EXPECT_EQ(count, (std::vector{37, 39})) << "three of bone go, and one of muscle";
+    for (const std::uint32_t mass : ring.moved({.removed_masses = {0, 2, 4}}, seed).removed_masses)
+      EXPECT_EQ(mass % 2, 0u);
+  }
+}
+
+TEST(RandomPlaces, AnyMaterialGoesWhereNoneOfItsOwnIsLeft) {
+  const Ring ring;
+  std::size_t surplus = 0;
+  const Edits moved = ring.moved({.springs_gone = std::vector<Material>(41, muscle)}, 1, surplus);
+  ASSERT_EQ(moved.removed_springs.size(), 41u);
+  const auto is_muscle = [&](std::uint32_t s) { return ring.living.body.springs[s].material == 1; };
+  EXPECT_EQ(std::count_if(moved.removed_springs.begin(), moved.removed_springs.end(), is_muscle), 40);
+  const Material tissue{4000, 0, 0, 0};
+  EXPECT_EQ(ring.moved({.springs_gone = {tissue, tissue}}, 1, surplus).removed_springs.size(), 2u);
+  EXPECT_EQ(ring.moved({.springs_gone = std::vector<Material>(81, bone)}, 1, surplus).removed_springs.size(), 80u);
+}
+
+TEST(RandomPlaces, WhatGoesTooMuchWithAMassIsMadeUpForLater) {
+  const Ring ring;
+  std::size_t surplus = 0;
+  const Edits first = ring.moved({.springs_gone = {bone}, .masses_gone = {bone}}, 1, surplus);
+  EXPECT_EQ(first.removed_masses.size(), 1u);
+  EXPECT_TRUE(first.removed_springs.empty());
+  EXPECT_EQ(surplus, 3u) << "four springs have gone with the mass";
+  const Edits second = ring.moved({.springs_gone = std::vector<Material>(2, bone)}, 2, surplus);
+  EXPECT_TRUE(second.empty());
+  EXPECT_EQ(surplus, 1u);
+  const Edits third = ring.moved({.springs_gone = std::vector<Material>(5, bone)}, 3, surplus);
+  EXPECT_EQ(third.removed_springs.size(), 4u);
+  EXPECT_EQ(surplus, 0u);
 }
 
 TEST(RandomPlaces, AllPlacesAreReachedAlike) {
@@ -132,7 +181,7 @@ TEST(RandomPlaces, FewerComeWhereThereIsNoRoom) {
   ring.living.stress = {1, 2};
   const Edits moved = ring.moved({.new_springs = {{0, 2, bone, {}}, {0, 2, bone, {}}}}, 1);
   EXPECT_EQ(moved.new_springs.size(), 1u);
-  EXPECT_TRUE(ring.moved({}, 1).empty());
+  EXPECT_TRUE(ring.moved(Edits{}, 1).empty());
 }
 
 // controls of an experiment ------------------------------------------------------------------------------------------
@@ -171,14 +220,17 @@ class Fixed final : public Devo {
   Edits edits_;
 };
 
-Life matured(const Experiment& experiment, std::uint32_t id = 0) {
-  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+Life matured(const Experiment& experiment, Simulator& simulator, std::uint32_t id = 0) {
   static const Genome genome = {1, 2};
   const Newborn newborn{id, 0, &genome};
-  const Evaluation evaluation(experiment, *simulator);
+  const Evaluation evaluation(experiment, simulator);
   std::vector<Life> lives = evaluation.birth({&newborn, 1});
   evaluation.develop(lives, [](double) {});
   return std::move(lives.front());
+}
+
+Life matured(const Experiment& experiment, std::uint32_t id = 0) {
+  return matured(experiment, *make_cpu_simulator(experiment.scene, experiment.stepping, 1), id);
 }
 
 Experiment with_control(const char* control) {
@@ -192,7 +244,7 @@ Seen watch(Experiment experiment, std::uint32_t id = 0) {
   return seen;
 }
 
-TEST(Control, NoChangeTakesTheSameTime) {
+TEST(Control, NoChangeTakesTheSameTimeAndSprings) {
   Seen seen;
   Experiment experiment = with_control("no-change");
   experiment.development.operators[0].op = std::make_unique<Watcher>(seen);
@@ -201,6 +253,9 @@ TEST(Control, NoChangeTakesTheSameTime) {
   EXPECT_EQ(still.living.state.time, developed.living.state.time);
   EXPECT_NEAR(still.living.state.time, 0.1, 1e-12);
   ASSERT_EQ(still.living.body.springs.size(), developed.living.body.springs.size());
+  EXPECT_EQ(still.result.spring_evaluations, 50u * 200) << "springs times steps";
+  EXPECT_EQ(developed.result.spring_evaluations, 50u * 200);
+  EXPECT_TRUE(still.result.record.empty());
   EXPECT_NE(still.living.state.position, developed.living.state.position);
 }
 
@@ -273,6 +328,143 @@ TEST(Control, RandomPlacesMoveWhatOperatorsWant) {
       if (!left.contains(pair)) ++gone[pair];
   }
   EXPECT_GT(gone.size(), 15u) << "40 draws out of 50";
+}
+
+TEST(Control, OperatorsSeeTheLifeBeforeAloneAndItsCostDoesNotCount) {
+  Seen seen;
+  Experiment experiment = with_control("random-places");
+  experiment.development.operators[0].op = std::make_unique<Watcher>(seen);
+  const Life life = matured(experiment);
+  EXPECT_THAT(seen.cycles, ::testing::ElementsAre(1, 2));
+  EXPECT_EQ(seen.stress, watch(with_control("off")).stress);
+  EXPECT_EQ(life.result.spring_evaluations, 50u * 200);
+  EXPECT_NEAR(life.living.state.time, 0.1, 1e-12);
+}
+
+/// What operators have done in a cycle, counted on bodies.
+struct Total {
+  std::size_t springs_gone = 0, springs_come = 0, masses_gone = 0, masses_come = 0;
+  friend bool operator==(const Total&, const Total&) = default;
+  friend void PrintTo(const Total& total, std::ostream* out) {
+    *out << "springs -" << total.springs_gone << " +" << total.springs_come << ", masses -" << total.masses_gone << " +"
+         << total.masses_come;
+  }
+};
+
+std::map<std::uint32_t, Total> totals(Body body, const LifeRecord& record) {
+  std::map<std::uint32_t, Total> totals;
+  for (const Change& change : record.changes()) {
+    const std::size_t springs = body.springs.size();
+    replay(body, change);
+    if (!change.op) continue;
+    Total& total = totals[change.cycle];
+    total.springs_gone += springs + change.edits.new_springs.size() - body.springs.size();
+    total.springs_come += change.edits.new_springs.size();
+    total.masses_gone += change.edits.removed_masses.size();
+    total.masses_come += change.edits.new_masses.size();
+  }
+  return totals;
+}
+
+/// Random robots large enough for the paper's two operators.
+struct Population {
+  Experiment experiment;
+  std::vector<Individual> individuals;
+  std::vector<Newborn> newborns;
+  std::vector<Body> born;
+
+  explicit Population(const std::string& control)
+      : experiment(testing::read(text(), {{"development.control", control, "--set"}})),
+        individuals(breed(experiment, {}, 0, 0, 8)) {
+    for (const Individual& individual : individuals)
+      newborns.push_back({individual.id, individual.born, &individual.genome});
+  }
+
+  static std::string text() {
+    std::string text = testing::small_experiment;
+    const auto replace = [&](const std::string& from, const std::string& to, const std::string& by) {
+      const std::size_t begin = text.find(from);
+      text.replace(begin, text.find(to) - begin, by);
+    };
+    replace("[encoding]", "[[mutation]]", "[encoding]\nname = 'neural'\npoints = 100\nneighbours = 12\n");
+    replace("[[development.operator]]", "[[fitness]]",
+            "[[development.operator]]\nname = 'spring-turnover'\nsprings = 60\n"
+            "[[development.operator]]\nname = 'mass-turnover'\nthreshold = 14\nlimit = 2\nsprings = 12\n");
+    replace("cycles = 2", "cycle_time", "cycles = 4\n");
+    return text;
+  }
+
+  std::vector<Life> matured() {
+    const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+    const Evaluation evaluation(experiment, *simulator);
+    std::vector<Life> lives = evaluation.birth(newborns);
+    for (const Life& life : lives) born.push_back(life.living.body);
+    evaluation.develop(lives, [](double) {});
+    return lives;
+  }
+};
+
+TEST(Control, RandomPlacesChangeAsMuchInEachCycleAsTheOperatorsDo) {
+  Population off("off"), random("random-places");
+  const std::vector<Life> developed = off.matured(), moved = random.matured();
+  Total all;
+  for (std::size_t i = 0; i < developed.size(); ++i) {
+    if (!developed[i].alive() || !moved[i].alive()) continue;
+    SCOPED_TRACE(i);
+    const auto expected = totals(off.born[i], developed[i].result.record);
+    EXPECT_EQ(totals(random.born[i], moved[i].result.record), expected);
+    EXPECT_FALSE(moved[i].result.record == developed[i].result.record);
+    for (const auto& [cycle, total] : expected) {
+      all.springs_gone += total.springs_gone;
+      all.masses_gone += total.masses_gone;
+    }
+  }
+  EXPECT_GT(all.springs_gone, 100u) << "there must be something to compare";
+  EXPECT_GT(all.masses_gone, 20u);
+}
+
+TEST(Control, YokedLivesDoNotDependOnThreadsOrCompany) {
+  const Population population("random-places");
+  const Experiment& experiment = population.experiment;
+  const auto one = make_cpu_simulator(experiment.scene, experiment.stepping, 1),
+             three = make_cpu_simulator(experiment.scene, experiment.stepping, 3);
+  const auto unwatched = [](double) {};
+  const std::vector<Result> together = Evaluation(experiment, *three).evaluate(population.newborns, unwatched);
+  for (std::size_t i = 0; i < together.size(); ++i) {
+    const Result alone =
+        Evaluation(experiment, *one).evaluate(std::span(population.newborns).subspan(i, 1), unwatched).front();
+    EXPECT_EQ(alone.status, together[i].status);
+    EXPECT_EQ(alone.objectives, together[i].objectives);
+    EXPECT_TRUE(alone.record == together[i].record);
+  }
+}
+
+TEST(Control, NothingMoreChangesAfterTheYokesEnd) {
+  /// Lets what it simulates the second time diverge, which is the second cycle of the yoke.
+  class Breaking final : public Simulator {
+   public:
+    explicit Breaking(std::unique_ptr<Simulator> simulator) : simulator_(std::move(simulator)) {}
+    void run(std::span<Task> tasks, Recording recording) override {
+      simulator_->run(tasks, recording);
+      if (++runs_ == 2) tasks.front().status = Status::diverged;
+    }
+    NeighbourSearch& neighbours() override { return simulator_->neighbours(); }
+    Workers& workers() override { return simulator_->workers(); }
+    std::string device() const override { return simulator_->device(); }
+
+   private:
+    std::unique_ptr<Simulator> simulator_;
+    int runs_ = 0;
+  };
+  Experiment experiment = with_control("random-places");
+  experiment.development.operators[0].op = std::make_unique<Fixed>(Edits{.removed_springs = {4}});
+  experiment.development.cycles = 3;
+  Breaking simulator(make_cpu_simulator(experiment.scene, experiment.stepping, 1));
+  const Life life = matured(experiment, simulator);
+  EXPECT_EQ(life.result.status, Status::ok);
+  EXPECT_EQ(life.living.body.springs.size(), 49u);
+  ASSERT_EQ(life.result.record.changes().size(), 1u);
+  EXPECT_EQ(life.result.record.changes()[0].cycle, 1u);
 }
 
 // schedules ----------------------------------------------------------------------------------------------------------

@@ -91,6 +91,10 @@ TEST(Filming, ChangesNoResultOfTallies) {
   expect_filming_changes_no_result(with_development("probe = 'skip-shift'\nskip = 7\n", turnover));
 }
 
+TEST(Filming, ChangesNoResultOfYokedLives) {
+  expect_filming_changes_no_result(with_development("control = 'random-places'\n", turnover));
+}
+
 TEST(Filming, ReachesFromBirthToTheEndWithoutAGap) {
   const Experiment experiment = testing::read(testing::small_experiment);
   const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 12);

@@ -83,6 +83,9 @@ struct Edits {
   }
 };
 
+/// How many random pairs of masses to try for each new spring before a body counts as one in which all are joined.
+inline constexpr std::size_t attempts_per_spring = 100;
+
 class Devo : public Operator {
  public:
   static constexpr std::string_view kind = "devo";

@@ -49,6 +49,9 @@ struct Material {
   }
 };
 
+/// Whether no spring is made of the material.
+inline bool is_air(const Material& material) { return !(material.stiffness > 0); }
+
 /// The material of a spring between a mass of `a` and a mass of `b`: the mean of all four parameters
 /// ("interpolation", paper, section IV-A1).
 inline Material mean(const Material& a, const Material& b) {
