@@ -241,12 +241,14 @@ class Composer {
     TomlReader t(table != nullptr ? *table : defaults, "simulation");
     read_accuracy(t);
     std::string method(name(out_.stepping.method)), unstable = "invalid";
-    std::string precision = out_.stepping.precision == Precision::float32 ? "float" : "double";
+    std::string materials = "table", precision = out_.stepping.precision == Precision::float32 ? "float" : "double";
     t.choice(method, "method",
              {name(Method::paper_euler), name(Method::symplectic_euler), name(Method::velocity_verlet),
               name(Method::rk4), name(Method::implicit), name(Method::xpbd)},
              "Time-stepping method.");
     t.choice(precision, "precision", {"float", "double"}, "Arithmetic of the simulation.");
+    t.choice(materials, "materials", {"table", "computed"},
+             "How a GPU knows springs' materials; computed: from a code, to which materials are rounded.");
     t.real_or_auto(out_.step.dt, "dt", {1e-7, 0.1, "s"}, "Time step; auto: as long as each body bears.");
     t.integer(out_.step.refine, "refine", {1, 1000}, "What every time step is divided by.");
     t.choice(unstable, "unstable", {"invalid", "run"}, "What a body is, or does, that a fixed dt is too long for.");
@@ -255,11 +257,20 @@ class Composer {
     out_.stepping.method = method_of(method);
     out_.stepping.precision = precision == "double" ? Precision::float64 : Precision::float32;
     out_.step.run_unstable = unstable == "run";
+    if (materials == "computed") compute_materials(t);
     if (out_.step.dt)
       check_step(t);
     else if (!is_explicit(out_.stepping.method))
       t.fail("dt", "\"" + method + "\" is stable at any step, so none follows from stability; give a number of s");
     top_.resolve("simulation", t.finish());
+  }
+
+  void compute_materials(const TomlReader& t) {
+    if (out_.stepping.precision != Precision::float32 || !is_explicit(out_.stepping.method))
+      t.fail("materials",
+             "only explicit methods in single precision compute materials; expected \"table\", or another method, "
+             "precision or accuracy");
+    out_.stepping.materials = Materials::computed;
   }
 
   /// What the other keys of [simulation] are where they are left out.

@@ -58,7 +58,7 @@ class Trials {
 
   /// With steps of their own in double precision, on the CPU.
   void add_exact(const std::string& name, const Conditions& conditions) {
-    const Stepping stepping{conditions.method, Precision::float64};
+    const Stepping stepping{conditions.method, Precision::float64, experiment_.stepping.materials};
     const auto simulator = make_cpu_simulator(experiment_.scene, stepping, static_cast<int>(experiment_.threads));
     add(name, *simulator, conditions, [](Life& life) { life.living.preparation = nullptr; });
   }

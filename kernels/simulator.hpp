@@ -18,10 +18,15 @@ namespace evodevo {
 
 enum class Precision { float32, float64 };
 
+/// How a GPU knows the materials of springs: from a table of the body's, or computed from a short code of each spring
+/// (paper, section V). Codes round materials (computed_materials.hpp), on every device.
+enum class Materials { table, computed };
+
 /// How steps are made. How long they are is each task's own.
 struct Stepping {
   Method method = Method::paper_euler;
   Precision precision = Precision::float32;
+  Materials materials = Materials::table;
 };
 
 /// What is recorded beside the motion; what is not asked for costs nothing.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "computed_materials.hpp"
 #include "cpu/coloured_springs.hpp"
 #include "guard.hpp"
 
@@ -186,7 +187,12 @@ class MovingBody {
 
 template <class T>
 void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels<T>& kernels, Recording recording) {
-  const Body& body = *task.body;
+  Body coded;  // where its materials are computed
+  if (stepping.materials == Materials::computed) {
+    coded = *task.body;
+    coded.materials = simulated_materials(task.body->materials, stepping.materials);
+  }
+  const Body& body = stepping.materials == Materials::computed ? coded : *task.body;
   State& state = *task.state;
   const Sums sums{.force = recording.stress,
                   .power = recording.work || recording.muscle_work,

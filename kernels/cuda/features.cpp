@@ -33,6 +33,7 @@ const MethodForm& form_of(Method method) {
 Features features_of(const Scene& scene, const Stepping& stepping, Recording recording, bool actuation) {
   return {.method = stepping.method,
           .float64 = stepping.precision == Precision::float64,
+          .materials = stepping.materials,
           .gravity = scene.gravity.has_value(),
           .slope = scene.gravity && scene.gravity->slope != 0,
           .floor = scene.floor.has_value(),
@@ -80,6 +81,8 @@ std::vector<std::string> definitions(const Features& features) {
 
 std::vector<std::string> definitions(const Features& features, const ResidentForm& form) {
   std::vector<std::string> all = definitions(features);
+  all.push_back("EVODEVO_MATERIALS=\"cuda/materials/" + std::string(has_codes(features) ? "computed" : "table") +
+                ".cuh\"");
   all.push_back(number("ROWS", form.rows));
   all.push_back(number("MASSES", form.masses_per_thread));
   all.push_back(number("CHUNKED", form.chunked));

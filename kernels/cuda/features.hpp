@@ -36,6 +36,7 @@ const MethodForm& form_of(Method method);
 struct Features {
   Method method = Method::paper_euler;
   bool float64 = false;
+  Materials materials = Materials::table;
   bool gravity = false, slope = false, floor = false, rough = false, friction = false, damping = false, drag = false;
   bool actuation = false, stress = false, work = false;
   bool peak_force = false, muscle_work = false, tension = false;  ///< muscle_work: only with work
@@ -45,6 +46,12 @@ struct Features {
 
 /// `actuation`: whether some body has a muscle among its materials.
 Features features_of(const Scene& scene, const Stepping& stepping, Recording recording, bool actuation);
+
+/// Whether springs on the chip carry codes of their materials. In double precision the codes' materials come from a
+/// table all the same.
+inline bool has_codes(const Features& features) {
+  return features.materials == Materials::computed && !features.float64;
+}
 
 /// What of a body's layout is compiled into the kernel that keeps it on the chip.
 struct ResidentForm {

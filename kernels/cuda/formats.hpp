@@ -22,7 +22,8 @@ template <class T>
 struct alignas(2 * sizeof(T)) Record {
   T rest_length;  ///< m
   typename FixedPoint<T>::Integer
-      packed;  ///< low 16 bits: offset of the other mass; next 16 bits: of the table's entry; each in bytes or numbers
+      packed;  ///< low 16 bits: offset of the other mass; next 16 bits: of the table's entry; each in bytes or numbers;
+               ///< or MaterialCode::stiffness instead of the entry
 };
 
 /// What a material does in one step; stiffness and force in units of the body's force resolution.
@@ -38,6 +39,15 @@ struct Actuator {
   double amplitude;  ///< 1
   double frequency;  ///< Hz
   double phase;      ///< in half turns
+};
+
+/// What the numbers in the codes of a body's computed materials count (material_code.hpp).
+template <class T>
+struct CodeUnits {
+  T stiffness;          ///< as in Entry
+  T amplitude;          ///< 1, of the code's bits in place
+  T angular_frequency;  ///< rad/s
+  double frequency;     ///< Hz
 };
 
 /// The scene and a body's step in the arithmetic of the simulation. What paper-euler reads comes first, some in pairs.
@@ -82,7 +92,9 @@ template <class T>
 struct ResidentBody {
   using Integer = typename FixedPoint<T>::Integer;
   World<T> world;
+  CodeUnits<T> units;                ///< where materials are computed
   const Record<T>* records;          ///< [warps][chunks][rows][lanes]
+  const std::uint32_t* waves;        ///< likewise, MaterialCode::wave where materials are computed
   const std::uint32_t* first_group;  ///< [block's warps] whose masses a warp's first row belongs to
   const std::uint32_t* turns;        ///< [block's warps][chunks] bit r: the next group begins after row r
   const Actuator* actuators;         ///< [entries]; entry 0 is no material
@@ -107,6 +119,7 @@ struct ResidentBody {
   std::uint32_t table_offset;                    ///< bytes from the beginning of shared memory
   std::uint32_t rate_offset;                     ///< likewise, of the rates, where work is recorded
   std::uint32_t record_offset;                   ///< likewise, of the records
+  std::uint32_t wave_offset;                     ///< likewise, of the waves
 };
 
 /// A spring at one of its ends.

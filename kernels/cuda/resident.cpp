@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "computed_materials.hpp"
+
 namespace evodevo::cuda {
 namespace {
 
@@ -96,7 +98,7 @@ template <class T>
 std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Scene& scene, const Features& features,
                                                 std::size_t shared_bytes) {
   // before the work of arranging it: whether the masses and one step's table fit
-  const std::size_t entries = task.body->materials.size() + 1;
+  const std::size_t entries = has_codes(features) ? 0 : task.body->materials.size() + 1;
   const std::size_t least =
       masses_bytes<T>((task.body->masses.size() + lanes - 1) / lanes) + entries * (sizeof(Entry<T>) + sizeof(T));
   if (least > largest_chip(shared_bytes) || entries * sizeof(Entry<T>) > largest_offset * sizeof(T))
@@ -117,20 +119,32 @@ Resident<T>::Resident(const Task& task, const Scene& scene, const Features& feat
 /// Divides up shared memory; false where it is too small.
 template <class T>
 bool Resident<T>::fit(std::size_t shared_bytes) {
+  const bool codes = has_codes(features_);
   const std::size_t entries = task_->body->materials.size() + 1;
-  const std::size_t row = entries * (sizeof(Entry<T>) + (features_.work ? sizeof(T) : 0));
-  const std::size_t masses = masses_bytes<T>(arrangement().groups);
-  const std::size_t records = arrangement().shape.slots() * sizeof(Record<T>);
+  // of a row: what each material does then, or what the clock shows
+  const std::size_t lengths = codes ? sizeof(std::uint32_t) : entries * sizeof(Entry<T>);
+  const std::size_t rates = features_.work && !codes ? entries * sizeof(T) : 0;
+  const std::size_t masses = masses_bytes<T>(arrangement().groups), slots = arrangement().shape.slots();
+  const std::size_t records = slots * sizeof(Record<T>), waves = waves_in(slots) * sizeof(std::uint32_t);
   const MethodForm& method = form_of(features_.method);
-  const std::size_t steps = std::clamp<std::size_t>(table_bytes / row / method.rows_per_step, 1, longest_table);
-  const std::size_t rows = features_.actuation ? method.rows(static_cast<unsigned>(steps)) : 1;
-  records_on_chip_ = aligned(masses) + aligned(rows * row) + 32 + records <= shared_bytes;
+  const std::size_t steps =
+      std::clamp<std::size_t>(table_bytes / (lengths + rates) / method.rows_per_step, 1, longest_table);
+  // the clock is read a row ahead
+  const std::size_t rows = (features_.actuation ? method.rows(static_cast<unsigned>(steps)) : 1) + (codes ? 1 : 0);
+  records_on_chip_ = aligned(masses) + aligned(rows * (lengths + rates)) + 32 + records + waves <= shared_bytes;
   chip_.table_steps = static_cast<std::uint32_t>(steps);
   chip_.table_offset = aligned(masses);
-  chip_.rate_offset = aligned(chip_.table_offset + rows * entries * sizeof(Entry<T>));
-  chip_.record_offset = aligned(chip_.rate_offset + (features_.work ? rows * entries * sizeof(T) : 0));
-  chip_.size = chip_.record_offset + (records_on_chip_ ? records : 0);
+  chip_.rate_offset = aligned(chip_.table_offset + rows * lengths);
+  chip_.record_offset = aligned(chip_.rate_offset + rows * rates);
+  chip_.wave_offset = chip_.record_offset + records;
+  chip_.size = chip_.record_offset + (records_on_chip_ ? records + waves : 0);
   return chip_.size <= shared_bytes;
+}
+
+/// How many of `slots` springs' waves there are: springs that keep their length need none.
+template <class T>
+std::size_t Resident<T>::waves_in(std::size_t slots) const {
+  return has_codes(features_) && features_.actuation ? slots : 0;
 }
 
 template <class T>
@@ -138,6 +152,7 @@ void Resident<T>::reserve() {
   const std::size_t places = lanes * arrangement().groups;
   Extent input, state, sums;
   records_ = input.add<Record<T>>(arrangement().slots.size());
+  waves_ = input.add<std::uint32_t>(waves_in(arrangement().slots.size()));
   first_group_ = input.add<std::uint32_t>(arrangement().first_group.size());
   turns_ = input.add<std::uint32_t>(arrangement().turns.size());
   actuators_ = input.add<Actuator>(task_->body->materials.size() + 1);
@@ -157,20 +172,32 @@ void Resident<T>::reserve() {
 template <class T>
 ResidentForm Resident<T>::form() const {
   const Shape& shape = arrangement().shape;
-  return {.rows = shape.rows,
-          .masses_per_thread = shape.masses_per_thread,
-          .chunked = shape.chunks > 1,
-          .records_on_chip = records_on_chip_,
-          .wide_offsets = masses_bytes<T>(arrangement().groups) > largest_offset,
-          .wide_table = (task_->body->materials.size() + 1) * sizeof(Entry<T>) > largest_offset};
+  return {
+      .rows = shape.rows,
+      .masses_per_thread = shape.masses_per_thread,
+      .chunked = shape.chunks > 1,
+      .records_on_chip = records_on_chip_,
+      .wide_offsets = masses_bytes<T>(arrangement().groups) > largest_offset,
+      .wide_table = !has_codes(features_) && (task_->body->materials.size() + 1) * sizeof(Entry<T>) > largest_offset};
+}
+
+/// The high half of Record::packed for each material.
+template <class T>
+std::vector<typename FixedPoint<T>::Integer> Resident<T>::materials_in_records() const {
+  const std::vector<Material>& materials = task_->body->materials;
+  const MaterialUnits units = material_units(materials);
+  const unsigned entry_size = sizeof(Entry<T>) / (form().wide_table ? sizeof(T) : 1);
+  std::vector<typename FixedPoint<T>::Integer> halves;
+  for (std::uint32_t i = 0; i < materials.size(); ++i)
+    halves.push_back(has_codes(features_) ? code_of(materials[i], units).stiffness : (i + 1) * entry_size);
+  return halves;
 }
 
 template <class T>
 void Resident<T>::pack_records(Record<T>* to) const {
   using Integer = typename FixedPoint<T>::Integer;
-  const ResidentForm packed = form();
-  const unsigned unit = packed.wide_offsets ? sizeof(T) : 1;
-  const unsigned entry_size = sizeof(Entry<T>) / (packed.wide_table ? sizeof(T) : 1);
+  const unsigned unit = form().wide_offsets ? sizeof(T) : 1;
+  const std::vector<Integer> materials = materials_in_records();
   for (const Arrangement::Slot& slot : arrangement().slots) {
     const auto other = static_cast<Integer>(offset_of_place<T>(slot.other) / unit);
     if (slot.spring == Arrangement::none) {
@@ -178,9 +205,17 @@ void Resident<T>::pack_records(Record<T>* to) const {
       continue;
     }
     const Spring& spring = task_->body->springs[slot.spring];
-    const auto entry = static_cast<Integer>((spring.material + 1) * entry_size);
-    *to++ = {static_cast<T>(spring.rest_length), other | entry << 16};
+    *to++ = {static_cast<T>(spring.rest_length), other | materials[spring.material] << 16};
   }
+}
+
+template <class T>
+void Resident<T>::pack_waves(std::uint32_t* to) const {
+  const MaterialUnits units = material_units(task_->body->materials);
+  std::vector<std::uint32_t> waves;
+  for (const Material& material : task_->body->materials) waves.push_back(code_of(material, units).wave);
+  for (const Arrangement::Slot& slot : arrangement().slots)
+    *to++ = slot.spring == Arrangement::none ? 0 : waves[task_->body->springs[slot.spring].material];
 }
 
 template <class T>
@@ -206,17 +241,25 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
                                   const Scene& scene) const {
   using Integer = typename FixedPoint<T>::Integer;
   pack_records(records_.in(host.input));
+  if (waves_in(slots()) > 0) pack_waves(waves_.in(host.input));
   pack_masses(host);
   std::copy(arrangement().first_group.begin(), arrangement().first_group.end(), first_group_.in(host.input));
   std::copy(arrangement().turns.begin(), arrangement().turns.end(), turns_.in(host.input));
   std::transform(arrangement().magic_numbers.begin(), arrangement().magic_numbers.end(), start_.in(host.input),
                  [](std::int32_t count) { return static_cast<Integer>(count) * FixedPoint<T>::magic_bits; });
   actuators_.in(host.input)[0] = {};
-  std::transform(task_->body->materials.begin(), task_->body->materials.end(), actuators_.in(host.input) + 1,
+  const std::vector<Material> materials = simulated_materials(task_->body->materials, features_.materials);
+  std::transform(materials.begin(), materials.end(), actuators_.in(host.input) + 1,
                  [&](const Material& material) { return actuator_of(material, range_.resolution); });
   *answer_.in(host.state) = {};
+  const MaterialUnits units = material_units(task_->body->materials);
   return {.world = world_of<T>(scene, task_->dt),
+          .units = {.stiffness = static_cast<T>(units.stiffness / range_.resolution),
+                    .amplitude = static_cast<T>(units.amplitude / (1 << amplitude_shift)),
+                    .angular_frequency = static_cast<T>(2 * 3.14159265358979323846 * units.frequency),
+                    .frequency = units.frequency},
           .records = records_.in(device.input),
+          .waves = waves_.in(device.input),
           .first_group = first_group_.in(device.input),
           .turns = turns_.in(device.input),
           .actuators = actuators_.in(device.input),
@@ -243,7 +286,8 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
           .table_steps = chip_.table_steps,
           .table_offset = static_cast<std::uint32_t>(chip_.table_offset),
           .rate_offset = static_cast<std::uint32_t>(chip_.rate_offset),
-          .record_offset = static_cast<std::uint32_t>(chip_.record_offset)};
+          .record_offset = static_cast<std::uint32_t>(chip_.record_offset),
+          .wave_offset = static_cast<std::uint32_t>(chip_.wave_offset)};
 }
 
 template <class T>

@@ -4,36 +4,15 @@
 // force in registers and adds the opposite to the mass at the other end by an atomic on integers in shared memory. So
 // each spring is computed once, and no sum depends on an order. The host compiles this file at run time, once for each
 // combination of the features below that a scene and a body ask for; what is off leaves no instruction.
-#include "cuda/check.cuh"
 #include EVODEVO_METHOD
+#include EVODEVO_MATERIALS
 
 namespace evodevo::cuda {
 
-constexpr unsigned rows = EVODEVO_ROWS;                    // springs of a thread in one chunk, unrolled
-constexpr unsigned masses_per_thread = EVODEVO_MASSES;     // that a thread moves
-constexpr bool chunked = EVODEVO_CHUNKED;                  // more rows for each warp than can be unrolled
-constexpr bool records_on_chip = EVODEVO_RECORDS_ON_CHIP;  // else they are streamed from memory
-constexpr unsigned offset_shift = EVODEVO_OFFSET_SHIFT;    // what offsets of masses are shifted by
-constexpr unsigned entry_shift = EVODEVO_ENTRY_SHIFT;      // what offsets of the table's entries are shifted by
-using Body = ResidentBody<Number>;
 using Fixed = FixedPoint<Number>;
 using Integer = Fixed::Integer;
 constexpr unsigned plane = plane_bytes<Number>;
 constexpr unsigned group_size = group_bytes<Number>;
-
-extern __shared__ __align__(16) unsigned char chip[];
-
-template <class T>
-__device__ __forceinline__ T& on_chip(unsigned offset) {
-  return *reinterpret_cast<T*>(chip + offset);
-}
-
-/// A pointer to the device's memory, said to the compiler, which otherwise cannot know that it is not to shared memory.
-template <class T>
-__device__ __forceinline__ T* in_memory(T* pointer) {
-  __builtin_assume(__isGlobal(pointer));
-  return pointer;
-}
 
 __device__ __forceinline__ Place place_at(unsigned offset) {
   return {on_chip<Number>(offset), on_chip<Number>(offset + plane), on_chip<Number>(offset + 2 * plane)};
@@ -49,16 +28,14 @@ __device__ __forceinline__ Integer bits(double value) { return static_cast<Integ
 /// A spring and the mass at its other end, read ahead of their use.
 struct Spring {
   Number rest_length;
-  unsigned other;        // offset
-  unsigned table_entry;  // offset from the table's beginning
-  Entry<Number> entry;
+  unsigned other;  // offset
+  SpringMaterial material;
   Place place;
 
-  __device__ __forceinline__ Spring(const Record<Number>& record, unsigned table)
+  __device__ __forceinline__ Spring(const Records::Read& record, const Lengths& lengths)
       : rest_length(record.rest_length),
         other((static_cast<unsigned>(record.packed) & 0xffffu) << offset_shift),
-        table_entry((static_cast<unsigned>(record.packed) >> 16) << entry_shift),
-        entry(on_chip<Entry<Number>>(table + table_entry)),
+        material(lengths(record)),
         place(place_at(other)) {}
 };
 
@@ -93,8 +70,8 @@ struct Totals {
 
 /// Where a thread's springs lie.
 struct Share {
-  const Record<Number>* records;  // of all slots
-  unsigned owner;                 // offset of the mass that it begins with
+  Records records;  // of all slots
+  unsigned owner;   // offset of the mass that it begins with
   unsigned first_slot;
   unsigned chunks;             // 0: the warp has no springs
   const std::uint32_t* turns;  // of the warp's chunks
@@ -103,43 +80,42 @@ struct Share {
 };
 
 __device__ __forceinline__ Share share_of(const Body& body) {
-  Share share;
+  Share share{Records::of(body)};
   const unsigned warp = threadIdx.x / lanes, chunks = chunked ? body.chunks : 1;
   share.chunks = warp < body.warps ? chunks : 0;
   share.first_slot = warp * chunks * rows * lanes + threadIdx.x % lanes;
   share.turns = body.turns + warp * chunks;
   share.owner = offset_of_place(body.first_group[warp] * lanes + threadIdx.x % lanes);
-  share.records = records_on_chip ? &on_chip<Record<Number>>(body.record_offset) : in_memory(body.records);
   return share;
 }
 
-/// Where the lengths of one pass lie in shared memory, and the rates at which they change.
-struct Lengths {
-  unsigned table;
-  unsigned rates = 0;
+/// A pass over the springs.
+struct SpringPass {
+  Lengths lengths;
   bool noted = true;  // whether its forces count for stress and work
 };
 
 /// Adds the force of the spring at `slot` to both of its ends; returns its size, units.
 __device__ __forceinline__ Number add_force(const Body& body, unsigned slot, const Spring& spring, Owner& owner,
-                                            const Lengths& lengths, Sums& sums) {
+                                            const SpringPass& pass, Sums& sums) {
   const auto s = physics::separation(owner.place, spring.place);
   const Number inverse = physics::inverse_length(s);
+  const Entry<Number>& entry = spring.material.entry;
   const Number factor =
-      physics::spring_factor_by_inverse(inverse, spring.entry.stiffness, spring.entry.rest_force * spring.rest_length);
+      physics::spring_factor_by_inverse(inverse, entry.stiffness, entry.rest_force * spring.rest_length);
   const Number tension = factor * physics::length_by_inverse(s, inverse);
   sums.largest = fmax(sums.largest, fabs(tension));
   if constexpr (work) {
-    const Number rate = on_chip<Number>(lengths.rates + spring.table_entry / 2) * spring.rest_length;
+    const Number rate = pass.lengths.rate_of(spring.material) * spring.rest_length;
     const Number watts = physics::actuation_power(tension, rate);
-    if (lengths.noted) sums.power += watts;
+    if (pass.noted) sums.power += watts;
     if constexpr (muscle_work)
-      if (lengths.noted) atomicAdd(in_memory(body.powers) + slot, static_cast<double>(watts));
+      if (pass.noted) atomicAdd(in_memory(body.powers) + slot, static_cast<double>(watts));
   }
   if constexpr (peak_force)
-    if (lengths.noted) atomicMax(in_memory(body.peak) + slot, bits(fabs(tension)));
+    if (pass.noted) atomicMax(in_memory(body.peak) + slot, bits(fabs(tension)));
   if constexpr (mean_tension)
-    if (lengths.noted) atomicAdd(in_memory(body.tensions) + slot, static_cast<double>(tension));
+    if (pass.noted) atomicAdd(in_memory(body.tensions) + slot, static_cast<double>(tension));
   const Integer x = bits(physics::multiply_add(-factor, s.d.x, Fixed::magic));
   const Integer y = bits(physics::multiply_add(-factor, s.d.y, Fixed::magic));
   const Integer z = bits(physics::multiply_add(-factor, s.d.z, Fixed::magic));
@@ -155,19 +131,19 @@ __device__ __forceinline__ Number add_force(const Body& body, unsigned slot, con
 /// Adds the forces of `rows` rows, the first of which is at `slot`. The next row's reads are issued before this row's
 /// atomics, which the compiler may not pass.
 __device__ __forceinline__ void add_forces(const Body& body, const Share& share, unsigned slot, unsigned turns,
-                                           const Lengths& lengths, Owner& owner, Sums& sums) {
-  const Record<Number>* records = share.records + slot;
-  Record<Number> record = records[rows > 1 ? lanes : 0];
-  Spring next(records[0], lengths.table);
+                                           const SpringPass& pass, Owner& owner, Sums& sums) {
+  const Records records = share.records.from(slot);
+  Records::Read record = records[rows > 1 ? lanes : 0];
+  Spring next(records[0], pass.lengths);
 #pragma unroll
   for (unsigned row = 0; row < rows; ++row) {
     const Spring spring = next;
-    if (row + 1 < rows) next = Spring(record, lengths.table);
+    if (row + 1 < rows) next = Spring(record, pass.lengths);
     if (row + 2 < rows) record = records[(row + 2) * lanes];
-    const Number force = add_force(body, slot + row * lanes, spring, owner, lengths, sums);
+    const Number force = add_force(body, slot + row * lanes, spring, owner, pass, sums);
     if constexpr (stress) {
       // no thread waits for the sum in memory, which has no other writer and so no order
-      const Number noted = lengths.noted ? force : Number(0);
+      const Number noted = pass.noted ? force : Number(0);
       if constexpr (chunked)
         atomicAdd(in_memory(body.recent_stress) + slot + row * lanes, noted);
       else
@@ -181,13 +157,13 @@ __device__ __forceinline__ void add_forces(const Body& body, const Share& share,
 }
 
 __device__ __forceinline__ void add_spring_forces(const Body& body, const Share& share, unsigned turns,
-                                                  const Lengths& lengths, Sums& sums) {
+                                                  const SpringPass& pass, Sums& sums) {
   Owner owner(share.owner);
   if constexpr (chunked) {
     for (unsigned chunk = 0; chunk < share.chunks; ++chunk)
-      add_forces(body, share, share.slot(chunk), share.turns[chunk], lengths, owner, sums);
+      add_forces(body, share, share.slot(chunk), share.turns[chunk], pass, owner, sums);
   } else {
-    add_forces(body, share, share.first_slot, turns, lengths, owner, sums);
+    add_forces(body, share, share.first_slot, turns, pass, owner, sums);
   }
   owner.hand_in();
 }
@@ -255,9 +231,8 @@ __device__ __forceinline__ void load(const Body& body, Movers& movers) {
     set_force(offset, 0);
   }
   if constexpr (records_on_chip) {
-    Record<Number>* records = &on_chip<Record<Number>>(body.record_offset);
     const unsigned count = body.warps * lanes * rows * (chunked ? body.chunks : 1);
-    for (unsigned i = threadIdx.x; i < count; i += blockDim.x) records[i] = body.records[i];
+    Records::load(body, count);
   }
 }
 
@@ -274,29 +249,20 @@ __device__ __forceinline__ void store(const Body& body, const Movers& movers) {
   });
 }
 
-/// Fills in `count` rows of the table from the run's step `step` on.
-__device__ __noinline__ void fill_table(const Body& body, std::uint64_t step, unsigned count) {
-  const double interval = body.world.exact_dt / rows_per_step;
-  for (unsigned i = threadIdx.x; i < count * body.entries; i += blockDim.x) {
-    const Actuator actuator = body.actuators[i % body.entries];
-    const double time = body.start_time + static_cast<double>(step * rows_per_step + i / body.entries) * interval;
-    on_chip<Entry<Number>>(body.table_offset + i * sizeof(Entry<Number>)) = entry_of(actuator, time);
-    if constexpr (work) on_chip<Number>(body.rate_offset + i * sizeof(Number)) = length_rate(actuator, time);
-  }
-}
-
-/// The elastic energy of a thread's springs, units m. The table's first row holds the lengths of now.
+/// The elastic energy of a thread's springs, units m. The first row of lengths is that of now.
 __device__ double elastic_energy(const Body& body, const Share& share) {
+  const Lengths lengths(body);
   double sum = 0;
   unsigned offset = share.owner;
   for (unsigned chunk = 0; chunk < share.chunks; ++chunk) {
     const unsigned turns = share.turns[chunk];
     for (unsigned row = 0; row < rows; ++row) {
-      const Spring spring(share.records[share.slot(chunk) + row * lanes], body.table_offset);
+      const Spring spring(share.records[share.slot(chunk) + row * lanes], lengths);
       const auto s = physics::separation(place_at(offset), spring.place);
       // an empty slot has no stiffness
-      const Number relative = spring.entry.rest_force / physics::maximum(spring.entry.stiffness, Number(1e-30));
-      sum += physics::elastic_energy(s, spring.entry.stiffness, spring.rest_length * relative);
+      const Entry<Number>& entry = spring.material.entry;
+      const Number relative = entry.rest_force / physics::maximum(entry.stiffness, Number(1e-30));
+      sum += physics::elastic_energy(s, entry.stiffness, spring.rest_length * relative);
       if (turns >> row & 1) offset += group_size;
     }
   }
@@ -380,26 +346,23 @@ __device__ __forceinline__ void collect(const Body& body, const Share& share, co
   }
 }
 
-/// Makes `count` steps, whose lengths are in the table. The sums live no longer than this, so that no call of a
+/// Makes `count` steps, whose lengths are known. The sums live no longer than this, so that no call of a
 /// function drives them out of the registers. A warp without springs only moves masses.
 template <bool has_springs>
 __device__ __forceinline__ void advance(const Body& body, const World<Number>& world, const Share& share,
                                         unsigned turns, unsigned count, Movers& movers, Totals& totals) {
   const Number resolution = static_cast<Number>(body.resolution);
-  const unsigned row_bytes = body.entries * sizeof(Entry<Number>);
-  Lengths lengths{body.table_offset};
-  if constexpr (work) lengths.rates = body.rate_offset;
+  SpringPass springs{Lengths(body)};
   [[maybe_unused]] Sums sums;
   const unsigned passes = opening_passes + count * passes_per_step;
   for (unsigned pass = 0; pass < passes; ++pass) {
-    lengths.noted = Method::is_noted(pass);
-    if constexpr (has_springs) add_spring_forces(body, share, turns, lengths, sums);
+    springs.noted = Method::is_noted(pass);
+    if constexpr (has_springs) add_spring_forces(body, share, turns, springs, sums);
     __syncthreads();
     move_masses(body, world, resolution, {pass, pass + 1 == passes}, movers);
     __syncthreads();
     const unsigned rows_on = Method::row(pass + 1) - Method::row(pass);
-    if constexpr (actuation) lengths.table += rows_on * row_bytes;
-    if constexpr (actuation && work) lengths.rates += rows_on * row_bytes / 2;
+    if constexpr (actuation) springs.lengths.go_on(body, rows_on);
   }
   if constexpr (has_springs) collect(body, share, sums, totals);
 }
@@ -411,7 +374,7 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1) evodevo_run
   Movers movers;
   Totals totals;
   load(body, movers);
-  fill_table(body, 0, 1);
+  fill_lengths(body, 0, 1);
   __syncthreads();
   for (std::uint64_t done = 0; done < body.steps;) {
     const unsigned until_check = static_cast<unsigned>(
@@ -419,7 +382,7 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1) evodevo_run
     unsigned now = until_check;
     if constexpr (actuation) {
       now = min(until_check, body.table_steps);
-      fill_table(body, done, now * rows_per_step + end_rows);
+      fill_lengths(body, done, now * rows_per_step + end_rows);
       __syncthreads();
     }
     if (share.chunks > 0)
@@ -429,7 +392,7 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1) evodevo_run
     done += now;
     if (now < until_check) continue;
     if constexpr (actuation) {
-      fill_table(body, done, 1);
+      fill_lengths(body, done, 1);
       __syncthreads();
     }
     if (has_diverged(body, check_of(body, movers, totals), done)) break;

@@ -16,7 +16,7 @@ namespace evodevo::cuda {
 
 /// Shared memory of a block.
 struct ChipMemory {
-  std::size_t table_offset = 0, rate_offset = 0, record_offset = 0, size = 0;
+  std::size_t table_offset = 0, rate_offset = 0, record_offset = 0, wave_offset = 0, size = 0;
   std::uint32_t table_steps = 1;
 };
 
@@ -76,8 +76,11 @@ class Resident {
  private:
   Resident(const Task& task, const Scene& scene, const Features& features);
   bool fit(std::size_t shared_bytes);
+  std::size_t waves_in(std::size_t slots) const;
   void reserve();
+  std::vector<typename FixedPoint<T>::Integer> materials_in_records() const;
   void pack_records(Record<T>* to) const;
+  void pack_waves(std::uint32_t* to) const;
   void pack_masses(const Regions& host) const;
   void unpack_springs(const Regions& host, Task& task) const;
 
@@ -92,6 +95,7 @@ class Resident {
 
   Sizes sizes_;
   Section<Record<T>> records_;
+  Section<std::uint32_t> waves_;
   Section<std::uint32_t> first_group_, turns_;
   Section<Actuator> actuators_;
   Section<T> mass_, inverse_mass_;

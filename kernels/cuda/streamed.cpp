@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "colouring.hpp"
+#include "computed_materials.hpp"
 #include "cuda/arrangement.hpp"
 
 namespace evodevo::cuda {
@@ -108,7 +109,8 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
   pack_joints(host);
   pack_colours(host);
   actuators_.in(host.input)[0] = {};
-  std::transform(body.materials.begin(), body.materials.end(), actuators_.in(host.input) + 1,
+  const std::vector<Material> materials = simulated_materials(body.materials, features_.materials);
+  std::transform(materials.begin(), materials.end(), actuators_.in(host.input) + 1,
                  [](const Material& material) { return actuator_of(material, 1); });
   const auto point = [](Vec3 v) {
     return Point<T>{static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z), T(0)};

@@ -44,7 +44,11 @@ const std::vector<Subject> subjects{
     // without
     {"stress", &Features::stress, {"stress"}, {}, {}},
     // each muscle's work is a part of the body's
-    {"work", &Features::work, {"muscle_work", "work"}, {"power", "rates"}, {"length_rate", "actuation_power"}},
+    {"work",
+     &Features::work,
+     {"muscle_work", "work"},
+     {"power", "rates"},
+     {"rate_of", "length_rate", "actuation_power"}},
     {"each muscle's work", &Features::muscle_work, {"muscle_work"}, {}, {}},
     {"peak force", &Features::peak_force, {"peak_force"}, {}, {}},
     {"tension", &Features::tension, {"mean_tension"}, {}, {}},
@@ -141,17 +145,18 @@ class Sources {
     return count;
   }
 
-  /// Takes out the definition of a function: from the empty line before it to its closing brace.
+  /// Takes out the definitions of a function: from the empty line before each to its closing brace.
   void remove_function(const std::string& name) {
-    const std::regex head("\n *\n(template <class T>\n)?[\\w ]+ " + name + "\\([^{;]*\\) \\{");
+    const std::regex head("\n *\n(template <class T>\n)?[\\w ]+ " + name + "\\([^{;]*\\) (const )?\\{");
+    bool found = false;
     for (std::string& text : texts_) {
       std::smatch match;
       if (!std::regex_search(text, match, head)) continue;
       const auto begin = static_cast<std::size_t>(match.position());
       text.erase(begin, closing(text, begin + static_cast<std::size_t>(match.length()) - 1) - begin);
-      return;
+      found = true;
     }
-    throw std::runtime_error("no function " + name);
+    if (!found) throw std::runtime_error("no function " + name);
   }
 
   void expect_gone(const std::string& name) const {
@@ -205,9 +210,11 @@ struct Form {
   const char* source;
   ResidentForm layout;
   bool float64 = false;
+  Materials materials = Materials::table;
 
   std::vector<std::string> definitions(Features features) const {
     features.float64 = float64;
+    features.materials = materials;
     return layout.rows == 0 ? cuda::definitions(features) : cuda::definitions(features, layout);
   }
   friend void PrintTo(const Form& form, std::ostream* stream) { *stream << form.name; }
@@ -220,6 +227,11 @@ const std::vector<Form> forms{
      {.rows = 8, .masses_per_thread = 5, .chunked = true, .wide_offsets = true}},
     {"streamed", "cuda/streamed.cu", {}},
     {"resident, float64", "cuda/resident.cu", {.rows = 15, .masses_per_thread = 2, .records_on_chip = true}, true},
+    {"resident, computed materials",
+     "cuda/resident.cu",
+     {.rows = 15, .masses_per_thread = 1, .records_on_chip = true},
+     false,
+     Materials::computed},
 };
 
 class FeatureCode : public testing::TestWithParam<Form> {

@@ -3,9 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
+#include <set>
 #include <vector>
 
 #include "bodies.hpp"
+#include "computed_materials.hpp"
 
 namespace evodevo::cuda {
 namespace {
@@ -48,6 +52,42 @@ TEST(Resident, RecordsLeadToTheirMaterials) {
       EXPECT_EQ(packed.records[i].rest_length, static_cast<float>(body.springs[entry - 1].rest_length));
     }
     EXPECT_EQ(springs, body.springs.size());
+  }
+}
+
+TEST(Resident, SpringsCarryTheCodesOfTheirMaterials) {
+  for (const std::size_t materials : {15, 1000, 0}) {
+    const Body body = body_of(materials);
+    const Scene scene = testing_gpu::walking_scene();
+    State state = state_at_birth(body, scene);
+    const Task task{.body = &body, .state = &state};
+    Features computed = features;
+    computed.materials = Materials::computed;
+    computed.actuation = true;
+    const auto resident = Resident<float>::arrange(task, scene, computed, shared_bytes);
+    ASSERT_TRUE(resident) << materials;
+    EXPECT_TRUE(resident->form().records_on_chip) << "whatever the materials";
+    EXPECT_FALSE(resident->form().wide_table);
+
+    std::vector<std::byte> input(resident->sizes().input), motion(resident->sizes().state);
+    const Regions regions{input.data(), motion.data(), nullptr};
+    const auto packed =
+        resident->pack(regions, regions, EnergyGuard(body, state, scene, Precision::float32, task.dt), scene);
+    const MaterialUnits units = material_units(body.materials);
+    EXPECT_FLOAT_EQ(packed.units.stiffness * static_cast<float>(packed.resolution),
+                    static_cast<float>(units.stiffness));
+    EXPECT_FLOAT_EQ(packed.units.amplitude * amplitude_mask, static_cast<float>(1023 * units.amplitude));
+    std::multiset<std::array<std::uint32_t, 3>> expected, found;
+    const auto bits = [](double length) { return std::bit_cast<std::uint32_t>(static_cast<float>(length)); };
+    for (const Spring& spring : body.springs) {
+      const MaterialCode code = code_of(body.materials[spring.material], units);
+      expected.insert({bits(spring.rest_length), code.stiffness, code.wave});
+    }
+    for (std::size_t i = 0; i < resident->slots(); ++i) {
+      const Record<float>& record = packed.records[i];
+      if (record.packed >> 16 > 0) found.insert({bits(record.rest_length), record.packed >> 16, packed.waves[i]});
+    }
+    EXPECT_EQ(found, expected);
   }
 }
 

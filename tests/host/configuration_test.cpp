@@ -154,6 +154,23 @@ TEST(Configuration, AccuracyChoosesWhatIsLeftOut) {
       "test.toml:27:12: simulation.accuracy = \"best\": is not an option; known: paper, fast, balanced, reference");
 }
 
+TEST(Configuration, MaterialsAreComputedWhereThatIsAskedForAndPossible) {
+  const auto with_keys = [](const std::string& keys) { return with("[simulation]", "[simulation]\n" + keys); };
+  EXPECT_EQ(testing::read(small_experiment).stepping.materials, Materials::table);
+  const Experiment computed = testing::read(with_keys("materials = \"computed\"\naccuracy = \"fast\""));
+  EXPECT_EQ(computed.stepping.materials, Materials::computed);
+  EXPECT_EQ(computed.stepping.method, Method::symplectic_euler);
+  EXPECT_EQ(testing::read(computed.resolved).stepping.materials, Materials::computed);
+  EXPECT_EQ(complaint(with_keys("materials = \"computer\"")),
+            "test.toml:27:13: simulation.materials = \"computer\": is not an option; did you mean \"computed\"?");
+  const std::string impossible =
+      "test.toml:27:13: simulation.materials = \"computed\": only explicit methods in single precision compute "
+      "materials; expected \"table\", or another method, precision or accuracy";
+  EXPECT_EQ(complaint(with_keys("materials = \"computed\"\nprecision = \"double\"")), impossible);
+  EXPECT_EQ(complaint(with_keys("materials = \"computed\"\nmethod = \"xpbd\"")), impossible);
+  EXPECT_EQ(complaint(with_keys("materials = \"computed\"\naccuracy = \"reference\"")), impossible);
+}
+
 TEST(Configuration, AStepOfItsOwnForEveryBody) {
   const std::string automatic = with("[simulation]", "[simulation]\ndt = \"auto\"");
   const Experiment experiment =

@@ -12,11 +12,13 @@
 namespace evodevo::benchmark {
 namespace {
 
-std::unique_ptr<Simulator> make_simulator(const Settings& settings, const Scene& scene) {
+std::unique_ptr<Simulator> make_simulator(const Settings& settings, const Scene& scene, Materials materials) {
+  Stepping stepping = settings.stepping();
+  stepping.materials = materials;
 #ifdef EVODEVO_CUDA
-  if (settings.device == "cuda") return make_cuda_simulator(scene, settings.stepping());
+  if (settings.device == "cuda") return make_cuda_simulator(scene, stepping);
 #endif
-  return make_cpu_simulator(scene, settings.stepping(), settings.threads);
+  return make_cpu_simulator(scene, stepping, settings.threads);
 }
 
 /// The time that a device took for the steps alone, s; for the CPU, which has nothing to copy, none.
@@ -34,10 +36,10 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-Batch::Batch(const Settings& settings, std::span<const Body> bodies, const Scene& scene)
+Batch::Batch(const Settings& settings, std::span<const Body> bodies, const Scene& scene, Materials materials)
     : bodies_(bodies),
       scene_(scene),
-      simulator_(make_simulator(settings, scene)),
+      simulator_(make_simulator(settings, scene, materials)),
       states_(settings.bodies),
       steps_(settings.steps) {
   for (const Body& body : bodies) births_.push_back(state_at_birth(body, scene));

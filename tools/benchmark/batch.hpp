@@ -26,7 +26,8 @@ struct Rate {
 /// it.
 class Batch {
  public:
-  Batch(const Settings& settings, std::span<const Body> bodies, const Scene& scene);
+  Batch(const Settings& settings, std::span<const Body> bodies, const Scene& scene,
+        Materials materials = Materials::table);
 
   std::string device() const { return simulator_->device(); }
 

@@ -20,7 +20,7 @@ void check_choice(const char* option, const std::string& value, const std::vecto
 }
 
 void check(const Settings& s) {
-  check_choice("study", s.study, {"speed", "features", "baselines", "stress", "tallies", "neighbours"});
+  check_choice("study", s.study, {"speed", "features", "baselines", "stress", "tallies", "neighbours", "materials"});
   check_choice("device", s.device, {"cpu", "cuda"});
   check_choice("method", s.method, {method_names.begin(), method_names.end()});
   check_choice("precision", s.precision, {"float32", "float64"});
@@ -29,7 +29,11 @@ void check(const Settings& s) {
   if (s.device == "cuda")
     throw std::invalid_argument("this program was built without CUDA; configure with -DEVODEVO_CUDA=ON");
 #endif
-  const bool beside_cuda = s.study != "speed" && s.study != "features";
+  if (s.study == "materials" && (s.device != "cuda" || s.precision != "float32" || !is_explicit(s.stepping().method)))
+    throw std::invalid_argument(
+        "--study materials is of what a GPU computes in single precision and with explicit methods; add --device "
+        "cuda, leave --precision out, and take another --method");
+  const bool beside_cuda = s.study != "speed" && s.study != "features" && s.study != "materials";
   if (beside_cuda && s.device != "cuda")
     throw std::invalid_argument("--study " + s.study + " compares methods on a GPU; add --device cuda");
   if (beside_cuda && s.method != name(Method::paper_euler))
@@ -61,7 +65,8 @@ std::optional<Settings> parse(int argc, const char* const* argv) {
       "speed: how fast | features: what each force and recording costs | baselines: the paper's "
       "methods beside ours | stress: what recording stress costs with each method | tallies: how "
       "many of the true least and most stressed springs the paper's tallies find in 1 s and in 10 s | "
-      "neighbours: the search for nearest neighbours on both devices");
+      "neighbours: the search for nearest neighbours on both devices | materials: few and many "
+      "materials, from a table and computed from codes");
   options.add_options()("device", po::value(&s.device)->default_value("cpu"), "cpu | cuda");
   options.add_options()("body", po::value(&s.body)->default_value("knn1000"),
                         "cube10 | knn1000 | a JSON file of `evodevo body`");

@@ -16,6 +16,9 @@ Report feature_costs(const Settings& settings);
 /// The paper's baseline and its method beside ours.
 Report baselines(const Settings& settings);
 
+/// The rate with materials computed from codes over that with a table, for bodies of few and of many materials.
+Report material_costs(const Settings& settings);
+
 /// What recording stress costs: the paper's four ways with its method, the exact sum with ours (paper, Figures 2, 4).
 Report stress_costs(const Settings& settings);
 

@@ -1,0 +1,57 @@
+#include "computed_materials.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evodevo {
+namespace {
+
+constexpr double turn = 2 * 3.14159265358979323846;  // rad
+constexpr double phases = 4096;                      // of a turn
+constexpr double most_stiffness = 65'520, most_amplitude = 1'020, most_frequency = 1'020;
+
+std::uint32_t counted(double value, double unit) {
+  return unit > 0 ? static_cast<std::uint32_t>(std::lround(std::abs(value) / unit)) : 0;
+}
+
+/// The phase (rad) of the same motion with an amplitude and a frequency that are not negative.
+double phase_of(const Material& material) {
+  const double phase = material.frequency < 0 ? turn / 2 - material.phase : material.phase;
+  return material.amplitude < 0 ? phase + turn / 2 : phase;
+}
+
+}  // namespace
+
+MaterialUnits material_units(std::span<const Material> materials) {
+  MaterialUnits largest;
+  for (const Material& material : materials) {
+    largest.stiffness = std::max(largest.stiffness, material.stiffness);
+    largest.amplitude = std::max(largest.amplitude, std::abs(material.amplitude));
+    largest.frequency = std::max(largest.frequency, std::abs(material.frequency));
+  }
+  return {largest.stiffness / most_stiffness, largest.amplitude / most_amplitude, largest.frequency / most_frequency};
+}
+
+MaterialCode code_of(const Material& material, const MaterialUnits& units) {
+  const double turns = phase_of(material) / turn;
+  // the last half of a step is the next turn's first
+  const auto phase = static_cast<std::uint32_t>(std::lround((turns - std::floor(turns)) * phases)) % 4096;
+  return {counted(material.stiffness, units.stiffness),
+          phase << phase_shift | counted(material.amplitude, units.amplitude) << amplitude_shift |
+              counted(material.frequency, units.frequency)};
+}
+
+Material material_of(const MaterialCode& code, const MaterialUnits& units) {
+  return {code.stiffness * units.stiffness, ((code.wave & amplitude_mask) >> amplitude_shift) * units.amplitude,
+          (code.wave & frequency_mask) * units.frequency, (code.wave >> phase_shift) * (turn / phases)};
+}
+
+std::vector<Material> simulated_materials(std::span<const Material> materials, Materials way) {
+  std::vector<Material> simulated(materials.begin(), materials.end());
+  if (way == Materials::table) return simulated;
+  const MaterialUnits units = material_units(materials);
+  for (Material& material : simulated) material = material_of(code_of(material, units), units);
+  return simulated;
+}
+
+}  // namespace evodevo

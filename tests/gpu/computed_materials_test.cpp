@@ -1,0 +1,138 @@
+// Springs whose materials are computed from codes move as the CPU moves them, on the chip and beyond it.
+#include "computed_materials.hpp"
+
+#include "gpu.hpp"
+
+namespace evodevo::testing_gpu {
+namespace {
+
+constexpr Recording all_records{.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};
+
+Stepping computed(const Way& way) { return {std::get<Method>(way), std::get<Precision>(way), Materials::computed}; }
+
+/// `count` materials of 4,000 to 9,000 N/m, amplitudes and frequencies of either sign, all phases.
+std::vector<Material> random_materials(std::size_t count) {
+  Random random(12);
+  std::vector<Material> all;
+  for (std::size_t i = 0; i < count; ++i)
+    all.push_back({6500 + 2500 * random.next(), 0.14 * random.next(), 2 * random.next(), 4 * pi * random.next()});
+  return all;
+}
+
+/// A random body whose springs each have their own material.
+Body varied_body(std::uint32_t masses, std::uint32_t neighbours) {
+  Body body = random_body(masses, neighbours, 4);
+  body.materials = random_materials(body.springs.size());
+  for (std::uint32_t i = 0; i < body.springs.size(); ++i) body.springs[i].material = i;
+  return body;
+}
+
+class ComputedMaterials : public testing::TestWithParam<Way> {
+ protected:
+  /// Moves a body for 0.055 s on both devices and compares places and all that is recorded.
+  static void compare(const Body& body, const Scene& scene) {
+    const Way way = GetParam();
+    const bool single = std::get<Precision>(way) == Precision::float32;
+    const State start = moving_state(body, scene, 11);
+    Robot cpu(body, start), gpu(body, start), plain(body, start);
+    const auto simulator = make_cuda_simulator(scene, computed(way));
+    simulate(*make_cpu_simulator(scene, computed(way), 0), {&cpu}, 110, all_records);
+    simulate(*simulator, {&gpu}, 110, all_records);
+    simulate(*simulator, {&plain}, 110);
+    ASSERT_EQ(cpu.answer.status, Status::ok) << cpu.answer.reason;
+    ASSERT_EQ(gpu.answer.status, Status::ok) << gpu.answer.reason;
+    EXPECT_EQ(distance(gpu.state, plain.state), 0) << "recording changes nothing";
+    const double off = distance(cpu.state, gpu.state);
+    std::printf("           off by %.3g m\n", off);
+    EXPECT_LE(off, single ? 3e-3 : 3e-9);
+    for (std::size_t i = 0; i < cpu.answer.stress.size(); ++i) {
+      const double near = (single ? 5e-2 : 5e-8) * (1 + cpu.answer.stress[i]);
+      ASSERT_NEAR(cpu.answer.stress[i], gpu.answer.stress[i], near) << i;
+      ASSERT_NEAR(cpu.answer.tension[i], gpu.answer.tension[i], near) << i;
+      ASSERT_NEAR(cpu.answer.muscle_work[i], gpu.answer.muscle_work[i], near) << i;
+    }
+    EXPECT_NEAR(cpu.answer.work, gpu.answer.work, (single ? 1e-3 : 1e-9) * (1e-3 + cpu.answer.work));
+  }
+};
+
+TEST_P(ComputedMaterials, Everything) {
+  EVODEVO_NEEDS_GPU();
+  compare(varied_body(300, 20), {Gravity{9.81, 12}, Floor{1e6, 0.05}, Friction{}, Damping{}, Drag{0.5}});
+}
+
+TEST_P(ComputedMaterials, FewMaterials) {
+  EVODEVO_NEEDS_GPU();
+  compare(random_body(300, 20, 4), walking_scene());
+}
+
+TEST_P(ComputedMaterials, NoMuscles) {
+  EVODEVO_NEEDS_GPU();
+  Body body = varied_body(300, 20);
+  for (Material& material : body.materials) material.amplitude = 0;
+  compare(body, walking_scene());
+}
+
+TEST_P(ComputedMaterials, Masses1000) {
+  EVODEVO_NEEDS_GPU();
+  compare(varied_body(1000, 25), walking_scene());
+}
+
+TEST_P(ComputedMaterials, Masses2000SpringsStreamed) {
+  EVODEVO_NEEDS_GPU();
+  compare(varied_body(2000, 25), walking_scene());
+}
+
+TEST_P(ComputedMaterials, Masses4000OffsetsBeyond16Bits) {
+  EVODEVO_NEEDS_GPU();
+  compare(varied_body(4000, 12), walking_scene());
+}
+
+TEST_P(ComputedMaterials, Masses20000BeyondTheChip) {
+  EVODEVO_NEEDS_GPU();
+  compare(varied_body(20000, 12), walking_scene());
+}
+
+INSTANTIATE_TEST_SUITE_P(Gpu, ComputedMaterials, all_ways(), [](const auto& test) { return name(test.param); });
+
+/// Forces between masses that never move, at any time since birth, are those of the codes' materials.
+class ComputedForces : public testing::TestWithParam<double> {};
+
+TEST_P(ComputedForces, AreThoseOfTheCodes) {
+  EVODEVO_NEEDS_GPU();
+  Body body = varied_body(300, 20);
+  for (Mass& mass : body.masses) mass.mass = 0;
+  const Scene nothing;
+  State state = state_at_birth(body, nothing);
+  state.time = GetParam();
+  state.start_energy = total_energy(body, state, nothing);
+  Robot run(body, state);
+  simulate(*make_cuda_simulator(nothing, {.materials = Materials::computed}), {&run}, 1, all_records);
+  ASSERT_EQ(run.answer.status, Status::ok) << run.answer.reason;
+  const std::vector<Material> materials = simulated_materials(body.materials, Materials::computed);
+  // the clock is off by 2^-33 turns, of which the largest frequency makes 1,020; the angle is rounded twice, and the
+  // sine is good to 2^-20.5
+  const double sine = 2 * pi * (1020 * 0x1p-33 + 0x1p-25) + pi * 0x1p-24 + 0x1p-20;
+  const double rounding = 8 * 0x1p-24;  // of places and of the products and sums of a force
+  for (std::size_t i = 0; i < body.springs.size(); ++i) {
+    const Spring& spring = body.springs[i];
+    const Material& m = materials[spring.material];
+    const double distance = norm(state.position[spring.b] - state.position[spring.a]);
+    const double length = spring.rest_length * m.relative_length(state.time);
+    const double tension = m.stiffness * (distance - length);
+    const double muscle = m.stiffness * spring.rest_length * m.amplitude;
+    const double accuracy = muscle * sine + m.stiffness * (1 + distance + length) * rounding;
+    EXPECT_NEAR(run.answer.tension[i], tension, accuracy) << i;
+    const double speed = 2 * pi * m.frequency * m.amplitude * spring.rest_length;  // at most, m/s
+    const double rate = speed * std::cos(2 * pi * m.frequency * state.time + m.phase);
+    EXPECT_NEAR(run.answer.muscle_work[i], run.dt * std::max(0.0, -tension * rate),
+                run.dt * (speed * accuracy + std::abs(tension) * speed * (sine + rounding)))
+        << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Gpu, ComputedForces, testing::Values(0.0, 0.25, 12.3456, 5e4), [](const auto& test) {
+  return "From" + std::to_string(static_cast<int>(test.param * 100)) + "Hundredths";
+});
+
+}  // namespace
+}  // namespace evodevo::testing_gpu
