@@ -1,11 +1,6 @@
 #include "controls.hpp"
 
 #include <algorithm>
-#include <map>
-#include <numeric>
-#include <unordered_set>
-
-#include "development.hpp"
 
 namespace evodevo {
 namespace {
@@ -30,16 +25,19 @@ std::int32_t index_of(const Material& material, const Body& body) {
 /// Springs or masses to draw from by their material. What is drawn is gone.
 class Pools {
  public:
+  /// For items of `materials` materials and of none.
+  explicit Pools(std::size_t materials) : pools_(materials + 1) {}
+
   void add(std::int32_t material, std::uint32_t item) {
-    pools_[material].push_back(item);
+    pools_[index(material)].push_back(item);
     ++left_;
   }
 
   /// One of this material, of any where none of it is left; none where nothing is left at all.
   std::optional<std::uint32_t> draw(std::int32_t material, Rng& rng) {
     if (left_ == 0) return std::nullopt;
-    const auto own = pools_.find(material);
-    std::vector<std::uint32_t>& pool = own != pools_.end() && !own->second.empty() ? own->second : any(rng);
+    const std::size_t own = index(material);
+    std::vector<std::uint32_t>& pool = own < pools_.size() && !pools_[own].empty() ? pools_[own] : any(rng);
     std::swap(pool[rng.below(static_cast<std::uint32_t>(pool.size()))], pool.back());
     const std::uint32_t item = pool.back();
     pool.pop_back();
@@ -48,16 +46,35 @@ class Pools {
   }
 
  private:
+  static std::size_t index(std::int32_t material) { return static_cast<std::size_t>(material - no_material); }
+
   /// The pool of a random item.
   std::vector<std::uint32_t>& any(Rng& rng) {
     std::uint32_t item = rng.below(static_cast<std::uint32_t>(left_));
     auto pool = pools_.begin();
-    for (; item >= pool->second.size(); ++pool) item -= static_cast<std::uint32_t>(pool->second.size());
-    return pool->second;
+    for (; item >= pool->size(); ++pool) item -= static_cast<std::uint32_t>(pool->size());
+    return *pool;
   }
 
-  std::map<std::int32_t, std::vector<std::uint32_t>> pools_;
+  std::vector<std::vector<std::uint32_t>> pools_;
   std::size_t left_ = 0;
+};
+
+/// Which masses are joined.
+class Partners {
+ public:
+  explicit Partners(std::size_t masses) : partners_(masses) {}
+
+  void join(std::uint32_t a, std::uint32_t b) {
+    partners_[a].push_back(b);
+    partners_[b].push_back(a);
+  }
+  bool joined(std::uint32_t a, std::uint32_t b) const {
+    return std::find(partners_[a].begin(), partners_[a].end(), b) != partners_[a].end();
+  }
+
+ private:
+  std::vector<std::vector<std::uint32_t>> partners_;
 };
 
 /// One amount of change on its way into a body.
@@ -70,7 +87,8 @@ class Relocation {
         surplus_(surplus),
         rng_(rng),
         mass_goes_(body_.masses.size(), 0),
-        spring_goes_(body_.springs.size(), 0) {}
+        spring_goes_(body_.springs.size(), 0),
+        staying_springs_(body_.materials.size()) {}
 
   Edits relocate() {
     remove_masses();
@@ -83,7 +101,7 @@ class Relocation {
 
  private:
   void remove_masses() {
-    Pools masses;
+    Pools masses(body_.materials.size());
     for (std::uint32_t i = 0; i < body_.masses.size(); ++i) masses.add(body_.masses[i].material, i);
     for (const std::optional<Material>& material : amount_.masses_gone)
       if (const auto mass = masses.draw(index_in_body(material), rng_)) {
@@ -146,9 +164,9 @@ class Relocation {
     for (std::uint32_t i = 0; i < mass_goes_.size(); ++i)
       if (mass_goes_[i] == 0) staying.push_back(i);
     if (amount_.springs_come.empty() || staying.empty()) return;
-    std::unordered_set<std::uint64_t> joined;
+    Partners partners(body_.masses.size() + out_.new_masses.size());
     for (std::uint32_t s = 0; s < spring_goes_.size(); ++s)
-      if (spring_goes_[s] == 0) joined.insert(pair_key(body_.springs[s].a, body_.springs[s].b));
+      if (spring_goes_[s] == 0) partners.join(body_.springs[s].a, body_.springs[s].b);
     const auto end = [&](const std::optional<std::uint32_t>& come) {
       if (come) return static_cast<std::uint32_t>(body_.masses.size() + *come);
       return staying[rng_.below(static_cast<std::uint32_t>(staying.size()))];
@@ -156,7 +174,8 @@ class Relocation {
     for (const Amount::SpringCome& spring : amount_.springs_come)
       for (std::size_t attempt = 0; attempt < attempts_per_spring; ++attempt) {
         const std::uint32_t a = end(spring.a), b = end(spring.b);
-        if (a == b || !(norm(place(b) - place(a)) > 0) || !joined.insert(pair_key(a, b)).second) continue;
+        if (a == b || !(norm(place(b) - place(a)) > 0) || partners.joined(a, b)) continue;
+        partners.join(a, b);
         out_.new_springs.push_back({a, b, spring.material, {}});
         break;
       }

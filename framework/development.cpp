@@ -23,6 +23,10 @@ std::vector<std::uint8_t> marked(const std::vector<std::uint32_t>& indices, std:
   return marks;
 }
 
+std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) {
+  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
+}
+
 std::string pair_text(const NewSpring& spring) {
   return "joins masses " + std::to_string(spring.a) + " and " + std::to_string(spring.b);
 }

@@ -16,11 +16,6 @@ struct LivingBody : SpringRecords {
   std::shared_ptr<const Preparation> preparation = nullptr;  ///< what the simulator keeps from cycle to cycle
 };
 
-/// One number for two masses, in whichever order.
-inline std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) {
-  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
-}
-
 /// Applies one operator's edits, all of them together. `now` is the moment that the operator saw; it refers to
 /// `living`. New springs carry the mean records of the old ones. Throws std::invalid_argument, naming the edit, for an
 /// index out of range, a mass joined to itself or to one that goes, a pair joined twice, a spring changed twice or one
