@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* database_name = "run.sqlite";
 constexpr const char* lock_name = "lock";
-constexpr const char* format = "2";  ///< raised when a change of the tables keeps older programs from reading them
+constexpr const char* format = "3";  ///< raised when a change of the tables keeps older programs from reading them
 /// Readers and the writer do not wait for each other; but a folder that nobody may write cannot be read like this.
 constexpr const char* wait_for_nobody = "PRAGMA journal_mode = WAL";
 constexpr const char* rest_in_one_file = "PRAGMA journal_mode = DELETE";
@@ -43,7 +43,7 @@ CREATE INDEX individuals_by_death ON individuals(died);
 CREATE TABLE scores(
   individual INTEGER NOT NULL, objective INTEGER NOT NULL, value REAL NOT NULL,
   PRIMARY KEY(individual, objective)) WITHOUT ROWID;
--- what development did to those who reached the front when they were born; see life_record.hpp
+-- what development did to those who reached the front; see life_record.hpp
 CREATE TABLE lives(individual INTEGER PRIMARY KEY, record BLOB NOT NULL);
 CREATE TABLE generations(
   generation INTEGER PRIMARY KEY, evaluations INTEGER NOT NULL, best REAL, median REAL,
@@ -242,13 +242,12 @@ Archive Archive::opened(const fs::path& folder, int flags) try {
 }
 
 void Archive::commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,
-                     const Summary& summary) {
+                     const std::map<std::uint32_t, LifeRecord>& lives, const Summary& summary) {
   SQLite::Database& database = files_->database;
   SQLite::Transaction transaction(database);
   SQLite::Statement insert(database, std::string("INSERT INTO individuals(") + individual_columns +
                                          ") VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL)");
   SQLite::Statement insert_score(database, "INSERT INTO scores VALUES(?, ?, ?)");
-  SQLite::Statement insert_life(database, "INSERT INTO lives VALUES(?, ?)");
   for (const Individual& individual : newborns) {
     const Result& result = individual.result;
     const auto parent = [&](std::size_t i) {
@@ -273,10 +272,12 @@ void Archive::commit(const std::vector<Individual>& newborns, const std::vector<
       insert_score.exec();
       insert_score.reset();
     }
-    if (result.record.empty()) continue;
-    const std::string& bytes = result.record.bytes();
-    insert_life.bind(1, individual.id);
-    insert_life.bind(2, bytes.data(), static_cast<int>(bytes.size()));
+  }
+  SQLite::Statement insert_life(database, "INSERT INTO lives VALUES(?, ?)");
+  for (const auto& [id, life] : lives) {
+    if (life.empty()) continue;
+    insert_life.bind(1, id);
+    insert_life.bind(2, life.bytes().data(), static_cast<int>(life.bytes().size()));
     insert_life.exec();
     insert_life.reset();
   }

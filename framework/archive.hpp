@@ -39,9 +39,10 @@ class Archive {
   Archive(Archive&&) noexcept;
   ~Archive();
 
-  /// Adds one generation in one transaction: its newborns with their results, who was dropped, and its summary.
+  /// Adds one generation in one transaction: its newborns with their results, who was dropped, records of lives by id,
+  /// of which empty ones are left out, and its summary.
   void commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,
-              const Summary& summary);
+              const std::map<std::uint32_t, LifeRecord>& lives, const Summary& summary);
 
   /// Adds verifications; they take the place of earlier ones of the same individuals.
   void add_verifications(const std::vector<Verification>& verifications);
@@ -64,7 +65,8 @@ class Archive {
   std::optional<ArchivedIndividual> individual(std::uint32_t id) const;
   /// The ids of the `count` individuals with the best first objective, best first; ties in the order of birth.
   std::vector<std::uint32_t> best(std::size_t count) const;
-  /// What development did to an individual; nothing unless it reached the front when it was born.
+  /// What development did to an individual; nothing where it did nothing, or where the individual never reached the
+  /// front.
   std::optional<LifeRecord> life(std::uint32_t id) const;
   /// Of an individual; nothing where it was not verified.
   std::optional<Verification> verification(std::uint32_t id) const;

@@ -125,6 +125,7 @@ BuiltBody finish(Body body) {
   leave_out_air(body);
   if (body.springs.empty()) return {{}, "no springs", {}};
   std::vector<std::uint32_t> kept = keep_largest_piece(body);
+  for (Spring& spring : body.springs) spring.first_length = spring.rest_length;
   place_on_origin(body);
   return {std::move(body), "", std::move(kept)};
 }
@@ -157,6 +158,7 @@ void check_blueprint(const Blueprint& blueprint, const World& world) {
     require(spring.a != spring.b, "spring", i, "joins a mass to itself");
     require(spring.rest_length >= 0 && std::isfinite(spring.rest_length), "spring", i, "has no finite rest length");
     require(spring.material < materials, "spring", i, "is of a material that is not there");
+    require(spring.growth > 0 && std::isfinite(spring.growth), "spring", i, "has no finite growth above 0");
   }
   const auto require_one_for_each_mass = [&](const auto& list, const char* what) {
     if (!list.empty() && list.size() != body.masses.size())

@@ -39,6 +39,11 @@ class DeclarationCheck final : public Parameters {
   void materials(std::vector<std::string>&, std::string_view name, std::string_view text) override {
     declare(name, text);
   }
+  void require(bool holds, std::string_view name, std::string_view text) override {
+    if (!holds)
+      wrong_defaults.push_back(std::string(name) + ": " + std::string(text) +
+                               "; correct the defaults or what is required of them");
+  }
 
  private:
   void declare(std::string_view name, std::string_view text) {

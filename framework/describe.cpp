@@ -41,6 +41,7 @@ class Describer final : public Parameters {
     for (const std::string& material : value) names.push_back(quoted(material));
     add(name, "names of materials", "[" + joined(names) + "]", {}, text);
   }
+  void require(bool, std::string_view, std::string_view) override {}
 
  private:
   void add(std::string_view name, std::string type, std::string fallback, Range range, std::string_view text) {

@@ -42,6 +42,7 @@ class Editor {
         mass_gone_(marked(edits.removed_masses, living.body.masses.size(), "mass")) {}
 
   void apply() {
+    check_causes();
     change_springs();
     const std::vector<NewSpring> arrivals = finished_springs();  // while the old indices hold
     move_masses();
@@ -59,6 +60,19 @@ class Editor {
   }
 
   bool goes(const Spring& spring) const { return mass_gone_[spring.a] || mass_gone_[spring.b]; }
+
+  void check_causes() const {
+    const Causes& causes = edits_.causes;
+    const auto check = [](std::size_t causes_given, std::size_t edits_made, const char* what) {
+      if (causes_given != 0 && causes_given != edits_made)
+        refuse("names " + std::to_string(causes_given) + " causes for " + std::to_string(edits_made) + " " + what);
+    };
+    check(causes.removed_springs.size(), edits_.removed_springs.size(), "removed springs");
+    check(causes.removed_masses.size(), edits_.removed_masses.size(), "removed masses");
+    check(causes.changed_springs.size(), edits_.changed_springs.size(), "changed springs");
+    check(causes.new_masses.size(), edits_.new_masses.size(), "new masses");
+    check(causes.new_springs.size(), edits_.new_springs.size(), "new springs");
+  }
 
   static void check_material(const std::string& what, const Material& material) {
     if (is_air(material) || !std::isfinite(material.stiffness))
@@ -214,7 +228,7 @@ class Editor {
 
   void add_spring(const NewSpring& spring) {
     living_.body.springs.push_back({new_index_[spring.a], new_index_[spring.b], *spring.rest_length,
-                                    living_.body.material_index(spring.material)});
+                                    living_.body.material_index(spring.material), 1, *spring.rest_length});
   }
 
   LivingBody& living_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 #include <utility>
 
 #include "breeding.hpp"
@@ -30,25 +31,60 @@ std::vector<std::uint32_t> chosen_survivors(const Experiment& experiment, const 
   return rows;
 }
 
-/// Takes the records of their lives from the newborns, for which there is no room in a whole population.
-std::vector<LifeRecord> take_records(std::vector<Individual>& newborns) {
-  std::vector<LifeRecord> records;
-  for (Individual& individual : newborns) records.push_back(std::exchange(individual.result.record, {}));
-  return records;
-}
-
-/// Gives them back to those on the front: whom nobody in `everyone`, of which the newborns come last, surpasses in the
-/// objectives and in youth.
-void return_records_to_front(std::vector<Individual>& newborns, std::vector<LifeRecord> records,
-                             const std::vector<Individual>& everyone, const Experiment& experiment,
-                             std::uint32_t generation) {
+/// Those whom nobody in `everyone` surpasses in the objectives and in youth.
+std::vector<const Individual*> front(const std::vector<Individual>& everyone, const Experiment& experiment,
+                                     std::uint32_t generation) {
   const SelectionTable table(everyone, experiment.objectives, generation);
   const std::vector<std::uint32_t> layer = pareto_layers(scores_and_youth(table.rows()));
-  const std::size_t first = everyone.size() - newborns.size();
-  for (std::size_t i = 0; i < newborns.size(); ++i)
-    if (newborns[i].result.status == Status::ok && layer[first + i] == 0)
-      newborns[i].result.record = std::move(records[i]);
+  std::vector<const Individual*> front;
+  for (std::size_t i = 0; i < everyone.size(); ++i)
+    if (everyone[i].result.status == Status::ok && layer[i] == 0) front.push_back(&everyone[i]);
+  return front;
 }
+
+/// Chooses the lives of which a run keeps the records: of all who are ever on the front.
+class FrontLives {
+ public:
+  FrontLives(const Experiment& experiment, const Evaluation& evaluation, const Archive& archive)
+      : experiment_(experiment), evaluation_(evaluation) {
+    for (const Individual& individual : archive.population())
+      if (archive.life(individual.id)) kept_.insert(individual.id);
+  }
+
+  /// Takes the records from newborns, since there is no room for those of a whole population.
+  void take(std::vector<Individual>& newborns) {
+    for (Individual& individual : newborns)
+      newborn_[individual.id] = std::exchange(individual.result.record, LifeRecord());
+  }
+
+  /// Keeps the records of those on the front. Elders whom selection has let come there, which are few, live again.
+  void keep_front(const std::vector<Individual>& everyone, std::uint32_t generation) {
+    std::vector<Newborn> elders;
+    for (const Individual* individual : front(everyone, experiment_, generation)) {
+      if (!kept_.insert(individual->id).second) continue;
+      if (const auto newborn = newborn_.extract(individual->id))
+        to_commit_[individual->id] = std::move(newborn.mapped());
+      else
+        elders.push_back({individual->id, individual->born, &individual->genome});
+    }
+    if (elders.empty()) return;
+    std::vector<Life> lives = evaluation_.birth(elders);
+    evaluation_.develop(lives, [](double) {});
+    for (Life& life : lives) to_commit_[life.newborn.id] = std::move(life.result.record);
+  }
+
+  /// What a generation has added.
+  std::map<std::uint32_t, LifeRecord> committed() {
+    newborn_.clear();
+    return std::exchange(to_commit_, {});
+  }
+
+ private:
+  const Experiment& experiment_;
+  const Evaluation& evaluation_;
+  std::map<std::uint32_t, LifeRecord> newborn_, to_commit_;
+  std::set<std::uint32_t> kept_;
+};
 
 /// Reduces `everyone` to the survivors, in the order of birth; returns the ids of the others.
 std::vector<std::uint32_t> select(std::vector<Individual>& everyone, const Experiment& experiment,
@@ -145,6 +181,7 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
   auto generation = static_cast<std::uint32_t>(summaries.size());
   std::int64_t evaluations = summaries.empty() ? 0 : summaries.back().evaluations;
   std::vector<Individual> population = archive.population();
+  FrontLives lives(experiment, evaluation, archive);
 
   for (; !is_finished(experiment, summaries) && !stop; ++generation) {
     const auto start = Clock::now();
@@ -155,15 +192,16 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
     evaluate(newborns, evaluation, observer);
     evaluations += count;
     Summary summary = summarise(newborns, generation);
-    std::vector<LifeRecord> records = take_records(newborns);
+    lives.take(newborns);
     population.insert(population.end(), newborns.begin(), newborns.end());
-    return_records_to_front(newborns, std::move(records), population, experiment, generation);
+    lives.keep_front(population, generation);
     const std::vector<std::uint32_t> dropped = select(population, experiment, generation);
+    lives.keep_front(population, generation);
     add_best_and_median(summary, population, experiment.objectives.front().maximise);
     summary.evaluations = evaluations;
     summary.wall_time = seconds_since(start);
     const auto commit = Clock::now();
-    archive.commit(newborns, dropped, summary);
+    archive.commit(newborns, dropped, lives.committed(), summary);
     time.archive += seconds_since(commit);
     observer.generation_done(summary);
     summaries.push_back(summary);

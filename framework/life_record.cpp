@@ -1,9 +1,10 @@
 #include "life_record.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <cmath>
 #include <cstring>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 
@@ -14,10 +15,21 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
 
-std::vector<std::uint32_t> ascending(std::vector<std::uint32_t> indices) {
-  std::sort(indices.begin(), indices.end());
-  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
-  return indices;
+constexpr std::array lists_of_causes{&Causes::removed_springs, &Causes::removed_masses, &Causes::changed_springs,
+                                     &Causes::new_masses, &Causes::new_springs};
+
+/// Puts indices in ascending order and keeps each once, with its cause. Causes that are not as many stay as they are,
+/// to be refused where the edits are applied.
+void put_in_order(std::vector<std::uint32_t>& indices, std::vector<double>& causes) {
+  const bool have_causes = causes.size() == indices.size();
+  std::map<std::uint32_t, double> ordered;
+  for (std::size_t i = 0; i < indices.size(); ++i) ordered.emplace(indices[i], have_causes ? causes[i] : 0);
+  indices.clear();
+  if (have_causes) causes.clear();
+  for (const auto& [index, cause] : ordered) {
+    indices.push_back(index);
+    if (have_causes) causes.push_back(cause);
+  }
 }
 
 /// Appends changes to bytes. Whole numbers take seven bits to a byte, the highest bit says that more follow.
@@ -31,10 +43,8 @@ class Writer {
     whole(change.op ? *change.op + 1 : 0);
     ascending_indices(edits.removed_masses);
     ascending_indices(edits.removed_springs);
-    for (const float stress : change.removed_stress) raw(stress);
     whole(edits.changed_springs.size());
     for (const ChangedSpring& spring : edits.changed_springs) changed(spring);
-    for (const float stress : change.changed_stress) raw(stress);
     whole(edits.new_masses.size());
     for (const NewMass& mass : edits.new_masses) {
       raw(mass.place), raw(mass.mass);
@@ -46,9 +56,20 @@ class Writer {
       material(spring.material);
       raw(spring.rest_length.value());
     }
+    causes(edits.causes);
   }
 
  private:
+  /// Says first which of the lists there are: bit i stands for the i-th.
+  void causes(const Causes& causes) {
+    std::uint64_t given = 0;
+    for (std::size_t i = 0; i < lists_of_causes.size(); ++i)
+      if (!(causes.*lists_of_causes[i]).empty()) given |= std::uint64_t{1} << i;
+    whole(given);
+    for (const auto list : lists_of_causes)
+      for (const double cause : causes.*list) raw(static_cast<float>(cause));
+  }
+
   void whole(std::uint64_t value) {
     for (; value >= 0x80; value >>= 7) bytes_.push_back(static_cast<char>(value | 0x80));
     bytes_.push_back(static_cast<char>(value));
@@ -99,9 +120,7 @@ class Reader {
     if (const std::uint32_t op = index(); op > 0) change.op = op - 1;
     edits.removed_masses = ascending_indices();
     edits.removed_springs = ascending_indices();
-    change.removed_stress = stresses(edits.removed_springs.size());
     for (std::uint32_t left = index(); left > 0; --left) edits.changed_springs.push_back(changed());
-    change.changed_stress = stresses(edits.changed_springs.size());
     for (std::uint32_t left = index(); left > 0; --left) {
       NewMass& mass = edits.new_masses.emplace_back();
       mass.place = raw<Vec3>();
@@ -114,6 +133,7 @@ class Reader {
       spring.material = material();
       spring.rest_length = raw<double>();
     }
+    edits.causes = causes(edits);
     return change;
   }
 
@@ -146,10 +166,15 @@ class Reader {
     return indices;
   }
 
-  std::vector<float> stresses(std::size_t count) {
-    std::vector<float> stresses;
-    while (stresses.size() < count) stresses.push_back(raw<float>());
-    return stresses;
+  Causes causes(const Edits& edits) {
+    const std::array counts{edits.removed_springs.size(), edits.removed_masses.size(), edits.changed_springs.size(),
+                            edits.new_masses.size(), edits.new_springs.size()};
+    const std::uint32_t given = index();
+    Causes causes;
+    for (std::size_t i = 0; i < lists_of_causes.size(); ++i)
+      for (std::size_t left = (given >> i & 1) != 0 ? counts[i] : 0; left > 0; --left)
+        (causes.*lists_of_causes[i]).push_back(static_cast<double>(raw<float>()));
+    return causes;
   }
 
   ChangedSpring changed() {
@@ -175,15 +200,9 @@ class Reader {
 }  // namespace
 
 Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const Moment& now) {
-  Change change{static_cast<std::uint32_t>(now.cycle), op, edits, {}, {}};
-  change.edits.removed_masses = ascending(edits.removed_masses);
-  change.edits.removed_springs = ascending(edits.removed_springs);
-  // an index out of range is refused where the edits are applied
-  const auto stress_of = [&](std::uint32_t spring) {
-    return spring < now.stress.size() ? static_cast<float>(now.stress[spring]) : std::nanf("");
-  };
-  for (const std::uint32_t spring : change.edits.removed_springs) change.removed_stress.push_back(stress_of(spring));
-  for (const ChangedSpring& spring : edits.changed_springs) change.changed_stress.push_back(stress_of(spring.spring));
+  Change change{static_cast<std::uint32_t>(now.cycle), op, edits};
+  put_in_order(change.edits.removed_masses, change.edits.causes.removed_masses);
+  put_in_order(change.edits.removed_springs, change.edits.causes.removed_springs);
   return change;
 }
 

@@ -14,8 +14,6 @@ struct Change {
   std::uint32_t cycle = 0;          ///< from 1
   std::optional<std::uint32_t> op;  ///< place in Development::operators; none: of what was torn off
   Edits edits;                      ///< what goes in ascending order and once; every new spring has its rest length
-  /// Of the springs that `edits` names, as the operator saw it, N; NaN where it did not ask.
-  std::vector<float> removed_stress, changed_stress;
 };
 
 /// The change that `edits`, wanted by operator `op`, are about to make. Rest lengths are still as the operator left
@@ -25,7 +23,8 @@ Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const Mome
 /// Takes the rest lengths of a change's new springs from the body that it was made to.
 void set_rest_lengths(Change& change, const Body& after);
 
-/// All changes of a life, in their order: about 20 bytes for a spring that goes and one that comes.
+/// All changes of a life, in their order: about 20 bytes for a spring that goes and one that comes. Causes are kept in
+/// single precision.
 class LifeRecord {
  public:
   LifeRecord() = default;

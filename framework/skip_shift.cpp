@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
 
 #include "parallel.hpp"
 
@@ -19,9 +20,10 @@ double force(const Body& body, const State& state, const Spring& spring) {
 /// A body on its way through one piece of its run after the other.
 class Journey {
  public:
-  explicit Journey(const Task& task) : whole_(task), start_(task.state->time) {
+  Journey(const Task& task, std::uint64_t skip) : whole_(task), start_(task.state->time) {
     whole_.clear({.stress = true}, task.body->springs.size());
     whole_.spring_evaluations = 0;
+    if (whole_.status == Status::ok && whole_.steps < skip) refuse(skip);
   }
 
   bool is_over() const { return whole_.status != Status::ok || done_ == whole_.steps; }
@@ -50,6 +52,13 @@ class Journey {
   Task& whole() { return whole_; }
 
  private:
+  void refuse(std::uint64_t skip) {
+    whole_.status = Status::invalid;
+    whole_.reason = "no tally in a cycle of " + std::to_string(whole_.steps) +
+                    " steps; set development.skip = " + std::to_string(skip) + " to at most as many";
+    whole_.clear({}, 0);
+  }
+
   Task whole_;
   double start_;  ///< s
   std::uint64_t done_ = 0;
@@ -63,7 +72,7 @@ void tally(const Body& body, const State& state, Rng& random, std::vector<double
   random.shuffle(order);
   std::vector<double> forces;
   for (const std::uint32_t s : order) forces.push_back(force(body, state, body.springs[s]));
-  const std::size_t groups = std::min(tally_groups, order.size());
+  const std::size_t groups = std::min(most_tally_groups, order.size() / 2);
   for (std::size_t group = 0; group < groups; ++group) {
     const auto first = forces.begin() + static_cast<std::ptrdiff_t>(group * order.size() / groups);
     const auto last = forces.begin() + static_cast<std::ptrdiff_t>((group + 1) * order.size() / groups);
@@ -74,7 +83,8 @@ void tally(const Body& body, const State& state, Rng& random, std::vector<double
 }
 
 void run_with_tallies(Simulator& simulator, std::span<Task> tasks, std::uint64_t skip, std::span<Rng> random) {
-  std::vector<Journey> journeys(tasks.begin(), tasks.end());
+  std::vector<Journey> journeys;
+  for (const Task& task : tasks) journeys.emplace_back(task, skip);
   std::vector<std::size_t> moving(tasks.size());
   std::iota(moving.begin(), moving.end(), std::size_t{0});
   for (;;) {

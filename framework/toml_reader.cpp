@@ -154,6 +154,10 @@ void TomlReader::materials(std::vector<std::string>& value, std::string_view nam
   resolve(name, std::move(resolved));
 }
 
+void TomlReader::require(bool holds, std::string_view name, std::string_view text) {
+  if (!holds) fail(name, std::string(text));
+}
+
 void TomlReader::real_or_auto(std::optional<double>& value, std::string_view name, Range range, std::string_view) {
   if (const toml::node* node = look_up(name)) {
     if (!node->is_string())

@@ -47,6 +47,7 @@ class TomlReader final : public Parameters {
   void vector(Vec3& value, std::string_view name, Range range, std::string_view text) override;
   void counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view text) override;
   void materials(std::vector<std::string>& value, std::string_view name, std::string_view text) override;
+  void require(bool holds, std::string_view name, std::string_view text) override;
 
   /// A number, or the word "auto", which stands for none.
   void real_or_auto(std::optional<double>& value, std::string_view name, Range range, std::string_view text);

@@ -8,6 +8,7 @@
 
 #include "body_json.hpp"
 #include "commands/options.hpp"
+#include "living_again.hpp"
 #include "text.hpp"
 #include "toml_reader.hpp"
 
@@ -46,6 +47,11 @@ State state_as_given(const Body& body, const Experiment& experiment) {
   return state;
 }
 
+Life birth(const Experiment& experiment, Simulator& simulator, const ArchivedIndividual& individual) {
+  const Newborn newborn{individual.id, individual.born, &individual.genome};
+  return std::move(Evaluation(experiment, simulator).birth({&newborn, 1}).front());
+}
+
 std::string short_text(double value) {
   std::ostringstream text;
   text << std::setprecision(4) << value;
@@ -67,14 +73,11 @@ int body_command(const Arguments& arguments) {
   const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
   const Archive archive = Archive::read((*given)["DIR"].as<std::string>());
-  const Experiment experiment = recorded_experiment(archive, given_plugin_path(*given));
+  Experiment experiment = experiment_to_live_again(archive, given_plugin_path(*given));
   const ArchivedIndividual individual = chosen_individual(archive, *given);
   const auto simulator = make_simulator(experiment);
-  const Evaluation evaluation(experiment, *simulator);
-  const Newborn newborn{individual.id, individual.born, &individual.genome};
-  std::vector<Life> lives = evaluation.birth({&newborn, 1});
-  if (given->contains("matured")) evaluation.develop(lives, [](double) {});
-  const Life& life = lives.front();
+  const Life life = given->contains("matured") ? live_again(archive, experiment, *simulator, individual).life
+                                               : birth(experiment, *simulator, individual);
   if (!life.alive()) {
     std::cerr << "individual " << individual.id << " has no body to show: " << name(life.result.status) << ", "
               << life.result.reason << '\n';

@@ -4,9 +4,10 @@
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <span>
 
-#include "archive.hpp"
 #include "commands/options.hpp"
+#include "living_again.hpp"
 
 namespace evodevo {
 namespace {
@@ -14,16 +15,39 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace po = boost::program_options;
 
-/// Nothing where the operator did not ask for stress.
-std::optional<float> seen(float stress) { return std::isnan(stress) ? std::nullopt : std::optional(stress); }
+/// A devo operator as a life tells of it.
+struct Narrated {
+  std::string name;
+  bool is_unique = true;  ///< among the names of the experiment's devo operators
+  Measure measure;        ///< of the causes of its edits
+};
+
+std::vector<Narrated> narrated_operators(const Experiment& experiment) {
+  std::vector<Narrated> operators;
+  for (const OperatorUse& use : experiment.uses) {
+    if (use.kind != Devo::kind) continue;
+    const Devo& op = *experiment.development.operators.at(operators.size()).op;
+    const bool tallied = experiment.development.probe == Probe::skip_shift && op.observes().stress;
+    Narrated& narrated = operators.emplace_back(Narrated{.name = use.name, .measure = op.measure()});
+    if (tallied) narrated.measure = {"skip-shift", "points"};
+    for (Narrated& other : std::span(operators).first(operators.size() - 1))
+      if (other.name == use.name) other.is_unique = narrated.is_unique = false;
+  }
+  return operators;
+}
+
+/// Nothing where there is no number.
+std::optional<double> cause_at(const std::vector<double>& causes, std::size_t index) {
+  return causes.empty() || std::isnan(causes[index]) ? std::nullopt : std::optional(causes[index]);
+}
 
 /// What happened to one mass or spring.
 struct Event {
   std::uint32_t cycle = 0;
-  std::string op;
+  std::optional<std::uint32_t> op;    ///< place among the devo operators; none: it was torn off
   const char* what = "";              ///< "gone", "come" or "changed"
   std::vector<std::uint32_t> masses;  ///< the mass's number, or those of the two that the spring joins
-  std::optional<float> stress;        ///< that the operator saw, N; only of springs that it names itself
+  std::optional<double> cause;        ///< in the operator's measure; only of what it names itself
   std::optional<Vec3> place;          ///< of a new mass, m
   std::optional<double> rest_length;  ///< of a spring that comes or changes, m
   std::optional<Material> material;   ///< likewise
@@ -34,8 +58,7 @@ struct Event {
 /// A life as it goes on.
 class Chronicle {
  public:
-  Chronicle(Body born, std::vector<std::string> operators)
-      : body_(std::move(born)), operators_(std::move(operators)), masses_(body_.masses.size()) {}
+  explicit Chronicle(Body born) : body_(std::move(born)), masses_(body_.masses.size()) {}
 
   void add(const Change& change) {
     const Edits& edits = change.edits;
@@ -43,13 +66,19 @@ class Chronicle {
     for (std::size_t i = 0; i < edits.changed_springs.size(); ++i) {
       const ChangedSpring& spring = edits.changed_springs[i];
       Event& event = add_event(change, "changed", ends(spring.spring));
-      event.stress = seen(change.changed_stress[i]);
+      event.cause = cause_at(edits.causes.changed_springs, i);
       event.rest_length = spring.rest_length;
       event.material = spring.material;
     }
-    for (const NewMass& mass : edits.new_masses) add_event(change, "come", {masses_.add()}).place = mass.place;
-    for (const NewSpring& spring : edits.new_springs) {
+    for (std::size_t i = 0; i < edits.new_masses.size(); ++i) {
+      Event& event = add_event(change, "come", {masses_.add()});
+      event.cause = cause_at(edits.causes.new_masses, i);
+      event.place = edits.new_masses[i].place;
+    }
+    for (std::size_t i = 0; i < edits.new_springs.size(); ++i) {
+      const NewSpring& spring = edits.new_springs[i];
       Event& event = add_event(change, "come", {number(spring.a), number(spring.b)});
+      event.cause = cause_at(edits.causes.new_springs, i);
       event.rest_length = spring.rest_length;
       event.material = spring.material;
     }
@@ -62,22 +91,23 @@ class Chronicle {
 
  private:
   Event& add_event(const Change& change, const char* what, std::vector<std::uint32_t> masses) {
-    const std::string op = change.op ? operators_.at(*change.op) : "torn off";
-    return events_.emplace_back(Event{.cycle = change.cycle, .op = op, .what = what, .masses = std::move(masses)});
+    return events_.emplace_back(
+        Event{.cycle = change.cycle, .op = change.op, .what = what, .masses = std::move(masses)});
   }
 
   void add_removals(const Change& change) {
     const Edits& edits = change.edits;
-    std::map<std::uint32_t, std::optional<float>> gone;
+    std::map<std::uint32_t, std::optional<double>> gone;
     const auto goes = [&](std::uint32_t mass) {
       return std::binary_search(edits.removed_masses.begin(), edits.removed_masses.end(), mass);
     };
     for (std::uint32_t s = 0; s < body_.springs.size(); ++s)
       if (goes(body_.springs[s].a) || goes(body_.springs[s].b)) gone[s] = std::nullopt;
     for (std::size_t i = 0; i < edits.removed_springs.size(); ++i)
-      gone[edits.removed_springs[i]] = seen(change.removed_stress[i]);
-    for (const std::uint32_t mass : edits.removed_masses) add_event(change, "gone", {number(mass)});
-    for (const auto& [spring, stress] : gone) add_event(change, "gone", ends(spring)).stress = stress;
+      gone[edits.removed_springs[i]] = cause_at(edits.causes.removed_springs, i);
+    for (std::size_t i = 0; i < edits.removed_masses.size(); ++i)
+      add_event(change, "gone", {number(edits.removed_masses[i])}).cause = cause_at(edits.causes.removed_masses, i);
+    for (const auto& [spring, cause] : gone) add_event(change, "gone", ends(spring)).cause = cause;
   }
 
   std::vector<std::uint32_t> ends(std::uint32_t index) const {
@@ -88,18 +118,22 @@ class Chronicle {
   std::uint32_t number(std::uint32_t mass) const { return masses_.numbers().at(mass); }
 
   Body body_;
-  std::vector<std::string> operators_;
   MassNumbers masses_;  ///< of `body_`
   std::vector<Event> events_;
 };
 
-Json to_json(const Event& event) {
-  Json json = {{"cycle", event.cycle}, {"operator", event.op}, {"event", event.what}};
+constexpr const char* by_none = "torn off";
+
+Json to_json(const Event& event, const std::vector<Narrated>& operators) {
+  Json json = {{"cycle", event.cycle}};
+  json["operator"] = event.op ? operators.at(*event.op).name : by_none;
+  if (event.op) json["operator_index"] = *event.op;
+  json["event"] = event.what;
   if (event.is_spring())
     json["spring"] = event.masses;
   else
     json["mass"] = event.masses.front();
-  if (event.stress) json["stress"] = *event.stress;
+  if (event.cause) json["cause"] = *event.cause;
   if (event.place) json["position"] = {event.place->x, event.place->y, event.place->z};
   if (event.rest_length) json["rest_length"] = *event.rest_length;
   if (event.material)
@@ -110,12 +144,17 @@ Json to_json(const Event& event) {
   return json;
 }
 
-void print(const Event& event) {
+void print(const Event& event, const std::vector<Narrated>& operators) {
+  const Narrated* op = event.op ? &operators.at(*event.op) : nullptr;
+  const std::string title =
+      op == nullptr ? by_none : op->name + (op->is_unique ? "" : " (operator " + std::to_string(*event.op) + ")");
   const std::string who = event.is_spring()
                               ? "spring " + std::to_string(event.masses[0]) + "-" + std::to_string(event.masses[1])
                               : "mass " + std::to_string(event.masses[0]);
-  std::printf("cycle %u  %s: %s %s", event.cycle, event.op.c_str(), who.c_str(), event.what);
-  if (event.stress) std::printf(", stress %.4g N", static_cast<double>(*event.stress));
+  std::printf("cycle %u  %s: %s %s", event.cycle, title.c_str(), who.c_str(), event.what);
+  if (event.cause)
+    std::printf(", %s %.4g%s", op->measure.name.c_str(), *event.cause,
+                op->measure.unit == "1" ? "" : (" " + op->measure.unit).c_str());
   if (event.place) std::printf(" at (%.4g, %.4g, %.4g) m", event.place->x, event.place->y, event.place->z);
   if (event.rest_length) std::printf(", rest length %.4g m", *event.rest_length);
   if (event.material)
@@ -124,45 +163,25 @@ void print(const Event& event) {
   std::printf("\n");
 }
 
-/// What the run has recorded of a life counts for more than what comes of living it again, perhaps elsewhere.
-LifeRecord settled(const Archive& archive, std::uint32_t id, LifeRecord again, const std::string& device) {
-  const std::optional<LifeRecord> recorded = archive.life(id);
-  if (recorded && !(*recorded == again))
-    std::cerr << "warning: lived again on " << device << ", individual " << id
-              << " develops otherwise than in the run on " << archive.record("device")
-              << "; these are the edits of the run\n";
-  else if (!recorded && archive.record("device") != device)
-    std::cerr << "warning: lived again on " << device << ", not on " << archive.record("device")
-              << " as in the run, of which no edits are recorded; it may have developed otherwise\n";
-  return recorded.value_or(std::move(again));
-}
-
 /// The life of an individual of a run.
 class Biography {
  public:
   Biography(const Archive& archive, const ArchivedIndividual& individual,
             std::vector<std::filesystem::path> plugin_path)
       : individual_(individual) {
-    Experiment experiment = recorded_experiment(archive, std::move(plugin_path));
-    if (experiment.device == "cuda") experiment.device = "auto";  // there may be none here
+    Experiment experiment = experiment_to_live_again(archive, std::move(plugin_path));
+    operators_ = narrated_operators(experiment);
     const auto simulator = make_simulator(experiment);
-    const Evaluation evaluation(experiment, *simulator);
-    const Newborn newborn{individual.id, individual.born, &individual_.genome};
-    std::vector<Life> lives = evaluation.birth({&newborn, 1});
-    born_ = lives.front().living.body;
-    evaluation.develop(lives, [](double) {});
-    const LifeRecord record = settled(archive, individual.id, lives.front().result.record, simulator->device());
-    std::vector<std::string> operators;
-    for (const OperatorUse& use : experiment.uses)
-      if (use.kind == Devo::kind) operators.push_back(use.name);
-    Chronicle chronicle(born_, std::move(operators));
-    for (const Change& change : record.changes()) chronicle.add(change);
+    LifeAgain again = live_again(archive, experiment, *simulator, individual_);
+    born_ = std::move(again.born);
+    Chronicle chronicle(born_);
+    for (const Change& change : again.life.result.record.changes()) chronicle.add(change);
     matured_ = chronicle.body();
     events_ = chronicle.events();
   }
 
   void print() const {
-    for (const Event& event : events_) evodevo::print(event);
+    for (const Event& event : events_) evodevo::print(event, operators_);
     const Result& result = individual_.result;
     std::printf("individual %u: born with %zu masses and %zu springs, matured with %zu and %zu; %s%s\n", individual_.id,
                 born_.masses.size(), born_.springs.size(), matured_.masses.size(), matured_.springs.size(),
@@ -170,17 +189,24 @@ class Biography {
   }
 
   Json json() const {
-    Json edits = Json::array();
-    for (const Event& event : events_) edits.push_back(to_json(event));
-    return {{"individual", individual_.id},        {"status", name(individual_.result.status)},
-            {"reason", individual_.result.reason}, {"born", counts(born_)},
-            {"matured", counts(matured_)},         {"edits", std::move(edits)}};
+    Json operators = Json::array(), edits = Json::array();
+    for (const Narrated& op : operators_)
+      operators.push_back({{"name", op.name}, {"measure", op.measure.name}, {"unit", op.measure.unit}});
+    for (const Event& event : events_) edits.push_back(to_json(event, operators_));
+    return {{"individual", individual_.id},
+            {"status", name(individual_.result.status)},
+            {"reason", individual_.result.reason},
+            {"born", counts(born_)},
+            {"matured", counts(matured_)},
+            {"operators", std::move(operators)},
+            {"edits", std::move(edits)}};
   }
 
  private:
   static Json counts(const Body& body) { return {{"masses", body.masses.size()}, {"springs", body.springs.size()}}; }
 
   ArchivedIndividual individual_;
+  std::vector<Narrated> operators_;
   Body born_, matured_;
   std::vector<Event> events_;
 };

@@ -66,6 +66,7 @@ class Refusable final : public Parameters {
   void materials(std::vector<std::string>&, std::string_view name, std::string_view) override {
     add(name, toml::array{"none of the materials"});
   }
+  void require(bool, std::string_view, std::string_view) override {}
 
  private:
   template <class Value>
@@ -167,6 +168,7 @@ class Changer final : public Parameters {
     value[0] = static_cast<std::int64_t>(other(static_cast<double>(value[0]), range));
   }
   void materials(std::vector<std::string>& value, std::string_view, std::string_view) override { value = {"bone"}; }
+  void require(bool, std::string_view, std::string_view) override {}
 
  private:
   static double other(double value, Range range) {

@@ -111,6 +111,8 @@ void children_fit(const AvailableOperator& subject, std::uint64_t seed) {
 /// Cycle after cycle the host can apply the edits, and new masses lie within the bounds.
 void bodies_stay_sound(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Devo>(subject);
+  if (const Measure measure = op->measure(); measure.name.empty() || measure.unit.empty())
+    throw Violation("its measure has no name or no unit; \"1\" is that of a pure number");
   bool edited = false;
   for (std::uint32_t input = 0; input < 24; ++input) {
     SampleLife life = sample_life(seed, input);

@@ -191,6 +191,10 @@ Numbers numbers_of(const Edits& edits) {
     append(numbers, {double(s.a), double(s.b), s.rest_length.value_or(-1)});
     append(numbers, s.material);
   }
+  const Causes& causes = edits.causes;
+  for (const auto* list : {&causes.removed_springs, &causes.removed_masses, &causes.changed_springs, &causes.new_masses,
+                           &causes.new_springs})
+    numbers.insert(numbers.end(), list->begin(), list->end());
   return numbers;
 }
 
@@ -237,7 +241,7 @@ SampleLife sample_life(std::uint64_t seed, std::uint32_t input) {
     const double length = norm(body.masses[a].rest - body.masses[b].rest);
     const Material stiff{1000.0 + rng.below(3), 0.1, 1, 0};
     const auto growth = static_cast<float>(rng.uniform(0.8, 1.25));
-    body.springs.push_back({a, b, length, body.material_index(stiff), growth});
+    body.springs.push_back({a, b, length, body.material_index(stiff), growth, length});
     const double stress = rng.uniform(0, 100);
     life.living.stress.push_back(stress);
     life.living.peak_force.push_back(stress * rng.uniform(1, 3));

@@ -19,9 +19,9 @@ struct Cast {
   std::vector<std::uint32_t> individuals;  ///< these as well; all are in the archive
 };
 
-/// A run as a report shows it: its numbers, its population, and its cast lived again on `simulator`. `budget` is for
-/// its robots' films.
-nlohmann::ordered_json reported_run(const Archive& archive, const Experiment& experiment, Simulator& simulator,
+/// A run as a report shows it: its numbers, its population, and its cast lived again on `simulator`; see
+/// living_again.hpp. `budget` is for its robots' films.
+nlohmann::ordered_json reported_run(const Archive& archive, Experiment experiment, Simulator& simulator,
                                     const Cast& cast, std::size_t budget);
 
 /// A page of runs.

@@ -10,6 +10,7 @@
 class Adaptation : public evodevo::Devo {
  public:
   evodevo::SpringRequest observes() const final { return measure_.request(); }
+  evodevo::Measure measure() const final { return measure_.measure(); }
 
   void develop(const evodevo::Moment& now, evodevo::Edits& edits, evodevo::Rng& rng) const final {
     const std::vector<double> stress_of = measure_.of(now);
@@ -22,7 +23,9 @@ class Adaptation : public evodevo::Devo {
     }
     for (const std::uint32_t i : most_stressed(stress, static_cast<std::size_t>(springs_), rng)) {
       const double before = value(now.body, springs[i]), after = adapted(before);
-      if (after != before) change(now.body, springs[i], after, edits);
+      if (after == before) continue;
+      change(now.body, springs[i], after, edits);
+      edits.causes.changed_springs.push_back(stress[i]);
     }
   }
 
@@ -34,6 +37,8 @@ class Adaptation : public evodevo::Devo {
     p.real(factor_, "factor", {0.5, 2, "1"}, "By what the property is multiplied, above or below 1.");
     p.real(low_, "low", range, low_text);
     p.real(high_, "high", range, high_text);
+    p.require(factor_ != 1, "factor", "changes nothing; expected less or more than 1");
+    p.require(low_ <= high_, "low", "expected at most `high`");
     measure_.declare(p);
   }
 

@@ -30,7 +30,9 @@ class Arrivals {
  public:
   Arrivals(const ArrivalRule& rule, const evodevo::Moment& now)
       : rule_(rule), now_(now), stays_(now.body.masses.size(), true) {
-    if (rule.where == "by-stress") lottery_ = StressLottery(rule.measure.of(now));
+    if (rule.where != "by-stress") return;
+    stress_ = rule.measure.of(now);
+    lottery_ = StressLottery(stress_);
   }
 
   /// Whether a mass stays; one that goes takes up no room and is not joined to.
@@ -39,9 +41,11 @@ class Arrivals {
   /// Finds a place for one more mass; false where many tries fail.
   bool find_place(evodevo::Rng& rng) {
     for (int attempt = 0; attempt < attempts_per_place; ++attempt) {
-      const evodevo::Vec3 place = lottery_.empty() ? place_in_bounds(rng) : place_on_spring(lottery_.draw(rng), rng);
+      const std::optional<std::uint32_t> spring = lottery_.empty() ? std::nullopt : std::optional(lottery_.draw(rng));
+      const evodevo::Vec3 place = spring ? place_on_spring(*spring, rng) : place_in_bounds(rng);
       if (!is_free(place)) continue;
       places_.push_back(place);
+      if (spring) causes_.push_back(stress_[*spring]);
       return true;
     }
     return false;
@@ -57,6 +61,7 @@ class Arrivals {
       edits.new_masses.push_back({place, now_.mass, now_.body.masses[model].material});
       join(partners, edits, rng);
     }
+    edits.causes.new_masses = causes_;
     return true;
   }
 
@@ -132,7 +137,9 @@ class Arrivals {
 
   const ArrivalRule& rule_;
   const evodevo::Moment& now_;
+  std::vector<double> stress_;  ///< of every spring, where it decides
   StressLottery lottery_;
   std::vector<bool> stays_;
   std::vector<evodevo::Vec3> places_;
+  std::vector<double> causes_;  ///< the stress of the spring that each place lies on, where it decides
 };

@@ -22,6 +22,7 @@ class MassTurnover final : public evodevo::Devo {
   }
 
   evodevo::SpringRequest observes() const override { return arrival_.request(); }
+  evodevo::Measure measure() const override { return arrival_.measure.measure(); }
 
   void develop(const Moment& now, Edits& edits, Rng& rng) const override {
     const auto leaving = poorest(now.body, rng);

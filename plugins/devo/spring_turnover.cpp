@@ -46,7 +46,13 @@ class Partners {
 
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Suggests pairs of masses for new springs, again and again.
+/// Two masses that a new spring may join, and the spring that it would come beside.
+struct Candidate {
+  Pair pair;
+  std::optional<std::uint32_t> beside = {};
+};
+
+/// Suggests places for new springs, again and again.
 class Candidates {
  public:
   Candidates(const std::string& where, const Moment& now, std::span<const double> stress, const Partners& partners,
@@ -56,24 +62,24 @@ class Candidates {
     if (where == "by-stress") lottery_ = StressLottery(stress);
   }
 
-  Pair next(Rng& rng) {
+  Candidate next(Rng& rng) {
     if (!lottery_.empty()) return beside(lottery_.draw(rng), rng);
     if (!most_stressed_.empty()) return beside(most_stressed_[turn_++ % most_stressed_.size()], rng);
     const auto masses = static_cast<std::uint32_t>(now_.body.masses.size());
     const std::uint32_t a = rng.below(masses);
     std::uint32_t b = rng.below(masses - 1);
     if (b >= a) ++b;
-    return std::minmax(a, b);
+    return {std::minmax(a, b)};
   }
 
  private:
   /// From one end of a spring past the other end to a mass that is joined to it. May be that spring itself.
-  Pair beside(std::uint32_t index, Rng& rng) const {
+  Candidate beside(std::uint32_t index, Rng& rng) const {
     std::uint32_t from = now_.body.springs[index].a, past = now_.body.springs[index].b;
     if (rng.chance(0.5)) std::swap(from, past);
     const auto partners = partners_.of(past);
     const std::uint32_t to = partners[rng.below(static_cast<std::uint32_t>(partners.size()))];
-    return to == from ? std::minmax(from, past) : std::minmax(from, to);
+    return {to == from ? std::minmax(from, past) : std::minmax(from, to), index};
   }
 
   const Moment& now_;
@@ -98,6 +104,7 @@ class SpringTurnover final : public evodevo::Devo {
   }
 
   evodevo::SpringRequest observes() const override { return measure_.request(); }
+  evodevo::Measure measure() const override { return measure_.measure(); }
 
   void develop(const Moment& now, Edits& edits, Rng& rng) const override {
     const Body& body = now.body;
@@ -111,14 +118,17 @@ class SpringTurnover final : public evodevo::Devo {
     // enough to fill a body that is nearly complete; a complete one ends here
     for (std::size_t attempts = evodevo::attempts_per_spring * count; attempts > 0 && taken.size() < count;
          --attempts) {
-      const auto [a, b] = candidates.next(rng);
-      if (partners.joined(a, b) || taken.contains({a, b}) || !(norm(now.place(b) - now.place(a)) > 0)) continue;
+      const auto [pair, beside] = candidates.next(rng);
+      const auto [a, b] = pair;
+      if (partners.joined(a, b) || taken.contains(pair) || !(norm(now.place(b) - now.place(a)) > 0)) continue;
       const std::uint32_t leaves = leaving[taken.size()];
       const Material material = material_between(body, a, b, leaves);
       if (is_air(material)) continue;
-      taken.insert({a, b});
+      taken.insert(pair);
       edits.removed_springs.push_back(leaves);
+      edits.causes.removed_springs.push_back(stress[leaves]);
       edits.new_springs.push_back({a, b, material, {}});
+      if (beside) edits.causes.new_springs.push_back(stress[*beside]);
     }
   }
 

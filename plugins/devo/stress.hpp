@@ -53,6 +53,8 @@ class StressMeasure {
             .tension = by_ == "tension" || by_ == "compression"};
   }
 
+  evodevo::Measure measure() const { return {by_, by_ == "work" ? "J" : "N"}; }
+
   /// Of every spring, N or J.
   std::vector<double> of(const evodevo::Moment& now) const {
     const std::span<const double> record = by_ == "mean-force" ? now.stress

@@ -156,9 +156,9 @@ TEST_F(Interruption, ReportsOfARunThatGoesOnDisturbItNotAtAll) {
   std::set<std::int64_t> seen;
   do {
     const Archive archive = Archive::read(folder);
-    const Experiment experiment = recorded_experiment(archive);
+    Experiment experiment = recorded_experiment(archive);
     const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
-    const auto run = reported_run(archive, experiment, *simulator, {.best = 1}, 1'000'000);
+    const auto run = reported_run(archive, std::move(experiment), *simulator, {.best = 1}, 1'000'000);
     seen.insert(run["evaluations"].get<std::int64_t>());
     // everything is of one moment
     std::int64_t evaluations = 0;

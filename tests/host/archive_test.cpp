@@ -54,7 +54,7 @@ TEST_F(ArchiveTest, GivesBackWhatWasCommitted) {
                         .wall_time = 0.5};
   {
     Archive archive = Archive::create(folder_, experiment_, "a device");
-    archive.commit({ok, diverged}, {5}, summary);
+    archive.commit({ok, diverged}, {5}, {}, summary);
   }
   const Archive archive = Archive::read(folder_);
   EXPECT_EQ(archive.record("seed"), "7");
@@ -89,7 +89,7 @@ TEST_F(ArchiveTest, TakesVerificationsWhileAnotherWrites) {
   Individual individual;
   individual.genome = {0.5f};
   individual.result.objectives = {0.3, 1};
-  writer.commit({individual}, {}, {});
+  writer.commit({individual}, {}, {}, {});
   EXPECT_FALSE(Archive::read(folder_).verification(0).has_value());
   Archive::annotate(folder_).add_verifications({{0, 0.3, {{"again", Status::ok, "", 7}}}});
   const std::vector<Trial> trials{{"settled", Status::diverged, "too wild", std::nullopt},
@@ -138,14 +138,14 @@ TEST_F(ArchiveTest, ARunThatEndedBeforeItBeganIsTold) {
 TEST_F(ArchiveTest, AnotherFormatIsRefused) {
   { Archive::create(folder_, experiment_, "cpu").set_record("format", "99"); }
   EXPECT_EQ(refusal([&] { Archive::read(folder_); }),
-            folder_.string() + ": has format 99, this evodevo reads format 2; use the evodevo that wrote it, 0.1.0");
+            folder_.string() + ": has format 99, this evodevo reads format 3; use the evodevo that wrote it, 0.1.0");
 }
 
 TEST_F(ArchiveTest, ReadsOfOneMomentWhileAnotherWrites) {
   Archive writer = Archive::create(folder_, experiment_, "cpu");
   const Archive reader = Archive::read(folder_);
   EXPECT_EQ(reader.generations().size(), 0u);
-  writer.commit({}, {}, {.generation = 0, .evaluations = 0});
+  writer.commit({}, {}, {}, {.generation = 0, .evaluations = 0});
   EXPECT_EQ(reader.generations().size(), 0u);
   EXPECT_EQ(Archive::read(folder_).generations().size(), 1u);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <stdexcept>
 #include <tuple>
 
 namespace evodevo {
@@ -25,6 +26,7 @@ TEST(BodyBuilding, JoinsNeighboursByTheMeanOfTheirMaterials) {
   ASSERT_EQ(built.failure, "");
   ASSERT_EQ(built.body.springs.size(), 2u);
   EXPECT_EQ(built.body.springs[1].rest_length, 2);
+  EXPECT_EQ(built.body.springs[1].first_length, 2);
   EXPECT_EQ(built.body.materials.at(built.body.springs[0].material).stiffness, 5000);
 }
 
@@ -47,6 +49,19 @@ TEST(BodyBuilding, KeepsTheLargestPieceAndDropsLooseMasses) {
   EXPECT_EQ(built.body.springs[0].a, 1u);
   EXPECT_EQ(built.body.springs[0].b, 0u);
   EXPECT_EQ(built.body.springs[1].a, 2u);
+}
+
+TEST(BodyBuilding, ABlueprintThatGrowsToNothingIsRefused) {
+  Blueprint blueprint = row({{0, 0}, {1, 0}}, 0);
+  blueprint.body.springs = {{0, 1, 0.8, 0}};
+  const World world{{"bone", "air"}, blueprint.body.materials, 0.2, nullptr};
+  EXPECT_NO_THROW(check_blueprint(blueprint, world));
+  EXPECT_EQ(build_body(blueprint).body.springs.at(0).first_length, 0.8) << "of springs by the encoding too";
+  for (const float growth :
+       {0.0f, -1.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    blueprint.body.springs[0].growth = growth;
+    EXPECT_THROW(check_blueprint(blueprint, world), std::invalid_argument) << growth;
+  }
 }
 
 TEST(BodyBuilding, NeighboursAreThoseOfThePlacesToPairAt) {

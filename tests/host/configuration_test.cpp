@@ -99,6 +99,12 @@ TEST(Configuration, DevelopmentHasAProbe) {
               ::testing::HasSubstr("asks for more of the springs than the tallies"));
 }
 
+TEST(Configuration, WhatDoesNotGoTogetherIsReportedAtItsKey) {
+  EXPECT_EQ(complaint(with("springs = 2", "low = 0.9\nhigh = 0.8"),
+                      {{"development.operator.0.name", "length-adaptation", ""}}),
+            "test.toml:35:7: development.operator.0.low = 0.9: expected at most `high`");
+}
+
 TEST(Configuration, ResolvedTextReadsBackAsItself) {
   const Experiment experiment = testing::read(small_experiment, {{"simulation.dt", "0.00025", "--set"}});
   const Experiment again = testing::read(experiment.resolved);

@@ -116,13 +116,16 @@ TEST(Development, AMassGoesWithItsSpringsAndOneComes) {
 TEST(Development, ASpringChangesWhereItIs) {
   Line line;
   line.living.body.springs[1].growth = 1.5f;
+  line.living.body.springs[1].first_length = 0.9;
   line.apply({.removed_springs = {0},
               .changed_springs = {{.spring = 1, .rest_length = 0.5}, {.spring = 2, .material = muscle}},
-              .new_springs = {{0, 3, bone, std::nullopt}}});
+              .new_springs = {{0, 3, bone, 3.0}}});
   const LivingBody& living = line.living;
   ASSERT_EQ(living.body.springs.size(), 3u);
   EXPECT_EQ(living.body.springs[0].rest_length, 0.5);
   EXPECT_EQ(living.body.springs[0].growth, 1.5f) << "what encodings set stays";
+  EXPECT_EQ(living.body.springs[0].first_length, 0.9) << "so does where it began";
+  EXPECT_EQ(living.body.springs[2].first_length, 3) << "where the new one begins";
   EXPECT_EQ(living.body.materials.at(living.body.springs[0].material), bone);
   EXPECT_EQ(living.body.springs[1].rest_length, 1);
   EXPECT_EQ(living.body.materials.at(living.body.springs[1].material), muscle);
@@ -142,6 +145,9 @@ TEST(Development, FaultyEditsAreRefused) {
   const auto join = [](std::uint32_t a, std::uint32_t b) { return NewSpring{a, b, bone, std::nullopt}; };
   EXPECT_EQ(Line().refusal({.removed_springs = {3}}), "removes spring 3 of a body that has 3");
   EXPECT_EQ(Line().refusal({.removed_masses = {4}}), "removes mass 4 of a body that has 4");
+  EXPECT_EQ(Line().refusal({.removed_springs = {0, 1}, .causes = {.removed_springs = {5}}}),
+            "names 1 causes for 2 removed springs");
+  EXPECT_EQ(Line().refusal({.removed_springs = {0}, .causes = {.new_masses = {5}}}), "names 1 causes for 0 new masses");
   EXPECT_EQ(Line().refusal({.new_springs = {join(0, 4)}}), "joins masses 0 and 4, but there is no mass 4");
   EXPECT_EQ(Line().refusal({.removed_masses = {2}, .new_springs = {join(0, 2)}}),
             "joins masses 0 and 2, but mass 2 goes");

@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <numeric>
 #include <stdexcept>
 
 #include "breeding.hpp"
 #include "evolution.hpp"
+#include "living_again.hpp"
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"
 
@@ -81,8 +83,8 @@ void expect_same(const Body& a, const Body& b) {
   ASSERT_EQ(a.springs.size(), b.springs.size());
   for (std::size_t i = 0; i < a.springs.size(); ++i) {
     const Spring &s = a.springs[i], &t = b.springs[i];
-    ASSERT_EQ(std::tie(s.a, s.b, s.rest_length, s.material, s.growth),
-              std::tie(t.a, t.b, t.rest_length, t.material, t.growth))
+    ASSERT_EQ(std::tie(s.a, s.b, s.rest_length, s.material, s.growth, s.first_length),
+              std::tie(t.a, t.b, t.rest_length, t.material, t.growth, t.first_length))
         << "spring " << i;
   }
 }
@@ -115,10 +117,10 @@ Change change_of_all_kinds() {
   change.op = 2;
   change.edits.removed_masses = {0, 7, 100'000};
   change.edits.removed_springs = {3, 4, 70'000};
-  change.removed_stress = {0, 1.5f, 1e30f};
+  change.edits.causes.removed_springs = {0, 1.5, 0x1p100};
   const Material one{5000, 0.14, 1, 0.1 + 0.2}, other{1, 0, 0, 0};
   change.edits.changed_springs = {{.spring = 9, .rest_length = 1e-300}, {.spring = 8, .material = one}};
-  change.changed_stress = {2, 3};
+  change.edits.causes.changed_springs = {2, -3};
   change.edits.new_masses = {{{-1, 0.1, 2}, 0.2, no_material}, {{0, 0, 0}, 0.3, 4}};
   change.edits.new_springs = {{1, 200, one, 0.1}, {2, 0xfffffffe, other, 0.0}, {5, 6, other, 7.0}};
   return change;
@@ -129,8 +131,11 @@ void expect_same(const Change& a, const Change& b) {
   EXPECT_EQ(a.op, b.op);
   EXPECT_EQ(a.edits.removed_masses, b.edits.removed_masses);
   EXPECT_EQ(a.edits.removed_springs, b.edits.removed_springs);
-  EXPECT_EQ(a.removed_stress, b.removed_stress);
-  EXPECT_EQ(a.changed_stress, b.changed_stress);
+  EXPECT_EQ(a.edits.causes.removed_springs, b.edits.causes.removed_springs);
+  EXPECT_EQ(a.edits.causes.removed_masses, b.edits.causes.removed_masses);
+  EXPECT_EQ(a.edits.causes.changed_springs, b.edits.causes.changed_springs);
+  EXPECT_EQ(a.edits.causes.new_masses, b.edits.causes.new_masses);
+  EXPECT_EQ(a.edits.causes.new_springs, b.edits.causes.new_springs);
   ASSERT_EQ(a.edits.changed_springs.size(), b.edits.changed_springs.size());
   for (std::size_t i = 0; i < a.edits.changed_springs.size(); ++i) {
     const ChangedSpring &s = a.edits.changed_springs[i], &t = b.edits.changed_springs[i];
@@ -153,14 +158,22 @@ TEST(LifeRecord, GivesBackWhatItWasGiven) {
   Change torn_off;
   torn_off.cycle = 301;
   torn_off.edits.removed_masses = {5};
+  Change of_masses = torn_off;
+  of_masses.op = 1;
+  of_masses.edits.causes.removed_masses = {0.25};
+  of_masses.edits.new_masses = {{{1, 2, 3}, 0.2, 1}};
+  of_masses.edits.causes.new_masses = {7};
+  of_masses.edits.new_springs = {{1, 2, {1, 0, 0, 0}, 0.5}};
+  of_masses.edits.causes.new_springs = {8};
   LifeRecord record;
   EXPECT_TRUE(record.empty());
-  for (const Change& each : {change, torn_off, change}) record.add(each);
+  for (const Change& each : {change, torn_off, change, of_masses}) record.add(each);
   const std::vector<Change> back = LifeRecord(record.bytes()).changes();
-  ASSERT_EQ(back.size(), 3u);
+  ASSERT_EQ(back.size(), 4u);
   expect_same(back[0], change);
   expect_same(back[1], torn_off);
   expect_same(back[2], change);
+  expect_same(back[3], of_masses);
 }
 
 TEST(LifeRecord, RefusesADamagedOne) {
@@ -182,38 +195,155 @@ TEST(LifeRecord, ASpringThatGoesAndOneThatComesTakeSome20Bytes) {
   }
 }
 
-TEST(LifeRecord, ARunKeepsThoseOfTheFrontAlone) {
-  const testing::Scratch scratch;
-  const Experiment experiment =
-      testing::read(testing::small_experiment,
-                    {{"experiment.evaluations", "60", ""}, {"development.operator.0.name", "length-adaptation", ""}});
-  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
-  Archive archive = Archive::create(scratch / "run", experiment, simulator->device());
-  const std::atomic<bool> stop = false;
-  evolve(experiment, *simulator, archive, stop, Observer{});
+TEST(LifeRecord, CausesStayWithTheirEdits) {
+  Edits edits;
+  edits.removed_springs = {7, 2, 7, 5};
+  edits.causes.removed_springs = {70, 20, 71, 50};
+  edits.removed_masses = {3, 1};
+  const Lived lived = std::move(matured(testing::read(testing::small_experiment), 1).front());
+  const LivingBody& living = lived.life.living;
+  const Genome genome;
+  const Layout layout;
+  const Moment now{living.body, living.state, {}, 4, 9, 1, 1, 0, {}, 0.2, false, genome, layout};
+  const Change change = change_by(edits, 1, now);
+  EXPECT_EQ(change.cycle, 4u);
+  EXPECT_EQ(change.edits.removed_springs, (std::vector<std::uint32_t>{2, 5, 7}));
+  EXPECT_EQ(change.edits.causes.removed_springs, (std::vector<double>{20, 50, 70}));
+  EXPECT_EQ(change.edits.removed_masses, (std::vector<std::uint32_t>{1, 3}));
+  EXPECT_TRUE(change.edits.causes.removed_masses.empty());
+}
 
+/// How many causes the changes of several lives name.
+std::size_t causes_named(const Experiment& experiment) {
+  std::size_t count = 0;
+  for (const Lived& lived : matured(experiment, 6))
+    for (const Change& change : lived.life.result.record.changes()) {
+      const Causes& causes = change.edits.causes;
+      count += causes.removed_springs.size() + causes.removed_masses.size() + causes.changed_springs.size() +
+               causes.new_masses.size() + causes.new_springs.size();
+    }
+  return count;
+}
+
+TEST(LifeRecord, WhatComesAboutAtRandomPlacesHasNoCause) {
+  Experiment experiment = all_operators(false);
+  EXPECT_GT(causes_named(experiment), 100u);
+  experiment.development.control = Control::random_places;
+  EXPECT_EQ(causes_named(experiment), 0u);
+}
+
+TEST(LifeRecord, ALifeFollowsItsRecordWhateverTheOperatorsWouldDo) {
+  const Lived lived = std::move(matured(all_operators(true), 3).back());
+  ASSERT_TRUE(lived.life.alive());
+  Experiment other = all_operators(true);
+  other.seed += 1;  // development would draw other numbers
+  other.development.control = Control::random_places;
+  follow(other, lived.life.result.record);
+  const auto simulator = make_cpu_simulator(other.scene, other.stepping, 1);
+  const Evaluation evaluation(other, *simulator);
+  const Experiment first = all_operators(true);
+  const Individual individual = breed(first, {}, 0, 0, 3).back();
+  const Newborn newborn{individual.id, 0, &individual.genome};
+  std::vector<Life> lives = evaluation.birth({&newborn, 1});
+  evaluation.develop(lives, [](double) {});
+  expect_same(lives.front().living.body, lived.life.living.body);
+  EXPECT_EQ(lives.front().living.state.position, lived.life.living.state.position);
+  EXPECT_EQ(lives.front().result.record, lived.life.result.record);
+}
+
+Experiment run_of_60() {
+  return testing::read(testing::small_experiment, {{"experiment.evaluations", "60", ""},
+                                                   {"development.operator.0.name", "length-adaptation", ""}});
+}
+
+/// Evolves a run; returns all of its individuals.
+std::vector<ArchivedIndividual> evolved(const Experiment& experiment, Archive& archive, Simulator& simulator) {
+  const std::atomic<bool> stop = false;
+  evolve(experiment, simulator, archive, stop, Observer{});
   std::vector<ArchivedIndividual> all;
   for (std::uint32_t id = 0; id < 60; ++id) all.push_back(archive.individual(id).value());
-  const auto surpasses = [&](const ArchivedIndividual& a, const ArchivedIndividual& b) {
-    const std::vector<double>&x = a.result.objectives, &y = b.result.objectives;
-    if (x.empty() || x[0] < y[0] || x[1] > y[1] || a.origin < b.origin) return false;  // distance, work, youth
-    return x[0] > y[0] || x[1] < y[1] || a.origin > b.origin;
+  return all;
+}
+
+bool surpasses(const ArchivedIndividual& a, const ArchivedIndividual& b) {
+  const std::vector<double>&x = a.result.objectives, &y = b.result.objectives;
+  if (x.empty() || x[0] < y[0] || x[1] > y[1] || a.origin < b.origin) return false;  // distance, work, youth
+  return x[0] > y[0] || x[1] < y[1] || a.origin > b.origin;
+}
+
+/// Whether nobody surpasses an individual before, or after, the selection of a generation, in which it is there.
+bool on_front(const ArchivedIndividual& one, const std::vector<ArchivedIndividual>& all, std::uint32_t generation,
+              bool after_selection) {
+  const auto is_there = [&](const ArchivedIndividual& other) {
+    return other.born <= generation && (!other.died || *other.died >= generation + (after_selection ? 1 : 0));
   };
+  return one.result.status == Status::ok && is_there(one) &&
+         std::none_of(all.begin(), all.end(),
+                      [&](const ArchivedIndividual& other) { return is_there(other) && surpasses(other, one); });
+}
+
+TEST(LifeRecord, ARunKeepsThoseOfTheFrontAlone) {
+  const testing::Scratch scratch;
+  const Experiment experiment = run_of_60();
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  Archive archive = Archive::create(scratch / "run", experiment, simulator->device());
+  const std::vector<ArchivedIndividual> all = evolved(experiment, archive, *simulator);
   int kept = 0;
   for (const ArchivedIndividual& one : all) {
-    const bool on_front =
-        one.result.status == Status::ok && std::none_of(all.begin(), all.end(), [&](const ArchivedIndividual& other) {
-          const bool there = other.born <= one.born && (!other.died || *other.died >= one.born);
-          return there && surpasses(other, one);
-        });
     const std::optional<LifeRecord> record = archive.life(one.id);
-    EXPECT_EQ(record.has_value(), on_front) << "individual " << one.id;
+    EXPECT_EQ(record.has_value(), on_front(one, all, one.born, false)) << "individual " << one.id;
     if (!record) continue;
     ++kept;
     EXPECT_EQ(record->changes().size(), 2u) << "two cycles";
   }
   EXPECT_GT(kept, 3);
   EXPECT_LT(kept, 57);
+}
+
+/// Drops the best, so that others come to the front.
+class Levelling final : public Selection {
+ public:
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
+                                                               Rng& rng) const override {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    const auto draw = [&] { return rng.below(static_cast<std::uint32_t>(rows.size())); };
+    while (pairs.size() < count) pairs.emplace_back(draw(), draw());
+    return pairs;
+  }
+
+  std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population, Rng&) const override {
+    std::vector<std::uint32_t> order(rows.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto score = [&](std::uint32_t row) { return rows[row].ok() ? rows[row].scores[0] : 1e300; };
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return score(a) < score(b); });
+    order.resize(std::min<std::size_t>(order.size(), population));
+    return order;
+  }
+};
+
+TEST(LifeRecord, ARunKeepsThoseWhoReachTheFrontLaterToo) {
+  const testing::Scratch scratch;
+  Experiment experiment = run_of_60();
+  experiment.selection = std::make_unique<Levelling>();
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  Archive archive = Archive::create(scratch / "run", experiment, simulator->device());
+  const std::vector<ArchivedIndividual> all = evolved(experiment, archive, *simulator);
+  const Evaluation evaluation(experiment, *simulator);
+  int late = 0;
+  for (const ArchivedIndividual& one : all) {
+    bool ever = on_front(one, all, one.born, false), at_birth = ever;
+    for (std::uint32_t generation = one.born; generation < 10; ++generation)
+      ever = ever || on_front(one, all, generation, false) || on_front(one, all, generation, true);
+    const std::optional<LifeRecord> record = archive.life(one.id);
+    EXPECT_EQ(record.has_value(), ever) << "individual " << one.id;
+    if (!record) continue;
+    late += !at_birth;
+    const Newborn newborn{one.id, one.born, &one.genome};
+    std::vector<Life> lives = evaluation.birth({&newborn, 1});
+    evaluation.develop(lives, [](double) {});
+    EXPECT_EQ(*record, lives.front().result.record) << "individual " << one.id;
+  }
+  EXPECT_GT(late, 3);
 }
 
 }  // namespace

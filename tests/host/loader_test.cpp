@@ -35,7 +35,7 @@ TEST(Loader, ASoundLibraryIsUsed) {
 
 TEST(Loader, LibrariesThatDoNotFit) {
   EXPECT_EQ(refusal("magic"), "its evodevo_plugin does not return an evodevo manifest; use EVODEVO_PLUGIN(...)");
-  EXPECT_EQ(refusal("epoch"), "its ABI epoch is 99, this evodevo's is 2" + remedy);
+  EXPECT_EQ(refusal("epoch"), "its ABI epoch is 99, this evodevo's is " + std::to_string(plugin_epoch) + remedy);
   EXPECT_EQ(refusal("manifest_size"),
             "its manifest size is 8, this evodevo's is " + std::to_string(sizeof(PluginManifest)) + remedy);
   EXPECT_EQ(refusal("structs"),

@@ -1,18 +1,23 @@
 // What pages of the viewer hold: lives as they were, and numbers that can be unpacked.
+#include "report/report.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <atomic>
 #include <map>
 #include <numeric>
 
 #include "breeding.hpp"
+#include "evolution.hpp"
 #include "report/filming.hpp"
 #include "report/packing.hpp"
 #include "report/page.hpp"
 #include "report/robot_json.hpp"
 #include "report/scene_json.hpp"
 #include "support/experiments.hpp"
+#include "support/scratch.hpp"
 
 namespace evodevo {
 namespace {
@@ -350,6 +355,27 @@ TEST(Page, HoldsDataThatNothingReadsAsMarkup) {
   const std::string data = page.substr(8, page.rfind("</script>") - 8);
   EXPECT_EQ(data.find('<'), std::string::npos);
   EXPECT_EQ(nlohmann::json::parse(data)["name"], "</script><script>harm()");
+}
+
+TEST(Report, FilmsFollowWhatARunHasRecorded) {
+  const testing::Scratch scratch;
+  const Experiment experiment = testing::read(testing::small_experiment);
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  Archive archive = Archive::create(scratch / "run", experiment, simulator->device());
+  const std::atomic<bool> stop = false;
+  evolve(experiment, *simulator, archive, stop, Observer{});
+  const auto films = [&] {
+    std::vector<std::string> texts;
+    const auto run = reported_run(archive, recorded_experiment(archive), *simulator, {}, page_budget);
+    for (const auto& robot : run["robots"])
+      if (archive.life(robot["individual"].get<std::uint32_t>())) texts.push_back(robot["film"].dump());
+    return texts;
+  };
+  const std::vector<std::string> before = films();
+  ASSERT_GE(before.size(), 2u);
+  std::string other = archive.record("experiment");
+  archive.set_record("experiment", other.replace(other.find("seed = 7"), 8, "seed = 8"));
+  EXPECT_EQ(films(), before) << "though development draws other numbers now";
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "breeding.hpp"
@@ -73,12 +74,30 @@ TEST(SkipShift, ChanceDecidesAmongEquals) {
   EXPECT_NEAR(halves[1][0], halves[1][1], 800);
 }
 
-TEST(SkipShift, FewSpringsAreGroupsOfOne) {
+TEST(SkipShift, FewSpringsAreRankedToo) {
+  // in pairs, spring i has more force than i of its 9 possible partners and less than the others
+  const Body body = chain(10);
+  const State state = resting(body, {});
+  constexpr int tallies = 10'000;
+  std::vector<double> points(10);
+  Rng random = stream(3);
+  for (int i = 0; i < tallies; ++i) tally(body, state, random, points);
+  for (std::size_t i = 0; i < 10; ++i) {
+    const double mean = (2 * static_cast<double>(i) - 9) / 9, deviation = std::sqrt(1 - mean * mean);
+    EXPECT_NEAR(points[i], tallies * mean, 5 * deviation * std::sqrt(tallies)) << i;
+  }
+}
+
+TEST(SkipShift, AnOddSpringMakesAGroupOfThree) {
   const Body body = chain(3);
   std::vector<double> points(3);
   Rng random = stream(3);
   tally(body, resting(body, {}), random, points);
-  EXPECT_EQ(points, std::vector<double>(3)) << "most and least at once";
+  EXPECT_EQ(points, (std::vector<double>{-1, 0, 1}));
+  const Body single = chain(1);
+  points.assign(1, 0);
+  tally(single, resting(single, {}), random, points);
+  EXPECT_EQ(points, std::vector<double>{0}) << "nothing to compare";
 }
 
 /// The stress and the state after a run with tallies.
@@ -153,6 +172,32 @@ TEST(SkipShift, ADivergedBodyEndsAndDisturbsNoOther) {
   EXPECT_GT(tasks[0].ended_at, 0);
   EXPECT_TRUE(tasks[0].stress.empty());
   EXPECT_EQ(tasks[1].stress, alone.task.stress);
+}
+
+TEST(SkipShift, ACycleWithoutATallyIsInvalid) {
+  const auto simulator = make_cpu_simulator({}, {}, 1);
+  const Body body = chain(3);
+  const Tallied none = run(*simulator, body, resting(body, {}), 19, 20);
+  EXPECT_EQ(none.task.status, Status::invalid);
+  EXPECT_EQ(none.task.reason, "no tally in a cycle of 19 steps; set development.skip = 20 to at most as many");
+  EXPECT_TRUE(none.task.stress.empty());
+  EXPECT_EQ(run(*simulator, body, resting(body, {}), 20, 20).task.status, Status::ok);
+}
+
+TEST(SkipShift, WhereEveryBodyHasItsOwnStepACycleWithoutATallyIsInvalidToo) {
+  const Experiment experiment = testing::read(
+      testing::small_experiment,
+      {{"development.probe", "skip-shift", ""}, {"development.skip", "100000", ""}, {"simulation.dt", "auto", ""}});
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 6);
+  std::vector<Newborn> newborns;
+  for (const Individual& individual : individuals) newborns.push_back({individual.id, 0, &individual.genome});
+  int without_tally = 0;
+  for (const Result& result : Evaluation(experiment, *simulator).evaluate(newborns, [](double) {})) {
+    EXPECT_EQ(result.status, Status::invalid);
+    without_tally += result.reason.starts_with("no tally in a cycle of ");
+  }
+  EXPECT_GE(without_tally, 3) << "the others have no body";
 }
 
 TEST(SkipShift, DrivesDevelopment) {

@@ -16,7 +16,7 @@ Life chain() {
 
 double relative_length(const Body& body, std::uint32_t s) {
   const Spring& spring = body.springs[s];
-  return spring.rest_length / norm(body.masses[spring.a].rest - body.masses[spring.b].rest);
+  return spring.rest_length / spring.first_length;
 }
 double stiffness(const Body& body, std::uint32_t s) { return body.materials[body.springs[s].material].stiffness; }
 double amplitude(const Body& body, std::uint32_t s) { return body.materials[body.springs[s].material].amplitude; }
@@ -112,6 +112,22 @@ TEST_P(Adaptation, StressThatIsNoNumberCountsAsTheLeast) {
   for (const ChangedSpring& change : develop(*make_with(1.1), life, 1).changed_springs) EXPECT_LT(change.spring, 20u);
 }
 
+TEST_P(Adaptation, RefusesParametersThatDoNotGoTogether) {
+  const auto complaint = [](const std::string& toml) {
+    try {
+      make<Devo>(GetParam().name, toml);
+    } catch (const ConfigError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(complaint("factor = 1.0"),
+            "test.toml:1:10: test.factor = 1: changes nothing; expected less or more than 1");
+  const std::string low = std::to_string(GetParam().high), high = std::to_string(GetParam().low);
+  EXPECT_EQ(complaint("high = " + high + "\nlow = " + low).substr(0, 25), "test.toml:2:7: test.low =");
+  EXPECT_EQ(complaint("high = " + low + "\nlow = " + low), "accepted") << "a bound from both sides";
+}
+
 TEST_P(Adaptation, DegenerateBodiesStayAsTheyAre) {
   EXPECT_TRUE(digest(develop(*make_with(1.1), Life{}, 1)).empty());
   EXPECT_TRUE(digest(develop(*make_with(1.1), life_of_masses(1), 1)).empty());
@@ -126,9 +142,34 @@ INSTANTIATE_TEST_SUITE_P(Properties, Adaptation,
                            return name.substr(0, name.find('-'));
                          });
 
-TEST(LengthAdaptation, SpringsWhoseMassesRestInOnePlaceStay) {
+/// The life after `turns` turns of an operator.
+Life lived_on(Life life, const Devo& devo, std::uint64_t turns) {
+  for (std::uint64_t turn = 0; turn < turns; ++turn) life.living = after(life, develop(devo, life, turn));
+  return life;
+}
+
+Life toppled(Life life) {
+  for (Vec3& place : life.living.state.position) place = {-place.z, place.y, place.x + 2};
+  return life;
+}
+
+TEST(LengthAdaptation, ABodyThatGrowsAndTopplesKeepsTheBounds) {
+  const auto growth = make<Devo>("mass-growth", "masses = 5\nsprings = 8\nwhere = 'by-stress'");
+  const Life grown = lived_on(toppled(lived_on(chain(), *growth, 2)), *growth, 2);
+  const std::vector<Spring>& springs = grown.living.body.springs;
+  ASSERT_GT(springs.size(), 150u);
+  const auto longer = make<Devo>("length-adaptation", "springs = 1000\nfactor = 1.2\nhigh = 1.3");
+  const auto shorter = make<Devo>("length-adaptation", "springs = 1000\nfactor = 0.8\nlow = 0.7");
+  const Life stretched = lived_on(grown, *longer, 3), shrunk = lived_on(grown, *shorter, 3);
+  for (std::size_t s = 0; s < springs.size(); ++s) {
+    EXPECT_NEAR(stretched.living.body.springs[s].rest_length, 1.3 * springs[s].rest_length, 1e-9) << s;
+    EXPECT_NEAR(shrunk.living.body.springs[s].rest_length, 0.7 * springs[s].rest_length, 1e-9) << s;
+  }
+}
+
+TEST(LengthAdaptation, SpringsThatCameWithoutLengthStay) {
   Life life = chain();
-  life.living.body.masses[40].rest = life.living.body.masses[39].rest;
+  life.living.body.springs[39].rest_length = life.living.body.springs[39].first_length = 0;
   const Edits edits = develop(*make<Devo>("length-adaptation", "springs = 1"), life, 1);
   ASSERT_EQ(edits.changed_springs.size(), 1u);
   EXPECT_EQ(edits.changed_springs[0].spring, 38u);

@@ -34,6 +34,7 @@ class DeclarationCheck final : public Parameters {
   void materials(std::vector<std::string>&, std::string_view name, std::string_view text) override {
     declare(name, text);
   }
+  void require(bool holds, std::string_view name, std::string_view) override { EXPECT_TRUE(holds) << name; }
 
   std::set<std::string, std::less<>> names;
 

@@ -36,7 +36,7 @@ struct Life {
   }
   void add_spring(std::uint32_t a, std::uint32_t b, std::uint32_t material, double stress) {
     const double length = norm(living.body.masses[a].rest - living.body.masses[b].rest);
-    living.body.springs.push_back({a, b, length, material});
+    living.body.springs.push_back({a, b, length, material, 1, length});
     living.stress.push_back(stress);
   }
 };

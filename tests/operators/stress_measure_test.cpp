@@ -14,15 +14,28 @@ Life chain() {
   return life;
 }
 
-struct Measure {
+struct Judgement {
   const char* by;
   SpringRequest request;
   std::uint32_t most, least;
 };
 
-class StressMeasure : public testing::TestWithParam<Measure> {
+class StressMeasure : public testing::TestWithParam<Judgement> {
  protected:
   std::string by() const { return std::string("by = '") + GetParam().by + "'\n"; }
+
+  /// What the springs of `life` are judged by.
+  std::vector<double> stress(const Life& life) const {
+    const std::string name = GetParam().by;
+    const LivingBody& records = life.living;
+    std::vector<double> stress = name == "mean-force" ? records.stress
+                                 : name == "peak"     ? records.peak_force
+                                 : name == "work"     ? records.muscle_work
+                                                      : records.tension;
+    if (name == "compression")
+      for (double& value : stress) value = -value;
+    return stress;
+  }
 };
 
 TEST_P(StressMeasure, DecidesWhichSpringIsTheMostStressed) {
@@ -30,12 +43,35 @@ TEST_P(StressMeasure, DecidesWhichSpringIsTheMostStressed) {
     const Edits edits = develop(*make<Devo>(name, by() + "springs = 1"), chain(), 1);
     ASSERT_EQ(edits.changed_springs.size(), 1u);
     EXPECT_EQ(edits.changed_springs[0].spring, GetParam().most);
+    EXPECT_EQ(edits.causes.changed_springs, std::vector{stress(chain())[GetParam().most]});
   }
 }
 
 TEST_P(StressMeasure, DecidesWhichSpringGoes) {
   const Edits edits = develop(*make<Devo>("spring-turnover", by() + "springs = 1"), chain(), 1);
   EXPECT_EQ(edits.removed_springs, std::vector{GetParam().least});
+  EXPECT_EQ(edits.causes.removed_springs, std::vector{stress(chain())[GetParam().least]});
+  EXPECT_TRUE(edits.causes.new_springs.empty()) << "the place is random";
+}
+
+TEST_P(StressMeasure, IsTheCauseOfSpringsThatComeByIt) {
+  const auto most = develop(*make<Devo>("spring-turnover", by() + "springs = 1\nwhere = 'most-stressed'"), chain(), 1);
+  EXPECT_EQ(most.causes.new_springs, std::vector{stress(chain())[GetParam().most]});
+  const auto drawn = develop(*make<Devo>("spring-turnover", by() + "springs = 2\nwhere = 'by-stress'"), chain(), 1);
+  ASSERT_EQ(drawn.causes.new_springs.size(), drawn.new_springs.size());
+  for (std::size_t i = 0; i < drawn.new_springs.size(); ++i) {
+    // of the chain's masses i, i + 1, i + 2, one of the two springs between them
+    const std::uint32_t first = std::min(drawn.new_springs[i].a, drawn.new_springs[i].b);
+    EXPECT_THAT(drawn.causes.new_springs[i], testing::AnyOf(stress(chain())[first], stress(chain())[first + 1]));
+  }
+}
+
+TEST_P(StressMeasure, HasANameAndAUnit) {
+  for (const char* name : {"spring-turnover", "mass-turnover", "mass-growth", "length-adaptation"}) {
+    const Measure measure = make<Devo>(name, by())->measure();
+    EXPECT_EQ(measure.name, GetParam().by);
+    EXPECT_EQ(measure.unit, measure.name == "work" ? "J" : "N");
+  }
 }
 
 TEST_P(StressMeasure, DecidesWhereMassesCome) {
@@ -43,14 +79,22 @@ TEST_P(StressMeasure, DecidesWhereMassesCome) {
   for (std::uint32_t i = 0; i < 6; ++i) life.living.state.position[i] = {10.0 * i, 0, 1};
   life.bounds = {{0, 0, 0}, {50, 0, 2}};
   const auto devo = make<Devo>("mass-growth", by() + "masses = 1\nsprings = 1\nwhere = 'by-stress'");
-  int among_most = 0;
-  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+  const std::vector<double> stress = this->stress(life);
+  double sum = 0;
+  for (const double value : stress) sum += std::max(0.0, value);
+  constexpr int draws = 2000;
+  std::vector<int> masses_on(5, 0);
+  for (std::uint64_t seed = 0; seed < draws; ++seed) {
     const auto edits = develop(*devo, life, seed);
     ASSERT_EQ(edits.new_masses.size(), 1u);
-    among_most += static_cast<std::uint32_t>(edits.new_masses[0].place.x / 10) == GetParam().most;
+    const auto spring = static_cast<std::size_t>(edits.new_masses[0].place.x / 10);
+    ++masses_on.at(spring);
+    EXPECT_EQ(edits.causes.new_masses, std::vector{stress[spring]});
   }
-  // the most stressed spring has 0.31 to 1 of the sum of what is above 0; the mean of 100 draws is off by 0.05
-  EXPECT_GT(among_most, 15);
+  for (std::size_t s = 0; s < 5; ++s) {
+    const double share = std::max(0.0, stress[s]) / sum;
+    EXPECT_NEAR(masses_on[s], draws * share, 5 * std::sqrt(draws * share * (1 - share))) << s;
+  }
 }
 
 TEST_P(StressMeasure, IsWhatTheyAskFor) {
@@ -70,11 +114,11 @@ TEST_P(StressMeasure, IsWhatTheyAskFor) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Operators, StressMeasure,
-                         testing::Values(Measure{"mean-force", {.stress = true}, 0, 4},
-                                         Measure{"peak", {.peak_force = true}, 1, 0},
-                                         Measure{"work", {.muscle_work = true}, 2, 1},
-                                         Measure{"tension", {.tension = true}, 3, 4},
-                                         Measure{"compression", {.tension = true}, 4, 3}),
+                         testing::Values(Judgement{"mean-force", {.stress = true}, 0, 4},
+                                         Judgement{"peak", {.peak_force = true}, 1, 0},
+                                         Judgement{"work", {.muscle_work = true}, 2, 1},
+                                         Judgement{"tension", {.tension = true}, 3, 4},
+                                         Judgement{"compression", {.tension = true}, 4, 3}),
                          [](const auto& test) {
                            std::string name = test.param.by;
                            std::erase(name, '-');

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -67,6 +68,12 @@ struct ChangedSpring {
   std::optional<Material> material = {};   ///< without it, that of before
 };
 
+/// For the record of a life: the number that led to each edit, such as the stress of the spring that goes, in the order
+/// of the edits and as Devo::measure() says. A list is empty where no number did.
+struct Causes {
+  std::vector<double> removed_springs, removed_masses, changed_springs, new_masses, new_springs;
+};
+
 /// What a devo operator wants changed. All indices are those of the Moment; the masses in `new_masses` follow on from
 /// them. The host applies an operator's edits together after the call and refuses dangling, doubled and air springs and
 /// numbers that are not finite.
@@ -76,6 +83,7 @@ struct Edits {
   std::vector<ChangedSpring> changed_springs;  ///< none of which goes
   std::vector<NewMass> new_masses;
   std::vector<NewSpring> new_springs;
+  Causes causes;
 
   bool empty() const {
     return removed_springs.empty() && removed_masses.empty() && changed_springs.empty() && new_masses.empty() &&
@@ -86,12 +94,19 @@ struct Edits {
 /// How many random pairs of masses to try for each new spring before a body counts as one in which all are joined.
 inline constexpr std::size_t attempts_per_spring = 100;
 
+/// What numbers are: a name, and a unit ("1" for pure numbers).
+struct Measure {
+  std::string name, unit;
+};
+
 class Devo : public Operator {
  public:
   static constexpr std::string_view kind = "devo";
 
   /// Asked once the parameters are set.
   virtual SpringRequest observes() const { return {.stress = true}; }
+  /// What the causes of its edits are. Where the probe is skip-shift, stress is in points whatever this says.
+  virtual Measure measure() const { return {"stress", "N"}; }
   virtual void develop(const Moment& now, Edits& edits, Rng& rng) const = 0;
 };
 

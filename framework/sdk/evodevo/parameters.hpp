@@ -36,6 +36,8 @@ class Parameters {
                       std::string_view text) = 0;
   /// Names of the experiment's materials; an empty list stands for all of them.
   virtual void materials(std::vector<std::string>& value, std::string_view name, std::string_view text) = 0;
+  /// What has to hold between parameters handed over before. `name` is the one to blame, `text` says what is expected.
+  virtual void require(bool holds, std::string_view name, std::string_view text) = 0;
 
  protected:
   ~Parameters() = default;

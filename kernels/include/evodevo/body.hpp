@@ -75,6 +75,7 @@ struct Spring {
   double rest_length = 0;      ///< L0, m
   std::uint32_t material = 0;  ///< index into Body::materials
   float growth = 1;            ///< rest length at the end of a ballistic development relative to that at birth, 1
+  double first_length = 0;     ///< L0 when the spring came, at birth or later, m; set by the host
 };
 
 /// A body without its motion. No two springs join the same pair of masses.

@@ -1,0 +1,33 @@
+// Lives of a run, lived again wherever that may be: the changes that the run has recorded are made again.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "archive.hpp"
+#include "evaluation.hpp"
+
+namespace evodevo {
+
+/// The experiment of a run, to be simulated where its GPU may be missing.
+Experiment experiment_to_live_again(const Archive& archive, std::vector<std::filesystem::path> plugin_path);
+
+/// Makes an experiment one in which development does what it did in one life, whatever the operators would do.
+void follow(Experiment& experiment, const LifeRecord& record);
+
+/// Warns on stderr where an individual may develop otherwise on `device` than in the run: the device is another one and
+/// there is no record to follow.
+void warn_where_unsure(const Archive& archive, std::uint32_t id, const std::string& device);
+
+/// An individual that lives again up to its maturity.
+struct LifeAgain {
+  Body born;
+  Life life;  ///< refers to the individual's genome
+};
+
+/// Follows the record of the life where the run has one. Changes the experiment to that end.
+LifeAgain live_again(const Archive& archive, Experiment& experiment, Simulator& simulator,
+                     const ArchivedIndividual& individual);
+
+}  // namespace evodevo
