@@ -16,10 +16,9 @@ struct GrownBody {
 /// numbers of its two masses. 0 for equal bodies, 1 where no spring is in both.
 double spring_distance(const GrownBody& a, const GrownBody& b);
 
-/// The part of a body's mass that would have to go elsewhere to be distributed as the other's, loads included: half the
-/// sum of |difference| over cells whose edge is a tenth of the larger body's longest side, both bodies with their
-/// centre of mass in the origin. A mass counts for the eight nearest cells, more for the nearer, so that the distance
-/// has no jumps. 0 for equal bodies, 1 where no cell is filled by both.
+/// The part of all masses of two bodies that only one of them has (Jaccard's distance). Masses that came later are the
+/// same where as many had come before them. Places do not count: soft bodies lie and bend otherwise in each scene, by
+/// more than development moves.
 double mass_distance(const GrownBody& a, const GrownBody& b);
 
 }  // namespace evodevo

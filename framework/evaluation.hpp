@@ -79,7 +79,8 @@ class Evaluation {
 
   /// Only decodes: the bodies as they are born.
   std::vector<Life> birth(std::span<const Newborn> newborns) const;
-  /// Lets bodies live through their development cycles: what comes out is matured.
+  /// Lets bodies live through their development cycles: what comes out is matured. `progress` is called after each
+  /// cycle, when the lives are as it has left them.
   void develop(std::span<Life> lives, const Progress& progress) const;
   /// Chooses the longest step for the body as it is; a body that has none is invalid.
   void choose_step(Life& life) const;

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <iostream>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "body_distance.hpp"
@@ -10,6 +11,7 @@
 #include "breeding.hpp"
 #include "commands/options.hpp"
 #include "disturbance.hpp"
+#include "scene_effect.hpp"
 #include "toml_reader.hpp"
 
 namespace evodevo {
@@ -18,11 +20,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace po = boost::program_options;
 
-/// What became of the genome after one start; a body where it matured.
+/// What became of the genome after one start.
 struct Grown {
   Status status = Status::ok;
   std::string reason;
-  std::optional<GrownBody> body;
+  std::vector<GrownBody> after;  ///< each cycle that it lived through
 };
 
 /// A scene and what grew in it from each start, the first without noise.
@@ -41,150 +43,230 @@ Environment grow(const Experiment& experiment, const Individual& individual, std
   const std::size_t born = lives.front().living.body.masses.size();
   for (std::uint32_t start = 1; start < starts; ++start)
     if (lives[start].alive()) disturb(lives[start], experiment, start - 1);
-  evaluation.develop(lives, [](double) {});
-  Environment environment{.name = experiment.name, .materials = experiment.world.material_names, .grown = {}};
+  Environment environment{
+      .name = experiment.name, .materials = experiment.world.material_names, .grown = std::vector<Grown>(starts)};
   if (experiment.scene.gravity) environment.slope = experiment.scene.gravity->slope;
-  for (Life& life : lives) {
-    Grown& grown = environment.grown.emplace_back(Grown{life.result.status, life.result.reason, std::nullopt});
-    if (life.alive())
-      grown.body = {std::move(life.living.body), std::move(life.living.state.position),
-                    mass_numbers(born, life.result.record)};
+  evaluation.develop(lives, [&](double) {
+    for (std::size_t i = 0; i < lives.size(); ++i)
+      if (const Life& life = lives[i]; life.alive())
+        environment.grown[i].after.push_back(
+            {life.living.body, life.living.state.position, mass_numbers(born, life.result.record)});
+  });
+  for (std::size_t i = 0; i < lives.size(); ++i) {
+    environment.grown[i].status = lives[i].result.status;
+    environment.grown[i].reason = lives[i].result.reason;
   }
   return environment;
 }
 
-/// Two lives and their distances.
-struct Comparison {
-  std::size_t start_a, start_b;
-  double springs, mass;
+using Distance = double (*)(const GrownBody&, const GrownBody&);
+
+struct Kind {
+  const char* name;
+  const char* title;
+  Distance distance;
 };
 
-/// Of every body of `a` with every one of `b`, or with every later one where both are the same environment.
-std::vector<Comparison> compare(const Environment& a, const Environment& b) {
-  std::vector<Comparison> all;
-  for (std::size_t i = 0; i < a.grown.size(); ++i)
-    for (std::size_t j = &a == &b ? i + 1 : 0; j < b.grown.size(); ++j)
-      if (const auto& x = a.grown[i].body, &y = b.grown[j].body; x && y)
-        all.push_back({i, j, spring_distance(*x, *y), mass_distance(*x, *y)});
-  return all;
+constexpr Kind kinds[] = {{"springs", "springs that only one body has", spring_distance},
+                          {"masses", "masses that only one body has", mass_distance}};
+
+/// The bodies that are left after a cycle, counted from 0.
+std::vector<const GrownBody*> bodies_after(std::size_t cycle, const Environment& environment) {
+  std::vector<const GrownBody*> bodies;
+  for (const Grown& grown : environment.grown)
+    if (cycle < grown.after.size()) bodies.push_back(&grown.after[cycle]);
+  return bodies;
 }
 
-struct Spread {
-  double least, median, most;
+/// None where a scene has no body left.
+std::optional<SceneEffect> compare(const Environment& a, const Environment& b, std::size_t cycle, Distance distance) {
+  std::vector<const GrownBody*> bodies = bodies_after(cycle, a);
+  const std::vector<const GrownBody*> others = bodies_after(cycle, b);
+  const std::size_t first = bodies.size();
+  if (first == 0 || others.empty()) return std::nullopt;
+  bodies.insert(bodies.end(), others.begin(), others.end());
+  std::vector<std::vector<double>> distances(bodies.size(), std::vector<double>(bodies.size()));
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    for (std::size_t j = i + 1; j < bodies.size(); ++j) distances[i][j] = distance(*bodies[i], *bodies[j]);
+  return scene_effect(distances, first);
+}
+
+/// Two scenes and how far what grew in them is apart after each cycle, by each of `kinds`.
+struct Pair {
+  std::size_t a, b;
+  std::vector<std::optional<SceneEffect>> effects[std::size(kinds)];
 };
 
-std::optional<Spread> spread(const std::vector<Comparison>& comparisons, double Comparison::*distance) {
-  if (comparisons.empty()) return std::nullopt;
-  std::vector<double> values;
-  for (const Comparison& comparison : comparisons) values.push_back(comparison.*distance);
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return Spread{values.front(), values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2,
-                values.back()};
-}
+/// One genome in all scenes.
+struct Answer {
+  std::uint32_t individual;
+  std::vector<Environment> environments;
+  std::vector<Pair> pairs;
+};
 
-void print(const std::vector<Environment>& environments, const char* title, double Comparison::*distance) {
-  std::printf("\n%s\n%-16s %-22s", title, "", "start noise alone");
-  for (const Environment& environment : environments) std::printf(" %14.14s", environment.name.c_str());
-  std::printf("\n");
-  for (const Environment& a : environments) {
-    const auto noise = spread(compare(a, a), distance);
-    std::printf("%-16s ", a.name.c_str());
-    if (noise)
-      std::printf("%.3f (%.3f to %.3f)", noise->median, noise->least, noise->most);
-    else
-      std::printf("%-22s", "-");
-    for (const Environment& b : environments) {
-      const auto between = &a == &b ? std::nullopt : spread(compare(a, b), distance);
-      if (between)
-        std::printf(" %14.3f", between->median);
-      else
-        std::printf(" %14s", "-");
+Answer answer(const std::vector<Experiment>& experiments, const Individual& individual, std::uint32_t starts,
+              std::size_t cycles) {
+  Answer answer{individual.id, {}, {}};
+  auto& environments = answer.environments;
+  for (const Experiment& experiment : experiments) environments.push_back(grow(experiment, individual, starts));
+  for (std::size_t a = 0; a < environments.size(); ++a)
+    for (std::size_t b = a + 1; b < environments.size(); ++b) {
+      Pair& pair = answer.pairs.emplace_back(Pair{a, b, {}});
+      for (std::size_t kind = 0; kind < std::size(kinds); ++kind)
+        for (std::size_t cycle = 0; cycle < cycles; ++cycle)
+          pair.effects[kind].push_back(compare(environments[a], environments[b], cycle, kinds[kind].distance));
     }
+  return answer;
+}
+
+void print(const std::optional<SceneEffect>& effect) {
+  if (!effect)
+    std::printf("  %18s", "-");
+  else if (!effect->p)
+    std::printf("  %12.3f/%5s", effect->between, "-");
+  else
+    std::printf("  %5.3f/%5.3f %6.4f", effect->between, *effect->within, *effect->p);
+}
+
+void print(const Answer& answer, std::size_t kind, std::size_t cycles) {
+  std::printf("\n%s\n%-32s", kinds[kind].title, "");
+  for (std::size_t cycle = 1; cycle <= cycles; ++cycle) std::printf("      after cycle %2zu", cycle);
+  std::printf("\n");
+  for (const Pair& pair : answer.pairs) {
+    std::printf("%-15s %-16s", answer.environments[pair.a].name.c_str(), answer.environments[pair.b].name.c_str());
+    for (const auto& effect : pair.effects[kind]) print(effect);
     std::printf("\n");
   }
 }
 
-void print(const std::vector<Environment>& environments) {
-  std::printf("%-16s %8s %8s\n", "matured", "masses", "springs");
-  for (const Environment& environment : environments) {
-    const Grown& first = environment.grown.front();
-    if (first.body)
-      std::printf("%-16s %8zu %8zu\n", environment.name.c_str(), first.body->body.masses.size(),
-                  first.body->body.springs.size());
-    for (std::size_t start = 0; start < environment.grown.size(); ++start)
-      if (const Grown& grown = environment.grown[start]; !grown.body)
-        std::printf("%-16s %s from start %zu: %s\n", environment.name.c_str(), name(grown.status), start,
-                    grown.reason.c_str());
+void print(const std::vector<Answer>& answers, std::size_t cycles) {
+  std::printf("between two scenes / by start noise in one of them (means), and p of a permutation test\n");
+  for (const Answer& answer : answers) {
+    std::printf("\nindividual %u\n", answer.individual);
+    for (const Environment& environment : answer.environments)
+      for (std::size_t start = 0; start < environment.grown.size(); ++start)
+        if (const Grown& grown = environment.grown[start]; grown.status != Status::ok)
+          std::printf("%-15s %s from start %zu: %s\n", environment.name.c_str(), name(grown.status), start,
+                      grown.reason.c_str());
+    for (std::size_t kind = 0; kind < std::size(kinds); ++kind) print(answer, kind, cycles);
   }
-  print(environments, "part of the springs that only one body has, median", &Comparison::springs);
-  print(environments, "part of the mass that lies elsewhere, median", &Comparison::mass);
 }
 
 Json to_json(const Environment& environment) {
   Json starts = Json::array();
   for (const Grown& grown : environment.grown) {
     Json start = {{"status", name(grown.status)}, {"reason", grown.reason}};
-    if (grown.body)
-      start["body"] = Json::parse(body_to_json(grown.body->body, grown.body->places, environment.materials));
+    if (grown.status == Status::ok)
+      start["body"] =
+          Json::parse(body_to_json(grown.after.back().body, grown.after.back().places, environment.materials));
     starts.push_back(std::move(start));
   }
   return {{"name", environment.name}, {"slope", environment.slope}, {"starts", std::move(starts)}};
 }
 
-Json to_json(const std::vector<Environment>& environments) {
-  Json scenes = Json::array(), distances = Json::array();
-  for (std::size_t a = 0; a < environments.size(); ++a) {
-    scenes.push_back(to_json(environments[a]));
-    for (std::size_t b = a; b < environments.size(); ++b)
-      for (const Comparison& comparison : compare(environments[a], environments[b]))
-        distances.push_back({{"scenes", {a, b}},
-                             {"starts", {comparison.start_a, comparison.start_b}},
-                             {"springs", comparison.springs},
-                             {"mass", comparison.mass}});
-  }
-  return {{"scenes", std::move(scenes)}, {"distances", std::move(distances)}};
+Json to_json(const std::optional<SceneEffect>& effect) {
+  if (!effect) return nullptr;
+  const auto known = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
+  return {{"between", effect->between}, {"within", known(effect->within)}, {"p", known(effect->p)}};
 }
 
-/// One genome must mean the same body at birth in all scenes.
-void expect_same_encoding(const Experiment& experiment, const std::string& file, const Experiment& first,
-                          const std::string& first_file) {
-  const auto same = [](const GeneSpec& a, const GeneSpec& b) {
-    return a.low == b.low && a.high == b.high && a.choices == b.choices;
+Json to_json(const Answer& answer) {
+  Json scenes = Json::array(), pairs = Json::array();
+  for (const Environment& environment : answer.environments) scenes.push_back(to_json(environment));
+  for (const Pair& pair : answer.pairs) {
+    Json& written = pairs.emplace_back(Json{{"scenes", {pair.a, pair.b}}});
+    for (std::size_t kind = 0; kind < std::size(kinds); ++kind)
+      for (const auto& effect : pair.effects[kind]) written[kinds[kind].name].push_back(to_json(effect));
+  }
+  return {{"individual", answer.individual}, {"scenes", std::move(scenes)}, {"pairs", std::move(pairs)}};
+}
+
+/// Values of a resolved experiment by their full keys, as messages show them.
+using Values = std::map<std::string, std::string>;
+
+void collect(const toml::node& node, const std::string& key, Values& values) {
+  if (const toml::table* table = node.as_table())
+    for (const auto& [name, item] : *table) collect(item, key + "." + std::string(name.str()), values);
+  else if (const toml::array* array = node.as_array(); array != nullptr && array->is_array_of_tables())
+    for (std::size_t i = 0; i < array->size(); ++i) collect((*array)[i], key + "." + std::to_string(i), values);
+  else
+    values[key] = value_text(node);
+}
+
+Values values(const Experiment& experiment, std::initializer_list<const char*> tables) {
+  const toml::table resolved = parse_toml(experiment.resolved, experiment.name);
+  Values values;
+  for (const char* table : tables)
+    if (const toml::node* node = resolved.get(table)) collect(*node, table, values);
+  return values;
+}
+
+/// "simulation.dt is 0.001, in the first experiment 0.0005" of the first value that differs; empty where none does.
+std::string difference(const Experiment& experiment, const Experiment& first,
+                       std::initializer_list<const char*> tables) {
+  const Values here = values(experiment, tables), there = values(first, tables);
+  const auto value = [](const Values& values, const std::string& key) {
+    const auto found = values.find(key);
+    return found == values.end() ? "absent" : found->second;
   };
-  if (!std::ranges::equal(experiment.layout.genes, first.layout.genes, same))
-    throw ConfigError(file + ": encoding: has other genes than that of " + first_file + "; make them equal");
-  const auto encoding = [](const Experiment& e) {
-    return parse_toml(e.resolved, e.name)["encoding"].ref<toml::table>();
-  };
-  if (encoding(experiment) != encoding(first))
-    throw ConfigError(file + ": encoding: has other parameters than that of " + first_file + "; make them equal");
+  Values all = here;
+  all.insert(there.begin(), there.end());
+  for (const auto& [key, _] : all)
+    if (value(here, key) != value(there, key))
+      return key + " is " + value(here, key) + ", in the first experiment " + value(there, key);
+  return {};
+}
+
+/// One genome must mean the same in all scenes.
+void expect_same_meaning(const Experiment& experiment, const std::string& title, const Experiment& first) {
+  if (const auto other = difference(experiment, first, {"encoding", "materials"}); !other.empty())
+    throw ConfigError(title + ": " + other + "; the genome would mean another body: make them equal");
+}
+
+void warn_of_other_differences(const Experiment& experiment, const std::string& title, const Experiment& first) {
+  for (const char* table : {"development", "simulation"})
+    if (const auto other = difference(experiment, first, {table}); !other.empty())
+      std::cerr << "warning: " << title << ": " << other << "; bodies may differ by it, whatever the scene\n";
 }
 
 std::vector<Experiment> read_experiments(const std::vector<std::string>& files, const po::variables_map& given) {
   std::vector<Experiment> experiments;
   for (const std::string& file : files) {
     experiments.push_back(read_experiment(experiment_source(file, given)));
-    expect_same_encoding(experiments.back(), file, experiments.front(), files.front());
+    if (experiments.back().development.cycles == 0)
+      throw ConfigError(file + ": development.cycles: there are none, so that nothing grows; give 1 or more");
+    expect_same_meaning(experiments.back(), file, experiments.front());
+    warn_of_other_differences(experiments.back(), file, experiments.front());
   }
   return experiments;
 }
 
-/// The individual of a run, or else one of the random ones that the experiment begins with. The experiments get the
-/// seed that goes with it, so that development draws the same random numbers everywhere.
-Individual chosen_genome(std::vector<Experiment>& experiments, const po::variables_map& given) {
-  if (!given.contains("run")) {
-    const auto id = given.contains("individual") ? given["individual"].as<std::int64_t>() : 0;
-    if (id < 0 || id > std::numeric_limits<std::uint32_t>::max())
-      throw UsageError("--individual " + std::to_string(id) + ": expected 0 or more");
-    for (Experiment& experiment : experiments) experiment.seed = experiments.front().seed;
-    return breed(experiments.front(), {}, 0, static_cast<std::uint32_t>(id), 1).front();
+/// Of those that an experiment begins with.
+Individual random_individual(const Experiment& experiment, std::int64_t id) {
+  if (id < 0 || id > std::numeric_limits<std::uint32_t>::max())
+    throw UsageError("--individual " + std::to_string(id) + ": expected 0 or more");
+  return breed(experiment, {}, 0, static_cast<std::uint32_t>(id), 1).front();
+}
+
+/// Individuals of a run, or else random ones. The experiments get the seed that goes with them, so that development
+/// draws the same random numbers everywhere.
+std::vector<Individual> chosen_genomes(std::vector<Experiment>& experiments, const po::variables_map& given) {
+  const auto ids =
+      given.contains("individual") ? given["individual"].as<std::vector<std::int64_t>>() : std::vector<std::int64_t>();
+  std::vector<Individual> genomes;
+  if (given.contains("run")) {
+    const Archive archive = Archive::read(given["run"].as<std::string>());
+    const Experiment recorded = recorded_experiment(archive, given_plugin_path(given));
+    expect_same_meaning(recorded, archive.folder().string(), experiments.front());
+    for (Experiment& experiment : experiments) experiment.seed = recorded.seed;
+    for (const std::int64_t id : ids) genomes.push_back(individual_named(archive, id));
+    if (ids.empty()) genomes.push_back(chosen_individual(archive, given));
+    return genomes;
   }
-  const Archive archive = Archive::read(given["run"].as<std::string>());
-  const Experiment recorded = recorded_experiment(archive, given_plugin_path(given));
-  expect_same_encoding(recorded, archive.folder().string(), experiments.front(), "the first experiment");
-  for (Experiment& experiment : experiments) experiment.seed = recorded.seed;
-  return chosen_individual(archive, given);
+  for (Experiment& experiment : experiments) experiment.seed = experiments.front().seed;
+  for (const std::int64_t id : ids) genomes.push_back(random_individual(experiments.front(), id));
+  if (ids.empty()) genomes.push_back(random_individual(experiments.front(), 0));
+  return genomes;
 }
 
 }  // namespace
@@ -194,27 +276,32 @@ int environments_command(const Arguments& arguments) {
   line.options.add_options()("experiments", po::value<std::vector<std::string>>(),
                              "what the genome grows in; all with the same encoding")(
       "run", po::value<std::string>(), "folder of the run that the genome comes from; default: a random genome")(
-      "individual", po::value<std::int64_t>(),
-      "its id in the run; default: the best. Without a run, which of the random ones; default: 0")(
+      "individual", po::value<std::vector<std::int64_t>>(),
+      "its id in the run; default: the best. Without a run, which of the random ones; default: 0. May be repeated")(
       "starts", po::value<std::int64_t>()->default_value(6),
       "starts in each scene: one as the body is born, the others with masses moved at random by up to 1e-4 of its "
-      "size")("json", "machine-readable, with all bodies and distances");
+      "size")("json", "machine-readable, with all bodies");
   add_experiment_options(line.options);
   line.repeated = "experiments";
   const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
   if (!given->contains("experiments")) throw UsageError("environments: give experiments, FILE.toml");
   const auto starts = (*given)["starts"].as<std::int64_t>();
-  if (starts < 1 || starts > 200) throw UsageError("--starts " + std::to_string(starts) + ": expected 1 to 200");
+  if (starts < 1 || starts > 50) throw UsageError("--starts " + std::to_string(starts) + ": expected 1 to 50");
   auto experiments = read_experiments((*given)["experiments"].as<std::vector<std::string>>(), *given);
-  const Individual individual = chosen_genome(experiments, *given);
-  std::vector<Environment> environments;
+  std::size_t cycles = std::numeric_limits<std::size_t>::max();  // that all have
   for (const Experiment& experiment : experiments)
-    environments.push_back(grow(experiment, individual, static_cast<std::uint32_t>(starts)));
-  if (given->contains("json"))
-    std::cout << to_json(environments).dump(1) << '\n';
-  else
-    print(environments);
+    cycles = std::min(cycles, static_cast<std::size_t>(experiment.development.cycles));
+  std::vector<Answer> answers;
+  for (const Individual& individual : chosen_genomes(experiments, *given))
+    answers.push_back(answer(experiments, individual, static_cast<std::uint32_t>(starts), cycles));
+  if (!given->contains("json")) {
+    print(answers, cycles);
+    return 0;
+  }
+  Json written = Json::array();
+  for (const Answer& answer : answers) written.push_back(to_json(answer));
+  std::cout << written.dump(1) << '\n';
   return 0;
 }
 

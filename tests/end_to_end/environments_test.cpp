@@ -41,17 +41,27 @@ class Environments : public ::testing::Test {
 };
 
 TEST_F(Environments, TheSameSceneWithoutNoiseGrowsTheSameBody) {
-  const auto answer = json({flat_, flat_, "--starts", "1"});
-  ASSERT_EQ(answer.at("distances").size(), 1u);
-  EXPECT_EQ(answer.at("distances")[0].at("springs"), 0);
-  EXPECT_EQ(answer.at("distances")[0].at("mass"), 0);
+  const auto answer = json({flat_, flat_, "--starts", "1"})[0];
+  ASSERT_EQ(answer.at("pairs").size(), 1u);
+  const auto& pair = answer.at("pairs")[0];
+  ASSERT_EQ(pair.at("springs").size(), 6u) << "one for each cycle";
+  for (const char* kind : {"springs", "masses"})
+    for (const auto& effect : pair.at(kind)) {
+      EXPECT_EQ(effect.at("between"), 0);
+      EXPECT_TRUE(effect.at("within").is_null());
+      EXPECT_TRUE(effect.at("p").is_null());
+    }
   EXPECT_EQ(answer.at("scenes")[0].at("starts"), answer.at("scenes")[1].at("starts"));
 }
 
-TEST_F(Environments, EveryPairOfLivesHasItsDistances) {
+TEST_F(Environments, EveryGenomeHasItsBodiesAndDistances) {
   const std::string slope = other("slope.toml", "[scene.gravity]", "[scene.gravity]\nslope = 30");
-  const auto answer = json({flat_, slope, "--starts", "3"});
-  ASSERT_EQ(answer.at("scenes").size(), 2u);
+  const auto answers = json({flat_, slope, flat_, "--starts", "3", "--individual", "5"});
+  ASSERT_EQ(answers.size(), 2u);
+  EXPECT_EQ(answers[0].at("individual"), 5);
+  EXPECT_EQ(answers[1].at("individual"), 4);
+  const auto& answer = answers[1];
+  ASSERT_EQ(answer.at("scenes").size(), 3u);
   for (const auto& scene : answer.at("scenes")) {
     ASSERT_EQ(scene.at("starts").size(), 3u);
     for (const auto& start : scene.at("starts")) {
@@ -60,40 +70,54 @@ TEST_F(Environments, EveryPairOfLivesHasItsDistances) {
     }
   }
   EXPECT_EQ(answer.at("scenes")[1].at("slope"), 30);
-  EXPECT_EQ(answer.at("distances").size(), 3u + 9u + 3u);
-  double largest = 0;
-  for (const auto& distance : answer.at("distances")) {
-    for (const char* kind : {"springs", "mass"}) {
-      EXPECT_GE(distance.at(kind), 0);
-      EXPECT_LE(distance.at(kind), 1);
-    }
-    if (distance.at("scenes")[0] != distance.at("scenes")[1])
-      largest = std::max(largest, distance.at("springs").get<double>());
-  }
-  EXPECT_GT(largest, 0) << "the slope has changed nothing";
+  ASSERT_EQ(answer.at("pairs").size(), 3u);
+  EXPECT_EQ(answer.at("pairs")[1].at("scenes"), nlohmann::json({0, 2}));
+  EXPECT_EQ(answer.at("pairs")[1].at("springs")[5].at("p"), 1) << "a scene differs from itself";
+  EXPECT_GT(answer.at("pairs")[0].at("springs")[5].at("between"), 0) << "the slope has changed nothing";
 }
 
-TEST_F(Environments, TheTableNamesScenesAndNoise) {
+TEST_F(Environments, WhereNothingDevelopsTheBodyStaysTheSameHoweverItLies) {
+  const std::string slope = other("slope.toml", "[scene.gravity]", "[scene.gravity]\nslope = 30");
+  const auto answer = json({flat_, slope, "--starts", "1", "--set", "development.control=no-change"})[0];
+  const auto& pair = answer.at("pairs")[0];
+  EXPECT_EQ(pair.at("springs")[5].at("between"), 0);
+  EXPECT_EQ(pair.at("masses")[5].at("between"), 0);
+}
+
+TEST_F(Environments, TheTableNamesScenesAndCycles) {
   const std::string weak = other("weak.toml", "[scene.gravity]", "[scene.gravity]\nacceleration = 1.62");
   const testing::Finished finished = environments({flat_, weak, "--starts", "2"});
   EXPECT_EQ(finished.exit_code, 0) << finished.output;
-  for (const char* part : {"flat", "weak", "start noise alone", "springs that only one body has", "mass that lies"})
+  for (const char* part : {"individual 4", "flat", "weak", "after cycle  6", "springs that only one body has",
+                           "masses that only one body has"})
     EXPECT_THAT(finished.output, HasSubstr(part));
 }
 
-TEST_F(Environments, OneGenomeNeedsOneEncoding) {
-  const std::string sized = other("sized.toml", "edge = 0.5", "edge = 0.5\nsize_range = 0.2");
+TEST_F(Environments, OneGenomeNeedsOneMeaning) {
+  const std::string sized = other("sized.toml", "edge = 0.5", "edge = 0.6");
   const testing::Finished finished = environments({flat_, sized});
   EXPECT_EQ(finished.exit_code, 2);
-  EXPECT_THAT(finished.output, HasSubstr("sized.toml: encoding: has other genes than that of " + flat_));
-  const std::string wide = other("wide.toml", "edge = 0.5", "edge = 0.6");
-  EXPECT_THAT(environments({flat_, wide}).output,
-              HasSubstr("wide.toml: encoding: has other parameters than that of " + flat_));
+  EXPECT_THAT(finished.output, HasSubstr("sized.toml: encoding.edge is 0.6, in the first experiment 0.5"));
+  const std::string soft = other("soft.toml", "[development]", "[materials.bone]\nstiffness = 100\n\n[development]");
+  EXPECT_THAT(environments({flat_, soft}).output, HasSubstr("soft.toml: materials.bone.stiffness is 100"));
+}
+
+TEST_F(Environments, WarnsOfWhatElseDiffers) {
+  const std::string eager = other("eager.toml", "springs = 2", "springs = 3");
+  const testing::Finished finished = environments({flat_, eager, "--starts", "1"});
+  EXPECT_EQ(finished.exit_code, 0);
+  EXPECT_THAT(finished.output, HasSubstr("warning: " + eager + ": development.operator.0.springs is 3"));
+}
+
+TEST_F(Environments, WithoutDevelopmentThereIsNothingToShow) {
+  const auto finished = testing::run({EVODEVO_PROGRAM, "environments", flat_, "--set", "development.cycles=0"});
+  EXPECT_EQ(finished.exit_code, 2);
+  EXPECT_THAT(finished.output, HasSubstr("flat.toml: development.cycles: there are none"));
 }
 
 TEST_F(Environments, BadNumbersAreRefused) {
   EXPECT_THAT(environments({}).output, HasSubstr("give experiments"));
-  EXPECT_THAT(environments({flat_, "--starts", "0"}).output, HasSubstr("--starts 0: expected 1 to 200"));
+  EXPECT_THAT(environments({flat_, "--starts", "0"}).output, HasSubstr("--starts 0: expected 1 to 50"));
 }
 
 }  // namespace
