@@ -16,8 +16,7 @@ int film_command(const Arguments& arguments) {
       "at", po::value<double>(), "of a picture: the moment since birth, s; default: midway in the last measurement")(
       "out", po::value<std::string>()->default_value("film.mp4"),
       "the film to write, 30 frames a second, each of which takes 0.2 to 0.5 s of processor time where there is no "
-      "GPU; "
-      "a name ending in .png: a picture");
+      "GPU; a name ending in .png: a picture");
   add_plugin_option(line.options);
   const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
@@ -26,8 +25,7 @@ int film_command(const Arguments& arguments) {
   const ArchivedIndividual shown = chosen_individual(archive, *given);
   const Cast cast =
       given->contains("individual") ? Cast{.best = 0, .individuals = {shown.id}} : Cast{.best = 1, .ancestors = 0};
-  Experiment experiment = recorded_experiment(archive, given_plugin_path(*given));
-  experiment.device = "auto";  // whatever the run had, it may not be here
+  const Experiment experiment = replayed_experiment(archive, *given);
   const auto simulator = make_simulator(experiment);
   auto data = report_data({reported_run(archive, experiment, *simulator, cast, page_budget)});
   const auto file = (*given)["out"].as<std::string>();

@@ -115,6 +115,12 @@ ArchivedIndividual chosen_individual(const Archive& archive, const po::variables
   return *archive.individual(best.front());
 }
 
+Experiment replayed_experiment(const Archive& archive, const po::variables_map& given) {
+  Experiment experiment = recorded_experiment(archive, given_plugin_path(given));
+  experiment.device = "auto";
+  return experiment;
+}
+
 std::unique_ptr<Simulator> make_simulator(const Experiment& experiment) {
   if (experiment.device != "cpu") {
 #ifdef EVODEVO_CUDA

@@ -35,6 +35,10 @@ ArchivedIndividual individual_named(const Archive& archive, std::int64_t id);
 /// The individual that --individual names, or else the best. Throws ArchiveError where there is none.
 ArchivedIndividual chosen_individual(const Archive& archive, const boost::program_options::variables_map& given);
 
+/// The experiment of a run with the plugins that --plugin-path names, for whatever device is here: that of the run may
+/// not be. Throws like recorded_experiment().
+Experiment replayed_experiment(const Archive& archive, const boost::program_options::variables_map& given);
+
 /// The simulator for the experiment's device and threads. Throws ConfigError where CUDA is asked for and not to be had.
 std::unique_ptr<Simulator> make_simulator(const Experiment& experiment);
 

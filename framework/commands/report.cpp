@@ -18,8 +18,7 @@ nlohmann::ordered_json reported(const std::string& folder, const po::variables_m
   if (given.contains("individual"))
     for (const std::int64_t id : given["individual"].as<std::vector<std::int64_t>>())
       cast.individuals.push_back(individual_named(archive, id).id);
-  Experiment experiment = recorded_experiment(archive, given_plugin_path(given));
-  experiment.device = "auto";  // whatever the run had, it may not be here
+  const Experiment experiment = replayed_experiment(archive, given);
   const auto simulator = make_simulator(experiment);
   return reported_run(archive, experiment, *simulator, cast, budget);
 }

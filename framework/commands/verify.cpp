@@ -79,9 +79,8 @@ int verify_command(const Arguments& arguments) {
   Archive archive = Archive::annotate((*given)["DIR"].as<std::string>());
   if (archive.best(1).empty())
     throw ArchiveError(archive.folder().string() + ": no individual has a fitness to verify");
-  Experiment experiment = recorded_experiment(archive, given_plugin_path(*given));
+  const Experiment experiment = replayed_experiment(archive, *given);
   warn_of_changed_operators(experiment, archive);
-  experiment.device = "auto";  // whatever the run had, it may not be here
   const auto simulator = make_simulator(experiment);
   const auto verifications = verify_best(experiment, *simulator, archive, static_cast<std::size_t>(best));
   const Objective& objective = experiment.objectives.front();
