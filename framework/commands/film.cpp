@@ -17,8 +17,7 @@ int film_command(const Arguments& arguments) {
       "at", po::value<double>(), "of a picture: the moment since birth, s; default: midway in the last measurement")(
       "out", po::value<std::string>()->default_value("film.mp4"),
       "the film to write, 30 frames a second, each of which takes 0.2 to 0.5 s of processor time where there is no "
-      "GPU; "
-      "a name ending in .png: a picture");
+      "GPU; a name ending in .png: a picture");
   add_plugin_option(line.options);
   const auto given = parse(std::move(line), arguments);
   if (!given) return 0;

@@ -7,6 +7,7 @@
 #include "commands/options.hpp"
 #include "commands/run.hpp"
 #include "commands/verification_report.hpp"
+#include "living_again.hpp"
 
 namespace evodevo {
 namespace {
@@ -79,9 +80,8 @@ int verify_command(const Arguments& arguments) {
   Archive archive = Archive::annotate((*given)["DIR"].as<std::string>());
   if (archive.best(1).empty())
     throw ArchiveError(archive.folder().string() + ": no individual has a fitness to verify");
-  Experiment experiment = recorded_experiment(archive, given_plugin_path(*given));
+  const Experiment experiment = experiment_to_live_again(archive, given_plugin_path(*given));
   warn_of_changed_operators(experiment, archive);
-  experiment.device = "auto";  // whatever the run had, it may not be here
   const auto simulator = make_simulator(experiment);
   const auto verifications = verify_best(experiment, *simulator, archive, static_cast<std::size_t>(best));
   const Objective& objective = experiment.objectives.front();

@@ -150,6 +150,7 @@ std::vector<FilmedLife> film_lives(const Experiment& experiment, Simulator& simu
   for (Life& life : lives) {
     Film film = camera.take(life.living.body);
     number_masses(film, life.result.record);
+    std::erase_if(film, [](const Shot& shot) { return shot.frames.empty(); });
     const std::size_t cycles = std::min(film.size(), static_cast<std::size_t>(experiment.development.cycles));
     filmed.push_back({std::move(life.result), std::move(film), cycles});
   }

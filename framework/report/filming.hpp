@@ -24,7 +24,7 @@ struct Frame {
 /// A stretch of a life in which the body stays the same.
 struct Shot {
   Body body;
-  std::vector<Frame> frames;                ///< from the beginning of the stretch to its end
+  std::vector<Frame> frames;                ///< from the beginning of the stretch to its end; one or more
   std::vector<double> stress;               ///< of each spring, N; empty after a divergence
   std::vector<std::uint32_t> numbers = {};  ///< of the masses, which they keep through the film, ascending
 };

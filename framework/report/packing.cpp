@@ -2,8 +2,11 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
+#include <utility>
 
 namespace evodevo {
 namespace {
@@ -56,25 +59,59 @@ std::string packed_differences(std::span<const std::uint32_t> numbers) {
   return packed(differences);
 }
 
-std::string packed_places(std::span<const Frame* const> frames, double step) {
-  std::vector<std::int64_t> numbers;
-  std::vector<std::int64_t> last, before_last;
-  for (std::size_t f = 0; f < frames.size(); ++f) {
-    const std::vector<SeenPlace>& places = frames[f]->places;
-    std::vector<std::int64_t> now;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (const SeenPlace& place : places) now.push_back(std::llround(place[axis] / step));
-    for (std::size_t i = 0; i < now.size(); ++i) {
-      std::int64_t guess = 0;
-      if (f == 0) guess = i % places.size() == 0 ? 0 : now[i - 1];
-      if (f == 1) guess = last[i];
-      if (f > 1) guess = 2 * last[i] - before_last[i];
-      numbers.push_back(now[i] - guess);
-    }
-    before_last = std::move(last);
+std::string packed_changes(std::span<const std::uint32_t> before, std::span<const std::uint32_t> after) {
+  std::vector<std::uint32_t> changed;
+  std::ranges::set_symmetric_difference(before, after, std::back_inserter(changed));
+  return packed_differences(changed);
+}
+
+std::string ValuePacking::next(std::span<const std::uint32_t> numbers, std::span<const std::int64_t> values) {
+  std::vector<std::int64_t> differences;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    differences.push_back(values[i] - std::exchange(last_[numbers[i]], values[i]));
+  return packed(differences);
+}
+
+std::string PlacePacking::next(std::span<const Frame* const> frames, std::span<const std::uint32_t> numbers) {
+  std::vector<std::int64_t> differences, last, before_last;
+  for (const Frame* frame : frames) {
+    std::vector<std::int64_t> now = places(*frame);
+    const bool first = last.empty();
+    if (first) before_last = last = first_guess(now, numbers);
+    for (std::size_t i = 0; i < now.size(); ++i)
+      differences.push_back(now[i] - (last[i] + ((last[i] - before_last[i]) >> 1)));
+    before_last = first ? now : std::move(last);
     last = std::move(now);
   }
-  return packed(numbers);
+  keep(last, numbers);
+  return packed(differences);
+}
+
+std::vector<std::int64_t> PlacePacking::places(const Frame& frame) const {
+  std::vector<std::int64_t> places;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const SeenPlace& place : frame.places) places.push_back(std::llround(place[axis] / step_));
+  return places;
+}
+
+std::vector<std::int64_t> PlacePacking::first_guess(std::span<const std::int64_t> now,
+                                                    std::span<const std::uint32_t> numbers) const {
+  const std::size_t masses = numbers.size();
+  std::vector<std::int64_t> guess(now.size());
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const std::size_t mass = i % masses;
+    if (known_[numbers[mass]])
+      guess[i] = last_[i / masses * known_.size() + numbers[mass]];
+    else if (mass > 0)
+      guess[i] = now[i - 1];
+  }
+  return guess;
+}
+
+void PlacePacking::keep(std::span<const std::int64_t> last, std::span<const std::uint32_t> numbers) {
+  for (std::size_t i = 0; i < last.size(); ++i)
+    last_[i / numbers.size() * known_.size() + numbers[i % numbers.size()]] = last[i];
+  for (const std::uint32_t number : numbers) known_[number] = true;
 }
 
 }  // namespace evodevo

@@ -7,8 +7,8 @@
 #include "breeding.hpp"
 #include "evolution.hpp"
 #include "living_again.hpp"
+#include "report/film_json.hpp"
 #include "report/filming.hpp"
-#include "report/robot_json.hpp"
 #include "report/run_json.hpp"
 #include "report/scene_json.hpp"
 
@@ -59,19 +59,18 @@ double first_window(const Experiment& experiment) {
   return opens;
 }
 
-std::vector<std::string> shot_names(const FilmedLife& life, const Experiment& experiment) {
+std::vector<Title> titles_of(const FilmedLife& life, const Experiment& experiment) {
   const double measured_from =
       static_cast<double>(life.cycles) * experiment.development.cycle_time + first_window(experiment) - 1e-6;
-  std::vector<std::string> names;
+  std::vector<Title> titles;
   for (std::size_t i = 0; i < life.film.size(); ++i) {
-    const auto& frames = life.film[i].frames;
-    if (frames.empty()) continue;
+    const bool measured = life.film[i].frames.front().time >= measured_from;
     if (i < life.cycles)
-      names.push_back("cycle " + std::to_string(i + 1));
+      titles.push_back({"cycle " + std::to_string(i + 1)});
     else
-      names.emplace_back(frames.front().time < measured_from ? "settling" : "measured");
+      titles.push_back({measured ? "measured" : "settling", measured});
   }
-  return names;
+  return titles;
 }
 
 Json population_json(const Archive& archive, std::uint32_t generation) {
@@ -130,9 +129,9 @@ Json random_robot(const Experiment& experiment, const Individual& individual, st
   robot["status"] = name(built.failure.empty() ? Status::ok : Status::invalid);
   Film film;
   if (built.failure.empty()) film = mapping_film(blueprint, std::move(built));
-  std::vector<std::string> names = {"ball to cube", "body"};
-  if (film.size() == 1) names.erase(names.begin());
-  robot["film"] = film_json(film, names, budget);
+  std::vector<Title> titles = {{"ball to cube"}, {"body"}};
+  if (film.size() == 1) titles.erase(titles.begin());
+  robot["film"] = film_json(film, titles, budget);
   return robot;
 }
 
@@ -142,7 +141,7 @@ Json robot_json(const Archive& archive, const Role& role, const FilmedLife& life
   robot["role"] = role.role;
   robot["reason"] = role.individual.result.reason;
   robot["again"] = life.result.objectives;
-  robot["film"] = film_json(life.film, shot_names(life, experiment), budget);
+  robot["film"] = film_json(life.film, titles_of(life, experiment), budget);
   return robot;
 }
 
@@ -178,8 +177,12 @@ Json reported_run(const Archive& archive, Experiment experiment, Simulator& simu
       archive, run["generations"].empty() ? 0 : run["generations"].back()["generation"].get<std::uint32_t>());
   run["time"] = time_json(archive);
   run["robots"] = Json::array();
-  for (std::size_t i = 0; i < roles.size(); ++i)
-    run["robots"].push_back(robot_json(archive, roles[i], lives[i], experiment, budget / roles.size()));
+  for (std::size_t i = 0; i < roles.size(); ++i) {
+    // what one leaves over goes to those that follow
+    const std::size_t share = budget / (roles.size() - i);
+    const Json& robot = run["robots"].emplace_back(robot_json(archive, roles[i], lives[i], experiment, share));
+    budget -= std::min(budget, robot.dump().size());
+  }
   return run;
 }
 

@@ -163,6 +163,17 @@ test("each colour mode looks different and says what it shows", async () => {
     assert.ok(sum(await differing(seen[a], seen[b])) > 200, `${a} and ${b}`);
 });
 
+test("stress is between nothing and the most, which a spring of the life bears", async () => {
+  const [least, most, levels] = await inPage(page, ({ viewer }) => {
+    const { life } = viewer.stages[0];
+    const all = life.shots.flatMap(({ stress }) => [...stress]);
+    return [Math.min(...all), Math.max(...all), life.robot.film.stress_levels];
+  });
+  assert.ok(least >= 0 && least < levels);
+  assert.equal(most, levels);
+  assert.match(await page.locator(".viewer .note").textContent(), /mm always; stress to within [\d.]+ N\.$/);
+});
+
 test("the life slider goes to cycles, where vanished springs fade and new ones light up", async () => {
   await page.locator(".modes label", { hasText: "Came in" }).click();
   const slider = page.getByLabel("Cycle of life");

@@ -32,7 +32,8 @@ export function materialColour(material, all) {
   return mix(passive, ramp(palette.muscles, phase), 0.35 + 0.65 * (material.amplitude / most));
 }
 
-export const stressColour = (level) => ramp(palette.stress, level / 255);
+/** `part` is of the root of the most stress. */
+export const stressColour = (part) => ramp(palette.stress, part);
 
 export const cycleColour = (cameWith, shots) =>
   cameWith <= 0 ? palette.born : ramp(palette.cycles, shots > 2 ? (cameWith - 1) / (shots - 2) : 1);
@@ -43,10 +44,10 @@ export const developing = (life) => 1 + life.cameWith.reduce((last, index) => Ma
 /** A function that gives the colour of the i-th spring of a shot; `scale` holds the stress (N) and the number of cycles
  *  that have the last colours. */
 export function springColours(life, mode, scale) {
-  const { materials, most_stress } = life.robot.film;
+  const { materials, most_stress, stress_levels } = life.robot.film;
   if (mode === "stress") {
     const own = scale.stress > 0 ? Math.sqrt(most_stress / scale.stress) : 0;
-    const levels = Array.from({ length: 256 }, (_, level) => stressColour(own * level));
+    const levels = Array.from({ length: stress_levels + 1 }, (_, level) => stressColour((own * level) / stress_levels));
     return (shot, i) => levels[shot.stress[i] ?? 0];
   }
   if (mode === "cycle") {

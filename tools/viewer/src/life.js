@@ -1,5 +1,5 @@
 // A robot's life: which masses and springs are there at a time, and where.
-import { integers, places, sums } from "./unpack.js";
+import { changed, integers, Places, Values } from "./unpack.js";
 
 const smoothing = 0.5; // s, to either side: what follows a robot should not shake with its steps
 
@@ -12,7 +12,7 @@ export class Life {
     life.massCount = film.masses ?? 0;
     life.massMaterials = film.shots.length ? await integers(film.mass_materials) : new Int32Array();
     life.ends = film.shots.length ? await integers(film.ends) : new Int32Array();
-    life.shots = await Promise.all(film.shots.map((shot) => life.#unpacked(shot)));
+    life.shots = await life.#unpacked(film.shots);
     life.begin = life.shots[0]?.begin ?? 0;
     life.end = life.shots.at(-1)?.end ?? 0;
     life.#markArrivals();
@@ -20,19 +20,31 @@ export class Life {
     return life;
   }
 
-  async #unpacked(shot) {
-    const masses = await sums(shot.masses);
-    return {
-      name: shot.name,
-      times: shot.times,
-      begin: shot.times[0],
-      end: shot.times.at(-1),
-      masses,
-      springs: await sums(shot.springs),
-      materials: await integers(shot.materials),
-      stress: await integers(shot.stress),
-      places: await places(shot.places, masses.length, shot.times.length),
-    };
+  /** Unpacks shots, each of which is told by how it differs from those before. */
+  async #unpacked(packed) {
+    const springCount = this.ends.length / 2;
+    const materials = new Values(springCount);
+    const stress = new Values(springCount);
+    const places = new Places();
+    const shots = [];
+    for (const shot of packed) {
+      const { name, times } = shot;
+      const before = shots.at(-1) ?? { masses: new Int32Array(), springs: new Int32Array() };
+      const masses = await changed(before.masses, shot.masses);
+      const springs = await changed(before.springs, shot.springs);
+      shots.push({
+        name,
+        times,
+        begin: times[0],
+        end: times.at(-1),
+        masses,
+        springs,
+        materials: await materials.next(shot.materials, springs),
+        stress: await stress.next(shot.stress, springs),
+        places: await places.next(shot.places, masses, times.length),
+      });
+    }
+    return shots;
   }
 
   /** Finds the shot in which each spring came; for each shot which of its springs are new, and which of the one before

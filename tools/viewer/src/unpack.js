@@ -24,12 +24,44 @@ export async function sums(text) {
   return numbers;
 }
 
-/** Places in units of the step, frame by frame, in each all x, all y, all z. */
-export async function places(text, masses, frames) {
-  const numbers = await integers(text);
-  const size = 3 * masses;
-  for (let i = 0; i < Math.min(size, numbers.length); ++i) if (i % masses !== 0) numbers[i] += numbers[i - 1];
-  for (let i = size; i < Math.min(2 * size, numbers.length); ++i) numbers[i] += numbers[i - size];
-  for (let i = 2 * size; i < frames * size; ++i) numbers[i] += 2 * numbers[i - size] - numbers[i - 2 * size];
-  return numbers;
+/** Ascending numbers, from those before and from which came or went. */
+export async function changed(before, text) {
+  const changes = new Set(await sums(text));
+  return Int32Array.from([...before.filter((number) => !changes.delete(number)), ...changes]).sort();
+}
+
+/** Values shot by shot, from how they differ from what each thing had when it was last there. */
+export class Values {
+  constructor(count) {
+    this.last = new Int32Array(count);
+  }
+
+  /** The values of the things of these numbers, or of none. */
+  async next(text, numbers) {
+    const values = await integers(text);
+    for (let i = 0; i < values.length; ++i) values[i] = this.last[numbers[i]] += values[i];
+    return values;
+  }
+}
+
+/** Places in units of the step, shot by shot: frame by frame, in each all x, all y, all z. */
+export class Places {
+  #last = new Map(); // x, y and z of masses that have been there
+
+  async next(text, masses, frames) {
+    const all = await integers(text);
+    const size = 3 * masses.length;
+    for (let i = 0; i < Math.min(size, all.length); ++i) {
+      const mass = i % masses.length;
+      const known = this.#last.get(masses[mass]);
+      all[i] += known ? known[Math.floor(i / masses.length)] : mass > 0 ? all[i - 1] : 0;
+    }
+    for (let i = size; i < frames * size; ++i) {
+      const last = all[i - size];
+      all[i] += last + (i < 2 * size ? 0 : (last - all[i - 2 * size]) >> 1);
+    }
+    const end = all.subarray((frames - 1) * size);
+    masses.forEach((mass, i) => this.#last.set(mass, [0, 1, 2].map((axis) => end[axis * masses.length + i])));
+    return all;
+  }
 }

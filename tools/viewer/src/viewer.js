@@ -30,6 +30,29 @@ export class Viewer {
   }
 
   #build() {
+    this.canvas = element("canvas", {
+      tabIndex: 0,
+      ariaLabel: "The robot. Drag to turn, pinch or wheel to come nearer.",
+    });
+    this.captions = [0, 1].map(() => element("div", { className: "caption" }, element("strong"), element("span")));
+    this.stage = element("div", { className: "stage" }, this.canvas, ...this.captions);
+    this.note = element("p", { className: "note" });
+    this.root = element(
+      "section",
+      { className: "viewer" },
+      this.#pickers(),
+      this.stage,
+      this.#transport(),
+      this.#lifeBar(),
+      this.#looks(),
+      this.note,
+      keys(),
+    );
+    this.#showPlaying();
+  }
+
+  /** Which robots are shown. */
+  #pickers() {
     const choose = (label, which, options) =>
       element(
         "label",
@@ -41,11 +64,11 @@ export class Viewer {
       this.robots.map(({ label }, i) => element("option", { value: String(i), textContent: label }));
     this.first = choose("Robot", 0, options());
     this.second = choose("beside", 1, [element("option", { value: "", textContent: "none" }), ...options()]);
-    this.canvas = element("canvas", {
-      tabIndex: 0,
-      ariaLabel: "The robot. Drag to turn, pinch or wheel to come nearer.",
-    });
-    this.captions = [0, 1].map(() => element("div", { className: "caption" }, element("strong"), element("span")));
+    return element("div", { className: "pickers" }, this.first, this.robots.length > 1 ? this.second : null);
+  }
+
+  /** What steers the clock. */
+  #transport() {
     this.play = element("button", { className: "play", type: "button", onclick: () => this.toggle() });
     this.scrub = element("input", {
       type: "range",
@@ -62,29 +85,11 @@ export class Viewer {
       { ariaLabel: "Speed", onchange: (e) => (this.speed = Number(e.target.value)) },
       ...speeds.map((s) => element("option", { value: String(s), textContent: `${s}×`, selected: s === 1 })),
     );
-    this.modes = element(
-      "fieldset",
-      { className: "modes" },
-      element("legend", { textContent: "Colour" }),
-      ...[
-        ["material", "Material"],
-        ["stress", "Stress"],
-        ["cycle", "Came in"],
-      ].map(([mode, label]) =>
-        element(
-          "label",
-          {},
-          element("input", {
-            type: "radio",
-            name: "colour",
-            value: mode,
-            checked: mode === this.mode,
-            onchange: () => this.setMode(mode),
-          }),
-          element("span", { textContent: label }),
-        ),
-      ),
-    );
+    return element("div", { className: "transport" }, this.play, this.scrub, this.clock, this.speedSelect);
+  }
+
+  /** What goes from cycle to cycle. */
+  #lifeBar() {
     this.cycle = element("input", {
       type: "range",
       min: "0",
@@ -100,35 +105,38 @@ export class Viewer {
       checked: true,
       onchange: (e) => this.setFollow(e.target.checked),
     });
-    this.legend = element("div", { className: "legend" });
-    this.note = element("p", { className: "note" });
-    this.stage = element("div", { className: "stage" }, this.canvas, ...this.captions);
-    this.root = element(
-      "section",
-      { className: "viewer" },
-      element("div", { className: "pickers" }, this.first, this.robots.length > 1 ? this.second : null),
-      this.stage,
-      element("div", { className: "transport" }, this.play, this.scrub, this.clock, this.speedSelect),
-      element(
-        "div",
-        { className: "life" },
-        element("label", {}, element("span", { textContent: "Life" }), this.cycle),
-        this.cycleName,
-        element("label", { className: "check" }, this.followBox, element("span", { textContent: "Follow" })),
-      ),
-      element("div", { className: "looks" }, this.works ? this.modes : null, this.legend),
-      this.note,
-      element(
-        "details",
-        { className: "keys" },
-        element("summary", { textContent: "Keys" }),
-        element("p", {
-          textContent:
-            "Space plays and pauses. ← and → step by a frame, with Shift by a second. [ and ] go from cycle to cycle. + and − change the speed. C changes the colour, F follows, R turns the camera back. Drag turns, the wheel or two fingers zoom, right drag or two fingers move.",
-        }),
-      ),
+    return element(
+      "div",
+      { className: "life" },
+      element("label", {}, element("span", { textContent: "Life" }), this.cycle),
+      this.cycleName,
+      element("label", { className: "check" }, this.followBox, element("span", { textContent: "Follow" })),
     );
-    this.#showPlaying();
+  }
+
+  /** The colours to choose from, and what they mean. */
+  #looks() {
+    const choice = ([mode, label]) =>
+      element(
+        "label",
+        {},
+        element("input", {
+          type: "radio",
+          name: "colour",
+          value: mode,
+          checked: mode === this.mode,
+          onchange: () => this.setMode(mode),
+        }),
+        element("span", { textContent: label }),
+      );
+    this.modes = element(
+      "fieldset",
+      { className: "modes" },
+      element("legend", { textContent: "Colour" }),
+      ...Object.entries({ material: "Material", stress: "Stress", cycle: "Came in" }).map(choice),
+    );
+    this.legend = element("div", { className: "legend" });
+    return element("div", { className: "looks" }, this.works ? this.modes : null, this.legend);
   }
 
   #makeRenderer() {
@@ -315,15 +323,15 @@ export class Viewer {
   /** Says what the colours mean, and how exact the picture is. */
   #explain() {
     const shown = this.stages.filter((stage) => stage.life.shots.length > 0);
-    this.legend.replaceChildren(
-      ...(shown.length > 0 ? this.#legend() : []),
-    );
-    const error = shown
-      .map((stage) => stage.life.robot.film.error)
-      .reduce((a, b) => (b.largest > (a?.largest ?? -1) ? b : a), undefined);
-    this.note.textContent = error
-      ? `Places are shown to within ${short(1000 * error.most)} mm 99 times in 100, and to within ${short(1000 * error.largest)} mm always.`
-      : "";
+    this.legend.replaceChildren(...(shown.length > 0 ? this.#legend() : []));
+    this.note.textContent = shown.length > 0 ? this.#exactness(shown.map((stage) => stage.life.robot.film.error)) : "";
+  }
+
+  /** How far the worse of the films shown may be from what was simulated. */
+  #exactness(errors) {
+    const worst = (kind) => Math.max(...errors.map((error) => error[kind]));
+    const within = `Places are shown to within ${short(1000 * worst("most"))} mm 99 times in 100, and to within ${short(1000 * worst("largest"))} mm always`;
+    return this.works ? `${within}; stress to within ${short(worst("stress"))} N.` : `${within}.`;
   }
 
   #legend() {
@@ -343,7 +351,7 @@ export class Viewer {
       ];
     };
     if (this.mode === "stress")
-      return scale((t) => stressColour(255 * t), "0 N", `${short(this.scale.stress)} N (root scale)`);
+      return scale(stressColour, "0 N", `${short(this.scale.stress)} N (root scale)`);
     if (this.mode === "cycle") {
       const { cycles } = this.scale;
       const born = swatch(cycleColour(0, cycles), "there from birth");
@@ -444,3 +452,14 @@ export class Viewer {
 }
 
 const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+
+const keys = () =>
+  element(
+    "details",
+    { className: "keys" },
+    element("summary", { textContent: "Keys" }),
+    element("p", {
+      textContent:
+        "Space plays and pauses. ← and → step by a frame, with Shift by a second. [ and ] go from cycle to cycle. + and − change the speed. C changes the colour, F follows, R turns the camera back. Drag turns, the wheel or two fingers zoom, right drag or two fingers move.",
+    }),
+  );

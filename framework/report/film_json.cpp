@@ -1,0 +1,283 @@
+#include "report/film_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "report/packing.hpp"
+
+namespace evodevo {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t least_thinning = 2;  ///< 30 frames a second look smooth
+constexpr std::size_t measured_finer = 4;  ///< so many times as many frames are kept of measured shots as of others
+
+/// How fine numbers are, and how far frames are thinned before coarser numbers do less harm.
+struct Detail {
+  double parts_of_length;     ///< places are whole multiples of so small a part of the body's longest side
+  int stress_levels;          ///< of the root of stress, since few springs bear much and many little
+  std::size_t most_thinning;  ///< of the frames that were filmed, every so many-th is kept
+};
+
+// 2048 parts of a body are finer than the pixels of a page; every 16th frame leaves four of a stroke of a second
+constexpr Detail details[] = {{8192, 255, 4}, {2048, 63, 16}, {1024, 15, std::numeric_limits<std::size_t>::max()}};
+
+/// Numbers springs through a film, by the masses that they join.
+class SpringNumbers {
+ public:
+  /// The springs of a shot.
+  struct Present {
+    std::vector<std::uint32_t> numbers;  ///< ascending
+    std::vector<std::size_t> indices;    ///< in the body, in the same order
+  };
+
+  explicit SpringNumbers(const Film& film) {
+    for (const Shot& shot : film) shots_.push_back(present(shot));
+  }
+
+  const Present& in(std::size_t shot) const { return shots_[shot]; }
+  const std::vector<std::int64_t>& ends() const { return ends_; }
+  std::size_t count() const { return numbers_.size(); }
+
+ private:
+  Present present(const Shot& shot) {
+    std::vector<std::pair<std::uint32_t, std::size_t>> springs;
+    for (const Spring& spring : shot.body.springs) springs.emplace_back(number(shot, spring), springs.size());
+    std::ranges::sort(springs);
+    Present present;
+    for (const auto& [number, index] : springs) {
+      present.numbers.push_back(number);
+      present.indices.push_back(index);
+    }
+    return present;
+  }
+
+  std::uint32_t number(const Shot& shot, const Spring& spring) {
+    const auto pair = std::minmax(shot.numbers.at(spring.a), shot.numbers.at(spring.b));
+    const auto [found, is_new] = numbers_.try_emplace(pair, static_cast<std::uint32_t>(numbers_.size()));
+    if (is_new) ends_.insert(ends_.end(), {pair.first, pair.second});
+    return found->second;
+  }
+
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> numbers_;
+  std::vector<std::int64_t> ends_;
+  std::vector<Present> shots_;
+};
+
+double on_grid(double value, double step) { return step * static_cast<double>(std::llround(value / step)); }
+
+/// Adds up how far straight lines between the frames kept are from all frames.
+class ErrorSum {
+ public:
+  void add(const Shot& shot, const std::vector<const Frame*>& kept, double step) {
+    std::size_t next = 0;
+    for (const Frame& frame : shot.frames) {
+      while (next < kept.size() && kept[next]->time < frame.time) ++next;
+      const Frame &after = *kept[next], &before = *kept[next == 0 ? 0 : next - 1];
+      const double span = after.time - before.time;
+      add(frame, before, after, span > 0 ? (frame.time - before.time) / span : 1, step);
+    }
+  }
+
+  ViewError error() {
+    if (distances_.empty()) return {};
+    const auto most = distances_.begin() + static_cast<std::ptrdiff_t>(distances_.size() * 99 / 100);
+    std::nth_element(distances_.begin(), most, distances_.end());
+    return {.largest = *std::max_element(most, distances_.end()), .most = *most};
+  }
+
+ private:
+  void add(const Frame& frame, const Frame& before, const Frame& after, double part, double step) {
+    for (std::size_t i = 0; i < frame.places.size(); ++i) {
+      double square = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double shown =
+            (1 - part) * on_grid(before.places[i][axis], step) + part * on_grid(after.places[i][axis], step);
+        square += (shown - frame.places[i][axis]) * (shown - frame.places[i][axis]);
+      }
+      distances_.push_back(static_cast<float>(std::sqrt(square)));
+    }
+  }
+
+  std::vector<float> distances_;
+};
+
+/// The longest side of the body at birth, m; 1 where it has none.
+double body_size(const Film& film) {
+  std::vector<Vec3> places;
+  for (const SeenPlace& p : film.front().frames.front().places) places.push_back({p[0], p[1], p[2]});
+  const double side = bounding_box(places).longest_side();
+  return side > 0 ? side : 1;
+}
+
+std::uint32_t mass_count(const Film& film) {
+  std::uint32_t count = 0;
+  for (const Shot& shot : film)
+    if (!shot.numbers.empty()) count = std::max(count, shot.numbers.back() + 1);
+  return count;
+}
+
+double most_stress(const Film& film) {
+  double most = 0;
+  for (const Shot& shot : film)
+    for (const double stress : shot.stress) most = std::max(most, stress);
+  return most;
+}
+
+/// The materials that springs of the film have, with what they do.
+Json materials_json(const Body& body) {
+  Json materials = Json::array();
+  for (const Material& m : body.materials)
+    materials.push_back(
+        {{"stiffness", m.stiffness}, {"amplitude", m.amplitude}, {"frequency", m.frequency}, {"phase", m.phase}});
+  return materials;
+}
+
+/// The masses' materials by their numbers; -1 where a mass has none.
+std::string packed_mass_materials(const Film& film) {
+  std::vector<std::int64_t> materials(mass_count(film), no_material);
+  for (const Shot& shot : film)
+    for (std::size_t i = 0; i < shot.numbers.size(); ++i) materials[shot.numbers[i]] = shot.body.masses[i].material;
+  return packed(materials);
+}
+
+std::vector<double> times(const std::vector<const Frame*>& frames) {
+  std::vector<double> times;
+  for (const Frame* frame : frames) times.push_back(std::round(1e6 * frame->time) / 1e6);
+  return times;
+}
+
+/// The moving part of a film.
+struct Motion {
+  Json shots;             ///< times and places
+  double step = 0;        ///< unit of places, m
+  std::size_t every = 0;  ///< of the frames that were filmed, every so many-th is kept
+  bool fits = false;
+};
+
+class FilmWriter {
+ public:
+  FilmWriter(const Film& film, const std::vector<Title>& titles)
+      : film_(film), titles_(titles), springs_(film), size_(body_size(film)), most_stress_(most_stress(film)) {}
+
+  /// Everything but the motion.
+  Json still(const Detail& detail) const {
+    return {{"masses", mass_count(film_)},
+            {"mass_materials", packed_mass_materials(film_)},
+            {"ends", packed(springs_.ends())},
+            {"materials", materials_json(film_.back().body)},
+            {"most_stress", most_stress_},
+            {"stress_levels", detail.stress_levels},
+            {"shots", shots_json(detail.stress_levels)}};
+  }
+
+  /// The motion, thinned no more than for it to take at most `budget` bytes, and no further than `detail` allows.
+  Motion motion(const Detail& detail, std::size_t budget) const {
+    std::size_t most = least_thinning;
+    for (const Shot& shot : film_) most = std::max(most, std::min(shot.frames.size(), detail.most_thinning));
+    Motion motion{.step = size_ / detail.parts_of_length, .every = least_thinning};
+    for (;;) {
+      motion.shots = motion_json(motion);
+      const std::size_t size = motion.shots.dump().size();
+      motion.fits = size <= budget;
+      if (motion.fits || motion.every >= most) return motion;
+      // what is further apart takes more bits as a rule, so this leaves out no more than it has to
+      motion.every = budget == 0 ? most : std::clamp(motion.every * size / budget, motion.every + 1, most);
+    }
+  }
+
+  /// Puts the parts together, and says how far they are from what was simulated.
+  Json whole(Json still, const Motion& motion) const {
+    ErrorSum errors;
+    for (std::size_t i = 0; i < film_.size(); ++i) {
+      errors.add(film_[i], kept_frames(i, motion.every), motion.step);
+      still["shots"][i].update(motion.shots[i]);
+    }
+    const ViewError error = errors.error();
+    // half a level at the top, where levels are furthest apart
+    const double stress = most_stress_ / still["stress_levels"].get<double>();
+    still["step"] = motion.step;
+    still["error"] = {{"largest", error.largest}, {"most", error.most}, {"stress", stress}};
+    return still;
+  }
+
+ private:
+  /// Who is there in each shot, and how hard it works.
+  Json shots_json(int stress_levels) const {
+    ValuePacking materials(springs_.count()), stress(springs_.count());
+    std::vector<std::uint32_t> masses_before, springs_before;
+    Json shots = Json::array();
+    for (std::size_t i = 0; i < film_.size(); ++i) {
+      const auto& [numbers, indices] = springs_.in(i);
+      shots.push_back({{"name", titles_.at(i).name},
+                       {"masses", packed_changes(masses_before, film_[i].numbers)},
+                       {"springs", packed_changes(springs_before, numbers)},
+                       {"materials", materials.next(numbers, materials_of(film_[i].body, indices))},
+                       {"stress", stress.next(numbers, stress_of(film_[i], indices, stress_levels))}});
+      masses_before = film_[i].numbers;
+      springs_before = numbers;
+    }
+    return shots;
+  }
+
+  static std::vector<std::int64_t> materials_of(const Body& body, std::span<const std::size_t> springs) {
+    std::vector<std::int64_t> materials;
+    for (const std::size_t s : springs) materials.push_back(body.springs[s].material);
+    return materials;
+  }
+
+  std::vector<std::int64_t> stress_of(const Shot& shot, std::span<const std::size_t> springs, int levels) const {
+    std::vector<std::int64_t> stress;
+    if (shot.stress.empty()) return stress;
+    for (const std::size_t s : springs)
+      stress.push_back(most_stress_ > 0 ? std::lround(levels * std::sqrt(shot.stress[s] / most_stress_)) : 0);
+    return stress;
+  }
+
+  Json motion_json(const Motion& motion) const {
+    PlacePacking places(mass_count(film_), motion.step);
+    Json shots = Json::array();
+    for (std::size_t i = 0; i < film_.size(); ++i) {
+      const std::vector<const Frame*> kept = kept_frames(i, motion.every);
+      shots.push_back({{"times", times(kept)}, {"places", places.next(kept, film_[i].numbers)}});
+    }
+    return shots;
+  }
+
+  /// Of the i-th shot every so many-th frame, or more where it is measured, and the last.
+  std::vector<const Frame*> kept_frames(std::size_t i, std::size_t every) const {
+    if (titles_.at(i).measured) every = std::max(least_thinning, every / measured_finer);
+    const std::vector<Frame>& frames = film_[i].frames;
+    std::vector<const Frame*> kept;
+    for (std::size_t f = 0; f < frames.size(); ++f)
+      if (f % every == 0 || f + 1 == frames.size()) kept.push_back(&frames[f]);
+    return kept;
+  }
+
+  const Film& film_;
+  const std::vector<Title>& titles_;
+  SpringNumbers springs_;
+  double size_;         ///< m
+  double most_stress_;  ///< N
+};
+
+}  // namespace
+
+Json film_json(const Film& film, const std::vector<Title>& titles, std::size_t budget) {
+  if (film.empty()) return {{"shots", Json::array()}};
+  const FilmWriter writer(film, titles);
+  Json still;
+  Motion motion;
+  for (const Detail& detail : details) {
+    still = writer.still(detail);
+    motion = writer.motion(detail, budget - std::min(budget, still.dump().size()));
+    if (motion.fits) break;
+  }
+  return writer.whole(std::move(still), motion);
+}
+
+}  // namespace evodevo
