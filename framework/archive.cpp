@@ -275,7 +275,6 @@ void Archive::commit(const std::vector<Individual>& newborns, const std::vector<
   }
   SQLite::Statement insert_life(database, "INSERT INTO lives VALUES(?, ?)");
   for (const auto& [id, life] : lives) {
-    if (life.empty()) continue;
     insert_life.bind(1, id);
     insert_life.bind(2, life.bytes().data(), static_cast<int>(life.bytes().size()));
     insert_life.exec();

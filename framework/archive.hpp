@@ -65,8 +65,7 @@ class Archive {
   std::optional<ArchivedIndividual> individual(std::uint32_t id) const;
   /// The ids of the `count` individuals with the best first objective, best first; ties in the order of birth.
   std::vector<std::uint32_t> best(std::size_t count) const;
-  /// What development did to an individual; nothing where it did nothing, or where the individual never reached the
-  /// front.
+  /// What development did to an individual; nothing where it never reached the front.
   std::optional<LifeRecord> life(std::uint32_t id) const;
   /// Of an individual; nothing where it was not verified.
   std::optional<Verification> verification(std::uint32_t id) const;

@@ -36,7 +36,8 @@ Amount amount_of(const Edits& edits, const Body& body, std::uint32_t op);
 /// of the material of those that did, or of any where none is left. New springs join random masses that stay and are
 /// not yet joined, and are born without force; a new mass comes anywhere in the bounds and gets as many springs. The
 /// springs of a mass that goes count among those that go. `surplus` is how many more have gone so than should have,
-/// now and in earlier turns; as many fewer go as soon as that is possible. Fewer come where the body has no room for
+/// now and in earlier turns; as many fewer go as soon as that is possible. A new mass of a material that the body does
+/// not know has none. Fewer come where the body has no room for
 /// more. Bounds that an operator keeps do not hold here.
 Edits at_random_places(const Amount& amount, const Moment& now, std::size_t& surplus, Rng& rng);
 

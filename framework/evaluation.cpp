@@ -121,9 +121,22 @@ double Evaluation::development_time() const {
 }
 
 void Evaluation::develop(std::span<Life> lives, const Progress& progress) const {
+  if (!lives.empty() && lives.front().newborn.record) return develop_again(lives, progress);
   if (experiment_.development.control == Control::random_places) return develop_yoked(lives, progress);
   const auto change = [&](std::size_t i, int cycle) { apply_operators(lives[i], cycle); };
   live_cycles(lives, true, change, progress);
+}
+
+void Evaluation::develop_again(std::span<Life> lives, const Progress& progress) const {
+  std::vector<std::vector<Change>> changes;
+  for (const Life& life : lives) changes.push_back(life.newborn.record->changes());
+  const auto change = [&](std::size_t i, int cycle) {
+    for (const Change& made : changes[i])
+      if (made.cycle == static_cast<std::uint32_t>(cycle))
+        make_change(lives[i], made.edits, made.op, moment(lives[i], cycle, {}, {}));
+  };
+  // what was observed then is again, so that the simulation is the same to the bit
+  live_cycles(lives, experiment_.development.control != Control::random_places, change, progress);
 }
 
 void Evaluation::develop_yoked(std::span<Life> lives, const Progress& progress) const {
@@ -131,11 +144,11 @@ void Evaluation::develop_yoked(std::span<Life> lives, const Progress& progress) 
   {
     std::vector<Life> before(lives.begin(), lives.end());
     const auto change = [&](std::size_t i, int cycle) { apply_operators(before[i], cycle); };
-    live_cycles(before, true, change, [&](double done) { progress(done / 2); });
+    live_cycles(before, true, change, [](double) {});
     for (std::size_t i = 0; i < lives.size(); ++i) yokes.emplace_back(lives[i].living.body, before[i].result.record);
   }
-  const auto change = [&](std::size_t i, int cycle) { follow(yokes[i], lives[i], cycle); };
-  live_cycles(lives, false, change, [&](double done) { progress((1 + done) / 2); });
+  const auto change = [&](std::size_t i, int cycle) { change_as_in(yokes[i], lives[i], cycle); };
+  live_cycles(lives, false, change, progress);
 }
 
 template <class Action>
@@ -222,7 +235,7 @@ void Evaluation::apply_operator(Life& life, int cycle, std::size_t index) const 
   call_operator(experiment_, Devo::kind, index, develop, where);
 }
 
-void Evaluation::follow(Yoke& yoke, Life& life, int cycle) const {
+void Evaluation::change_as_in(Yoke& yoke, Life& life, int cycle) const {
   Rng rng = stream(life, place::random_places(cycle));
   for (const Amount& amount : yoke.amounts_after(cycle)) {
     const Moment now = moment(life, cycle, {}, {});

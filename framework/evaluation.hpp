@@ -20,6 +20,9 @@ struct Newborn {
   std::uint32_t id = 0;
   std::uint32_t generation = 0;
   const Genome* genome = nullptr;
+  /// Of a life that is lived again: its changes are made whatever the operators would do. For all of a batch or for
+  /// none.
+  const LifeRecord* record = nullptr;
 };
 
 /// How an evaluation ended.
@@ -99,6 +102,8 @@ class Evaluation {
   /// operators of a cycle ask for is recorded for them.
   template <class Action>
   void live_cycles(std::span<Life> lives, bool observed, const Action& change, const Progress& progress) const;
+  /// Lives whose changes are recorded already.
+  void develop_again(std::span<Life> lives, const Progress& progress) const;
   /// The control of random places: each life is lived once before, with the operators, and then follows that.
   void develop_yoked(std::span<Life> lives, const Progress& progress) const;
   /// The simulation of a cycle of development, recorded as the probe does it.
@@ -115,7 +120,7 @@ class Evaluation {
   void apply_operators(Life& life, int cycle) const;
   void apply_operator(Life& life, int cycle, std::size_t index) const;
   /// Changes as much as the operators did in the life to which this one is yoked, at random places.
-  void follow(Yoke& yoke, Life& life, int cycle) const;
+  void change_as_in(Yoke& yoke, Life& life, int cycle) const;
   /// Makes and records edits of an operator, or of none.
   void make_change(Life& life, const Edits& edits, std::optional<std::uint32_t> op, const Moment& now) const;
   /// What development has torn off is no longer part of the body.

@@ -260,14 +260,14 @@ void MassNumbers::remove(const std::vector<std::uint32_t>& masses) {
   for (auto mass = masses.rbegin(); mass != masses.rend(); ++mass) numbers_.erase(numbers_.begin() + *mass);
 }
 
-void MassNumbers::follow(const Edits& edits) {
+void MassNumbers::apply(const Edits& edits) {
   for (std::size_t i = 0; i < edits.new_masses.size(); ++i) add();
   remove(edits.removed_masses);
 }
 
 std::vector<std::uint32_t> mass_numbers(std::size_t born, const LifeRecord& record) {
   MassNumbers masses(born);
-  for (const Change& change : record.changes()) masses.follow(change.edits);
+  for (const Change& change : record.changes()) masses.apply(change.edits);
   return masses.numbers();
 }
 

@@ -57,7 +57,7 @@ class MassNumbers {
   /// Lets masses go, by their indices in ascending order.
   void remove(const std::vector<std::uint32_t>& masses);
   /// All that a change does: its new masses come, then others go.
-  void follow(const Edits& edits);
+  void apply(const Edits& edits);
 
   /// By the masses' indices, ascending.
   const std::vector<std::uint32_t>& numbers() const { return numbers_; }

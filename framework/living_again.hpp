@@ -13,9 +13,6 @@ namespace evodevo {
 /// The experiment of a run, to be simulated where its GPU may be missing.
 Experiment experiment_to_live_again(const Archive& archive, std::vector<std::filesystem::path> plugin_path);
 
-/// Makes an experiment one in which development does what it did in one life, whatever the operators would do.
-void follow(Experiment& experiment, const LifeRecord& record);
-
 /// Warns on stderr where an individual may develop otherwise on `device` than in the run: the device is another one and
 /// there is no record to follow.
 void warn_where_unsure(const Archive& archive, std::uint32_t id, const std::string& device);
@@ -26,8 +23,8 @@ struct LifeAgain {
   Life life;  ///< refers to the individual's genome
 };
 
-/// Follows the record of the life where the run has one. Changes the experiment to that end.
-LifeAgain live_again(const Archive& archive, Experiment& experiment, Simulator& simulator,
+/// Follows the record of the life where the run has one.
+LifeAgain live_again(const Archive& archive, const Experiment& experiment, Simulator& simulator,
                      const ArchivedIndividual& individual);
 
 }  // namespace evodevo

@@ -6,12 +6,13 @@
 namespace evodevo {
 namespace {
 
-constexpr double turn = 2 * 3.14159265358979323846;  // rad
-constexpr double phases = 4096;                      // of a turn
+constexpr std::uint32_t phases = 1u << (32 - phase_shift);  // of a turn
 constexpr double most_stiffness = 65'520, most_amplitude = 1'020, most_frequency = 1'020;
 
+/// How many of the units a value is. What there is little of is one, so that no spring loses its force.
 std::uint32_t counted(double value, double unit) {
-  return unit > 0 ? static_cast<std::uint32_t>(std::lround(std::abs(value) / unit)) : 0;
+  if (value == 0 || !(unit > 0)) return 0;
+  return std::max(1u, static_cast<std::uint32_t>(std::lround(std::abs(value) / unit)));
 }
 
 /// The phase (rad) of the same motion with an amplitude and a frequency that are not negative.
@@ -22,9 +23,10 @@ double phase_of(const Material& material) {
 
 }  // namespace
 
-MaterialUnits material_units(std::span<const Material> materials) {
+MaterialUnits material_units(const Body& body) {
   MaterialUnits largest;
-  for (const Material& material : materials) {
+  for (const Spring& spring : body.springs) {
+    const Material& material = body.materials[spring.material];
     largest.stiffness = std::max(largest.stiffness, material.stiffness);
     largest.amplitude = std::max(largest.amplitude, std::abs(material.amplitude));
     largest.frequency = std::max(largest.frequency, std::abs(material.frequency));
@@ -35,7 +37,7 @@ MaterialUnits material_units(std::span<const Material> materials) {
 MaterialCode code_of(const Material& material, const MaterialUnits& units) {
   const double turns = phase_of(material) / turn;
   // the last half of a step is the next turn's first
-  const auto phase = static_cast<std::uint32_t>(std::lround((turns - std::floor(turns)) * phases)) % 4096;
+  const auto phase = static_cast<std::uint32_t>(std::lround((turns - std::floor(turns)) * phases)) % phases;
   return {counted(material.stiffness, units.stiffness),
           phase << phase_shift | counted(material.amplitude, units.amplitude) << amplitude_shift |
               counted(material.frequency, units.frequency)};
@@ -46,11 +48,12 @@ Material material_of(const MaterialCode& code, const MaterialUnits& units) {
           (code.wave & frequency_mask) * units.frequency, (code.wave >> phase_shift) * (turn / phases)};
 }
 
-std::vector<Material> simulated_materials(std::span<const Material> materials, Materials way) {
-  std::vector<Material> simulated(materials.begin(), materials.end());
+std::vector<Material> simulated_materials(const Body& body, Materials way) {
+  std::vector<Material> simulated = body.materials;
   if (way == Materials::table) return simulated;
-  const MaterialUnits units = material_units(materials);
-  for (Material& material : simulated) material = material_of(code_of(material, units), units);
+  const MaterialUnits units = material_units(body);
+  for (const Spring& spring : body.springs)
+    simulated[spring.material] = material_of(code_of(body.materials[spring.material], units), units);
   return simulated;
 }
 

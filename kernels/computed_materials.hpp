@@ -2,7 +2,6 @@
 // code can say of a material, the CPU simulates as well.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "evodevo/body.hpp"
@@ -18,16 +17,18 @@ struct MaterialUnits {
   double frequency = 0;  ///< Hz
 };
 
-/// The units in which the largest stiffness, amplitude and frequency are 65,520, 1,020 and 1,020: numbers that many
-/// others divide, so that means of materials, and all that is in simple proportion to the largest, have codes.
-MaterialUnits material_units(std::span<const Material> materials);
+/// The units in which the largest stiffness, amplitude and frequency of a body's springs are 65,520, 1,020 and 1,020:
+/// numbers that many others divide, so that means of materials, and all that is in simple proportion to the largest,
+/// have codes.
+MaterialUnits material_units(const Body& body);
 
-/// The nearest code: off by half a unit at most, and half a 4,096th of a turn of phase.
+/// The nearest code of a material that a spring of the body has: off by half a unit at most, but for what is less than
+/// half a unit and not nothing, which is one; and by half a 4,096th of a turn of phase.
 MaterialCode code_of(const Material& material, const MaterialUnits& units);
 
 Material material_of(const MaterialCode& code, const MaterialUnits& units);
 
-/// The materials that a body is simulated with.
-std::vector<Material> simulated_materials(std::span<const Material> materials, Materials way);
+/// The materials that a body is simulated with; those that no spring has are as they were.
+std::vector<Material> simulated_materials(const Body& body, Materials way);
 
 }  // namespace evodevo

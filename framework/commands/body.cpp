@@ -73,7 +73,7 @@ int body_command(const Arguments& arguments) {
   const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
   const Archive archive = Archive::read((*given)["DIR"].as<std::string>());
-  Experiment experiment = experiment_to_live_again(archive, given_plugin_path(*given));
+  const Experiment experiment = experiment_to_live_again(archive, given_plugin_path(*given));
   const ArchivedIndividual individual = chosen_individual(archive, *given);
   const auto simulator = make_simulator(experiment);
   const Life life = given->contains("matured") ? live_again(archive, experiment, *simulator, individual).life

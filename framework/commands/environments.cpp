@@ -104,8 +104,8 @@ struct Answer {
   std::vector<Pair> pairs;
 };
 
-Answer answer(const std::vector<Experiment>& experiments, const Individual& individual, std::uint32_t starts,
-              std::size_t cycles) {
+Answer answer_of(const std::vector<Experiment>& experiments, const Individual& individual, std::uint32_t starts,
+                 std::size_t cycles) {
   Answer answer{individual.id, {}, {}};
   auto& environments = answer.environments;
   for (const Experiment& experiment : experiments) environments.push_back(grow(experiment, individual, starts));
@@ -116,6 +116,9 @@ Answer answer(const std::vector<Experiment>& experiments, const Individual& indi
         for (std::size_t cycle = 0; cycle < cycles; ++cycle)
           pair.effects[kind].push_back(compare(environments[a], environments[b], cycle, kinds[kind].distance));
     }
+  for (Environment& environment : environments)
+    for (Grown& grown : environment.grown)  // the last is shown; there are too many to keep them all
+      if (grown.after.size() > 1) grown.after.erase(grown.after.begin(), grown.after.end() - 1);
   return answer;
 }
 
@@ -294,7 +297,7 @@ int environments_command(const Arguments& arguments) {
     cycles = std::min(cycles, static_cast<std::size_t>(experiment.development.cycles));
   std::vector<Answer> answers;
   for (const Individual& individual : chosen_genomes(experiments, *given))
-    answers.push_back(answer(experiments, individual, static_cast<std::uint32_t>(starts), cycles));
+    answers.push_back(answer_of(experiments, individual, static_cast<std::uint32_t>(starts), cycles));
   if (!given->contains("json")) {
     print(answers, cycles);
     return 0;

@@ -26,9 +26,9 @@ int film_command(const Arguments& arguments) {
   const ArchivedIndividual shown = chosen_individual(archive, *given);
   const Cast cast =
       given->contains("individual") ? Cast{.best = 0, .individuals = {shown.id}} : Cast{.best = 1, .ancestors = 0};
-  Experiment experiment = experiment_to_live_again(archive, given_plugin_path(*given));
+  const Experiment experiment = experiment_to_live_again(archive, given_plugin_path(*given));
   const auto simulator = make_simulator(experiment);
-  auto data = report_data({reported_run(archive, std::move(experiment), *simulator, cast, page_budget)});
+  auto data = report_data({reported_run(archive, experiment, *simulator, cast, page_budget)});
   const auto file = (*given)["out"].as<std::string>();
   shoot(filled_page(page, data), file,
         given->contains("at") ? std::optional((*given)["at"].as<double>()) : std::nullopt);

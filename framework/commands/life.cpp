@@ -169,7 +169,7 @@ class Biography {
   Biography(const Archive& archive, const ArchivedIndividual& individual,
             std::vector<std::filesystem::path> plugin_path)
       : individual_(individual) {
-    Experiment experiment = experiment_to_live_again(archive, std::move(plugin_path));
+    const Experiment experiment = experiment_to_live_again(archive, std::move(plugin_path));
     operators_ = narrated_operators(experiment);
     const auto simulator = make_simulator(experiment);
     LifeAgain again = live_again(archive, experiment, *simulator, individual_);

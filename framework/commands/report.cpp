@@ -19,9 +19,9 @@ nlohmann::ordered_json reported(const std::string& folder, const po::variables_m
   if (given.contains("individual"))
     for (const std::int64_t id : given["individual"].as<std::vector<std::int64_t>>())
       cast.individuals.push_back(individual_named(archive, id).id);
-  Experiment experiment = experiment_to_live_again(archive, given_plugin_path(given));
+  const Experiment experiment = experiment_to_live_again(archive, given_plugin_path(given));
   const auto simulator = make_simulator(experiment);
-  return reported_run(archive, std::move(experiment), *simulator, cast, budget);
+  return reported_run(archive, experiment, *simulator, cast, budget);
 }
 
 }  // namespace

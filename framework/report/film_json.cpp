@@ -250,8 +250,8 @@ class FilmWriter {
 
   /// Of the i-th shot every so many-th frame, or more where it is measured, and the last.
   std::vector<const Frame*> kept_frames(std::size_t i, std::size_t every) const {
-    if (titles_.at(i).measured) every = std::max(least_thinning, every / measured_finer);
     const std::vector<Frame>& frames = film_[i].frames;
+    if (titles_.at(i).measured && every < frames.size()) every = std::max(least_thinning, every / measured_finer);
     std::vector<const Frame*> kept;
     for (std::size_t f = 0; f < frames.size(); ++f)
       if (f % every == 0 || f + 1 == frames.size()) kept.push_back(&frames[f]);

@@ -107,7 +107,7 @@ void number_masses(Film& film, const LifeRecord& record) {
   const std::vector<Change> changes = record.changes();
   auto next = changes.begin();
   for (std::size_t i = 0; i < film.size(); ++i) {
-    for (; next != changes.end() && next->cycle <= i; ++next) numbers.follow(next->edits);
+    for (; next != changes.end() && next->cycle <= i; ++next) numbers.apply(next->edits);
     film[i].numbers = numbers.numbers();
   }
 }

@@ -145,23 +145,24 @@ Json robot_json(const Archive& archive, const Role& role, const FilmedLife& life
   return robot;
 }
 
-/// All together, then those again, each by itself, who develop otherwise here than in the run. Changes the experiment.
-std::vector<FilmedLife> film_lives_of_run(const Archive& archive, Experiment& experiment, Simulator& simulator,
+/// All together, then those again, each by itself, who develop otherwise here than in the run.
+std::vector<FilmedLife> film_lives_of_run(const Archive& archive, const Experiment& experiment, Simulator& simulator,
                                           const std::vector<Newborn>& newborns) {
   std::vector<FilmedLife> lives = film_lives(experiment, simulator, newborns);
   for (std::size_t i = 0; i < lives.size(); ++i) {
     warn_where_unsure(archive, newborns[i].id, simulator.device());
     const std::optional<LifeRecord> record = archive.life(newborns[i].id);
     if (!record || *record == lives[i].result.record) continue;
-    follow(experiment, *record);
-    lives[i] = std::move(film_lives(experiment, simulator, {&newborns[i], 1}).front());
+    Newborn as_recorded = newborns[i];
+    as_recorded.record = &*record;
+    lives[i] = std::move(film_lives(experiment, simulator, {&as_recorded, 1}).front());
   }
   return lives;
 }
 
 }  // namespace
 
-Json reported_run(const Archive& archive, Experiment experiment, Simulator& simulator, const Cast& cast,
+Json reported_run(const Archive& archive, const Experiment& experiment, Simulator& simulator, const Cast& cast,
                   std::size_t budget) {
   const std::vector<Role> roles = Casting(archive).choose(cast);
   std::vector<Newborn> newborns;

@@ -21,7 +21,7 @@ struct Cast {
 
 /// A run as a report shows it: its numbers, its population, and its cast lived again on `simulator`; see
 /// living_again.hpp. `budget` is for its robots' films.
-nlohmann::ordered_json reported_run(const Archive& archive, Experiment experiment, Simulator& simulator,
+nlohmann::ordered_json reported_run(const Archive& archive, const Experiment& experiment, Simulator& simulator,
                                     const Cast& cast, std::size_t budget);
 
 /// A page of runs.

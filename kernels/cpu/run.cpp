@@ -190,7 +190,7 @@ void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels
   Body coded;  // where its materials are computed
   if (stepping.materials == Materials::computed) {
     coded = *task.body;
-    coded.materials = simulated_materials(task.body->materials, stepping.materials);
+    coded.materials = simulated_materials(*task.body, stepping.materials);
   }
   const Body& body = stepping.materials == Materials::computed ? coded : *task.body;
   State& state = *task.state;

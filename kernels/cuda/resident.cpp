@@ -4,8 +4,6 @@
 #include <bit>
 #include <cmath>
 
-#include "computed_materials.hpp"
-
 namespace evodevo::cuda {
 namespace {
 
@@ -183,9 +181,8 @@ ResidentForm Resident<T>::form() const {
 
 /// The high half of Record::packed for each material.
 template <class T>
-std::vector<typename FixedPoint<T>::Integer> Resident<T>::materials_in_records() const {
+std::vector<typename FixedPoint<T>::Integer> Resident<T>::materials_in_records(const MaterialUnits& units) const {
   const std::vector<Material>& materials = task_->body->materials;
-  const MaterialUnits units = material_units(materials);
   const unsigned entry_size = sizeof(Entry<T>) / (form().wide_table ? sizeof(T) : 1);
   std::vector<typename FixedPoint<T>::Integer> halves;
   for (std::uint32_t i = 0; i < materials.size(); ++i)
@@ -194,10 +191,10 @@ std::vector<typename FixedPoint<T>::Integer> Resident<T>::materials_in_records()
 }
 
 template <class T>
-void Resident<T>::pack_records(Record<T>* to) const {
+void Resident<T>::pack_records(Record<T>* to, const MaterialUnits& units) const {
   using Integer = typename FixedPoint<T>::Integer;
   const unsigned unit = form().wide_offsets ? sizeof(T) : 1;
-  const std::vector<Integer> materials = materials_in_records();
+  const std::vector<Integer> materials = materials_in_records(units);
   for (const Arrangement::Slot& slot : arrangement().slots) {
     const auto other = static_cast<Integer>(offset_of_place<T>(slot.other) / unit);
     if (slot.spring == Arrangement::none) {
@@ -210,8 +207,7 @@ void Resident<T>::pack_records(Record<T>* to) const {
 }
 
 template <class T>
-void Resident<T>::pack_waves(std::uint32_t* to) const {
-  const MaterialUnits units = material_units(task_->body->materials);
+void Resident<T>::pack_waves(std::uint32_t* to, const MaterialUnits& units) const {
   std::vector<std::uint32_t> waves;
   for (const Material& material : task_->body->materials) waves.push_back(code_of(material, units).wave);
   for (const Arrangement::Slot& slot : arrangement().slots)
@@ -240,23 +236,23 @@ template <class T>
 ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, const EnergyGuard& guard,
                                   const Scene& scene) const {
   using Integer = typename FixedPoint<T>::Integer;
-  pack_records(records_.in(host.input));
-  if (waves_in(slots()) > 0) pack_waves(waves_.in(host.input));
+  const MaterialUnits units = has_codes(features_) ? material_units(*task_->body) : MaterialUnits{};
+  pack_records(records_.in(host.input), units);
+  if (waves_in(slots()) > 0) pack_waves(waves_.in(host.input), units);
   pack_masses(host);
   std::copy(arrangement().first_group.begin(), arrangement().first_group.end(), first_group_.in(host.input));
   std::copy(arrangement().turns.begin(), arrangement().turns.end(), turns_.in(host.input));
   std::transform(arrangement().magic_numbers.begin(), arrangement().magic_numbers.end(), start_.in(host.input),
                  [](std::int32_t count) { return static_cast<Integer>(count) * FixedPoint<T>::magic_bits; });
   actuators_.in(host.input)[0] = {};
-  const std::vector<Material> materials = simulated_materials(task_->body->materials, features_.materials);
+  const std::vector<Material> materials = simulated_materials(*task_->body, features_.materials);
   std::transform(materials.begin(), materials.end(), actuators_.in(host.input) + 1,
                  [&](const Material& material) { return actuator_of(material, range_.resolution); });
   *answer_.in(host.state) = {};
-  const MaterialUnits units = material_units(task_->body->materials);
   return {.world = world_of<T>(scene, task_->dt),
           .units = {.stiffness = static_cast<T>(units.stiffness / range_.resolution),
                     .amplitude = static_cast<T>(units.amplitude / (1 << amplitude_shift)),
-                    .angular_frequency = static_cast<T>(2 * 3.14159265358979323846 * units.frequency),
+                    .angular_frequency = static_cast<T>(turn * units.frequency),
                     .frequency = units.frequency},
           .records = records_.in(device.input),
           .waves = waves_.in(device.input),

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "computed_materials.hpp"
 #include "cuda/answers.hpp"
 #include "cuda/arrangement.hpp"
 #include "cuda/features.hpp"
@@ -78,9 +79,9 @@ class Resident {
   bool fit(std::size_t shared_bytes);
   std::size_t waves_in(std::size_t slots) const;
   void reserve();
-  std::vector<typename FixedPoint<T>::Integer> materials_in_records() const;
-  void pack_records(Record<T>* to) const;
-  void pack_waves(std::uint32_t* to) const;
+  std::vector<typename FixedPoint<T>::Integer> materials_in_records(const MaterialUnits& units) const;
+  void pack_records(Record<T>* to, const MaterialUnits& units) const;
+  void pack_waves(std::uint32_t* to, const MaterialUnits& units) const;
   void pack_masses(const Regions& host) const;
   void unpack_springs(const Regions& host, Task& task) const;
 

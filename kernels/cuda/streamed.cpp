@@ -109,7 +109,7 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
   pack_joints(host);
   pack_colours(host);
   actuators_.in(host.input)[0] = {};
-  const std::vector<Material> materials = simulated_materials(body.materials, features_.materials);
+  const std::vector<Material> materials = simulated_materials(body, features_.materials);
   std::transform(materials.begin(), materials.end(), actuators_.in(host.input) + 1,
                  [](const Material& material) { return actuator_of(material, 1); });
   const auto point = [](Vec3 v) {

@@ -93,6 +93,14 @@ TEST_F(Environments, TheTableNamesScenesAndCycles) {
     EXPECT_THAT(finished.output, HasSubstr(part));
 }
 
+TEST_F(Environments, BodiesAtRandomPlacesAreTheOnesThatHaveGrown) {
+  const auto springs = [&](const std::string& control) {
+    const auto answer = json({flat_, flat_, "--starts", "1", "--set", "development.control=" + control})[0];
+    return answer.at("scenes")[0].at("starts")[0].at("body").at("springs");
+  };
+  EXPECT_NE(springs("random-places"), springs("no-change"));
+}
+
 TEST_F(Environments, OneGenomeNeedsOneMeaning) {
   const std::string sized = other("sized.toml", "edge = 0.5", "edge = 0.6");
   const testing::Finished finished = environments({flat_, sized});

@@ -69,6 +69,7 @@ void expect_same_runs(const Archive& a, const Archive& b) {
     EXPECT_EQ(one.result.status, other.result.status);
     EXPECT_EQ(one.result.reason, other.result.reason);
     EXPECT_EQ(one.result.objectives, other.result.objectives);
+    EXPECT_EQ(a.life(id), b.life(id)) << id;
   }
   EXPECT_FALSE(b.individual(id).has_value());
   EXPECT_EQ(id, 75u);

@@ -73,7 +73,7 @@ TEST(Resident, SpringsCarryTheCodesOfTheirMaterials) {
     const Regions regions{input.data(), motion.data(), nullptr};
     const auto packed =
         resident->pack(regions, regions, EnergyGuard(body, state, scene, Precision::float32, task.dt), scene);
-    const MaterialUnits units = material_units(body.materials);
+    const MaterialUnits units = material_units(body);
     EXPECT_FLOAT_EQ(packed.units.stiffness * static_cast<float>(packed.resolution),
                     static_cast<float>(units.stiffness));
     EXPECT_FLOAT_EQ(packed.units.amplitude * amplitude_mask, static_cast<float>(1023 * units.amplitude));

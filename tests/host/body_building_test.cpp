@@ -89,9 +89,8 @@ TEST(BodyBuilding, SpringsToNeighboursHaveTheMeanSizeOfTheirMasses) {
   const BuiltBody built = build_body(blueprint);
   ASSERT_EQ(built.body.springs.size(), 3u);
   const auto expect_length = [&](std::size_t spring, double start, double end) {
-    const auto& [a, b, rest_length, material, growth] = built.body.springs[spring];
-    EXPECT_DOUBLE_EQ(rest_length, start);
-    EXPECT_FLOAT_EQ(growth, static_cast<float>(end / start));
+    EXPECT_DOUBLE_EQ(built.body.springs[spring].rest_length, start);
+    EXPECT_FLOAT_EQ(built.body.springs[spring].growth, static_cast<float>(end / start));
   };
   expect_length(0, 5, 5);  // the encoding's own
   expect_length(1, 1.0 * 1, 0.75 * 1);

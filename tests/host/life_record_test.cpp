@@ -232,23 +232,35 @@ TEST(LifeRecord, WhatComesAboutAtRandomPlacesHasNoCause) {
   EXPECT_EQ(causes_named(experiment), 0u);
 }
 
-TEST(LifeRecord, ALifeFollowsItsRecordWhateverTheOperatorsWouldDo) {
-  const Lived lived = std::move(matured(all_operators(true), 3).back());
+/// Lives again, by their record, the last of some lives under `control`, where development would do otherwise.
+void expect_that_a_life_follows_its_record(Control control) {
+  const auto experiment = [&] {
+    Experiment all = all_operators(true);
+    all.development.control = control;
+    return all;
+  };
+  const Lived lived = std::move(matured(experiment(), 3).back());
   ASSERT_TRUE(lived.life.alive());
-  Experiment other = all_operators(true);
+  Experiment other = experiment();
   other.seed += 1;  // development would draw other numbers
-  other.development.control = Control::random_places;
-  follow(other, lived.life.result.record);
   const auto simulator = make_cpu_simulator(other.scene, other.stepping, 1);
   const Evaluation evaluation(other, *simulator);
   const Experiment first = all_operators(true);
   const Individual individual = breed(first, {}, 0, 0, 3).back();
-  const Newborn newborn{individual.id, 0, &individual.genome};
+  const Newborn newborn{individual.id, 0, &individual.genome, &lived.life.result.record};
   std::vector<Life> lives = evaluation.birth({&newborn, 1});
   evaluation.develop(lives, [](double) {});
   expect_same(lives.front().living.body, lived.life.living.body);
   EXPECT_EQ(lives.front().living.state.position, lived.life.living.state.position);
   EXPECT_EQ(lives.front().result.record, lived.life.result.record);
+}
+
+TEST(LifeRecord, ALifeFollowsItsRecordWhateverTheOperatorsWouldDo) {
+  expect_that_a_life_follows_its_record(Control::off);
+}
+
+TEST(LifeRecord, ALifeAtRandomPlacesFollowsItsRecordWhicheverOperatorComesFirst) {
+  expect_that_a_life_follows_its_record(Control::random_places);
 }
 
 Experiment run_of_60() {

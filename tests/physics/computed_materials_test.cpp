@@ -21,12 +21,21 @@ std::vector<Material> random_materials(std::size_t count) {
   return materials;
 }
 
+/// Two masses joined by a spring of each material.
+Body body_of(std::vector<Material> materials) {
+  Body body;
+  body.masses.resize(2);
+  for (std::uint32_t i = 0; i < materials.size(); ++i) body.springs.push_back({0, 1, 1, i});
+  body.materials = std::move(materials);
+  return body;
+}
+
 TEST(ComputedMaterials, ThePapersAndTheirMeansAreExact) {
   const std::vector<Material> paper{{5000, 0.14, 1, 0}, {4000, 0, 0, 0}, {5000, 0.14, 1, pi}, {10000, 0, 0, 0}};
   std::vector<Material> all;
   for (const Material& a : paper)
     for (const Material& b : paper) all.push_back(mean(a, b));
-  const std::vector<Material> simulated = simulated_materials(all, Materials::computed);
+  const std::vector<Material> simulated = simulated_materials(body_of(all), Materials::computed);
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_DOUBLE_EQ(simulated[i].stiffness, all[i].stiffness);
     EXPECT_DOUBLE_EQ(simulated[i].amplitude, all[i].amplitude);
@@ -37,8 +46,8 @@ TEST(ComputedMaterials, ThePapersAndTheirMeansAreExact) {
 
 TEST(ComputedMaterials, OthersAreOffByHalfAUnitAtMost) {
   const std::vector<Material> materials = random_materials(2000);
-  const MaterialUnits units = material_units(materials);
-  const std::vector<Material> simulated = simulated_materials(materials, Materials::computed);
+  const MaterialUnits units = material_units(body_of(materials));
+  const std::vector<Material> simulated = simulated_materials(body_of(materials), Materials::computed);
   const double rounding = 1 + 1e-9, half_phase = pi / 4096;
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material &given = materials[i], &rounded = simulated[i];
@@ -55,7 +64,7 @@ TEST(ComputedMaterials, OthersAreOffByHalfAUnitAtMost) {
 
 TEST(ComputedMaterials, CodesHaveRoomForTheLargest) {
   const std::vector<Material> materials{{1e9, 0.9, 1e3, 2 * pi * (1 - 1e-9)}, {0, 0, 0, 0}};
-  const MaterialUnits units = material_units(materials);
+  const MaterialUnits units = material_units(body_of(materials));
   const MaterialCode largest = code_of(materials[0], units);
   EXPECT_LT(largest.stiffness, 1u << 16);
   EXPECT_EQ(largest.wave >> phase_shift, 0u) << "a whole turn is none";
@@ -64,7 +73,25 @@ TEST(ComputedMaterials, CodesHaveRoomForTheLargest) {
   EXPECT_DOUBLE_EQ(back.amplitude, 0.9);
   EXPECT_DOUBLE_EQ(back.frequency, 1e3);
   EXPECT_EQ(material_of(code_of(materials[1], units), units), Material{});
-  EXPECT_EQ(simulated_materials({{Material{}}}, Materials::computed), std::vector<Material>{Material{}}) << "no units";
+  EXPECT_EQ(simulated_materials(body_of({Material{}}), Materials::computed), std::vector<Material>{Material{}})
+      << "no units";
+}
+
+TEST(ComputedMaterials, NoSpringIsTooSoftToHaveAForce) {
+  const Body body = body_of({{10000, 0.2, 2, 0}, {1e-3, 1e-9, 1e-9, 0}});
+  const MaterialUnits units = material_units(body);
+  const Material soft = simulated_materials(body, Materials::computed)[1];
+  EXPECT_EQ(soft.stiffness, units.stiffness);
+  EXPECT_EQ(soft.amplitude, units.amplitude);
+  EXPECT_EQ(soft.frequency, units.frequency);
+}
+
+TEST(ComputedMaterials, WhatNoSpringHasDecidesNothing) {
+  const Body body = body_of({{5037, 0.1234, 1.07, 1}});
+  Body with_more = body;
+  with_more.materials.push_back({1e7, 0.9, 30, 0});
+  EXPECT_EQ(simulated_materials(with_more, Materials::computed)[0], simulated_materials(body, Materials::computed)[0]);
+  EXPECT_EQ(simulated_materials(with_more, Materials::computed)[1], with_more.materials[1]);
 }
 
 class ComputedMaterialsOnTheCpu : public testing::TestWithParam<Arithmetic> {};
@@ -80,7 +107,7 @@ TEST_P(ComputedMaterialsOnTheCpu, AreThoseOfTheCodes) {
   body.materials = random_materials(body.springs.size());
   for (std::uint32_t i = 0; i < body.springs.size(); ++i) body.springs[i].material = i;
   Body rounded = body;
-  rounded.materials = simulated_materials(body.materials, Materials::computed);
+  rounded.materials = simulated_materials(body, Materials::computed);
   const Scene scene{Gravity{}, {}, {}, Damping{}, {}};
   const State start = resting(body, scene);
   const auto moved = [&, method = method, precision = precision](const Body& b, Materials materials) {

@@ -19,8 +19,8 @@ function programs(names) {
   return names.flatMap((name) => folders.map((folder) => join(folder, name))).filter(isThere);
 }
 
-/** A snap cannot read the pages, which lie in /tmp; and what Ubuntu's package chromium-browser holds does no more than
- *  ask for one. */
+/** A snap cannot read the pages, which lie in the folder for temporary files; and what Ubuntu's package
+ *  chromium-browser holds does no more than ask for one. */
 function isSnap(path) {
   const target = realpathSync(path);
   if (target.includes("/snap")) return true;

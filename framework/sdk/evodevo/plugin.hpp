@@ -27,7 +27,7 @@ inline constexpr std::uint32_t plugin_struct_digest = [] {
         sizeof(Rng),           sizeof(GeneSpec), sizeof(Layout),  sizeof(World),       sizeof(Blueprint),
         sizeof(Moment),        sizeof(Edits),    sizeof(NewMass), sizeof(NewSpring),   sizeof(ChangedSpring),
         sizeof(SpringRequest), sizeof(Measure),  sizeof(Request), sizeof(Observation), sizeof(Objective),
-        sizeof(Candidate)})
+        sizeof(Candidate),     sizeof(Size)})
     digest = (digest ^ static_cast<std::uint32_t>(size)) * 16777619u;
   return digest;
 }();

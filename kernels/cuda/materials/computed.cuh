@@ -49,7 +49,7 @@ struct Lengths {
   /// Where in its cycle a spring is, rad from -pi to pi. Overflow is whole turns.
   __device__ __forceinline__ Number angle(unsigned wave) const {
     const unsigned turns = (wave & phase_mask) + (wave & frequency_mask) * clock;
-    return static_cast<Number>(static_cast<int>(turns)) * Number(2 * 3.14159265358979323846 * 0x1p-32);
+    return static_cast<Number>(static_cast<int>(turns)) * Number(turn * 0x1p-32);
   }
 
   __device__ __forceinline__ Number amplitude(unsigned wave) const {
