@@ -9,10 +9,8 @@ namespace {
 constexpr std::uint32_t phases = 1u << (32 - phase_shift);  // of a turn
 constexpr double most_stiffness = 65'520, most_amplitude = 1'020, most_frequency = 1'020;
 
-/// How many of the units a value is. What there is little of is one, so that no spring loses its force.
 std::uint32_t counted(double value, double unit) {
-  if (value == 0 || !(unit > 0)) return 0;
-  return std::max(1u, static_cast<std::uint32_t>(std::lround(std::abs(value) / unit)));
+  return unit > 0 ? static_cast<std::uint32_t>(std::lround(std::abs(value) / unit)) : 0;
 }
 
 /// The phase (rad) of the same motion with an amplitude and a frequency that are not negative.
@@ -38,7 +36,8 @@ MaterialCode code_of(const Material& material, const MaterialUnits& units) {
   const double turns = phase_of(material) / turn;
   // the last half of a step is the next turn's first
   const auto phase = static_cast<std::uint32_t>(std::lround((turns - std::floor(turns)) * phases)) % phases;
-  return {counted(material.stiffness, units.stiffness),
+  const std::uint32_t least = material.stiffness > 0 ? 1 : 0;  // no spring loses its force
+  return {std::max(least, counted(material.stiffness, units.stiffness)),
           phase << phase_shift | counted(material.amplitude, units.amplitude) << amplitude_shift |
               counted(material.frequency, units.frequency)};
 }

@@ -22,8 +22,8 @@ struct MaterialUnits {
 /// have codes.
 MaterialUnits material_units(const Body& body);
 
-/// The nearest code of a material that a spring of the body has: off by half a unit at most, but for what is less than
-/// half a unit and not nothing, which is one; and by half a 4,096th of a turn of phase.
+/// The nearest code of a material that a spring of the body has: off by half a unit at most, but for a stiffness of
+/// less than half a unit that is not 0, which is one; and by half a 4,096th of a turn of phase.
 MaterialCode code_of(const Material& material, const MaterialUnits& units);
 
 Material material_of(const MaterialCode& code, const MaterialUnits& units);

@@ -51,7 +51,8 @@ TEST(ComputedMaterials, OthersAreOffByHalfAUnitAtMost) {
   const double rounding = 1 + 1e-9, half_phase = pi / 4096;
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material &given = materials[i], &rounded = simulated[i];
-    EXPECT_NEAR(rounded.stiffness, given.stiffness, units.stiffness / 2 * rounding);
+    const bool is_least = given.stiffness > 0 && given.stiffness < units.stiffness / 2;
+    EXPECT_NEAR(rounded.stiffness, given.stiffness, units.stiffness / (is_least ? 1 : 2) * rounding);
     EXPECT_NEAR(rounded.amplitude, std::abs(given.amplitude), units.amplitude / 2 * rounding);
     EXPECT_NEAR(rounded.frequency, std::abs(given.frequency), units.frequency / 2 * rounding);
     // the same motion, whatever the signs
@@ -82,8 +83,6 @@ TEST(ComputedMaterials, NoSpringIsTooSoftToHaveAForce) {
   const MaterialUnits units = material_units(body);
   const Material soft = simulated_materials(body, Materials::computed)[1];
   EXPECT_EQ(soft.stiffness, units.stiffness);
-  EXPECT_EQ(soft.amplitude, units.amplitude);
-  EXPECT_EQ(soft.frequency, units.frequency);
 }
 
 TEST(ComputedMaterials, WhatNoSpringHasDecidesNothing) {
