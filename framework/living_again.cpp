@@ -3,6 +3,7 @@
 #include <iostream>
 
 namespace evodevo {
+
 Experiment experiment_to_live_again(const Archive& archive, std::vector<std::filesystem::path> plugin_path) {
   Experiment experiment = recorded_experiment(archive, std::move(plugin_path));
   if (experiment.device == "cuda") experiment.device = "auto";
