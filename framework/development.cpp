@@ -197,9 +197,9 @@ class Editor {
 
   /// Leaves what stays in a record, and adds the mean of it for each spring that comes.
   void move_record(std::vector<double>& record, const std::vector<std::uint32_t>& staying) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < staying.size(); ++i) sum += record[i] = record[staying[i]];
+    for (std::size_t i = 0; i < staying.size(); ++i) record[i] = record[staying[i]];
     record.resize(staying.size());
+    const double sum = std::accumulate(record.begin(), record.end(), 0.0);
     record.resize(staying.size() + edits_.new_springs.size(),
                   staying.empty() ? 0 : sum / static_cast<double>(staying.size()));
   }

@@ -78,39 +78,50 @@ std::vector<std::uint32_t> places_after(const Body& body, std::uint32_t places,
   return place_of;
 }
 
+Outline::Outline(const Body& body) {
+  rest.reserve(body.masses.size());
+  for (const Mass& mass : body.masses) rest.push_back(mass.rest);
+  ends.reserve(body.springs.size());
+  for (const Spring& spring : body.springs) ends.emplace_back(spring.a, spring.b);
+}
+
+bool Outline::fits(const Body& body) const {
+  return body.masses.size() == rest.size() &&
+         std::equal(body.springs.begin(), body.springs.end(), ends.begin(), ends.end(),
+                    [](const Spring& spring, const auto& pair) { return std::pair(spring.a, spring.b) == pair; });
+}
+
 Arrangement::Arrangement(const Body& body, unsigned largest_block)
     : groups(divided(body.masses.size(), 32)), place_of(places_by_valence(body)) {
   const std::vector<std::uint32_t> all_open(body.springs.size(), open);
   arrange(body, largest_block, {all_open, all_open});
 }
 
-Arrangement::Arrangement(const Body& body, unsigned largest_block, const Arrangement& earlier,
-                         std::span<const Vec3> earlier_rest)
+Arrangement::Arrangement(const Body& body, unsigned largest_block, const Arrangement& earlier, const Outline& outline)
     : groups(divided(body.masses.size(), 32)),
-      place_of(places_after(body, 32 * groups, earlier.place_of, earlier_rest)) {
+      place_of(places_after(body, 32 * groups, earlier.place_of, outline.rest)) {
   Settled settled;
   settled.owner.reserve(body.springs.size());
   settled.row.reserve(body.springs.size());
   const std::vector<std::uint32_t> group_of_row = earlier.groups_of_rows();
-  std::size_t next = 0;  // of the earlier springs
+  auto next = outline.ends.begin();
   for (const Spring& spring : body.springs) {
     const std::uint32_t a = place_of[spring.a], b = place_of[spring.b];
-    const auto was_here = [&](std::uint32_t slot) {
-      const std::uint32_t owner = 32 * group_of_row[slot / 32] + slot % 32, other = earlier.slots[slot].other;
-      // without branches, because which end owns a spring is anyone's guess
-      return ((owner == a) & (other == b)) | ((owner == b) & (other == a));
-    };
-    const auto found =
-        std::find_if(earlier.slot_of.begin() + static_cast<std::ptrdiff_t>(next), earlier.slot_of.end(), was_here);
-    if (found == earlier.slot_of.end()) {
+    const auto found = std::find_if(next, outline.ends.end(), [&](const auto& ends) {
+      const std::uint32_t c = earlier.place_of[ends.first], d = earlier.place_of[ends.second];
+      // without branches, because which of them a new mass has come to is anyone's guess
+      return ((c == a) & (d == b)) | ((d == a) & (c == b));
+    });
+    if (found == outline.ends.end()) {
       settled.owner.push_back(open);
       settled.row.push_back(open);
       continue;
     }
-    next = static_cast<std::size_t>(found - earlier.slot_of.begin()) + 1;
-    const std::uint32_t group = group_of_row[*found / 32];
-    settled.owner.push_back(32 * group + *found % 32);
-    settled.row.push_back(*found / 32 - earlier.first_row[group]);
+    next = found + 1;
+    const std::uint32_t slot = earlier.slot_of[static_cast<std::size_t>(found - outline.ends.begin())];
+    const std::uint32_t group = group_of_row[slot / 32];
+    settled.owner.push_back(32 * group + slot % 32);
+    settled.row.push_back(slot / 32 - earlier.first_row[group]);
   }
   arrange(body, largest_block, std::move(settled));
 }
@@ -123,55 +134,66 @@ std::vector<std::uint32_t> Arrangement::groups_of_rows() const {
 }
 
 void Arrangement::arrange(const Body& body, unsigned largest_block, Settled settled) {
-  const std::vector<std::uint32_t> settled_owner = settled.owner;
-  choose_owners(body, place_of, groups, settled.owner);
-  slot_of.resize(body.springs.size());
-  magic_numbers.assign(32 * groups, 0);
-  std::vector<Group> members(groups);
-  std::vector<std::uint32_t> owned(32 * groups);
-  for (Group& group : members) {
-    group.links.reserve(body.springs.size() / groups * 3 / 2);
-    group.slots.reserve(group.links.capacity());
-  }
-  for (std::uint32_t i = 0; i < body.springs.size(); ++i) {
-    const std::uint32_t owner = settled.owner[i];
-    const std::uint32_t other = place_of[body.springs[i].a] + place_of[body.springs[i].b] - owner;
-    Group& group = members[owner / 32];
-    group.links.push_back({static_cast<std::uint8_t>(owner % 32), static_cast<std::uint8_t>(other % 32),
-                           owner == settled_owner[i] ? settled.row[i] : open});
-    group.slots.push_back({i, other});
-    group.rows = std::max<std::size_t>(group.rows, ++owned[owner]);
-    --magic_numbers[other];
-  }
-  std::size_t needed = 0;
-  for (const Group& group : members) needed += group.rows;
+  std::vector<std::uint32_t> owner = settled.owner;
+  choose_owners(body, place_of, groups, owner);
+  Members members = members_of_groups(body, owner, settled);
+  const std::size_t needed = std::accumulate(members.rows.begin(), members.rows.end(), std::size_t{0});
   shape = shape_for(needed, groups, largest_block);
   // rows that are left over stay empty, with the last group that has any
-  const auto last = std::find_if(members.rbegin(), members.rend(), [](const Group& g) { return g.rows > 0; });
-  if (groups > 0) (last == members.rend() ? members.front() : *last).rows += shape.slots() / 32 - needed;
+  const auto last = std::find_if(members.rows.rbegin(), members.rows.rend(), [](std::size_t rows) { return rows > 0; });
+  if (groups > 0) (last == members.rows.rend() ? members.rows.front() : *last) += shape.slots() / 32 - needed;
   lay(members);
   fill_empty_slots();
 }
 
+/// Counts, for the magic numbers, the springs that lead to each place too.
+Arrangement::Members Arrangement::members_of_groups(const Body& body, const std::vector<std::uint32_t>& owner,
+                                                    const Settled& settled) {
+  std::vector<std::uint32_t> owned(32 * groups, 0);
+  for (const std::uint32_t place : owner) ++owned[place];
+  Members members{.rows = std::vector<std::size_t>(groups),
+                  .first = std::vector<std::size_t>(groups + 1),
+                  .links = std::vector<Link>(owner.size()),
+                  .slots = std::vector<Slot>(owner.size())};
+  for (std::uint32_t g = 0; g < groups; ++g) {
+    const auto begin = owned.begin() + 32 * g, end = begin + 32;
+    members.rows[g] = *std::max_element(begin, end);
+    members.first[g + 1] = members.first[g] + std::accumulate(begin, end, std::size_t{0});
+  }
+  magic_numbers.assign(32 * groups, 0);
+  std::vector<std::size_t> next = members.first;
+  for (std::uint32_t i = 0; i < owner.size(); ++i) {
+    const std::uint32_t other = place_of[body.springs[i].a] + place_of[body.springs[i].b] - owner[i];
+    const std::size_t at = next[owner[i] / 32]++;
+    members.links[at] = {static_cast<std::uint8_t>(owner[i] % 32), static_cast<std::uint8_t>(other % 32),
+                         owner[i] == settled.owner[i] ? settled.row[i] : open};
+    members.slots[at] = {i, other};
+    --magic_numbers[other];
+  }
+  return members;
+}
+
 /// Gives every spring its slot and every row its group.
-void Arrangement::lay(std::vector<Group>& members) {
+void Arrangement::lay(Members& members) {
   slots.resize(shape.slots());
+  slot_of.resize(members.slots.size());
   turns.assign(std::size_t{shape.block} * shape.chunks, 0);
   first_group.assign(shape.block, 0);
   first_row.assign(groups + 1, static_cast<std::uint32_t>(rows()));
   const std::size_t rows_of_warp = std::size_t{shape.chunks} * shape.rows;
   std::size_t row = 0;
-  for (std::uint32_t g = 0; g < groups && members[g].rows > 0; ++g) {
-    Group& group = members[g];
+  for (std::uint32_t g = 0; g < groups && members.rows[g] > 0; ++g) {
     first_row[g] = static_cast<std::uint32_t>(row);
-    choose_rows(group.links, group.rows);
-    for (std::size_t i = 0; i < group.links.size(); ++i) {
-      const std::size_t slot = 32 * (row + group.links[i].row) + group.links[i].lane;
-      slots[slot] = group.slots[i];
-      slot_of[group.slots[i].spring] = static_cast<std::uint32_t>(slot);
+    const std::size_t first = members.first[g], count = members.first[g + 1] - first;
+    choose_rows(std::span(members.links).subspan(first, count), members.rows[g]);
+    for (std::size_t i = first; i < first + count; ++i) {
+      const std::size_t slot = 32 * (row + members.links[i].row) + members.links[i].lane;
+      slots[slot] = members.slots[i];
+      slot_of[members.slots[i].spring] = static_cast<std::uint32_t>(slot);
     }
-    for (std::uint32_t lane = 0; lane < 32; ++lane) magic_numbers[32 * g + lane] += static_cast<int>(group.rows);
-    const std::size_t end = row + group.rows;
+    const auto rows_of_group = static_cast<std::int32_t>(members.rows[g]);
+    for (std::uint32_t lane = 0; lane < 32; ++lane) magic_numbers[32 * g + lane] += rows_of_group;
+    const std::size_t end = row + members.rows[g];
     for (; row < end; ++row)
       if (row % rows_of_warp == 0) first_group[row / rows_of_warp] = g;
     // no warp turns to another group after its last row
@@ -182,6 +204,7 @@ void Arrangement::lay(std::vector<Group>& members) {
 /// Empty slots lead to banks that their row leaves free.
 void Arrangement::fill_empty_slots() {
   for (auto row = slots.begin(); row != slots.end(); row += 32) {
+    if (std::none_of(row, row + 32, [](const Slot& slot) { return slot.spring == none; })) continue;
     std::uint32_t busy = 0, bank = 0;
     for (auto slot = row; slot != row + 32; ++slot)
       if (slot->spring != none) busy |= 1u << slot->other % 32;

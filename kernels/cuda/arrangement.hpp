@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <utility>
 #include <vector>
 
 #include "cuda/row_order.hpp"
@@ -25,6 +25,16 @@ struct Shape {
   std::size_t slots() const { return std::size_t{32} * warps * chunks * rows; }
 };
 
+/// What an arrangement depends on: how many masses there are, which of them stayed, and which are joined.
+struct Outline {
+  explicit Outline(const Body& body);
+  /// Whether it is that of `body`, but for the rest places.
+  bool fits(const Body& body) const;
+
+  std::vector<Vec3> rest;                                     ///< [masses] tells masses that stay from others
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;  ///< [springs]
+};
+
 /// A body's masses and springs in the block's order. Masses lie in groups of 32, one to a lane and a bank of shared
 /// memory. A spring is in a row of the group of the mass that owns it, in that mass's lane; all lanes of a row add to
 /// different banks as far as possible. The rows of all groups, one after the other, are dealt out evenly to the warps.
@@ -41,10 +51,10 @@ struct Arrangement {
   /// Arranges `body` for a block of at most `largest_block` warps.
   Arrangement(const Body& body, unsigned largest_block);
 
-  /// Arranges what has become of a body whose masses had the rest places `earlier_rest` and whose arrangement was
-  /// `earlier`. Masses and springs that stay are in the same order as before; most keep their places, owners and rows,
-  /// which saves most of the work. Any other body is arranged as well.
-  Arrangement(const Body& body, unsigned largest_block, const Arrangement& earlier, std::span<const Vec3> earlier_rest);
+  /// Arranges what has become of a body whose outline was `outline` and whose arrangement was `earlier`. Masses and
+  /// springs that stay are in the same order as before; most keep their places, owners and rows, which saves most of
+  /// the work. Any other body is arranged as well.
+  Arrangement(const Body& body, unsigned largest_block, const Arrangement& earlier, const Outline& outline);
 
   Shape shape;
   std::uint32_t groups = 0;
@@ -68,17 +78,19 @@ struct Arrangement {
     std::vector<std::uint32_t> owner;  ///< [springs] the owner's place, or open
     std::vector<std::uint32_t> row;    ///< [springs] of the owner's group, or open
   };
-  /// The springs that the masses of a group own.
-  struct Group {
-    std::size_t rows = 0;
-    std::vector<Link> links;
-    std::vector<Slot> slots;  ///< of each link
+  /// The springs that the masses of each group own, one group behind the other.
+  struct Members {
+    std::vector<std::size_t> rows;   ///< [groups] that the group needs
+    std::vector<std::size_t> first;  ///< [groups + 1] of its springs
+    std::vector<Link> links;         ///< [springs]
+    std::vector<Slot> slots;         ///< [springs] of each link
   };
 
   /// [rows] the group that each row belongs to.
   std::vector<std::uint32_t> groups_of_rows() const;
   void arrange(const Body& body, unsigned largest_block, Settled settled);
-  void lay(std::vector<Group>& members);
+  Members members_of_groups(const Body& body, const std::vector<std::uint32_t>& owner, const Settled& settled);
+  void lay(Members& members);
   void fill_empty_slots();
 };
 

@@ -18,7 +18,7 @@ namespace {
 static_assert(cuda::guard_interval == EnergyGuard::interval);
 
 constexpr std::size_t most_streams = 12;  // of one batch
-constexpr int batches_at_once = 8;        // one moves, others are prepared, read out or on their way
+constexpr int batches_at_once = 16;       // one moves, others are prepared, read out or on their way
 // of the free memory, which other programs want to use too
 constexpr double share_of_memory = 0.8;
 

@@ -37,26 +37,15 @@ double stopping_force(const Body& body, const State& state) {
 }  // namespace
 
 ArrangedBody::ArrangedBody(const Body& body, Arrangement arrangement_, unsigned largest_block)
-    : arrangement(std::move(arrangement_)), largest_block_(largest_block) {
-  rest_.reserve(body.masses.size());
-  for (const Mass& mass : body.masses) rest_.push_back(mass.rest);
-  ends_.reserve(body.springs.size());
-  for (const Spring& spring : body.springs) ends_.emplace_back(spring.a, spring.b);
-}
-
-bool ArrangedBody::fits(const Body& body) const {
-  return body.masses.size() == rest_.size() &&
-         std::equal(body.springs.begin(), body.springs.end(), ends_.begin(), ends_.end(),
-                    [](const Spring& spring, const auto& ends) { return std::pair(spring.a, spring.b) == ends; });
-}
+    : arrangement(std::move(arrangement_)), outline_(body), largest_block_(largest_block) {}
 
 std::shared_ptr<const ArrangedBody> ArrangedBody::of(const Body& body, unsigned largest_block,
                                                      const std::shared_ptr<const Preparation>& earlier) {
   const auto before = std::dynamic_pointer_cast<const ArrangedBody>(earlier);
   if (before && before->largest_block_ == largest_block) {
-    if (before->fits(body)) return before;
+    if (before->outline_.fits(body)) return before;
     return std::make_shared<const ArrangedBody>(
-        body, Arrangement(body, largest_block, before->arrangement, before->rest_), largest_block);
+        body, Arrangement(body, largest_block, before->arrangement, before->outline_), largest_block);
   }
   return std::make_shared<const ArrangedBody>(body, Arrangement(body, largest_block), largest_block);
 }
@@ -193,16 +182,17 @@ std::vector<typename FixedPoint<T>::Integer> Resident<T>::materials_in_records(c
 template <class T>
 void Resident<T>::pack_records(Record<T>* to, const MaterialUnits& units) const {
   using Integer = typename FixedPoint<T>::Integer;
-  const unsigned unit = form().wide_offsets ? sizeof(T) : 1;
+  const std::size_t unit = form().wide_offsets ? sizeof(T) : 1;
+  const auto offset_of = [&](std::uint32_t place) { return static_cast<Integer>(offset_of_place<T>(place) / unit); };
   const std::vector<Integer> materials = materials_in_records(units);
-  for (const Arrangement::Slot& slot : arrangement().slots) {
-    const auto other = static_cast<Integer>(offset_of_place<T>(slot.other) / unit);
-    if (slot.spring == Arrangement::none) {
-      *to++ = {T(0), other};
-      continue;
-    }
-    const Spring& spring = task_->body->springs[slot.spring];
-    *to++ = {static_cast<T>(spring.rest_length), other | materials[spring.material] << 16};
+  const std::vector<Arrangement::Slot>& slots = arrangement().slots;
+  for (std::size_t slot = 0; slot < slots.size(); ++slot)
+    if (slots[slot].spring == Arrangement::none) to[slot] = {T(0), offset_of(slots[slot].other)};
+  // in their own order, in which they are read in half the time
+  for (std::size_t i = 0; i < task_->body->springs.size(); ++i) {
+    const Spring& spring = task_->body->springs[i];
+    const std::uint32_t slot = arrangement().slot_of[i];
+    to[slot] = {static_cast<T>(spring.rest_length), offset_of(slots[slot].other) | materials[spring.material] << 16};
   }
 }
 

@@ -33,7 +33,7 @@ struct ForceRange {
 template <class T>
 ForceRange force_range(const Body& body, const State& state, const Scene& scene);
 
-/// A body's arrangement, which depends on nothing but how many masses there are and which of them are joined.
+/// A body's arrangement, which depends on the body's outline alone.
 class ArrangedBody final : public Preparation {
  public:
   ArrangedBody(const Body& body, Arrangement arrangement, unsigned largest_block);
@@ -45,10 +45,7 @@ class ArrangedBody final : public Preparation {
   const Arrangement arrangement;
 
  private:
-  bool fits(const Body& body) const;
-
-  std::vector<Vec3> rest_;                                     ///< of each mass
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> ends_;  ///< of each spring
+  Outline outline_;
   unsigned largest_block_;
 };
 

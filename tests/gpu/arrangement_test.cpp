@@ -53,12 +53,6 @@ void expect_sound(const Body& body, unsigned largest_block) {
   expect_sound(Arrangement(body, largest_block), body, largest_block);
 }
 
-std::vector<Vec3> rest_places(const Body& body) {
-  std::vector<Vec3> places;
-  for (const Mass& mass : body.masses) places.push_back(mass.rest);
-  return places;
-}
-
 /// Takes `masses` random masses and `springs` random springs away and appends as many, the way the host applies edits.
 void turn_over(Body& body, std::uint32_t masses, std::uint32_t springs, std::mt19937& random) {
   const auto below = [&](std::size_t n) {
@@ -86,9 +80,9 @@ TEST(Rearrangement, StaysSoundAndKeepsBanksApartThroughALife) {
   std::mt19937 random(1);
   Arrangement arrangement(body, 32);
   for (int cycle = 0; cycle < 10; ++cycle) {
-    const std::vector<Vec3> rest = rest_places(body);
+    const Outline before(body);
     turn_over(body, 5, 125, random);
-    arrangement = Arrangement(body, 32, arrangement, rest);
+    arrangement = Arrangement(body, 32, arrangement, before);
     expect_sound(arrangement, body, 32);
   }
   EXPECT_LT(arrangement.passes_per_row(), 1.25);
@@ -97,10 +91,9 @@ TEST(Rearrangement, StaysSoundAndKeepsBanksApartThroughALife) {
 TEST(Rearrangement, KeepsWhatStays) {
   Body body = random_body(1000, 25, 5);
   const Arrangement before(body, 32);
-  const std::vector<Vec3> rest = rest_places(body);
-  const Body old = body;
+  const Outline outline(body);
   body.springs.erase(body.springs.begin() + 100);
-  const Arrangement after(body, 32, before, rest);
+  const Arrangement after(body, 32, before, outline);
   EXPECT_EQ(after.place_of, before.place_of);
   std::size_t moved = 0;
   for (std::uint32_t i = 0; i < body.springs.size(); ++i) moved += after.slot_of[i] != before.slot_of[i + (i >= 100)];
@@ -110,15 +103,16 @@ TEST(Rearrangement, KeepsWhatStays) {
 TEST(Rearrangement, HoldsBodiesThatHaveLittleInCommonWithBefore) {
   const Body body = random_body(1000, 25, 5);
   const Arrangement before(body, 32);
+  const Outline outline(body);
   for (const Body& other : {random_body(1000, 25, 6), random_body(100, 25, 7), random_body(2000, 25, 8)})
-    expect_sound(Arrangement(other, 32, before, rest_places(body)), other, 32);
+    expect_sound(Arrangement(other, 32, before, outline), other, 32);
   Body larger = body;
   for (int i = 0; i < 100; ++i) larger.masses.push_back({{9, 9, 9.0 + i}, 0.2});
-  expect_sound(Arrangement(larger, 32, before, rest_places(body)), larger, 32);
+  expect_sound(Arrangement(larger, 32, before, outline), larger, 32);
   Body smaller = body;
   smaller.masses.resize(500);
   std::erase_if(smaller.springs, [](const Spring& s) { return s.a >= 500 || s.b >= 500; });
-  expect_sound(Arrangement(smaller, 32, before, rest_places(body)), smaller, 32);
+  expect_sound(Arrangement(smaller, 32, before, outline), smaller, 32);
 }
 
 TEST(Arrangement, HoldsEverySpringOnce) {
