@@ -126,4 +126,10 @@ std::vector<std::string> marks(const Verification& verification, bool maximise) 
   return marks;
 }
 
+std::string marks_text(const Verification& verification, bool maximise) {
+  std::string text;
+  for (const std::string& mark : marks(verification, maximise)) text += (text.empty() ? "" : ", ") + mark;
+  return text.empty() ? "verified" : text;
+}
+
 }  // namespace evodevo

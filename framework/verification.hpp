@@ -48,5 +48,7 @@ bool held(const Verification& verification, const Trial& trial, bool maximise);
 ///   passive   without muscles it keeps over half its fitness, or after 10 s more it has lost over half; only where
 ///             more is better and the fitness is above 0.
 std::vector<std::string> marks(const Verification& verification, bool maximise);
+/// "passive", or "verified" where nothing is to be said.
+std::string marks_text(const Verification& verification, bool maximise);
 
 }  // namespace evodevo

@@ -8,6 +8,7 @@
 
 #include "body_json.hpp"
 #include "commands/options.hpp"
+#include "device.hpp"
 #include "living_again.hpp"
 #include "text.hpp"
 #include "toml_reader.hpp"

@@ -10,6 +10,7 @@
 #include "body_json.hpp"
 #include "breeding.hpp"
 #include "commands/options.hpp"
+#include "device.hpp"
 #include "disturbance.hpp"
 #include "scene_effect.hpp"
 #include "toml_reader.hpp"

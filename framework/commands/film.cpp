@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "commands/options.hpp"
+#include "device.hpp"
 #include "living_again.hpp"
 #include "report/camera.hpp"
 #include "report/page.hpp"

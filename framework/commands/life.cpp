@@ -7,6 +7,7 @@
 #include <span>
 
 #include "commands/options.hpp"
+#include "device.hpp"
 #include "living_again.hpp"
 
 namespace evodevo {

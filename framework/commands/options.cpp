@@ -5,9 +5,6 @@
 
 #include "text.hpp"
 #include "toml_reader.hpp"
-#ifdef EVODEVO_CUDA
-#include "cuda/cuda_simulator.hpp"
-#endif
 
 namespace evodevo {
 
@@ -113,21 +110,6 @@ ArchivedIndividual chosen_individual(const Archive& archive, const po::variables
   if (best.empty())
     throw ArchiveError(archive.folder().string() + ": no individual has a fitness; name one with --individual");
   return *archive.individual(best.front());
-}
-
-std::unique_ptr<Simulator> make_simulator(const Experiment& experiment) {
-  if (experiment.device != "cpu") {
-#ifdef EVODEVO_CUDA
-    const std::string obstacle = why_cuda_is_unusable();
-    if (obstacle.empty())
-      return make_cuda_simulator(experiment.scene, experiment.stepping, static_cast<int>(experiment.threads));
-#else
-    const std::string obstacle = "this evodevo was built without CUDA; build it where the CUDA toolkit is";
-#endif
-    if (experiment.device == "cuda")
-      throw ConfigError("simulation.device = \"cuda\": " + obstacle + ", or set simulation.device to \"cpu\"");
-  }
-  return make_cpu_simulator(experiment.scene, experiment.stepping, static_cast<int>(experiment.threads));
 }
 
 }  // namespace evodevo

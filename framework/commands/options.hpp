@@ -35,7 +35,4 @@ ArchivedIndividual individual_named(const Archive& archive, std::int64_t id);
 /// The individual that --individual names, or else the best. Throws ArchiveError where there is none.
 ArchivedIndividual chosen_individual(const Archive& archive, const boost::program_options::variables_map& given);
 
-/// The simulator for the experiment's device and threads. Throws ConfigError where CUDA is asked for and not to be had.
-std::unique_ptr<Simulator> make_simulator(const Experiment& experiment);
-
 }  // namespace evodevo

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "commands/options.hpp"
+#include "device.hpp"
 #include "living_again.hpp"
 #include "report/page.hpp"
 

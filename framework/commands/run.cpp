@@ -7,6 +7,7 @@
 #include "commands/options.hpp"
 #include "commands/progress.hpp"
 #include "commands/verification_report.hpp"
+#include "device.hpp"
 #include "evolution.hpp"
 #include "parallel.hpp"
 #include "text.hpp"

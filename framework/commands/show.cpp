@@ -4,7 +4,6 @@
 
 #include "archive.hpp"
 #include "commands/options.hpp"
-#include "commands/verification_report.hpp"
 #include "report/run_json.hpp"
 
 namespace evodevo {

@@ -1,8 +1,6 @@
-// Verifications as commands make and show them.
+// Verifications as commands make and print them.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
-#include <string>
 #include <vector>
 
 #include "archive.hpp"
@@ -13,11 +11,6 @@ namespace evodevo {
 std::vector<Verification> verify_best(const Experiment& experiment, Simulator& simulator, Archive& archive,
                                       std::size_t count);
 
-/// "passive", or "verified" where nothing is to be said.
-std::string marks_text(const Verification& verification, bool maximise);
-
 void print(const Verification& verification, const Objective& objective);
-
-nlohmann::ordered_json to_json(const Verification& verification, const Objective& objective);
 
 }  // namespace evodevo

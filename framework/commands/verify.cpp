@@ -7,7 +7,9 @@
 #include "commands/options.hpp"
 #include "commands/run.hpp"
 #include "commands/verification_report.hpp"
+#include "device.hpp"
 #include "living_again.hpp"
+#include "report/run_json.hpp"
 
 namespace evodevo {
 namespace {
@@ -35,12 +37,6 @@ std::vector<Verification> verify_best(const Experiment& experiment, Simulator& s
   return verifications;
 }
 
-std::string marks_text(const Verification& verification, bool maximise) {
-  std::string text;
-  for (const std::string& mark : marks(verification, maximise)) text += (text.empty() ? "" : ", ") + mark;
-  return text.empty() ? "verified" : text;
-}
-
 void print(const Verification& verification, const Objective& objective) {
   std::printf("individual %u: %s %s %s: %s\n", verification.individual, objective.name.c_str(),
               number(verification.fitness).c_str(), objective.unit.c_str(),
@@ -51,20 +47,6 @@ void print(const Verification& verification, const Objective& objective) {
                 trial.reason.empty() ? "" : (", " + std::string(name(trial.status)) + ": " + trial.reason).c_str());
   }
   std::fflush(stdout);
-}
-
-Json to_json(const Verification& verification, const Objective& objective) {
-  Json trials = Json::array();
-  for (const Trial& trial : verification.trials)
-    trials.push_back({{"trial", trial.name},
-                      {"status", name(trial.status)},
-                      {"reason", trial.reason},
-                      {"value", trial.value ? Json(*trial.value) : Json(nullptr)},
-                      {"held", held(verification, trial, objective.maximise)}});
-  return {{"individual", verification.individual},
-          {"fitness", verification.fitness},
-          {"marks", marks(verification, objective.maximise)},
-          {"trials", std::move(trials)}};
 }
 
 int verify_command(const Arguments& arguments) {
@@ -88,7 +70,7 @@ int verify_command(const Arguments& arguments) {
   Json all = Json::array();
   for (const Verification& verification : verifications) {
     if (given->contains("json"))
-      all.push_back(to_json(verification, objective));
+      all.push_back(verification_json(verification, objective));
     else
       print(verification, objective);
   }

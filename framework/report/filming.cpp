@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "piecewise.hpp"
 
 namespace evodevo {
 namespace {
@@ -28,14 +31,12 @@ void add_records(SpringRecords& whole, const SpringRecords& part, double share) 
     whole.peak_force[s] = std::max(whole.peak_force[s], part.peak_force[s]);
 }
 
-/// A task that is done in parts, each up to the next frame.
-class InParts {
+/// A task that is filmed: it is done in parts, each up to the next frame.
+class Take {
  public:
-  InParts(Task& task, Recording recording, Reel& reel, double rate)
-      : whole_(task), reel_(reel), rate_(rate), start_(task.state->time) {
+  Take(Task& task, Recording recording, Reel& reel, double rate) : whole_(task), reel_(reel), rate_(rate) {
     whole_.clear(recording, task.body->springs.size());
     whole_.work = 0;
-    whole_.spring_evaluations = 0;
     const double frames = std::ceil(static_cast<double>(task.steps) * task.dt * rate - 1e-9);
     parts_ = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(frames), 1, std::max<std::uint64_t>(1, task.steps));
     if (reel_.steps > 0) return;
@@ -43,23 +44,14 @@ class InParts {
     add_frame(shot().frames, *task.state, rate);
   }
 
-  bool is_over() const { return whole_.status != Status::ok || done_ == whole_.steps; }
-
-  /// What is next.
-  Task part() {
-    Task part{.body = whole_.body, .state = whole_.state, .dt = whole_.dt};
-    part.steps = boundary(++begun_) - done_;
-    part.preparation = std::move(whole_.preparation);
-    return part;
+  /// As many as make the parts as even as whole steps allow.
+  std::uint64_t next_steps() {
+    ++begun_;
+    return whole_.steps * begun_ / parts_ - done_;
   }
 
-  /// Takes the answer to a part, in which stress was recorded whether asked for or not.
-  void take(Task&& part) {
-    whole_.status = part.status;
-    whole_.ended_at = part.ended_at;
-    whole_.reason = std::move(part.reason);
-    whole_.preparation = std::move(part.preparation);
-    whole_.spring_evaluations += part.spring_evaluations;
+  /// Films the answer to a part, in which stress was recorded whether asked for or not.
+  void look(const Task& part) {
     if (whole_.status == Status::ok)
       add(part);
     else
@@ -70,15 +62,10 @@ class InParts {
  private:
   Shot& shot() { return reel_.film.back(); }
 
-  /// The steps up to the end of the i-th part, as evenly as whole steps allow.
-  std::uint64_t boundary(std::uint64_t i) const { return whole_.steps * i / parts_; }
-
   void add(const Task& part) {
     const auto steps = static_cast<double>(part.steps);
     done_ += part.steps;
     reel_.steps += part.steps;
-    // not a sum of sums, so that the time is the same as after one run
-    whole_.state->time = start_ + static_cast<double>(done_) * whole_.dt;
     whole_.work += part.work;
     add_records(whole_, part, steps / static_cast<double>(whole_.steps));
     std::vector<double>& mean = shot().stress;
@@ -94,8 +81,7 @@ class InParts {
 
   Task& whole_;
   Reel& reel_;
-  double rate_;   ///< of frames, 1/s
-  double start_;  ///< s
+  double rate_;  ///< of frames, 1/s
   std::uint64_t parts_ = 1, begun_ = 0;
   std::uint64_t done_ = 0;  ///< steps
 };
@@ -117,21 +103,12 @@ void number_masses(Film& film, const LifeRecord& record) {
 void FilmingSimulator::run(std::span<Task> tasks, Recording recording) {
   Recording with_stress = recording;
   with_stress.stress = true;
-  std::vector<InParts> all;
-  for (Task& task : tasks)
-    if (task.status == Status::ok) all.emplace_back(task, recording, reels_[task.body], rate_);
-  for (;;) {
-    std::vector<Task> parts;
-    std::vector<InParts*> owners;
-    for (InParts& in_parts : all) {
-      if (in_parts.is_over()) continue;
-      owners.push_back(&in_parts);
-      parts.push_back(in_parts.part());
-    }
-    if (parts.empty()) return;
-    simulator_.run(parts, with_stress);
-    for (std::size_t i = 0; i < parts.size(); ++i) owners[i]->take(std::move(parts[i]));
-  }
+  std::vector<std::optional<Take>> takes(tasks.size());
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    if (tasks[i].status == Status::ok) takes[i].emplace(tasks[i], recording, reels_[tasks[i].body], rate_);
+  const auto next_steps = [&](std::size_t i) { return takes[i]->next_steps(); };
+  const auto look = [&](std::size_t i, const Task& part) { takes[i]->look(part); };
+  run_in_pieces(simulator_, tasks, with_stress, next_steps, look);
 }
 
 void FilmingSimulator::cut() {

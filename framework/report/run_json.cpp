@@ -1,6 +1,5 @@
 #include "report/run_json.hpp"
 
-#include "commands/verification_report.hpp"
 #include "evolution.hpp"
 
 namespace evodevo {
@@ -74,7 +73,21 @@ Json individual_json(const Archive& archive, const ArchivedIndividual& individua
           {"parents", individual.parents},
           {"made_by", individual.made_by},
           {"ancestry", std::move(ancestors)},
-          {"verification", verification ? to_json(*verification, objectives.front()) : Json(nullptr)}};
+          {"verification", verification ? verification_json(*verification, objectives.front()) : Json(nullptr)}};
+}
+
+Json verification_json(const Verification& verification, const Objective& objective) {
+  Json trials = Json::array();
+  for (const Trial& trial : verification.trials)
+    trials.push_back({{"trial", trial.name},
+                      {"status", name(trial.status)},
+                      {"reason", trial.reason},
+                      {"value", trial.value ? Json(*trial.value) : Json(nullptr)},
+                      {"held", held(verification, trial, objective.maximise)}});
+  return {{"individual", verification.individual},
+          {"fitness", verification.fitness},
+          {"marks", marks(verification, objective.maximise)},
+          {"trials", std::move(trials)}};
 }
 
 Json run_json(const Archive& archive, const Experiment& experiment) {

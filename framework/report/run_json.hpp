@@ -16,6 +16,9 @@ std::uint32_t last_age(const ArchivedIndividual& individual, std::uint32_t last_
 /// An individual with its objectives, parents, ancestors and verification. One without fitness has no objectives.
 nlohmann::ordered_json individual_json(const Archive& archive, const ArchivedIndividual& individual);
 
+/// A verification with its marks and trials.
+nlohmann::ordered_json verification_json(const Verification& verification, const Objective& objective);
+
 /// The whole run: where from, how far, every generation, and the best individual.
 nlohmann::ordered_json run_json(const Archive& archive, const Experiment& experiment);
 

@@ -4,7 +4,7 @@
 #include <iostream>
 #include <optional>
 
-#include "commands/options.hpp"
+#include "device.hpp"
 #include "overlap.hpp"
 
 namespace evodevo::stress_study {

@@ -8,7 +8,7 @@
 
 #include "benchmark/agreement.hpp"
 #include "benchmark/robots.hpp"
-#include "commands/options.hpp"
+#include "device.hpp"
 #include "evaluation.hpp"
 
 namespace evodevo::stress_study {
