@@ -406,6 +406,24 @@ std::map<std::string, std::int64_t> Archive::statuses() const {
   return counts;
 }
 
+std::vector<Failure> Archive::failures() const {
+  std::map<std::pair<std::string, std::string>, Failure> failures;
+  SQLite::Statement query(files_->database,
+                          "SELECT status, coalesce(reason, ''), count(*) FROM individuals WHERE status <> 'ok' "
+                          "GROUP BY status, reason ORDER BY min(id)");
+  while (query.executeStep()) {
+    const std::string status = query.getColumn(0).getString(), reason = query.getColumn(1).getString();
+    const std::string alike = reason.substr(0, reason.find_first_of("0123456789"));
+    Failure& failure = failures.try_emplace({status, alike}, Failure{status, reason}).first->second;
+    failure.count += query.getColumn(2).getInt64();
+    failure.varies |= failure.reason != reason;
+  }
+  std::vector<Failure> sorted;
+  for (auto& [key, failure] : failures) sorted.push_back(std::move(failure));
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Failure& a, const Failure& b) { return a.count > b.count; });
+  return sorted;
+}
+
 std::vector<Individual> Archive::population() const {
   std::vector<Individual> population;
   SQLite::Statement query(files_->database, std::string("SELECT ") + individual_columns +
@@ -446,7 +464,8 @@ Experiment recorded_experiment(const Archive& archive, std::vector<fs::path> plu
   Experiment experiment =
       read_experiment(archive.record("experiment"), {.file = (archive.folder() / "record of the run").string(),
                                                      .overrides = {},
-                                                     .plugin_path = std::move(plugin_path)});
+                                                     .plugin_path = std::move(plugin_path),
+                                                     .is_record = true});
   experiment.name = archive.record("name");
   return experiment;
 }

@@ -24,6 +24,14 @@ struct ArchivedIndividual : Individual {
   std::optional<std::uint32_t> died;
 };
 
+/// Individuals that have no fitness, and why.
+struct Failure {
+  std::string status;
+  std::string reason;  ///< of the first of them
+  std::int64_t count = 0;
+  bool varies = false;  ///< whether others have other numbers in it
+};
+
 class Archive {
  public:
   /// Starts the record of a run in a new folder. Throws ArchiveError if the folder is there and not empty.
@@ -58,6 +66,8 @@ class Archive {
   std::vector<OperatorUse> operators() const;
   std::vector<Objective> objectives() const;
   std::vector<Summary> generations() const;
+  /// What individuals failed of, the most frequent first; reasons that differ from the first number on are one.
+  std::vector<Failure> failures() const;
   /// Number of individuals by status.
   std::map<std::string, std::int64_t> statuses() const;
   /// Those who live on, in the order of birth.

@@ -128,7 +128,9 @@ class Composer {
     const AvailableOperator* available = registry_.find(T::kind, name);
     if (available == nullptr) {
       std::string message = "no " + std::string(T::kind) + " operator has this name";
-      message += suggestion(name, registry_.names(T::kind));
+      const std::vector<std::string> known = registry_.names(T::kind);
+      message += suggestion(name, known);
+      if (nearest(name, known).empty()) message += "; [plugins] paths and --plugin-path name folders with more";
       for (const std::string& warning : out_.warnings) message += "\n  " + warning;
       table.fail("name", message);
     }
@@ -153,7 +155,10 @@ class Composer {
     read_section("plugins", false, [&](TomlReader& t) {
       for (const std::string& path : t.texts("paths")) {
         const fs::path folder = (folder_of(source_) / path).lexically_normal();
-        if (!is_plugin_path(folder)) t.fail("paths", folder.string() + " is no folder and no library of operators");
+        if (is_plugin_path(folder)) continue;
+        const std::string message = folder.string() + " is no folder and no library of operators";
+        if (!source_.is_record) t.fail("paths", message);
+        out_.warnings.push_back(message + " any more; name the one that has taken its place with --plugin-path");
       }
     });
     record_plugin_path();
@@ -473,7 +478,7 @@ void blame_operator(const Experiment& experiment, std::string_view kind, std::si
   const std::string title =
       use == experiment.uses.end() ? "operator" : "operator \"" + use->name + "\" of " + use->file.string();
   throw std::runtime_error(std::string(kind) + " " + title + where + ": " + what +
-                           "; correct the operator, or leave it out of the experiment");
+                           "; correct the operator and build it again, or begin a new run without it");
 }
 
 Experiment read_experiment(const ExperimentSource& source) { return compose(parse_toml_file(source.file), source); }

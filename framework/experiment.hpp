@@ -130,6 +130,9 @@ struct ExperimentSource {
   std::string file;                                     ///< for messages, and for what paths in it are relative to
   std::vector<Override> overrides;                      ///< applied in order
   std::vector<std::filesystem::path> plugin_path = {};  ///< where operators are looked for beside those that it names
+  /// Whether it is the record of a run, which names the folders that there were then: those that have gone are warned
+  /// of.
+  bool is_record = false;
 };
 
 /// Reads, checks and composes an experiment. Throws ConfigError with the place, the value and the remedy.

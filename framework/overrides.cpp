@@ -17,6 +17,13 @@ toml::node* child(toml::node& parent, const std::string& key) {
   return array != nullptr && is_index ? array->get(index) : nullptr;
 }
 
+/// Whether a key is not there yet, but may be: any key of a table, the number behind the last item of a list.
+bool is_next(const toml::node& parent, const std::string& key) {
+  if (const toml::table* table = parent.as_table()) return !table->contains(key);
+  const toml::array* array = parent.as_array();
+  return array != nullptr && key == std::to_string(array->size());
+}
+
 /// The value of "key=value", as TOML where it is TOML and as a text where it is not. It remembers the option it came
 /// from as its place.
 toml::table parse_override_value(const std::string& value, const std::string& origin) {
@@ -59,9 +66,8 @@ void apply_override(const Override& change, toml::table& root) {
   const std::vector<std::string> keys = split_key(change.key);
   toml::node* parent = &root;
   for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
-    toml::table* table = parent->as_table();
-    if (table != nullptr && !table->contains(keys[i]))
-      table->insert(keys[i], std::move(*parse_override_value("{}", change.origin).get_as<toml::table>("value")));
+    if (is_next(*parent, keys[i]))
+      set(*parent, keys[i], std::move(*parse_override_value("{}", change.origin).get_as<toml::table>("value")), change);
     parent = child(*parent, keys[i]);
     if (parent == nullptr) throw ConfigError(change.origin + ": " + change.key + ": there is no item " + keys[i]);
   }

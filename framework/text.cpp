@@ -77,8 +77,10 @@ std::string nearest(std::string_view word, std::span<const std::string> candidat
 }
 
 std::string suggestion(std::string_view word, std::span<const std::string> candidates) {
-  if (const std::string near = nearest(word, candidates); !near.empty()) return "; did you mean \"" + near + "\"?";
+  constexpr std::size_t few = 3;  // are all named, so that nobody who meant "cuda" is sent to "cpu"
   if (candidates.empty()) return "; none is known";
+  if (const std::string near = nearest(word, candidates); !near.empty() && candidates.size() > few)
+    return "; did you mean \"" + near + "\"?";
   return "; known: " + joined(candidates);
 }
 

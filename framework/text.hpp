@@ -25,7 +25,7 @@ std::string joined(std::span<const std::string> items, std::string_view separato
 /// The candidate that `word` was probably meant to be; empty if none is near.
 std::string nearest(std::string_view word, std::span<const std::string> candidates);
 
-/// `; did you mean "x"?` for the nearest candidate, or `; known: a, b, c` where none is near.
+/// `; did you mean "x"?` for the nearest candidate, or `; known: a, b, c` where none is near or there are only few.
 std::string suggestion(std::string_view word, std::span<const std::string> candidates);
 
 }  // namespace evodevo

@@ -22,6 +22,12 @@ int film_command(const Arguments& arguments) {
   add_plugin_option(line.options);
   const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
+  const auto file = (*given)["out"].as<std::string>();
+  const bool picture = file.ends_with(".png");
+  if (!picture && !file.ends_with(".mp4"))
+    throw UsageError("--out " + file + ": expected a name ending in .mp4 or .png");
+  if (!picture && given->contains("at"))
+    throw UsageError("--at is the moment of a picture; give --out a name ending in .png, or leave --at out");
   const std::string page = page_template();
   const Archive archive = Archive::read((*given)["DIR"].as<std::string>());
   const ArchivedIndividual shown = chosen_individual(archive, *given);
@@ -30,7 +36,6 @@ int film_command(const Arguments& arguments) {
   const Experiment experiment = experiment_to_live_again(archive, given_plugin_path(*given));
   const auto simulator = make_simulator(experiment);
   auto data = report_data({reported_run(archive, experiment, *simulator, cast, page_budget)});
-  const auto file = (*given)["out"].as<std::string>();
   shoot(filled_page(page, data), file,
         given->contains("at") ? std::optional((*given)["at"].as<double>()) : std::nullopt);
   std::cout << file << '\n';

@@ -20,11 +20,13 @@ int gallery_command(const Arguments& arguments) {
   if (!given) return 0;
   const auto count = (*given)["count"].as<std::int64_t>();
   if (count < 1 || count > 1000) throw UsageError("--count " + std::to_string(count) + ": expected 1 to 1000");
+  const auto file = (*given)["out"].as<std::string>();
+  if (!file.ends_with(".html") && !file.ends_with(".png"))
+    throw UsageError("--out " + file + ": expected a name ending in .html or .png");
   const std::string page = page_template();
   const Experiment experiment =
       read_experiment(experiment_source((*given)["EXPERIMENT.toml"].as<std::string>(), *given));
   const std::string filled = filled_page(page, gallery_data(experiment, static_cast<std::size_t>(count)));
-  const auto file = (*given)["out"].as<std::string>();
   if (file.ends_with(".png")) {
     shoot(filled, file, std::nullopt);
   } else {

@@ -33,6 +33,11 @@ void stop_on_interrupt() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
+/// What is left to do can be done later: Ctrl-C ends the process.
+void end_on_interrupt() {
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
+}
+
 /// runs/NAME-1, or the first number that no other run has taken. Making the folder takes it.
 fs::path new_run_folder(const std::string& name) {
   std::error_code error;
@@ -118,6 +123,10 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
   print_time_spent(time, simulator);
   if (is_finished(experiment, archive.generations())) {
     const auto count = static_cast<std::size_t>(experiment.verify);
+    if (count > 0)
+      std::cout << "verifying the best " << count << "; Ctrl-C leaves that to `" << program_name() << " verify "
+                << archive.folder().string() << "`" << std::endl;
+    end_on_interrupt();
     for (const Verification& verification : verify_best(experiment, simulator, archive, count))
       print(verification, experiment.objectives.front());
     return 0;

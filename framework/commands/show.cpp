@@ -1,6 +1,7 @@
 // evodevo show: what a run has come to.
 #include <cstdio>
 #include <iostream>
+#include <toml++/toml.hpp>
 
 #include "archive.hpp"
 #include "commands/options.hpp"
@@ -11,6 +12,11 @@ namespace {
 
 constexpr std::size_t best_shown = 5;
 constexpr std::size_t generations_shown = 20;
+
+/// What the run does to development instead of the operators' own work; "off" where it does nothing.
+std::string control_of(const Archive& archive) {
+  return toml::parse(archive.record("experiment"))["development"]["control"].value_or(std::string("off"));
+}
 
 class Report {
  public:
@@ -24,9 +30,12 @@ class Report {
     std::cout << archive_.record("name") << ", seed " << archive_.record("seed") << ", " << archive_.record("device")
               << ", evodevo " << archive_.record("evodevo") << ", begun " << archive_.record("created") << '\n';
     const auto statuses = archive_.statuses();
+    if (const std::string control = control_of(archive_); control != "off")
+      std::cout << "development under the control \"" << control << "\"\n";
     std::cout << done() << " evaluations: " << statuses.at("ok") << " ok, " << statuses.at("invalid") << " invalid, "
               << statuses.at("diverged") << " diverged\n\n";
     print_generations();
+    print_failures();
     print_best();
   }
 
@@ -45,7 +54,16 @@ class Report {
     }
   }
 
+  void print_failures() const {
+    const std::vector<Failure> failures = archive_.failures();
+    if (!failures.empty()) std::printf("\nwithout a fitness\n");
+    for (const Failure& failure : failures)
+      std::printf("  %lld %s: %s%s\n", static_cast<long long>(failure.count), failure.status.c_str(),
+                  failure.reason.c_str(), failure.varies ? ", or the like" : "");
+  }
+
   void print_best() const {
+    if (archive_.best(1).empty()) return;
     std::printf("\nbest individuals\n");
     for (const std::uint32_t id : archive_.best(best_shown)) {
       const auto line = ancestry(archive_, id);

@@ -40,6 +40,12 @@ Json generations_json(const std::vector<Summary>& generations) {
   return list;
 }
 
+Json failures_json(const std::vector<Failure>& failures) {
+  Json list = Json::array();
+  for (const Failure& f : failures) list.push_back({{"status", f.status}, {"reason", f.reason}, {"count", f.count}});
+  return list;
+}
+
 }  // namespace
 
 std::vector<ArchivedIndividual> ancestry(const Archive& archive, std::uint32_t id) {
@@ -102,6 +108,7 @@ Json run_json(const Archive& archive, const Experiment& experiment) {
                {"evaluations_asked", experiment.evaluations},
                {"finished", is_finished(experiment, generations)},
                {"statuses", archive.statuses()},
+               {"failures", failures_json(archive.failures())},
                {"objectives", objectives_json(archive.objectives())},
                {"operators", operators_json(archive.operators())},
                {"generations", generations_json(generations)}};

@@ -323,7 +323,7 @@ TEST_F(Command, BadInputEndsWithTwoAndLeavesNothing) {
   EXPECT_EQ(out.output, "evodevo: --threads -1: simulation.threads = -1: expected 0 to 4096\n");
   EXPECT_FALSE(fs::exists(folder_));
   EXPECT_EQ(evodevo({"run", file_, "--device", "gpu"}).output,
-            "evodevo: --device gpu: simulation.device = \"gpu\": is not an option; did you mean \"cpu\"?\n");
+            "evodevo: --device gpu: simulation.device = \"gpu\": is not an option; known: auto, cpu, cuda\n");
 }
 
 TEST_F(Command, UsageErrors) {

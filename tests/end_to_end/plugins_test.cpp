@@ -133,7 +133,7 @@ TEST_F(Plugins, OfTwoLibrariesWithOneNameTheFirstIsUsedAndTheOtherNamed) {
 }
 
 TEST_F(Plugins, AnOperatorThatErrsIsNamedWithItsFile) {
-  const std::string remedy = "; correct the operator, or leave it out of the experiment\n";
+  const std::string remedy = "; correct the operator and build it again, or begin a new run without it\n";
   install("throws");
   const Finished thrown = run_with("nothing", {"--plugin-path", own()});
   EXPECT_EQ(thrown.exit_code, 1);

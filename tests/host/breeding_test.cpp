@@ -119,8 +119,8 @@ TEST(Breeding, AnOperatorThatLeavesTheLayoutIsNamed) {
     FAIL() << "the fault went unnoticed";
   } catch (const std::runtime_error& error) {
     EXPECT_EQ(error.what(), "mutation operator \"reset-weight\" of " + experiment.uses[1].file.string() +
-                                ": made a genome with gene 0 = nan, which is not allowed; correct the operator, or "
-                                "leave it out of the experiment");
+                                ": made a genome with gene 0 = nan, which is not allowed; correct the operator and "
+                                "build it again, or begin a new run without it");
   }
 }
 

@@ -168,7 +168,7 @@ TEST(Configuration, MaterialsAreComputedWhereThatIsAskedForAndPossible) {
   EXPECT_EQ(computed.stepping.method, Method::symplectic_euler);
   EXPECT_EQ(testing::read(computed.resolved).stepping.materials, Materials::computed);
   EXPECT_EQ(complaint(with_keys("materials = \"computer\"")),
-            "test.toml:27:13: simulation.materials = \"computer\": is not an option; did you mean \"computed\"?");
+            "test.toml:27:13: simulation.materials = \"computer\": is not an option; known: table, computed");
   const std::string impossible =
       "test.toml:27:13: simulation.materials = \"computed\": only explicit methods in single precision compute "
       "materials; expected \"table\", or another method, precision or accuracy";
@@ -259,7 +259,7 @@ TEST(Configuration, OutOfRange) {
   EXPECT_EQ(complaint(with("newcomers = 1", "newcomers = 7")),
             "test.toml:6:13: experiment.newcomers = 7: expected at most the population, 6");
   EXPECT_EQ(complaint(with("[simulation]", "[simulation]\ndevice = \"tpu\"")),
-            "test.toml:27:10: simulation.device = \"tpu\": is not an option; did you mean \"cpu\"?");
+            "test.toml:27:10: simulation.device = \"tpu\": is not an option; known: auto, cpu, cuda");
 }
 
 TEST(Configuration, UnknownOperators) {
@@ -267,7 +267,7 @@ TEST(Configuration, UnknownOperators) {
             "test.toml:9:8: encoding.name = \"voxels\": no encoding operator has this name; did you mean \"voxel\"?");
   EXPECT_EQ(complaint(with("\"two-point\"", "\"blend\"")),
             "test.toml:18:8: crossover.0.name = \"blend\": no crossover operator has this name; known: swap-neuron, "
-            "two-point");
+            "two-point; [plugins] paths and --plugin-path name folders with more");
 }
 
 TEST(Configuration, UnknownMaterials) {

@@ -45,6 +45,7 @@ async function film(tab, out) {
 async function still(tab, out, at) {
   const moment = await tab.evaluate(async (asked) => {
     const { viewer } = await window.evodevo;
+    if (asked < 0 || asked > viewer.end) throw new Error(`--at ${asked}: the life goes from 0 to ${viewer.end} s`);
     return asked ?? (viewer.stages[0].life.shots.at(-1).begin + viewer.end) / 2;
   }, at);
   await draw(tab, moment);
