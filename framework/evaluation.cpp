@@ -166,7 +166,7 @@ void Evaluation::live_cycles(std::span<Life> lives, bool observed, const Action&
       if (!lives[i].alive()) return;
       change(i, cycle);
       if (development.reset) allow_energy(lives[i], [&] { return_to_rest(lives[i]); });
-      if (!development.operators.empty()) choose_step(lives[i]);
+      choose_step(lives[i]);
     });
     progress(static_cast<double>(cycle) / static_cast<double>(development.cycles));
   }

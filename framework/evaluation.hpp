@@ -102,7 +102,7 @@ class Evaluation {
   /// operators of a cycle ask for is recorded for them.
   template <class Action>
   void live_cycles(std::span<Life> lives, bool observed, const Action& change, const Progress& progress) const;
-  /// The control of random places: lives without a record are lived once before, with the operators. None for others.
+  /// The control of random places: a life without a record is yoked to one that is lived before, with the operators.
   std::vector<std::optional<Yoke>> yokes_of(std::span<const Life> lives) const;
   /// The simulation of a cycle of development, recorded as the probe does it.
   void simulate_cycle(std::span<Life> lives, int cycle, Recording recording) const;
