@@ -48,7 +48,7 @@ class Archive {
   ~Archive();
 
   /// Adds one generation in one transaction: its newborns with their results, who was dropped, records of lives by id,
-  /// of which empty ones are left out, and its summary.
+  /// and its summary. An empty record is kept too: it says that the individual was on the front and nothing changed.
   void commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,
               const std::map<std::uint32_t, LifeRecord>& lives, const Summary& summary);
 

@@ -28,11 +28,11 @@ std::size_t mark_at(const std::vector<double>& marks, double time) {
   return static_cast<std::size_t>(std::lower_bound(marks.begin(), marks.end(), time - rounding) - marks.begin());
 }
 
-/// Whether edits may strain or lift a body. Turnover by springs without force does neither by much.
-bool adds_energy(const Edits& edits) {
+/// Whether a change may strain or lift a body. Turnover by springs without force does neither by much.
+bool adds_energy(const Change& change) {
+  const Edits& edits = change.edits;
   return !edits.changed_springs.empty() || edits.new_masses.size() > edits.removed_masses.size() ||
-         std::any_of(edits.new_springs.begin(), edits.new_springs.end(),
-                     [](const NewSpring& spring) { return spring.rest_length.has_value(); });
+         change.lengths_given;
 }
 
 }  // namespace
@@ -121,34 +121,38 @@ double Evaluation::development_time() const {
 }
 
 void Evaluation::develop(std::span<Life> lives, const Progress& progress) const {
-  if (!lives.empty() && lives.front().newborn.record) return develop_again(lives, progress);
-  if (experiment_.development.control == Control::random_places) return develop_yoked(lives, progress);
-  const auto change = [&](std::size_t i, int cycle) { apply_operators(lives[i], cycle); };
-  live_cycles(lives, true, change, progress);
-}
-
-void Evaluation::develop_again(std::span<Life> lives, const Progress& progress) const {
-  std::vector<std::vector<Change>> changes;
-  for (const Life& life : lives) changes.push_back(life.newborn.record->changes());
+  std::vector<std::vector<Change>> recorded(lives.size());
+  for (std::size_t i = 0; i < lives.size(); ++i)
+    if (const auto& record = lives[i].newborn.record) recorded[i] = record->changes();
+  const bool yoked = experiment_.development.control == Control::random_places;
+  std::vector<std::optional<Yoke>> yokes(lives.size());
+  if (yoked) yokes = yokes_of(lives);
   const auto change = [&](std::size_t i, int cycle) {
-    for (const Change& made : changes[i])
-      if (made.cycle == static_cast<std::uint32_t>(cycle))
-        make_change(lives[i], made.edits, made.op, moment(lives[i], cycle, {}, {}));
+    if (lives[i].newborn.record)
+      make_again(recorded[i], lives[i], cycle);
+    else if (yoked)
+      change_as_in(*yokes[i], lives[i], cycle);
+    else
+      apply_operators(lives[i], cycle);
   };
-  // what was observed then is again, so that the simulation is the same to the bit
-  live_cycles(lives, experiment_.development.control != Control::random_places, change, progress);
+  // what was observed then is again, so that a life with a record is the same to the bit
+  live_cycles(lives, !yoked, change, progress);
 }
 
-void Evaluation::develop_yoked(std::span<Life> lives, const Progress& progress) const {
-  std::vector<Yoke> yokes;
-  {
-    std::vector<Life> before(lives.begin(), lives.end());
-    const auto change = [&](std::size_t i, int cycle) { apply_operators(before[i], cycle); };
-    live_cycles(before, true, change, [](double) {});
-    for (std::size_t i = 0; i < lives.size(); ++i) yokes.emplace_back(lives[i].living.body, before[i].result.record);
+std::vector<std::optional<Yoke>> Evaluation::yokes_of(std::span<const Life> lives) const {
+  std::vector<std::size_t> yoked;
+  std::vector<Life> before;
+  for (std::size_t i = 0; i < lives.size(); ++i) {
+    if (lives[i].newborn.record) continue;
+    yoked.push_back(i);
+    before.push_back(lives[i]);
   }
-  const auto change = [&](std::size_t i, int cycle) { change_as_in(yokes[i], lives[i], cycle); };
-  live_cycles(lives, false, change, progress);
+  const auto change = [&](std::size_t i, int cycle) { apply_operators(before[i], cycle); };
+  live_cycles(before, true, change, [](double) {});
+  std::vector<std::optional<Yoke>> yokes(lives.size());
+  for (std::size_t i = 0; i < before.size(); ++i)
+    yokes[yoked[i]].emplace(lives[yoked[i]].living.body, before[i].result.record);
+  return yokes;
 }
 
 template <class Action>
@@ -162,7 +166,7 @@ void Evaluation::live_cycles(std::span<Life> lives, bool observed, const Action&
       if (!lives[i].alive()) return;
       change(i, cycle);
       if (development.reset) allow_energy(lives[i], [&] { return_to_rest(lives[i]); });
-      if (!development.operators.empty()) choose_step(lives[i]);
+      choose_step(lives[i]);
     });
     progress(static_cast<double>(cycle) / static_cast<double>(development.cycles));
   }
@@ -230,7 +234,7 @@ void Evaluation::apply_operator(Life& life, int cycle, std::size_t index) const 
   const auto develop = [&] {
     Edits edits;
     op->develop(now, edits, rng);
-    make_change(life, edits, static_cast<std::uint32_t>(index), now);
+    make_change(life, change_by(edits, static_cast<std::uint32_t>(index), now), now);
   };
   call_operator(experiment_, Devo::kind, index, develop, where);
 }
@@ -239,7 +243,7 @@ void Evaluation::change_as_in(Yoke& yoke, Life& life, int cycle) const {
   Rng rng = stream(life, place::random_places(cycle));
   for (const Amount& amount : yoke.amounts_after(cycle)) {
     const Moment now = moment(life, cycle, {}, {});
-    make_change(life, at_random_places(amount, now, yoke.surplus, rng), amount.op, now);
+    make_change(life, change_by(at_random_places(amount, now, yoke.surplus, rng), amount.op, now), now);
   }
   shed_loose_pieces(life, cycle);
 }
@@ -268,11 +272,10 @@ Moment Evaluation::moment(const Life& life, int cycle, const Schedule& schedule,
   return now;
 }
 
-void Evaluation::make_change(Life& life, const Edits& edits, std::optional<std::uint32_t> op, const Moment& now) const {
-  if (edits.empty()) return;
-  Change change = change_by(edits, op, now);
-  const auto apply = [&] { apply_edits(life.living, edits, now); };
-  if (adds_energy(edits))
+void Evaluation::make_change(Life& life, Change change, const Moment& now) const {
+  if (change.edits.empty()) return;
+  const auto apply = [&] { apply_edits(life.living, change.edits, now); };
+  if (adds_energy(change))
     allow_energy(life, apply);
   else
     apply();
@@ -280,9 +283,16 @@ void Evaluation::make_change(Life& life, const Edits& edits, std::optional<std::
   life.result.record.add(change);
 }
 
+void Evaluation::make_again(const std::vector<Change>& changes, Life& life, int cycle) const {
+  for (const Change& change : changes)
+    if (change.cycle == static_cast<std::uint32_t>(cycle)) make_change(life, change, moment(life, cycle, {}, {}));
+}
+
 void Evaluation::shed_loose_pieces(Life& life, int cycle) const {
   const Edits edits{.removed_masses = loose_masses(life.living.body)};
-  if (!edits.empty()) make_change(life, edits, std::nullopt, moment(life, cycle, {}, {}));
+  if (edits.empty()) return;
+  const Moment now = moment(life, cycle, {}, {});
+  make_change(life, change_by(edits, std::nullopt, now), now);
 }
 
 void Evaluation::choose_step(Life& life) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,9 +21,8 @@ struct Newborn {
   std::uint32_t id = 0;
   std::uint32_t generation = 0;
   const Genome* genome = nullptr;
-  /// Of a life that is lived again: its changes are made whatever the operators would do. For all of a batch or for
-  /// none.
-  const LifeRecord* record = nullptr;
+  /// Of a life that is lived again: its changes are made whatever the operators would do.
+  std::optional<LifeRecord> record = std::nullopt;
 };
 
 /// How an evaluation ended.
@@ -102,10 +102,8 @@ class Evaluation {
   /// operators of a cycle ask for is recorded for them.
   template <class Action>
   void live_cycles(std::span<Life> lives, bool observed, const Action& change, const Progress& progress) const;
-  /// Lives whose changes are recorded already.
-  void develop_again(std::span<Life> lives, const Progress& progress) const;
-  /// The control of random places: each life is lived once before, with the operators, and then follows that.
-  void develop_yoked(std::span<Life> lives, const Progress& progress) const;
+  /// The control of random places: a life without a record is yoked to one that is lived before, with the operators.
+  std::vector<std::optional<Yoke>> yokes_of(std::span<const Life> lives) const;
   /// The simulation of a cycle of development, recorded as the probe does it.
   void simulate_cycle(std::span<Life> lives, int cycle, Recording recording) const;
   /// The box around the body where it is when life goes on, cut off at the floor's highest place.
@@ -121,8 +119,10 @@ class Evaluation {
   void apply_operator(Life& life, int cycle, std::size_t index) const;
   /// Changes as much as the operators did in the life to which this one is yoked, at random places.
   void change_as_in(Yoke& yoke, Life& life, int cycle) const;
-  /// Makes and records edits of an operator, or of none.
-  void make_change(Life& life, const Edits& edits, std::optional<std::uint32_t> op, const Moment& now) const;
+  /// Makes and records a change whose new springs may still lack their rest lengths.
+  void make_change(Life& life, Change change, const Moment& now) const;
+  /// Makes the changes after a cycle again, of all that a life went through.
+  void make_again(const std::vector<Change>& changes, Life& life, int cycle) const;
   /// What development has torn off is no longer part of the body.
   void shed_loose_pieces(Life& life, int cycle) const;
   /// Random numbers for one part of a life.

@@ -18,10 +18,13 @@ static_assert(std::endian::native == std::endian::little, "numbers are written a
 constexpr std::array lists_of_causes{&Causes::removed_springs, &Causes::removed_masses, &Causes::changed_springs,
                                      &Causes::new_masses, &Causes::new_springs};
 
-/// Puts indices in ascending order and keeps each once, with its cause. Causes that are not as many stay as they are,
-/// to be refused where the edits are applied.
+/// Follows the bits of the lists of causes.
+constexpr std::uint32_t lengths_given_bit = 1u << lists_of_causes.size();
+
+/// Puts indices in ascending order and keeps each once, with its cause.
 void put_in_order(std::vector<std::uint32_t>& indices, std::vector<double>& causes) {
-  const bool have_causes = causes.size() == indices.size();
+  const bool have_causes = !causes.empty();
+  if (have_causes && causes.size() != indices.size()) return;
   std::map<std::uint32_t, double> ordered;
   for (std::size_t i = 0; i < indices.size(); ++i) ordered.emplace(indices[i], have_causes ? causes[i] : 0);
   indices.clear();
@@ -56,15 +59,15 @@ class Writer {
       material(spring.material);
       raw(spring.rest_length.value());
     }
-    causes(edits.causes);
+    causes(edits.causes, change.lengths_given);
   }
 
  private:
   /// Says first which of the lists there are: bit i stands for the i-th.
-  void causes(const Causes& causes) {
-    std::uint64_t given = 0;
+  void causes(const Causes& causes, bool lengths_given) {
+    std::uint32_t given = lengths_given ? lengths_given_bit : 0;
     for (std::size_t i = 0; i < lists_of_causes.size(); ++i)
-      if (!(causes.*lists_of_causes[i]).empty()) given |= std::uint64_t{1} << i;
+      if (!(causes.*lists_of_causes[i]).empty()) given |= 1u << i;
     whole(given);
     for (const auto list : lists_of_causes)
       for (const double cause : causes.*list) raw(static_cast<float>(cause));
@@ -133,7 +136,9 @@ class Reader {
       spring.material = material();
       spring.rest_length = raw<double>();
     }
-    edits.causes = causes(edits);
+    const std::uint32_t given = index();
+    edits.causes = causes(edits, given);
+    change.lengths_given = (given & lengths_given_bit) != 0;
     return change;
   }
 
@@ -166,10 +171,9 @@ class Reader {
     return indices;
   }
 
-  Causes causes(const Edits& edits) {
+  Causes causes(const Edits& edits, std::uint32_t given) {
     const std::array counts{edits.removed_springs.size(), edits.removed_masses.size(), edits.changed_springs.size(),
                             edits.new_masses.size(), edits.new_springs.size()};
-    const std::uint32_t given = index();
     Causes causes;
     for (std::size_t i = 0; i < lists_of_causes.size(); ++i)
       for (std::size_t left = (given >> i & 1) != 0 ? counts[i] : 0; left > 0; --left)
@@ -203,6 +207,8 @@ Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const Mome
   Change change{static_cast<std::uint32_t>(now.cycle), op, edits};
   put_in_order(change.edits.removed_masses, change.edits.causes.removed_masses);
   put_in_order(change.edits.removed_springs, change.edits.causes.removed_springs);
+  change.lengths_given = std::any_of(edits.new_springs.begin(), edits.new_springs.end(),
+                                     [](const NewSpring& spring) { return spring.rest_length.has_value(); });
   return change;
 }
 

@@ -14,10 +14,12 @@ struct Change {
   std::uint32_t cycle = 0;          ///< from 1
   std::optional<std::uint32_t> op;  ///< place in Development::operators; none: of what was torn off
   Edits edits;                      ///< what goes in ascending order and once; every new spring has its rest length
+  bool lengths_given = false;       ///< whether the operator itself gave a new spring its rest length
 };
 
 /// The change that `edits`, wanted by operator `op`, are about to make. Rest lengths are still as the operator left
-/// them; see set_rest_lengths().
+/// them; see set_rest_lengths(). Causes that are not as many as their edits stay, with these, as they are, to be
+/// refused where the edits are applied.
 Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const Moment& now);
 
 /// Takes the rest lengths of a change's new springs from the body that it was made to.

@@ -10,24 +10,12 @@ Experiment experiment_to_live_again(const Archive& archive, std::vector<std::fil
   return experiment;
 }
 
-void warn_where_unsure(const Archive& archive, std::uint32_t id, const std::string& device) {
-  const std::string device_of_run = archive.record("device");
-  if (device == device_of_run || archive.life(id)) return;
-  std::cerr << "warning: individual " << id << " lived again on " << device << ", not on " << device_of_run
-            << " as in the run, which has no record of its edits; it may have developed otherwise\n";
-}
-
-LifeAgain live_again(const Archive& archive, const Experiment& experiment, Simulator& simulator,
-                     const ArchivedIndividual& individual) {
-  const std::optional<LifeRecord> record = archive.life(individual.id);
-  warn_where_unsure(archive, individual.id, simulator.device());
-  const Evaluation evaluation(experiment, simulator);
-  const Newborn newborn{individual.id, individual.born, &individual.genome, record ? &*record : nullptr};
-  std::vector<Life> lives = evaluation.birth({&newborn, 1});
-  Body born = lives.front().living.body;
-  evaluation.develop(lives, [](double) {});
-  lives.front().newborn.record = nullptr;  // it ends here
-  return {std::move(born), std::move(lives.front())};
+Newborn born_again(const Archive& archive, const Individual& individual, const std::string& device) {
+  Newborn newborn{individual.id, individual.born, &individual.genome, archive.life(individual.id)};
+  if (const std::string device_of_run = archive.record("device"); !newborn.record && device != device_of_run)
+    std::cerr << "warning: individual " << individual.id << " lived again on " << device << ", not on " << device_of_run
+              << " as in the run, which has no record of its edits; it may have developed otherwise\n";
+  return newborn;
 }
 
 }  // namespace evodevo

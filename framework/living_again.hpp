@@ -13,18 +13,9 @@ namespace evodevo {
 /// The experiment of a run, to be simulated where its GPU may be missing.
 Experiment experiment_to_live_again(const Archive& archive, std::vector<std::filesystem::path> plugin_path);
 
-/// Warns on stderr where an individual may develop otherwise on `device` than in the run: the device is another one and
-/// there is no record to follow.
-void warn_where_unsure(const Archive& archive, std::uint32_t id, const std::string& device);
-
-/// An individual that lives again up to its maturity.
-struct LifeAgain {
-  Body born;
-  Life life;  ///< refers to the individual's genome
-};
-
-/// Follows the record of the life where the run has one.
-LifeAgain live_again(const Archive& archive, const Experiment& experiment, Simulator& simulator,
-                     const ArchivedIndividual& individual);
+/// An individual of a run, to live again on `device`: it is to follow the record of its life where the run has one.
+/// Warns on stderr where it may develop otherwise than in the run: there is no record, and the device is another one.
+/// Refers to the individual's genome.
+Newborn born_again(const Archive& archive, const Individual& individual, const std::string& device);
 
 }  // namespace evodevo

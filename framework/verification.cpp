@@ -15,10 +15,9 @@ constexpr std::int64_t step_parts = 4;
 
 const Progress unwatched = [](double) {};
 
-std::vector<Life> matured(const Evaluation& evaluation, std::span<const Individual> individuals) {
+std::vector<Life> matured(const Evaluation& evaluation, std::span<const Champion> champions) {
   std::vector<Newborn> newborns;
-  for (const Individual& individual : individuals)
-    newborns.push_back({individual.id, individual.born, &individual.genome});
+  for (const Champion& champion : champions) newborns.push_back(champion.newborn);
   std::vector<Life> lives = evaluation.birth(newborns);
   evaluation.develop(lives, unwatched);
   return lives;
@@ -28,13 +27,12 @@ void still_muscles(Life& life) {
   for (Material& material : life.living.body.materials) material.amplitude = 0;
 }
 
-/// The matured bodies of the individuals, and what comes of them.
+/// The matured bodies of the champions, and what comes of them.
 class Trials {
  public:
-  Trials(const Experiment& experiment, std::span<const Individual> individuals, std::vector<Life> lives)
+  Trials(const Experiment& experiment, std::span<const Champion> champions, std::vector<Life> lives)
       : experiment_(experiment), lives_(std::move(lives)) {
-    for (const Individual& individual : individuals)
-      verifications_.push_back({individual.id, individual.result.objectives.front(), {}});
+    for (const Champion& champion : champions) verifications_.push_back({champion.newborn.id, champion.fitness, {}});
   }
 
   /// Changes a copy of every body with `change` and repeats its final evaluation.
@@ -80,10 +78,10 @@ const Trial* find(const Verification& verification, const std::string& name) {
 }  // namespace
 
 std::vector<Verification> verify(const Experiment& experiment, Simulator& simulator,
-                                 std::span<const Individual> individuals) {
+                                 std::span<const Champion> champions) {
   const Conditions as_in_the_run(experiment);
   const Evaluation run(experiment, simulator);
-  Trials trials(experiment, individuals, matured(run, individuals));
+  Trials trials(experiment, champions, matured(run, champions));
   trials.add("again", simulator, as_in_the_run, [](Life&) {});
 
   Conditions quarter = as_in_the_run;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "population.hpp"
+#include "evaluation.hpp"
 #include "simulator.hpp"
 
 namespace evodevo {
@@ -20,6 +20,12 @@ struct Trial {
   std::optional<double> value;  ///< the first objective; none unless ok
 };
 
+/// An individual to verify: how it lives again, and its first objective, as the run recorded it.
+struct Champion {
+  Newborn newborn;
+  double fitness = 0;
+};
+
 /// An individual's trials beside what its evaluation found.
 struct Verification {
   std::uint32_t individual = 0;
@@ -27,7 +33,7 @@ struct Verification {
   std::vector<Trial> trials;
 };
 
-/// Lets individuals mature as in the run, on `simulator`, and repeats the final evaluation
+/// Lets champions mature as in the run, on `simulator`, and repeats the final evaluation
 ///   again         as it was;
 ///   quarter-step  with a quarter of the time step in double precision;
 ///   other-method  with a quarter of each body's own step in double precision by velocity-verlet (symplectic-euler
@@ -37,7 +43,7 @@ struct Verification {
 ///   settled       with windows that open 10 s later.
 /// The second and third run on the CPU. The same on the same device, every time.
 std::vector<Verification> verify(const Experiment& experiment, Simulator& simulator,
-                                 std::span<const Individual> individuals);
+                                 std::span<const Champion> champions);
 
 /// Whether a trial's value is at least half the fitness; where less is better, or the fitness is not above 0, within
 /// half of it. No value is never enough.

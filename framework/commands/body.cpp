@@ -48,9 +48,14 @@ State state_as_given(const Body& body, const Experiment& experiment) {
   return state;
 }
 
-Life birth(const Experiment& experiment, Simulator& simulator, const ArchivedIndividual& individual) {
-  const Newborn newborn{individual.id, individual.born, &individual.genome};
+Life birth(const Experiment& experiment, Simulator& simulator, const Newborn& newborn) {
   return std::move(Evaluation(experiment, simulator).birth({&newborn, 1}).front());
+}
+
+Life matured(const Experiment& experiment, Simulator& simulator, const Newborn& newborn) {
+  Life life = birth(experiment, simulator, newborn);
+  Evaluation(experiment, simulator).develop({&life, 1}, [](double) {});
+  return life;
 }
 
 std::string short_text(double value) {
@@ -77,8 +82,9 @@ int body_command(const Arguments& arguments) {
   const Experiment experiment = experiment_to_live_again(archive, given_plugin_path(*given));
   const ArchivedIndividual individual = chosen_individual(archive, *given);
   const auto simulator = make_simulator(experiment);
-  const Life life = given->contains("matured") ? live_again(archive, experiment, *simulator, individual).life
-                                               : birth(experiment, *simulator, individual);
+  const Life life = given->contains("matured")
+                        ? matured(experiment, *simulator, born_again(archive, individual, simulator->device()))
+                        : birth(experiment, *simulator, Newborn{individual.id, individual.born, &individual.genome});
   if (!life.alive()) {
     std::cerr << "individual " << individual.id << " has no body to show: " << name(life.result.status) << ", "
               << life.result.reason << '\n';

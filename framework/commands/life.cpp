@@ -173,10 +173,13 @@ class Biography {
     const Experiment experiment = experiment_to_live_again(archive, std::move(plugin_path));
     operators_ = narrated_operators(experiment);
     const auto simulator = make_simulator(experiment);
-    LifeAgain again = live_again(archive, experiment, *simulator, individual_);
-    born_ = std::move(again.born);
+    const Evaluation evaluation(experiment, *simulator);
+    const Newborn newborn = born_again(archive, individual_, simulator->device());
+    std::vector<Life> lives = evaluation.birth({&newborn, 1});
+    born_ = lives.front().living.body;
+    evaluation.develop(lives, [](double) {});
     Chronicle chronicle(born_);
-    for (const Change& change : again.life.result.record.changes()) chronicle.add(change);
+    for (const Change& change : lives.front().result.record.changes()) chronicle.add(change);
     matured_ = chronicle.body();
     events_ = chronicle.events();
   }

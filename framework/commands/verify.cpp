@@ -30,9 +30,12 @@ std::string number(const std::optional<double>& value) {
 
 std::vector<Verification> verify_best(const Experiment& experiment, Simulator& simulator, Archive& archive,
                                       std::size_t count) {
-  std::vector<Individual> individuals;
+  std::vector<ArchivedIndividual> individuals;
   for (const std::uint32_t id : archive.best(count)) individuals.push_back(*archive.individual(id));
-  std::vector<Verification> verifications = verify(experiment, simulator, individuals);
+  std::vector<Champion> champions;
+  for (const ArchivedIndividual& individual : individuals)
+    champions.push_back({born_again(archive, individual, simulator.device()), individual.result.objectives.front()});
+  std::vector<Verification> verifications = verify(experiment, simulator, champions);
   archive.add_verifications(verifications);
   return verifications;
 }

@@ -145,30 +145,14 @@ Json robot_json(const Archive& archive, const Role& role, const FilmedLife& life
   return robot;
 }
 
-/// All together, then those again, each by itself, who develop otherwise here than in the run.
-std::vector<FilmedLife> film_lives_of_run(const Archive& archive, const Experiment& experiment, Simulator& simulator,
-                                          const std::vector<Newborn>& newborns) {
-  std::vector<FilmedLife> lives = film_lives(experiment, simulator, newborns);
-  for (std::size_t i = 0; i < lives.size(); ++i) {
-    warn_where_unsure(archive, newborns[i].id, simulator.device());
-    const std::optional<LifeRecord> record = archive.life(newborns[i].id);
-    if (!record || *record == lives[i].result.record) continue;
-    Newborn as_recorded = newborns[i];
-    as_recorded.record = &*record;
-    lives[i] = std::move(film_lives(experiment, simulator, {&as_recorded, 1}).front());
-  }
-  return lives;
-}
-
 }  // namespace
 
 Json reported_run(const Archive& archive, const Experiment& experiment, Simulator& simulator, const Cast& cast,
                   std::size_t budget) {
   const std::vector<Role> roles = Casting(archive).choose(cast);
   std::vector<Newborn> newborns;
-  for (const Role& role : roles)
-    newborns.push_back({role.individual.id, role.individual.born, &role.individual.genome});
-  const std::vector<FilmedLife> lives = film_lives_of_run(archive, experiment, simulator, newborns);
+  for (const Role& role : roles) newborns.push_back(born_again(archive, role.individual, simulator.device()));
+  const std::vector<FilmedLife> lives = film_lives(experiment, simulator, newborns);
 
   Json run = run_json(archive, experiment);
   run["resolved"] = archive.record("experiment");

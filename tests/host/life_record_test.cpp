@@ -115,6 +115,7 @@ Change change_of_all_kinds() {
   Change change;
   change.cycle = 300;
   change.op = 2;
+  change.lengths_given = true;
   change.edits.removed_masses = {0, 7, 100'000};
   change.edits.removed_springs = {3, 4, 70'000};
   change.edits.causes.removed_springs = {0, 1.5, 0x1p100};
@@ -129,6 +130,7 @@ Change change_of_all_kinds() {
 void expect_same(const Change& a, const Change& b) {
   EXPECT_EQ(a.cycle, b.cycle);
   EXPECT_EQ(a.op, b.op);
+  EXPECT_EQ(a.lengths_given, b.lengths_given);
   EXPECT_EQ(a.edits.removed_masses, b.edits.removed_masses);
   EXPECT_EQ(a.edits.removed_springs, b.edits.removed_springs);
   EXPECT_EQ(a.edits.causes.removed_springs, b.edits.causes.removed_springs);
@@ -232,6 +234,14 @@ TEST(LifeRecord, WhatComesAboutAtRandomPlacesHasNoCause) {
   EXPECT_EQ(causes_named(experiment), 0u);
 }
 
+void expect_same_life(const Life& a, const Life& b) {
+  expect_same(a.living.body, b.living.body);
+  EXPECT_EQ(a.living.state.position, b.living.state.position);
+  EXPECT_EQ(a.living.state.velocity, b.living.state.velocity);
+  EXPECT_EQ(a.living.state.start_energy, b.living.state.start_energy) << "the guard is to allow the same, to the bit";
+  EXPECT_EQ(a.result.record, b.result.record);
+}
+
 /// Lives again, by their record, the last of some lives under `control`, where development would do otherwise.
 void expect_that_a_life_follows_its_record(Control control) {
   const auto experiment = [&] {
@@ -247,12 +257,10 @@ void expect_that_a_life_follows_its_record(Control control) {
   const Evaluation evaluation(other, *simulator);
   const Experiment first = all_operators(true);
   const Individual individual = breed(first, {}, 0, 0, 3).back();
-  const Newborn newborn{individual.id, 0, &individual.genome, &lived.life.result.record};
+  const Newborn newborn{individual.id, 0, &individual.genome, lived.life.result.record};
   std::vector<Life> lives = evaluation.birth({&newborn, 1});
   evaluation.develop(lives, [](double) {});
-  expect_same(lives.front().living.body, lived.life.living.body);
-  EXPECT_EQ(lives.front().living.state.position, lived.life.living.state.position);
-  EXPECT_EQ(lives.front().result.record, lived.life.result.record);
+  expect_same_life(lives.front(), lived.life);
 }
 
 TEST(LifeRecord, ALifeFollowsItsRecordWhateverTheOperatorsWouldDo) {
@@ -261,6 +269,81 @@ TEST(LifeRecord, ALifeFollowsItsRecordWhateverTheOperatorsWouldDo) {
 
 TEST(LifeRecord, ALifeAtRandomPlacesFollowsItsRecordWhicheverOperatorComesFirst) {
   expect_that_a_life_follows_its_record(Control::random_places);
+}
+
+/// Exchanges the first spring for one of the same ends, which is `stretch` times as long or, without it, has no force.
+class Exchange final : public Devo {
+ public:
+  explicit Exchange(std::optional<double> stretch) : stretch_(stretch) {}
+  void develop(const Moment& now, Edits& edits, Rng&) const override {
+    const Spring& spring = now.body.springs.front();
+    NewSpring& other = edits.new_springs.emplace_back(
+        NewSpring{spring.a, spring.b, now.body.materials[spring.material], std::nullopt});
+    if (stretch_) other.rest_length = *stretch_ * spring.rest_length;
+    edits.removed_springs = {0};
+  }
+
+ private:
+  std::optional<double> stretch_;
+};
+
+TEST(LifeRecord, ALifeLivedAgainIsAllowedTheEnergyThatItHadThen) {
+  Experiment experiment = testing::read(testing::small_experiment);
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  const Individual individual = breed(experiment, {}, 0, 0, 1).front();
+  const Evaluation evaluation(experiment, *simulator);
+  const auto lived = [&](std::optional<LifeRecord> record) {
+    const Newborn newborn{individual.id, 0, &individual.genome, std::move(record)};
+    std::vector<Life> lives = evaluation.birth({&newborn, 1});
+    evaluation.develop(lives, [](double) {});
+    return std::move(lives.front());
+  };
+  std::vector<double> energies;
+  for (const std::optional<double> stretch : {std::optional<double>(), std::optional(1.5)}) {
+    experiment.development.operators[0].op = std::make_unique<Exchange>(stretch);
+    const Life life = lived(std::nullopt);
+    ASSERT_TRUE(life.alive());
+    expect_same_life(lived(LifeRecord(life.result.record.bytes())), life);
+    energies.push_back(life.living.state.start_energy);
+  }
+  EXPECT_GT(energies[1], energies[0]) << "what an operator strains is allowed";
+}
+
+/// Lives with a record and lives without it, in one batch, where development does otherwise than in the record.
+void expect_that_each_life_goes_its_own_way(Control control) {
+  Experiment experiment = all_operators(false);
+  experiment.development.control = control;
+  const std::vector<Lived> recorded = matured(experiment, 6);
+  experiment.seed += 1;
+  const std::vector<Individual> individuals = breed(all_operators(false), {}, 0, 0, 6);
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
+  const Evaluation evaluation(experiment, *simulator);
+  const auto lived = [&](bool with_records) {
+    std::vector<Newborn> newborns;
+    for (const Individual& individual : individuals) {
+      Newborn& newborn = newborns.emplace_back(Newborn{individual.id, 0, &individual.genome});
+      if (with_records && individual.id % 2 == 1) newborn.record = recorded[individual.id].life.result.record;
+    }
+    std::vector<Life> lives = evaluation.birth(newborns);
+    evaluation.develop(lives, [](double) {});
+    return lives;
+  };
+  const std::vector<Life> mixed = lived(true), free = lived(false);
+  std::size_t alive = 0;
+  for (std::size_t i = 0; i < individuals.size(); ++i) {
+    SCOPED_TRACE(i);
+    if (!recorded[i].life.alive() || !free[i].alive()) continue;
+    ++alive;
+    EXPECT_FALSE(free[i].result.record == recorded[i].life.result.record);
+    expect_same_life(mixed[i], i % 2 == 1 ? recorded[i].life : free[i]);
+  }
+  EXPECT_GE(alive, 4u);
+}
+
+TEST(LifeRecord, LivesWithAndWithoutOneGoTheirOwnWaysTogether) { expect_that_each_life_goes_its_own_way(Control::off); }
+
+TEST(LifeRecord, LivesAtRandomPlacesWithAndWithoutOneGoTheirOwnWaysTogether) {
+  expect_that_each_life_goes_its_own_way(Control::random_places);
 }
 
 Experiment run_of_60() {

@@ -4,10 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "breeding.hpp"
+#include "commands/verification_report.hpp"
+#include "evolution.hpp"
 #include "support/experiments.hpp"
+#include "support/scratch.hpp"
 
 namespace evodevo {
 namespace {
@@ -50,6 +54,14 @@ std::vector<Individual> evaluated(const Experiment& experiment, Simulator& simul
   return individuals;
 }
 
+std::vector<Verification> verified(const Experiment& experiment, Simulator& simulator,
+                                   std::span<const Individual> individuals) {
+  std::vector<Champion> champions;
+  for (const Individual& individual : individuals)
+    champions.push_back({{individual.id, individual.born, &individual.genome}, individual.result.objectives.front()});
+  return verify(experiment, simulator, champions);
+}
+
 /// The best of 24 random individuals, verified.
 Verification verified_best(const Experiment& experiment) {
   const auto simulator = simulator_for(experiment);
@@ -59,7 +71,7 @@ Verification verified_best(const Experiment& experiment) {
       individuals.begin(), individuals.end(),
       [](const Individual& a, const Individual& b) { return a.result.objectives[0] < b.result.objectives[0]; });
   EXPECT_GT(best.result.objectives[0], 0.01) << "there must be something to verify";
-  return verify(experiment, *simulator, {&best, 1}).front();
+  return verified(experiment, *simulator, {&best, 1}).front();
 }
 
 double value(const Verification& verification, const std::string& trial) {
@@ -143,7 +155,7 @@ TEST(Verify, WhatOnlyTheStepBringsForthIsAnArtefact) {
   const auto individuals = evaluated(experiment, *simulator, {Individual{}});
   ASSERT_EQ(individuals[0].result.status, Status::ok) << individuals[0].result.reason;
   EXPECT_NEAR(individuals[0].result.objectives[0], furthest, 1e-9);
-  const Verification verification = verify(experiment, *simulator, individuals).front();
+  const Verification verification = verified(experiment, *simulator, individuals).front();
   EXPECT_LT(value(verification, "quarter-step"), 1.2 * strain);
   EXPECT_LT(value(verification, "other-method"), 1.2 * strain);
   const Marks found = marks(verification, true);
@@ -156,14 +168,75 @@ TEST(Verify, TheSameEveryTimeWhateverElseIsVerified) {
   std::vector<Individual> individuals = evaluated(experiment, *simulator, breed(experiment, {}, 0, 0, 12));
   std::erase_if(individuals, [](const Individual& i) { return i.result.status != Status::ok; });
   ASSERT_GE(individuals.size(), 2u);
-  const auto together = verify(experiment, *simulator, individuals);
+  const auto together = verified(experiment, *simulator, individuals);
   for (std::size_t i = 0; i < individuals.size(); ++i) {
-    const auto alone = verify(experiment, *simulator, {&individuals[i], 1});
+    const auto alone = verified(experiment, *simulator, {&individuals[i], 1});
     for (std::size_t t = 0; t < alone[0].trials.size(); ++t)
       EXPECT_EQ(alone[0].trials[t].value, together[i].trials[t].value) << alone[0].trials[t].name;
     EXPECT_EQ(value(together[i], "again"), individuals[i].result.objectives[0]) << "developed as in the run";
     EXPECT_NE(value(together[i], "disturbed-1"), value(together[i], "disturbed-2"));
   }
+}
+
+/// Away from the ground a body's posture decides its step.
+TEST(Verify, ABodyThatNoOperatorChangesKeepsItsFitnessToo) {
+  std::string swimmers = walkers;
+  const std::size_t scene = swimmers.find("[scene.gravity]");
+  swimmers.replace(scene, swimmers.find("[[fitness]]") - scene, "[scene.drag]\n[development]\ncycles = 3\n");
+  const Experiment experiment = testing::read(
+      swimmers,
+      {{"simulation.accuracy", "balanced", "--set"}, {"fitness.0.settle", "0", ""}, {"fitness.0.window", "2", ""}});
+  const auto simulator = simulator_for(experiment);
+  std::vector<Individual> individuals = evaluated(experiment, *simulator, breed(experiment, {}, 0, 0, 6));
+  std::erase_if(individuals, [](const Individual& i) { return i.result.status != Status::ok; });
+  ASSERT_GE(individuals.size(), 3u);
+  for (const Verification& swimmer : verified(experiment, *simulator, individuals))
+    EXPECT_EQ(value(swimmer, "again"), swimmer.fitness) << "the same bits";
+}
+
+/// A small run, and where it is recorded.
+struct SmallRun {
+  testing::Scratch scratch;
+  Experiment experiment = testing::read(testing::small_experiment);
+  std::unique_ptr<Simulator> simulator = simulator_for(experiment);
+  Archive archive = Archive::create(scratch / "run", experiment, simulator->device());
+
+  SmallRun() {
+    const std::atomic<bool> stop = false;
+    evolve(experiment, *simulator, archive, stop, Observer{});
+  }
+};
+
+TEST(Verify, WhatWasRecordedOfALifeHappensAgain) {
+  SmallRun run;
+  run.experiment.seed += 1;  // operators would draw other numbers
+  std::size_t recorded = 0;
+  for (const Verification& verification : verify_best(run.experiment, *run.simulator, run.archive, 24)) {
+    if (!run.archive.life(verification.individual)) continue;
+    ++recorded;
+    EXPECT_EQ(value(verification, "again"), verification.fitness) << verification.individual;
+  }
+  EXPECT_GE(recorded, 2u);
+}
+
+TEST(Verify, WarnsOfLivesThatMayHaveDevelopedOtherwise) {
+  SmallRun run;
+  const auto warnings = [&] {
+    ::testing::internal::CaptureStderr();
+    verify_best(run.experiment, *run.simulator, run.archive, 24);
+    return ::testing::internal::GetCapturedStderr();
+  };
+  EXPECT_EQ(warnings(), "");
+  run.archive.set_record("device", "another device");
+  const std::string warned = warnings();
+  std::size_t unsure = 0, sure = 0;
+  for (const std::uint32_t id : run.archive.best(24)) {
+    const bool warns = warned.find("individual " + std::to_string(id) + " lived again on cpu") != std::string::npos;
+    EXPECT_EQ(warns, !run.archive.life(id).has_value()) << warned;
+    ++(warns ? unsure : sure);
+  }
+  EXPECT_GT(unsure, 0u);
+  EXPECT_GT(sure, 0u);
 }
 
 TEST(Verify, ThresholdsAreAtHalf) {
