@@ -1,7 +1,7 @@
 // evodevo show: what a run has come to.
 #include <cstdio>
 #include <iostream>
-#include <toml++/toml.hpp>
+#include <toml++/toml.h>
 
 #include "archive.hpp"
 #include "commands/options.hpp"
