@@ -22,6 +22,7 @@ Eigen::Matrix3d best_rotation(const Eigen::Matrix3d& covariance) {
 }  // namespace
 
 Vec3 undeformed(Vec3 place, std::span<const Vec3> places, std::span<const Vec3> rest_places) {
+  if (places.empty()) return place;
   constexpr double closest = 1e-9;  // m; a mass at the very place would have all weight there is
   std::vector<double> weights;
   double sum = 0;

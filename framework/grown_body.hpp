@@ -20,10 +20,10 @@ struct GrownBody {
   bool came_later(std::size_t mass) const { return numbers[mass] >= born; }
 };
 
-/// Where `place` lies in the undeformed body, m, if masses that now are at `places` belong to `rest_places`; there is
-/// one at least. It goes along with the masses around it: by the rotation and shift that best take them back, weighted
-/// by distance^-4, so that near ones outweigh all far ones in three dimensions (rigid moving least squares: Schaefer,
-/// McPhail and Warren 2006).
+/// Where `place` lies in the undeformed body, m, if masses that now are at `places` belong to `rest_places`; where it
+/// is if there are none. It goes along with the masses around it: by the rotation and shift that best take them back,
+/// weighted by distance^-4, so that near ones outweigh all far ones in three dimensions (rigid moving least squares:
+/// Schaefer, McPhail and Warren 2006).
 Vec3 undeformed(Vec3 place, std::span<const Vec3> places, std::span<const Vec3> rest_places);
 
 /// Follows one life and knows the rest place of every mass: that which it has at birth, or else undeformed() of where

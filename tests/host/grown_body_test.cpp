@@ -97,6 +97,13 @@ TEST(Growth, AMassThatComesKeepsTheRestPlaceThatItCameTo) {
   EXPECT_EQ(second.rest_places, first.rest_places);
 }
 
+TEST(Growth, WhereNoMassOfBeforeIsLeftThoseThatComeBelongWhereTheyAre) {
+  Life life = newborn({{0, 0, 0}});
+  Growth growth(life.living.body);
+  replace_mass(life, {1, 2, 3}, 0);
+  EXPECT_EQ(growth.after_cycle(life).rest_places, (std::vector<Vec3>{{1, 2, 3}}));
+}
+
 TEST(Growth, ABodyWithoutExtentHasPlacesAllTheSame) {
   Life life = newborn({{1, 1, 1}, {1, 1, 1}});
   EXPECT_EQ(Growth(life.living.body).after_cycle(life).rest_places, (std::vector<Vec3>{{0, 0, 0}, {0, 0, 0}}));
