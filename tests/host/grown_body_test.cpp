@@ -38,7 +38,8 @@ TEST(Undeformed, UndoesARigidMotion) {
 TEST(Undeformed, MirrorsNothing) {
   const std::vector<Vec3> flat{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
   const Vec3 above{0.3, 0.4, 0.5};
-  expect_near(undeformed(moved(above, 1, far_away), all_moved(flat, 1, far_away), flat), above);
+  for (const double turn : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0})
+    expect_near(undeformed(moved(above, turn, far_away), all_moved(flat, turn, far_away), flat), above);
 }
 
 TEST(Undeformed, GoesAlongWithTheMassesAroundIt) {
