@@ -38,7 +38,7 @@ double mean_between(const std::vector<std::vector<double>>& distances, std::size
 
 SceneEffect scene_effect(const std::vector<std::vector<double>>& distances, std::size_t first) {
   constexpr int deals = 9999;
-  constexpr double rounding = 1e-12;  // of sums in another order; distances are at most 1
+  constexpr double rounding = 1e-12;  // of sums in another order; distances are about 1 at most
   if (first < 2 || distances.size() < first + 2) return {mean_between(distances, first), {}, {}};
   Deal deal(distances.size(), 0);
   std::fill(deal.begin() + static_cast<std::ptrdiff_t>(first), deal.end(), 1);

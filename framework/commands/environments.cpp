@@ -41,7 +41,7 @@ Environment grow(const Experiment& experiment, const Individual& individual, std
   const Evaluation evaluation(experiment, *simulator);
   const std::vector<Newborn> newborns(starts, {individual.id, individual.born, &individual.genome});
   std::vector<Life> lives = evaluation.birth(newborns);
-  const std::size_t born = lives.front().living.body.masses.size();
+  std::vector<Growth> growths(starts, Growth(lives.front().living.body));
   for (std::uint32_t start = 1; start < starts; ++start)
     if (lives[start].alive()) disturb(lives[start], experiment, start - 1);
   Environment environment{
@@ -49,9 +49,7 @@ Environment grow(const Experiment& experiment, const Individual& individual, std
   if (experiment.scene.gravity) environment.slope = experiment.scene.gravity->slope;
   evaluation.develop(lives, [&](double) {
     for (std::size_t i = 0; i < lives.size(); ++i)
-      if (const Life& life = lives[i]; life.alive())
-        environment.grown[i].after.push_back(
-            {life.living.body, life.living.state.position, mass_numbers(born, life.result.record)});
+      if (const Life& life = lives[i]; life.alive()) environment.grown[i].after.push_back(growths[i].after_cycle(life));
   });
   for (std::size_t i = 0; i < lives.size(); ++i) {
     environment.grown[i].status = lives[i].result.status;
@@ -69,7 +67,7 @@ struct Kind {
 };
 
 constexpr Kind kinds[] = {{"springs", "springs that only one body has", spring_distance},
-                          {"masses", "masses that only one body has", mass_distance}};
+                          {"mass", "how far mass lies apart, body lengths at birth", mass_distance}};
 
 /// The bodies that are left after a cycle, counted from 0.
 std::vector<const GrownBody*> bodies_after(std::size_t cycle, const Environment& environment) {
@@ -125,16 +123,16 @@ Answer answer_of(const std::vector<Experiment>& experiments, const Individual& i
 
 void print(const std::optional<SceneEffect>& effect) {
   if (!effect)
-    std::printf("  %18s", "-");
+    std::printf("  %20s", "-");
   else if (!effect->p)
-    std::printf("  %12.3f/%5s", effect->between, "-");
+    std::printf("  %13.4f/%6s", effect->between, "-");
   else
-    std::printf("  %5.3f/%5.3f %6.4f", effect->between, *effect->within, *effect->p);
+    std::printf("  %6.4f/%6.4f %6.4f", effect->between, *effect->within, *effect->p);
 }
 
 void print(const Answer& answer, std::size_t kind, std::size_t cycles) {
   std::printf("\n%s\n%-32s", kinds[kind].title, "");
-  for (std::size_t cycle = 1; cycle <= cycles; ++cycle) std::printf("      after cycle %2zu", cycle);
+  for (std::size_t cycle = 1; cycle <= cycles; ++cycle) std::printf("        after cycle %2zu", cycle);
   std::printf("\n");
   for (const Pair& pair : answer.pairs) {
     std::printf("%-15s %-16s", answer.environments[pair.a].name.c_str(), answer.environments[pair.b].name.c_str());

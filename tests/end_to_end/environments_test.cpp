@@ -45,7 +45,7 @@ TEST_F(Environments, TheSameSceneWithoutNoiseGrowsTheSameBody) {
   ASSERT_EQ(answer.at("pairs").size(), 1u);
   const auto& pair = answer.at("pairs")[0];
   ASSERT_EQ(pair.at("springs").size(), 6u) << "one for each cycle";
-  for (const char* kind : {"springs", "masses"})
+  for (const char* kind : {"springs", "mass"})
     for (const auto& effect : pair.at(kind)) {
       EXPECT_EQ(effect.at("between"), 0);
       EXPECT_TRUE(effect.at("within").is_null());
@@ -81,7 +81,7 @@ TEST_F(Environments, WhereNothingDevelopsTheBodyStaysTheSameHoweverItLies) {
   const auto answer = json({flat_, slope, "--starts", "1", "--set", "development.control=no-change"})[0];
   const auto& pair = answer.at("pairs")[0];
   EXPECT_EQ(pair.at("springs")[5].at("between"), 0);
-  EXPECT_EQ(pair.at("masses")[5].at("between"), 0);
+  EXPECT_EQ(pair.at("mass")[5].at("between"), 0);
 }
 
 TEST_F(Environments, TheTableNamesScenesAndCycles) {
@@ -89,7 +89,7 @@ TEST_F(Environments, TheTableNamesScenesAndCycles) {
   const testing::Finished finished = environments({flat_, weak, "--starts", "2"});
   EXPECT_EQ(finished.exit_code, 0) << finished.output;
   for (const char* part : {"individual 4", "flat", "weak", "after cycle  6", "springs that only one body has",
-                           "masses that only one body has"})
+                           "how far mass lies apart, body lengths at birth"})
     EXPECT_THAT(finished.output, HasSubstr(part));
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -47,7 +48,7 @@ TEST(Overlap, RowsHoldMeansOverTheRobots) {
   accuracy::Table table = overlap_table();
   add_rows(scene, {robot_known_from(2), robot_known_from(4)}, table);
   ASSERT_EQ(table.rows().size(), 2 * cycle_times().size());
-  const double expected[] = {0, 0, 0.5, 0.5, 1, 1, 1, 1};
+  const double expected[] = {0, 0, 0.5, 0.5, 1, 1, 1, 1, 1, 1};
   for (std::size_t row = 0; row < table.rows().size(); ++row) {
     EXPECT_EQ(table.number(row, "found (1)"), expected[row / 2]) << row;
     EXPECT_EQ(table.number(row, "robots"), 2);
@@ -58,13 +59,31 @@ TEST(Overlap, RowsHoldMeansOverTheRobots) {
 }
 
 TEST(Overlap, TheShortestCycleIsTheOneFromWhichOnEnoughIsFound) {
+  const std::vector<double> times = cycle_times();
+  const std::size_t last = times.size() - 1;
   accuracy::Table table = overlap_table();
-  add_rows(scene, {robot_known_from(3)}, table);
-  add_rows({"other", "file.toml"}, {robot_known_from(7)}, table);
-  const accuracy::Table shortest = shortest_cycles(table, 0.9);
-  ASSERT_EQ(shortest.rows().size(), 4u);
-  for (const std::size_t row : {0u, 1u}) EXPECT_EQ(shortest.number(row, "shortest cycle (s)"), cycle_times()[3]);
-  for (const std::size_t row : {2u, 3u}) EXPECT_TRUE(std::isnan(shortest.number(row, "shortest cycle (s)")));
+  // half of all from the fourth time on, all from the sixth on
+  add_rows(scene, {robot_known_from(3), robot_known_from(5)}, table);
+  add_rows({"other", "file.toml"}, {robot_known_from(last)}, table);
+  const double shares[] = {0.4, 0.5, 0.6, 0.9};
+  const accuracy::Table shortest = shortest_cycles(table, shares);
+  ASSERT_EQ(shortest.rows().size(), 2 * 2 * 4u) << "scenes, least and most, shares";
+  for (std::size_t row = 0; row < 8; ++row) {
+    EXPECT_EQ(shortest.text(row, "scene"), "scene");
+    EXPECT_EQ(shortest.text(row, "sought"), row < 4 ? "least stressed" : "most stressed");
+    EXPECT_EQ(shortest.number(row, "share found (1)"), shares[row % 4]);
+    EXPECT_EQ(shortest.number(row, "shortest cycle (s)"), times[row % 4 < 2 ? 3 : 5]) << row;
+  }
+  for (std::size_t row = 8; row < 16; ++row) {
+    EXPECT_EQ(shortest.text(row, "scene"), "other");
+    EXPECT_TRUE(std::isnan(shortest.number(row, "shortest cycle (s)"))) << "the last finds itself";
+  }
+}
+
+TEST(Overlap, TimesReachFarEnoughToTellWhenMostIsFound) {
+  const std::vector<double> times = cycle_times();
+  EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
+  EXPECT_GE(std::count_if(times.begin(), times.end(), [](double time) { return time > 5 && time < 10; }), 2);
 }
 
 TEST(Overlap, TheSceneOfTheFirstIsThereWithStillMuscles) {

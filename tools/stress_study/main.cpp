@@ -10,7 +10,7 @@
 namespace evodevo::stress_study {
 namespace {
 
-constexpr double enough = 0.9;  // of the springs that are sought
+constexpr double shares[] = {0.5, 0.7, 0.8, 0.9};  // of the springs that are sought
 
 struct Settings {
   std::string command;  ///< the line itself
@@ -74,7 +74,7 @@ void run(const Settings& settings) {
     std::cerr << "stress: " << settings.robots << " robots of " << one.scene << '\n';
     add_rows(one, simulate(one, settings.robots, settings.device), table);
   }
-  const accuracy::Table shortest = shortest_cycles(table, enough);
+  const accuracy::Table shortest = shortest_cycles(table, shares);
   accuracy::write(table, settings.folder);
   accuracy::write(shortest, settings.folder);
   write_origin(settings);

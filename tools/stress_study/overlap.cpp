@@ -92,6 +92,19 @@ void add_row(const Case& one, double time, const char* sought, std::size_t count
              static_cast<double>(shares.size())});
 }
 
+/// The shortest cycle, s, from which on at least `share` is found of what `last` has, the row of the last cycle time of
+/// a scene and kind; NaN where only that finds it.
+double shortest_cycle(const accuracy::Table& overlap, std::size_t last, double share) {
+  double shortest = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t row = last; row-- > 0;) {
+    if (overlap.text(row, "scene") != overlap.text(last, "scene")) break;
+    if (overlap.text(row, "sought") != overlap.text(last, "sought")) continue;
+    if (!(overlap.number(row, "found (1)") >= share)) break;
+    shortest = overlap.number(row, "cycle time (s)");
+  }
+  return shortest;
+}
+
 }  // namespace
 
 Found found(const std::vector<double>& truth, const std::vector<double>& estimate) {
@@ -106,7 +119,7 @@ std::vector<Case> cases(const std::vector<std::string>& experiments) {
   return all;
 }
 
-std::vector<double> cycle_times() { return {0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10}; }
+std::vector<double> cycle_times() { return {0.05, 0.1, 0.2, 0.5, 1, 2, 5, 6.5, 8, 10}; }
 
 std::vector<StressOverTime> simulate(const Case& one, std::size_t robots, const std::string& device) {
   const Experiment experiment = read_experiment({one.experiment, {{"simulation.device", device, "--device"}}});
@@ -148,21 +161,12 @@ void add_rows(const Case& one, const std::vector<StressOverTime>& robots, accura
   }
 }
 
-accuracy::Table shortest_cycles(const accuracy::Table& overlap, double share) {
+accuracy::Table shortest_cycles(const accuracy::Table& overlap, std::span<const double> shares) {
   accuracy::Table table("stress_shortest_cycle", {"scene", "sought", "share found (1)", "shortest cycle (s)"});
-  const double last = cycle_times().back();
   for (std::size_t row = 0; row < overlap.rows().size(); ++row) {
-    if (overlap.number(row, "cycle time (s)") != last) continue;
-    // backwards through the rows of the same scene and kind, as long as enough is found
-    double shortest = std::numeric_limits<double>::quiet_NaN();
-    for (std::size_t before = row + 1; before-- > 0;) {
-      if (overlap.text(before, "scene") != overlap.text(row, "scene")) break;
-      if (overlap.text(before, "sought") != overlap.text(row, "sought")) continue;
-      if (!(overlap.number(before, "found (1)") >= share)) break;
-      // the last cycle finds itself
-      if (before != row) shortest = overlap.number(before, "cycle time (s)");
-    }
-    table.add({overlap.text(row, "scene"), overlap.text(row, "sought"), share, shortest});
+    if (overlap.number(row, "cycle time (s)") != cycle_times().back()) continue;
+    for (const double share : shares)
+      table.add({overlap.text(row, "scene"), overlap.text(row, "sought"), share, shortest_cycle(overlap, row, share)});
   }
   return table;
 }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,7 +45,8 @@ std::vector<StressOverTime> simulate(const Case& one, std::size_t robots, const 
 void add_rows(const Case& one, const std::vector<StressOverTime>& robots, accuracy::Table& table);
 accuracy::Table overlap_table();
 
-/// For each scene, the shortest cycle from which on at least `share` is found, s; none where only the last does.
-accuracy::Table shortest_cycles(const accuracy::Table& overlap, double share);
+/// For each scene, what is sought and each of `shares`, the shortest cycle from which on at least that share is found,
+/// s; none where only the last does.
+accuracy::Table shortest_cycles(const accuracy::Table& overlap, std::span<const double> shares);
 
 }  // namespace evodevo::stress_study

@@ -1,0 +1,114 @@
+// The frame in which grown bodies are compared.
+#include "grown_body.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace evodevo {
+namespace {
+
+/// Turned about the z axis, then the x axis, and shifted.
+Vec3 moved(Vec3 p, double turn, Vec3 shift) {
+  const double c = std::cos(turn), s = std::sin(turn);
+  p = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+  return Vec3{p.x, c * p.y - s * p.z, s * p.y + c * p.z} + shift;
+}
+
+std::vector<Vec3> all_moved(std::vector<Vec3> places, double turn, Vec3 shift) {
+  for (Vec3& place : places) place = moved(place, turn, shift);
+  return places;
+}
+
+void expect_near(Vec3 a, Vec3 b, double tolerance = 1e-12) {
+  EXPECT_NEAR(a.x, b.x, tolerance);
+  EXPECT_NEAR(a.y, b.y, tolerance);
+  EXPECT_NEAR(a.z, b.z, tolerance);
+}
+
+const std::vector<Vec3> tetrahedron{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 1}};
+constexpr Vec3 far_away{3, -2, 5};
+
+TEST(Undeformed, UndoesARigidMotion) {
+  const std::vector<Vec3> places = all_moved(tetrahedron, 2, far_away);
+  for (const Vec3 rest : {Vec3{0.1, 0.2, 0.3}, Vec3{-2, 1, 4}, tetrahedron[2]})
+    expect_near(undeformed(moved(rest, 2, far_away), places, tetrahedron), rest);
+}
+
+TEST(Undeformed, MirrorsNothing) {
+  const std::vector<Vec3> flat{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  const Vec3 above{0.3, 0.4, 0.5};
+  for (const double turn : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0})
+    expect_near(undeformed(moved(above, turn, far_away), all_moved(flat, turn, far_away), flat), above);
+}
+
+TEST(Undeformed, GoesAlongWithTheMassesAroundIt) {
+  // two pieces ten body lengths apart, each turned by itself
+  std::vector<Vec3> rest = tetrahedron;
+  for (const Vec3& place : tetrahedron) rest.push_back(place + Vec3{10, 0, 0});
+  std::vector<Vec3> places = all_moved(tetrahedron, 1, {0, 0, 0});
+  for (const Vec3& place : tetrahedron) places.push_back(moved(place, -0.5, {10, 0, 0}));
+  const Vec3 inside{0.2, 0.3, 0.2};
+  expect_near(undeformed(moved(inside, 1, {0, 0, 0}), places, rest), inside, 0.01);
+  expect_near(undeformed(moved(inside, -0.5, {10, 0, 0}), places, rest), inside + Vec3{10, 0, 0}, 0.01);
+  // at a mass it is that mass, whatever the others do
+  expect_near(undeformed(places[1], places, rest), rest[1], 1e-9);
+}
+
+Life newborn(const std::vector<Vec3>& rest) {
+  Life life;
+  for (const Vec3& place : rest) life.living.body.masses.push_back({place, 1});
+  life.living.state.position = rest;
+  return life;
+}
+
+/// Lets a mass come at a place and one go, as devo operators do.
+void replace_mass(Life& life, Vec3 place, std::uint32_t goes) {
+  LivingBody& living = life.living;
+  living.body.masses.push_back({place, 1});
+  living.body.masses.erase(living.body.masses.begin() + goes);
+  living.state.position.push_back(place);
+  living.state.position.erase(living.state.position.begin() + goes);
+  life.result.record.add({.cycle = 1, .op = 0, .edits = {.removed_masses = {goes}, .new_masses = {{place, 1}}}});
+}
+
+TEST(Growth, MassesOfBirthKeepTheirRestPlacesInBodyLengthsFromTheCorner) {
+  Life life = newborn(all_moved(tetrahedron, 0, far_away));
+  Growth growth(life.living.body);
+  life.living.state.position = {{1, 2, 3}, {9, 8, 7}, {0, 1, 0}, {4, 4, 1}};
+  const GrownBody grown = growth.after_cycle(life);
+  EXPECT_EQ(grown.places, life.living.state.position);
+  EXPECT_EQ(grown.born, 4u);
+  EXPECT_EQ(grown.numbers, (std::vector<std::uint32_t>{0, 1, 2, 3}));
+  EXPECT_EQ(grown.rest_places, (std::vector<Vec3>{{0, 0, 0}, {0.5, 0, 0}, {0, 1, 0}, {0, 0, 0.5}}));
+}
+
+TEST(Growth, AMassThatComesKeepsTheRestPlaceThatItCameTo) {
+  Life life = newborn(tetrahedron);
+  Growth growth(life.living.body);
+  const Vec3 rest{0.2, 0.6, 0.4};
+  life.living.state.position = all_moved(tetrahedron, 1, far_away);
+  replace_mass(life, moved(rest, 1, far_away), 0);
+  const GrownBody first = growth.after_cycle(life);
+  EXPECT_EQ(first.numbers, (std::vector<std::uint32_t>{1, 2, 3, 4}));
+  expect_near(first.rest_places[3], 0.5 * rest);
+
+  for (Vec3& place : life.living.state.position) place = {place.z, 2 * place.x, 0};
+  const GrownBody second = growth.after_cycle(life);
+  EXPECT_EQ(second.rest_places, first.rest_places);
+}
+
+TEST(Growth, WhereNoMassOfBeforeIsLeftThoseThatComeBelongWhereTheyAre) {
+  Life life = newborn({{0, 0, 0}});
+  Growth growth(life.living.body);
+  replace_mass(life, {1, 2, 3}, 0);
+  EXPECT_EQ(growth.after_cycle(life).rest_places, (std::vector<Vec3>{{1, 2, 3}}));
+}
+
+TEST(Growth, ABodyWithoutExtentHasPlacesAllTheSame) {
+  Life life = newborn({{1, 1, 1}, {1, 1, 1}});
+  EXPECT_EQ(Growth(life.living.body).after_cycle(life).rest_places, (std::vector<Vec3>{{0, 0, 0}, {0, 0, 0}}));
+}
+
+}  // namespace
+}  // namespace evodevo
