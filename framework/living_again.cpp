@@ -10,19 +10,23 @@ Experiment experiment_to_live_again(const Archive& archive, std::vector<std::fil
   return experiment;
 }
 
-void warn_where_unsure(const Archive& archive, std::uint32_t id, const std::string& device) {
-  const std::string device_of_run = archive.record("device");
-  if (device == device_of_run || archive.life(id)) return;
-  std::cerr << "warning: individual " << id << " lived again on " << device << ", not on " << device_of_run
-            << " as in the run, which has no record of its edits; it may have developed otherwise\n";
+void warn_where_unsure(const Archive& archive, const Experiment& experiment, const Newborn& newborn,
+                       const std::string& device) {
+  const Maker then = archive.maker(newborn.generation), now = this_maker(experiment, device);
+  if (are_same(then, now) || archive.life(newborn.id)) return;
+  const std::string difference = now.device != then.device
+                                     ? "on " + now.device + ", not on " + then.device + " as in the run"
+                                     : "by another build of evodevo or of an operator than in the run";
+  std::cerr << "warning: individual " << newborn.id << " lived again " << difference
+            << ", which has no record of its edits; it may have developed otherwise\n";
 }
 
 LifeAgain live_again(const Archive& archive, const Experiment& experiment, Simulator& simulator,
                      const ArchivedIndividual& individual) {
   const std::optional<LifeRecord> record = archive.life(individual.id);
-  warn_where_unsure(archive, individual.id, simulator.device());
   const Evaluation evaluation(experiment, simulator);
   const Newborn newborn{individual.id, individual.born, &individual.genome, record ? &*record : nullptr};
+  warn_where_unsure(archive, experiment, newborn, simulator.device());
   std::vector<Life> lives = evaluation.birth({&newborn, 1});
   Body born = lives.front().living.body;
   evaluation.develop(lives, [](double) {});

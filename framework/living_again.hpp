@@ -13,9 +13,10 @@ namespace evodevo {
 /// The experiment of a run, to be simulated where its GPU may be missing.
 Experiment experiment_to_live_again(const Archive& archive, std::vector<std::filesystem::path> plugin_path);
 
-/// Warns on stderr where an individual may develop otherwise on `device` than in the run: the device is another one and
-/// there is no record to follow.
-void warn_where_unsure(const Archive& archive, std::uint32_t id, const std::string& device);
+/// Warns on stderr where an individual may develop otherwise on `device` than in the run: it was born elsewhere or by
+/// other builds, and there is no record to follow.
+void warn_where_unsure(const Archive& archive, const Experiment& experiment, const Newborn& newborn,
+                       const std::string& device);
 
 /// An individual that lives again up to its maturity.
 struct LifeAgain {

@@ -1,4 +1,5 @@
 // evodevo show: what a run has come to.
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 
@@ -6,6 +7,7 @@
 #include "commands/options.hpp"
 #include "commands/verification_report.hpp"
 #include "report/run_json.hpp"
+#include "text.hpp"
 
 namespace evodevo {
 namespace {
@@ -22,8 +24,8 @@ class Report {
         last_generation_(generations_.empty() ? 0 : generations_.back().generation) {}
 
   void print() const {
-    std::cout << archive_.record("name") << ", seed " << archive_.record("seed") << ", " << archive_.record("device")
-              << ", evodevo " << archive_.record("evodevo") << ", begun " << archive_.record("created") << '\n';
+    std::cout << archive_.record("name") << ", seed " << archive_.record("seed") << ", " << devices() << ", evodevo "
+              << archive_.record("evodevo") << ", begun " << archive_.record("created") << '\n';
     const auto statuses = archive_.statuses();
     std::cout << done() << " evaluations: " << statuses.at("ok") << " ok, " << statuses.at("invalid") << " invalid, "
               << statuses.at("diverged") << " diverged\n\n";
@@ -33,6 +35,14 @@ class Report {
 
  private:
   std::int64_t done() const { return generations_.empty() ? 0 : generations_.back().evaluations; }
+
+  /// In the order in which they came.
+  std::string devices() const {
+    std::vector<std::string> devices;
+    for (const Maker& maker : archive_.makers())
+      if (std::find(devices.begin(), devices.end(), maker.device) == devices.end()) devices.push_back(maker.device);
+    return joined(devices, ", then ");
+  }
 
   void print_generations() const {
     std::printf("%10s %12s %10s %10s %9s %8s\n", "generation", "evaluations", "best", "median", "diverged", "invalid");

@@ -81,8 +81,8 @@ int verify_command(const Arguments& arguments) {
   if (archive.best(1).empty())
     throw ArchiveError(archive.folder().string() + ": no individual has a fitness to verify");
   const Experiment experiment = experiment_to_live_again(archive, given_plugin_path(*given));
-  warn_of_changed_operators(experiment, archive);
   const auto simulator = make_simulator(experiment);
+  warn_of_other_builds(experiment, *simulator, archive);
   const auto verifications = verify_best(experiment, *simulator, archive, static_cast<std::size_t>(best));
   const Objective& objective = experiment.objectives.front();
   Json all = Json::array();

@@ -150,7 +150,7 @@ std::vector<FilmedLife> film_lives_of_run(const Archive& archive, const Experime
                                           const std::vector<Newborn>& newborns) {
   std::vector<FilmedLife> lives = film_lives(experiment, simulator, newborns);
   for (std::size_t i = 0; i < lives.size(); ++i) {
-    warn_where_unsure(archive, newborns[i].id, simulator.device());
+    warn_where_unsure(archive, experiment, newborns[i], simulator.device());
     const std::optional<LifeRecord> record = archive.life(newborns[i].id);
     if (!record || *record == lives[i].result.record) continue;
     Newborn as_recorded = newborns[i];

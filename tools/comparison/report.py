@@ -46,15 +46,25 @@ class Setting:
 
 
 def builds(shown):
-    """What runs were made by, from what `evodevo show --json` says of each."""
+    """What runs were made by, from what `evodevo show --json` says of each; one that was resumed, maybe by several."""
     made = collections.defaultdict(lambda: collections.defaultdict(collections.Counter))
     for run, said in shown.items():
-        by = {"device": said["device"], "evodevo": said["evodevo"]}
-        for operator in said["operators"]:
-            by[f"{operator['kind']} `{operator['name']}`"] = f"{operator['version']} ({operator['hash']})"
-        for what, build in by.items():
+        for what, build in dict.fromkeys(by for maker in makers_of(said) for by in made_by(maker)):
             made[what][build][run.variant.name] += 1
     return made
+
+
+def makers_of(said):
+    """Those by whom any generation of a run was made."""
+    return [said["makers"][place] for place in sorted({generation["maker"] for generation in said["generations"]})]
+
+
+def made_by(maker):
+    """Each thing that results depend on, with its build."""
+    yield "device", maker["device"]
+    yield "evodevo", f"{maker['evodevo']} ({maker['program']})"
+    for operator in maker["operators"]:
+        yield f"{operator['kind']} `{operator['name']}`", f"{operator['version']} ({operator['hash']})"
 
 
 def number(value):
@@ -208,7 +218,8 @@ def differences(made):
             lines += f"  - {build}: " + ", ".join(f"{count} of `{name}`" for name, count in runs.items()) + "\n"
     return lines and (
         "**Not all runs were made by the same builds and devices.** What the experiments differ in may come from that. "
-        f"To make runs anew, remove their folders and give the same command.\n\n{lines}"
+        "A run that was resumed by another counts with each. To make runs anew, remove their folders and give the same "
+        f"command.\n\n{lines}"
     )
 
 
