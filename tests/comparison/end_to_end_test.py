@@ -140,9 +140,10 @@ class Comparison(unittest.TestCase):
         self.assertEqual(self.compare("--set", "experiment.verify=0").returncode, 0)
         files = list((self.folder / "out").rglob("run.sqlite"))
         before = {file: file.stat().st_mtime_ns for file in files}
-        again = self.compare("--set", "experiment.verify=0")
+        again = self.compare("--set", "experiment.verify=0", "--against", "developing")
         self.assertEqual(again.returncode, 0, again.stderr)
         self.assertEqual({file: file.stat().st_mtime_ns for file in files}, before)
+        self.assertIn("the others tested against `developing`", again.stdout)
         self.assertIn("not verified", again.stdout)
 
     def test_a_stopped_comparison_goes_on(self):
@@ -212,6 +213,13 @@ class Comparison(unittest.TestCase):
         refused = self.compare("--sweep", "development.cycle_times=1,2")
         self.assertEqual(refused.returncode, 2)
         self.assertIn('did you mean "cycle_time"?', refused.stderr)
+        self.assertFalse((self.folder / "out").exists())
+        refused = self.compare("--against", "evolving")
+        self.assertEqual(refused.returncode, 2)
+        self.assertEqual(
+            refused.stderr,
+            "compare: --against evolving: none of the experiments has that name; give one of plain, developing\n",
+        )
         self.assertFalse((self.folder / "out").exists())
         for seeds in ("0", "-1", "two", "1.5"):
             refused = self.compare(f"--seeds={seeds}")
