@@ -3,6 +3,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <SQLiteCpp/VariadicBind.h>
 
+#include <algorithm>
 #include <boost/interprocess/sync/file_lock.hpp>
 #include <chrono>
 #include <cstring>
@@ -18,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* database_name = "run.sqlite";
 constexpr const char* lock_name = "lock";
-constexpr const char* format = "3";  ///< raised when a change of the tables keeps older programs from reading them
+constexpr const char* format = "4";  ///< raised when a change of the tables keeps older programs from reading them
 /// Readers and the writer do not wait for each other; but a folder that nobody may write cannot be read like this.
 constexpr const char* wait_for_nobody = "PRAGMA journal_mode = WAL";
 constexpr const char* rest_in_one_file = "PRAGMA journal_mode = DELETE";
@@ -26,8 +27,10 @@ constexpr int busy_ms = 60'000;  ///< how long to wait for a process that is jus
 
 constexpr const char* schema = R"sql(
 CREATE TABLE record(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE operators(kind TEXT NOT NULL, name TEXT NOT NULL, version TEXT NOT NULL, file TEXT NOT NULL,
-  hash TEXT NOT NULL);
+-- whom a run was begun and resumed by; numbered from 0
+CREATE TABLE makers(maker INTEGER PRIMARY KEY, device TEXT NOT NULL, evodevo TEXT NOT NULL, program TEXT NOT NULL);
+CREATE TABLE operators(maker INTEGER NOT NULL, kind TEXT NOT NULL, name TEXT NOT NULL, version TEXT NOT NULL,
+  file TEXT NOT NULL, hash TEXT NOT NULL);
 CREATE TABLE objectives(position INTEGER PRIMARY KEY, name TEXT NOT NULL, unit TEXT NOT NULL, maximise INTEGER NOT NULL);
 CREATE TABLE individuals(
   id INTEGER PRIMARY KEY,
@@ -47,7 +50,8 @@ CREATE TABLE scores(
 CREATE TABLE lives(individual INTEGER PRIMARY KEY, record BLOB NOT NULL);
 CREATE TABLE generations(
   generation INTEGER PRIMARY KEY, evaluations INTEGER NOT NULL, best REAL, median REAL,
-  diverged INTEGER NOT NULL, invalid INTEGER NOT NULL, spring_evaluations INTEGER NOT NULL, wall_time REAL NOT NULL);
+  diverged INTEGER NOT NULL, invalid INTEGER NOT NULL, spring_evaluations INTEGER NOT NULL, wall_time REAL NOT NULL,
+  maker INTEGER NOT NULL);
 -- who lived on after each generation, and how old its genes were then
 CREATE VIEW members AS
   SELECT generation, id AS individual, generation - origin AS age
@@ -183,11 +187,6 @@ Archive Archive::create(const fs::path& folder, const Experiment& experiment, co
   database.exec(wait_for_nobody);
   SQLite::Transaction transaction(database);
   database.exec(schema);
-  for (const OperatorUse& use : experiment.uses) {
-    SQLite::Statement insert(database, "INSERT INTO operators VALUES(?, ?, ?, ?, ?)");
-    SQLite::bind(insert, use.kind, use.name, use.version, use.file.string(), use.hash);
-    insert.exec();
-  }
   for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
     const Objective& objective = experiment.objectives[i];
     SQLite::Statement insert(database, "INSERT INTO objectives VALUES(?, ?, ?, ?)");
@@ -195,12 +194,12 @@ Archive Archive::create(const fs::path& folder, const Experiment& experiment, co
     insert.exec();
   }
   Archive archive(folder, std::move(files));
+  archive.insert_maker(0, this_maker(experiment, device));
   archive.set_record("format", format);
   archive.set_record("evodevo", EVODEVO_VERSION);
   archive.set_record("created", utc_now());
   archive.set_record("name", experiment.name);
   archive.set_record("seed", std::to_string(experiment.seed));
-  archive.set_record("device", device);
   archive.set_record("experiment", experiment.resolved);
   transaction.commit();
   return archive;
@@ -286,7 +285,7 @@ void Archive::commit(const std::vector<Individual>& newborns, const std::vector<
     drop.exec();
     drop.reset();
   }
-  SQLite::Statement add(database, "INSERT INTO generations VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
+  SQLite::Statement add(database, "INSERT INTO generations VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
   add.bind(1, summary.generation);
   add.bind(2, summary.evaluations);
   bind_optional(add, 3, summary.best);
@@ -295,6 +294,7 @@ void Archive::commit(const std::vector<Individual>& newborns, const std::vector<
   add.bind(6, summary.invalid);
   add.bind(7, static_cast<std::int64_t>(summary.spring_evaluations));
   add.bind(8, summary.wall_time);
+  add.bind(9, summary.maker);
   add.exec();
   transaction.commit();
 }
@@ -365,13 +365,48 @@ void Archive::set_records(const std::map<std::string, std::string>& entries) {
   transaction.commit();
 }
 
-std::vector<OperatorUse> Archive::operators() const {
-  std::vector<OperatorUse> uses;
-  SQLite::Statement query(files_->database, "SELECT kind, name, version, file, hash FROM operators ORDER BY rowid");
-  while (query.executeStep())
-    uses.push_back({query.getColumn(0).getString(), query.getColumn(1).getString(), query.getColumn(2).getString(),
-                    query.getColumn(3).getString(), query.getColumn(4).getString()});
-  return uses;
+void Archive::insert_maker(std::uint32_t place, const Maker& maker) {
+  SQLite::Statement insert(files_->database, "INSERT INTO makers VALUES(?, ?, ?, ?)");
+  SQLite::bind(insert, place, maker.device, maker.version, maker.program);
+  insert.exec();
+  for (const OperatorUse& use : maker.operators) {
+    SQLite::Statement add(files_->database, "INSERT INTO operators VALUES(?, ?, ?, ?, ?, ?)");
+    SQLite::bind(add, place, use.kind, use.name, use.version, use.file.string(), use.hash);
+    add.exec();
+  }
+}
+
+std::uint32_t Archive::add_maker(const Maker& maker) {
+  const std::vector<Maker> there = makers();
+  const auto same = std::find_if(there.begin(), there.end(), [&](const Maker& one) { return are_same(one, maker); });
+  const auto place = static_cast<std::uint32_t>(same - there.begin());
+  if (same != there.end()) return place;
+  SQLite::Transaction transaction(files_->database);
+  insert_maker(place, maker);
+  transaction.commit();
+  return place;
+}
+
+std::vector<Maker> Archive::makers() const {
+  std::vector<Maker> makers;
+  SQLite::Statement row(files_->database, "SELECT device, evodevo, program FROM makers ORDER BY maker");
+  while (row.executeStep())
+    makers.push_back({row.getColumn(0).getString(), row.getColumn(1).getString(), row.getColumn(2).getString(), {}});
+  SQLite::Statement use(files_->database,
+                        "SELECT maker, kind, name, version, file, hash FROM operators ORDER BY rowid");
+  while (use.executeStep())
+    makers.at(use.getColumn(0).getUInt())
+        .operators.push_back({use.getColumn(1).getString(), use.getColumn(2).getString(), use.getColumn(3).getString(),
+                              use.getColumn(4).getString(), use.getColumn(5).getString()});
+  return makers;
+}
+
+Maker Archive::maker(std::uint32_t generation) const {
+  SQLite::Statement query(files_->database, "SELECT maker FROM generations WHERE generation = ?");
+  query.bind(1, generation);
+  if (!query.executeStep())
+    throw ArchiveError(folder_.string() + ": its record has no generation " + std::to_string(generation));
+  return makers().at(query.getColumn(0).getUInt());
 }
 
 std::vector<Objective> Archive::objectives() const {
@@ -394,7 +429,8 @@ std::vector<Summary> Archive::generations() const {
                          .diverged = row.getColumn(4).getInt64(),
                          .invalid = row.getColumn(5).getInt64(),
                          .spring_evaluations = static_cast<std::uint64_t>(row.getColumn(6).getInt64()),
-                         .wall_time = row.getColumn(7).getDouble()});
+                         .wall_time = row.getColumn(7).getDouble(),
+                         .maker = row.getColumn(8).getUInt()});
   return summaries;
 }
 

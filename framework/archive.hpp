@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "maker.hpp"
 #include "population.hpp"
 #include "verification.hpp"
 
@@ -34,7 +35,8 @@ struct Failure {
 
 class Archive {
  public:
-  /// Starts the record of a run in a new folder. Throws ArchiveError if the folder is there and not empty.
+  /// Starts the record of a run in a new folder; this program on `device` is its first maker. Throws ArchiveError if
+  /// the folder is there and not empty.
   static Archive create(const std::filesystem::path& folder, const Experiment& experiment, const std::string& device);
   /// Opens a record to go on with it; refuses while another process writes it.
   static Archive resume(const std::filesystem::path& folder);
@@ -56,14 +58,19 @@ class Archive {
   void add_verifications(const std::vector<Verification>& verifications);
 
   const std::filesystem::path& folder() const { return folder_; }
-  /// An entry of the run's record, such as "seed" or "device". Throws ArchiveError if there is none.
+  /// An entry of the run's record, such as "seed" or "created". Throws ArchiveError if there is none.
   std::string record(const std::string& key) const;
   /// The same; nothing if there is none.
   std::optional<std::string> find_record(const std::string& key) const;
   void set_record(const std::string& key, const std::string& value);
   /// The same for several entries, all of them or none.
   void set_records(const std::map<std::string, std::string>& entries);
-  std::vector<OperatorUse> operators() const;
+  /// The place among the makers of the one given, which is added if it is none of them yet.
+  std::uint32_t add_maker(const Maker& maker);
+  /// All who made generations or were about to, in the order in which they came.
+  std::vector<Maker> makers() const;
+  /// Who made a generation.
+  Maker maker(std::uint32_t generation) const;
   std::vector<Objective> objectives() const;
   std::vector<Summary> generations() const;
   /// What individuals failed of, the most frequent first; reasons that differ from the first number on are one.
@@ -85,6 +92,7 @@ class Archive {
   Archive(std::filesystem::path folder, std::unique_ptr<Files> files);
   /// Opens the database with SQLite's `flags` and checks that it is a run that this program reads.
   static Archive opened(const std::filesystem::path& folder, int flags);
+  void insert_maker(std::uint32_t place, const Maker& maker);
 
   std::filesystem::path folder_;
   std::unique_ptr<Files> files_;

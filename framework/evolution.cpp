@@ -45,8 +45,8 @@ std::vector<const Individual*> front(const std::vector<Individual>& everyone, co
 /// Chooses the lives of which a run keeps the records: of all who are ever on the front.
 class FrontLives {
  public:
-  FrontLives(const Experiment& experiment, const Evaluation& evaluation, const Archive& archive)
-      : experiment_(experiment), evaluation_(evaluation) {
+  FrontLives(const Experiment& experiment, const Evaluation& evaluation, const Archive& archive, const Maker& maker)
+      : experiment_(experiment), evaluation_(evaluation), archive_(archive), maker_(maker) {
     for (const Individual& individual : archive.population())
       if (archive.life(individual.id)) kept_.insert(individual.id);
   }
@@ -57,14 +57,15 @@ class FrontLives {
       newborn_[individual.id] = std::exchange(individual.result.record, LifeRecord());
   }
 
-  /// Keeps the records of those on the front. Elders whom selection has let come there, which are few, live again.
+  /// Keeps the records of those on the front. Elders whom selection has let come there, which are few, live again; but
+  /// not elders of other makers, since that might be another life than the one that was scored.
   void keep_front(const std::vector<Individual>& everyone, std::uint32_t generation) {
     std::vector<Newborn> elders;
     for (const Individual* individual : front(everyone, experiment_, generation)) {
       if (!kept_.insert(individual->id).second) continue;
       if (const auto newborn = newborn_.extract(individual->id))
         to_commit_[individual->id] = std::move(newborn.mapped());
-      else
+      else if (are_same(archive_.maker(individual->born), maker_))
         elders.push_back({individual->id, individual->born, &individual->genome});
     }
     if (elders.empty()) return;
@@ -82,6 +83,8 @@ class FrontLives {
  private:
   const Experiment& experiment_;
   const Evaluation& evaluation_;
+  const Archive& archive_;
+  const Maker& maker_;
   std::map<std::uint32_t, LifeRecord> newborn_, to_commit_;
   std::set<std::uint32_t> kept_;
 };
@@ -178,10 +181,13 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
   TimeSpent time;
   const Evaluation evaluation(experiment, simulator);
   std::vector<Summary> summaries = archive.generations();
+  if (is_finished(experiment, summaries)) return {};  // and whoever finds that has made nothing
   auto generation = static_cast<std::uint32_t>(summaries.size());
   std::int64_t evaluations = summaries.empty() ? 0 : summaries.back().evaluations;
   std::vector<Individual> population = archive.population();
-  FrontLives lives(experiment, evaluation, archive);
+  const Maker maker = this_maker(experiment, simulator.device());
+  const std::uint32_t maker_place = archive.add_maker(maker);
+  FrontLives lives(experiment, evaluation, archive, maker);
 
   for (; !is_finished(experiment, summaries) && !stop; ++generation) {
     const auto start = Clock::now();
@@ -200,6 +206,7 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
     add_best_and_median(summary, population, experiment.objectives.front().maximise);
     summary.evaluations = evaluations;
     summary.wall_time = seconds_since(start);
+    summary.maker = maker_place;
     const auto commit = Clock::now();
     archive.commit(newborns, dropped, lives.committed(), summary);
     time.archive += seconds_since(commit);

@@ -10,11 +10,16 @@ Experiment experiment_to_live_again(const Archive& archive, std::vector<std::fil
   return experiment;
 }
 
-Newborn born_again(const Archive& archive, const Individual& individual, const std::string& device) {
+Newborn born_again(const Archive& archive, const Experiment& experiment, const Individual& individual,
+                   const std::string& device) {
   Newborn newborn{individual.id, individual.born, &individual.genome, archive.life(individual.id)};
-  if (const std::string device_of_run = archive.record("device"); !newborn.record && device != device_of_run)
-    std::cerr << "warning: individual " << individual.id << " lived again on " << device << ", not on " << device_of_run
-              << " as in the run, which has no record of its edits; it may have developed otherwise\n";
+  const Maker then = archive.maker(individual.born), now = this_maker(experiment, device);
+  if (newborn.record || are_same(then, now)) return newborn;
+  const std::string difference = now.device != then.device
+                                     ? "on " + now.device + ", not on " + then.device + " as in the run"
+                                     : "by another build of evodevo or of an operator than in the run";
+  std::cerr << "warning: individual " << individual.id << " lived again " << difference
+            << ", which has no record of its edits; it may have developed otherwise\n";
   return newborn;
 }
 

@@ -29,6 +29,7 @@ struct Summary {
   std::int64_t diverged = 0, invalid = 0;  ///< among this generation's evaluations
   std::uint64_t spring_evaluations = 0;    ///< of this generation
   double wall_time = 0;                    ///< of this generation, s
+  std::uint32_t maker = 0;                 ///< its place among the run's makers
 };
 
 }  // namespace evodevo

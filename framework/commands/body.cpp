@@ -82,9 +82,10 @@ int body_command(const Arguments& arguments) {
   const Experiment experiment = experiment_to_live_again(archive, given_plugin_path(*given));
   const ArchivedIndividual individual = chosen_individual(archive, *given);
   const auto simulator = make_simulator(experiment);
-  const Life life = given->contains("matured")
-                        ? matured(experiment, *simulator, born_again(archive, individual, simulator->device()))
-                        : birth(experiment, *simulator, Newborn{individual.id, individual.born, &individual.genome});
+  const Life life =
+      given->contains("matured")
+          ? matured(experiment, *simulator, born_again(archive, experiment, individual, simulator->device()))
+          : birth(experiment, *simulator, Newborn{individual.id, individual.born, &individual.genome});
   if (!life.alive()) {
     std::cerr << "individual " << individual.id << " has no body to show: " << name(life.result.status) << ", "
               << life.result.reason << '\n';

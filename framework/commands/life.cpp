@@ -174,7 +174,7 @@ class Biography {
     operators_ = narrated_operators(experiment);
     const auto simulator = make_simulator(experiment);
     const Evaluation evaluation(experiment, *simulator);
-    const Newborn newborn = born_again(archive, individual_, simulator->device());
+    const Newborn newborn = born_again(archive, experiment, individual_, simulator->device());
     std::vector<Life> lives = evaluation.birth({&newborn, 1});
     born_ = lives.front().living.body;
     evaluation.develop(lives, [](double) {});

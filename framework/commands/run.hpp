@@ -10,7 +10,7 @@ namespace evodevo {
 /// and how it goes on.
 int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive);
 
-/// Warns of operators whose library is not the one that the run began with.
-void warn_of_changed_operators(const Experiment& experiment, const Archive& archive);
+/// Warns where this program or a library of an operator is not the build that the run began with.
+void warn_of_other_builds(const Experiment& experiment, const Simulator& simulator, const Archive& archive);
 
 }  // namespace evodevo

@@ -1,11 +1,14 @@
 // evodevo show: what a run has come to.
+#include <toml++/toml.h>
+
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
-#include <toml++/toml.h>
 
 #include "archive.hpp"
 #include "commands/options.hpp"
 #include "report/run_json.hpp"
+#include "text.hpp"
 
 namespace evodevo {
 namespace {
@@ -27,8 +30,8 @@ class Report {
         last_generation_(generations_.empty() ? 0 : generations_.back().generation) {}
 
   void print() const {
-    std::cout << archive_.record("name") << ", seed " << archive_.record("seed") << ", " << archive_.record("device")
-              << ", evodevo " << archive_.record("evodevo") << ", begun " << archive_.record("created") << '\n';
+    std::cout << archive_.record("name") << ", seed " << archive_.record("seed") << ", " << devices() << ", evodevo "
+              << archive_.record("evodevo") << ", begun " << archive_.record("created") << '\n';
     const auto statuses = archive_.statuses();
     if (const std::string control = control_of(archive_); control != "off")
       std::cout << "development under the control \"" << control << "\"\n";
@@ -41,6 +44,14 @@ class Report {
 
  private:
   std::int64_t done() const { return generations_.empty() ? 0 : generations_.back().evaluations; }
+
+  /// In the order in which they came.
+  std::string devices() const {
+    std::vector<std::string> devices;
+    for (const Maker& maker : archive_.makers())
+      if (std::find(devices.begin(), devices.end(), maker.device) == devices.end()) devices.push_back(maker.device);
+    return joined(devices, ", then ");
+  }
 
   void print_generations() const {
     std::printf("%10s %12s %10s %10s %9s %8s\n", "generation", "evaluations", "best", "median", "diverged", "invalid");

@@ -34,7 +34,8 @@ std::vector<Verification> verify_best(const Experiment& experiment, Simulator& s
   for (const std::uint32_t id : archive.best(count)) individuals.push_back(*archive.individual(id));
   std::vector<Champion> champions;
   for (const ArchivedIndividual& individual : individuals)
-    champions.push_back({born_again(archive, individual, simulator.device()), individual.result.objectives.front()});
+    champions.push_back(
+        {born_again(archive, experiment, individual, simulator.device()), individual.result.objectives.front()});
   std::vector<Verification> verifications = verify(experiment, simulator, champions);
   archive.add_verifications(verifications);
   return verifications;
@@ -66,8 +67,8 @@ int verify_command(const Arguments& arguments) {
   if (archive.best(1).empty())
     throw ArchiveError(archive.folder().string() + ": no individual has a fitness to verify");
   const Experiment experiment = experiment_to_live_again(archive, given_plugin_path(*given));
-  warn_of_changed_operators(experiment, archive);
   const auto simulator = make_simulator(experiment);
+  warn_of_other_builds(experiment, *simulator, archive);
   const auto verifications = verify_best(experiment, *simulator, archive, static_cast<std::size_t>(best));
   const Objective& objective = experiment.objectives.front();
   Json all = Json::array();

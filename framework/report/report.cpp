@@ -151,7 +151,8 @@ Json reported_run(const Archive& archive, const Experiment& experiment, Simulato
                   std::size_t budget) {
   const std::vector<Role> roles = Casting(archive).choose(cast);
   std::vector<Newborn> newborns;
-  for (const Role& role : roles) newborns.push_back(born_again(archive, role.individual, simulator.device()));
+  for (const Role& role : roles)
+    newborns.push_back(born_again(archive, experiment, role.individual, simulator.device()));
   const std::vector<FilmedLife> lives = film_lives(experiment, simulator, newborns);
 
   Json run = run_json(archive, experiment);

@@ -1,5 +1,7 @@
 #include "report/run_json.hpp"
 
+#include <algorithm>
+
 #include "evolution.hpp"
 
 namespace evodevo {
@@ -26,6 +28,22 @@ Json operators_json(const std::vector<OperatorUse>& uses) {
   return list;
 }
 
+Json makers_json(const std::vector<Maker>& makers) {
+  Json list = Json::array();
+  for (const Maker& maker : makers)
+    list.push_back({{"device", maker.device},
+                    {"evodevo", maker.version},
+                    {"program", maker.program},
+                    {"operators", operators_json(maker.operators)}});
+  return list;
+}
+
+/// Whether those whom the experiment asks to verify when the run ends are verified.
+bool is_verified(const Archive& archive, const Experiment& experiment) {
+  const auto best = archive.best(static_cast<std::size_t>(experiment.verify));
+  return std::all_of(best.begin(), best.end(), [&](std::uint32_t id) { return archive.verification(id).has_value(); });
+}
+
 Json generations_json(const std::vector<Summary>& generations) {
   Json list = Json::array();
   for (const Summary& s : generations)
@@ -36,7 +54,8 @@ Json generations_json(const std::vector<Summary>& generations) {
                     {"diverged", s.diverged},
                     {"invalid", s.invalid},
                     {"spring_evaluations", s.spring_evaluations},
-                    {"wall_time", s.wall_time}});
+                    {"wall_time", s.wall_time},
+                    {"maker", s.maker}});
   return list;
 }
 
@@ -101,16 +120,15 @@ Json run_json(const Archive& archive, const Experiment& experiment) {
   Json root = {{"folder", archive.folder().string()},
                {"experiment", archive.record("name")},
                {"seed", std::stoll(archive.record("seed"))},
-               {"device", archive.record("device")},
-               {"evodevo", archive.record("evodevo")},
                {"created", archive.record("created")},
                {"evaluations", generations.empty() ? 0 : generations.back().evaluations},
                {"evaluations_asked", experiment.evaluations},
                {"finished", is_finished(experiment, generations)},
+               {"verified", is_verified(archive, experiment)},
                {"statuses", archive.statuses()},
                {"failures", failures_json(archive.failures())},
                {"objectives", objectives_json(archive.objectives())},
-               {"operators", operators_json(archive.operators())},
+               {"makers", makers_json(archive.makers())},
                {"generations", generations_json(generations)}};
   const auto best = archive.best(1);
   root["best"] = best.empty() ? Json(nullptr) : individual_json(archive, *archive.individual(best.front()));

@@ -124,6 +124,28 @@ class Comparison(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(self.results(), self.results("straight"))
 
+    def test_runs_killed_before_they_were_verified_are_verified(self):
+        self.assertEqual(self.compare().returncode, 0)
+        file = self.folder / "out/runs/plain/seed-2/run.sqlite"
+        with contextlib.closing(sqlite3.connect(file)) as run, run:
+            run.execute("DROP TABLE verifications")
+        others = [other for other in (self.folder / "out").rglob("run.sqlite") if other != file]
+        before = {other: other.stat().st_mtime_ns for other in others}
+        done = self.compare()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"\| `plain` \| 8 \| 40 \|.* of 2 \| . of 2 \| . of 2 \|")
+        self.assertEqual({other: other.stat().st_mtime_ns for other in others}, before)
+
+    def test_what_is_not_to_be_verified_is_finished_without(self):
+        self.assertEqual(self.compare("--set", "experiment.verify=0").returncode, 0)
+        files = list((self.folder / "out").rglob("run.sqlite"))
+        before = {file: file.stat().st_mtime_ns for file in files}
+        again = self.compare("--set", "experiment.verify=0", "--against", "developing")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual({file: file.stat().st_mtime_ns for file in files}, before)
+        self.assertIn("the others tested against `developing`", again.stdout)
+        self.assertIn("not verified", again.stdout)
+
     def test_a_stopped_comparison_goes_on(self):
         self.assertEqual(self.compare(out="straight").returncode, 0)
         for number in (signal.SIGINT, signal.SIGTERM):
@@ -166,10 +188,16 @@ class Comparison(unittest.TestCase):
         self.assertEqual(self.compare().returncode, 0)
         with contextlib.closing(sqlite3.connect(self.folder / "out/runs/plain/seed-2/run.sqlite")) as run, run:
             run.execute("UPDATE operators SET hash = 'another' WHERE kind = 'fitness'")
+        # begun by another build of the program, resumed by this one
+        with contextlib.closing(sqlite3.connect(self.folder / "out/runs/plain/seed-1/run.sqlite")) as run, run:
+            run.execute("INSERT INTO makers SELECT 1, device, evodevo, 'another' FROM makers")
+            run.execute("INSERT INTO operators SELECT 1, kind, name, version, file, hash FROM operators")
+            run.execute("UPDATE generations SET maker = 1 WHERE generation = 0")
         done = self.compare()
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("**Not all runs were made by the same builds", done.stdout)
-        self.assertIn("  - 0.1.0 (another): 1 of `plain`\n", done.stdout)
+        self.assertEqual(done.stdout.count("  - 0.1.0 (another): 1 of `plain`\n"), 2)  # the program and the fitness
+        self.assertRegex(done.stdout, r"- evodevo:\n  - 0.1.0 \([0-9a-f]{16}\): 2 of `plain`, 2 of `developing`\n")
 
     def test_runs_of_something_else_are_refused(self):
         self.assertEqual(self.compare().returncode, 0)
@@ -185,6 +213,13 @@ class Comparison(unittest.TestCase):
         refused = self.compare("--sweep", "development.cycle_times=1,2")
         self.assertEqual(refused.returncode, 2)
         self.assertIn('did you mean "cycle_time"?', refused.stderr)
+        self.assertFalse((self.folder / "out").exists())
+        refused = self.compare("--against", "evolving")
+        self.assertEqual(refused.returncode, 2)
+        self.assertEqual(
+            refused.stderr,
+            "compare: --against evolving: none of the experiments has that name; give one of plain, developing\n",
+        )
         self.assertFalse((self.folder / "out").exists())
         for seeds in ("0", "-1", "two", "1.5"):
             refused = self.compare(f"--seeds={seeds}")

@@ -65,20 +65,35 @@ class Reports(unittest.TestCase):
         for objective, better in ((FAR, high), (CHEAP, low)):
             worse = low if better is high else high
             histories = self.histories(objective, first=worse, second=better)
-            first, second = report.standings(histories, objective, "evaluations", 10)
+            first, second = report.standings(histories, objective, "evaluations", 10, "first")
             self.assertEqual((first.a12, first.p, second.a12), (0.5, 1, 1))
             self.assertAlmostEqual(second.p, 2 / 12870, places=14)  # of C(16, 8) ways the two most extreme
             self.assertRegex(second.verdict("first"), "`second`, beside `first`: better")
 
+    def test_any_experiment_may_be_tested_against(self):
+        low, middle, high = ([[base + i / 10] for i in range(8)] for base in (0, 2, 4))
+        histories = self.histories(FAR, low=low, middle=middle, high=high)
+        text = self.report(histories, "middle")
+        self.assertIn("8 seeds of each experiment, the others tested against `middle`, on ", text)
+        for verdict in ("`low`, beside `middle`: worse (A12 0.00,", "`high`, beside `middle`: better (A12 1.00,"):
+            self.assertEqual(text.count(verdict), 2, text)  # on both axes
+        self.assertNotIn("`middle`, beside", text)
+        rows = [line for line in text.split("## After ")[1].splitlines() if line.startswith("| `")]
+        self.assertEqual([row.split(" | ")[0] for row in rows], ["| `low`", "| `middle`", "| `high`"])
+        self.assertEqual([row.endswith("| - | - | - | - |") for row in rows], [False, True, False])
+        # 2 of C(16, 8) = 12870 ways are as extreme, and two tests double that
+        self.assertEqual([row.split(" | ")[-2:] for row in (rows[0], rows[2])], [["0.00016", "0.00031 |"]] * 2)
+
     def test_a_small_difference_is_no_finding(self):
         histories = self.histories(FAR, first=[[1], [2], [3]], second=[[4], [5], [6]])
-        second = report.standings(histories, FAR, "evaluations", 5)[1]
+        second = report.standings(histories, FAR, "evaluations", 5, "first")[1]
         self.assertIn("no difference is shown", second.verdict("first"))
 
-    def report(self, histories):
+    def report(self, histories, against=None):
         seeds = len(next(iter(histories.values())))
         made = {"device": {"cpu": {}}, "evodevo": {"1": {}}}
-        return report.markdown(histories, FAR, report.Setting("tools/compare", seeds, made))
+        against = against or next(iter(histories)).name
+        return report.markdown(histories, FAR, report.Setting("tools/compare", seeds, against, made))
 
     def test_too_few_seeds_bear_neither_interval_nor_verdict(self):
         # the least p of 3 and 3 is 2 of C(6, 3) = 20, and two tests double that of 4 and 4, 2 of 70
@@ -118,7 +133,7 @@ class Reports(unittest.TestCase):
     def test_no_cost_is_compared_within_one_experiment_either(self):
         runs = [history(shown([1], springs=10), FAR), history(shown([1], springs=11), FAR)]
         histories = {Variant(pathlib.Path("uneven")): runs}
-        self.assertIn("Not compared: a run of `uneven`", report.section(histories, FAR, "spring_evaluations"))
+        self.assertIn("Not compared: a run of `uneven`", report.section(histories, FAR, "spring_evaluations", "uneven"))
         self.assertEqual(chart.svg(histories, FAR).count("<polyline"), 1)  # that over evaluations
 
     def test_generations_are_told(self):
@@ -126,7 +141,7 @@ class Reports(unittest.TestCase):
             Variant(pathlib.Path("cheap")): [history(shown([1] * 9, springs=10), FAR)] * 2,
             Variant(pathlib.Path("dear")): [history(shown([1] * 2, springs=30), FAR)] * 2,
         }
-        text = report.section(histories, FAR, "spring_evaluations")
+        text = report.section(histories, FAR, "spring_evaluations", "cheap")
         self.assertIn("| evaluations by then | generations |", text)
         self.assertIn("| `cheap` | 1 | - | 30 | 6 |", text)
         self.assertIn("| `dear` | 1 | - | 10 | 2 |", text)
@@ -144,37 +159,50 @@ class Reports(unittest.TestCase):
         self.assertEqual(none, ["not verified", "-", "- |"])
 
     def test_other_builds_are_named(self):
-        def made(run_hash, version="0.1.0", device="cpu"):
+        def maker(run_hash, program="p", device="cpu"):
             operator = {"kind": "fitness", "name": "distance", "version": "0.1.0", "hash": run_hash}
-            return {"device": device, "evodevo": version, "operators": [operator]}
+            return {"device": device, "evodevo": "0.1.0", "program": program, "operators": [operator]}
+
+        def made(*makers, by=None):
+            """What `show --json` says of a run whose generations were made by those makers."""
+            places = range(len(makers)) if by is None else by
+            return {"makers": list(makers), "generations": [{"maker": place} for place in places]}
 
         evo, devo = Variant(pathlib.Path("evo")), Variant(pathlib.Path("devo"))
         runs = [Run(variant, seed, pathlib.Path()) for seed in (1, 2) for variant in (evo, devo)]
-        alike = report.builds({run: made("aa") for run in runs})
-        self.assertEqual(report.differences(alike), "")
-        text = report.differences(report.builds(dict(zip(runs, [made("aa"), made("bb"), made("bb"), made("bb")]))))
+
+        def differences(*said):
+            return report.differences(report.builds(dict(zip(runs, said))))
+
+        a, b = maker("aa"), maker("bb")
+        self.assertEqual(differences(*[made(a)] * 4), "")
+        text = differences(made(a), made(b), made(b), made(b))
         self.assertIn("- fitness `distance`:\n  - 0.1.0 (aa): 1 of `evo`\n", text)
         self.assertIn("  - 0.1.0 (bb): 2 of `devo`, 1 of `evo`\n", text)
         self.assertNotIn("device:", text)
-        others = [made("aa"), made("aa", version="0.2.0"), made("aa", device="cuda"), made("aa")]
-        text = report.differences(report.builds(dict(zip(runs, others))))
+        text = differences(made(a), made(maker("aa", program="q")), made(maker("aa", device="cuda")), made(a))
         self.assertIn("- device:\n  - cpu: 1 of `evo`, 2 of `devo`\n  - cuda: 1 of `evo`\n", text)
-        self.assertIn("- evodevo:\n  - 0.1.0: 2 of `evo`, 1 of `devo`\n  - 0.2.0: 1 of `devo`\n", text)
+        self.assertIn("- evodevo:\n  - 0.1.0 (p): 2 of `evo`, 1 of `devo`\n  - 0.1.0 (q): 1 of `devo`\n", text)
         self.assertNotIn("distance", text)
+        # resumed elsewhere, each of them in the same way; and by somebody who made no generation
+        resumed = made(a, maker("aa", device="cuda"))
+        text = differences(*[resumed] * 4)
+        self.assertIn("- device:\n  - cpu: 2 of `evo`, 2 of `devo`\n  - cuda: 2 of `evo`, 2 of `devo`\n", text)
+        self.assertEqual(differences(*[made(a, maker("aa", device="cuda"), by=[0, 0])] * 4), "")
 
     def test_costs_differ_between_the_axes(self):
         # the second spends three times as much on each generation, so it has a third of them at equal cost
         first = [history(shown([1, 2, 3], springs=10), FAR)]
         second = [history(shown([10, 20, 30], springs=30), FAR)]
         histories = {Variant(pathlib.Path("first")): first, Variant(pathlib.Path("second")): second}
-        text = report.section(histories, FAR, "spring_evaluations")
+        text = report.section(histories, FAR, "spring_evaluations", "first")
         self.assertIn("## After 30 spring evaluations", text)
         self.assertIn("| `second` | 10 | - | 5 | 1 | 1.00 |", text)
-        self.assertIn("| `second` | 30 |", report.section(histories, FAR, "evaluations"))
+        self.assertIn("| `second` | 30 |", report.section(histories, FAR, "evaluations", "first"))
 
     def test_runs_without_a_fitness_are_named_so(self):
         histories = self.histories(FAR, first=[[1, 2]] * 6, second=[[None, None]] * 6)
-        text = report.section(histories, FAR, "evaluations")
+        text = report.section(histories, FAR, "evaluations", "first")
         self.assertIn("| `second` | none | none to none |", text)
         self.assertNotIn("inf", text + chart.svg(histories, FAR))
         self.assertNotIn("nan", text + chart.svg(histories, FAR))

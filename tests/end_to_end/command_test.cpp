@@ -6,7 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "archive.hpp"
+#include "evolution.hpp"
+#include "support/elsewhere.hpp"
 #include "support/experiments.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"
@@ -190,9 +191,10 @@ TEST_F(Command, LifeTellsOperatorsOfOneNameApartAndTalliesFromForces) {
 }
 
 TEST_F(Command, LifeSaysWhereItCannotBeSure) {
-  run_small();
-  Archive archive = Archive::annotate(folder_);
-  archive.set_record("device", "another device");
+  const Experiment experiment = testing::read(small_experiment);
+  testing::Elsewhere simulator(experiment, "another device");
+  Archive archive = Archive::create(folder_, experiment, simulator.device());
+  evolve(experiment, simulator, archive, false, Observer{});
   for (std::uint32_t id = 0; id < 24; ++id) {
     const Finished finished = evodevo({"life", folder_, "--individual", std::to_string(id)});
     EXPECT_EQ(finished.exit_code, 0);

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <random>
 #include <set>
 
 #include "archive.hpp"
@@ -17,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::Process;
 
 /// Thirteen generations, each some tens of milliseconds long.
@@ -75,28 +75,25 @@ void expect_same_runs(const Archive& a, const Archive& b) {
   EXPECT_EQ(id, 75u);
 }
 
-TEST_F(Interruption, KilledAtAnyLineAndResumedEndsTheSame) {
+TEST_F(Interruption, KilledAtEachLineAndResumedEndsTheSame) {
   ASSERT_EQ(testing::run(run_command("straight")).exit_code, 0);
-  const Archive straight = Archive::read(scratch_ / "straight");
-  std::random_device seed;
-  const auto seed_used = seed();
-  std::mt19937 random(seed_used);
-  SCOPED_TRACE("seed " + std::to_string(seed_used));
-  for (const std::string folder : {"a", "b", "c"}) {
-    std::vector<std::string> command = run_command(folder);
-    for (int kills = 0; kills < 3; ++kills) {
-      Process process(command);
-      // the first line says where the run goes; from then on there is something to resume
-      const int lines = 1 + static_cast<int>(random() % 5);
-      for (int i = 0; i < lines; ++i) process.read_line();
-      process.send(SIGKILL);
-      process.wait();
-      command = resume_command(folder);
-    }
-    const testing::Finished finished = testing::run(command);
-    ASSERT_EQ(finished.exit_code, 0) << finished.output;
-    expect_same_runs(straight, Archive::read(scratch_ / folder));
-  }
+  std::vector<std::string> command = run_command("killed");
+  std::set<std::size_t> complete;  // generations, when it was killed
+  const auto run_to_line = [&](int line) {
+    Process process(command);
+    // the first line says where the run goes; from then on there is something to resume
+    for (int i = 0; i < line; ++i) process.read_line();
+    process.send(SIGKILL);
+    process.wait();
+    command = resume_command("killed");
+    complete.insert(Archive::read(scratch_ / "killed").generations().size());
+  };
+  run_to_line(1);
+  for (int generation = 1; generation < 13; ++generation) run_to_line(2);
+  EXPECT_GT(complete.size(), 1u) << "it was done before it could be killed";
+  const testing::Finished finished = testing::run(command);
+  ASSERT_EQ(finished.exit_code, 0) << finished.output;
+  expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(scratch_ / "killed"));
 }
 
 TEST_F(Interruption, AYokedRunGoesOnTheSame) {
@@ -181,12 +178,25 @@ TEST_F(Interruption, AFinishedRunHasNothingToResume) {
   EXPECT_EQ(Archive::read(scratch_ / "run").generations().size(), before);
 }
 
-TEST_F(Interruption, GoingOnElsewhereWarns) {
-  ASSERT_EQ(testing::run(run_command("run")).exit_code, 0);
-  { Archive::resume(scratch_ / "run").set_record("device", "cpu, an older one"); }
+TEST_F(Interruption, GoingOnElsewhereOrByAnotherBuildWarns) {
+  // begun by the program of this test
+  { Archive::create(scratch_ / "run", testing::read(testing::small_experiment), "cpu, an older one"); }
+  const std::string begun_by = Archive::read(scratch_ / "run").makers().front().program;
   const testing::Finished resumed = testing::run(resume_command("run"));
   EXPECT_EQ(resumed.exit_code, 0);
   EXPECT_THAT(resumed.output, HasSubstr("warning: the run began on cpu, an older one and goes on on "));
+  const Maker now = Archive::read(scratch_ / "run").maker(0);
+  EXPECT_NE(now.device, "cpu, an older one");
+  EXPECT_THAT(resumed.output, HasSubstr("warning: the run began with evodevo " EVODEVO_VERSION " (" + begun_by +
+                                        "), now it is another build of it, " + now.program + "; results may differ\n"));
+}
+
+TEST_F(Interruption, GoingOnTheSameWayWarnsOfNothing) {
+  ASSERT_EQ(testing::run(run_command("run")).exit_code, 0);
+  const testing::Finished resumed = testing::run(resume_command("run"));
+  EXPECT_EQ(resumed.exit_code, 0);
+  EXPECT_THAT(resumed.output, Not(HasSubstr("warning")));
+  EXPECT_EQ(Archive::read(scratch_ / "run").makers().size(), 1u);
 }
 
 TEST_F(Interruption, ThreadsDoNotChangeARun) {

@@ -77,7 +77,9 @@ TEST_F(Plugins, TheExperimentsPathsComeBeforeTheOptionsAndThoseBeforeTheVariable
 TEST_F(Plugins, TheRecordKeepsFileVersionAndHash) {
   install("sound");
   ASSERT_EQ(run_with("nothing", {"--plugin-path", own()}).exit_code, 0);
-  for (const OperatorUse& use : Archive::read(folder_).operators()) {
+  const Maker maker = Archive::read(folder_).makers().front();
+  EXPECT_EQ(maker.program, file_hash(EVODEVO_PROGRAM));
+  for (const OperatorUse& use : maker.operators) {
     EXPECT_EQ(use.hash, file_hash(use.file)) << use.name;
     if (use.name != "nothing") continue;
     EXPECT_EQ(use.file, library_);
@@ -126,7 +128,7 @@ TEST_F(Plugins, OfTwoLibrariesWithOneNameTheFirstIsUsedAndTheOtherNamed) {
                         ": its mutation operator \"reset-weight\" is already brought by " + library_.string() +
                         ", which comes first; rename one of them, or take one "
                         "off the plugin path\n"));
-  const auto uses = Archive::read(folder_).operators();
+  const auto uses = Archive::read(folder_).makers().front().operators;
   const auto mutation = std::find_if(uses.begin(), uses.end(), [](const auto& use) { return use.kind == "mutation"; });
   ASSERT_NE(mutation, uses.end());
   EXPECT_EQ(mutation->file, library_);

@@ -58,7 +58,7 @@ TEST_F(ArchiveTest, GivesBackWhatWasCommitted) {
   }
   const Archive archive = Archive::read(folder_);
   EXPECT_EQ(archive.record("seed"), "7");
-  EXPECT_EQ(archive.record("device"), "a device");
+  EXPECT_EQ(archive.makers().front().device, "a device");
   EXPECT_EQ(recorded_experiment(archive).resolved, experiment_.resolved);
   ASSERT_EQ(archive.population().size(), 1u);
   const Individual back = archive.population().front();
@@ -82,6 +82,40 @@ TEST_F(ArchiveTest, GivesBackWhatWasCommitted) {
   EXPECT_FALSE(archive.generations()[0].median.has_value());
   EXPECT_EQ(archive.best(9), std::vector<std::uint32_t>{4}) << "the diverged one has no place among the best";
   EXPECT_EQ(archive.statuses().at("diverged"), 1);
+}
+
+TEST_F(ArchiveTest, TellsWhoMadeAGeneration) {
+  const auto commit = [](Archive& archive, const Maker& maker, std::uint32_t generation) {
+    archive.commit({}, {}, {}, {.generation = generation, .maker = archive.add_maker(maker)});
+  };
+  const Maker first = this_maker(experiment_, "a device");
+  Maker elsewhere = first, rebuilt = first, other_operator = first, moved = first;
+  elsewhere.device = "another";
+  rebuilt.program = "another";
+  other_operator.operators.back().hash = "another";
+  moved.operators.front().file = "another";
+  {
+    Archive archive = Archive::create(folder_, experiment_, "a device");
+    commit(archive, first, 0);
+    commit(archive, elsewhere, 1);
+  }
+  {
+    Archive archive = Archive::resume(folder_);
+    commit(archive, rebuilt, 2);
+    commit(archive, other_operator, 3);
+    commit(archive, moved, 4);
+    commit(archive, elsewhere, 5);
+  }
+  const Archive archive = Archive::read(folder_);
+  ASSERT_EQ(archive.makers().size(), 4u) << "who comes again, and operators from another place, are nobody new";
+  const std::vector<Maker> expected{first, elsewhere, rebuilt, other_operator, first, elsewhere};
+  for (std::uint32_t generation = 0; generation < 6; ++generation) {
+    const Maker maker = archive.maker(generation);
+    EXPECT_TRUE(are_same(maker, expected[generation])) << generation;
+    ASSERT_EQ(maker.operators.size(), experiment_.uses.size()) << generation;
+    EXPECT_EQ(maker.operators.back().version, experiment_.uses.back().version);
+  }
+  EXPECT_EQ(refusal([&] { archive.maker(6); }), folder_.string() + ": its record has no generation 6");
 }
 
 TEST_F(ArchiveTest, TakesVerificationsWhileAnotherWrites) {
@@ -138,7 +172,7 @@ TEST_F(ArchiveTest, ARunThatEndedBeforeItBeganIsTold) {
 TEST_F(ArchiveTest, AnotherFormatIsRefused) {
   { Archive::create(folder_, experiment_, "cpu").set_record("format", "99"); }
   EXPECT_EQ(refusal([&] { Archive::read(folder_); }),
-            folder_.string() + ": has format 99, this evodevo reads format 3; use the evodevo that wrote it, 0.1.0");
+            folder_.string() + ": has format 99, this evodevo reads format 4; use the evodevo that wrote it, 0.1.0");
 }
 
 TEST_F(ArchiveTest, ReadsOfOneMomentWhileAnotherWrites) {

@@ -2,6 +2,7 @@
 // front.
 #include "life_record.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -11,6 +12,7 @@
 #include "breeding.hpp"
 #include "evolution.hpp"
 #include "living_again.hpp"
+#include "support/elsewhere.hpp"
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"
 
@@ -439,6 +441,99 @@ TEST(LifeRecord, ARunKeepsThoseWhoReachTheFrontLaterToo) {
     EXPECT_EQ(*record, lives.front().result.record) << "individual " << one.id;
   }
   EXPECT_GT(late, 3);
+}
+
+/// A run of ten generations that is stopped after five and goes on by another maker.
+class GoneOn : public ::testing::Test {
+ protected:
+  static constexpr std::uint32_t first_half = 5;
+
+  GoneOn() { experiment_.selection = std::make_unique<Levelling>(); }
+
+  /// All individuals of the run, the second half of which is made by `second` on `device`.
+  std::vector<ArchivedIndividual> evolved_by_two(const Experiment& second, const std::string& device) {
+    std::atomic<bool> stop = false;
+    const Observer observer{
+        .generation_done = [&](const Summary& summary) { stop = summary.generation + 1 == first_half; }};
+    testing::Elsewhere here(experiment_, "here");
+    {
+      Archive archive = Archive::create(folder_, experiment_, "here");
+      evolve(experiment_, here, archive, stop, observer);
+    }
+    testing::Elsewhere there(experiment_, device);
+    Archive archive = Archive::resume(folder_);
+    return evolved(second, archive, there);
+  }
+
+  /// Elders of the first half who reach the front in the second live no other life that would be recorded as theirs.
+  void expect_no_other_life_recorded(const std::vector<ArchivedIndividual>& all) {
+    const Archive archive = Archive::read(folder_);
+    int without_record = 0, late = 0;
+    for (const ArchivedIndividual& one : all) {
+      const auto ever = [&](std::uint32_t from, std::uint32_t to) {
+        for (std::uint32_t generation = std::max(from, one.born); generation < to; ++generation)
+          if (on_front(one, all, generation, false) || on_front(one, all, generation, true)) return true;
+        return false;
+      };
+      const bool in_first = ever(0, first_half), in_second = ever(first_half, 10);
+      const bool recorded = one.born < first_half ? in_first : in_second;
+      EXPECT_EQ(archive.life(one.id).has_value(), recorded) << "individual " << one.id;
+      without_record += in_second && !recorded;
+      late += recorded && !on_front(one, all, one.born, false);
+    }
+    EXPECT_GT(without_record, 0);
+    EXPECT_GT(late, 0) << "those who reach the front late by the same maker have a record all the same";
+  }
+
+  testing::Scratch scratch_;
+  std::filesystem::path folder_ = scratch_ / "run";
+  Experiment experiment_ = run_of_60();
+};
+
+TEST_F(GoneOn, OnAnotherDeviceWarnsByTheGenerationOfBirth) {
+  const std::vector<ArchivedIndividual> all = evolved_by_two(experiment_, "there");
+  expect_no_other_life_recorded(all);
+  const Archive archive = Archive::read(folder_);
+  int warned_here = 0, warned_there = 0;
+  for (const ArchivedIndividual& one : all) {
+    const auto warning = [&](const std::string& device) {
+      ::testing::internal::CaptureStderr();
+      born_again(archive, experiment_, one, device);
+      return ::testing::internal::GetCapturedStderr();
+    };
+    const bool of_first = one.born < first_half, recorded = archive.life(one.id).has_value();
+    EXPECT_EQ(warning("here").empty(), of_first || recorded) << "individual " << one.id;
+    EXPECT_EQ(warning("there").empty(), !of_first || recorded) << "individual " << one.id;
+    warned_here += !warning("here").empty();
+    warned_there += !warning("there").empty();
+    if (of_first && !recorded) {
+      EXPECT_EQ(warning("there"),
+                "warning: individual " + std::to_string(one.id) +
+                    " lived again on there, not on here as in the run, which has no record of its edits; it may have "
+                    "developed otherwise\n");
+    }
+  }
+  EXPECT_GT(warned_here, 0);
+  EXPECT_GT(warned_there, 0);
+}
+
+TEST_F(GoneOn, WithAnotherOperatorWarnsToo) {
+  Experiment second = run_of_60();
+  second.selection = std::make_unique<Levelling>();
+  second.uses.front().hash = "another";
+  const std::vector<ArchivedIndividual> all = evolved_by_two(second, "here");
+  expect_no_other_life_recorded(all);
+  const Archive archive = Archive::read(folder_);
+  const auto unrecorded = std::find_if(all.begin(), all.end(), [&](const auto& one) { return !archive.life(one.id); });
+  ASSERT_NE(unrecorded, all.end());
+  ASSERT_LT(unrecorded->born, first_half);
+  ::testing::internal::CaptureStderr();
+  born_again(archive, experiment_, *unrecorded, "here");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << "by those that made it";
+  ::testing::internal::CaptureStderr();
+  born_again(archive, second, *unrecorded, "here");
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
+              ::testing::HasSubstr(" lived again by another build of evodevo or of an operator than in the run, "));
 }
 
 }  // namespace

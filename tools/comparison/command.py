@@ -12,7 +12,7 @@ from .runs import Failure, Interrupted, Runs, make_variants, parse_setting, pars
 
 DESCRIPTION = """\
 Runs experiments over seeds and reports how their best robots compare, at equal evaluations and at equal spring
-evaluations: medians and effect sizes with intervals, rank tests against the first experiment, failures, a chart.
+evaluations: medians and effect sizes with intervals, rank tests against one of the experiments, failures, a chart.
 A stopped comparison goes on with the same command; more seeds, experiments or values may be added."""
 
 
@@ -36,6 +36,7 @@ def parse(arguments):
         "--sweep", metavar="KEY=V,V,…", action="append", default=[], help="values in turn, where KEY's table is there"
     )
     add("--set", metavar="KEY=VALUE", action="append", default=[], help="a value, where KEY's table is there")
+    add("--against", metavar="NAME", help="what the others are tested against, by its name in the report (the first)")
     add("--jobs", metavar="N", type=positive, default=1, help="runs at once, which share the cores (%(default)s)")
     add("--out", metavar="DIR", type=pathlib.Path, help="default: runs/compare-FIRST, FIRST the first experiment")
     return parser.parse_args(arguments)
@@ -50,10 +51,19 @@ def first_objective(shown):
     return objectives.pop()
 
 
+def tested_against(name, variants):
+    """The name of the variant that the others are tested against, by default the first."""
+    names = [variant.name for variant in variants]
+    if name is not None and name not in names:
+        raise Failure(f"--against {name}: none of the experiments has that name; give one of {', '.join(names)}")
+    return name or names[0]
+
+
 def compare(arguments, program):
     given = parse(arguments)
     sweeps, settings = map(parse_sweep, given.sweep), map(parse_setting, given.set)
     variants = make_variants(given.experiments, list(sweeps), list(settings))
+    against = tested_against(given.against, variants)
     out = given.out or pathlib.Path("runs") / f"compare-{given.experiments[0].stem}"
     runs = Runs(program, out, variants, given.seeds)
     runs.check()
@@ -67,6 +77,7 @@ def compare(arguments, program):
     setting = report.Setting(
         command=shlex.join(["tools/compare", *map(str, arguments)]),
         seeds=given.seeds,
+        against=against,
         builds=report.builds(shown),
     )
     text = report.markdown(histories, objective, setting)

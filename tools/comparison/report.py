@@ -27,9 +27,9 @@ passive, or both.
 """
 
 TESTS = f"""\
-A12 is the probability that a run is better than one of the first experiment, ties counting half: 0.5 is no difference;
-0.56, 0.64 and 0.71 (or 0.44, 0.36 and 0.29) count as a small, medium and large one (Vargha & Delaney 2000). Its
-interval is that of Newcombe (2006, method 5) and allows for this row alone.
+A12 is the probability that a run is better than one of the experiment that is tested against, ties counting half: 0.5
+is no difference; 0.56, 0.64 and 0.71 (or 0.44, 0.36 and 0.29) count as a small, medium and large one (Vargha & Delaney
+2000). Its interval is that of Newcombe (2006, method 5) and allows for this row alone.
 
 p is that of the two-sided Mann-Whitney U test, exact up to {inference.EXACT_UP_TO} runs of both together, else normal,
 always with ties. p (Holm) allows for all rows of its table. Below {inference.SIGNIFICANT} a difference counts as shown.
@@ -42,19 +42,30 @@ class Setting:
 
     command: str
     seeds: int
+    against: str  # the name of the variant that the others are tested against
     builds: dict  # of devices, evodevo and operators: which there are, and of each how many runs of which variant
 
 
 def builds(shown):
-    """What runs were made by, from what `evodevo show --json` says of each."""
+    """What runs were made by, from what `evodevo show --json` says of each; one that was resumed, maybe by several."""
     made = collections.defaultdict(lambda: collections.defaultdict(collections.Counter))
     for run, said in shown.items():
-        by = {"device": said["device"], "evodevo": said["evodevo"]}
-        for operator in said["operators"]:
-            by[f"{operator['kind']} `{operator['name']}`"] = f"{operator['version']} ({operator['hash']})"
-        for what, build in by.items():
+        for what, build in dict.fromkeys(by for maker in makers_of(said) for by in made_by(maker)):
             made[what][build][run.variant.name] += 1
     return made
+
+
+def makers_of(said):
+    """Those by whom any generation of a run was made."""
+    return [said["makers"][place] for place in sorted({generation["maker"] for generation in said["generations"]})]
+
+
+def made_by(maker):
+    """Each thing that results depend on, with its build."""
+    yield "device", maker["device"]
+    yield "evodevo", f"{maker['evodevo']} ({maker['program']})"
+    for operator in maker["operators"]:
+        yield f"{operator['kind']} `{operator['name']}`", f"{operator['version']} ({operator['hash']})"
 
 
 def number(value):
@@ -76,7 +87,7 @@ def table(header, rows):
 
 @dataclasses.dataclass(frozen=True)
 class Standing:
-    """One variant at one cost, beside the first."""
+    """One variant at one cost, beside that which it is tested against."""
 
     name: str
     scores: list
@@ -95,7 +106,7 @@ class Standing:
         return "{:.2f} to {:.2f}".format(*inference.superiority_interval(self.a12, len(self.scores)))
 
     def tests(self, judged):
-        """The rest of its row: how it stands beside the first."""
+        """The rest of its row: how it stands beside that which it is tested against."""
         return [f"{self.a12:.2f}", self.interval() if judged else "-", f"{self.p:.2g}", f"{self.holm:.2g}"]
 
     def verdict(self, baseline):
@@ -107,15 +118,16 @@ class Standing:
         return f"- {beside}{'better' if self.a12 > 0.5 else 'worse'} ({numbers})."
 
 
-def standings(histories, objective, axis, cost):
-    """All variants at one cost, the first of which is what the others are tested against."""
-    scores = {variant: [history.at(axis, cost) for history in runs] for variant, runs in histories.items()}
-    baseline = objective.upwards(next(iter(scores.values())))
-    upwards = [objective.upwards(values) for values in scores.values()]
-    ps = [inference.rank_sum_test(values, baseline) for values in upwards]
+def standings(histories, objective, axis, cost, against):
+    """All variants at one cost, tested against the one of that name."""
+    scores = {variant.name: [history.at(axis, cost) for history in runs] for variant, runs in histories.items()}
+    upwards = {name: objective.upwards(values) for name, values in scores.items()}
+    ps = {name: inference.rank_sum_test(values, upwards[against]) for name, values in upwards.items()}
+    others = [name for name in scores if name != against]
+    adjusted = {against: 1.0, **dict(zip(others, inference.holm([ps[name] for name in others])))}
     return [
-        Standing(variant.name, scores[variant], inference.superiority(values, baseline), p, adjusted)
-        for variant, values, p, adjusted in zip(scores, upwards, ps, [1.0, *inference.holm(ps[1:])])
+        Standing(name, scores[name], inference.superiority(upwards[name], upwards[against]), ps[name], adjusted[name])
+        for name in scores
     ]
 
 
@@ -147,13 +159,14 @@ def too_early(histories, axis, cost):
     )
 
 
-def section(histories, objective, axis):
+def section(histories, objective, axis, against):
     """The comparison at the cost that every run has reached."""
     start, cost = common_span([history for runs in histories.values() for history in runs], axis)
     title = f"## After {number(cost)} {AXES[axis]}\n\n"
     if cost < start:
         return title + too_early(histories, axis, cost)
-    first, *others = all_standings = standings(histories, objective, axis, cost)
+    all_standings = standings(histories, objective, axis, cost, against)
+    others = [standing for standing in all_standings if standing.name != against]
     other = next(name for name in AXES if name != axis)
     header = ["", f"median {objective.name}", INTERVAL, f"{AXES[other]} by then", "generations"]
     rows = [
@@ -162,9 +175,9 @@ def section(histories, objective, axis):
     ]
     if not others:
         return title + table(header, rows)
-    judged = verdicts_possible(len(first.scores), len(histories))
-    verdicts = "".join(f"{standing.verdict(first.name)}\n" for standing in others) + "\n" if judged else ""
-    tests = [["-"] * 4, *(standing.tests(judged) for standing in others)]
+    judged = verdicts_possible(len(others[0].scores), len(histories))
+    verdicts = "".join(f"{standing.verdict(against)}\n" for standing in others) + "\n" if judged else ""
+    tests = [["-"] * 4 if standing.name == against else standing.tests(judged) for standing in all_standings]
     return title + verdicts + table(header + ["A12", INTERVAL, "p", "p (Holm)"], map(list.__add__, rows, tests))
 
 
@@ -208,22 +221,25 @@ def differences(made):
             lines += f"  - {build}: " + ", ".join(f"{count} of `{name}`" for name, count in runs.items()) + "\n"
     return lines and (
         "**Not all runs were made by the same builds and devices.** What the experiments differ in may come from that. "
-        f"To make runs anew, remove their folders and give the same command.\n\n{lines}"
+        "A run that was resumed by another counts with each. To make runs anew, remove their folders and give the same "
+        f"command.\n\n{lines}"
     )
 
 
 def markdown(histories, objective, setting):
+    devices, programs = (" and ".join(sorted(setting.builds[what])) for what in ("device", "evodevo"))
+    seeds = f"{setting.seeds} {'seed' if setting.seeds == 1 else 'seeds'}"
+    tested = f", the others tested against `{setting.against}`" if len(histories) > 1 else ""
     head = (
         f"# {objective.name} ({objective.unit}, {'more' if objective.maximise else 'less'} is better)\n\n"
-        f"{setting.seeds} {'seed' if setting.seeds == 1 else 'seeds'} of each experiment, on {' and '.join(sorted(setting.builds['device']))}, evodevo "
-        f"{' and '.join(sorted(setting.builds['evodevo']))}. Made by\n\n```sh\n{setting.command}\n```\n"
+        f"{seeds} of each experiment{tested}, on {devices}, evodevo {programs}. Made by\n\n```sh\n{setting.command}\n```\n"
     )
     parts = [
         head,
         differences(setting.builds),
         too_few_seeds(setting.seeds, len(histories)),
         "![Best so far over spring evaluations and over evaluations](chart.svg)\n",
-        *(section(histories, objective, axis) for axis in AXES),
+        *(section(histories, objective, axis, setting.against) for axis in AXES),
         whole_runs(histories),
         METHOD,
         TESTS if len(histories) > 1 else "",

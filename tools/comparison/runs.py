@@ -204,7 +204,11 @@ class Runs:
             stop(active.values())
 
     def is_finished(self, run):
-        return (run.folder / "run.sqlite").exists() and bool((self._shown_if_begun(run) or {}).get("finished"))
+        """To its end, with its best verified where the experiment asks for that."""
+        if not (run.folder / "run.sqlite").exists():
+            return False
+        shown = self._shown_if_begun(run)
+        return shown is not None and shown["finished"] and shown["verified"]
 
     def shown(self, run):
         return json.loads(self._evodevo("show", run.folder, "--json"))

@@ -68,11 +68,12 @@ function facts(run) {
 function header() {
   const run = runs[0];
   const title = runs.length > 1 ? `${runs.length} runs` : run.experiment;
+  const devices = (r) => [...new Set(r.makers.map((m) => m.device))].join(", then ");
   const subtitle = isGallery
     ? `${robots.length} random robots of its encoding, seed ${run.seed}`
     : runs.length > 1
       ? runs.map((r) => r.label).join(" · ")
-      : `${run.label} · seed ${run.seed} · ${run.device} · begun ${run.created.replace("T", " ").replace("Z", " UTC")}`;
+      : `${run.label} · seed ${run.seed} · ${devices(run)} · begun ${run.created.replace("T", " ").replace("Z", " UTC")}`;
   document.title = `${title} – evodevo`;
   return element("header", {}, element("h1", { textContent: title }), element("p", { textContent: subtitle }));
 }
