@@ -30,7 +30,7 @@ std::size_t mark_at(const std::vector<double>& marks, double time) {
 
 /// Whether edits may strain or lift a body. Turnover by springs without force does neither by much.
 bool adds_energy(const Edits& edits) {
-  return !edits.changed_springs.empty() || edits.new_masses.size() > edits.removed_masses.size() ||
+  return edits.growth || !edits.changed_springs.empty() || edits.new_masses.size() > edits.removed_masses.size() ||
          std::any_of(edits.new_springs.begin(), edits.new_springs.end(),
                      [](const NewSpring& spring) { return spring.rest_length.has_value(); });
 }

@@ -15,8 +15,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
 
-constexpr std::array lists_of_causes{&Causes::removed_springs, &Causes::removed_masses, &Causes::changed_springs,
-                                     &Causes::new_masses, &Causes::new_springs};
+/// Behind the bits that say which lists of causes a change has: whether springs grow.
+constexpr std::uint32_t growth_bit = 1u << Causes::lists.size();
 
 /// Puts indices in ascending order and keeps each once, with its cause. Causes that are not as many stay as they are,
 /// to be refused where the edits are applied.
@@ -56,18 +56,19 @@ class Writer {
       material(spring.material);
       raw(spring.rest_length.value());
     }
-    causes(edits.causes);
+    causes_and_growth(edits);
   }
 
  private:
   /// Says first which of the lists there are: bit i stands for the i-th.
-  void causes(const Causes& causes) {
-    std::uint64_t given = 0;
-    for (std::size_t i = 0; i < lists_of_causes.size(); ++i)
-      if (!(causes.*lists_of_causes[i]).empty()) given |= std::uint64_t{1} << i;
+  void causes_and_growth(const Edits& edits) {
+    std::uint32_t given = edits.growth ? growth_bit : 0;
+    for (std::size_t i = 0; i < Causes::lists.size(); ++i)
+      if (!(edits.causes.*Causes::lists[i]).empty()) given |= 1u << i;
     whole(given);
-    for (const auto list : lists_of_causes)
-      for (const double cause : causes.*list) raw(static_cast<float>(cause));
+    for (const auto list : Causes::lists)
+      for (const double cause : edits.causes.*list) raw(static_cast<float>(cause));
+    if (edits.growth) raw(*edits.growth);
   }
 
   void whole(std::uint64_t value) {
@@ -133,7 +134,7 @@ class Reader {
       spring.material = material();
       spring.rest_length = raw<double>();
     }
-    edits.causes = causes(edits);
+    read_causes_and_growth(edits);
     return change;
   }
 
@@ -166,15 +167,14 @@ class Reader {
     return indices;
   }
 
-  Causes causes(const Edits& edits) {
+  void read_causes_and_growth(Edits& edits) {
     const std::array counts{edits.removed_springs.size(), edits.removed_masses.size(), edits.changed_springs.size(),
                             edits.new_masses.size(), edits.new_springs.size()};
     const std::uint32_t given = index();
-    Causes causes;
-    for (std::size_t i = 0; i < lists_of_causes.size(); ++i)
+    for (std::size_t i = 0; i < Causes::lists.size(); ++i)
       for (std::size_t left = (given >> i & 1) != 0 ? counts[i] : 0; left > 0; --left)
-        (causes.*lists_of_causes[i]).push_back(static_cast<double>(raw<float>()));
-    return causes;
+        (edits.causes.*Causes::lists[i]).push_back(static_cast<double>(raw<float>()));
+    if ((given & growth_bit) != 0) edits.growth = raw<Growth>();
   }
 
   ChangedSpring changed() {

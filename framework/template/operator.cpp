@@ -73,7 +73,8 @@ class @CLASS@ final : public evodevo::Crossover {
   double rate_ = 0.5;
 };
 @devo@
-/// The same spring may be drawn twice, so that fewer go.
+/// The same spring may be drawn twice, so that fewer go. What else may change, one by one or all springs at once by their
+/// growth, is said of evodevo::Edits in evodevo/devo.hpp.
 class @CLASS@ final : public evodevo::Devo {
  public:
   void parameters(evodevo::Parameters& p) override {
