@@ -91,6 +91,7 @@ class Relocation {
         staying_springs_(body_.materials.size()) {}
 
   Edits relocate() {
+    out_.growth = amount_.growth;
     remove_masses();
     remove_springs();
     change_springs();
@@ -206,7 +207,7 @@ class Relocation {
 Amount amount_of(const Edits& edits, const Body& body, std::uint32_t op) {
   const std::vector<std::uint8_t> mass_goes = marked(edits.removed_masses, body.masses.size()),
                                   spring_goes = marked(edits.removed_springs, body.springs.size());
-  Amount amount{.op = op};
+  Amount amount{.op = op, .growth = edits.growth};
   for (std::size_t s = 0; s < body.springs.size(); ++s) {
     const Spring& spring = body.springs[s];
     if (spring_goes[s] || mass_goes[spring.a] || mass_goes[spring.b])

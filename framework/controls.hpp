@@ -22,6 +22,7 @@ struct Amount {
   };
 
   std::uint32_t op = 0;                              ///< place in Development::operators
+  std::optional<Growth> growth;                      ///< of all springs
   std::vector<Material> springs_gone;                ///< one for each, whether it went by itself or with a mass
   std::vector<std::optional<Material>> masses_gone;  ///< one for each
   std::vector<SpringChange> springs_changed;
@@ -37,8 +38,8 @@ Amount amount_of(const Edits& edits, const Body& body, std::uint32_t op);
 /// not yet joined, and are born without force; a new mass comes anywhere in the bounds and gets as many springs. The
 /// springs of a mass that goes count among those that go. `surplus` is how many more have gone so than should have,
 /// now and in earlier turns; as many fewer go as soon as that is possible. A new mass of a material that the body does
-/// not know has none. Fewer come where the body has no room for
-/// more. Bounds that an operator keeps do not hold here.
+/// not know has none. Fewer come where the body has no room for more. Growth has no place and happens as it is. Bounds
+/// that an operator keeps do not hold here.
 Edits at_random_places(const Amount& amount, const Moment& now, std::size_t& surplus, Rng& rng);
 
 /// What happened in a life, for another one of the same start that is to change as much at each turn.

@@ -43,6 +43,7 @@ class Editor {
 
   void apply() {
     check_causes();
+    if (edits_.growth) grow_springs(*edits_.growth);
     change_springs();
     const std::vector<NewSpring> arrivals = finished_springs();  // while the old indices hold
     move_masses();
@@ -83,9 +84,30 @@ class Editor {
       refuse(what + " by a spring whose frequency or phase is not finite");
   }
 
-  static void check_rest_length(const std::string& what, double rest_length) {
-    if (!(rest_length >= 0) || !std::isfinite(rest_length))
-      refuse(what + " by a spring of rest length " + std::to_string(rest_length));
+  static bool is_rest_length(double length) { return length >= 0 && std::isfinite(length); }
+
+  static void check_rest_length(const std::string& what, double length) {
+    if (!is_rest_length(length)) refuse(what + " by a spring of rest length " + std::to_string(length));
+  }
+
+  static void check_growth(const Growth& growth) {
+    // written so that NaN fails
+    const auto on_the_way = [&](double gone) { return gone >= 0 && gone <= growth.whole; };
+    if (!(growth.whole > 0) || !std::isfinite(growth.whole) || !on_the_way(growth.from) || !on_the_way(growth.to))
+      refuse("grows springs from " + std::to_string(growth.from) + " to " + std::to_string(growth.to) +
+             " of a way of " + std::to_string(growth.whole) + "; expected 0 to all of it");
+  }
+
+  void grow_springs(const Growth& growth) {
+    check_growth(growth);
+    const auto relative_length = [&](const Spring& spring, double gone) {
+      return 1 + (static_cast<double>(spring.growth) - 1) * gone / growth.whole;
+    };
+    for (Spring& spring : living_.body.springs) {
+      spring.rest_length *= relative_length(spring, growth.to) / relative_length(spring, growth.from);
+      if (!is_rest_length(spring.rest_length))
+        refuse("grows a spring to a rest length of " + std::to_string(spring.rest_length));
+    }
   }
 
   void change_springs() {

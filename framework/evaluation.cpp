@@ -31,7 +31,7 @@ std::size_t mark_at(const std::vector<double>& marks, double time) {
 /// Whether a change may strain or lift a body. Turnover by springs without force does neither by much.
 bool adds_energy(const Change& change) {
   const Edits& edits = change.edits;
-  return !edits.changed_springs.empty() || edits.new_masses.size() > edits.removed_masses.size() ||
+  return edits.growth || !edits.changed_springs.empty() || edits.new_masses.size() > edits.removed_masses.size() ||
          change.lengths_given;
 }
 

@@ -351,10 +351,19 @@ class Composer {
       read_array(t, "operator", [&](TomlReader& entry) {
         const Schedule schedule = read_schedule(entry);
         development.operators.push_back({make<Devo>(entry), schedule});
-        check_request(entry, ask(entry, [&] { return development.operators.back().op->observes(); }));
+        const Devo& op = *development.operators.back().op;
+        check_request(entry, ask(entry, [&] { return op.observes(); }));
+        if (ask(entry, [&] { return op.uses_growth() && !out_.encoding->sets_growth(); })) warn_of_no_growth(entry);
       });
       if (development.operators.empty()) check_without_operators(t);
     });
+  }
+
+  void warn_of_no_growth(const TomlReader& t) {
+    out_.warnings.push_back(
+        t.full_name("name") + " = \"" + out_.uses.back().name +
+        "\": the encoding lets no spring grow, so that nothing changes; set encoding.size_range, or "
+        "take an encoding that has it");
   }
 
   void check_without_operators(const TomlReader& t) {

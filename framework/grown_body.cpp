@@ -42,14 +42,14 @@ Vec3 undeformed(Vec3 place, std::span<const Vec3> places, std::span<const Vec3> 
   return {rest.x(), rest.y(), rest.z()};
 }
 
-Growth::Growth(const Body& born) : born_(born.masses.size()) {
+GrowthObserver::GrowthObserver(const Body& born) : born_(born.masses.size()) {
   const Box box = bounding_box(rest_places(born));
   corner_ = box.low;
   if (box.longest_side() > 0) length_ = box.longest_side();
   for (const Mass& mass : born.masses) rest_.emplace(rest_.size(), mass.rest);
 }
 
-GrownBody Growth::after_cycle(const Life& life) {
+GrownBody GrowthObserver::after_cycle(const Life& life) {
   GrownBody grown{life.living.body, life.living.state.position, {}, mass_numbers(born_, life.result.record), born_};
   std::vector<Vec3> places, rest_places;  // of the masses that were there before
   for (std::size_t i = 0; i < grown.numbers.size(); ++i)

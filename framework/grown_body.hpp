@@ -12,8 +12,8 @@ namespace evodevo {
 /// What a life has made of a body so far.
 struct GrownBody {
   Body body;
-  std::vector<Vec3> places;            ///< of its masses, m
-  std::vector<Vec3> rest_places;       ///< of its masses in the undeformed body, body lengths at birth; see Growth
+  std::vector<Vec3> places;       ///< of its masses, m
+  std::vector<Vec3> rest_places;  ///< of its masses in the undeformed body, body lengths at birth; see GrowthObserver
   std::vector<std::uint32_t> numbers;  ///< of its masses (MassNumbers)
   std::size_t born = 0;                ///< how many masses it had at birth; those have the numbers below
 
@@ -29,9 +29,9 @@ Vec3 undeformed(Vec3 place, std::span<const Vec3> places, std::span<const Vec3> 
 /// Follows one life and knows the rest place of every mass: that which it has at birth, or else undeformed() of where
 /// it comes, by the masses that were there before. Rest places are measured from the lower corner of the body's box at
 /// birth, in the longest sides of that box, since each scene puts the body elsewhere.
-class Growth {
+class GrowthObserver {
  public:
-  explicit Growth(const Body& born);
+  explicit GrowthObserver(const Body& born);
 
   /// The body after a cycle; to be called after each, since masses are where they came only then.
   GrownBody after_cycle(const Life& life);

@@ -15,11 +15,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
 
-constexpr std::array lists_of_causes{&Causes::removed_springs, &Causes::removed_masses, &Causes::changed_springs,
-                                     &Causes::new_masses, &Causes::new_springs};
-
-/// Follows the bits of the lists of causes.
-constexpr std::uint32_t lengths_given_bit = 1u << lists_of_causes.size();
+/// Behind the bits that say which lists of causes a change has: whether springs grow, and Change::lengths_given.
+constexpr std::uint32_t growth_bit = 1u << Causes::lists.size(), lengths_given_bit = growth_bit << 1;
 
 /// Puts indices in ascending order and keeps each once, with its cause.
 void put_in_order(std::vector<std::uint32_t>& indices, std::vector<double>& causes) {
@@ -59,18 +56,20 @@ class Writer {
       material(spring.material);
       raw(spring.rest_length.value());
     }
-    causes(edits.causes, change.lengths_given);
+    causes_and_growth(change);
   }
 
  private:
   /// Says first which of the lists there are: bit i stands for the i-th.
-  void causes(const Causes& causes, bool lengths_given) {
-    std::uint32_t given = lengths_given ? lengths_given_bit : 0;
-    for (std::size_t i = 0; i < lists_of_causes.size(); ++i)
-      if (!(causes.*lists_of_causes[i]).empty()) given |= 1u << i;
+  void causes_and_growth(const Change& change) {
+    const Edits& edits = change.edits;
+    std::uint32_t given = (edits.growth ? growth_bit : 0) | (change.lengths_given ? lengths_given_bit : 0);
+    for (std::size_t i = 0; i < Causes::lists.size(); ++i)
+      if (!(edits.causes.*Causes::lists[i]).empty()) given |= 1u << i;
     whole(given);
-    for (const auto list : lists_of_causes)
-      for (const double cause : causes.*list) raw(static_cast<float>(cause));
+    for (const auto list : Causes::lists)
+      for (const double cause : edits.causes.*list) raw(static_cast<float>(cause));
+    if (edits.growth) raw(*edits.growth);
   }
 
   void whole(std::uint64_t value) {
@@ -136,9 +135,7 @@ class Reader {
       spring.material = material();
       spring.rest_length = raw<double>();
     }
-    const std::uint32_t given = index();
-    edits.causes = causes(edits, given);
-    change.lengths_given = (given & lengths_given_bit) != 0;
+    read_causes_and_growth(change);
     return change;
   }
 
@@ -171,14 +168,16 @@ class Reader {
     return indices;
   }
 
-  Causes causes(const Edits& edits, std::uint32_t given) {
+  void read_causes_and_growth(Change& change) {
+    Edits& edits = change.edits;
     const std::array counts{edits.removed_springs.size(), edits.removed_masses.size(), edits.changed_springs.size(),
                             edits.new_masses.size(), edits.new_springs.size()};
-    Causes causes;
-    for (std::size_t i = 0; i < lists_of_causes.size(); ++i)
+    const std::uint32_t given = index();
+    change.lengths_given = (given & lengths_given_bit) != 0;
+    for (std::size_t i = 0; i < Causes::lists.size(); ++i)
       for (std::size_t left = (given >> i & 1) != 0 ? counts[i] : 0; left > 0; --left)
-        (causes.*lists_of_causes[i]).push_back(static_cast<double>(raw<float>()));
-    return causes;
+        (edits.causes.*Causes::lists[i]).push_back(static_cast<double>(raw<float>()));
+    if ((given & growth_bit) != 0) edits.growth = raw<Growth>();
   }
 
   ChangedSpring changed() {

@@ -25,8 +25,8 @@ Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const Mome
 /// Takes the rest lengths of a change's new springs from the body that it was made to.
 void set_rest_lengths(Change& change, const Body& after);
 
-/// All changes of a life, in their order: about 20 bytes for a spring that goes and one that comes. Causes are kept in
-/// single precision.
+/// All changes of a life, in their order: about 20 bytes for a spring that goes and one that comes, some 30 for a turn
+/// at which all springs grow. Causes are kept in single precision.
 class LifeRecord {
  public:
   LifeRecord() = default;

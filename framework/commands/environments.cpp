@@ -41,7 +41,7 @@ Environment grow(const Experiment& experiment, const Individual& individual, std
   const Evaluation evaluation(experiment, *simulator);
   const std::vector<Newborn> newborns(starts, {individual.id, individual.born, &individual.genome});
   std::vector<Life> lives = evaluation.birth(newborns);
-  std::vector<Growth> growths(starts, Growth(lives.front().living.body));
+  std::vector<GrowthObserver> observers(starts, GrowthObserver(lives.front().living.body));
   for (std::uint32_t start = 1; start < starts; ++start)
     if (lives[start].alive()) disturb(lives[start], experiment, start - 1);
   Environment environment{
@@ -49,7 +49,8 @@ Environment grow(const Experiment& experiment, const Individual& individual, std
   if (experiment.scene.gravity) environment.slope = experiment.scene.gravity->slope;
   evaluation.develop(lives, [&](double) {
     for (std::size_t i = 0; i < lives.size(); ++i)
-      if (const Life& life = lives[i]; life.alive()) environment.grown[i].after.push_back(growths[i].after_cycle(life));
+      if (const Life& life = lives[i]; life.alive())
+        environment.grown[i].after.push_back(observers[i].after_cycle(life));
   });
   for (std::size_t i = 0; i < lives.size(); ++i) {
     environment.grown[i].status = lives[i].result.status;

@@ -19,8 +19,14 @@ namespace po = boost::program_options;
 /// A devo operator as a life tells of it.
 struct Narrated {
   std::string name;
-  bool is_unique = true;  ///< among the names of the experiment's devo operators
-  Measure measure;        ///< of the causes of its edits
+  const Devo* op = nullptr;
+  bool is_tallied = false;  ///< whether stress is in points of skip-shift
+  bool is_unique = true;    ///< among the names of the experiment's devo operators
+
+  Measure measure(Causes::List list) const {
+    const Measure measure = op->measure(list);
+    return is_tallied && measure.unit == "N" ? Measure{"skip-shift", "points"} : measure;
+  }
 };
 
 std::vector<Narrated> narrated_operators(const Experiment& experiment) {
@@ -29,26 +35,33 @@ std::vector<Narrated> narrated_operators(const Experiment& experiment) {
     if (use.kind != Devo::kind) continue;
     const Devo& op = *experiment.development.operators.at(operators.size()).op;
     const bool tallied = experiment.development.probe == Probe::skip_shift && op.observes().stress;
-    Narrated& narrated = operators.emplace_back(Narrated{.name = use.name, .measure = op.measure()});
-    if (tallied) narrated.measure = {"skip-shift", "points"};
+    Narrated& narrated = operators.emplace_back(Narrated{.name = use.name, .op = &op, .is_tallied = tallied});
     for (Narrated& other : std::span(operators).first(operators.size() - 1))
       if (other.name == use.name) other.is_unique = narrated.is_unique = false;
   }
   return operators;
 }
 
+/// The number that led to an edit.
+struct Cause {
+  Causes::List list;  ///< which says in what the operator measures
+  double number;
+};
+
 /// Nothing where there is no number.
-std::optional<double> cause_at(const std::vector<double>& causes, std::size_t index) {
-  return causes.empty() || std::isnan(causes[index]) ? std::nullopt : std::optional(causes[index]);
+std::optional<Cause> cause_at(const Causes& causes, Causes::List list, std::size_t index) {
+  const std::vector<double>& numbers = causes.*list;
+  return numbers.empty() || std::isnan(numbers[index]) ? std::nullopt : std::optional(Cause{list, numbers[index]});
 }
 
-/// What happened to one mass or spring.
+/// What happened to one mass or spring, or to all springs that grow.
 struct Event {
   std::uint32_t cycle = 0;
   std::optional<std::uint32_t> op;    ///< place among the devo operators; none: it was torn off
-  const char* what = "";              ///< "gone", "come" or "changed"
-  std::vector<std::uint32_t> masses;  ///< the mass's number, or those of the two that the spring joins
-  std::optional<double> cause;        ///< in the operator's measure; only of what it names itself
+  const char* what = "";              ///< "gone", "come", "changed" or "growth"
+  std::vector<std::uint32_t> masses;  ///< the mass's number, or those of the two that the spring joins; of growth none
+  std::optional<Growth> growth;
+  std::optional<Cause> cause;         ///< only of what the operator names itself
   std::optional<Vec3> place;          ///< of a new mass, m
   std::optional<double> rest_length;  ///< of a spring that comes or changes, m
   std::optional<Material> material;   ///< likewise
@@ -63,23 +76,24 @@ class Chronicle {
 
   void add(const Change& change) {
     const Edits& edits = change.edits;
+    if (edits.growth) add_event(change, "growth", {}).growth = edits.growth;
     add_removals(change);
     for (std::size_t i = 0; i < edits.changed_springs.size(); ++i) {
       const ChangedSpring& spring = edits.changed_springs[i];
       Event& event = add_event(change, "changed", ends(spring.spring));
-      event.cause = cause_at(edits.causes.changed_springs, i);
+      event.cause = cause_at(edits.causes, &Causes::changed_springs, i);
       event.rest_length = spring.rest_length;
       event.material = spring.material;
     }
     for (std::size_t i = 0; i < edits.new_masses.size(); ++i) {
       Event& event = add_event(change, "come", {masses_.add()});
-      event.cause = cause_at(edits.causes.new_masses, i);
+      event.cause = cause_at(edits.causes, &Causes::new_masses, i);
       event.place = edits.new_masses[i].place;
     }
     for (std::size_t i = 0; i < edits.new_springs.size(); ++i) {
       const NewSpring& spring = edits.new_springs[i];
       Event& event = add_event(change, "come", {number(spring.a), number(spring.b)});
-      event.cause = cause_at(edits.causes.new_springs, i);
+      event.cause = cause_at(edits.causes, &Causes::new_springs, i);
       event.rest_length = spring.rest_length;
       event.material = spring.material;
     }
@@ -98,16 +112,17 @@ class Chronicle {
 
   void add_removals(const Change& change) {
     const Edits& edits = change.edits;
-    std::map<std::uint32_t, std::optional<double>> gone;
+    std::map<std::uint32_t, std::optional<Cause>> gone;
     const auto goes = [&](std::uint32_t mass) {
       return std::binary_search(edits.removed_masses.begin(), edits.removed_masses.end(), mass);
     };
     for (std::uint32_t s = 0; s < body_.springs.size(); ++s)
       if (goes(body_.springs[s].a) || goes(body_.springs[s].b)) gone[s] = std::nullopt;
     for (std::size_t i = 0; i < edits.removed_springs.size(); ++i)
-      gone[edits.removed_springs[i]] = cause_at(edits.causes.removed_springs, i);
+      gone[edits.removed_springs[i]] = cause_at(edits.causes, &Causes::removed_springs, i);
     for (std::size_t i = 0; i < edits.removed_masses.size(); ++i)
-      add_event(change, "gone", {number(edits.removed_masses[i])}).cause = cause_at(edits.causes.removed_masses, i);
+      add_event(change, "gone", {number(edits.removed_masses[i])}).cause =
+          cause_at(edits.causes, &Causes::removed_masses, i);
     for (const auto& [spring, cause] : gone) add_event(change, "gone", ends(spring)).cause = cause;
   }
 
@@ -132,9 +147,18 @@ Json to_json(const Event& event, const std::vector<Narrated>& operators) {
   json["event"] = event.what;
   if (event.is_spring())
     json["spring"] = event.masses;
-  else
+  else if (!event.growth)
     json["mass"] = event.masses.front();
-  if (event.cause) json["cause"] = *event.cause;
+  if (const auto& growth = event.growth) {
+    json["from"] = growth->from / growth->whole;
+    json["to"] = growth->to / growth->whole;
+  }
+  if (event.cause) {
+    const Measure measure = operators.at(*event.op).measure(event.cause->list);
+    json["cause"] = event.cause->number;
+    json["measure"] = measure.name;
+    json["unit"] = measure.unit;
+  }
   if (event.place) json["position"] = {event.place->x, event.place->y, event.place->z};
   if (event.rest_length) json["rest_length"] = *event.rest_length;
   if (event.material)
@@ -145,17 +169,28 @@ Json to_json(const Event& event, const std::vector<Narrated>& operators) {
   return json;
 }
 
+/// The mass or spring, by its numbers.
+std::string who(const Event& event) {
+  if (event.is_spring()) return "spring " + std::to_string(event.masses[0]) + "-" + std::to_string(event.masses[1]);
+  return "mass " + std::to_string(event.masses[0]);
+}
+
+void print(const Cause& cause, const Measure& measure) {
+  std::printf(", %s %.4g%s", measure.name.c_str(), cause.number,
+              measure.unit == "1" ? "" : (" " + measure.unit).c_str());
+}
+
 void print(const Event& event, const std::vector<Narrated>& operators) {
   const Narrated* op = event.op ? &operators.at(*event.op) : nullptr;
   const std::string title =
       op == nullptr ? by_none : op->name + (op->is_unique ? "" : " (operator " + std::to_string(*event.op) + ")");
-  const std::string who = event.is_spring()
-                              ? "spring " + std::to_string(event.masses[0]) + "-" + std::to_string(event.masses[1])
-                              : "mass " + std::to_string(event.masses[0]);
-  std::printf("cycle %u  %s: %s %s", event.cycle, title.c_str(), who.c_str(), event.what);
-  if (event.cause)
-    std::printf(", %s %.4g%s", op->measure.name.c_str(), *event.cause,
-                op->measure.unit == "1" ? "" : (" " + op->measure.unit).c_str());
+  std::printf("cycle %u  %s: ", event.cycle, title.c_str());
+  if (const auto& growth = event.growth)
+    std::printf("springs grow from %.4g to %.4g of their way", growth->from / growth->whole,
+                growth->to / growth->whole);
+  else
+    std::printf("%s %s", who(event).c_str(), event.what);
+  if (event.cause) print(*event.cause, op->measure(event.cause->list));
   if (event.place) std::printf(" at (%.4g, %.4g, %.4g) m", event.place->x, event.place->y, event.place->z);
   if (event.rest_length) std::printf(", rest length %.4g m", *event.rest_length);
   if (event.material)
@@ -169,12 +204,12 @@ class Biography {
  public:
   Biography(const Archive& archive, const ArchivedIndividual& individual,
             std::vector<std::filesystem::path> plugin_path)
-      : individual_(individual) {
-    const Experiment experiment = experiment_to_live_again(archive, std::move(plugin_path));
-    operators_ = narrated_operators(experiment);
-    const auto simulator = make_simulator(experiment);
-    const Evaluation evaluation(experiment, *simulator);
-    const Newborn newborn = born_again(archive, experiment, individual_, simulator->device());
+      : individual_(individual),
+        experiment_(experiment_to_live_again(archive, std::move(plugin_path))),
+        operators_(narrated_operators(experiment_)) {
+    const auto simulator = make_simulator(experiment_);
+    const Evaluation evaluation(experiment_, *simulator);
+    const Newborn newborn = born_again(archive, experiment_, individual_, simulator->device());
     std::vector<Life> lives = evaluation.birth({&newborn, 1});
     born_ = lives.front().living.body;
     evaluation.develop(lives, [](double) {});
@@ -194,8 +229,7 @@ class Biography {
 
   Json json() const {
     Json operators = Json::array(), edits = Json::array();
-    for (const Narrated& op : operators_)
-      operators.push_back({{"name", op.name}, {"measure", op.measure.name}, {"unit", op.measure.unit}});
+    for (const Narrated& op : operators_) operators.push_back({{"name", op.name}});
     for (const Event& event : events_) edits.push_back(to_json(event, operators_));
     return {{"individual", individual_.id},
             {"status", name(individual_.result.status)},
@@ -210,7 +244,8 @@ class Biography {
   static Json counts(const Body& body) { return {{"masses", body.masses.size()}, {"springs", body.springs.size()}}; }
 
   ArchivedIndividual individual_;
-  std::vector<Narrated> operators_;
+  Experiment experiment_;
+  std::vector<Narrated> operators_;  ///< of `experiment_`
   Body born_, matured_;
   std::vector<Event> events_;
 };

@@ -26,6 +26,12 @@ void require_sound(const Blueprint& blueprint, const World& world) {
     if (!pairs.insert(std::minmax(spring.a, spring.b)).second) throw Violation("two springs join one pair of masses");
 }
 
+bool springs_grow(const Blueprint& blueprint) {
+  const std::vector<Spring>& springs = blueprint.body.springs;
+  return !blueprint.sizes.empty() ||
+         std::any_of(springs.begin(), springs.end(), [](const Spring& spring) { return spring.growth != 1; });
+}
+
 /// Every genome gives a sound body, or a reason.
 void decodes(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Encoding>(subject);
@@ -47,6 +53,7 @@ void decodes(const AvailableOperator& subject, std::uint64_t seed) {
     if (!reason.empty()) continue;
     if (blueprint.body.masses.empty()) throw Violation("there is neither a body nor a reason why there is none");
     require_sound(blueprint, world);
+    if (springs_grow(blueprint) && !op->sets_growth()) throw Violation("springs may grow, but sets_growth() denies it");
     ++bodies;
   }
   if (bodies == 0) throw Skipped("none of its genomes gives a body: " + reason);
@@ -108,11 +115,16 @@ void children_fit(const AvailableOperator& subject, std::uint64_t seed) {
 
 // ---- development ----
 
+void require_measures(const Devo& op) {
+  for (const Causes::List list : Causes::lists)
+    if (const Measure measure = op.measure(list); measure.name.empty() || measure.unit.empty())
+      throw Violation("a measure has no name or no unit; \"1\" is that of a pure number");
+}
+
 /// Cycle after cycle the host can apply the edits, and new masses lie within the bounds.
 void bodies_stay_sound(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Devo>(subject);
-  if (const Measure measure = op->measure(); measure.name.empty() || measure.unit.empty())
-    throw Violation("its measure has no name or no unit; \"1\" is that of a pure number");
+  require_measures(*op);
   bool edited = false;
   for (std::uint32_t input = 0; input < 24; ++input) {
     SampleLife life = sample_life(seed, input);
@@ -122,6 +134,7 @@ void bodies_stay_sound(const AvailableOperator& subject, std::uint64_t seed) {
       const Moment now = life.now(op->observes());
       op->develop(now, edits, rng);
       edited = edited || !numbers_of(edits).empty();
+      if (edits.growth && !op->uses_growth()) throw Violation("it lets springs grow, but uses_growth() denies it");
       for (const NewMass& mass : edits.new_masses) {
         const Vec3 p = mass.place, low = life.bounds.low, high = life.bounds.high;
         // written so that NaN fails

@@ -178,6 +178,7 @@ Numbers numbers_of(const Genome& genome) { return {genome.begin(), genome.end()}
 
 Numbers numbers_of(const Edits& edits) {
   Numbers numbers(edits.removed_springs.begin(), edits.removed_springs.end());
+  if (edits.growth) append(numbers, {edits.growth->from, edits.growth->to, edits.growth->whole});
   numbers.insert(numbers.end(), edits.removed_masses.begin(), edits.removed_masses.end());
   for (const ChangedSpring& s : edits.changed_springs) {
     append(numbers, {double(s.spring), s.rest_length.value_or(-1)});
@@ -191,10 +192,8 @@ Numbers numbers_of(const Edits& edits) {
     append(numbers, {double(s.a), double(s.b), s.rest_length.value_or(-1)});
     append(numbers, s.material);
   }
-  const Causes& causes = edits.causes;
-  for (const auto* list : {&causes.removed_springs, &causes.removed_masses, &causes.changed_springs, &causes.new_masses,
-                           &causes.new_springs})
-    numbers.insert(numbers.end(), list->begin(), list->end());
+  for (const auto list : Causes::lists)
+    numbers.insert(numbers.end(), (edits.causes.*list).begin(), (edits.causes.*list).end());
   return numbers;
 }
 

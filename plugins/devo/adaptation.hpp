@@ -10,7 +10,7 @@
 class Adaptation : public evodevo::Devo {
  public:
   evodevo::SpringRequest observes() const final { return measure_.request(); }
-  evodevo::Measure measure() const final { return measure_.measure(); }
+  evodevo::Measure measure(evodevo::Causes::List) const final { return measure_.measure(); }
 
   void develop(const evodevo::Moment& now, evodevo::Edits& edits, evodevo::Rng& rng) const final {
     const std::vector<double> stress_of = measure_.of(now);

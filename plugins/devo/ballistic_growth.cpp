@@ -5,23 +5,17 @@
 
 namespace {
 
-/// The way from a spring's rest length at birth to Spring::growth times it is gone in equal parts, one at each turn. By
-/// factors, so that what other operators do to a rest length stays. Encodings set `growth`, by their `size_range`;
-/// springs that come later have none.
+/// The way from a spring's rest length at birth to Spring::growth times it is gone in equal parts, one at each turn.
+/// Encodings set `growth`, by their `size_range`; springs that come later have none.
 class BallisticGrowth final : public evodevo::Devo {
  public:
   evodevo::SpringRequest observes() const override { return {}; }
+  bool uses_growth() const override { return true; }
 
   void develop(const evodevo::Moment& now, evodevo::Edits& edits, evodevo::Rng&) const override {
-    const auto relative_length = [&](const evodevo::Spring& spring, int turn) {
-      return 1 + (static_cast<double>(spring.growth) - 1) * turn / now.turns;
-    };
-    for (std::uint32_t s = 0; s < now.body.springs.size(); ++s) {
-      const evodevo::Spring& spring = now.body.springs[s];
-      if (spring.growth == 1) continue;
-      const double step = relative_length(spring, now.turn) / relative_length(spring, now.turn - 1);
-      edits.changed_springs.push_back({.spring = s, .rest_length = step * spring.rest_length});
-    }
+    const auto& springs = now.body.springs;
+    if (std::all_of(springs.begin(), springs.end(), [](const auto& spring) { return spring.growth == 1; })) return;
+    edits.growth = {now.turn - 1.0, static_cast<double>(now.turn), static_cast<double>(now.turns)};
   }
 };
 

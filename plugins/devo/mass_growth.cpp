@@ -15,7 +15,7 @@ class MassGrowth final : public evodevo::Devo {
   }
 
   evodevo::SpringRequest observes() const override { return arrival_.request(); }
-  evodevo::Measure measure() const override { return arrival_.measure.measure(); }
+  evodevo::Measure measure(evodevo::Causes::List) const override { return arrival_.measure.measure(); }
 
   void develop(const evodevo::Moment& now, evodevo::Edits& edits, evodevo::Rng& rng) const override {
     if (now.body.springs.empty()) return;

@@ -22,10 +22,14 @@ class MassTurnover final : public evodevo::Devo {
   }
 
   evodevo::SpringRequest observes() const override { return arrival_.request(); }
-  evodevo::Measure measure() const override { return arrival_.measure.measure(); }
+  evodevo::Measure measure(evodevo::Causes::List list) const override {
+    if (list == &evodevo::Causes::removed_masses) return {"valence", "springs"};
+    return arrival_.measure.measure();
+  }
 
   void develop(const Moment& now, Edits& edits, Rng& rng) const override {
-    const auto leaving = poorest(now.body, rng);
+    const std::vector<std::int64_t> valence = valences(now.body);
+    const auto leaving = poorest(valence, rng);
     if (leaving.empty() || now.body.springs.empty()) return;
 
     Arrivals arrivals(arrival_, now);
@@ -37,24 +41,31 @@ class MassTurnover final : public evodevo::Devo {
       else
         arrivals.set_staying(mass, true);
     }
-    if (arrivals.come(edits, rng)) edits.removed_masses = removed;
+    if (!arrivals.come(edits, rng)) return;
+    edits.removed_masses = removed;
+    for (const std::uint32_t mass : removed) edits.causes.removed_masses.push_back(static_cast<double>(valence[mass]));
   }
 
  private:
-  /// The masses below the threshold that may go, fewest springs first, ties in random order.
-  std::vector<std::uint32_t> poorest(const Body& body, Rng& rng) const {
+  /// How many springs each mass has, those of air included.
+  static std::vector<std::int64_t> valences(const Body& body) {
     std::vector<std::int64_t> valence;
     for (const auto& mass : body.masses) valence.push_back(mass.air_contacts);
     for (const auto& spring : body.springs) {
       ++valence[spring.a];
       ++valence[spring.b];
     }
+    return valence;
+  }
+
+  /// The masses below the threshold that may go, fewest springs first, ties in random order.
+  std::vector<std::uint32_t> poorest(const std::vector<std::int64_t>& valence, Rng& rng) const {
     std::vector<std::uint32_t> poor;
     for (std::uint32_t i = 0; i < valence.size(); ++i)
       if (valence[i] < threshold_) poor.push_back(i);
     rng.shuffle(poor);
     std::stable_sort(poor.begin(), poor.end(), [&](auto a, auto b) { return valence[a] < valence[b]; });
-    poor.resize(std::min({poor.size(), static_cast<std::size_t>(limit_), body.masses.size() / 2}));
+    poor.resize(std::min({poor.size(), static_cast<std::size_t>(limit_), valence.size() / 2}));
     return poor;
   }
 

@@ -104,7 +104,7 @@ class SpringTurnover final : public evodevo::Devo {
   }
 
   evodevo::SpringRequest observes() const override { return measure_.request(); }
-  evodevo::Measure measure() const override { return measure_.measure(); }
+  evodevo::Measure measure(evodevo::Causes::List) const override { return measure_.measure(); }
 
   void develop(const Moment& now, Edits& edits, Rng& rng) const override {
     const Body& body = now.body;

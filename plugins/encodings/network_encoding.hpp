@@ -52,6 +52,8 @@ class NetworkEncoding : public evodevo::Encoding {
     return blueprint;
   }
 
+  bool sets_growth() const final { return size_range_ > 0; }
+
  protected:
   using Matrix = Eigen::MatrixXd;
 

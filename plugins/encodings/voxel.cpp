@@ -50,6 +50,8 @@ class Voxel final : public LatticeEncoding {
     return blueprint;
   }
 
+  bool sets_growth() const override { return size_range_ > 0; }
+
  private:
   /// The sizes of the solid voxels around a spring, summed up.
   struct Sizes {

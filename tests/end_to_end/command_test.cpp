@@ -143,6 +143,8 @@ TEST_F(Command, LifeTellsEveryEditFromBirthToTheMaturedBody) {
     if (edit.at("event") == "gone") {
       EXPECT_EQ(pairs.erase(spring), 1u);
       EXPECT_GE(edit.at("cause").get<double>(), 0);
+      EXPECT_EQ(edit.at("measure"), "mean-force");
+      EXPECT_EQ(edit.at("unit"), "N");
     } else {
       EXPECT_TRUE(pairs.insert(spring).second);
       EXPECT_FALSE(edit.contains("cause")) << "it came anywhere";
@@ -150,8 +152,7 @@ TEST_F(Command, LifeTellsEveryEditFromBirthToTheMaturedBody) {
   }
   const auto& operators = life.at("operators");
   ASSERT_EQ(operators.size(), 1u);
-  EXPECT_EQ(operators[0].at("measure"), "mean-force");
-  EXPECT_EQ(operators[0].at("unit"), "N");
+  EXPECT_EQ(operators[0].at("name"), "spring-turnover");
   EXPECT_EQ(pairs, pairs_of(matured));
 
   const std::string id = life.at("individual").dump();
@@ -188,6 +189,39 @@ TEST_F(Command, LifeTellsOperatorsOfOneNameApartAndTalliesFromForces) {
   for (const char* op : {"spring-turnover \\(operator 0\\)", "spring-turnover \\(operator 1\\)"})
     EXPECT_THAT(text.output,
                 ContainsRegex(std::string(op) + ": spring [0-9]+-[0-9]+ gone, skip-shift -?[0-9]+ points"));
+}
+
+TEST_F(Command, LifeTellsWhyMassesGoAndHowFarSpringsGrow) {
+  std::string text = small_experiment;
+  const std::string turnover = "name = \"spring-turnover\"\nsprings = 2";
+  text.replace(text.find(turnover), turnover.size(),
+               "name = \"mass-turnover\"\nthreshold = 100\nlimit = 1\nsprings = 4\nwhere = \"by-stress\"\n"
+               "[[development.operator]]\nname = \"ballistic-growth\"");
+  const Finished run =
+      evodevo({"run", scratch_.write("growing.toml", text), "--out", folder_, "--set", "encoding.size_range=0.25",
+               "--set", "development.probe=skip-shift", "--set", "development.skip=10"});
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  const std::string life = evodevo({"life", folder_}).output;
+  EXPECT_THAT(life, ContainsRegex("cycle 1  mass-turnover: mass [0-9]+ gone, valence [0-9]+ springs\n"));
+  EXPECT_THAT(life, ContainsRegex("cycle 1  mass-turnover: mass 12 come, skip-shift -?[0-9]+ points at "));
+  EXPECT_THAT(life, HasSubstr("cycle 1  ballistic-growth: springs grow from 0 to 0.5 of their way\n"));
+  EXPECT_THAT(life, HasSubstr("cycle 2  ballistic-growth: springs grow from 0.5 to 1 of their way\n"));
+  int masses_gone = 0, growth = 0;
+  const auto json = nlohmann::json::parse(evodevo({"life", folder_, "--json"}).output);
+  for (const auto& edit : json.at("edits")) {
+    if (edit.at("event") == "growth") {
+      EXPECT_EQ(edit.at("from"), growth++ * 0.5);
+      EXPECT_EQ(edit.at("to"), growth * 0.5);
+      EXPECT_FALSE(edit.contains("mass") || edit.contains("spring"));
+    } else if (edit.contains("mass") && edit.at("event") == "gone") {
+      ++masses_gone;
+      EXPECT_EQ(edit.at("measure"), "valence");
+      EXPECT_EQ(edit.at("unit"), "springs");
+      EXPECT_GE(edit.at("cause").get<double>(), 1);
+    }
+  }
+  EXPECT_EQ(masses_gone, 2);
+  EXPECT_EQ(growth, 2);
 }
 
 TEST_F(Command, LifeSaysWhereItCannotBeSure) {

@@ -150,11 +150,11 @@ std::vector<GrownBody> grown_from_starts(const Experiment& experiment, std::uint
   const Individual individual = breed(experiment, {}, 0, 4, 1).front();
   const Evaluation evaluation(experiment, *simulator);
   std::vector<Life> lives = evaluation.birth(std::vector<Newborn>(starts, {individual.id, 0, &individual.genome}));
-  std::vector<Growth> growths(starts, Growth(lives.front().living.body));
+  std::vector<GrowthObserver> observers(starts, GrowthObserver(lives.front().living.body));
   for (std::uint32_t i = 0; noise && i < starts; ++i) disturb(lives[i], experiment, i);
   std::vector<GrownBody> bodies(starts);
   evaluation.develop(lives, [&](double) {
-    for (std::size_t i = 0; i < starts; ++i) bodies[i] = growths[i].after_cycle(lives[i]);
+    for (std::size_t i = 0; i < starts; ++i) bodies[i] = observers[i].after_cycle(lives[i]);
   });
   return bodies;
 }

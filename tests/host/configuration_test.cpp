@@ -69,6 +69,23 @@ TEST(Configuration, DevelopmentHasSchedulesAndAControl) {
             "development.operator.0.from = 3 to 2: the operator never comes to its turn in 2 cycles");
 }
 
+TEST(Configuration, GrowthWithoutSizesWarns) {
+  const std::string encoding = "name = \"voxel\"\nsize = [2, 1, 1]\nedge = 0.5";
+  const auto warnings = [&](const std::string& other, std::vector<Override> overrides = {}) {
+    std::string text = with("name = \"spring-turnover\"\nsprings = 2", "name = \"ballistic-growth\"");
+    text.replace(text.find(encoding), encoding.size(), "name = \"" + other + "\"");
+    return testing::read(text, std::move(overrides)).warnings;
+  };
+  for (const char* name : {"voxel", "direct", "neural", "cppn"})
+    EXPECT_THAT(warnings(name), ::testing::ElementsAre(
+                                    "development.operator.0.name = \"ballistic-growth\": the encoding lets no spring "
+                                    "grow, so that nothing changes; set encoding.size_range, or take an encoding "
+                                    "that has it"))
+        << name;
+  for (const char* name : {"voxel", "neural", "cppn"})
+    EXPECT_THAT(warnings(name, {{"encoding.size_range", "0.25", ""}}), ::testing::IsEmpty()) << name;
+}
+
 TEST(Configuration, DevelopmentWithoutOperatorsWarnsAndHasNoControl) {
   std::string text = small_experiment;
   const std::size_t first = text.find("[[development.operator]]");

@@ -174,6 +174,15 @@ TEST(RandomPlaces, SpringsOfTheSameMaterialChangeByTheSameFactors) {
   EXPECT_EQ(reached.size(), 40u);
 }
 
+TEST(RandomPlaces, GrowthHappensAsItIs) {
+  const Ring ring;
+  const Edits moved = ring.moved({.growth = Growth{1, 2, 5}}, 1);
+  ASSERT_TRUE(moved.growth.has_value());
+  EXPECT_EQ(std::tuple(moved.growth->from, moved.growth->to, moved.growth->whole), std::tuple(1, 2, 5));
+  EXPECT_TRUE(moved.changed_springs.empty());
+  EXPECT_FALSE(ring.moved(some_of_everything(), 1).growth.has_value());
+}
+
 TEST(RandomPlaces, FewerComeWhereThereIsNoRoom) {
   Ring ring;
   ring.living.body.masses.resize(3);

@@ -1,6 +1,7 @@
 // What apply_edits does to a body, and what it refuses.
 #include "development.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -132,6 +133,27 @@ TEST(Development, ASpringChangesWhereItIs) {
   EXPECT_EQ(living.stress, (std::vector<double>{20, 30, 25}));
 }
 
+TEST(Development, AllSpringsGrowByAPartOfTheirWay) {
+  Line line;
+  line.living.body.springs[0].growth = 1.5f;
+  line.living.body.springs[1].growth = 0.25f;
+  line.living.body.springs[1].rest_length = 0.8;
+  line.living.body.springs[2].growth = 3;
+  const Growth growth{1, 3, 4};
+  line.apply(
+      {.growth = growth, .changed_springs = {{.spring = 2, .rest_length = 0.5}}, .new_springs = {{0, 3, bone, 3.0}}});
+  const std::vector<Spring>& springs = line.living.body.springs;
+  ASSERT_EQ(springs.size(), 4u);
+  EXPECT_DOUBLE_EQ(springs[0].rest_length, 1.375 / 1.125);
+  EXPECT_DOUBLE_EQ(springs[1].rest_length, 0.8 * 0.4375 / 0.8125) << "by a factor, whatever its length was";
+  EXPECT_EQ(springs[2].rest_length, 0.5) << "a length that is given holds";
+  EXPECT_EQ(springs[3].rest_length, 3) << "a new spring does not grow";
+  EXPECT_EQ(springs[0].growth, 1.5f);
+  line.apply({.growth = Growth{3, 1, 4}});
+  EXPECT_DOUBLE_EQ(springs[0].rest_length, 1) << "back again";
+  EXPECT_EQ(line.living.stress, (std::vector<double>{10, 20, 30, 20}));
+}
+
 TEST(Development, NothingChangesNothing) {
   Line line, same;
   line.apply({});
@@ -167,6 +189,21 @@ TEST(Development, FaultyEditsAreRefused) {
             "joins masses 0 and 2 by a spring of amplitude 1.000000; expected 0 to below 1");
   EXPECT_EQ(Line().refusal({.new_springs = {{0, 2, {1, 0, 0, nan}, std::nullopt}}}),
             "joins masses 0 and 2 by a spring whose frequency or phase is not finite");
+
+  const auto grow = [](double from, double to, double whole) { return Edits{.growth = Growth{from, to, whole}}; };
+  EXPECT_EQ(Line().refusal(grow(0, 1, 1)), "accepted");
+  EXPECT_EQ(Line().refusal(grow(0, 2, 1)),
+            "grows springs from 0.000000 to 2.000000 of a way of 1.000000; expected 0 to all of it");
+  EXPECT_EQ(Line().refusal(grow(-1, 0, 3)),
+            "grows springs from -1.000000 to 0.000000 of a way of 3.000000; expected 0 to all of it");
+  EXPECT_EQ(Line().refusal(grow(nan, 1, 1)),
+            "grows springs from nan to 1.000000 of a way of 1.000000; expected 0 to all of it");
+  EXPECT_EQ(Line().refusal(grow(0, 0, 0)),
+            "grows springs from 0.000000 to 0.000000 of a way of 0.000000; expected 0 to all of it");
+  Line shrunk;  // to nothing, as far as 1 + (growth - 1) can tell
+  shrunk.living.body.springs[1].growth = 1e-30f;
+  EXPECT_EQ(shrunk.refusal(grow(0, 1, 1)), "accepted");
+  EXPECT_THAT(shrunk.refusal(grow(1, 1, 1)), testing::ContainsRegex("grows a spring to a rest length of -?nan"));
 
   const auto change = [](std::uint32_t spring) { return ChangedSpring{.spring = spring, .rest_length = 2.0}; };
   EXPECT_EQ(Line().refusal({.changed_springs = {change(3)}}), "replaces spring 3 of a body that has 3");

@@ -274,6 +274,27 @@ struct Stretcher final : Devo {
   }
 };
 
+/// Lets every spring grow to three times its length.
+struct Grower final : Devo {
+  void develop(const Moment&, Edits& edits, Rng&) const override { edits.growth = {0, 1}; }
+};
+
+TEST(Evaluation, TheEnergyThatGrowthBringsIsAllowed) {
+  Experiment experiment = testing::read(testing::small_experiment);
+  experiment.development.cycles = 1;
+  const Genome genome = {1, 1};
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  const auto start_energy = [&](std::unique_ptr<Devo> op) {
+    experiment.development.operators[0].op = std::move(op);
+    const Evaluation evaluation(experiment, *simulator);
+    std::vector<Life> lives = evaluation.birth(std::vector<Newborn>{{0, 0, &genome}});
+    for (Spring& spring : lives[0].living.body.springs) spring.growth = 3;
+    evaluation.develop(lives, unwatched);
+    return lives[0].living.state.start_energy;
+  };
+  EXPECT_EQ(start_energy(std::make_unique<Grower>()), start_energy(std::make_unique<Stretcher>()));
+}
+
 TEST(Evaluation, ABodysLengthIsThatOfTheStartOfTheWindow) {
   Experiment experiment = testing::read(testing::small_experiment);
   experiment.scene.gravity.reset();

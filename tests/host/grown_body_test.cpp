@@ -72,9 +72,9 @@ void replace_mass(Life& life, Vec3 place, std::uint32_t goes) {
   life.result.record.add({.cycle = 1, .op = 0, .edits = {.removed_masses = {goes}, .new_masses = {{place, 1}}}});
 }
 
-TEST(Growth, MassesOfBirthKeepTheirRestPlacesInBodyLengthsFromTheCorner) {
+TEST(GrowthObserver, MassesOfBirthKeepTheirRestPlacesInBodyLengthsFromTheCorner) {
   Life life = newborn(all_moved(tetrahedron, 0, far_away));
-  Growth growth(life.living.body);
+  GrowthObserver growth(life.living.body);
   life.living.state.position = {{1, 2, 3}, {9, 8, 7}, {0, 1, 0}, {4, 4, 1}};
   const GrownBody grown = growth.after_cycle(life);
   EXPECT_EQ(grown.places, life.living.state.position);
@@ -83,9 +83,9 @@ TEST(Growth, MassesOfBirthKeepTheirRestPlacesInBodyLengthsFromTheCorner) {
   EXPECT_EQ(grown.rest_places, (std::vector<Vec3>{{0, 0, 0}, {0.5, 0, 0}, {0, 1, 0}, {0, 0, 0.5}}));
 }
 
-TEST(Growth, AMassThatComesKeepsTheRestPlaceThatItCameTo) {
+TEST(GrowthObserver, AMassThatComesKeepsTheRestPlaceThatItCameTo) {
   Life life = newborn(tetrahedron);
-  Growth growth(life.living.body);
+  GrowthObserver growth(life.living.body);
   const Vec3 rest{0.2, 0.6, 0.4};
   life.living.state.position = all_moved(tetrahedron, 1, far_away);
   replace_mass(life, moved(rest, 1, far_away), 0);
@@ -98,16 +98,16 @@ TEST(Growth, AMassThatComesKeepsTheRestPlaceThatItCameTo) {
   EXPECT_EQ(second.rest_places, first.rest_places);
 }
 
-TEST(Growth, WhereNoMassOfBeforeIsLeftThoseThatComeBelongWhereTheyAre) {
+TEST(GrowthObserver, WhereNoMassOfBeforeIsLeftThoseThatComeBelongWhereTheyAre) {
   Life life = newborn({{0, 0, 0}});
-  Growth growth(life.living.body);
+  GrowthObserver growth(life.living.body);
   replace_mass(life, {1, 2, 3}, 0);
   EXPECT_EQ(growth.after_cycle(life).rest_places, (std::vector<Vec3>{{1, 2, 3}}));
 }
 
-TEST(Growth, ABodyWithoutExtentHasPlacesAllTheSame) {
+TEST(GrowthObserver, ABodyWithoutExtentHasPlacesAllTheSame) {
   Life life = newborn({{1, 1, 1}, {1, 1, 1}});
-  EXPECT_EQ(Growth(life.living.body).after_cycle(life).rest_places, (std::vector<Vec3>{{0, 0, 0}, {0, 0, 0}}));
+  EXPECT_EQ(GrowthObserver(life.living.body).after_cycle(life).rest_places, (std::vector<Vec3>{{0, 0, 0}, {0, 0, 0}}));
 }
 
 }  // namespace

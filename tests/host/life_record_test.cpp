@@ -94,7 +94,7 @@ void expect_same(const Body& a, const Body& b) {
 TEST(LifeRecord, ReplayedFromTheBodyAtBirthGivesTheMaturedOneToTheBit) {
   for (const bool reset : {false, true}) {
     const Experiment experiment = all_operators(reset);
-    std::size_t alive = 0, removed_masses = 0, new_masses = 0, changed = 0, new_springs = 0;
+    std::size_t alive = 0, removed_masses = 0, new_masses = 0, changed = 0, new_springs = 0, growth = 0;
     for (const Lived& lived : matured(experiment, 6)) {
       if (!lived.life.alive()) continue;
       ++alive;
@@ -105,11 +105,13 @@ TEST(LifeRecord, ReplayedFromTheBodyAtBirthGivesTheMaturedOneToTheBit) {
         new_masses += change.edits.new_masses.size();
         changed += change.edits.changed_springs.size();
         new_springs += change.edits.new_springs.size();
+        growth += change.edits.growth.has_value();
       }
       expect_same(body, lived.life.living.body);
     }
     EXPECT_GE(alive, 3u);
-    EXPECT_GT(std::min({removed_masses, new_masses, changed, new_springs}), 10u) << "there must be something to replay";
+    EXPECT_GT(std::min({removed_masses, new_masses, changed, new_springs, growth}), 10u)
+        << "there must be something to replay";
   }
 }
 
@@ -118,6 +120,7 @@ Change change_of_all_kinds() {
   change.cycle = 300;
   change.op = 2;
   change.lengths_given = true;
+  change.edits.growth = {0.1, 2, 3};
   change.edits.removed_masses = {0, 7, 100'000};
   change.edits.removed_springs = {3, 4, 70'000};
   change.edits.causes.removed_springs = {0, 1.5, 0x1p100};
@@ -133,6 +136,11 @@ void expect_same(const Change& a, const Change& b) {
   EXPECT_EQ(a.cycle, b.cycle);
   EXPECT_EQ(a.op, b.op);
   EXPECT_EQ(a.lengths_given, b.lengths_given);
+  const auto growth_of = [](const Change& change) {
+    const Growth growth = change.edits.growth.value_or(Growth{-1});
+    return std::tuple(growth.from, growth.to, growth.whole);
+  };
+  EXPECT_EQ(growth_of(a), growth_of(b));
   EXPECT_EQ(a.edits.removed_masses, b.edits.removed_masses);
   EXPECT_EQ(a.edits.removed_springs, b.edits.removed_springs);
   EXPECT_EQ(a.edits.causes.removed_springs, b.edits.causes.removed_springs);
@@ -196,6 +204,30 @@ TEST(LifeRecord, ASpringThatGoesAndOneThatComesTakeSome20Bytes) {
   for (const Lived& lived : matured(experiment, 2)) {
     ASSERT_TRUE(lived.life.alive());
     EXPECT_LT(lived.life.result.record.bytes().size(), 8 * 50 * 22u + 1000) << "and a few materials";
+  }
+}
+
+/// Voxel robots that grow in each of `cycles` short cycles, and nothing else.
+Experiment growing(int cycles) {
+  std::string text = testing::small_experiment;
+  const std::string turnover = "name = \"spring-turnover\"\nsprings = 2";
+  text.replace(text.find(turnover), turnover.size(), "name = \"ballistic-growth\"");
+  return testing::read(text, {{"encoding.size", "[4, 4, 4]", ""},
+                              {"encoding.size_range", "0.25", ""},
+                              {"development.cycles", std::to_string(cycles), ""},
+                              {"development.cycle_time", "0.002", ""}});
+}
+
+TEST(LifeRecord, ATurnOfGrowthTakesSome30BytesHoweverManySpringsGrow) {
+  for (const Lived& lived : matured(growing(100), 2)) {
+    ASSERT_TRUE(lived.life.alive());
+    ASSERT_GT(lived.born.springs.size(), 100u);
+    const LifeRecord& record = lived.life.result.record;
+    EXPECT_EQ(record.changes().size(), 100u);
+    EXPECT_LE(record.bytes().size(), 100 * 34u);
+    Body body = lived.born;
+    for (const Change& change : record.changes()) replay(body, change);
+    expect_same(body, lived.life.living.body);
   }
 }
 

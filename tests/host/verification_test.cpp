@@ -10,6 +10,7 @@
 #include "breeding.hpp"
 #include "commands/verification_report.hpp"
 #include "evolution.hpp"
+#include "support/elsewhere.hpp"
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"
 
@@ -221,17 +222,18 @@ TEST(Verify, WhatWasRecordedOfALifeHappensAgain) {
 
 TEST(Verify, WarnsOfLivesThatMayHaveDevelopedOtherwise) {
   SmallRun run;
-  const auto warnings = [&] {
+  const auto warnings = [&](Simulator& simulator) {
     ::testing::internal::CaptureStderr();
-    verify_best(run.experiment, *run.simulator, run.archive, 24);
+    verify_best(run.experiment, simulator, run.archive, 24);
     return ::testing::internal::GetCapturedStderr();
   };
-  EXPECT_EQ(warnings(), "");
-  run.archive.set_record("device", "another device");
-  const std::string warned = warnings();
+  EXPECT_EQ(warnings(*run.simulator), "");
+  testing::Elsewhere elsewhere(run.experiment, "another device");
+  const std::string warned = warnings(elsewhere);
   std::size_t unsure = 0, sure = 0;
   for (const std::uint32_t id : run.archive.best(24)) {
-    const bool warns = warned.find("individual " + std::to_string(id) + " lived again on cpu") != std::string::npos;
+    const bool warns =
+        warned.find("individual " + std::to_string(id) + " lived again on another device") != std::string::npos;
     EXPECT_EQ(warns, !run.archive.life(id).has_value()) << warned;
     ++(warns ? unsure : sure);
   }

@@ -46,10 +46,26 @@ TEST(BallisticGrowth, FollowsASpringWhenOthersGo) {
   ASSERT_EQ(life.living.body.springs.size(), 2u);
   life.turn = life.turns = 1;
   const double before = life.living.body.springs[0].rest_length;
+  life.living = after(life, develop(*make<Devo>("ballistic-growth"), life, 1));
+  EXPECT_NEAR(life.living.body.springs[0].rest_length, 0.4 * before, 1e-7);
+}
+
+TEST(BallisticGrowth, TwoOperatorsMultiply) {
+  Life life = chain();
+  const double at_birth = life.living.body.springs[0].rest_length;
+  life.turns = 2;
+  for (life.turn = 1; life.turn <= 2; ++life.turn)
+    for (int op = 0; op < 2; ++op) life.living = after(life, develop(*make<Devo>("ballistic-growth"), life, 1));
+  EXPECT_NEAR(life.living.body.springs[0].rest_length, 2.5 * 2.5 * at_birth, 1e-12);
+}
+
+TEST(BallisticGrowth, IsOneEditForAllSprings) {
+  Life life = chain();
+  life.turns = 7;
   const Edits edits = develop(*make<Devo>("ballistic-growth"), life, 1);
-  ASSERT_EQ(edits.changed_springs.size(), 1u);
-  EXPECT_EQ(edits.changed_springs[0].spring, 0u);
-  EXPECT_NEAR(*edits.changed_springs[0].rest_length, 0.4 * before, 1e-7);
+  ASSERT_TRUE(edits.growth.has_value());
+  EXPECT_EQ(std::tuple(edits.growth->from, edits.growth->to, edits.growth->whole), std::tuple(2, 3, 7));
+  EXPECT_TRUE(edits.changed_springs.empty());
 }
 
 TEST(BallisticGrowth, BodiesWithoutGrowthStayAsTheyAre) {

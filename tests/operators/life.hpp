@@ -82,6 +82,7 @@ inline Edits develop(const Devo& devo, const Life& life, std::uint64_t seed) {
 /// Everything in the edits, for comparisons.
 inline std::vector<double> digest(const Edits& edits) {
   std::vector<double> digest(edits.removed_springs.begin(), edits.removed_springs.end());
+  if (edits.growth) digest.insert(digest.end(), {edits.growth->from, edits.growth->to, edits.growth->whole});
   digest.insert(digest.end(), edits.removed_masses.begin(), edits.removed_masses.end());
   for (const NewMass& m : edits.new_masses)
     digest.insert(digest.end(), {m.place.x, m.place.y, m.place.z, m.mass, static_cast<double>(m.material)});

@@ -32,6 +32,18 @@ TEST(MassTurnover, MassesOfFewSpringsGo) {
   EXPECT_EQ(after(life, edits).body.masses.size(), masses);
 }
 
+TEST(MassTurnover, TheNumberOfItsSpringsIsWhyAMassGoes) {
+  const auto devo = make<Devo>("mass-turnover");
+  Life life = ring();
+  life.living.body.masses[0].air_contacts = 1;
+  const Edits edits = develop(*devo, life, 1);
+  ASSERT_EQ(edits.removed_masses.size(), 4u);
+  EXPECT_THAT(edits.causes.removed_masses, testing::ElementsAre(18, 19, 19, 19)) << "with contacts through air";
+  const Measure measure = devo->measure(&Causes::removed_masses);
+  EXPECT_EQ(measure.name, "valence");
+  EXPECT_EQ(measure.unit, "springs");
+}
+
 TEST(MassTurnover, ThresholdIsTheFewestSpringsThatStay) {
   const Life life = ring();
   EXPECT_TRUE(digest(develop(*make<Devo>("mass-turnover", "threshold = 17"), life, 1)).empty());

@@ -67,8 +67,13 @@ TEST_P(StressMeasure, IsTheCauseOfSpringsThatComeByIt) {
 }
 
 TEST_P(StressMeasure, HasANameAndAUnit) {
-  for (const char* name : {"spring-turnover", "mass-turnover", "mass-growth", "length-adaptation"}) {
-    const Measure measure = make<Devo>(name, by())->measure();
+  const std::pair<const char*, Causes::List> causes[] = {{"spring-turnover", &Causes::removed_springs},
+                                                         {"spring-turnover", &Causes::new_springs},
+                                                         {"mass-turnover", &Causes::new_masses},
+                                                         {"mass-growth", &Causes::new_masses},
+                                                         {"length-adaptation", &Causes::changed_springs}};
+  for (const auto& [name, list] : causes) {
+    const Measure measure = make<Devo>(name, by())->measure(list);
     EXPECT_EQ(measure.name, GetParam().by);
     EXPECT_EQ(measure.unit, measure.name == "work" ? "J" : "N");
   }

@@ -21,7 +21,7 @@ struct Wrong final : evodevo::Crossover {
   void cross(Genome& one, Genome&, const Layout& layout, Rng& rng) const override { one = random_genome(layout, rng); }
 };
 
-#elif defined(WRONG_DECODING)
+#elif defined(WRONG_DECODING) || defined(WRONG_DECODING_GROWTH)
 
 struct Wrong final : evodevo::Encoding {
   Layout layout(const evodevo::World&) const override {
@@ -33,13 +33,17 @@ struct Wrong final : evodevo::Encoding {
     evodevo::Blueprint blueprint;
     blueprint.body.materials = world.materials;
     blueprint.body.masses = {{{0, 0, 0}, 1}, {{1, 0, 0}, 1}};
-    blueprint.body.springs = {{0, 2, 1, 1}};  // there is no mass 2
+#if defined(WRONG_DECODING)
+    blueprint.body.springs = {{ 0, 2, 1, 1 }};  // there is no mass 2
+#else
+    blueprint.body.springs = {{ 0, 1, 1, 1, 1.5F }};
+#endif
     return blueprint;
   }
 };
 
 #elif defined(WRONG_BODIES) || defined(WRONG_BODIES_DANGLING) || defined(WRONG_BODIES_NAN) || \
-    defined(WRONG_BODIES_BEYOND)
+    defined(WRONG_BODIES_BEYOND) || defined(WRONG_BODIES_GROWTH)
 
 struct Wrong final : evodevo::Devo {
   void develop([[maybe_unused]] const evodevo::Moment& now, evodevo::Edits& edits, Rng&) const override {
@@ -52,6 +56,8 @@ struct Wrong final : evodevo::Devo {
     edits.new_springs.push_back({0, beyond, {1000, 0, 0, 0}, {}});
 #elif defined(WRONG_BODIES_NAN)
     edits.new_springs.push_back({0, 1, {std::nan(""), 0, 0, 0}, {}});
+#elif defined(WRONG_BODIES_GROWTH)
+    edits.growth = {0, 1};
 #else
     edits.new_masses.push_back({now.bounds.high + evodevo::Vec3{0, 0, 1}, now.mass});
 #endif

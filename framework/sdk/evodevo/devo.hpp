@@ -1,6 +1,7 @@
 // Development: what changes in a body between two cycles of its life.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -68,16 +69,28 @@ struct ChangedSpring {
   std::optional<Material> material = {};   ///< without it, that of before
 };
 
+/// A part of the way that all springs go from their rest length at birth to Spring::growth times it, in a straight
+/// line. By a factor, so that whatever else has changed a rest length stays.
+struct Growth {
+  double from = 0, to = 0;  ///< how much of the way is gone before and after, 0 to `whole`
+  double whole = 1;         ///< such as the number of the operator's turns
+};
+
 /// For the record of a life: the number that led to each edit, such as the stress of the spring that goes, in the order
 /// of the edits and as Devo::measure() says. A list is empty where no number did.
 struct Causes {
   std::vector<double> removed_springs, removed_masses, changed_springs, new_masses, new_springs;
+
+  using List = std::vector<double> Causes::*;
+  static constexpr std::array lists{&Causes::removed_springs, &Causes::removed_masses, &Causes::changed_springs,
+                                    &Causes::new_masses, &Causes::new_springs};
 };
 
 /// What a devo operator wants changed. All indices are those of the Moment; the masses in `new_masses` follow on from
 /// them. The host applies an operator's edits together after the call and refuses dangling, doubled and air springs and
 /// numbers that are not finite.
 struct Edits {
+  std::optional<Growth> growth;  ///< of all springs at once; a rest length among `changed_springs` takes its place
   std::vector<std::uint32_t> removed_springs;
   std::vector<std::uint32_t> removed_masses;   ///< their springs go with them
   std::vector<ChangedSpring> changed_springs;  ///< none of which goes
@@ -86,8 +99,8 @@ struct Edits {
   Causes causes;
 
   bool empty() const {
-    return removed_springs.empty() && removed_masses.empty() && changed_springs.empty() && new_masses.empty() &&
-           new_springs.empty();
+    return !growth && removed_springs.empty() && removed_masses.empty() && changed_springs.empty() &&
+           new_masses.empty() && new_springs.empty();
   }
 };
 
@@ -105,8 +118,10 @@ class Devo : public Operator {
 
   /// Asked once the parameters are set.
   virtual SpringRequest observes() const { return {.stress = true}; }
-  /// What the causes of its edits are. Where the probe is skip-shift, stress is in points whatever this says.
-  virtual Measure measure() const { return {"stress", "N"}; }
+  /// What the causes in one of the lists are. Where the probe is skip-shift, those in N are in points.
+  virtual Measure measure([[maybe_unused]] Causes::List list) const { return {"stress", "N"}; }
+  /// Whether it lets springs grow, which changes nothing unless Encoding::sets_growth().
+  virtual bool uses_growth() const { return false; }
   virtual void develop(const Moment& now, Edits& edits, Rng& rng) const = 0;
 };
 

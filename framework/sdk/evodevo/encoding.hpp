@@ -57,6 +57,8 @@ class Encoding : public Operator {
   virtual Layout layout(const World& world) const = 0;
   virtual Genome random(const Layout& layout, Rng& rng) const { return random_genome(layout, rng); }
   virtual Blueprint decode(const Genome& genome, const World& world) const = 0;
+  /// Whether springs may grow: whether it sets Blueprint::sizes or Spring::growth.
+  virtual bool sets_growth() const { return false; }
 };
 
 }  // namespace evodevo

@@ -17,7 +17,7 @@ namespace evodevo {
 
 inline constexpr std::uint64_t plugin_magic = 0x6f7665646f7665ull;  // "evodevo", little-endian
 /// Raised whenever anything that crosses the border changes its meaning.
-inline constexpr std::uint32_t plugin_epoch = 3;
+inline constexpr std::uint32_t plugin_epoch = 4;
 
 /// A digest of the sizes of everything that crosses the border.
 inline constexpr std::uint32_t plugin_struct_digest = [] {
@@ -27,7 +27,7 @@ inline constexpr std::uint32_t plugin_struct_digest = [] {
         sizeof(Rng),           sizeof(GeneSpec), sizeof(Layout),  sizeof(World),       sizeof(Blueprint),
         sizeof(Moment),        sizeof(Edits),    sizeof(NewMass), sizeof(NewSpring),   sizeof(ChangedSpring),
         sizeof(SpringRequest), sizeof(Measure),  sizeof(Request), sizeof(Observation), sizeof(Objective),
-        sizeof(Candidate),     sizeof(Size)})
+        sizeof(Candidate),     sizeof(Size),     sizeof(Growth)})
     digest = (digest ^ static_cast<std::uint32_t>(size)) * 16777619u;
   return digest;
 }();
