@@ -174,7 +174,8 @@ class Relocation {
     };
     for (const Amount::SpringCome& spring : amount_.springs_come)
       for (std::size_t attempt = 0; attempt < attempts_per_spring; ++attempt) {
-        const std::uint32_t a = end(spring.a), b = end(spring.b);
+        const std::uint32_t first = end(spring.a), second = end(spring.b);
+        const auto [a, b] = std::minmax(first, second);
         if (a == b || !(norm(place(b) - place(a)) > 0) || partners.joined(a, b)) continue;
         partners.join(a, b);
         out_.new_springs.push_back({a, b, spring.material, {}});

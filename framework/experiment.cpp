@@ -400,9 +400,8 @@ class Composer {
     std::string control = "off";
     t.choice(control, "control", {"off", "no-change", "random-places", "shuffled-stress"},
              "What the experiment's control does to development.");
-    if (control == "no-change") out_.development.control = Control::no_change;
-    if (control == "random-places") out_.development.control = Control::random_places;
-    if (control == "shuffled-stress") out_.development.control = Control::shuffled_stress;
+    const auto found = std::find(control_names.begin(), control_names.end(), control);
+    out_.development.control = static_cast<Control>(found - control_names.begin());
   }
 
   /// When a devo operator comes to its turn; by default after every cycle.
@@ -480,12 +479,14 @@ Recording Development::recording(std::int64_t cycle) const {
   return all;
 }
 
-void blame_operator(const Experiment& experiment, std::string_view kind, std::size_t index, const std::string& where,
-                    const std::string& what) {
+const OperatorUse* use_of(const Experiment& experiment, std::string_view kind, std::size_t index) {
   const auto use = std::find_if(experiment.uses.begin(), experiment.uses.end(),
                                 [&](const OperatorUse& other) { return other.kind == kind && index-- == 0; });
-  const std::string title =
-      use == experiment.uses.end() ? "operator" : "operator \"" + use->name + "\" of " + use->file.string();
+  return use == experiment.uses.end() ? nullptr : &*use;
+}
+
+void blame_operator(const OperatorUse* use, std::string_view kind, const std::string& where, const std::string& what) {
+  const std::string title = use == nullptr ? "operator" : "operator \"" + use->name + "\" of " + use->file.string();
   throw std::runtime_error(std::string(kind) + " " + title + where + ": " + what +
                            "; correct the operator and build it again, or begin a new run without it");
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "crash.hpp"
 #include "evodevo/plugin.hpp"
 #include "loader.hpp"
 #include "overrides.hpp"
@@ -46,6 +48,8 @@ struct Scheduled {
 
 /// What an experiment on development is compared with: all else stays the same, the simulated time included.
 enum class Control { off, no_change, random_places, shuffled_stress };
+inline constexpr std::array control_names{"off", "no-change", "random-places", "shuffled-stress"};
+inline const char* name(Control control) { return control_names[static_cast<std::size_t>(control)]; }
 
 /// How stress is known: by every spring's exact mean force, or by the paper's tallies (skip_shift.hpp).
 enum class Probe { exact, skip_shift };
@@ -107,21 +111,26 @@ struct Experiment {
   std::string resolved;               ///< TOML that reads back as this very experiment, with every default written out
 };
 
+/// The operator that is the index-th of its kind; nullptr for one that no library has brought.
+const OperatorUse* use_of(const Experiment& experiment, std::string_view kind, std::size_t index);
+
 /// Throws std::runtime_error that names the operator, its file, `where` and `what`, and the remedy.
-[[noreturn]] void blame_operator(const Experiment& experiment, std::string_view kind, std::size_t index,
-                                 const std::string& where, const std::string& what);
+[[noreturn]] void blame_operator(const OperatorUse* use, std::string_view kind, const std::string& where,
+                                 const std::string& what);
 
 /// Calls the own code of an operator, the index-th of its kind, and blames it for what it throws. `where` may add to
 /// the operator's title.
 template <class Call, class Where = decltype([] { return std::string(); })>
 decltype(auto) call_operator(const Experiment& experiment, std::string_view kind, std::size_t index, const Call& call,
                              const Where& where = {}) {
+  const OperatorUse* use = use_of(experiment, kind, index);
+  const InOperator in_operator(use);
   try {
     return call();
   } catch (const std::exception& error) {
-    blame_operator(experiment, kind, index, where(), error.what());
+    blame_operator(use, kind, where(), error.what());
   } catch (...) {
-    blame_operator(experiment, kind, index, where(), "threw something that is no std::exception");
+    blame_operator(use, kind, where(), "threw something that is no std::exception");
   }
 }
 

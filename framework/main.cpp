@@ -3,6 +3,7 @@
 
 #include "archive.hpp"
 #include "commands/commands.hpp"
+#include "crash.hpp"
 #include "text.hpp"
 #include "toml_reader.hpp"
 
@@ -50,6 +51,10 @@ int dispatch(const Arguments& arguments) {
     print_usage(std::cout);
     return 0;
   }
+  if (arguments.front() == "--version") {
+    std::cout << "evodevo " EVODEVO_VERSION "\n";
+    return 0;
+  }
   std::vector<std::string> names;
   for (const Command& command : commands) {
     if (arguments.front() == command.name) return command.function({arguments.begin() + 1, arguments.end()});
@@ -67,6 +72,7 @@ int main(int argc, char** argv) {
     std::cerr << "evodevo: " << error.what() << '\n';
     return code;
   };
+  evodevo::name_crashing_operators();
   try {
     return evodevo::dispatch({argv + 1, argv + argc});
   } catch (const evodevo::UsageError& error) {

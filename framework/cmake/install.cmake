@@ -12,6 +12,9 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/template DESTINATION share/evo
 install(FILES ${PROJECT_SOURCE_DIR}/framework/sdk/README.md DESTINATION share/doc/evodevo RENAME plugins.md)
 install(FILES ${PROJECT_SOURCE_DIR}/plugins/README.md DESTINATION share/doc/evodevo RENAME operators.md)
 
+# where it was built, which takes Node.js
+install(DIRECTORY ${PROJECT_BINARY_DIR}/${EVODEVO_VIEWER_DIR} DESTINATION share/evodevo OPTIONAL)
+
 # before 1.0 a minor version may change what plugins include
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/evodevoConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES

@@ -144,11 +144,12 @@ int simulate_command(const Arguments& arguments) {
   std::cout << body.masses.size() << " masses, " << body.springs.size() << " springs on " << simulator->device()
             << ", steps of " << short_text(1000 * dt) << " ms\n";
   if (task.status != Status::ok) {
-    std::cout << name(task.status) << " after " << to_text(task.ended_at) << " s: " << task.reason << '\n';
+    std::cout << name(task.status) << " after " << short_text(task.ended_at) << " s: " << task.reason << '\n';
     return 1;
   }
   const Vec3 moved = centre_of_mass(body, state.position) - start;
-  std::cout << "after " << to_text(state.time) << " s the centre of mass has moved by " << vector_text(moved) << " m";
+  std::cout << "after " << short_text(state.time) << " s the centre of mass has moved by " << vector_text(moved)
+            << " m";
   if (length > 0)
     std::cout << ", " << short_text(norm({moved.x, moved.y, 0}) / length) << " body lengths along the ground";
   std::cout << "\nspeed: " << short_text(static_cast<double>(spring_evaluations) / seconds)

@@ -225,6 +225,16 @@ class Biography {
     std::printf("individual %u: born with %zu masses and %zu springs, matured with %zu and %zu; %s%s\n", individual_.id,
                 born_.masses.size(), born_.springs.size(), matured_.masses.size(), matured_.springs.size(),
                 name(result.status), result.reason.empty() ? "" : (": " + result.reason).c_str());
+    switch (experiment_.development.control) {
+      case Control::random_places:
+        std::printf("under the control \"random-places\": each operator's changes, but anywhere\n");
+        break;
+      case Control::shuffled_stress:
+        std::printf("under the control \"shuffled-stress\": what caused an edit was measured at another spring\n");
+        break;
+      default:
+        break;
+    }
   }
 
   Json json() const {
@@ -232,6 +242,7 @@ class Biography {
     for (const Narrated& op : operators_) operators.push_back({{"name", op.name}});
     for (const Event& event : events_) edits.push_back(to_json(event, operators_));
     return {{"individual", individual_.id},
+            {"control", name(experiment_.development.control)},
             {"status", name(individual_.result.status)},
             {"reason", individual_.result.reason},
             {"born", counts(born_)},

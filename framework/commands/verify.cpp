@@ -46,7 +46,8 @@ void print(const Verification& verification, const Objective& objective) {
               number(verification.fitness).c_str(), objective.unit.c_str(),
               marks_text(verification, objective.maximise).c_str());
   for (const Trial& trial : verification.trials) {
-    const char* outcome = held(verification, trial, objective.maximise) ? "held" : "not held";
+    const bool has_held = held(verification, trial, objective.maximise);
+    const char* outcome = has_held ? "held" : trial.name == "no-muscles" ? "not held, as it should" : "not held";
     std::printf("  %-14s %10s  %s%s\n", trial.name.c_str(), number(trial.value).c_str(), outcome,
                 trial.reason.empty() ? "" : (", " + std::string(name(trial.status)) + ": " + trial.reason).c_str());
   }

@@ -31,11 +31,14 @@ std::string escaped(const std::string& json) {
 fs::path viewer_folder() {
   const fs::path prefix = fs::path(boost::dll::program_location().string()).parent_path().parent_path();
   fs::path folder = prefix / EVODEVO_VIEWER_DIR;
+  const bool is_build = fs::exists(prefix / "CMakeCache.txt");
   if (!fs::exists(folder / page_name))
     throw std::runtime_error(folder.string() +
                              ": the viewer has not been built. It needs Node.js 18 or newer with npm (Debian: apt-get "
                              "install nodejs npm); then `cmake --build " +
-                             prefix.string() + " --target evodevo_viewer`, or use tools/evodevo, which does both");
+                             (is_build ? prefix.string() : "BUILD") + " --target evodevo_viewer`" +
+                             (is_build ? "" : " where evodevo was built, and install it anew") +
+                             ", or use tools/evodevo, which does both");
   return folder;
 }
 

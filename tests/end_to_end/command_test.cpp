@@ -91,7 +91,15 @@ TEST_F(Command, FailedBodiesNeverReachAReportAsNumbers) {
   EXPECT_TRUE(json.at("generations")[0].at("median").is_null());
   EXPECT_GT(json.at("statuses").at("diverged").get<int>(), 0);
   EXPECT_EQ(json.at("statuses").at("ok"), 0);
-  EXPECT_EQ(evodevo({"show", folder_}).exit_code, 0);
+  std::int64_t failed = 0;
+  for (const auto& failure : json.at("failures")) failed += failure.at("count").get<std::int64_t>();
+  EXPECT_EQ(failed, json.at("evaluations")) << "reasons that differ in numbers alone are one, and none is left out";
+  EXPECT_LT(json.at("failures").size(), 5u);
+  const Finished shown = evodevo({"show", folder_});
+  EXPECT_EQ(shown.exit_code, 0);
+  EXPECT_THAT(shown.output, HasSubstr("without a fitness\n  "));
+  EXPECT_THAT(shown.output, HasSubstr(" diverged: " + json.at("failures")[0].at("reason").get<std::string>()));
+  EXPECT_THAT(shown.output, Not(HasSubstr("best individuals")));
   EXPECT_EQ(evodevo({"body", folder_}).exit_code, 2);
 }
 

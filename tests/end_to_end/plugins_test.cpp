@@ -148,6 +148,28 @@ TEST_F(Plugins, AnOperatorThatErrsIsNamedWithItsFile) {
                                          ": made a genome with gene 0 = nan, which is not allowed" + remedy));
 }
 
+TEST_F(Plugins, AnOperatorThatCrashesIsNamedWithItsFile) {
+  install("crash_in_use");
+  const Finished crashed = run_with("nothing", {"--plugin-path", own()});
+  EXPECT_NE(crashed.exit_code, 0);
+  EXPECT_THAT(crashed.output, HasSubstr("evodevo: mutation operator \"nothing\" of " + library_.string() +
+                                        " crashed; `evodevo conform " + library_.string() + "` tests it."));
+}
+
+TEST_F(Plugins, ARunOutlivesTheFolderOfItsOperators) {
+  install("sound");
+  ASSERT_EQ(run_with("nothing", {"--plugin-path", own()}).exit_code, 0);
+  const std::string moved = (scratch_ / "moved").string();
+  std::filesystem::rename(own(), moved);
+  const Finished missed = evodevo({"life", folder_});
+  EXPECT_EQ(missed.exit_code, 2);
+  EXPECT_THAT(missed.output, HasSubstr("no mutation operator has this name"));
+  EXPECT_THAT(missed.output, HasSubstr(" is no folder and no library of operators any more; name the one that has "
+                                       "taken its place with --plugin-path"));
+  const Finished found = evodevo({"life", folder_, "--plugin-path", moved});
+  EXPECT_EQ(found.exit_code, 0) << found.output;
+}
+
 TEST_F(Plugins, AnOperatorOfAnUnusableLibraryIsMissedWithTheReason) {
   install("epoch");
   const Finished finished = run_with("nothing", {"--plugin-path", own()});

@@ -397,6 +397,7 @@ TEST(Configuration, Overrides) {
   EXPECT_EQ(read("mutation.0.probability", "0.25").mutations[0].probability, 0.25);
   EXPECT_EQ(read("selection.name", "elitist").uses.back().name, "elitist") << "a text needs no quotes";
   EXPECT_EQ(read("scene.drag.coefficient", "2").scene.drag->coefficient, 2) << "a table may come into being";
+  EXPECT_EQ(read("fitness.1.name", "actuation-work").fitness.size(), 2u) << "and so may the next item of a list";
 
   EXPECT_EQ(complaint(small_experiment, {{"experiment.population", "-1", "--set experiment.population=-1"}}),
             "--set experiment.population=-1: experiment.population = -1: expected 1 to 1000000");

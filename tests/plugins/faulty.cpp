@@ -29,6 +29,8 @@ struct Nothing final : evodevo::Mutation {
   void mutate([[maybe_unused]] evodevo::Genome& genome, const evodevo::Layout&, evodevo::Rng&) const override {
 #if defined(FAULT_THROWS)
     throw std::runtime_error("nothing to mutate");
+#elif defined(FAULT_CRASH_IN_USE)
+    std::raise(SIGSEGV);
 #elif defined(FAULT_NAN)
     genome[0] = std::numeric_limits<float>::quiet_NaN();
 #elif defined(FAULT_UNDEFINED_SYMBOL)
