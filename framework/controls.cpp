@@ -78,9 +78,9 @@ class Partners {
 };
 
 /// One amount of change on its way into a body.
-class Relocation {
+class RandomPlacement {
  public:
-  Relocation(const Amount& amount, const Moment& now, std::size_t& surplus, Rng& rng)
+  RandomPlacement(const Amount& amount, const Moment& now, std::size_t& surplus, Rng& rng)
       : amount_(amount),
         now_(now),
         body_(now.body),
@@ -90,7 +90,7 @@ class Relocation {
         spring_goes_(body_.springs.size(), 0),
         staying_springs_(body_.materials.size()) {}
 
-  Edits relocate() {
+  Edits edits() {
     out_.growth = amount_.growth;
     remove_masses();
     remove_springs();
@@ -234,7 +234,7 @@ Amount amount_of(const Edits& edits, const Body& body, std::uint32_t op) {
 }
 
 Edits at_random_places(const Amount& amount, const Moment& now, std::size_t& surplus, Rng& rng) {
-  return Relocation(amount, now, surplus, rng).relocate();
+  return RandomPlacement(amount, now, surplus, rng).edits();
 }
 
 std::vector<Amount> Yoke::amounts_after(int cycle) {

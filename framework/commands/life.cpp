@@ -69,10 +69,10 @@ struct Event {
   bool is_spring() const { return masses.size() == 2; }
 };
 
-/// A life as it goes on.
-class Chronicle {
+/// What happened in a life, as its changes are added in their order.
+class EventLog {
  public:
-  explicit Chronicle(Body born) : body_(std::move(born)), masses_(body_.masses.size()) {}
+  explicit EventLog(Body born) : body_(std::move(born)), masses_(body_.masses.size()) {}
 
   void add(const Change& change) {
     const Edits& edits = change.edits;
@@ -199,11 +199,11 @@ void print(const Event& event, const std::vector<Narrated>& operators) {
   std::printf("\n");
 }
 
-/// The life of an individual of a run.
-class Biography {
+/// What is told of an individual of a run: its life, lived again.
+class LifeReport {
  public:
-  Biography(const Archive& archive, const ArchivedIndividual& individual,
-            std::vector<std::filesystem::path> plugin_path)
+  LifeReport(const Archive& archive, const ArchivedIndividual& individual,
+             std::vector<std::filesystem::path> plugin_path)
       : individual_(individual),
         experiment_(experiment_to_live_again(archive, std::move(plugin_path))),
         operators_(narrated_operators(experiment_)) {
@@ -213,10 +213,10 @@ class Biography {
     std::vector<Life> lives = evaluation.birth({&newborn, 1});
     born_ = lives.front().living.body;
     evaluation.develop(lives, [](double) {});
-    Chronicle chronicle(born_);
-    for (const Change& change : lives.front().result.record.changes()) chronicle.add(change);
-    matured_ = chronicle.body();
-    events_ = chronicle.events();
+    EventLog log(born_);
+    for (const Change& change : lives.front().result.record.changes()) log.add(change);
+    matured_ = log.body();
+    events_ = log.events();
   }
 
   void print() const {
@@ -271,11 +271,11 @@ int life_command(const Arguments& arguments) {
   const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
   const Archive archive = Archive::read((*given)["DIR"].as<std::string>());
-  const Biography biography(archive, chosen_individual(archive, *given), given_plugin_path(*given));
+  const LifeReport report(archive, chosen_individual(archive, *given), given_plugin_path(*given));
   if (given->contains("json"))
-    std::cout << biography.json().dump(1) << '\n';
+    std::cout << report.json().dump(1) << '\n';
   else
-    biography.print();
+    report.print();
   return 0;
 }
 
