@@ -1,169 +1,169 @@
-@selection @
+@selection@
 #include <algorithm>
 #include <numeric>
 
-    @end @
+@end@
 #include "evodevo/plugin.hpp"
 
-    namespace {
+namespace {
 
-  @encoding @
-      /// Every mass has three genes for its place and one for its material; the host joins neighbours.
-      class @CLASS @final : public evodevo::Encoding {
-   public:
-    void parameters(evodevo::Parameters & p) override {
-      p.integer(masses_, "masses", {4, 1000, "1"}, "Masses of a body.");
-      p.real(side_, "side", {0.01, 100, "m"}, "Side of the cube in which the masses lie.");
+@encoding@
+/// Every mass has three genes for its place and one for its material; the host joins neighbours.
+class @CLASS@ final : public evodevo::Encoding {
+ public:
+  void parameters(evodevo::Parameters& p) override {
+    p.integer(masses_, "masses", {4, 1000, "1"}, "Masses of a body.");
+    p.real(side_, "side", {0.01, 100, "m"}, "Side of the cube in which the masses lie.");
+  }
+
+  evodevo::Layout layout(const evodevo::World& world) const override {
+    evodevo::Layout layout;
+    for (std::int64_t i = 0; i < masses_; ++i) {
+      layout.add_group(3, {-1, 1});
+      layout.add_group(1, {0, 0, static_cast<std::uint32_t>(world.materials.size())});
     }
+    return layout;
+  }
 
-    evodevo::Layout layout(const evodevo::World& world) const override {
-      evodevo::Layout layout;
-      for (std::int64_t i = 0; i < masses_; ++i) {
-        layout.add_group(3, {-1, 1});
-        layout.add_group(1, {0, 0, static_cast<std::uint32_t>(world.materials.size())});
-      }
-      return layout;
+  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::World& world) const override {
+    evodevo::Blueprint blueprint;
+    blueprint.body.materials = world.materials;
+    blueprint.neighbours = 8;
+    for (std::size_t i = 0; i + 3 < genome.size(); i += 4) {
+      const evodevo::Vec3 place = (side_ / 2) * evodevo::Vec3{genome[i], genome[i + 1], genome[i + 2]};
+      blueprint.body.masses.push_back({place, world.mass, static_cast<std::int32_t>(genome[i + 3])});
     }
+    return blueprint;
+  }
 
-    evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::World& world) const override {
-      evodevo::Blueprint blueprint;
-      blueprint.body.materials = world.materials;
-      blueprint.neighbours = 8;
-      for (std::size_t i = 0; i + 3 < genome.size(); i += 4) {
-        const evodevo::Vec3 place = (side_ / 2) * evodevo::Vec3{genome[i], genome[i + 1], genome[i + 2]};
-        blueprint.body.masses.push_back({place, world.mass, static_cast<std::int32_t>(genome[i + 3])});
-      }
-      return blueprint;
+ private:
+  std::int64_t masses_ = 24;
+  double side_ = 1;
+};
+@mutation@
+/// Any number of genes may change, or none.
+class @CLASS@ final : public evodevo::Mutation {
+ public:
+  void parameters(evodevo::Parameters& p) override {
+    p.real(rate_, "rate", {0, 1, "1"}, "Probability with which a gene is drawn anew.");
+  }
+
+  void mutate(evodevo::Genome& genome, const evodevo::Layout& layout, evodevo::Rng& rng) const override {
+    for (std::size_t i = 0; i < genome.size(); ++i)
+      if (rng.chance(rate_)) genome[i] = layout.genes[i].draw(rng);
+  }
+
+ private:
+  double rate_ = 0.1;
+};
+@crossover@
+/// Uniform crossover.
+class @CLASS@ final : public evodevo::Crossover {
+ public:
+  void parameters(evodevo::Parameters& p) override {
+    p.real(rate_, "rate", {0, 1, "1"}, "Probability with which a gene is swapped.");
+  }
+
+  void cross(evodevo::Genome& one, evodevo::Genome& other, const evodevo::Layout&, evodevo::Rng& rng) const override {
+    for (std::size_t i = 0; i < one.size(); ++i)
+      if (rng.chance(rate_)) std::swap(one[i], other[i]);
+  }
+
+ private:
+  double rate_ = 0.5;
+};
+@devo@
+/// The same spring may be drawn twice, so that fewer go. What else may change, one by one or all springs at once by their
+/// growth, is said of evodevo::Edits in evodevo/devo.hpp.
+class @CLASS@ final : public evodevo::Devo {
+ public:
+  void parameters(evodevo::Parameters& p) override {
+    p.integer(springs_, "springs", {0, 1000, "1"}, "Springs that go in each cycle.");
+  }
+
+  void develop(const evodevo::Moment& now, evodevo::Edits& edits, evodevo::Rng& rng) const override {
+    const auto count = static_cast<std::uint32_t>(now.body.springs.size());
+    for (std::int64_t i = 0; i < springs_ && count > 0; ++i) edits.removed_springs.push_back(rng.below(count));
+  }
+
+ private:
+  std::int64_t springs_ = 5;
+};
+@fitness@
+/// In m/s, so that large bodies have it easier than with body lengths.
+class @CLASS@ final : public evodevo::Fitness {
+ public:
+  void parameters(evodevo::Parameters& p) override {
+    p.real(settle_, "settle", {0, 3600, "s"}, "Time in which the body settles before it is measured.");
+    p.real(window_, "window", {0.001, 3600, "s"}, "Time in which it is measured.");
+  }
+
+  evodevo::Request observes() const override { return {settle_, window_, false}; }
+
+  std::vector<evodevo::Objective> objectives() const override { return {{"@NAME@", "m/s", true}}; }
+
+  std::vector<double> score(const evodevo::Observation& observation) const override {
+    evodevo::Vec3 way = observation.centre_after - observation.centre_before;
+    way.z = 0;
+    return {norm(way) / observation.window};
+  }
+
+ private:
+  double settle_ = 1;
+  double window_ = 2;
+};
+@selection@
+using evodevo::Candidate;
+
+/// Truncation selection. Failed rows have no scores and come last.
+class @CLASS@ final : public evodevo::Selection {
+ public:
+  void parameters(evodevo::Parameters& p) override {
+    p.real(breeders_, "breeders", {0, 1, "1"}, "Part of the population that breeds, the best first.");
+  }
+
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
+                                                               evodevo::Rng& rng) const override {
+    auto pool = best_first(rows);
+    const auto sound = std::count_if(rows.begin(), rows.end(), [](const Candidate& row) { return row.ok(); });
+    const double part = breeders_ * static_cast<double>(sound > 0 ? sound : std::ssize(rows));
+    pool.resize(std::max<std::size_t>(1, static_cast<std::size_t>(part)));
+    const auto draw = [&] { return pool[rng.below(static_cast<std::uint32_t>(pool.size()))]; };
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t parent = draw();
+      pairs.emplace_back(parent, draw());
     }
+    return pairs;
+  }
 
-   private:
-    std::int64_t masses_ = 24;
-    double side_ = 1;
-  };
-  @mutation @
-      /// Any number of genes may change, or none.
-      class @CLASS @final : public evodevo::Mutation {
-   public:
-    void parameters(evodevo::Parameters & p) override {
-      p.real(rate_, "rate", {0, 1, "1"}, "Probability with which a gene is drawn anew.");
-    }
+  std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
+                                       evodevo::Rng&) const override {
+    auto order = best_first(rows);
+    order.resize(std::min<std::size_t>(order.size(), population));
+    return order;
+  }
 
-    void mutate(evodevo::Genome & genome, const evodevo::Layout& layout, evodevo::Rng& rng) const override {
-      for (std::size_t i = 0; i < genome.size(); ++i)
-        if (rng.chance(rate_)) genome[i] = layout.genes[i].draw(rng);
-    }
+ private:
+  static std::vector<std::uint32_t> best_first(std::span<const Candidate> rows) {
+    std::vector<std::uint32_t> order(rows.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+      if (rows[i].ok() != rows[j].ok()) return rows[i].ok();
+      return rows[i].ok() && rows[i].scores[0] > rows[j].scores[0];
+    });
+    return order;
+  }
 
-   private:
-    double rate_ = 0.1;
-  };
-  @crossover @
-      /// Uniform crossover.
-      class @CLASS @final : public evodevo::Crossover {
-   public:
-    void parameters(evodevo::Parameters & p) override {
-      p.real(rate_, "rate", {0, 1, "1"}, "Probability with which a gene is swapped.");
-    }
-
-    void cross(evodevo::Genome & one, evodevo::Genome & other, const evodevo::Layout&, evodevo::Rng& rng)
-        const override {
-      for (std::size_t i = 0; i < one.size(); ++i)
-        if (rng.chance(rate_)) std::swap(one[i], other[i]);
-    }
-
-   private:
-    double rate_ = 0.5;
-  };
-  @devo @
-      /// The same spring may be drawn twice, so that fewer go. What else may change, one by one or all springs at once
-      /// by their growth, is said of evodevo::Edits in evodevo/devo.hpp.
-      class @CLASS @final : public evodevo::Devo {
-   public:
-    void parameters(evodevo::Parameters & p) override {
-      p.integer(springs_, "springs", {0, 1000, "1"}, "Springs that go in each cycle.");
-    }
-
-    void develop(const evodevo::Moment& now, evodevo::Edits& edits, evodevo::Rng& rng) const override {
-      const auto count = static_cast<std::uint32_t>(now.body.springs.size());
-      for (std::int64_t i = 0; i < springs_ && count > 0; ++i) edits.removed_springs.push_back(rng.below(count));
-    }
-
-   private:
-    std::int64_t springs_ = 5;
-  };
-  @fitness @
-      /// In m/s, so that large bodies have it easier than with body lengths.
-      class @CLASS @final : public evodevo::Fitness {
-   public:
-    void parameters(evodevo::Parameters & p) override {
-      p.real(settle_, "settle", {0, 3600, "s"}, "Time in which the body settles before it is measured.");
-      p.real(window_, "window", {0.001, 3600, "s"}, "Time in which it is measured.");
-    }
-
-    evodevo::Request observes() const override { return {settle_, window_, false}; }
-
-    std::vector<evodevo::Objective> objectives() const override { return {{"@NAME@", "m/s", true}}; }
-
-    std::vector<double> score(const evodevo::Observation& observation) const override {
-      evodevo::Vec3 way = observation.centre_after - observation.centre_before;
-      way.z = 0;
-      return {norm(way) / observation.window};
-    }
-
-   private:
-    double settle_ = 1;
-    double window_ = 2;
-  };
-  @selection @ using evodevo::Candidate;
-
-  /// Truncation selection. Failed rows have no scores and come last.
-  class @CLASS @final : public evodevo::Selection {
-   public:
-    void parameters(evodevo::Parameters & p) override {
-      p.real(breeders_, "breeders", {0, 1, "1"}, "Part of the population that breeds, the best first.");
-    }
-
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
-                                                                 evodevo::Rng & rng) const override {
-      auto pool = best_first(rows);
-      const auto sound = std::count_if(rows.begin(), rows.end(), [](const Candidate& row) { return row.ok(); });
-      const double part = breeders_ * static_cast<double>(sound > 0 ? sound : std::ssize(rows));
-      pool.resize(std::max<std::size_t>(1, static_cast<std::size_t>(part)));
-      const auto draw = [&] { return pool[rng.below(static_cast<std::uint32_t>(pool.size()))]; };
-      std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const std::uint32_t parent = draw();
-        pairs.emplace_back(parent, draw());
-      }
-      return pairs;
-    }
-
-    std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population, evodevo::Rng&)
-        const override {
-      auto order = best_first(rows);
-      order.resize(std::min<std::size_t>(order.size(), population));
-      return order;
-    }
-
-   private:
-    static std::vector<std::uint32_t> best_first(std::span<const Candidate> rows) {
-      std::vector<std::uint32_t> order(rows.size());
-      std::iota(order.begin(), order.end(), 0u);
-      std::stable_sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
-        if (rows[i].ok() != rows[j].ok()) return rows[i].ok();
-        return rows[i].ok() && rows[i].scores[0] > rows[j].scores[0];
-      });
-      return order;
-    }
-
-    double breeders_ = 0.5;
-  };
-  @end @
+  double breeders_ = 0.5;
+};
+@end@
 
 }  // namespace
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
-               @encoding
-               @evodevo::operator_entry<@CLASS @>("@NAME@", "Every mass has a place and a material of its own."))
+@encoding@
+               evodevo::operator_entry<@CLASS@>("@NAME@", "Every mass has a place and a material of its own."))
 @mutation@
                evodevo::operator_entry<@CLASS@>("@NAME@", "Draws every gene anew with a small probability."))
 @crossover@

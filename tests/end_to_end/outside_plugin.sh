@@ -24,7 +24,8 @@ cmake -B build >/dev/null
 cmake --build build
 ctest --test-dir build --output-on-failure
 evodevo run experiment.toml --out run
-evodevo show run --json | grep -q '"my-lab.growth"' || { echo "the run does not use the operator"; exit 1; }
+# not through a pipe, which grep would leave at the first match
+[[ $(evodevo show run --json) == *'"my-lab.growth"'* ]] || { echo "the run does not use the operator"; exit 1; }
 
 # after a change one file is compiled
 touch growth.cpp
@@ -35,4 +36,4 @@ evodevo describe my-lab.growth --markdown --plugin-path build/lib/evodevo >descr
 diff <(table README.md) <(table described.md | sed '$d') || { echo "README.md is not what the operator says"; exit 1; }
 
 cmake --install build --prefix "$scratch/package" >/dev/null
-evodevo operators | grep -q my-lab.growth || { echo "the installed plugin is not found"; exit 1; }
+[[ $(evodevo operators) == *my-lab.growth* ]] || { echo "the installed plugin is not found"; exit 1; }
