@@ -1,6 +1,6 @@
 // Films, pictures and the gallery.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
+import { execFileSync, spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, symlinkSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
@@ -56,6 +56,19 @@ test("pictures of two moments differ", () => {
   for (const at of ["0", "2"]) evodevo("film", scratch.run, "--at", at, "--out", scratch.path(`${at}.png`));
   assert.deepEqual(sizeOf(scratch.path("0.png")), [1280, 720]);
   assert.notDeepEqual(readFileSync(scratch.path("0.png")), readFileSync(scratch.path("2.png")));
+});
+
+test("what cannot be filmed is refused in one line", () => {
+  const refusal = (at, out) => {
+    const arguments_ = ["film", scratch.run, "--at", at, "--out", scratch.path(out)];
+    const { status, stderr } = spawnSync(process.env.EVODEVO_PROGRAM, arguments_, { encoding: "utf8" });
+    assert.notEqual(status, 0);
+    return stderr;
+  };
+  assert.match(refusal("500", "late.png"), /^evodevo: .*late\.png: --at 500: expected a moment of the life, 0 to [\d.]+ s$/m);
+  assert.doesNotMatch(refusal("500", "late.png"), /^\s+at /m);
+  assert.match(refusal("1", "film.gif"), /^evodevo: --out .*film\.gif: expected a name ending in \.mp4 or \.png\n$/);
+  assert.match(refusal("1", "still.mp4"), /^evodevo: --at is the moment of a picture/);
 });
 
 test("a gallery shows as many robots as asked for, and how balls become bodies", async () => {

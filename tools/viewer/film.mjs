@@ -43,11 +43,12 @@ async function film(tab, out) {
 }
 
 async function still(tab, out, at) {
-  const moment = await tab.evaluate(async (asked) => {
+  const { end, middle } = await tab.evaluate(async () => {
     const { viewer } = await window.evodevo;
-    if (asked < 0 || asked > viewer.end) throw new Error(`--at ${asked}: the life goes from 0 to ${viewer.end} s`);
-    return asked ?? (viewer.stages[0].life.shots.at(-1).begin + viewer.end) / 2;
-  }, at);
+    return { end: viewer.end, middle: (viewer.stages[0].life.shots.at(-1).begin + viewer.end) / 2 };
+  });
+  if (at < 0 || at > end) throw new Error(`--at ${at}: expected a moment of the life, 0 to ${end} s`);
+  const moment = at ?? middle;
   await draw(tab, moment);
   await writeFile(out, await ((await tab.$(".gallery")) ?? tab).screenshot());
 }
