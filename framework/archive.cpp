@@ -17,7 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* database_name = "run.sqlite";
 constexpr const char* lock_name = "lock";
 constexpr const char* format = "4";  ///< raised when a change of the tables keeps older programs from reading them
 /// Readers and the writer do not wait for each other; but a folder that nobody may write cannot be read like this.

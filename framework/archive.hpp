@@ -33,6 +33,9 @@ struct Failure {
   bool varies = false;  ///< whether others have other numbers in it
 };
 
+/// A run's file in its folder.
+inline constexpr const char* database_name = "run.sqlite";
+
 class Archive {
  public:
   /// Starts the record of a run in a new folder; this program on `device` is its first maker. Throws ArchiveError if

@@ -1,126 +1,122 @@
 #include "body_json.hpp"
 
-#include <cerrno>
-#include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
+#include <limits>
 #include <set>
 
-#include "text.hpp"
-#include "toml_reader.hpp"
+#include "body_building.hpp"
+#include "json_input.hpp"
 
 namespace evodevo {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double lowest = std::numeric_limits<double>::lowest();
+
 /// Reads the parts of one file; every complaint begins with the file and the part's place in it.
 class BodyReader {
  public:
-  explicit BodyReader(std::string file) : file_(std::move(file)) {}
+  explicit BodyReader(const std::string& file) : input_(file) {}
 
-  Body read() {
-    const Json root = parse();
-    Body body;
-    each(root, "materials", [&](const Json& item, const std::string& at) {
-      body.materials.push_back({number(item, at, "stiffness", 0), number(item, at, "amplitude", 0),
-                                number(item, at, "frequency", 0), number(item, at, "phase", lowest)});
-    });
-    each(root, "masses", [&](const Json& item, const std::string& at) {
-      Mass mass;
-      mass.rest = place(item, at);
-      mass.mass = number(item, at, "mass", std::numeric_limits<double>::min());
-      if (item.contains("material"))
-        mass.material = static_cast<std::int32_t>(index(item, at, "material", body.materials.size()));
-      body.masses.push_back(mass);
-    });
-    if (body.masses.empty()) fail("masses", "a body has at least one");
-    std::set<std::pair<std::uint32_t, std::uint32_t>> joined;
-    each(root, "springs", [&](const Json& item, const std::string& at) {
-      const Spring spring{index(item, at, "a", body.masses.size()), index(item, at, "b", body.masses.size()),
-                          number(item, at, "rest_length", 0), index(item, at, "material", body.materials.size())};
-      if (spring.a == spring.b) fail(at, "joins mass " + std::to_string(spring.a) + " to itself");
-      if (!joined.insert(std::minmax(spring.a, spring.b)).second)
-        fail(at, "masses " + std::to_string(spring.a) + " and " + std::to_string(spring.b) + " are joined already");
-      body.springs.push_back(spring);
-    });
-    return body;
+  GivenBody read() {
+    const Json root = input_.read();
+    input_.expect(root, "", {"masses", "springs", "materials", "time", "start_energy"});
+    is_alive_ = root.contains("time");
+    read_materials(root);
+    read_masses(root);
+    read_springs(root);
+    if (!is_alive_ && root.contains("start_energy")) refuse_of_newborn("start_energy");
+    if (!is_alive_) return {std::move(body_), std::nullopt};
+    state_.position = rest_places(body_);
+    state_.time = input_.number(root, "", "time", 0);
+    if (root.contains("start_energy")) state_.start_energy = input_.number(root, "", "start_energy", lowest);
+    return {std::move(body_), std::move(state_)};
   }
 
  private:
-  static constexpr double lowest = std::numeric_limits<double>::lowest();
-
-  [[noreturn]] void fail(const std::string& at, const std::string& message) const {
-    throw ConfigError(file_ + ": " + (at.empty() ? "" : at + ": ") + message);
+  void read_materials(const Json& root) {
+    input_.each(root, "materials", [&](const Json& item, const std::string& at) {
+      input_.expect(item, at, {"name", "stiffness", "amplitude", "frequency", "phase"});
+      if (item.contains("name") && !item.at("name").is_string()) input_.fail(at + ".name", "expected a text");
+      body_.materials.push_back({input_.number(item, at, "stiffness", 0), input_.number(item, at, "amplitude", 0),
+                                 input_.number(item, at, "frequency", 0), input_.number(item, at, "phase", lowest)});
+    });
   }
 
-  Json parse() const {
-    std::ifstream stream(file_);
-    if (!stream) fail("", std::string("cannot be read: ") + std::strerror(errno));
-    if (std::filesystem::is_directory(file_)) fail("", "cannot be read: it is a folder");
-    try {
-      return Json::parse(stream);
-    } catch (const Json::exception& error) {
-      fail("", std::string("is not JSON: ") + error.what());
-    }
+  void read_masses(const Json& root) {
+    input_.each(root, "masses", [&](const Json& item, const std::string& at) {
+      input_.expect(item, at, {"position", "velocity", "mass", "material"});
+      Mass mass;
+      mass.rest = vector(item, at, "position");
+      mass.mass = input_.number(item, at, "mass", std::numeric_limits<double>::min());
+      if (item.contains("material"))
+        mass.material = static_cast<std::int32_t>(input_.index(item, at, "material", body_.materials.size()));
+      body_.masses.push_back(mass);
+      if (!is_alive_ && item.contains("velocity")) refuse_of_newborn(at + ".velocity");
+      state_.velocity.push_back(item.contains("velocity") ? vector(item, at, "velocity") : Vec3{});
+    });
+    if (body_.masses.empty()) input_.fail("masses", "a body has at least one");
   }
 
-  const Json& member(const Json& item, const std::string& at, const std::string& key) const {
-    if (!item.is_object() || !item.contains(key)) fail(at, "\"" + key + "\" is missing");
-    return item.at(key);
+  void read_springs(const Json& root) {
+    const std::size_t masses = body_.masses.size();
+    std::set<std::pair<std::uint32_t, std::uint32_t>> joined;
+    input_.each(root, "springs", [&](const Json& item, const std::string& at) {
+      input_.expect(item, at, {"a", "b", "rest_length", "material"});
+      const Spring spring{input_.index(item, at, "a", masses), input_.index(item, at, "b", masses),
+                          input_.number(item, at, "rest_length", 0),
+                          input_.index(item, at, "material", body_.materials.size())};
+      if (spring.a == spring.b) input_.fail(at, "joins mass " + std::to_string(spring.a) + " to itself");
+      if (!joined.insert(std::minmax(spring.a, spring.b)).second)
+        input_.fail(at,
+                    "masses " + std::to_string(spring.a) + " and " + std::to_string(spring.b) + " are joined already");
+      body_.springs.push_back(spring);
+    });
   }
 
-  template <class Read>
-  void each(const Json& root, const std::string& key, const Read& read) const {
-    const Json& list = member(root, "", key);
-    if (!list.is_array()) fail(key, "expected a list");
-    for (std::size_t i = 0; i < list.size(); ++i) read(list[i], key + "[" + std::to_string(i) + "]");
+  Vec3 vector(const Json& item, const std::string& at, const std::string& key) const {
+    const Json& list = input_.member(item, at, key);
+    const std::string here = at + "." + key;
+    if (!list.is_array() || list.size() != 3) input_.fail(here, "expected three numbers");
+    return {input_.finite(list[0], here, lowest), input_.finite(list[1], here, lowest),
+            input_.finite(list[2], here, lowest)};
   }
 
-  double finite(const Json& value, const std::string& at, double least) const {
-    if (!value.is_number()) fail(at, "expected a number, found " + value.dump());
-    const double number = value.get<double>();
-    if (!std::isfinite(number) || number < least)
-      fail(at, value.dump() + " is out of range; expected " +
-                   (least == lowest ? "a finite number" : "at least " + to_text(least)));
-    return number;
+  [[noreturn]] void refuse_of_newborn(const std::string& at) const {
+    input_.fail(at, "a body that is yet to be born has none; give its \"time\" since birth, or leave this out");
   }
 
-  double number(const Json& item, const std::string& at, const std::string& key, double least) const {
-    return finite(member(item, at, key), at + "." + key, least);
-  }
-
-  Vec3 place(const Json& item, const std::string& at) const {
-    const Json& list = member(item, at, "position");
-    const std::string here = at + ".position";
-    if (!list.is_array() || list.size() != 3) fail(here, "expected three numbers");
-    return {finite(list[0], here, lowest), finite(list[1], here, lowest), finite(list[2], here, lowest)};
-  }
-
-  std::uint32_t index(const Json& item, const std::string& at, const std::string& key, std::size_t count) const {
-    const Json& value = member(item, at, key);
-    if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= count)
-      fail(at + "." + key, value.dump() + " is not an index below " + std::to_string(count));
-    return value.get<std::uint32_t>();
-  }
-
-  std::string file_;
+  JsonInput input_;
+  Body body_;
+  State state_;
+  bool is_alive_ = false;  ///< whether the body is in the middle of its life
 };
 
-}  // namespace
+Json numbers(Vec3 v) { return {v.x, v.y, v.z}; }
 
-std::string body_to_json(const Body& body, const std::vector<Vec3>& places, const std::vector<std::string>& names) {
-  Json masses = Json::array(), springs = Json::array(), materials = Json::array();
-  for (std::size_t i = 0; i < body.masses.size(); ++i) {
-    Json mass = {{"position", {places[i].x, places[i].y, places[i].z}}, {"mass", body.masses[i].mass}};
-    if (body.masses[i].material != no_material) mass["material"] = body.masses[i].material;
-    masses.push_back(std::move(mass));
+Json masses_json(const GivenBody& given) {
+  Json masses = Json::array();
+  for (std::size_t i = 0; i < given.body.masses.size(); ++i) {
+    const Mass& mass = given.body.masses[i];
+    Json written = {{"position", numbers(given.state ? given.state->position[i] : mass.rest)}};
+    if (given.state) written["velocity"] = numbers(given.state->velocity[i]);
+    written["mass"] = mass.mass;
+    if (mass.material != no_material) written["material"] = mass.material;
+    masses.push_back(std::move(written));
   }
+  return masses;
+}
+
+Json springs_json(const Body& body) {
+  Json springs = Json::array();
   for (const Spring& spring : body.springs)
     springs.push_back(
         {{"a", spring.a}, {"b", spring.b}, {"rest_length", spring.rest_length}, {"material", spring.material}});
+  return springs;
+}
+
+Json materials_json(const Body& body, const std::vector<std::string>& names) {
+  Json materials = Json::array();
   for (std::size_t i = 0; i < body.materials.size(); ++i) {
     Json material;
     if (i < names.size()) material["name"] = names[i];
@@ -130,10 +126,22 @@ std::string body_to_json(const Body& body, const std::vector<Vec3>& places, cons
     material["phase"] = body.materials[i].phase;
     materials.push_back(std::move(material));
   }
-  return Json{{"masses", std::move(masses)}, {"springs", std::move(springs)}, {"materials", std::move(materials)}}.dump(
-      1);
+  return materials;
 }
 
-Body read_body(const std::string& file) { return BodyReader(file).read(); }
+}  // namespace
+
+std::string body_to_json(const GivenBody& given, const std::vector<std::string>& material_names) {
+  Json root = {{"masses", masses_json(given)},
+               {"springs", springs_json(given.body)},
+               {"materials", materials_json(given.body, material_names)}};
+  if (given.state) {
+    root["time"] = given.state->time;
+    root["start_energy"] = given.state->start_energy;
+  }
+  return root.dump(1);
+}
+
+GivenBody read_body(const std::string& file) { return BodyReader(file).read(); }
 
 }  // namespace evodevo

@@ -1,6 +1,7 @@
 // Bodies as JSON files.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,14 +9,29 @@
 
 namespace evodevo {
 
-/// {"masses": [{"position", "mass", "material"?}], "springs": [{"a", "b", "rest_length", "material"}], "materials":
-/// [{"name"?, "stiffness", "amplitude", "frequency", "phase"}]} in SI units. Positions are `places`; materials are
-/// indices. `names` are those of the first materials.
-std::string body_to_json(const Body& body, const std::vector<Vec3>& places, const std::vector<std::string>& names);
+/// What a file says of a body.
+struct GivenBody {
+  Body body;
+  std::optional<State> state;  ///< of a body in the middle of its life; none where it is yet to be born
+};
 
-/// The body in a file of this form, at rest at its positions. Throws ConfigError that names file, place and remedy for
-/// a file that cannot be read, is no such JSON, or holds an index out of range, a pair joined twice, or a number that
-/// is not finite or has the wrong sign.
-Body read_body(const std::string& file);
+/// A body as JSON, in SI units; the numbers read back as the same bits.
+///
+///   masses     a list of {"position", "velocity", "mass", "material"}: m, m/s, kg and an index
+///   springs    a list of {"a", "b", "rest_length", "material"}: indices of two masses, m and an index
+///   materials  a list of {"name", "stiffness", "amplitude", "frequency", "phase"}: N/m, 1, Hz and rad
+///   time       since birth, s
+///   start_energy  what the energy guard measures the life by (State), J
+///
+/// With "time" the body is in the middle of its life: its masses are where they are, as fast as they are, and bear
+/// their load. Without, it is yet to be born, where and with what load the scene says: its positions are its rest
+/// places, and it has neither velocities nor start energy. "name", the masses' "material" and what is left of a state
+/// (0, and the energy that the state has in its scene) may be left out.
+std::string body_to_json(const GivenBody& given, const std::vector<std::string>& material_names);
+
+/// Reads such a file. Throws ConfigError that names file, place and remedy for a file that cannot be read or is no such
+/// JSON: keys that are unknown or stand twice, indices out of range, a pair joined twice, numbers that are not finite
+/// or have the wrong sign.
+GivenBody read_body(const std::string& file);
 
 }  // namespace evodevo

@@ -5,7 +5,6 @@
 #include <mutex>
 #include <numeric>
 
-#include "body_building.hpp"
 #include "parallel.hpp"
 #include "philox.hpp"
 #include "skip_shift.hpp"
@@ -15,12 +14,6 @@ namespace {
 
 // what is left of a batch for each of several cohorts should still be worth a device's while
 constexpr std::size_t smallest_cohort = 64;
-
-void end(Life& life, Status status, std::string reason, double ended_at = 0) {
-  life.result.status = status;
-  life.result.reason = std::move(reason);
-  life.result.ended_at = ended_at;
-}
 
 /// The index of the first mark that is not before `time` (s), but for rounding.
 std::size_t mark_at(const std::vector<double>& marks, double time) {
@@ -91,29 +84,6 @@ std::vector<Result> Evaluation::evaluate_cohort(std::span<const Newborn> newborn
   return results;
 }
 
-std::vector<Life> Evaluation::birth(std::span<const Newborn> newborns) const {
-  const BusyClock::Span span(decode_);
-  std::vector<Blueprint> blueprints(newborns.size());
-  simulator_.workers().for_each(newborns.size(), [&](std::size_t i) {
-    call_operator(experiment_, Encoding::kind, 0, [&] {
-      blueprints[i] = experiment_.encoding->decode(*newborns[i].genome, experiment_.world);
-      if (blueprints[i].failure.empty()) check_blueprint(blueprints[i], experiment_.world);
-    });
-  });
-  std::vector<BuiltBody> built = build_bodies(std::move(blueprints), simulator_.neighbours(), simulator_.workers());
-  std::vector<Life> lives(newborns.size());
-  simulator_.workers().for_each(lives.size(), [&](std::size_t i) {
-    Life& life = lives[i];
-    life.newborn = newborns[i];
-    if (!built[i].failure.empty()) return end(life, Status::invalid, std::move(built[i].failure));
-    life.living.body = std::move(built[i].body);
-    if (const auto& load = experiment_.load) put_load(life.living.body, load->share, load->top);
-    life.living.state = state_at_birth(life.living.body, experiment_.scene);
-    choose_step(life);
-  });
-  return lives;
-}
-
 double Evaluation::development_time() const {
   const Development& development = experiment_.development;
   const int times_lived = development.control == Control::random_places ? 2 : 1;
@@ -166,7 +136,10 @@ void Evaluation::live_cycles(std::span<Life> lives, bool observed, const Action&
       if (!lives[i].alive()) return;
       change(i, cycle);
       if (development.reset) allow_energy(lives[i], [&] { return_to_rest(lives[i]); });
-      choose_step(lives[i]);
+      if (lives[i].living.body.springs.empty())
+        lives[i].end(Status::invalid, "no springs");
+      else
+        choose_step(lives[i]);
     });
     progress(static_cast<double>(cycle) / static_cast<double>(development.cycles));
   }
@@ -295,15 +268,6 @@ void Evaluation::shed_loose_pieces(Life& life, int cycle) const {
   make_change(life, change_by(edits, std::nullopt, now), now);
 }
 
-void Evaluation::choose_step(Life& life) const {
-  LivingBody& living = life.living;
-  if (living.body.springs.empty()) return end(life, Status::invalid, "no springs");
-  LongestStep longest =
-      longest_step(conditions_.step, living.body, living.state.position, experiment_.scene, conditions_.method);
-  if (!longest.failure.empty()) return end(life, Status::invalid, std::move(longest.failure));
-  living.longest_dt = longest.dt;
-}
-
 void Evaluation::return_to_rest(Life& life) const {
   State& state = life.living.state;
   for (std::size_t i = 0; i < state.position.size(); ++i) {
@@ -315,7 +279,6 @@ void Evaluation::return_to_rest(Life& life) const {
     put_on_ground(state.position, experiment_.scene);
 }
 
-template <class Move>
 void Evaluation::simulate(std::span<Life> lives, double duration, const Move& move) const {
   const BusyClock::Span span(simulate_);
   std::vector<Task> tasks;
@@ -338,7 +301,7 @@ void Evaluation::simulate(std::span<Life> lives, double duration, const Move& mo
     static_cast<SpringRecords&>(life.living) = std::move(static_cast<SpringRecords&>(tasks[i]));
     life.living.preparation = std::move(tasks[i].preparation);
     if (!life.snapshots.empty()) life.snapshots.back().work += tasks[i].work;
-    if (tasks[i].status != Status::ok) end(life, tasks[i].status, std::move(tasks[i].reason), tasks[i].ended_at);
+    if (tasks[i].status != Status::ok) life.end(tasks[i].status, std::move(tasks[i].reason), tasks[i].ended_at);
   }
 }
 
@@ -391,7 +354,7 @@ void Evaluation::score(Life& life) const {
     if (std::isfinite(objectives[i])) continue;
     const std::string reason = "fitness not finite: " + experiment_.objectives[i].name;
     objectives.clear();
-    return end(life, Status::invalid, reason);
+    return life.end(Status::invalid, reason);
   }
 }
 

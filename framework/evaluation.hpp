@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "body_building.hpp"
 #include "busy_clock.hpp"
 #include "controls.hpp"
 #include "development.hpp"
@@ -50,6 +51,12 @@ struct Life {
   Result result;
 
   bool alive() const { return result.status == Status::ok; }
+  /// `ended_at` is the simulated time of a divergence, s.
+  void end(Status status, std::string reason, double ended_at = 0) {
+    result.status = status;
+    result.reason = std::move(reason);
+    result.ended_at = ended_at;
+  }
 };
 
 /// How lives are simulated, by default as an experiment says.
@@ -69,6 +76,12 @@ struct PhaseTimes {
   double decode = 0, simulate = 0, develop = 0;
 };
 
+/// What the experiment's encoding makes of a genome. Blames the encoding for what cannot be a blueprint.
+Blueprint decoded(const Experiment& experiment, const Genome& genome);
+
+/// Runs the tasks of lives, which are in the same order.
+using Move = std::function<void(std::span<Task>, std::span<Life* const>)>;
+
 /// Evaluates batches of genomes for an experiment. A batch goes through life in as many cohorts as the simulator wants
 /// to have at once. Experiment and simulator must outlive it.
 class Evaluation {
@@ -80,13 +93,21 @@ class Evaluation {
   /// `progress` is called with the part of the simulation that is done, 0 to 1, by one thread at a time.
   std::vector<Result> evaluate(std::span<const Newborn> newborns, const Progress& progress) const;
 
-  /// Only decodes: the bodies as they are born.
+  /// Only decodes: the bodies before the scene has them.
+  std::vector<BuiltBody> build(std::span<const Newborn> newborns) const;
+  /// The bodies as they are born: they bear the scene's load and lie on its ground.
   std::vector<Life> birth(std::span<const Newborn> newborns) const;
+  /// The same for a body from elsewhere.
+  Life birth(Body body) const;
+  /// A body in the middle of its life, as it is. It is invalid where the ground would throw it out.
+  Life amid_life(Body body, State state) const;
   /// Lets bodies live through their development cycles: what comes out is matured. `progress` is called after each
   /// cycle, when the lives are as it has left them.
   void develop(std::span<Life> lives, const Progress& progress) const;
   /// Chooses the longest step for the body as it is; a body that has none is invalid.
   void choose_step(Life& life) const;
+  /// Lets the bodies that are alive do something for `duration` s, by `move`.
+  void simulate(std::span<Life> lives, double duration, const Move& move) const;
   /// The final evaluation: moves the matured bodies on and scores them.
   void measure(std::span<Life> lives, const Progress& progress) const;
 
@@ -95,9 +116,6 @@ class Evaluation {
  private:
   std::vector<Result> evaluate_cohort(std::span<const Newborn> newborns, const Progress& progress) const;
   void set_windows();
-  /// Lets the bodies that are alive do something for `duration` s. `move` is to run the tasks of these lives.
-  template <class Move>
-  void simulate(std::span<Life> lives, double duration, const Move& move) const;
   /// All cycles of development; `change(i, cycle)` changes the i-th life after a cycle. Where `observed`, what the
   /// operators of a cycle ask for is recorded for them.
   template <class Action>

@@ -263,9 +263,10 @@ class Composer {
     out_.stepping.precision = precision == "double" ? Precision::float64 : Precision::float32;
     out_.step.run_unstable = unstable == "run";
     if (materials == "computed") compute_materials(t);
-    if (out_.step.dt)
+    const bool judges_step = source_.grows_bodies && !out_.step.run_unstable;
+    if (out_.step.dt && judges_step)
       check_step(t);
-    else if (!is_explicit(out_.stepping.method))
+    else if (!out_.step.dt && !is_explicit(out_.stepping.method))
       t.fail("dt", "\"" + method + "\" is stable at any step, so none follows from stability; give a number of s");
     top_.resolve("simulation", t.finish());
   }

@@ -142,6 +142,9 @@ struct ExperimentSource {
   /// Whether it is the record of a run, which names the folders that there were then: those that have gone are warned
   /// of.
   bool is_record = false;
+  /// Whether the bodies are grown by its own encoding, so that its dt must suit its own masses and materials; a body
+  /// from elsewhere is judged by itself.
+  bool grows_bodies = true;
 };
 
 /// Reads, checks and composes an experiment. Throws ConfigError with the place, the value and the remedy.

@@ -1,9 +1,11 @@
 // The command `evodevo`.
+#include <csignal>
 #include <iostream>
 
 #include "archive.hpp"
 #include "commands/commands.hpp"
 #include "crash.hpp"
+#include "output_file.hpp"
 #include "text.hpp"
 #include "toml_reader.hpp"
 
@@ -73,8 +75,11 @@ int main(int argc, char** argv) {
     return code;
   };
   evodevo::name_crashing_operators();
+  std::signal(SIGPIPE, SIG_DFL);  // a reader that has gone, such as `head`, ends this program without a word
   try {
-    return evodevo::dispatch({argv + 1, argv + argc});
+    const int code = evodevo::dispatch({argv + 1, argv + argc});
+    evodevo::finish_standard_output();
+    return code;
   } catch (const evodevo::UsageError& error) {
     return complain(error, 2);
   } catch (const evodevo::ConfigError& error) {

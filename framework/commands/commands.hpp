@@ -11,7 +11,8 @@ namespace evodevo {
 using Arguments = std::vector<std::string>;
 
 /// Every command takes what follows its name and returns the exit code: 0 done, 1 the run or simulation failed, 130
-/// interrupted. Bad input is thrown as UsageError, ConfigError or ArchiveError (exit code 2).
+/// interrupted. Bad input is thrown as UsageError, ConfigError or ArchiveError (exit code 2). What it prints through
+/// std::cout or stdio is checked when it is done (exit code 1).
 int run_command(const Arguments& arguments);
 int resume_command(const Arguments& arguments);
 int check_command(const Arguments& arguments);

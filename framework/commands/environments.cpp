@@ -26,6 +26,7 @@ struct Grown {
   Status status = Status::ok;
   std::string reason;
   std::vector<GrownBody> after;  ///< each cycle that it lived through
+  GivenBody matured = {};        ///< unless it failed
 };
 
 /// A scene and what grew in it from each start, the first without noise.
@@ -43,7 +44,10 @@ Environment grow(const Experiment& experiment, const Individual& individual, std
   std::vector<Life> lives = evaluation.birth(newborns);
   std::vector<GrowthObserver> observers(starts, GrowthObserver(lives.front().living.body));
   for (std::uint32_t start = 1; start < starts; ++start)
-    if (lives[start].alive()) disturb(lives[start], experiment, start - 1);
+    if (Life& life = lives[start]; life.alive()) {
+      disturb(life, experiment, start - 1);
+      evaluation.choose_step(life);
+    }
   Environment environment{
       .name = experiment.name, .materials = experiment.world.material_names, .grown = std::vector<Grown>(starts)};
   if (experiment.scene.gravity) environment.slope = experiment.scene.gravity->slope;
@@ -55,6 +59,8 @@ Environment grow(const Experiment& experiment, const Individual& individual, std
   for (std::size_t i = 0; i < lives.size(); ++i) {
     environment.grown[i].status = lives[i].result.status;
     environment.grown[i].reason = lives[i].result.reason;
+    LivingBody& living = lives[i].living;
+    environment.grown[i].matured = {std::move(living.body), std::move(living.state)};
   }
   return environment;
 }
@@ -117,8 +123,7 @@ Answer answer_of(const std::vector<Experiment>& experiments, const Individual& i
           pair.effects[kind].push_back(compare(environments[a], environments[b], cycle, kinds[kind].distance));
     }
   for (Environment& environment : environments)
-    for (Grown& grown : environment.grown)  // the last is shown; there are too many to keep them all
-      if (grown.after.size() > 1) grown.after.erase(grown.after.begin(), grown.after.end() - 1);
+    for (Grown& grown : environment.grown) grown.after.clear();  // there are too many to keep them all
   return answer;
 }
 
@@ -159,9 +164,7 @@ Json to_json(const Environment& environment) {
   Json starts = Json::array();
   for (const Grown& grown : environment.grown) {
     Json start = {{"status", name(grown.status)}, {"reason", grown.reason}};
-    if (grown.status == Status::ok)
-      start["body"] =
-          Json::parse(body_to_json(grown.after.back().body, grown.after.back().places, environment.materials));
+    if (grown.status == Status::ok) start["body"] = Json::parse(body_to_json(grown.matured, environment.materials));
     starts.push_back(std::move(start));
   }
   return {{"name", environment.name}, {"slope", environment.slope}, {"starts", std::move(starts)}};

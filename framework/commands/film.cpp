@@ -28,15 +28,18 @@ int film_command(const Arguments& arguments) {
     throw UsageError("--out " + file + ": expected a name ending in .mp4 or .png");
   if (!picture && given->contains("at"))
     throw UsageError("--at is the moment of a picture; give --out a name ending in .png, or leave --at out");
+  refuse_to_overwrite("--out", file, files_of_run((*given)["DIR"].as<std::string>()));
   const std::string page = page_template();
   const Archive archive = Archive::read((*given)["DIR"].as<std::string>());
   const ArchivedIndividual shown = chosen_individual(archive, *given);
   const Cast cast =
       given->contains("individual") ? Cast{.best = 0, .individuals = {shown.id}} : Cast{.best = 1, .ancestors = 0};
   const Experiment experiment = experiment_to_live_again(archive, given_plugin_path(*given));
+  refuse_to_overwrite("--out", file, libraries_of(experiment));
+  OutputFile output(file, file);
   const auto simulator = make_simulator(experiment);
   auto data = report_data({reported_run(archive, experiment, *simulator, cast, page_budget)});
-  shoot(filled_page(page, data), file,
+  shoot(filled_page(page, data), output, file,
         given->contains("at") ? std::optional((*given)["at"].as<double>()) : std::nullopt);
   std::cout << file << '\n';
   return 0;

@@ -23,14 +23,18 @@ int gallery_command(const Arguments& arguments) {
   const auto file = (*given)["out"].as<std::string>();
   if (!file.ends_with(".html") && !file.ends_with(".png"))
     throw UsageError("--out " + file + ": expected a name ending in .html or .png");
+  const auto experiment_file = (*given)["EXPERIMENT.toml"].as<std::string>();
+  refuse_to_overwrite("--out", file, {experiment_file});
   const std::string page = page_template();
-  const Experiment experiment =
-      read_experiment(experiment_source((*given)["EXPERIMENT.toml"].as<std::string>(), *given));
+  const Experiment experiment = read_experiment(experiment_source(experiment_file, *given));
+  refuse_to_overwrite("--out", file, libraries_of(experiment));
+  OutputFile output(file, file);
   const std::string filled = filled_page(page, gallery_data(experiment, static_cast<std::size_t>(count)));
   if (file.ends_with(".png")) {
-    shoot(filled, file, std::nullopt);
+    shoot(filled, output, file, std::nullopt);
   } else {
-    write_page(file, filled);
+    output.write(filled);
+    output.finish();
     std::cerr << size_note(file, filled.size(), "--count");
   }
   std::cout << file << '\n';

@@ -9,6 +9,7 @@
 
 #include "commands/options.hpp"
 #include "loader.hpp"
+#include "output_file.hpp"
 #include "text.hpp"
 
 namespace evodevo {
@@ -79,7 +80,7 @@ void replace_all(std::string& text, const std::string& mark, const std::string& 
     text.replace(at, mark.size(), value);
 }
 
-void write_file(const fs::path& from, const fs::path& to, const std::string& kind, const std::string& name) {
+void write_from(const fs::path& from, const fs::path& to, const std::string& kind, const std::string& name) {
   std::ifstream source(from);
   if (!source) throw std::runtime_error(from.string() + ": cannot be read; install evodevo anew");
   std::string text = for_kind(source, kind);
@@ -87,9 +88,7 @@ void write_file(const fs::path& from, const fs::path& to, const std::string& kin
   replace_all(text, "@FILE@", file_name(name));
   replace_all(text, "@CLASS@", class_name(name));
   replace_all(text, "@A_KIND@", (kind == "encoding" ? "An " : "A ") + kind);
-  std::ofstream target(to);
-  target << text;
-  if (!target.flush()) throw UsageError(to.string() + ": cannot be written");
+  write_file(to, text);
 }
 
 }  // namespace
@@ -103,9 +102,14 @@ int new_command(const Arguments& arguments) {
   if (!fs::create_directory(name, error))
     throw UsageError(name + ": cannot be made: " + (error ? error.message() : "it is there already") +
                      "; give another name, or go elsewhere");
-  for (const char* file : {"CMakeLists.txt", "README.md", "experiment.toml"})
-    write_file(template_folder() / file, fs::path(name) / file, kind, name);
-  write_file(template_folder() / "operator.cpp", fs::path(name) / (file_name(name) + ".cpp"), kind, name);
+  try {
+    for (const char* file : {"CMakeLists.txt", "README.md", "experiment.toml"})
+      write_from(template_folder() / file, fs::path(name) / file, kind, name);
+    write_from(template_folder() / "operator.cpp", fs::path(name) / (file_name(name) + ".cpp"), kind, name);
+  } catch (...) {
+    fs::remove_all(name, error);  // half a project would be in the way of the next attempt
+    throw;
+  }
   std::cout << name << ": a " << kind << " operator in " << file_name(name) << ".cpp; next:\n"
             << "  cd " << name << " && cmake -B build && cmake --build build && ctest --test-dir build\n";
   return 0;

@@ -1,5 +1,8 @@
 #include "options.hpp"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <iostream>
 #include <limits>
 
@@ -9,6 +12,20 @@
 namespace evodevo {
 
 namespace po = boost::program_options;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Throws UsageError where the standard output goes into `input`, or into the run in that folder.
+void refuse_to_print_into(const std::string& input) {
+  struct stat output = {}, read = {};
+  if (fstat(STDOUT_FILENO, &output) != 0 || !S_ISREG(output.st_mode)) return;
+  for (const fs::path& file : {fs::path(input), fs::path(input) / database_name})
+    if (stat(file.c_str(), &read) == 0 && read.st_dev == output.st_dev && read.st_ino == output.st_ino)
+      throw UsageError(file.string() + ": is to be read, but the standard output goes into it; send that elsewhere");
+}
+
+}  // namespace
 
 std::optional<po::variables_map> parse(CommandLine line, const Arguments& arguments) {
   line.options.add_options()("help", "show this text");
@@ -31,7 +48,28 @@ std::optional<po::variables_map> parse(CommandLine line, const Arguments& argume
   }
   for (const std::string& name : line.positional)
     if (!given.contains(name)) throw UsageError(name + " is missing; usage: " + program_name() + " " + line.usage);
+  for (const std::string& name : line.positional) refuse_to_print_into(given[name].as<std::string>());
+  if (given.contains(line.repeated))
+    for (const std::string& input : given[line.repeated].as<std::vector<std::string>>()) refuse_to_print_into(input);
   return given;
+}
+
+void refuse_to_overwrite(const std::string& option, const fs::path& file, const std::vector<fs::path>& inputs) {
+  for (const fs::path& input : inputs)
+    if (std::error_code error; fs::equivalent(file, input, error))
+      throw UsageError(option + " " + file.string() + ": is " + input.string() +
+                       ", which is read; name another file to write");
+}
+
+std::vector<fs::path> libraries_of(const Experiment& experiment) {
+  std::vector<fs::path> libraries;
+  for (const OperatorUse& use : experiment.uses) libraries.push_back(use.file);
+  return libraries;
+}
+
+std::vector<fs::path> files_of_run(const fs::path& folder) {
+  const fs::path database = folder / database_name;
+  return {database, database.string() + "-wal", database.string() + "-shm"};
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include "commands/options.hpp"
 #include "device.hpp"
 #include "living_again.hpp"
+#include "output_file.hpp"
 #include "report/page.hpp"
 
 namespace evodevo {
@@ -21,6 +22,7 @@ nlohmann::ordered_json reported(const std::string& folder, const po::variables_m
     for (const std::int64_t id : given["individual"].as<std::vector<std::int64_t>>())
       cast.individuals.push_back(individual_named(archive, id).id);
   const Experiment experiment = experiment_to_live_again(archive, given_plugin_path(given));
+  refuse_to_overwrite("--out", given["out"].as<std::string>(), libraries_of(experiment));
   const auto simulator = make_simulator(experiment);
   return reported_run(archive, experiment, *simulator, cast, budget);
 }
@@ -41,12 +43,15 @@ int report_command(const Arguments& arguments) {
   const auto folders = (*given)["runs"].as<std::vector<std::string>>();
   const auto best = (*given)["best"].as<std::int64_t>();
   if (best < 0 || best > 100) throw UsageError("--best " + std::to_string(best) + ": expected 0 to 100");
+  const auto file = (*given)["out"].as<std::string>();
+  for (const std::string& folder : folders) refuse_to_overwrite("--out", file, files_of_run(folder));
   const std::string page = page_template();
+  OutputFile output(file, file);
   std::vector<nlohmann::ordered_json> runs;
   for (const std::string& folder : folders) runs.push_back(reported(folder, *given, page_budget / folders.size()));
-  const auto file = (*given)["out"].as<std::string>();
   const std::string filled = filled_page(page, report_data(std::move(runs)));
-  write_page(file, filled);
+  output.write(filled);
+  output.finish();
   std::cout << file << '\n';
   std::cerr << size_note(file, filled.size(), "--best");
   return 0;

@@ -6,6 +6,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <vector>
 
@@ -54,15 +56,24 @@ int run_program(std::vector<std::string> words) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
 }
 
+std::string content_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw std::runtime_error(file.string() + ": cannot be read: " + std::strerror(errno));
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 }  // namespace
 
-void shoot(const std::string& page, const fs::path& file, std::optional<double> at) {
+void shoot(const std::string& page, OutputFile& output, const fs::path& file, std::optional<double> at) {
   const TemporaryFolder folder;
-  const fs::path html = folder.path() / "page.html";
-  write_page(html, page);
-  std::vector<std::string> words = {"node", (viewer_folder() / "film.mjs").string(), html.string(), file.string()};
+  const fs::path html = folder.path() / "page.html", film = folder.path() / ("film" + file.extension().string());
+  write_file(html, page);
+  std::vector<std::string> words = {"node", (viewer_folder() / "film.mjs").string(), html.string(), film.string(),
+                                    file.string()};
   if (at) words.push_back(to_text(*at));
   if (run_program(std::move(words)) != 0) throw std::runtime_error(file.string() + ": has not been made");
+  output.write(content_of(film));
+  output.finish();
 }
 
 }  // namespace evodevo

@@ -63,17 +63,4 @@ std::string size_note(const std::string& file, std::size_t bytes, const std::str
          " MB load slowly; show fewer robots with " + option + "\n";
 }
 
-void write_page(const fs::path& file, const std::string& page) {
-  const fs::path unfinished = file.string() + ".unfinished";
-  std::ofstream stream(unfinished, std::ios::binary);
-  stream << page;
-  stream.close();
-  std::error_code error;
-  if (stream) fs::rename(unfinished, file, error);
-  if (!stream || error) {
-    fs::remove(unfinished, error);
-    throw std::runtime_error(file.string() + ": cannot be written; give another --out");
-  }
-}
-
 }  // namespace evodevo

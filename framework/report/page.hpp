@@ -20,7 +20,4 @@ std::string filled_page(const std::string& page, const nlohmann::ordered_json& d
 /// smaller one, nothing.
 std::string size_note(const std::string& file, std::size_t bytes, const std::string& option);
 
-/// Writes `page` to `file`, all of it or nothing. Throws std::runtime_error where it cannot be written.
-void write_page(const std::filesystem::path& file, const std::string& page);
-
 }  // namespace evodevo

@@ -122,8 +122,7 @@ Film mapping_film(const Blueprint& blueprint, BuiltBody built) {
 }
 
 Json random_robot(const Experiment& experiment, const Individual& individual, std::size_t budget) {
-  const Blueprint blueprint = experiment.encoding->decode(individual.genome, experiment.world);
-  if (blueprint.failure.empty()) check_blueprint(blueprint, experiment.world);
+  const Blueprint blueprint = decoded(experiment, individual.genome);
   BuiltBody built = build_body(blueprint);
   Json robot = {{"individual", individual.id}, {"role", "random"}, {"reason", built.failure}};
   robot["status"] = name(built.failure.empty() ? Status::ok : Status::invalid);

@@ -339,7 +339,7 @@ TEST_F(Command, ATrajectoryIsAFall) {
   const std::string body = scratch_.write("one.json", R"({
     "masses": [{"position": [0, 0, 5], "mass": 1}, {"position": [1, 0, 5], "mass": 1}],
     "springs": [{"a": 0, "b": 1, "rest_length": 1, "material": 0}],
-    "materials": [{"stiffness": 100, "amplitude": 0, "frequency": 0, "phase": 0}]})");
+    "materials": [{"stiffness": 100, "amplitude": 0, "frequency": 0, "phase": 0}], "time": 0})");
   const std::string csv = (scratch_ / "t.csv").string();
   const Finished finished = evodevo({"simulate", body, file_, "--set", "scene={gravity={}}", "--set",
                                      "simulation.precision=double", "--duration", "0.5", "--trajectory", csv});

@@ -1,9 +1,9 @@
 // Writes the tables of the studies that are asked for.
 #include <chrono>
-#include <fstream>
 #include <iostream>
 #include <stdexcept>
 
+#include "output_file.hpp"
 #include "parallel.hpp"
 #include "studies.hpp"
 
@@ -18,10 +18,9 @@ const Study& study_named(const std::string& name) {
 
 /// What made the tables, so that anyone can repeat it.
 void write_origin(const Settings& settings) {
-  std::ofstream stream(settings.folder / "origin.txt");
-  stream << settings.command << '\n'
-         << settings.device.description() << ", " << thread_count(settings.device.threads) << " host threads\n";
-  if (!stream.flush()) throw std::runtime_error((settings.folder / "origin.txt").string() + ": cannot be written");
+  write_file(settings.folder / "origin.txt", settings.command + '\n' + settings.device.description() + ", " +
+                                                 std::to_string(thread_count(settings.device.threads)) +
+                                                 " host threads\n");
 }
 
 void run(const Settings& settings) {
@@ -41,6 +40,7 @@ void run(const Settings& settings) {
 int main(int argc, char** argv) {
   try {
     if (const auto settings = evodevo::accuracy::parse(argc, argv)) evodevo::accuracy::run(*settings);
+    evodevo::finish_standard_output();
     return 0;
   } catch (const std::exception& error) {
     std::cerr << "accuracy: " << error.what() << '\n';

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <stdexcept>
+
+#include "output_file.hpp"
 
 namespace evodevo::accuracy {
 namespace {
@@ -63,9 +64,7 @@ std::string Table::csv() const {
 }
 
 void write(const Table& table, const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / (table.name() + ".csv");
-  std::ofstream stream(file);
-  if (!(stream << table.csv() << std::flush)) throw std::runtime_error(file.string() + ": cannot be written");
+  write_file(folder / (table.name() + ".csv"), table.csv());
 }
 
 }  // namespace evodevo::accuracy

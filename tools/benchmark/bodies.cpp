@@ -75,7 +75,7 @@ NamedBody body_named(const std::string& name, std::uint32_t masses, std::uint32_
     named.body = random_ball(masses);
     if (masses != 1000) named.name += " with " + std::to_string(masses) + " masses";
   } else {
-    named.body = read_body(name);
+    named.body = read_body(name).body;
   }
   if (materials > 0) give_materials(named.body, materials);
   return named;

@@ -7,6 +7,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "output_file.hpp"
 #include "settings.hpp"
 #include "studies.hpp"
 
@@ -58,6 +59,7 @@ void run(const Settings& settings) {
 int main(int argc, char** argv) {
   try {
     if (const auto settings = evodevo::benchmark::parse(argc, argv)) evodevo::benchmark::run(*settings);
+    evodevo::finish_standard_output();
     return 0;
   } catch (const std::exception& error) {
     std::cerr << "bench: " << error.what() << '\n';

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "body_building.hpp"
+#include "evaluation.hpp"
 #include "settings.hpp"
 #include "simulator.hpp"
 #include "time_steps.hpp"
@@ -19,10 +19,9 @@ bool has_muscle(const Body& body) {
 }  // namespace
 
 std::optional<Body> robot_of(const Experiment& experiment, const Genome& genome) {
-  Blueprint blueprint = experiment.encoding->decode(genome, experiment.world);
-  if (blueprint.failure.empty()) check_blueprint(blueprint, experiment.world);
-  BuiltBody built = build_body(std::move(blueprint));
+  BuiltBody built = build_body(decoded(experiment, genome));
   if (!built.failure.empty()) return std::nullopt;
+  if (const auto& load = experiment.load) put_load(built.body, load->share, load->top);
   const State birth = state_at_birth(built.body, experiment.scene);
   const LongestStep step =
       longest_step({.dt = time_step}, built.body, birth.position, experiment.scene, Method::paper_euler);

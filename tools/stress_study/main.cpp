@@ -1,10 +1,10 @@
 // Writes how soon it is known which springs are stressed.
 #include <boost/program_options.hpp>
-#include <fstream>
 #include <iostream>
 #include <optional>
 
 #include "device.hpp"
+#include "output_file.hpp"
 #include "overlap.hpp"
 
 namespace evodevo::stress_study {
@@ -62,9 +62,7 @@ std::optional<Settings> parse(int argc, const char* const* argv) {
 void write_origin(const Settings& settings) {
   const Experiment first =
       read_experiment({settings.experiments.front(), {{"simulation.device", settings.device, ""}}});
-  std::ofstream stream(settings.folder / "origin.txt");
-  stream << settings.command << '\n' << make_simulator(first)->device() << '\n';
-  if (!stream.flush()) throw std::runtime_error((settings.folder / "origin.txt").string() + ": cannot be written");
+  write_file(settings.folder / "origin.txt", settings.command + '\n' + make_simulator(first)->device() + '\n');
 }
 
 void run(const Settings& settings) {
@@ -87,6 +85,7 @@ void run(const Settings& settings) {
 int main(int argc, char** argv) {
   try {
     if (const auto settings = evodevo::stress_study::parse(argc, argv)) evodevo::stress_study::run(*settings);
+    evodevo::finish_standard_output();
     return 0;
   } catch (const std::exception& error) {
     std::cerr << "stress: " << error.what() << '\n';

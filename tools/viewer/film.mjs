@@ -1,4 +1,4 @@
-// Takes a film or a picture of a page of the viewer: node film.mjs PAGE.html OUT.mp4|OUT.png [AT]
+// Takes a film or a picture of a page of the viewer: node film.mjs PAGE.html OUT.mp4|OUT.png NAME_IN_MESSAGES [AT]
 import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { writeFile } from "node:fs/promises";
@@ -53,7 +53,7 @@ async function still(tab, out, at) {
   await writeFile(out, await ((await tab.$(".gallery")) ?? tab).screenshot());
 }
 
-const [page, out, at] = process.argv.slice(2);
+const [page, out, name, at] = process.argv.slice(2);
 try {
   const browser = await launch();
   try {
@@ -64,6 +64,6 @@ try {
     await browser.close();
   }
 } catch (error) {
-  console.error(`evodevo: ${out}: ${error.message}`);
+  console.error(`evodevo: ${name}: ${error.message}`);
   process.exitCode = 1;
 }

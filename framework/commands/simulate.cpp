@@ -1,0 +1,165 @@
+// evodevo simulate: any body in any scene.
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+
+#include "body_json.hpp"
+#include "commands/options.hpp"
+#include "device.hpp"
+#include "evaluation.hpp"
+#include "output_file.hpp"
+#include "piecewise.hpp"
+#include "text.hpp"
+#include "toml_reader.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace po = boost::program_options;
+
+constexpr double frame_time = 0.01;  ///< between two frames of a trajectory, s
+
+/// Writes a body's motion frame by frame: time, mass, x, y, z, vx, vy, vz in SI units, in digits that read back as the
+/// same bits.
+class TrajectoryFile {
+ public:
+  explicit TrajectoryFile(const std::string& file) : output_(file, "--trajectory " + file) {
+    output_.write("time,mass,x,y,z,vx,vy,vz\n");
+  }
+
+  void add(const State& state) {
+    std::string rows;
+    for (std::size_t i = 0; i < state.position.size(); ++i) {
+      const Vec3 &p = state.position[i], &v = state.velocity[i];
+      rows += digits(state.time) + ',' + std::to_string(i);
+      for (const double number : {p.x, p.y, p.z, v.x, v.y, v.z}) rows += ',' + digits(number);
+      rows += '\n';
+    }
+    output_.write(rows);
+  }
+
+  void finish() { output_.finish(); }
+
+ private:
+  static std::string digits(double number) {
+    std::array<char, 32> buffer;
+    return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), number).ptr};
+  }
+
+  OutputFile output_;
+};
+
+/// How a life went on.
+struct Motion {
+  std::uint64_t spring_evaluations = 0;
+  double seconds = 0;  ///< of this computer
+};
+
+/// Lets a life go on in one run or, with a trajectory, from frame to frame.
+Motion go_on(const Evaluation& evaluation, Simulator& simulator, Life& life, double duration,
+             std::uint64_t steps_of_frame, TrajectoryFile* trajectory) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto next_steps = [&](std::size_t) { return steps_of_frame; };
+  const auto look = [&](std::size_t, const Task& piece) {
+    if (piece.status == Status::ok) trajectory->add(*piece.state);
+  };
+  evaluation.simulate({&life, 1}, duration, [&](std::span<Task> tasks, std::span<Life* const>) {
+    if (trajectory == nullptr) return simulator.run(tasks, {});
+    trajectory->add(*tasks.front().state);
+    run_in_pieces(simulator, tasks, {}, next_steps, look);
+  });
+  return {life.result.spring_evaluations,
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+}
+
+std::string short_text(double value) {
+  std::ostringstream text;
+  text << std::setprecision(4) << value;
+  return text.str();
+}
+
+std::string vector_text(Vec3 v) {
+  return "(" + short_text(v.x) + ", " + short_text(v.y) + ", " + short_text(v.z) + ")";
+}
+
+/// The life of the body in a file; throws ConfigError where the scene or its steps are not for it.
+Life life_of(const std::string& file, const Evaluation& evaluation) {
+  GivenBody given = read_body(file);
+  Life life = given.state ? evaluation.amid_life(std::move(given.body), std::move(*given.state))
+                          : evaluation.birth(std::move(given.body));
+  if (life.alive()) return life;
+  const bool is_step = life.result.reason.starts_with("unstable dt");
+  throw ConfigError(
+      file + ": " + name(life.result.status) + ": " + life.result.reason +
+      (is_step ? "; set a smaller simulation.dt, or \"auto\""
+               : "; leave out \"time\", \"start_energy\" and the velocities, and the body is born on the ground"));
+}
+
+void print_end(const Life& life, Vec3 start, double length) {
+  const State& state = life.living.state;
+  const Vec3 moved = centre_of_mass(life.living.body, state.position) - start;
+  std::cout << "after " << to_text(state.time) << " s the centre of mass has moved by " << vector_text(moved) << " m";
+  if (length > 0)
+    std::cout << ", " << short_text(norm({moved.x, moved.y, 0}) / length) << " body lengths along the ground";
+  std::cout << '\n';
+}
+
+}  // namespace
+
+int simulate_command(const Arguments& arguments) {
+  CommandLine line{"simulate BODY.json EXPERIMENT.toml [options]", {"BODY.json", "EXPERIMENT.toml"}, {}};
+  line.options.add_options()("duration", po::value<double>()->default_value(10), "simulated time, s")(
+      "trajectory", po::value<std::string>(),
+      "CSV file for the motion, a frame every 0.01 s or the nearest whole number of steps");
+  add_experiment_options(line.options);
+  const auto given = parse(std::move(line), arguments);
+  if (!given) return 0;
+  const auto body_file = (*given)["BODY.json"].as<std::string>(),
+             experiment_file = (*given)["EXPERIMENT.toml"].as<std::string>();
+  ExperimentSource source = experiment_source(experiment_file, *given);
+  source.grows_bodies = false;
+  const Experiment experiment = read_experiment(source);
+  const auto duration = (*given)["duration"].as<double>();
+  if (!(duration > 0 && duration <= 1e6))
+    throw UsageError("--duration " + to_text(duration) + ": expected more than 0 and at most 1e6 s");
+  const auto simulator = make_simulator(experiment);
+  const Evaluation evaluation(experiment, *simulator);
+  Life life = life_of(body_file, evaluation);
+  const Pace pace = pace_over(duration, experiment.step, life.living.longest_dt);
+  if (pace.steps == 0)
+    throw UsageError("--duration " + to_text(duration) + ": is less than half a step; expected at least " +
+                     to_text(pace.dt) + " s");
+  std::optional<TrajectoryFile> trajectory;
+  if (given->contains("trajectory")) {
+    const auto file = (*given)["trajectory"].as<std::string>();
+    refuse_to_overwrite("--trajectory", file, {body_file, experiment_file});
+    refuse_to_overwrite("--trajectory", file, libraries_of(experiment));
+    trajectory.emplace(file);
+  }
+
+  const Vec3 start = centre_of_mass(life.living.body, life.living.state.position);
+  const double length = bounding_box(life.living.state.position).longest_side();
+  const auto steps_of_frame = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::round(frame_time / pace.dt)));
+  const Motion motion =
+      go_on(evaluation, *simulator, life, duration, steps_of_frame, trajectory ? &*trajectory : nullptr);
+  if (trajectory) trajectory->finish();
+
+  const Body& body = life.living.body;
+  std::cout << body.masses.size() << " masses, " << body.springs.size() << " springs on " << simulator->device()
+            << ", steps of " << short_text(1000 * pace.dt) << " ms\n";
+  if (!life.alive()) {
+    std::cout << name(life.result.status) << " after " << short_text(life.result.ended_at)
+              << " s: " << life.result.reason << '\n';
+    return 1;
+  }
+  print_end(life, start, length);
+  std::cout << "speed: " << short_text(static_cast<double>(motion.spring_evaluations) / motion.seconds)
+            << " spring evaluations/s\n";
+  return 0;
+}
+
+}  // namespace evodevo

@@ -1,0 +1,98 @@
+// Bodies as files: every bit comes back.
+#include "body_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "philox.hpp"
+#include "support/scratch.hpp"
+
+namespace evodevo {
+namespace {
+
+/// Numbers of all sizes with all their digits.
+class Awkward {
+ public:
+  double any() {
+    const double size = std::pow(10, 40 * (rng_.uniform() - 0.5));
+    return (rng_.uniform() - 0.5) * size / 3;
+  }
+  double positive() { return std::abs(any()) + std::numeric_limits<double>::min(); }
+  Vec3 place() {
+    const double x = any(), y = any(), z = any();
+    return {x, y, z};
+  }
+
+ private:
+  Rng rng_{philox, {1, 2, 3, 4}};
+};
+
+GivenBody awkward_body(bool lives) {
+  Awkward number;
+  GivenBody given;
+  for (int i = 0; i < 3; ++i)
+    given.body.materials.push_back({number.positive(), number.positive(), number.positive(), number.any()});
+  for (int i = 0; i < 50; ++i) given.body.masses.push_back({number.place(), number.positive(), i % 4 - 1});
+  for (std::uint32_t i = 1; i < 50; ++i) given.body.springs.push_back({i - 1, i, number.positive(), i % 3});
+  given.body.masses[0].rest = {-0.0, 5e-324, std::numeric_limits<double>::max()};
+  if (!lives) return given;
+  State& state = given.state.emplace();
+  for (const Mass& mass : given.body.masses) {
+    state.position.push_back(mass.rest);
+    state.velocity.push_back(number.place());
+  }
+  state.time = number.positive();
+  state.start_energy = number.any();
+  return given;
+}
+
+GivenBody read_again(const GivenBody& given) {
+  const testing::Scratch scratch;
+  return read_body(scratch.write("body.json", body_to_json(given, {"air", "bone"})));
+}
+
+void expect_same(const Body& a, const Body& b) {
+  EXPECT_EQ(a.materials, b.materials);
+  ASSERT_EQ(a.masses.size(), b.masses.size());
+  for (std::size_t i = 0; i < a.masses.size(); ++i) {
+    EXPECT_EQ(a.masses[i].rest, b.masses[i].rest);
+    EXPECT_EQ(a.masses[i].mass, b.masses[i].mass);
+    EXPECT_EQ(a.masses[i].material, b.masses[i].material);
+  }
+  ASSERT_EQ(a.springs.size(), b.springs.size());
+  for (std::size_t i = 0; i < a.springs.size(); ++i) {
+    EXPECT_EQ(a.springs[i].a, b.springs[i].a);
+    EXPECT_EQ(a.springs[i].b, b.springs[i].b);
+    EXPECT_EQ(a.springs[i].rest_length, b.springs[i].rest_length);
+    EXPECT_EQ(a.springs[i].material, b.springs[i].material);
+  }
+}
+
+TEST(BodyJson, ANewbornComesBackBitForBit) {
+  const GivenBody given = awkward_body(false), back = read_again(given);
+  expect_same(given.body, back.body);
+  EXPECT_FALSE(back.state.has_value());
+  EXPECT_TRUE(std::signbit(back.body.masses[0].rest.x));
+}
+
+TEST(BodyJson, ALifeUnderWayComesBackBitForBit) {
+  const GivenBody given = awkward_body(true), back = read_again(given);
+  expect_same(given.body, back.body);
+  ASSERT_TRUE(back.state.has_value());
+  EXPECT_EQ(given.state->position, back.state->position);
+  EXPECT_EQ(given.state->velocity, back.state->velocity);
+  EXPECT_EQ(given.state->time, back.state->time);
+  EXPECT_EQ(given.state->start_energy, back.state->start_energy);
+}
+
+TEST(BodyJson, APlaceIsWhereTheMassIsNow) {
+  GivenBody given = awkward_body(true);
+  given.state->position[7] = {1, 2, 3};
+  const auto json = nlohmann::json::parse(body_to_json(given, {}));
+  EXPECT_EQ(json.at("masses").at(7).at("position"), nlohmann::json({1.0, 2.0, 3.0}));
+}
+
+}  // namespace
+}  // namespace evodevo
