@@ -15,7 +15,7 @@
 namespace evodevo {
 namespace {
 
-static_assert(cuda::guard_interval == EnergyGuard::interval);
+static_assert(cuda::guard_interval == guard_interval);
 
 constexpr std::size_t most_streams = 12;  // of one batch
 constexpr int batches_at_once = 16;       // one moves, others are prepared, read out or on their way
@@ -80,8 +80,7 @@ class DeviceSimulator final : public CudaSimulator {
 
   void run(std::span<Task> tasks, Recording recording) override {
     const std::vector<Task*> live = begin(tasks, recording);
-    const cuda::Run run{scene_, stepping_, recording,
-                        cuda::features_of(scene_, stepping_, recording, has_muscles(live)), device_.shared_bytes};
+    const cuda::Run run{scene_, stepping_, recording, device_.shared_bytes};
     std::vector<cuda::Plan<T>> plans = plan(live, run);
     const Lanes::Loan lane(lanes_);
     // after a run with records of springs the host has work to do; meanwhile runs without it fill the device
@@ -118,7 +117,7 @@ class DeviceSimulator final : public CudaSimulator {
 
  private:
   /// Empties the answers and gives the tasks that need the device; bodies without masses only grow older.
-  static std::vector<Task*> begin(std::span<Task> tasks, Recording recording) {
+  std::vector<Task*> begin(std::span<Task> tasks, Recording recording) const {
     std::vector<Task*> live;
     for (Task& task : tasks) {
       if (task.status != Status::ok) continue;
@@ -129,21 +128,26 @@ class DeviceSimulator final : public CudaSimulator {
         live.push_back(&task);
         continue;
       }
-      task.state->time += static_cast<double>(task.steps) * task.dt;
+      Course course = begun(task);
+      course.steps += task.steps;
+      take_course(task, course);
     }
     return live;
   }
 
-  static bool has_muscles(const std::vector<Task*>& tasks) {
-    return std::any_of(tasks.begin(), tasks.end(), [](const Task* task) {
-      const std::vector<Material>& materials = task->body->materials;
-      return std::any_of(materials.begin(), materials.end(), [](const Material& m) { return m.amplitude != 0; });
-    });
+  /// The course that a task goes on with or begins.
+  Course begun(const Task& task) const {
+    Course course = course_of(task, scene_, stepping_.precision);
+    if (!task.course) course.forces = cuda::force_range<T>(*task.body, *task.state, scene_);
+    return course;
   }
 
   std::vector<cuda::Plan<T>> plan(const std::vector<Task*>& tasks, const cuda::Run& run) {
     std::vector<std::optional<cuda::Plan<T>>> planned(tasks.size());
-    workers_.for_each(tasks.size(), [&](std::size_t i) { planned[i].emplace(*tasks[i], run); });
+    workers_.for_each(tasks.size(), [&](std::size_t i) {
+      tasks[i]->course = begun(*tasks[i]);
+      planned[i].emplace(*tasks[i], run);
+    });
     std::vector<cuda::Plan<T>> plans;
     for (auto& one : planned) plans.push_back(*std::move(one));
     return plans;

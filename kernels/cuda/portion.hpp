@@ -22,11 +22,10 @@ struct Run {
   Scene scene;
   Stepping stepping;
   Recording recording;
-  Features features;
   std::size_t shared_bytes;  ///< of the chip that one block can have
 };
 
-/// A task and how its body is simulated.
+/// A task, whose course has begun, and how its body is simulated.
 template <class T>
 struct Plan {
   Plan(Task& task, const Run& run);
@@ -34,7 +33,6 @@ struct Plan {
   Sizes sizes() const;
 
   Task* task;
-  EnergyGuard guard;
   std::variant<Streamed<T>, Resident<T>> body;
 };
 
@@ -55,6 +53,7 @@ class Portion {
  private:
   /// Resident bodies that one launch handles.
   struct Launch {
+    Features features;
     ResidentForm form;
     unsigned threads;
     auto operator<=>(const Launch&) const = default;
@@ -64,6 +63,13 @@ class Portion {
     cudaKernel_t kernel;
     std::span<const std::size_t> members;
     const ResidentBody<T>* bodies;  ///< on the device
+  };
+
+  /// Streamed bodies likewise: blocks of as many threads.
+  struct StreamedLaunch {
+    Features features;
+    unsigned threads;
+    auto operator<=>(const StreamedLaunch&) const = default;
   };
 
   void pack(Workers& workers);
@@ -80,9 +86,9 @@ class Portion {
   Run run_;
   MirroredMemory& memory_;
   Sizes sizes_;
-  std::vector<Regions> host_, device_;                     // of each plan
-  std::map<Launch, std::vector<std::size_t>> resident_;    ///< the largest bodies first
-  std::map<unsigned, std::vector<std::size_t>> streamed_;  ///< by the threads of their blocks
+  std::vector<Regions> host_, device_;                   // of each plan
+  std::map<Launch, std::vector<std::size_t>> resident_;  ///< the largest bodies first
+  std::map<StreamedLaunch, std::vector<std::size_t>> streamed_;
 };
 
 extern template class Portion<float>;
