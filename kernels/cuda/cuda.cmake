@@ -30,6 +30,7 @@ target_sources(evodevo_kernels PRIVATE
   cuda/error.cpp
   cuda/features.cpp
   cuda/kernels.cpp
+  cuda/memory_store.cpp
   cuda/ownership.cpp
   cuda/portion.cpp
   cuda/resident.cpp

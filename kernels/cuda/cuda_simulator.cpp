@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 #include <stdexcept>
+#include <string>
 
 #include "cuda/cuda_neighbours.hpp"
 #include "cuda/device.hpp"
@@ -29,7 +30,6 @@ struct Lane {
   }
 
   std::vector<cuda::Stream> urgent, patient;
-  cuda::MirroredMemory memory;
 };
 
 /// Lanes that are made when they are needed and used again.
@@ -82,16 +82,10 @@ class DeviceSimulator final : public CudaSimulator {
     const std::vector<Task*> live = begin(tasks, recording);
     const cuda::Run run{scene_, stepping_, recording, device_.shared_bytes};
     std::vector<cuda::Plan<T>> plans = plan(live, run);
-    const Lanes::Loan lane(lanes_);
-    // after a run with records of springs the host has work to do; meanwhile runs without it fill the device
-    const std::vector<cuda::Stream>& streams = recording.of_springs() ? lane->urgent : lane->patient;
     double seconds = 0;
     std::size_t portions = 0;
-    for (std::span<cuda::Plan<T>> left = plans; !left.empty(); ++portions) {
-      cuda::Portion<T> portion = next_portion(left, run, lane->memory);
-      seconds += portion.simulate(kernels_, streams, workers_, busy_);
-      left = left.subspan(portion.bodies());
-    }
+    for (std::span<cuda::Plan<T>> left = plans; !left.empty(); ++portions)
+      left = left.subspan(simulate_some(left, run, seconds));
     const std::lock_guard lock(mutex_);
     device_seconds_ = seconds;
     most_portions_ = std::max(most_portions_, portions);
@@ -153,11 +147,25 @@ class DeviceSimulator final : public CudaSimulator {
     return plans;
   }
 
-  /// As many of the next plans as the device's memory holds together, and that memory. One batch at a time looks how
-  /// much is free and takes it.
-  cuda::Portion<T> next_portion(std::span<cuda::Plan<T>> plans, const cuda::Run& run, cuda::MirroredMemory& memory) {
-    const std::lock_guard lock(mutex_);
-    const auto free = static_cast<double>(cuda::free_memory() + memory.size());
+  /// Simulates as many of the next plans as the device's memory bears together; returns how many. `seconds` grows by
+  /// the time of the kernels.
+  std::size_t simulate_some(std::span<cuda::Plan<T>> plans, const cuda::Run& run, double& seconds) {
+    const auto attempt = [&](std::size_t count) {
+      const Lanes::Loan lane(lanes_);
+      // after a run with records of springs the host has work to do; meanwhile runs without it fill the device
+      const std::vector<cuda::Stream>& streams = run.recording.of_springs() ? lane->urgent : lane->patient;
+      seconds += cuda::Portion<T>(plans.first(count), run, *memory_).simulate(kernels_, streams, workers_, busy_);
+    };
+    try {
+      return memory_->with_fewer(bearable(plans), attempt);
+    } catch (const cuda::OutOfMemory& error) {
+      throw std::runtime_error(why_not_even_one(plans.front(), error));
+    }
+  }
+
+  /// How many of the next plans should fit the memory that is free; at least one.
+  std::size_t bearable(std::span<const cuda::Plan<T>> plans) {
+    const auto free = static_cast<double>(memory_->available());
     const std::size_t budget = std::min(largest_portion_, static_cast<std::size_t>(share_of_memory * free));
     cuda::Sizes sizes;
     std::size_t count = 0;
@@ -165,7 +173,14 @@ class DeviceSimulator final : public CudaSimulator {
       sizes += plans[count].sizes();
       if (cuda::Portion<T>::bytes_for(sizes, count + 1) > budget) break;
     }
-    return {plans.first(std::max<std::size_t>(count, 1)), run, memory};
+    return std::max<std::size_t>(count, 1);
+  }
+
+  std::string why_not_even_one(const cuda::Plan<T>& plan, const cuda::OutOfMemory& error) const {
+    return "CUDA: a body of " + std::to_string(plan.task->body->masses.size()) + " masses and " +
+           std::to_string(plan.task->body->springs.size()) + " springs needs " +
+           cuda::in_mebibytes(cuda::Portion<T>::bytes_for(plan.sizes(), 1)) + " of the GPU's memory, and " +
+           cuda::in_mebibytes(memory_->available()) + " are free: " + error.what();
   }
 
   Scene scene_;
@@ -174,6 +189,7 @@ class DeviceSimulator final : public CudaSimulator {
   cuda::Device device_;
   cuda::KernelStore kernels_;
   Workers workers_;
+  std::shared_ptr<cuda::MemoryStore> memory_ = cuda::MemoryStore::of_process();
   std::unique_ptr<NeighbourSearch> neighbours_;
   Lanes lanes_;
   BusyClock busy_;

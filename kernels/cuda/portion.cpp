@@ -16,6 +16,13 @@ bool has_muscles(const Body& body) {
   return std::any_of(body.materials.begin(), body.materials.end(), [](const Material& m) { return m.amplitude != 0; });
 }
 
+template <class T>
+Sizes sizes_of(std::span<const Plan<T>> plans) {
+  Sizes sizes;
+  for (const Plan<T>& plan : plans) sizes += plan.sizes();
+  return sizes;
+}
+
 /// Waits until all streams have done what they were given; asleep, because other batches need the core. Not on the
 /// device, where other batches' launches could be queued behind a stream that waits. Returns the time since `begin`, s.
 double wait_for(std::span<const Stream> streams, const Event& begin) {
@@ -53,10 +60,16 @@ std::size_t Portion<T>::bytes_for(const Sizes& sizes, std::size_t bodies) {
 }
 
 template <class T>
-Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MirroredMemory& memory)
-    : plans_(plans), run_(run), memory_(memory) {
+Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store)
+    : Portion(plans, run, store, sizes_of<T>(plans)) {}
+
+template <class T>
+Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store, const Sizes& sizes)
+    : plans_(plans),
+      run_(run),
+      sizes_(sizes),
+      memory_(store, plans.size() * header_bytes<T> + sizes.mirrored(), sizes.scratch) {
   for (std::size_t i = 0; i < plans.size(); ++i) {
-    sizes_ += plans[i].sizes();
     if (const auto* resident = std::get_if<Resident<T>>(&plans[i].body)) {
       resident_[{resident->features(), resident->form(), resident->threads()}].push_back(i);
     } else {
@@ -69,14 +82,13 @@ Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MirroredMemory& me
       return std::get<Resident<T>>(plans[a].body).slots() > std::get<Resident<T>>(plans[b].body).slots();
     });
   const std::size_t headers = plans.size() * header_bytes<T>;
-  memory_.resize(headers + sizes_.mirrored(), sizes_.scratch);
   // descriptions, then inputs, then states, then sums, then scratch
   const auto regions = [&](std::byte* base) {
     std::byte* input = base + headers;
     return Regions{input, input + sizes_.input, input + sizes_.input + sizes_.state};
   };
-  Regions host = regions(memory_.host()), device = regions(memory_.device());
-  device.scratch = memory_.device() + headers + sizes_.mirrored();
+  Regions host = regions(memory_->host()), device = regions(memory_->device());
+  device.scratch = memory_->device() + headers + sizes_.mirrored();
   for (const Plan<T>& plan : plans) {
     host_.push_back(host);
     device_.push_back(device);
@@ -92,8 +104,8 @@ void Portion<T>::pack(Workers& workers) {
   for (const auto& [launch, bodies] : resident_) order.insert(order.end(), bodies.begin(), bodies.end());
   const std::size_t first_streamed = order.size();
   for (const auto& [launch, bodies] : streamed_) order.insert(order.end(), bodies.begin(), bodies.end());
-  auto* resident = reinterpret_cast<ResidentBody<T>*>(memory_.host());
-  auto* streamed = reinterpret_cast<StreamedBody<T>*>(memory_.host() + first_streamed * header_bytes<T>);
+  auto* resident = reinterpret_cast<ResidentBody<T>*>(memory_->host());
+  auto* streamed = reinterpret_cast<StreamedBody<T>*>(memory_->host() + first_streamed * header_bytes<T>);
   workers.for_each(order.size(), [&](std::size_t i) {
     const std::size_t at = order[i];
     const Plan<T>& plan = plans_[at];
@@ -107,15 +119,15 @@ void Portion<T>::pack(Workers& workers) {
 template <class T>
 void Portion<T>::upload(cudaStream_t stream) {
   const std::size_t headers = plans_.size() * header_bytes<T>;
-  check(cudaMemcpyAsync(memory_.device(), memory_.host(), headers + sizes_.input + sizes_.state, cudaMemcpyHostToDevice,
-                        stream),
+  check(cudaMemcpyAsync(memory_->device(), memory_->host(), headers + sizes_.input + sizes_.state,
+                        cudaMemcpyHostToDevice, stream),
         "copying bodies to the GPU");
   check(cudaMemsetAsync(device_.front().sums, 0, sizes_.sums, stream), "clearing the GPU's memory");
 }
 
 template <class T>
 std::vector<typename Portion<T>::ReadyLaunch> Portion<T>::ready_launches(KernelStore& kernels, Workers& workers) const {
-  const auto* bodies = reinterpret_cast<const ResidentBody<T>*>(memory_.device());
+  const auto* bodies = reinterpret_cast<const ResidentBody<T>*>(memory_->device());
   std::vector<ReadyLaunch> launches;
   for (const auto& [launch, members] : resident_) {
     launches.push_back({launch, nullptr, members, bodies});
@@ -167,7 +179,7 @@ void Portion<T>::launch_streamed(KernelStore& kernels, std::span<const Stream> s
   std::size_t count = 0;
   for (const auto& [launch, members] : streamed_) count += members.size();
   const auto* bodies =
-      reinterpret_cast<const StreamedBody<T>*>(memory_.device() + (plans_.size() - count) * header_bytes<T>);
+      reinterpret_cast<const StreamedBody<T>*>(memory_->device() + (plans_.size() - count) * header_bytes<T>);
   std::size_t next = 0;
   for (const auto& [launch, members] : streamed_) {
     const cudaStream_t stream = streams[next++ % streams.size()];
@@ -231,6 +243,7 @@ double Portion<T>::simulate(KernelStore& kernels, std::span<const Stream> stream
   pack(workers);
   {
     const BusyClock::Span span(busy);
+    const Quiet quiet(streams);
     upload(streams[0]);
     check(cudaEventRecord(begin, streams[0]), "recording an event");
     launch_resident(kernels, streams, workers);

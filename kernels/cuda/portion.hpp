@@ -10,7 +10,7 @@
 #include "busy_clock.hpp"
 #include "cuda/features.hpp"
 #include "cuda/kernels.hpp"
-#include "cuda/memory.hpp"
+#include "cuda/memory_store.hpp"
 #include "cuda/resident.hpp"
 #include "cuda/streamed.hpp"
 #include "parallel.hpp"
@@ -40,14 +40,14 @@ struct Plan {
 template <class T>
 class Portion {
  public:
-  Portion(std::span<Plan<T>> plans, const Run& run, MirroredMemory& memory);
-
-  std::size_t bodies() const { return plans_.size(); }
+  /// Throws OutOfMemory, as simulate() may.
+  Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store);
 
   /// Bytes of the device's memory that bodies of these sizes need.
   static std::size_t bytes_for(const Sizes& sizes, std::size_t bodies);
 
   /// Makes all steps and fills in the answers; returns the time of the kernels, s. `busy` runs while the device works.
+  /// After an exception no answer is filled in, and the streams are at rest.
   double simulate(KernelStore& kernels, std::span<const Stream> streams, Workers& workers, BusyClock& busy);
 
  private:
@@ -72,6 +72,7 @@ class Portion {
     auto operator<=>(const StreamedLaunch&) const = default;
   };
 
+  Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store, const Sizes& sizes);
   void pack(Workers& workers);
   void upload(cudaStream_t stream);
   std::vector<ReadyLaunch> ready_launches(KernelStore& kernels, Workers& workers) const;
@@ -84,8 +85,8 @@ class Portion {
 
   std::span<Plan<T>> plans_;
   Run run_;
-  MirroredMemory& memory_;
   Sizes sizes_;
+  MemoryStore::Loan memory_;
   std::vector<Regions> host_, device_;                   // of each plan
   std::map<Launch, std::vector<std::size_t>> resident_;  ///< the largest bodies first
   std::map<StreamedLaunch, std::vector<std::size_t>> streamed_;

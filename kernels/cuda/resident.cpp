@@ -55,15 +55,19 @@ ForceRange force_range(const Body& body, const State& state, const Scene& scene)
   double weight = 0;
   if (scene.gravity)
     for (const Mass& mass : body.masses) weight += mass.mass * std::abs(scene.gravity->acceleration);
-  double largest = std::max(weight, stopping_force(body, state));
+  double largest = std::max(weight, stopping_force(body, state)), doubled = 0;
+  bool driven = false;
   std::vector<std::uint32_t> valence(body.masses.size());
   for (const Spring& spring : body.springs) {
     const Material& material = body.materials[spring.material];
-    const double stretched = spring.rest_length * (1 + std::abs(material.amplitude));
+    const double length = spring.rest_length * (1 + std::abs(material.amplitude));
     const double strain = norm(state.position[spring.b] - state.position[spring.a]) - spring.rest_length;
-    largest = std::max(largest, std::abs(material.stiffness) * std::max(stretched, 2 * std::abs(strain)));
+    doubled = std::max(doubled, std::abs(material.stiffness) * length);
+    largest = std::max(largest, std::abs(material.stiffness) * 2 * std::abs(strain));
+    driven = driven || material.amplitude * material.frequency != 0;
     ++valence[spring.a], ++valence[spring.b];
   }
+  largest = std::max(largest, driven ? 2 * doubled : doubled);
   ForceRange range;
   const std::uint32_t terms = valence.empty() ? 1 : std::max(1u, *std::max_element(valence.begin(), valence.end()));
   // one percent for the rounding of the force itself

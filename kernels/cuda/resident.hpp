@@ -21,9 +21,10 @@ struct ChipMemory {
   std::uint32_t table_steps = 1;
 };
 
-/// The range for a body: up to the force at which its strongest spring is twice as long as it wants to be, to twice
-/// what a spring's force is now, to what it takes to stop the masses' motion, and to the body's weight; soft or short
-/// springs may have to bear more of these than of the first.
+/// The range for a body: up to the force at which its strongest spring is twice as long as it wants to be, or three
+/// times where muscles drive the body, for resonance stretches springs by more than their length; to twice what a
+/// spring's force is now, to what it takes to stop the masses' motion, and to the body's weight; soft or short springs
+/// may have to bear more of these than of the first.
 template <class T>
 ForceRange force_range(const Body& body, const State& state, const Scene& scene);
 
