@@ -8,7 +8,7 @@ namespace evodevo {
 namespace {
 
 /// Why a body in the middle of its life is not let go: what the floor holds in it is more than the body can have
-/// brought there, all that its life began with and a fall by its own size. Empty where it may go on.
+/// brought there, all the energy that it has and a fall by its own size. Empty where it may go on.
 std::string throw_by_ground(const LivingBody& living, const Scene& scene) {
   if (!scene.floor) return {};
   const std::vector<Vec3>& places = living.state.position;
@@ -21,7 +21,7 @@ std::string throw_by_ground(const LivingBody& living, const Scene& scene) {
     deepest = std::max(deepest, depth);
     held += scene.floor->stiffness * depth * depth / 2;
   }
-  const double brought = std::max(0.0, living.state.start_energy) + weight * size;
+  const double brought = std::max(0.0, total_energy(living.body, living.state, scene)) + weight * size;
   if (held <= brought) return {};
   char text[160];
   std::snprintf(

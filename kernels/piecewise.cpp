@@ -11,13 +11,15 @@ namespace {
 /// A task on its way from one run to the next.
 class Piecewise {
  public:
-  explicit Piecewise(Task& whole) : whole_(whole), start_(whole.state->time) { whole_.spring_evaluations = 0; }
+  explicit Piecewise(Task& whole) : whole_(whole) { whole_.spring_evaluations = 0; }
 
   bool is_over() const { return whole_.status != Status::ok || done_ == whole_.steps; }
 
   Task piece(std::uint64_t steps) {
     Task piece{.body = whole_.body, .state = whole_.state, .dt = whole_.dt};
     piece.steps = std::min(steps, whole_.steps - done_);
+    piece.later_steps = whole_.later_steps + whole_.steps - done_ - piece.steps;
+    piece.course = whole_.course;
     piece.preparation = std::move(whole_.preparation);
     return piece;
   }
@@ -26,16 +28,14 @@ class Piecewise {
     whole_.status = piece.status;
     whole_.ended_at = piece.ended_at;
     whole_.reason = piece.reason;
+    whole_.course = piece.course;
     whole_.preparation = std::move(piece.preparation);
     whole_.spring_evaluations += piece.spring_evaluations;
     done_ += piece.steps;
-    // not a sum of sums, so that the time is the same as after one run
-    if (whole_.status == Status::ok) whole_.state->time = start_ + static_cast<double>(done_) * whole_.dt;
   }
 
  private:
   Task& whole_;
-  double start_;  ///< s
   std::uint64_t done_ = 0;
 };
 

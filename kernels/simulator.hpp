@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "course.hpp"
 #include "evodevo/body.hpp"
 #include "method.hpp"
 #include "neighbours.hpp"
@@ -65,13 +66,20 @@ class Preparation {
   virtual ~Preparation() = default;
 };
 
-/// One body's share of a batch: `steps` time steps of `dt`, the i-th of them at State::time + i dt. `body` to `steps`
-/// are given; the rest, and what was recorded of the springs, is the answer. The records are empty after a divergence.
+/// One body's share of a batch: `steps` time steps of `dt`, the i-th of them at State::time + i dt. `body` to
+/// `later_steps` are given; the rest, and what was recorded of the springs, is the answer. The records are empty after
+/// a divergence.
+///
+/// A run can be made in pieces: each piece but the last says how many `later_steps` are to follow, and hands its
+/// `course` to the next, with the same body and dt. State and verdict are then those of one run, to the bit; what was
+/// recorded is of the piece alone, and sums of pieces may differ from the whole's by rounding.
 struct Task : SpringRecords {
   const Body* body = nullptr;
   State* state = nullptr;  ///< moved in place
   double dt = 0.0005;      ///< time step, s; paper, Table II
   std::uint64_t steps = 0;
+  std::uint64_t later_steps = 0;  ///< of the same run, in pieces still to come
+  std::optional<Course> course;   ///< of the same run's pieces so far; afterwards for the next, where one is to come
   /// Of the body's last run, or none; afterwards of this one. One that no longer fits the body is not used.
   std::shared_ptr<const Preparation> preparation;
 

@@ -183,6 +183,16 @@ class MovingBody {
   Array<T> position_[3], velocity_[3], force_[3];
 };
 
+/// Ends the run of a body that has diverged.
+void check(Task& task, Course& course, const Scene& scene, const Energies& e) {
+  if (e.finite) course.fallen = std::max(course.fallen, fallen_energy(scene, e.moment));
+  task.reason = verdict(course, task.dt, e.kinetic, e.elastic, e.finite);
+  if (task.reason.empty()) return;
+  task.status = Status::diverged;
+  task.ended_at = course.time(task.dt);
+  task.clear({}, 0);
+}
+
 }  // namespace
 
 template <class T>
@@ -199,32 +209,28 @@ void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels
                   .peak = recording.peak_force,
                   .tension = recording.tension};
   const World<T> world = world_of<T>(scene, task.dt);
-  const EnergyGuard guard(body, state, scene, stepping.precision, task.dt);
+  Course course = course_of(task, scene, stepping.precision);
   const Integrator<T>& integrator = kernels.integrator[static_cast<std::size_t>(stepping.method)];
   const std::size_t rows = integrator.rows_per_step;
   MovingBody<T> moving(body, state, kernels.lanes, integrator, sums);
-  ActuationTables<T> tables(body, EnergyGuard::interval * rows + 1, kernels.table_size, sums);
+  ActuationTables<T> tables(body, guard_interval * rows + 1, kernels.table_size, sums);
   task.clear(recording, body.springs.size());
   task.work = 0;
   task.spring_evaluations = 0;
 
-  const double start = state.time;
-  for (std::uint64_t done = 0; done < task.steps && task.status == Status::ok;) {
-    const std::size_t now = std::min<std::uint64_t>(task.steps - done, EnergyGuard::interval);
-    kernels.actuate(tables.view(), start, done * rows, now * rows + 1, task.dt / static_cast<double>(rows));
+  const std::uint64_t end = course.steps + task.steps;
+  while (course.steps < end && task.status == Status::ok) {
+    const std::size_t now = std::min(end - course.steps, guard_interval - course.steps % guard_interval);
+    kernels.actuate(tables.view(), course.origin, course.steps * rows, now * rows + 1,
+                    task.dt / static_cast<double>(rows));
     integrator.advance(moving.view(), world, tables.view(), now, sums);
     moving.collect(task);
-    done += now;
-    state.time = start + static_cast<double>(done) * task.dt;
+    course.steps += now;
     task.spring_evaluations += now * body.springs.size();
-    const Energies e = kernels.energies(moving.view(), world, tables.view(now * rows));
-    task.reason = guard.verdict(e.kinetic, e.elastic, e.moment, e.finite);
-    if (!task.reason.empty()) {
-      task.status = Status::diverged;
-      task.ended_at = state.time;
-      task.clear({}, 0);
-    }
+    if (is_checked(task, course))
+      check(task, course, scene, kernels.energies(moving.view(), world, tables.view(now * rows)));
   }
+  take_course(task, course);
   if (task.steps > 0) moving.write(state);  // else not even round it
   if (!recording.work || task.status != Status::ok) task.work = 0;
   for (auto* means : {&task.stress, &task.tension})

@@ -10,23 +10,39 @@
 
 namespace evodevo::cuda {
 
-/// Fills in a task's status, reason, work and times. `largest_force`: the end of the range of forces, N.
-inline void read_answer(const Answer& answer, const EnergyGuard& guard, double largest_force, Recording recording,
-                        Task& task) {
-  task.state->time += static_cast<double>(answer.steps) * task.dt;
+/// What the device is told of a task's way, whose course has begun.
+inline Stretch stretch_of(const Task& task) {
+  const Course& course = *task.course;
+  return {.origin = course.origin,
+          .first_step = course.steps,
+          .steps = task.steps,
+          .bound = course.bound,
+          .since_check = static_cast<std::uint32_t>(course.steps % guard_interval),
+          .is_last = task.later_steps == 0,
+          .left_range = course.left_range};
+}
+
+/// Fills in a task's status, reason, work and times.
+inline void read_answer(const Answer& answer, Recording recording, Task& task) {
+  Course course = *task.course;
+  course.steps += answer.steps;
+  course.fallen = answer.fallen;
+  course.left_range = answer.out_of_range != 0;
   task.spring_evaluations = answer.steps * task.body->springs.size();
   task.work = recording.work ? answer.work : 0;
-  if (!answer.diverged) return;
-  task.status = Status::diverged;
-  task.ended_at = task.state->time;
-  task.work = 0;
-  task.clear({}, 0);
-  task.reason = guard.verdict(answer.kinetic, answer.elastic, answer.moment, answer.finite != 0);
-  if (task.reason.empty()) {
-    char text[96];
-    std::snprintf(text, sizeof text, "force range: the force of a spring grew beyond %.3g N", largest_force);
-    task.reason = text;
+  if (answer.diverged) {
+    task.status = Status::diverged;
+    task.ended_at = course.time(task.dt);
+    task.work = 0;
+    task.clear({}, 0);
+    task.reason = verdict(course, task.dt, answer.kinetic, answer.elastic, answer.finite != 0);
+    if (task.reason.empty()) {
+      char text[96];
+      std::snprintf(text, sizeof text, "force range: the force of a spring grew beyond %.3g N", course.forces.largest);
+      task.reason = text;
+    }
   }
+  take_course(task, course);
 }
 
 /// The actuator of a material whose stiffness is given in units of `resolution` (N).

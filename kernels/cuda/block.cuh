@@ -32,10 +32,11 @@ __device__ __forceinline__ void store(const Body& body, unsigned mass, const Mov
   body.velocities[mass] = point(m.velocity);
 }
 
-/// Calls advance(body, count) for the steps from the `done`-th on to the next check, if the body has any.
+/// Calls advance(body, count) for the steps of leg `index`, if the body has any.
 template <class Advance>
-__device__ __forceinline__ void advance_to_check(const Body& stored, std::uint64_t done, const Advance& advance) {
-  if (done >= stored.steps || stored.answer->diverged) return;
+__device__ __forceinline__ void advance_leg(const Body& stored, std::uint64_t index, const Advance& advance) {
+  const Leg leg(stored.stretch, index);
+  if (leg.empty() || stored.answer->diverged) return;
   Body body = stored;
   if (body.on_chip) {
     body.places = points_on_chip(body, 0);
@@ -43,7 +44,7 @@ __device__ __forceinline__ void advance_to_check(const Body& stored, std::uint64
     for_each_mass(body, [&](unsigned mass) { store(body, mass, moving(stored, mass)); });
     __syncthreads();
   }
-  advance(body, static_cast<unsigned>(min(body.steps - done, std::uint64_t{guard_interval})));
+  advance(body, leg.steps());
   if (body.on_chip) for_each_mass(body, [&](unsigned mass) { store(stored, mass, moving(body, mass)); });
 }
 

@@ -43,9 +43,20 @@ __device__ __forceinline__ double moment_of(Number mass, const Place& place, con
   return mass * height;
 }
 
-/// What falling below the origin has set free, J. `moment`: the sum of mass times height, kg m.
-__device__ __forceinline__ double fallen_energy(double moment, const World<Number>& world) {
-  return physics::maximum(0.0, -static_cast<double>(world.acceleration) * moment);
+/// Whether a body is checked after `steps` steps of its stretch.
+__device__ __forceinline__ bool is_checked(const Stretch& stretch, std::uint64_t steps) {
+  return (stretch.since_check + steps) % guard_interval == 0 || (stretch.is_last && steps == stretch.steps);
+}
+
+/// Writes down what falling below the origin has set free at most. `moment`: the sum of mass times height, kg m.
+__device__ __forceinline__ void note_fall(double moment, const World<Number>& world, Answer& answer) {
+  answer.fallen = physics::maximum(answer.fallen, -static_cast<double>(world.acceleration) * moment);
+}
+
+/// Whether a checked body, whose energies and steps are in its answer, has gained energy from nothing.
+__device__ __forceinline__ bool has_gained(const Stretch& stretch, const World<Number>& world, const Answer& answer) {
+  const double elapsed = static_cast<double>(stretch.first_step + answer.steps) * world.exact_dt;
+  return !(answer.kinetic + answer.elastic <= stretch.bound.limit(elapsed, answer.fallen));
 }
 
 }  // namespace evodevo::cuda

@@ -2,7 +2,7 @@
 set(embedded cuda/resident.cu cuda/streamed.cu cuda/neighbours.cu cuda/block.cuh cuda/check.cuh cuda/mass_step.cuh
   cuda/resident.cuh cuda/streamed.cuh cuda/materials/computed.cuh cuda/materials/table.cuh cuda/methods/implicit.cu cuda/methods/paper_euler.cuh cuda/methods/rk4.cuh
   cuda/methods/symplectic_euler.cuh cuda/methods/velocity_verlet.cuh cuda/methods/xpbd.cu cuda/formats.hpp
-  cuda/fixed_point.hpp cuda/point_clouds.hpp physics.hpp arithmetic.hpp material_code.hpp)
+  cuda/fixed_point.hpp cuda/point_clouds.hpp physics.hpp arithmetic.hpp energy_bound.hpp material_code.hpp)
 set(embedded_sources ${CMAKE_CURRENT_BINARY_DIR}/embedded_sources.cpp)
 
 # evodevo_embed(OUTPUT HEADER FUNCTION SOURCES...): the sources, relative to here, as what FUNCTION of HEADER gives
@@ -30,6 +30,7 @@ target_sources(evodevo_kernels PRIVATE
   cuda/error.cpp
   cuda/features.cpp
   cuda/kernels.cpp
+  cuda/memory_store.cpp
   cuda/ownership.cpp
   cuda/portion.cpp
   cuda/resident.cpp

@@ -1,13 +1,12 @@
-// The search on a GPU: clouds in portions, each in a workspace that no other thread uses.
+// The search on a GPU: clouds in portions that its memory holds.
 #include "cuda/cuda_neighbours.hpp"
 
 #include <algorithm>
-#include <mutex>
 
 #include "cuda/device.hpp"
 #include "cuda/kernels.hpp"
 #include "cuda/launch.hpp"
-#include "cuda/memory.hpp"
+#include "cuda/memory_store.hpp"
 #include "cuda/packing.hpp"
 #include "cuda/point_clouds.hpp"
 #include "parallel.hpp"
@@ -62,22 +61,17 @@ struct Kernels {
   cudaKernel_t find_reach, count_pairs, place_pairs, write_pairs;
 };
 
-/// What one thread at a time searches with.
-struct Workspace {
-  cuda::Stream stream;
-  cuda::MirroredMemory arrays, pairs;
-};
-
 /// Clouds that are searched together.
 class Portion {
  public:
-  Portion(std::span<const Job> jobs, const Kernels& kernels, Workspace& workspace, Workers& workers)
-      : jobs_(jobs), kernels_(kernels), workspace_(workspace), workers_(workers), arrays_(jobs) {
-    std::size_t most_pairs = 0;
-    for (const Job& job : jobs) most_pairs += job.most_pairs();
-    workspace.arrays.resize(arrays_.extent.size());
-    workspace.pairs.resize(most_pairs * sizeof(DevicePair));
-  }
+  /// Throws OutOfMemory, as find() may before it has called `use`.
+  Portion(std::span<const Job> jobs, const Kernels& kernels, cuda::MemoryStore& store, Workers& workers)
+      : jobs_(jobs),
+        kernels_(kernels),
+        workers_(workers),
+        layout_(jobs),
+        arrays_(store, layout_.extent.size()),
+        pairs_(store, most_pairs(jobs) * sizeof(DevicePair)) {}
 
   /// Bytes of memory that a cloud takes.
   static std::size_t bytes_for(const Job& job) {
@@ -86,17 +80,26 @@ class Portion {
   }
 
   void find(const NeighbourSearch::Use& use) {
-    pack();
-    count();
-    write();
-    const auto* pairs = reinterpret_cast<const IndexPair*>(workspace_.pairs.host());
+    {
+      const cuda::Quiet quiet({&stream_, 1});
+      pack();
+      count();
+      write();
+    }
+    const auto* pairs = reinterpret_cast<const IndexPair*>(pairs_->host());
     workers_.for_each(jobs_.size(), [&](std::size_t i) {
       use(jobs_[i].index, {pairs + clouds()[i].first_pair, clouds()[i].pairs});
     });
   }
 
  private:
-  DeviceCloud* clouds() const { return arrays_.clouds.in(workspace_.arrays.host()); }
+  static std::size_t most_pairs(std::span<const Job> jobs) {
+    std::size_t pairs = 0;
+    for (const Job& job : jobs) pairs += job.most_pairs();
+    return pairs;
+  }
+
+  DeviceCloud* clouds() const { return layout_.clouds.in(arrays_->host()); }
 
   void pack() {
     std::uint32_t first_point = 0;
@@ -106,12 +109,12 @@ class Portion {
                      .neighbours = static_cast<std::uint32_t>(jobs_[i].neighbours())};
       first_point += clouds()[i].points;
     }
-    std::byte* host = workspace_.arrays.host();
+    std::byte* host = arrays_->host();
     workers_.for_each(jobs_.size(), [&](std::size_t i) {
       const std::span<const Vec3> places = jobs_[i].cloud.places;
-      double* const to[] = {arrays_.axes[0].in(host) + clouds()[i].first_point,
-                            arrays_.axes[1].in(host) + clouds()[i].first_point,
-                            arrays_.axes[2].in(host) + clouds()[i].first_point};
+      double* const to[] = {layout_.axes[0].in(host) + clouds()[i].first_point,
+                            layout_.axes[1].in(host) + clouds()[i].first_point,
+                            layout_.axes[2].in(host) + clouds()[i].first_point};
       for (std::size_t p = 0; p < places.size(); ++p)
         to[0][p] = places[p].x, to[1][p] = places[p].y, to[2][p] = places[p].z;
       // rounding keeps the order, so that no distance within the box comes out larger
@@ -122,15 +125,15 @@ class Portion {
 
   /// What the kernels are told.
   cuda::DeviceClouds description() const {
-    std::byte* device = workspace_.arrays.device();
-    return {.clouds = arrays_.clouds.in(device),
-            .x = arrays_.axes[0].in(device),
-            .y = arrays_.axes[1].in(device),
-            .z = arrays_.axes[2].in(device),
-            .reach = arrays_.reach.in(device),
-            .first_pair = arrays_.first_pair.in(device),
+    std::byte* device = arrays_->device();
+    return {.clouds = layout_.clouds.in(device),
+            .x = layout_.axes[0].in(device),
+            .y = layout_.axes[1].in(device),
+            .z = layout_.axes[2].in(device),
+            .reach = layout_.reach.in(device),
+            .first_pair = layout_.first_pair.in(device),
             .count = static_cast<std::uint32_t>(jobs_.size()),
-            .points = static_cast<std::uint32_t>(arrays_.points)};
+            .points = static_cast<std::uint32_t>(layout_.points)};
   }
 
   /// The blocks that have a warp for each of `items`.
@@ -141,28 +144,27 @@ class Portion {
 
   template <class... Arguments>
   void launch(cudaKernel_t kernel, std::size_t warps, Arguments... arguments) {
-    cuda::launch(kernel, blocks_for(warps), cuda::search_threads, 0, workspace_.stream, description(), arguments...);
+    cuda::launch(kernel, blocks_for(warps), cuda::search_threads, 0, stream_, description(), arguments...);
   }
 
   void copy_clouds(cudaMemcpyKind direction) {
-    const cuda::MirroredMemory& memory = workspace_.arrays;
+    const cuda::MirroredMemory& memory = *arrays_;
     const bool up = direction == cudaMemcpyHostToDevice;
-    cuda::check(cudaMemcpyAsync(arrays_.clouds.in(up ? memory.device() : memory.host()),
-                                arrays_.clouds.in(up ? memory.host() : memory.device()),
-                                jobs_.size() * sizeof(DeviceCloud), direction, workspace_.stream),
+    cuda::check(cudaMemcpyAsync(layout_.clouds.in(up ? memory.device() : memory.host()),
+                                layout_.clouds.in(up ? memory.host() : memory.device()),
+                                jobs_.size() * sizeof(DeviceCloud), direction, stream_),
                 "copying point clouds");
   }
 
   /// Finds every point's neighbours and the number of pairs of every cloud.
   void count() {
-    cuda::check(cudaMemcpyAsync(workspace_.arrays.device(), workspace_.arrays.host(), arrays_.input,
-                                cudaMemcpyHostToDevice, workspace_.stream),
+    cuda::check(cudaMemcpyAsync(arrays_->device(), arrays_->host(), layout_.input, cudaMemcpyHostToDevice, stream_),
                 "copying points to the GPU");
-    launch(kernels_.find_reach, arrays_.points);
-    launch(kernels_.count_pairs, arrays_.points);
+    launch(kernels_.find_reach, layout_.points);
+    launch(kernels_.count_pairs, layout_.points);
     launch(kernels_.place_pairs, jobs_.size());
     copy_clouds(cudaMemcpyDeviceToHost);
-    cuda::check(cudaStreamSynchronize(workspace_.stream), "finding neighbours on the GPU");
+    cuda::check(cudaStreamSynchronize(stream_), "finding neighbours on the GPU");
   }
 
   /// Brings all pairs to the host, one cloud behind the other.
@@ -173,18 +175,19 @@ class Portion {
       pairs += clouds()[i].pairs;
     }
     copy_clouds(cudaMemcpyHostToDevice);
-    launch(kernels_.write_pairs, arrays_.points, reinterpret_cast<DevicePair*>(workspace_.pairs.device()));
-    cuda::check(cudaMemcpyAsync(workspace_.pairs.host(), workspace_.pairs.device(), pairs * sizeof(DevicePair),
-                                cudaMemcpyDeviceToHost, workspace_.stream),
-                "copying pairs from the GPU");
-    cuda::check(cudaStreamSynchronize(workspace_.stream), "finding neighbours on the GPU");
+    launch(kernels_.write_pairs, layout_.points, reinterpret_cast<DevicePair*>(pairs_->device()));
+    cuda::check(
+        cudaMemcpyAsync(pairs_->host(), pairs_->device(), pairs * sizeof(DevicePair), cudaMemcpyDeviceToHost, stream_),
+        "copying pairs from the GPU");
+    cuda::check(cudaStreamSynchronize(stream_), "finding neighbours on the GPU");
   }
 
   std::span<const Job> jobs_;
   const Kernels& kernels_;
-  Workspace& workspace_;
   Workers& workers_;
-  Arrays arrays_;
+  Arrays layout_;
+  cuda::MemoryStore::Loan arrays_, pairs_;
+  cuda::Stream stream_;
 };
 
 class CudaNeighbourSearch final : public NeighbourSearch {
@@ -203,29 +206,15 @@ class CudaNeighbourSearch final : public NeighbourSearch {
     }
     workers.for_each(without_pairs.size(), [&](std::size_t i) { use(without_pairs[i], {}); });
     if (jobs.empty()) return;
-    std::unique_ptr<Workspace> workspace = take_workspace();
     for (std::span<const Job> left = jobs; !left.empty();) {
-      const std::size_t count = portion_from(left);
-      Portion(left.first(count), kernels_, *workspace, workers).find(use);
-      left = left.subspan(count);
+      const auto attempt = [&](std::size_t count) {
+        Portion(left.first(count), kernels_, *memory_, workers).find(use);
+      };
+      left = left.subspan(memory_->with_fewer(portion_from(left), attempt));
     }
-    const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(workspace));
   }
 
  private:
-  std::unique_ptr<Workspace> take_workspace() {
-    {
-      const std::lock_guard lock(mutex_);
-      if (!idle_.empty()) {
-        std::unique_ptr<Workspace> workspace = std::move(idle_.back());
-        idle_.pop_back();
-        return workspace;
-      }
-    }
-    return std::make_unique<Workspace>();
-  }
-
   /// How many of the next jobs are done together.
   std::size_t portion_from(std::span<const Job> jobs) const {
     std::size_t bytes = 0;
@@ -239,8 +228,7 @@ class CudaNeighbourSearch final : public NeighbourSearch {
   std::size_t largest_portion_;  // bytes
   cuda::KernelStore store_;
   Kernels kernels_;
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<Workspace>> idle_;
+  std::shared_ptr<cuda::MemoryStore> memory_ = cuda::MemoryStore::of_process();
 };
 
 }  // namespace

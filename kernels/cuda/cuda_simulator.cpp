@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 #include <stdexcept>
+#include <string>
 
 #include "cuda/cuda_neighbours.hpp"
 #include "cuda/device.hpp"
@@ -15,7 +16,7 @@
 namespace evodevo {
 namespace {
 
-static_assert(cuda::guard_interval == EnergyGuard::interval);
+static_assert(cuda::guard_interval == guard_interval);
 
 constexpr std::size_t most_streams = 12;  // of one batch
 constexpr int batches_at_once = 16;       // one moves, others are prepared, read out or on their way
@@ -29,7 +30,6 @@ struct Lane {
   }
 
   std::vector<cuda::Stream> urgent, patient;
-  cuda::MirroredMemory memory;
 };
 
 /// Lanes that are made when they are needed and used again.
@@ -80,19 +80,12 @@ class DeviceSimulator final : public CudaSimulator {
 
   void run(std::span<Task> tasks, Recording recording) override {
     const std::vector<Task*> live = begin(tasks, recording);
-    const cuda::Run run{scene_, stepping_, recording,
-                        cuda::features_of(scene_, stepping_, recording, has_muscles(live)), device_.shared_bytes};
+    const cuda::Run run{scene_, stepping_, recording, device_.shared_bytes};
     std::vector<cuda::Plan<T>> plans = plan(live, run);
-    const Lanes::Loan lane(lanes_);
-    // after a run with records of springs the host has work to do; meanwhile runs without it fill the device
-    const std::vector<cuda::Stream>& streams = recording.of_springs() ? lane->urgent : lane->patient;
     double seconds = 0;
     std::size_t portions = 0;
-    for (std::span<cuda::Plan<T>> left = plans; !left.empty(); ++portions) {
-      cuda::Portion<T> portion = next_portion(left, run, lane->memory);
-      seconds += portion.simulate(kernels_, streams, workers_, busy_);
-      left = left.subspan(portion.bodies());
-    }
+    for (std::span<cuda::Plan<T>> left = plans; !left.empty(); ++portions)
+      left = left.subspan(simulate_some(left, run, seconds));
     const std::lock_guard lock(mutex_);
     device_seconds_ = seconds;
     most_portions_ = std::max(most_portions_, portions);
@@ -118,7 +111,7 @@ class DeviceSimulator final : public CudaSimulator {
 
  private:
   /// Empties the answers and gives the tasks that need the device; bodies without masses only grow older.
-  static std::vector<Task*> begin(std::span<Task> tasks, Recording recording) {
+  std::vector<Task*> begin(std::span<Task> tasks, Recording recording) const {
     std::vector<Task*> live;
     for (Task& task : tasks) {
       if (task.status != Status::ok) continue;
@@ -129,31 +122,50 @@ class DeviceSimulator final : public CudaSimulator {
         live.push_back(&task);
         continue;
       }
-      task.state->time += static_cast<double>(task.steps) * task.dt;
+      Course course = begun(task);
+      course.steps += task.steps;
+      take_course(task, course);
     }
     return live;
   }
 
-  static bool has_muscles(const std::vector<Task*>& tasks) {
-    return std::any_of(tasks.begin(), tasks.end(), [](const Task* task) {
-      const std::vector<Material>& materials = task->body->materials;
-      return std::any_of(materials.begin(), materials.end(), [](const Material& m) { return m.amplitude != 0; });
-    });
+  /// The course that a task goes on with or begins.
+  Course begun(const Task& task) const {
+    Course course = course_of(task, scene_, stepping_.precision);
+    if (!task.course) course.forces = cuda::force_range<T>(*task.body, *task.state, scene_);
+    return course;
   }
 
   std::vector<cuda::Plan<T>> plan(const std::vector<Task*>& tasks, const cuda::Run& run) {
     std::vector<std::optional<cuda::Plan<T>>> planned(tasks.size());
-    workers_.for_each(tasks.size(), [&](std::size_t i) { planned[i].emplace(*tasks[i], run); });
+    workers_.for_each(tasks.size(), [&](std::size_t i) {
+      tasks[i]->course = begun(*tasks[i]);
+      planned[i].emplace(*tasks[i], run);
+    });
     std::vector<cuda::Plan<T>> plans;
     for (auto& one : planned) plans.push_back(*std::move(one));
     return plans;
   }
 
-  /// As many of the next plans as the device's memory holds together, and that memory. One batch at a time looks how
-  /// much is free and takes it.
-  cuda::Portion<T> next_portion(std::span<cuda::Plan<T>> plans, const cuda::Run& run, cuda::MirroredMemory& memory) {
-    const std::lock_guard lock(mutex_);
-    const auto free = static_cast<double>(cuda::free_memory() + memory.size());
+  /// Simulates as many of the next plans as the device's memory bears together; returns how many. `seconds` grows by
+  /// the time of the kernels.
+  std::size_t simulate_some(std::span<cuda::Plan<T>> plans, const cuda::Run& run, double& seconds) {
+    const auto attempt = [&](std::size_t count) {
+      const Lanes::Loan lane(lanes_);
+      // after a run with records of springs the host has work to do; meanwhile runs without it fill the device
+      const std::vector<cuda::Stream>& streams = run.recording.of_springs() ? lane->urgent : lane->patient;
+      seconds += cuda::Portion<T>(plans.first(count), run, *memory_).simulate(kernels_, streams, workers_, busy_);
+    };
+    try {
+      return memory_->with_fewer(bearable(plans), attempt);
+    } catch (const cuda::OutOfMemory& error) {
+      throw std::runtime_error(why_not_even_one(plans.front(), error));
+    }
+  }
+
+  /// How many of the next plans should fit the memory that is free; at least one.
+  std::size_t bearable(std::span<const cuda::Plan<T>> plans) {
+    const auto free = static_cast<double>(memory_->available());
     const std::size_t budget = std::min(largest_portion_, static_cast<std::size_t>(share_of_memory * free));
     cuda::Sizes sizes;
     std::size_t count = 0;
@@ -161,7 +173,14 @@ class DeviceSimulator final : public CudaSimulator {
       sizes += plans[count].sizes();
       if (cuda::Portion<T>::bytes_for(sizes, count + 1) > budget) break;
     }
-    return {plans.first(std::max<std::size_t>(count, 1)), run, memory};
+    return std::max<std::size_t>(count, 1);
+  }
+
+  std::string why_not_even_one(const cuda::Plan<T>& plan, const cuda::OutOfMemory& error) const {
+    return "CUDA: a body of " + std::to_string(plan.task->body->masses.size()) + " masses and " +
+           std::to_string(plan.task->body->springs.size()) + " springs needs " +
+           cuda::in_mebibytes(cuda::Portion<T>::bytes_for(plan.sizes(), 1)) + " of the GPU's memory, and " +
+           cuda::in_mebibytes(memory_->available()) + " are free: " + error.what();
   }
 
   Scene scene_;
@@ -170,6 +189,7 @@ class DeviceSimulator final : public CudaSimulator {
   cuda::Device device_;
   cuda::KernelStore kernels_;
   Workers workers_;
+  std::shared_ptr<cuda::MemoryStore> memory_ = cuda::MemoryStore::of_process();
   std::unique_ptr<NeighbourSearch> neighbours_;
   Lanes lanes_;
   BusyClock busy_;

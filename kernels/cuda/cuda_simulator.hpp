@@ -19,8 +19,9 @@ class CudaSimulator : public Simulator {
 
 /// A simulator on the current CUDA device that prepares bodies on `threads` threads (0: all cores). Throws
 /// std::runtime_error, which says what is missing and what to do, where there is none, and in run() where the device
-/// runs out of memory or fails. Bodies that need more than `memory` bytes together, or more than most of what is free
-/// on the device, are simulated in portions; a portion's image on the host cannot be swapped out, hence the limit.
+/// fails. Bodies that need more than `memory` bytes together, or more than is free on the device, are simulated in
+/// portions, down to single bodies, one of which has the memory of all simulators of this process to itself if need be;
+/// run() throws where that is too little. A portion's image on the host cannot be swapped out, hence the limit.
 std::unique_ptr<CudaSimulator> make_cuda_simulator(const Scene& scene, const Stepping& stepping, int threads = 0,
                                                    std::size_t memory = std::size_t{4} << 30);
 

@@ -1,7 +1,5 @@
 #include "cuda/error.hpp"
 
-#include <stdexcept>
-
 namespace evodevo::cuda {
 namespace {
 
@@ -12,8 +10,8 @@ const char* remedy(cudaError_t result) {
     case cudaErrorNoDevice:
       return "; check that nvidia-smi lists a GPU and that CUDA_VISIBLE_DEVICES does not hide it";
     case cudaErrorMemoryAllocation:
-      return "; end other programs that use that memory (nvidia-smi lists those on the GPU), or evaluate fewer bodies "
-             "at once";
+      return "; end other programs that use that memory (nvidia-smi lists those on the GPU), or compute on the CPU "
+             "(simulation.device = \"cpu\")";
     case cudaErrorNoKernelImageForDevice:
     case cudaErrorUnsupportedPtxVersion:
       return "; this GPU and the CUDA toolkit that the program was built with do not fit: build with a newer toolkit, "
@@ -43,8 +41,10 @@ const char* remedy(cudaError_t result) {
 void check(cudaError_t result, const std::string& what) {
   if (result == cudaSuccess) return;
   cudaGetLastError();  // a failure that is not sticky must not be found again by the next call
-  throw std::runtime_error("CUDA: " + what + " failed: " + cudaGetErrorString(result) + " (" +
-                           cudaGetErrorName(result) + ")" + remedy(result));
+  const std::string message = "CUDA: " + what + " failed: " + cudaGetErrorString(result) + " (" +
+                              cudaGetErrorName(result) + ")" + remedy(result);
+  if (result == cudaErrorMemoryAllocation) throw OutOfMemory(message);
+  throw std::runtime_error(message);
 }
 
 }  // namespace evodevo::cuda

@@ -24,9 +24,10 @@ struct MethodForm {
   bool coloured = false;          ///< whether it needs the springs by colour
 
   unsigned rows(unsigned steps) const { return steps * rows_per_step + end_rows; }
-  /// Of so many steps that begin with a check; after each check the first pass is an opening one again.
-  std::uint64_t passes(std::uint64_t steps) const {
-    return (steps + guard_interval - 1) / guard_interval * opening_passes + steps * passes_per_step;
+  /// Of so many steps, the first of which comes `since_check` steps after a check; after each check the first pass is
+  /// an opening one again, as at the beginning.
+  std::uint64_t passes(std::uint64_t steps, unsigned since_check = 0) const {
+    return (since_check + steps + guard_interval - 1) / guard_interval * opening_passes + steps * passes_per_step;
   }
 };
 
@@ -44,7 +45,7 @@ struct Features {
   friend auto operator<=>(const Features&, const Features&) = default;
 };
 
-/// `actuation`: whether some body has a muscle among its materials.
+/// `actuation`: whether the body has a muscle among its materials.
 Features features_of(const Scene& scene, const Stepping& stepping, Recording recording, bool actuation);
 
 /// Whether springs on the chip carry codes of their materials. In double precision the codes' materials come from a

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "cuda/fixed_point.hpp"
+#include "energy_bound.hpp"
 
 namespace evodevo::cuda {
 
@@ -70,12 +71,23 @@ struct World {
   double exact_dt;     ///< s
 };
 
+/// Where a run stands that may be a piece of one: Course.
+struct Stretch {
+  double origin;             ///< State::time where the whole run began, s
+  std::uint64_t first_step;  ///< that the whole run had made before
+  std::uint64_t steps;       ///< to make
+  EnergyBound bound;
+  std::uint32_t since_check;  ///< steps, where this piece begins
+  std::uint32_t is_last;      ///< whether the whole run ends with this piece
+  std::uint32_t left_range;   ///< whether a force has left the range since the last check
+};
+
 /// How a body's run ended and its energies then.
 struct Answer {
   std::uint64_t steps;  ///< that were made
   double kinetic;       ///< J
   double elastic;       ///< J
-  double moment;        ///< sum of mass times height, kg m
+  double fallen;        ///< Course::fallen, from before the run on, J
   double work;          ///< J
   std::uint32_t diverged, finite, out_of_range;
 };
@@ -109,9 +121,7 @@ struct ResidentBody {
   double* powers;    ///< sum of power, units m/s
   double* tensions;  ///< sum of force, units
   Answer* answer;
-  double start_time;                             ///< since birth, s
-  std::uint64_t steps;                           ///< to make
-  double energy_bound;                           ///< J
+  Stretch stretch;
   double resolution;                             ///< N, a power of two
   T largest_force;                               ///< units of the resolution; a larger one leaves the range
   std::uint32_t groups, warps, chunks, entries;  ///< warps: that have springs
@@ -169,9 +179,7 @@ struct StreamedBody {
   double* powers;    ///< [rows][lanes] sum of power, W
   double* tensions;  ///< [rows][lanes] sum of force, N
   Answer* answer;
-  double start_time;    ///< since birth, s
-  std::uint64_t steps;  ///< to make
-  double energy_bound;  ///< J
+  Stretch stretch;
   std::uint32_t masses, entries, colours;
   std::uint32_t on_chip;  ///< whether MethodForm::points_on_chip lie in shared memory
 };

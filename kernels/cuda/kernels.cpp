@@ -1,7 +1,5 @@
 #include "cuda/kernels.hpp"
 
-#include <exception>
-
 #include "cuda/error.hpp"
 
 namespace evodevo::cuda {
@@ -20,29 +18,26 @@ cudaLibrary_t load_library(const std::string& source, const std::vector<std::str
 }  // namespace
 
 KernelStore::~KernelStore() {
-  for (const auto& [key, library] : libraries_) {
-    try {
-      cudaLibraryUnload(library.get());
-    } catch (const std::exception&) {  // one that could not be loaded
-    }
-  }
+  for (const auto& [key, library] : libraries_)
+    if (library.handle != nullptr) cudaLibraryUnload(library.handle);
 }
 
 cudaKernel_t KernelStore::get(const std::string& source, const std::string& function,
                               const std::vector<std::string>& definitions) {
   std::string key = source;
   for (const std::string& definition : definitions) key += ' ' + definition;
-  std::shared_future<cudaLibrary_t> library;
+  Library* library = nullptr;
   {
     const std::lock_guard lock(mutex_);
-    std::shared_future<cudaLibrary_t>& entry = libraries_[key];
-    // deferred: the first who waits for it loads it, outside the lock; all others wait for that
-    if (!entry.valid())
-      entry = std::async(std::launch::deferred, load_library, source, definitions, architecture_, more_).share();
-    library = entry;
+    library = &libraries_[key];
+  }
+  {
+    // the first loads it, all others wait for that
+    const std::lock_guard lock(library->loading);
+    if (library->handle == nullptr) library->handle = load_library(source, definitions, architecture_, more_);
   }
   cudaKernel_t kernel = nullptr;
-  check(cudaLibraryGetKernel(&kernel, library.get(), function.c_str()), "looking up " + function);
+  check(cudaLibraryGetKernel(&kernel, library->handle, function.c_str()), "looking up " + function);
   return kernel;
 }
 

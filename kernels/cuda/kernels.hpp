@@ -3,7 +3,6 @@
 
 #include <cuda_runtime_api.h>
 
-#include <future>
 #include <map>
 #include <mutex>
 #include <span>
@@ -14,8 +13,9 @@
 
 namespace evodevo::cuda {
 
-/// Kernels of one device, each compiled and loaded when it is first asked for, and kept. May be used from several
-/// threads, which compile different kernels at the same time.
+/// Kernels of one device, each compiled and loaded when it is first asked for, and kept; one for which there is no
+/// memory is tried again when it is asked for again. May be used from several threads, which compile different kernels
+/// at the same time.
 class KernelStore {
  public:
   /// `more`: sources beside the embedded ones; they must outlive the store.
@@ -29,10 +29,15 @@ class KernelStore {
   cudaKernel_t get(const std::string& source, const std::string& function, const std::vector<std::string>& definitions);
 
  private:
+  struct Library {
+    std::mutex loading;
+    cudaLibrary_t handle = nullptr;
+  };
+
   std::string architecture_;
   std::span<const EmbeddedSource> more_;
   std::mutex mutex_;
-  std::map<std::string, std::shared_future<cudaLibrary_t>> libraries_;
+  std::map<std::string, Library> libraries_;
 };
 
 }  // namespace evodevo::cuda

@@ -4,11 +4,18 @@
 #include <cuda_runtime_api.h>
 
 #include <cstddef>
+#include <span>
+#include <string>
 #include <utility>
 
 #include "cuda/error.hpp"
 
 namespace evodevo::cuda {
+
+/// As messages say it, rounded up.
+inline std::string in_mebibytes(std::size_t bytes) {
+  return std::to_string((bytes + (std::size_t{1} << 20) - 1) >> 20) + " MiB";
+}
 
 /// Memory of the device together with as much on the host that copies go to and come from, and more that is on the
 /// device alone.
@@ -19,18 +26,20 @@ class MirroredMemory {
   MirroredMemory& operator=(const MirroredMemory&) = delete;
   ~MirroredMemory() { release(); }
 
-  /// Makes room for at least `mirrored` bytes on both and, behind them, `more` on the device; what was there is lost.
-  void resize(std::size_t mirrored, std::size_t more = 0) {
-    if (mirrored <= host_size_ && mirrored + more <= size_) return;
-    // bodies grow by little, and taking memory makes the device wait
-    constexpr std::size_t piece = std::size_t{32} << 20;
-    mirrored = (mirrored + piece - 1) / piece * piece;
-    const std::size_t size = mirrored + (more + piece - 1) / piece * piece;
-    release();
-    check(cudaMalloc(&device_, size), "taking " + std::to_string(size >> 20) + " MiB of the GPU's memory");
-    size_ = size;
-    check(cudaMallocHost(&host_, mirrored), "taking " + std::to_string(mirrored >> 20) + " MiB of the host's memory");
-    host_size_ = mirrored;
+  /// Whether there is room for `mirrored` bytes on both and, behind them, `more` on the device.
+  bool holds(std::size_t mirrored, std::size_t more) const {
+    return mirrored <= host_size_ && mirrored + more <= size_;
+  }
+
+  /// Makes room for as much; what was there is lost. Throws OutOfMemory, after which there is none at all.
+  void resize(std::size_t mirrored, std::size_t more) {
+    if (holds(mirrored, more)) return;
+    try {
+      // bodies grow by little, and taking memory makes the device wait
+      take(rounded(mirrored), rounded(more));
+    } catch (const OutOfMemory&) {
+      take(mirrored, more);
+    }
   }
 
   std::byte* device() const { return static_cast<std::byte*>(device_); }
@@ -38,6 +47,25 @@ class MirroredMemory {
   std::size_t size() const { return size_; }  ///< on the device, bytes
 
  private:
+  static std::size_t rounded(std::size_t size) {
+    constexpr std::size_t piece = std::size_t{32} << 20;
+    return (size + piece - 1) / piece * piece;
+  }
+
+  void take(std::size_t mirrored, std::size_t more) {
+    release();
+    const std::size_t size = mirrored + more;
+    try {
+      check(cudaMalloc(&device_, size), "taking " + in_mebibytes(size) + " of the GPU's memory");
+      check(cudaMallocHost(&host_, mirrored), "taking " + in_mebibytes(mirrored) + " of the host's memory");
+    } catch (const OutOfMemory&) {
+      release();
+      throw;
+    }
+    size_ = size;
+    host_size_ = mirrored;
+  }
+
   void release() {
     cudaFree(device_);
     cudaFreeHost(host_);
@@ -68,6 +96,21 @@ class Stream {
 
  private:
   cudaStream_t stream_ = nullptr;
+};
+
+/// Waits at its end until streams have done what they were given, whatever has thrown meanwhile: nobody takes back
+/// memory that the device still works on.
+class Quiet {
+ public:
+  explicit Quiet(std::span<const Stream> streams) : streams_(streams) {}
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+  ~Quiet() {
+    for (const Stream& stream : streams_) cudaStreamSynchronize(stream);  // a failure has been or will be reported
+  }
+
+ private:
+  std::span<const Stream> streams_;
 };
 
 /// A moment in a stream.

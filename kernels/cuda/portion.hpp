@@ -10,7 +10,7 @@
 #include "busy_clock.hpp"
 #include "cuda/features.hpp"
 #include "cuda/kernels.hpp"
-#include "cuda/memory.hpp"
+#include "cuda/memory_store.hpp"
 #include "cuda/resident.hpp"
 #include "cuda/streamed.hpp"
 #include "parallel.hpp"
@@ -22,11 +22,10 @@ struct Run {
   Scene scene;
   Stepping stepping;
   Recording recording;
-  Features features;
   std::size_t shared_bytes;  ///< of the chip that one block can have
 };
 
-/// A task and how its body is simulated.
+/// A task, whose course has begun, and how its body is simulated.
 template <class T>
 struct Plan {
   Plan(Task& task, const Run& run);
@@ -34,7 +33,6 @@ struct Plan {
   Sizes sizes() const;
 
   Task* task;
-  EnergyGuard guard;
   std::variant<Streamed<T>, Resident<T>> body;
 };
 
@@ -42,19 +40,20 @@ struct Plan {
 template <class T>
 class Portion {
  public:
-  Portion(std::span<Plan<T>> plans, const Run& run, MirroredMemory& memory);
-
-  std::size_t bodies() const { return plans_.size(); }
+  /// Throws OutOfMemory, as simulate() may.
+  Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store);
 
   /// Bytes of the device's memory that bodies of these sizes need.
   static std::size_t bytes_for(const Sizes& sizes, std::size_t bodies);
 
   /// Makes all steps and fills in the answers; returns the time of the kernels, s. `busy` runs while the device works.
+  /// After an exception no answer is filled in, and the streams are at rest.
   double simulate(KernelStore& kernels, std::span<const Stream> streams, Workers& workers, BusyClock& busy);
 
  private:
   /// Resident bodies that one launch handles.
   struct Launch {
+    Features features;
     ResidentForm form;
     unsigned threads;
     auto operator<=>(const Launch&) const = default;
@@ -66,6 +65,14 @@ class Portion {
     const ResidentBody<T>* bodies;  ///< on the device
   };
 
+  /// Streamed bodies likewise: blocks of as many threads.
+  struct StreamedLaunch {
+    Features features;
+    unsigned threads;
+    auto operator<=>(const StreamedLaunch&) const = default;
+  };
+
+  Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store, const Sizes& sizes);
   void pack(Workers& workers);
   void upload(cudaStream_t stream);
   std::vector<ReadyLaunch> ready_launches(KernelStore& kernels, Workers& workers) const;
@@ -78,11 +85,11 @@ class Portion {
 
   std::span<Plan<T>> plans_;
   Run run_;
-  MirroredMemory& memory_;
   Sizes sizes_;
-  std::vector<Regions> host_, device_;                     // of each plan
-  std::map<Launch, std::vector<std::size_t>> resident_;    ///< the largest bodies first
-  std::map<unsigned, std::vector<std::size_t>> streamed_;  ///< by the threads of their blocks
+  MemoryStore::Loan memory_;
+  std::vector<Regions> host_, device_;                   // of each plan
+  std::map<Launch, std::vector<std::size_t>> resident_;  ///< the largest bodies first
+  std::map<StreamedLaunch, std::vector<std::size_t>> streamed_;
 };
 
 extern template class Portion<float>;

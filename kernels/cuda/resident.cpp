@@ -55,15 +55,19 @@ ForceRange force_range(const Body& body, const State& state, const Scene& scene)
   double weight = 0;
   if (scene.gravity)
     for (const Mass& mass : body.masses) weight += mass.mass * std::abs(scene.gravity->acceleration);
-  double largest = std::max(weight, stopping_force(body, state));
+  double largest = std::max(weight, stopping_force(body, state)), doubled = 0;
+  bool driven = false;
   std::vector<std::uint32_t> valence(body.masses.size());
   for (const Spring& spring : body.springs) {
     const Material& material = body.materials[spring.material];
-    const double stretched = spring.rest_length * (1 + std::abs(material.amplitude));
+    const double length = spring.rest_length * (1 + std::abs(material.amplitude));
     const double strain = norm(state.position[spring.b] - state.position[spring.a]) - spring.rest_length;
-    largest = std::max(largest, std::abs(material.stiffness) * std::max(stretched, 2 * std::abs(strain)));
+    doubled = std::max(doubled, std::abs(material.stiffness) * length);
+    largest = std::max(largest, std::abs(material.stiffness) * 2 * std::abs(strain));
+    driven = driven || material.amplitude * material.frequency != 0;
     ++valence[spring.a], ++valence[spring.b];
   }
+  largest = std::max(largest, driven ? 2 * doubled : doubled);
   ForceRange range;
   const std::uint32_t terms = valence.empty() ? 1 : std::max(1u, *std::max_element(valence.begin(), valence.end()));
   // one percent for the rounding of the force itself
@@ -82,35 +86,36 @@ std::size_t Resident<T>::largest_chip(std::size_t shared_bytes) {
 }
 
 template <class T>
-std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Scene& scene, const Features& features,
-                                                std::size_t shared_bytes) {
+std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features& features, std::size_t shared_bytes) {
   // before the work of arranging it: whether the masses and one step's table fit
   const std::size_t entries = has_codes(features) ? 0 : task.body->materials.size() + 1;
   const std::size_t least =
       masses_bytes<T>((task.body->masses.size() + lanes - 1) / lanes) + entries * (sizeof(Entry<T>) + sizeof(T));
   if (least > largest_chip(shared_bytes) || entries * sizeof(Entry<T>) > largest_offset * sizeof(T))
     return std::nullopt;
-  Resident resident(task, scene, features);
-  if (!resident.fit(largest_chip(shared_bytes))) return std::nullopt;
+  Resident resident(task, features);
+  const std::size_t chip = largest_chip(shared_bytes);
+  resident.divide_chip(true, chip);
+  if (resident.chip_.size > chip) return std::nullopt;
+  resident.divide_chip(features.work, chip);
   resident.reserve();
   return resident;
 }
 
 template <class T>
-Resident<T>::Resident(const Task& task, const Scene& scene, const Features& features)
+Resident<T>::Resident(const Task& task, const Features& features)
     : task_(&task),
       features_(features),
-      arranged_(ArrangedBody::of(*task.body, largest_block(features.float64), task.preparation)),
-      range_(force_range<T>(*task.body, *task.state, scene)) {}
+      arranged_(ArrangedBody::of(*task.body, largest_block(features.float64), task.preparation)) {}
 
-/// Divides up shared memory; false where it is too small.
+/// Divides up shared memory, with room for the lengths' rates where `with_rates`; springs have what is left.
 template <class T>
-bool Resident<T>::fit(std::size_t shared_bytes) {
+void Resident<T>::divide_chip(bool with_rates, std::size_t shared_bytes) {
   const bool codes = has_codes(features_);
   const std::size_t entries = task_->body->materials.size() + 1;
   // of a row: what each material does then, or what the clock shows
   const std::size_t lengths = codes ? sizeof(std::uint32_t) : entries * sizeof(Entry<T>);
-  const std::size_t rates = features_.work && !codes ? entries * sizeof(T) : 0;
+  const std::size_t rates = with_rates && !codes ? entries * sizeof(T) : 0;
   const std::size_t masses = masses_bytes<T>(arrangement().groups), slots = arrangement().shape.slots();
   const std::size_t records = slots * sizeof(Record<T>), waves = waves_in(slots) * sizeof(std::uint32_t);
   const MethodForm& method = form_of(features_.method);
@@ -125,7 +130,6 @@ bool Resident<T>::fit(std::size_t shared_bytes) {
   chip_.record_offset = aligned(chip_.rate_offset + rows * rates);
   chip_.wave_offset = chip_.record_offset + records;
   chip_.size = chip_.record_offset + (records_on_chip_ ? records + waves : 0);
-  return chip_.size <= shared_bytes;
 }
 
 /// How many of `slots` springs' waves there are: springs that keep their length need none.
@@ -223,8 +227,7 @@ void Resident<T>::pack_masses(const Regions& host) const {
 }
 
 template <class T>
-ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, const EnergyGuard& guard,
-                                  const Scene& scene) const {
+ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, const Scene& scene) const {
   using Integer = typename FixedPoint<T>::Integer;
   const MaterialUnits units = has_codes(features_) ? material_units(*task_->body) : MaterialUnits{};
   pack_records(records_.in(host.input), units);
@@ -237,10 +240,10 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
   actuators_.in(host.input)[0] = {};
   const std::vector<Material> materials = simulated_materials(*task_->body, features_.materials);
   std::transform(materials.begin(), materials.end(), actuators_.in(host.input) + 1,
-                 [&](const Material& material) { return actuator_of(material, range_.resolution); });
-  *answer_.in(host.state) = {};
+                 [&](const Material& material) { return actuator_of(material, range().resolution); });
+  *answer_.in(host.state) = {.fallen = task_->course->fallen};
   return {.world = world_of<T>(scene, task_->dt),
-          .units = {.stiffness = static_cast<T>(units.stiffness / range_.resolution),
+          .units = {.stiffness = static_cast<T>(units.stiffness / range().resolution),
                     .amplitude = static_cast<T>(units.amplitude / (1 << amplitude_shift)),
                     .angular_frequency = static_cast<T>(turn * units.frequency),
                     .frequency = units.frequency},
@@ -260,11 +263,9 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
           .powers = powers_.in(device.sums),
           .tensions = tensions_.in(device.sums),
           .answer = answer_.in(device.state),
-          .start_time = task_->state->time,
-          .steps = task_->steps,
-          .energy_bound = guard.bound(),
-          .resolution = range_.resolution,
-          .largest_force = static_cast<T>(range_.largest / range_.resolution),
+          .stretch = stretch_of(*task_),
+          .resolution = range().resolution,
+          .largest_force = static_cast<T>(range().largest / range().resolution),
           .groups = arrangement().groups,
           .warps = arrangement().shape.warps,
           .chunks = arrangement().shape.chunks,
@@ -277,8 +278,9 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
 }
 
 template <class T>
-void Resident<T>::unpack(const Regions& host, const EnergyGuard& guard, Recording recording, Task& task) const {
-  read_answer(*answer_.in(host.state), guard, range_.largest, recording, task);
+void Resident<T>::unpack(const Regions& host, Recording recording, Task& task) const {
+  if (!answer_.in(host.state)->diverged) unpack_springs(host, task);
+  read_answer(*answer_.in(host.state), recording, task);
   task.preparation = arranged_;
   const auto at = [&](std::size_t plane, std::uint32_t place) -> double {
     return motion_[plane].in(host.state)[place];
@@ -288,10 +290,9 @@ void Resident<T>::unpack(const Regions& host, const EnergyGuard& guard, Recordin
     task.state->position[i] = {at(0, place), at(1, place), at(2, place)};
     task.state->velocity[i] = {at(3, place), at(4, place), at(5, place)};
   }
-  if (task.status == Status::ok) unpack_springs(host, task);
 }
 
-/// Reads what was recorded of the springs; the task's lists have room for it.
+/// Reads what was recorded of the springs; the task's lists have room for it. Needs the course.
 template <class T>
 void Resident<T>::unpack_springs(const Regions& host, Task& task) const {
   const auto steps = static_cast<double>(task.steps);
@@ -300,9 +301,9 @@ void Resident<T>::unpack_springs(const Regions& host, Task& task) const {
   };
   read(task.stress, [&](std::size_t slot) { return stress_.in(host.sums)[slot] / steps; });
   read(task.peak_force,
-       [&](std::size_t slot) { return range_.resolution * std::bit_cast<T>(peak_.in(host.sums)[slot]); });
-  read(task.muscle_work, [&](std::size_t slot) { return range_.resolution * task.dt * powers_.in(host.sums)[slot]; });
-  read(task.tension, [&](std::size_t slot) { return range_.resolution * tensions_.in(host.sums)[slot] / steps; });
+       [&](std::size_t slot) { return range().resolution * std::bit_cast<T>(peak_.in(host.sums)[slot]); });
+  read(task.muscle_work, [&](std::size_t slot) { return range().resolution * task.dt * powers_.in(host.sums)[slot]; });
+  read(task.tension, [&](std::size_t slot) { return range().resolution * tensions_.in(host.sums)[slot] / steps; });
 }
 
 template class Resident<float>;

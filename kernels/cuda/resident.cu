@@ -291,33 +291,34 @@ __device__ __forceinline__ Check check_of(const Body& body, const Movers& movers
   return check;
 }
 
-/// Writes down the body's energies after `steps` steps and says whether it has diverged; the same for all threads.
+/// Writes down the body's energies after `steps` steps of its stretch and says whether it has diverged, which is judged
+/// where a check is due; the same for all threads.
 __device__ __noinline__ bool has_diverged(const Body& body, Check check, std::uint64_t steps) {
   __shared__ double of_warps[4][lanes];
   const bool finite = !__syncthreads_or(check.not_finite != 0);
-  const bool out_of_range = __syncthreads_or(!(check.totals.largest <= body.largest_force));
+  const bool out_of_range =
+      __syncthreads_or(!(check.totals.largest <= body.largest_force)) || body.stretch.left_range != 0;
   const double kinetic = block_sum(check.kinetic, of_warps[0]);
   const double elastic = body.resolution * block_sum(elastic_energy(body, share_of(body)), of_warps[1]);
-  double bound = body.energy_bound;
+  const bool checked = is_checked(body.stretch, steps);
   Answer& answer = *body.answer;
   if constexpr (gravity) {
     const double moment = block_sum(check.moment, of_warps[2]);
-    bound += fallen_energy(moment, body.world);
-    if (threadIdx.x == 0) answer.moment = moment;
+    if (threadIdx.x == 0 && checked && finite) note_fall(moment, body.world, answer);
   }
   if constexpr (work) {
     const double power = block_sum(check.totals.power, of_warps[3]);
     if (threadIdx.x == 0) answer.work += body.world.exact_dt * body.resolution * power;
   }
-  bool diverged = !finite || out_of_range;
+  bool diverged = false;
   if (threadIdx.x == 0) {
-    diverged = diverged || !(kinetic + elastic <= bound);
     answer.steps = steps;
     answer.kinetic = kinetic;
     answer.elastic = elastic;
-    answer.diverged = diverged;
     answer.finite = finite;
     answer.out_of_range = out_of_range;
+    diverged = checked && (!finite || out_of_range || has_gained(body.stretch, body.world, answer));
+    answer.diverged = diverged;
   }
   return __syncthreads_or(diverged);
 }
@@ -376,9 +377,11 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1) evodevo_run
   load(body, movers);
   fill_lengths(body, 0, 1);
   __syncthreads();
-  for (std::uint64_t done = 0; done < body.steps;) {
-    const unsigned until_check = static_cast<unsigned>(
-        min(body.steps - done, static_cast<std::uint64_t>(guard_interval) - done % guard_interval));
+  const std::uint64_t steps = body.stretch.steps;
+  for (std::uint64_t done = 0; done < steps;) {
+    const unsigned since_check = static_cast<unsigned>((body.stretch.since_check + done) % guard_interval);
+    const unsigned until_check =
+        static_cast<unsigned>(min(steps - done, static_cast<std::uint64_t>(guard_interval - since_check)));
     unsigned now = until_check;
     if constexpr (actuation) {
       now = min(until_check, body.table_steps);

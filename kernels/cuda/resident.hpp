@@ -21,15 +21,10 @@ struct ChipMemory {
   std::uint32_t table_steps = 1;
 };
 
-/// Forces as integers: how large they may be and how fine they are.
-struct ForceRange {
-  double resolution = 1;  ///< N, a power of two
-  double largest = 0;     ///< N; no spring's force may be larger
-};
-
-/// The range for a body: up to the force at which its strongest spring is twice as long as it wants to be, to twice
-/// what a spring's force is now, to what it takes to stop the masses' motion, and to the body's weight; soft or short
-/// springs may have to bear more of these than of the first.
+/// The range for a body: up to the force at which its strongest spring is twice as long as it wants to be, or three
+/// times where muscles drive the body, for resonance stretches springs by more than their length; to twice what a
+/// spring's force is now, to what it takes to stop the masses' motion, and to the body's weight; soft or short springs
+/// may have to bear more of these than of the first.
 template <class T>
 ForceRange force_range(const Body& body, const State& state, const Scene& scene);
 
@@ -52,28 +47,29 @@ class ArrangedBody final : public Preparation {
 template <class T>
 class Resident {
  public:
-  /// The body of `task` on a chip whose blocks have up to `shared_bytes`; nothing where it does not fit.
-  static std::optional<Resident> arrange(const Task& task, const Scene& scene, const Features& features,
-                                         std::size_t shared_bytes);
+  /// The body of `task`, whose course has begun, on a chip whose blocks have up to `shared_bytes`; nothing where it
+  /// does not fit, which does not depend on what is recorded.
+  static std::optional<Resident> arrange(const Task& task, const Features& features, std::size_t shared_bytes);
 
   /// Bytes of `shared_bytes` that a body can have; the kernel and the system have the rest.
   static std::size_t largest_chip(std::size_t shared_bytes);
 
   ResidentForm form() const;
+  const Features& features() const { return features_; }
   unsigned threads() const { return 32 * arrangement().shape.block; }
   std::size_t slots() const { return arrangement().slots.size(); }
   std::size_t chip_bytes() const { return chip_.size; }
   Sizes sizes() const { return sizes_; }
 
   /// Writes the body into its part of the host's regions; `device` is where these will be on the device.
-  ResidentBody<T> pack(const Regions& host, const Regions& device, const EnergyGuard& guard, const Scene& scene) const;
+  ResidentBody<T> pack(const Regions& host, const Regions& device, const Scene& scene) const;
 
   /// Reads the task's answer.
-  void unpack(const Regions& host, const EnergyGuard& guard, Recording recording, Task& task) const;
+  void unpack(const Regions& host, Recording recording, Task& task) const;
 
  private:
-  Resident(const Task& task, const Scene& scene, const Features& features);
-  bool fit(std::size_t shared_bytes);
+  Resident(const Task& task, const Features& features);
+  void divide_chip(bool rates, std::size_t shared_bytes);
   std::size_t waves_in(std::size_t slots) const;
   void reserve();
   std::vector<typename FixedPoint<T>::Integer> materials_in_records(const MaterialUnits& units) const;
@@ -83,11 +79,11 @@ class Resident {
   void unpack_springs(const Regions& host, Task& task) const;
 
   const Arrangement& arrangement() const { return arranged_->arrangement; }
+  const ForceRange& range() const { return task_->course->forces; }
 
   const Task* task_;
   Features features_;
   std::shared_ptr<const ArrangedBody> arranged_;
-  ForceRange range_;
   ChipMemory chip_;
   bool records_on_chip_ = true;
 

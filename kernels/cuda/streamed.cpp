@@ -71,6 +71,13 @@ unsigned Streamed<T>::threads() const {
 }
 
 template <class T>
+unsigned Streamed<T>::steps_of_leg(std::uint64_t leg) const {
+  if (leg >= legs()) return 0;
+  const std::uint64_t begin = leg == 0 ? 0 : leg * guard_interval - since_check();
+  return static_cast<unsigned>(std::min(task_->steps, (leg + 1) * guard_interval - since_check()) - begin);
+}
+
+template <class T>
 void Streamed<T>::pack_joints(const Regions& host) const {
   Joint<T>* to = joints_.in(host.input);
   // an empty joint leads to its own mass and has entry 0, no material
@@ -102,8 +109,7 @@ void Streamed<T>::pack_colours(const Regions& host) const {
 }
 
 template <class T>
-StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, const EnergyGuard& guard,
-                                  const Scene& scene) const {
+StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, const Scene& scene) const {
   const Body& body = *task_->body;
   std::copy(first_row_.begin(), first_row_.end(), rows_.in(host.input));
   pack_joints(host);
@@ -124,7 +130,7 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
     places_.in(host.state)[place] = point(task_->state->position[i]);
     velocities_.in(host.state)[place] = point(task_->state->velocity[i]);
   }
-  *answer_.in(host.state) = {};
+  *answer_.in(host.state) = {.fallen = task_->course->fallen};
   return {.world = world_of<T>(scene, task_->dt),
           .first_row = rows_.in(device.input),
           .joints = joints_.in(device.input),
@@ -144,9 +150,7 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
           .powers = powers_.in(device.sums),
           .tensions = tensions_.in(device.sums),
           .answer = answer_.in(device.state),
-          .start_time = task_->state->time,
-          .steps = task_->steps,
-          .energy_bound = guard.bound(),
+          .stretch = stretch_of(*task_),
           .masses = masses(),
           .entries = static_cast<std::uint32_t>(body.materials.size() + 1),
           .colours = colours_,
@@ -154,10 +158,10 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
 }
 
 template <class T>
-void Streamed<T>::unpack(const Regions& host, const EnergyGuard& guard, Recording recording, Task& task) const {
+void Streamed<T>::unpack(const Regions& host, Recording recording, Task& task) const {
   const Answer& answer = *answer_.in(host.state);
-  read_answer(answer, guard, 0, recording, task);
-  const std::uint64_t half = form_of(features_.method).passes(answer.steps) % 2;
+  const std::uint64_t half = form_of(features_.method).passes(answer.steps, since_check()) % 2;
+  read_answer(answer, recording, task);
   const Point<T>* places = places_.in(host.state) + half * masses();
   const Point<T>* velocities = velocities_.in(host.state);
   for (std::size_t i = 0; i < masses(); ++i) {

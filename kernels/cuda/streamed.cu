@@ -41,25 +41,19 @@ __device__ __forceinline__ Place spring_forces(const Body& body, unsigned mass, 
   return force;
 }
 
-/// Whether a body makes pass `index` of those from step `done` to the next check.
-__device__ __forceinline__ bool has_pass(const Body& body, std::uint64_t done, unsigned index) {
-  if (opening_passes > 0 && done >= body.steps) return false;
-  return done * passes_per_step + index < opening_passes + body.steps * passes_per_step;
-}
-
-/// Makes pass `index` of the steps from the `done`-th on, whose lengths begin with the tables, for all bodies that have
-/// as many. Even passes of a run read the first half of the places and write the second, odd ones the other way.
-extern "C" __global__ void evodevo_pass_streamed(const Body* bodies, std::uint64_t done, unsigned index) {
+/// Makes pass `pass` of leg `index`, whose lengths begin with the tables, for all bodies that have as many. Even passes
+/// of a run read the first half of the places and write the second, odd ones the other way.
+extern "C" __global__ void evodevo_pass_streamed(const Body* bodies, std::uint64_t index, unsigned pass) {
   const Body& body = bodies[blockIdx.y];
   const unsigned mass = blockIdx.x * blockDim.x + threadIdx.x;
-  if (mass >= body.masses || !has_pass(body, done, index) || body.answer->diverged) return;
-  const auto half = static_cast<unsigned>((passes_in(done) + index) % 2);
-  const bool is_last = index + 1 == passes_in(guard_interval) || !has_pass(body, done, index + 1);
+  const Leg leg(body.stretch, index);
+  if (mass >= body.masses || pass >= leg.passes() || body.answer->diverged) return;
+  const auto half = static_cast<unsigned>((passes_before(leg, index) + pass) % 2);
   const Point<Number>* from = body.places + half * body.masses;
   const Place place = triple(from[mass]), velocity = triple(body.velocities[mass]);
-  const Place force = spring_forces(body, mass, from, Method::row(index), Method::is_noted(index));
+  const Place force = spring_forces(body, mass, from, Method::row(pass), Method::is_noted(pass));
   Moving m{place, velocity, force, body.mass[mass], body.inverse_mass[mass]};
-  Method::move(body.world, {index, is_last}, reinterpret_cast<Method::Kept*>(body.scratch)[mass], m);
+  Method::move(body.world, {pass, pass + 1 == leg.passes()}, reinterpret_cast<Method::Kept*>(body.scratch)[mass], m);
   body.places[(1 - half) * body.masses + mass] = point(m.place);
   body.velocities[mass] = point(m.velocity);
 }

@@ -12,7 +12,7 @@ namespace evodevo::cuda {
 template <class T>
 class Streamed {
  public:
-  /// `largest_chip`: bytes of shared memory that a body can have.
+  /// `task`: one whose course has begun. `largest_chip`: bytes of shared memory that a body can have.
   Streamed(const Task& task, const Features& features, std::size_t largest_chip);
 
   Sizes sizes() const { return sizes_; }
@@ -21,15 +21,19 @@ class Streamed {
   unsigned threads() const;
   std::size_t chip_bytes() const { return chip_bytes_; }  ///< of the shared memory of a block that moves it alone
   std::uint32_t masses() const { return static_cast<std::uint32_t>(task_->body->masses.size()); }
-  std::uint64_t steps() const { return task_->steps; }
+  const Features& features() const { return features_; }
+  /// From one check to the next, or from the beginning or to the end of the task's steps.
+  std::uint64_t legs() const { return (since_check() + task_->steps + guard_interval - 1) / guard_interval; }
+  unsigned steps_of_leg(std::uint64_t leg) const;
 
   /// Writes the body into its part of the host's regions; `device` is where these will be on the device.
-  StreamedBody<T> pack(const Regions& host, const Regions& device, const EnergyGuard& guard, const Scene& scene) const;
+  StreamedBody<T> pack(const Regions& host, const Regions& device, const Scene& scene) const;
 
   /// Reads the task's answer.
-  void unpack(const Regions& host, const EnergyGuard& guard, Recording recording, Task& task) const;
+  void unpack(const Regions& host, Recording recording, Task& task) const;
 
  private:
+  unsigned since_check() const { return static_cast<unsigned>(task_->course->steps % guard_interval); }
   void reserve();
   void pack_joints(const Regions& host) const;
   void pack_colours(const Regions& host) const;

@@ -78,6 +78,26 @@ TEST_P(Determinism, BesideBodiesOfOtherSteps) {
   }
 }
 
+TEST_P(Determinism, BesideBodiesWithAndWithoutMuscles) {
+  EVODEVO_NEEDS_GPU();
+  const Scene scene = walking_scene();
+  const Recording all{.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};
+  const auto simulator = make_cuda_simulator(scene, stepping(GetParam()));
+  // on the chip; with springs in the device's memory; there altogether
+  for (const std::uint32_t masses : {60u, 1500u, 12000u}) {
+    if (masses > 1500 && !is_explicit(std::get<Method>(GetParam()))) continue;
+    const Body still = random_body(masses, 8, 3, {{4000, 0, 0, 0}, {10000, 0, 0, 0}});
+    const Body lively = random_body(masses, 8, 4);
+    Robot still_beside(still, moving_state(still, scene, 1)), still_alone = still_beside;
+    Robot lively_beside(lively, moving_state(lively, scene, 2)), lively_alone = lively_beside;
+    simulate(*simulator, {&still_beside, &lively_beside}, 230, all);
+    simulate(*simulator, {&still_alone}, 230, all);
+    simulate(*simulator, {&lively_alone}, 230, all);
+    expect_same_bits(still_beside, still_alone);
+    expect_same_bits(lively_beside, lively_alone);
+  }
+}
+
 TEST_P(Determinism, InPortions) {
   EVODEVO_NEEDS_GPU();
   const Scene scene = walking_scene();
@@ -90,20 +110,6 @@ TEST_P(Determinism, InPortions) {
     simulate(*scarce, {&apart[0], &apart[1], &apart[2], &apart[3], &apart[4]}, 200, {.stress = true});
     for (std::size_t i = 0; i < together.size(); ++i) expect_same_bits(together[i], apart[i]);
   }
-}
-
-TEST_P(Determinism, InOneRunOrInTwo) {
-  EVODEVO_NEEDS_GPU();
-  const Scene scene = walking_scene();
-  const Body body = random_body(200, 15, 3);
-  const auto simulator = make_cuda_simulator(scene, stepping(GetParam()));
-  Robot once(body, state_at_birth(body, scene)), twice(body, state_at_birth(body, scene));
-  once.dt = twice.dt = 0x1p-11;  // so that all times are exact
-  simulate(*simulator, {&once}, 430);
-  simulate(*simulator, {&twice}, 130);
-  simulate(*simulator, {&twice}, 300);
-  EXPECT_EQ(once.state.time, twice.state.time);
-  EXPECT_EQ(once.state.position, twice.state.position);
 }
 
 TEST_P(Determinism, InternalForcesLeaveTheMomentumAlone) {

@@ -31,7 +31,7 @@ TEST(Errors, NameWhatWasTriedTheRuntimesWordsAndTheRemedy) {
   const std::pair<cudaError_t, const char*> remedies[] = {
       {cudaErrorInsufficientDriver, "install a newer NVIDIA driver"},
       {cudaErrorNoDevice, "CUDA_VISIBLE_DEVICES"},
-      {cudaErrorMemoryAllocation, "evaluate fewer bodies"},
+      {cudaErrorMemoryAllocation, "compute on the CPU"},
       {cudaErrorNoKernelImageForDevice, "build with a newer toolkit"},
       {cudaErrorDevicesUnavailable, "holds the GPU exclusively"},
       {cudaErrorSystemDriverMismatch, "restart the machine"},
@@ -43,6 +43,16 @@ TEST(Errors, NameWhatWasTriedTheRuntimesWordsAndTheRemedy) {
     EXPECT_THAT(message(error),
                 AllOf(StartsWith("CUDA: copying bodies to the GPU failed: "), HasSubstr(cudaGetErrorString(error)),
                       HasSubstr(cudaGetErrorName(error)), HasSubstr(std::string("; ")), HasSubstr(remedy)));
+}
+
+TEST(Errors, ThatMemoryIsShortCanBeTold) {
+  EXPECT_THROW(check(cudaErrorMemoryAllocation, "taking memory"), OutOfMemory);
+  try {
+    check(cudaErrorLaunchFailure, "simulating");
+  } catch (const OutOfMemory&) {
+    ADD_FAILURE() << "this is another failure";
+  } catch (const std::runtime_error&) {
+  }
 }
 
 TEST(Errors, AFailureWithoutARemedyIsNamedAllTheSame) {

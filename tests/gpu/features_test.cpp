@@ -31,7 +31,7 @@ const std::vector<Subject> subjects{
      &Features::gravity,
      {"gravity", "slope"},
      {"moment"},
-     {"weight", "downhill_force", "moment_of", "fallen_energy"}},
+     {"weight", "downhill_force", "moment_of", "note_fall"}},
     {"slope", &Features::slope, {"slope"}, {}, {"downhill_force"}},
     // rough ground and friction need the floor
     {"floor", &Features::floor, {"floor_on", "friction", "rough"}, {"push"}, {"floor_force", "friction_factor"}},

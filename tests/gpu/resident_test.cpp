@@ -28,21 +28,29 @@ Body body_of(std::size_t materials) {
   return body;
 }
 
+/// A task at its beginning.
+template <class T>
+Task task_of(const Body& body, State& state, const Scene& scene) {
+  Task task{.body = &body, .state = &state};
+  task.course = course_of(task, scene, Precision::float32);
+  task.course->forces = force_range<T>(body, state, scene);
+  return task;
+}
+
 TEST(Resident, RecordsLeadToTheirMaterials) {
   for (const std::size_t materials : {15, 200, 5000, 9000, 0}) {
     const Body body = body_of(materials);
     const Scene scene = testing_gpu::walking_scene();
     State state = state_at_birth(body, scene);
-    const Task task{.body = &body, .state = &state};
-    const auto resident = Resident<float>::arrange(task, testing_gpu::walking_scene(), features, shared_bytes);
+    const Task task = task_of<float>(body, state, scene);
+    const auto resident = Resident<float>::arrange(task, features, shared_bytes);
     ASSERT_TRUE(resident) << materials;
     const bool wide = body.materials.size() > 8190;  // of 8 bytes in 64 KiB, beside that of empty slots
     EXPECT_EQ(resident->form().wide_table, wide) << materials;
 
     std::vector<std::byte> input(resident->sizes().input), motion(resident->sizes().state);
     const Regions regions{input.data(), motion.data(), nullptr};
-    const auto packed =
-        resident->pack(regions, regions, EnergyGuard(body, state, scene, Precision::float32, task.dt), scene);
+    const auto packed = resident->pack(regions, regions, scene);
     std::size_t springs = 0;
     for (std::size_t i = 0; i < resident->slots(); ++i) {
       const std::size_t entry = (packed.records[i].packed >> 16) * (wide ? sizeof(float) : 1) / sizeof(Entry<float>);
@@ -60,19 +68,18 @@ TEST(Resident, SpringsCarryTheCodesOfTheirMaterials) {
     const Body body = body_of(materials);
     const Scene scene = testing_gpu::walking_scene();
     State state = state_at_birth(body, scene);
-    const Task task{.body = &body, .state = &state};
+    const Task task = task_of<float>(body, state, scene);
     Features computed = features;
     computed.materials = Materials::computed;
     computed.actuation = true;
-    const auto resident = Resident<float>::arrange(task, scene, computed, shared_bytes);
+    const auto resident = Resident<float>::arrange(task, computed, shared_bytes);
     ASSERT_TRUE(resident) << materials;
     EXPECT_TRUE(resident->form().records_on_chip) << "whatever the materials";
     EXPECT_FALSE(resident->form().wide_table);
 
     std::vector<std::byte> input(resident->sizes().input), motion(resident->sizes().state);
     const Regions regions{input.data(), motion.data(), nullptr};
-    const auto packed =
-        resident->pack(regions, regions, EnergyGuard(body, state, scene, Precision::float32, task.dt), scene);
+    const auto packed = resident->pack(regions, regions, scene);
     const MaterialUnits units = material_units(body);
     EXPECT_FLOAT_EQ(packed.units.stiffness * static_cast<float>(packed.resolution),
                     static_cast<float>(units.stiffness));
@@ -94,9 +101,26 @@ TEST(Resident, SpringsCarryTheCodesOfTheirMaterials) {
 TEST(Resident, LeavesToTheDevicesMemoryWhatTheChipCannotHold) {
   const Body body = body_of(0);  // in float64 its table alone is as large as the chip
   State state = state_at_birth(body, testing_gpu::walking_scene());
-  const Task task{.body = &body, .state = &state};
-  EXPECT_FALSE(Resident<double>::arrange(task, testing_gpu::walking_scene(), features, shared_bytes));
-  EXPECT_FALSE(Resident<float>::arrange(task, testing_gpu::walking_scene(), features, shared_bytes / 2));
+  const Task task = task_of<double>(body, state, testing_gpu::walking_scene());
+  EXPECT_FALSE(Resident<double>::arrange(task, features, shared_bytes));
+  EXPECT_FALSE(Resident<float>::arrange(task, features, shared_bytes / 2));
+}
+
+TEST(Resident, WhatIsRecordedDoesNotDecideWhereABodyLies) {
+  Features recording = features;
+  recording.work = true;
+  int on_chip = 0;
+  for (std::size_t materials = 14000; materials < 26000; materials += 1000) {
+    Body body = testing_gpu::random_body(200, 10, 1);
+    body.materials.resize(materials, {4000, 0, 0, 0});
+    State state = state_at_birth(body, testing_gpu::walking_scene());
+    const Task task = task_of<float>(body, state, testing_gpu::walking_scene());
+    const bool plain = Resident<float>::arrange(task, features, shared_bytes).has_value();
+    EXPECT_EQ(plain, Resident<float>::arrange(task, recording, shared_bytes).has_value()) << materials;
+    on_chip += plain;
+  }
+  EXPECT_GT(on_chip, 0);
+  EXPECT_LT(on_chip, 12);
 }
 
 }  // namespace

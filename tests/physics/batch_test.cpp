@@ -18,7 +18,11 @@ constexpr Steps stepping{Method::paper_euler, Precision::float32, 0.0005};
 class Bodies {
  protected:
   explicit Bodies(const Steps& steps) : steps_(steps) {
-    for (std::uint32_t i = 0; i < 9; ++i) bodies.push_back(random_body(5 + 17 * i, 4 + i, 3 + 3 * i, i));
+    for (std::uint32_t i = 0; i < 9; ++i) {
+      bodies.push_back(random_body(5 + 17 * i, 4 + i, 3 + 3 * i, i));
+      if (i % 3 == 1)  // no muscles
+        for (Material& material : bodies.back().materials) material.amplitude = 0;
+    }
     for (const Body& body : bodies)
       alone.push_back(simulate(body, state_at_birth(body, full_scene()), full_scene(), steps_, 333, recording));
   }
@@ -67,17 +71,6 @@ TEST_P(BatchOfEachMethod, AnyOrderAndCompositionGivesTheSameBits) {
   expect_the_same({8, 7, 6, 5, 4, 3, 2, 1, 0}, 2);
   expect_the_same({3, 3, 3, 0, 8}, 2);
   expect_the_same({}, 2);
-}
-
-TEST_P(BatchOfEachMethod, StepsInPortionsGiveTheSameBits) {
-  for (const Precision precision : {Precision::float32, Precision::float64}) {
-    const Steps steps{GetParam(), precision, 0x1p-11};  // so that all times are exact
-    const Body& body = bodies[6];
-    const Answer once = simulate(body, state_at_birth(body, full_scene()), full_scene(), steps, 700);
-    State state = state_at_birth(body, full_scene());
-    for (const std::uint64_t n : {1u, 99u, 0u, 350u, 250u}) state = simulate(body, state, full_scene(), steps, n).state;
-    EXPECT_TRUE(same_bits(once.state, state)) << name_of(precision);
-  }
 }
 
 TEST_P(BatchOfEachMethod, EveryBodyHasItsOwnSteps) {

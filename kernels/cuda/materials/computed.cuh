@@ -78,12 +78,13 @@ struct Lengths {
   }
 };
 
-/// Sets the clock for `count` rows from the run's step `step` on. It is read off in double precision, so that late
+/// Sets the clock for `count` rows from step `step` of the stretch on. It is read off in double precision, so that late
 /// times lose no digits.
 __device__ __noinline__ void fill_lengths(const Body& body, std::uint64_t step, unsigned count) {
   const double interval = body.world.exact_dt / rows_per_step;
+  const std::uint64_t row = (body.stretch.first_step + step) * rows_per_step;
   for (unsigned i = threadIdx.x; i < count; i += blockDim.x) {
-    const double time = body.start_time + static_cast<double>(step * rows_per_step + i) * interval;
+    const double time = body.stretch.origin + static_cast<double>(row + i) * interval;
     const double turns = body.units.frequency * time;
     on_chip<unsigned>(body.table_offset + i * sizeof(unsigned)) =
         static_cast<unsigned>(__double2ull_rn((turns - floor(turns)) * 0x1p32));

@@ -55,12 +55,13 @@ struct Lengths {
   }
 };
 
-/// Fills in `count` rows of the table from the run's step `step` on.
+/// Fills in `count` rows of the table from step `step` of the stretch on.
 __device__ __noinline__ void fill_lengths(const Body& body, std::uint64_t step, unsigned count) {
   const double interval = body.world.exact_dt / rows_per_step;
+  const std::uint64_t row = (body.stretch.first_step + step) * rows_per_step;
   for (unsigned i = threadIdx.x; i < count * body.entries; i += blockDim.x) {
     const Actuator actuator = body.actuators[i % body.entries];
-    const double time = body.start_time + static_cast<double>(step * rows_per_step + i / body.entries) * interval;
+    const double time = body.stretch.origin + static_cast<double>(row + i / body.entries) * interval;
     on_chip<Entry<Number>>(body.table_offset + i * sizeof(Entry<Number>)) = entry_of(actuator, time);
     if constexpr (work) on_chip<Number>(body.rate_offset + i * sizeof(Number)) = length_rate(actuator, time);
   }

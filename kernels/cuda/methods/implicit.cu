@@ -210,11 +210,10 @@ __device__ __forceinline__ void note_tensions(const Body& body, unsigned row) {
   });
 }
 
-/// Makes the steps from the `done`-th on to the next check, the lengths at whose beginning are in the tables' first
-/// row.
+/// Makes the steps of leg `index`, the lengths at whose beginning are in the tables' first row.
 extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS)
-    evodevo_advance_streamed(const Body* bodies, std::uint64_t done) {
-  advance_to_check(bodies[blockIdx.x], done, [](const Body& body, unsigned count) {
+    evodevo_advance_streamed(const Body* bodies, std::uint64_t index) {
+  advance_leg(bodies[blockIdx.x], index, [](const Body& body, unsigned count) {
     const Memory memory(body);
     for (unsigned step = 0; step < count; ++step) {
       solve(body.world, body, memory, begin(body.world, body, memory, step + 1));

@@ -67,11 +67,10 @@ __device__ __forceinline__ void move(const World<Number>& world, const Body& bod
   });
 }
 
-/// Makes the steps from the `done`-th on to the next check, the lengths at whose beginning are in the tables' first
-/// row.
+/// Makes the steps of leg `index`, the lengths at whose beginning are in the tables' first row.
 extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS)
-    evodevo_advance_streamed(const Body* bodies, std::uint64_t done) {
-  advance_to_check(bodies[blockIdx.x], done, [](const Body& body, unsigned count) {
+    evodevo_advance_streamed(const Body* bodies, std::uint64_t index) {
+  advance_leg(bodies[blockIdx.x], index, [](const Body& body, unsigned count) {
     for (unsigned step = 0; step < count; ++step) {
       fall(body.world, body);
       solve_springs(body.world, body, step + 1);

@@ -98,8 +98,8 @@ struct State {
   std::vector<Vec3> position;  ///< m
   std::vector<Vec3> velocity;  ///< m/s
   double time = 0;             ///< since birth, s
-  double start_energy = 0;     ///< height + kinetic + elastic energy at birth and what development has added, J; the
-                               ///< energy guard's yardstick
+  double start_energy = 0;     ///< height + kinetic + elastic energy at most, for the energy guard: what there was at
+                               ///< birth, what development has added and what muscles can have added since, J
 };
 
 /// The smallest box around `places`; all zero for none.

@@ -1,0 +1,160 @@
+// Where the device's memory is scarce, batches are divided, down to one body, and give the same bits.
+#include "cuda/memory.hpp"
+
+#include <cuda_runtime_api.h>
+#include <gmock/gmock.h>
+
+#include <stdexcept>
+
+#include "cuda/cuda_neighbours.hpp"
+#include "cuda/device.hpp"
+#include "gpu.hpp"
+#include "parallel.hpp"
+#include "physics/support.hpp"
+
+namespace evodevo::testing_gpu {
+namespace {
+
+constexpr std::size_t mebibyte = std::size_t{1} << 20;
+constexpr Recording all{.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};
+
+/// All of the device's memory but about `left` bytes, until its end.
+class Ballast {
+ public:
+  explicit Ballast(std::size_t left) {
+    for (std::size_t piece = std::size_t{1} << 36; piece >= 2 * mebibyte; piece /= 2)
+      while (cuda::free_memory() >= left + piece) {
+        void* memory = nullptr;
+        if (cudaMalloc(&memory, piece) != cudaSuccess) break;
+        pieces_.push_back(memory);
+      }
+    cudaGetLastError();
+  }
+  Ballast(const Ballast&) = delete;
+  Ballast& operator=(const Ballast&) = delete;
+  ~Ballast() {
+    for (void* piece : pieces_) cudaFree(piece);
+  }
+
+ private:
+  std::vector<void*> pieces_;
+};
+
+/// Several hundred robots of a few bodies, each with its answer where memory is plenty.
+class ScarceMemory : public testing::Test {
+ protected:
+  void SetUp() override {
+    EVODEVO_NEEDS_GPU();
+    for (std::uint32_t i = 0; i < 6; ++i) {
+      const auto materials = i % 2 == 0 ? paper_materials() : std::vector<Material>{{4000, 0, 0, 0}};
+      bodies.push_back(random_body(400 + 31 * i, 20, i, materials));
+    }
+    for (std::size_t i = 0; i < bodies.size(); ++i) expected.emplace_back(bodies[i], moving_state(bodies[i], scene, i));
+    std::vector<Robot*> batch;
+    for (Robot& robot : expected) batch.push_back(&robot);
+    simulate(*make_cuda_simulator(scene, stepping(Precision::float32)), batch, 300, all);
+  }
+
+  /// Moves `count` robots in one batch and compares each.
+  void expect_the_same(Simulator& simulator, std::size_t count) const {
+    std::vector<Robot> robots;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t kind = i % bodies.size();
+      robots.emplace_back(bodies[kind], moving_state(bodies[kind], scene, kind));
+    }
+    std::vector<Robot*> batch;
+    for (Robot& robot : robots) batch.push_back(&robot);
+    simulate(simulator, batch, 300, all);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Robot& other = expected[i % bodies.size()];
+      ASSERT_EQ(robots[i].answer.status, Status::ok) << robots[i].answer.reason;
+      ASSERT_EQ(robots[i].state.position, other.state.position) << i;
+      ASSERT_EQ(robots[i].answer.work, other.answer.work) << i;
+      for (const auto list : SpringRecords::lists) ASSERT_EQ(robots[i].answer.*list, other.answer.*list) << i;
+    }
+  }
+
+  const Scene scene = walking_scene();
+  std::vector<Body> bodies;
+  std::vector<Robot> expected;
+};
+
+TEST_F(ScarceMemory, DividesABatch) {
+  const Ballast ballast(96 * mebibyte);
+  const auto simulator = make_cuda_simulator(scene, stepping(Precision::float32));
+  expect_the_same(*simulator, 1024);
+  EXPECT_GT(simulator->device_use()->portions, 2u);
+}
+
+TEST_F(ScarceMemory, IsSharedByBatchesAtOnce) {
+  const Ballast ballast(96 * mebibyte);
+  const auto simulator = make_cuda_simulator(scene, stepping(Precision::float32));
+  on_own_threads(16, [&](std::size_t) { expect_the_same(*simulator, 64); });
+}
+
+TEST_F(ScarceMemory, IsNotKeptFromOthers) {
+  // what one simulator keeps for its next batch is there for another's
+  const auto first = make_cuda_simulator(scene, stepping(Precision::float32)),
+             second = make_cuda_simulator(scene, stepping(Precision::float32));
+  expect_the_same(*first, 512);
+  const Ballast ballast(32 * mebibyte);
+  expect_the_same(*second, 512);
+}
+
+TEST_F(ScarceMemory, ThatIsTooLittleForOneBodyIsNamed) {
+  const Body large = test::block(40, {5000, 0.14, 1, 0});
+  const auto simulator = make_cuda_simulator({}, stepping(Precision::float32));
+  const auto run = [&] {
+    State state = test::resting(large, {});
+    Task task{.body = &large, .state = &state, .dt = 0.0005, .steps = 3};
+    simulator->run({&task, 1}, all);
+    EXPECT_EQ(task.status, Status::ok) << task.reason;
+  };
+  {
+    const Ballast ballast(24 * mebibyte);
+    try {
+      run();
+      ADD_FAILURE() << "it had memory";
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), testing::StartsWith("CUDA: a body of 68921 masses and "));
+      EXPECT_THAT(error.what(), testing::HasSubstr(" MiB of the GPU's memory"));
+      EXPECT_THAT(error.what(), testing::HasSubstr("nvidia-smi"));
+      EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr("\n")));
+    }
+  }
+  run();
+}
+
+TEST_F(ScarceMemory, DividesASearchForNeighbours) {
+  std::vector<std::vector<Vec3>> places(400);
+  Random random(3);
+  for (auto& of_body : places)
+    for (int i = 0; i < 500; ++i) of_body.push_back(random.vector());
+  std::vector<PointCloud> clouds;
+  for (const auto& of_body : places) clouds.push_back({of_body, 25});
+  std::vector<std::size_t> pairs(clouds.size());
+  Workers workers(2);
+  const auto search = make_cuda_neighbour_search();
+  const Ballast ballast(8 * mebibyte);
+  search->find(clouds, workers, [&](std::size_t i, std::span<const IndexPair> found) { pairs[i] += found.size(); });
+  for (const std::size_t i : {0, 200, 399}) EXPECT_EQ(pairs[i], nearest_pairs(clouds[i].places, 25).size()) << i;
+}
+
+TEST(Quiet, WaitsForStreamsWhateverIsThrown) {
+  EVODEVO_NEEDS_GPU();
+  const std::vector<cuda::Stream> streams(3);
+  cuda::MirroredMemory memory;
+  memory.resize(mebibyte, 1024 * mebibyte);
+  const auto fail = [&] {
+    const cuda::Quiet quiet(streams);
+    for (int i = 0; i < 50; ++i)
+      for (const cuda::Stream& stream : streams)
+        cuda::check(cudaMemsetAsync(memory.device(), i, memory.size(), stream), "clearing");
+    throw std::runtime_error("a launch failed");
+  };
+  EXPECT_THROW(fail(), std::runtime_error);
+  for (const cuda::Stream& stream : streams) EXPECT_EQ(cudaStreamQuery(stream), cudaSuccess);
+}
+
+}  // namespace
+}  // namespace evodevo::testing_gpu

@@ -1,0 +1,70 @@
+// A run in pieces is the run in one, and the guard's verdict is the CPU's, on the GPU.
+#include "physics/pieces.hpp"
+
+#include "gpu.hpp"
+#include "physics/guard_cases.hpp"
+
+namespace evodevo::testing_gpu {
+namespace {
+
+class GpuRuns : public testing::TestWithParam<Way> {
+ protected:
+  static Method method() { return std::get<Method>(GetParam()); }
+  static test::SimulatorMaker maker() {
+    return [](const Scene& scene) { return make_cuda_simulator(scene, stepping(GetParam())); };
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Gpu, GpuRuns, all_ways(), [](const auto& test) { return name(test.param); });
+
+TEST_P(GpuRuns, InPiecesEndInTheBitsOfTheWhole) {
+  EVODEVO_NEEDS_GPU();
+  // on the chip; with springs in the device's memory; there altogether
+  std::vector<Body> bodies{test::random_body(107, 9, 5, 6), test::random_body(41, 6, 23, 7), test::single_mass(0.2),
+                           test::random_body(1701, 14, 5, 8)};
+  if (is_explicit(method())) bodies.push_back(test::random_body(12001, 6, 5, 9));
+  test::expect_pieces_to_be_the_whole(maker(), bodies);
+}
+
+TEST_P(GpuRuns, InPiecesBetweenTalliesToo) {
+  EVODEVO_NEEDS_GPU();
+  test::expect_tallies_to_leave_the_motion_alone(maker(), test::random_body(41, 6, 5, 7));
+}
+
+TEST_P(GpuRuns, InPiecesAreNotCheckedWhereTheyMeet) {
+  EVODEVO_NEEDS_GPU();
+  test::expect_no_check_between_pieces(maker());
+}
+
+TEST_P(GpuRuns, InPiecesDivergeWhereTheWholeDoes) {
+  EVODEVO_NEEDS_GPU();
+  if (is_explicit(method())) test::expect_one_verdict(maker(), method());
+}
+
+TEST_P(GpuRuns, LetResonanceLive) {
+  EVODEVO_NEEDS_GPU();
+  test::expect_resonance_to_live(maker(), method());
+}
+
+TEST_P(GpuRuns, HaveOneBoundForOneRunAndForSeveral) {
+  EVODEVO_NEEDS_GPU();
+  test::expect_one_bound(maker());
+}
+
+TEST_P(GpuRuns, EndWhatTheFloorPumpsUp) {
+  EVODEVO_NEEDS_GPU();
+  if (is_explicit(method()) && method() != Method::rk4) test::expect_pumped_bodies_to_end(maker());
+}
+
+TEST(GpuRunsOfComputedMaterials, InPiecesEndInTheBitsOfTheWhole) {
+  EVODEVO_NEEDS_GPU();
+  for (const Method method : {Method::paper_euler, Method::rk4})
+    test::expect_pieces_to_be_the_whole(
+        [&](const Scene& scene) {
+          return make_cuda_simulator(scene, {method, Precision::float32, Materials::computed});
+        },
+        {test::random_body(107, 9, 23, 6), test::random_body(1701, 14, 5, 8)});
+}
+
+}  // namespace
+}  // namespace evodevo::testing_gpu

@@ -1,0 +1,32 @@
+// The guard lets bodies live whose muscles drive them, and ends those that gain energy from nothing, on the CPU.
+#include <gtest/gtest.h>
+
+#include "guard_cases.hpp"
+
+namespace evodevo::test {
+namespace {
+
+class GuardOfEachMethod : public testing::TestWithParam<Arithmetic> {
+ protected:
+  static Method method() { return std::get<Method>(GetParam()); }
+  static SimulatorMaker maker() {
+    return [](const Scene& scene) { return make_cpu_simulator(scene, {method(), std::get<Precision>(GetParam())}, 1); };
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Ways, GuardOfEachMethod,
+                         testing::Combine(testing::ValuesIn(all_methods),
+                                          testing::Values(Precision::float32, Precision::float64)),
+                         [](const auto& instance) { return name_of(instance.param); });
+
+TEST_P(GuardOfEachMethod, LetsResonanceLive) { expect_resonance_to_live(maker(), method()); }
+
+TEST_P(GuardOfEachMethod, HasOneBoundForOneRunAndForSeveral) { expect_one_bound(maker()); }
+
+TEST_P(GuardOfEachMethod, EndsWhatTheFloorPumpsUp) {
+  // the others bear this step
+  if (is_explicit(method()) && method() != Method::rk4) expect_pumped_bodies_to_end(maker());
+}
+
+}  // namespace
+}  // namespace evodevo::test

@@ -1,0 +1,35 @@
+// A run in pieces is the run in one, on the CPU.
+#include "pieces.hpp"
+
+#include <gtest/gtest.h>
+
+namespace evodevo::test {
+namespace {
+
+class Pieces : public testing::TestWithParam<Arithmetic> {
+ protected:
+  static Method method() { return std::get<Method>(GetParam()); }
+  static SimulatorMaker maker() {
+    return [](const Scene& scene) { return make_cpu_simulator(scene, {method(), std::get<Precision>(GetParam())}, 1); };
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Ways, Pieces,
+                         testing::Combine(testing::ValuesIn(all_methods),
+                                          testing::Values(Precision::float32, Precision::float64)),
+                         [](const auto& instance) { return name_of(instance.param); });
+
+TEST_P(Pieces, EndInTheBitsOfTheWhole) {
+  expect_pieces_to_be_the_whole(maker(), {random_body(107, 9, 5, 6), random_body(41, 6, 23, 7), single_mass(0.2)});
+}
+
+TEST_P(Pieces, BetweenTalliesToo) { expect_tallies_to_leave_the_motion_alone(maker(), random_body(41, 6, 5, 7)); }
+
+TEST_P(Pieces, AreNotCheckedWhereTheyMeet) { expect_no_check_between_pieces(maker()); }
+
+TEST_P(Pieces, DivergeWhereTheWholeDoes) {
+  if (is_explicit(method())) expect_one_verdict(maker(), method());
+}
+
+}  // namespace
+}  // namespace evodevo::test
