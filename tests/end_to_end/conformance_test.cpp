@@ -81,6 +81,8 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"resuming", "resuming", "failed a run that was stopped and resumed ends otherwise"},
         Broken{"nothing", "nothing", "failed it makes genes of no genes"},
         Broken{"layout", "layout", "failed gene 0 = 2 is not of the layout"},
+        Broken{"changes", "changes", "failed it changes none of 200 genomes"},
+        Broken{"changes_crossover", "changes", "failed of 200 pairs of genomes it changes the first in none"},
         Broken{"twins", "twins", "failed of two equal genomes it makes others"},
         Broken{"decoding", "decoding", "failed spring 0 dangles"},
         Broken{"decoding_growth", "decoding", "failed springs may grow, but sets_growth() denies it"},

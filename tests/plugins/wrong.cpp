@@ -21,6 +21,18 @@ struct Wrong final : evodevo::Crossover {
   void cross(Genome& one, Genome&, const Layout& layout, Rng& rng) const override { one = random_genome(layout, rng); }
 };
 
+#elif defined(WRONG_CHANGES_CROSSOVER)
+
+struct Wrong final : evodevo::Crossover {
+  void cross(Genome& one, Genome& other, const Layout&, Rng&) const override { other = one; }
+};
+
+#elif defined(WRONG_CHANGES)
+
+struct Wrong final : evodevo::Mutation {
+  void mutate(Genome&, const Layout&, Rng&) const override {}
+};
+
 #elif defined(WRONG_DECODING) || defined(WRONG_DECODING_GROWTH)
 
 struct Wrong final : evodevo::Encoding {
