@@ -6,6 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "materials.hpp"
 #include "parallel.hpp"
 #include "stability.hpp"
 #include "text.hpp"
@@ -34,12 +35,13 @@ void join(Blueprint& blueprint, std::span<const IndexPair> pairs) {
   Body& body = blueprint.body;
   const std::vector<Size>& sizes = blueprint.sizes;
   body.springs.reserve(body.springs.size() + pairs.size());
+  MaterialList materials(body.materials);
   for (const auto& [a, b] : pairs) {
     const Mass &mass_a = body.masses[a], &mass_b = body.masses[b];
     // by value: the list of materials may grow
     const Material of_a = body.materials.at(static_cast<std::size_t>(mass_a.material));
     const Material of_b = body.materials.at(static_cast<std::size_t>(mass_b.material));
-    body.springs.push_back({a, b, norm(mass_a.rest - mass_b.rest), body.material_index(mean(of_a, of_b))});
+    body.springs.push_back({a, b, norm(mass_a.rest - mass_b.rest), materials.index(mean(of_a, of_b))});
     if (!sizes.empty()) set_size(body.springs.back(), sizes[a], sizes[b]);
   }
 }

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "materials.hpp"
+
 namespace evodevo {
 namespace {
 
@@ -38,6 +40,8 @@ class Editor {
       : living_(living),
         edits_(edits),
         now_(now),
+        old_materials_(living.body.materials.size()),
+        materials_(living.body.materials),
         spring_gone_(marked(edits.removed_springs, living.body.springs.size(), "spring")),
         mass_gone_(marked(edits.removed_masses, living.body.masses.size(), "mass")) {}
 
@@ -50,6 +54,7 @@ class Editor {
     move_springs();
     refuse_joined_pairs(arrivals);
     for (const NewSpring& spring : arrivals) add_spring(spring);
+    drop_unused_materials(living_.body);
   }
 
  private:
@@ -123,7 +128,7 @@ class Editor {
       if (change.material) check_material(what, *change.material);
       if (change.rest_length) check_rest_length(what, *change.rest_length);
       spring.rest_length = change.rest_length.value_or(spring.rest_length);
-      if (change.material) spring.material = body.material_index(*change.material);
+      if (change.material) spring.material = materials_.index(*change.material);
     }
   }
 
@@ -174,9 +179,9 @@ class Editor {
       if (!std::isfinite(norm(mass.place)) || !(mass.mass > 0) || !std::isfinite(mass.mass))
         refuse("adds a mass of " + std::to_string(mass.mass) + " kg at a distance of " +
                std::to_string(norm(mass.place)) + " m from the origin");
-      if (mass.material < no_material || mass.material >= static_cast<std::int64_t>(living_.body.materials.size()))
+      if (mass.material < no_material || mass.material >= static_cast<std::int64_t>(old_materials_))
         refuse("adds a mass of material " + std::to_string(mass.material) + " to a body that has " +
-               std::to_string(living_.body.materials.size()) + " materials");
+               std::to_string(old_materials_) + " materials");
       add({mass.place, mass.mass, mass.material, 0}, mass.place, {});
     }
     pass_load_on(masses);
@@ -250,12 +255,14 @@ class Editor {
 
   void add_spring(const NewSpring& spring) {
     living_.body.springs.push_back({new_index_[spring.a], new_index_[spring.b], *spring.rest_length,
-                                    living_.body.material_index(spring.material), 1, *spring.rest_length});
+                                    materials_.index(spring.material), 1, *spring.rest_length});
   }
 
   LivingBody& living_;
   const Edits& edits_;
   const Moment& now_;
+  std::size_t old_materials_;  ///< how many there were before the edits
+  MaterialList materials_;
   std::vector<std::uint8_t> spring_gone_, mass_gone_;
   std::vector<std::uint32_t> new_index_;  ///< of every old and new mass
 };

@@ -18,8 +18,7 @@ LongestStep longest_fixed_step(const StepRule& rule, const Body& body, std::span
   if (rule.run_unstable) return {*rule.dt, ""};
   if (dt > largest_contact_dt(scene, body, method))
     return failed(to_text(dt) + " s is too long for the body's lightest mass on this floor");
-  for (const Material& material : body.materials)
-    if (dt > largest_muscle_dt(material)) return failed(to_text(dt) + " s is too long for the body's fastest muscles");
+  if (dt > largest_muscle_dt(body)) return failed(to_text(dt) + " s is too long for the body's fastest muscles");
   if (!is_stable(body, places, method, dt)) return failed(to_text(dt) + " s is too long for the body's springs");
   return {*rule.dt, ""};
 }
