@@ -127,6 +127,7 @@ BuiltBody finish(Body body) {
   leave_out_air(body);
   if (body.springs.empty()) return {{}, "no springs", {}};
   std::vector<std::uint32_t> kept = keep_largest_piece(body);
+  if (!has_extent(rest_places(body))) return {{}, "no extent", {}};
   for (Spring& spring : body.springs) spring.first_length = spring.rest_length;
   place_on_origin(body);
   return {std::move(body), "", std::move(kept)};
@@ -139,6 +140,11 @@ std::vector<Vec3> rest_places(const Body& body) {
   places.reserve(body.masses.size());
   for (const Mass& mass : body.masses) places.push_back(mass.rest);
   return places;
+}
+
+bool has_extent(std::span<const Vec3> places) {
+  constexpr double rounding = 1e-6;  // m; in what is smaller no body length can be measured
+  return !(bounding_box(places).longest_side() < rounding);
 }
 
 void check_blueprint(const Blueprint& blueprint, const World& world) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "materials.hpp"
+#include "text.hpp"
 
 namespace evodevo {
 namespace {
@@ -82,9 +83,10 @@ class Editor {
 
   static void check_material(const std::string& what, const Material& material) {
     if (is_air(material) || !std::isfinite(material.stiffness))
-      refuse(what + " by a spring of stiffness " + std::to_string(material.stiffness));
+      refuse(what + " by a spring whose stiffness is " + to_text(material.stiffness) +
+             "; expected a finite one above 0");
     if (!(material.amplitude >= 0 && material.amplitude < 1))
-      refuse(what + " by a spring of amplitude " + std::to_string(material.amplitude) + "; expected 0 to below 1");
+      refuse(what + " by a spring whose amplitude is " + to_text(material.amplitude) + "; expected 0 to below 1");
     if (!std::isfinite(material.frequency) || !std::isfinite(material.phase))
       refuse(what + " by a spring whose frequency or phase is not finite");
   }
@@ -92,15 +94,16 @@ class Editor {
   static bool is_rest_length(double length) { return length >= 0 && std::isfinite(length); }
 
   static void check_rest_length(const std::string& what, double length) {
-    if (!is_rest_length(length)) refuse(what + " by a spring of rest length " + std::to_string(length));
+    if (!is_rest_length(length))
+      refuse(what + " by a spring whose rest length is " + to_text(length) + "; expected a finite one, at least 0");
   }
 
   static void check_growth(const Growth& growth) {
     // written so that NaN fails
     const auto on_the_way = [&](double gone) { return gone >= 0 && gone <= growth.whole; };
     if (!(growth.whole > 0) || !std::isfinite(growth.whole) || !on_the_way(growth.from) || !on_the_way(growth.to))
-      refuse("grows springs from " + std::to_string(growth.from) + " to " + std::to_string(growth.to) +
-             " of a way of " + std::to_string(growth.whole) + "; expected 0 to all of it");
+      refuse("grows springs from " + to_text(growth.from) + " to " + to_text(growth.to) + " of a way of " +
+             to_text(growth.whole) + "; expected 0 to all of a finite one");
   }
 
   void grow_springs(const Growth& growth) {
@@ -111,7 +114,8 @@ class Editor {
     for (Spring& spring : living_.body.springs) {
       spring.rest_length *= relative_length(spring, growth.to) / relative_length(spring, growth.from);
       if (!is_rest_length(spring.rest_length))
-        refuse("grows a spring to a rest length of " + std::to_string(spring.rest_length));
+        refuse("grows a spring whose rest length then is " + to_text(spring.rest_length) +
+               "; expected a finite one, at least 0");
     }
   }
 
@@ -176,9 +180,9 @@ class Editor {
         add(living_.body.masses[i], living_.state.position[i], living_.state.velocity[i]);
     }
     for (const NewMass& mass : edits_.new_masses) {
-      if (!std::isfinite(norm(mass.place)) || !(mass.mass > 0) || !std::isfinite(mass.mass))
-        refuse("adds a mass of " + std::to_string(mass.mass) + " kg at a distance of " +
-               std::to_string(norm(mass.place)) + " m from the origin");
+      if (!std::isfinite(norm(mass.place))) refuse("adds a mass at a place that is not finite");
+      if (!(mass.mass > 0) || !std::isfinite(mass.mass))
+        refuse("adds a mass whose weight is " + to_text(mass.mass) + "; expected a finite one above 0 kg");
       if (mass.material < no_material || mass.material >= static_cast<std::int64_t>(old_materials_))
         refuse("adds a mass of material " + std::to_string(mass.material) + " to a body that has " +
                std::to_string(old_materials_) + " materials");

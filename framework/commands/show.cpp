@@ -97,12 +97,7 @@ class Report {
     }
   }
 
-  static std::string number(const std::optional<double>& value) {
-    if (!value) return "-";
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", *value);
-    return text;
-  }
+  static std::string number(const std::optional<double>& value) { return value ? short_number(*value) : "-"; }
 
   const Archive& archive_;
   std::vector<Objective> objectives_;

@@ -197,7 +197,7 @@ void unmoved_by_translation(const AvailableOperator& subject, std::uint64_t seed
       *place = *place + by;
     const auto a = op->score(here), b = op->score(there);
     for (std::size_t i = 0; i < a.size(); ++i)
-      if (!(std::abs(a[i] - b[i]) <= 1e-9 * (1 + std::abs(a[i]))))
+      if (!(std::abs(a[i] - b[i]) <= 1e-9 * (1 + std::abs(a[i]))) && (std::isfinite(a[i]) || std::isfinite(b[i])))
         throw Violation("a body that does the same elsewhere scores " + to_text(b[i]) + " instead of " + to_text(a[i]));
   }
 }
@@ -221,6 +221,11 @@ void scores_every_objective(const AvailableOperator& subject, std::uint64_t seed
                     " objectives");
   for (const Objective& objective : objectives)
     if (objective.name.empty() || objective.unit.empty()) throw Violation("an objective has no name or no unit");
+  constexpr std::uint32_t bodies = 20;
+  for (std::uint32_t input = 0; input < bodies; ++input)
+    if (std::ranges::all_of(op->score(sample_observation(seed, input)), [](double s) { return std::isfinite(s); }))
+      return;
+  throw Violation("none of " + std::to_string(bodies) + " bodies gets finite scores, so that all would be invalid");
 }
 
 // ---- selection ----

@@ -362,7 +362,8 @@ TEST_F(Command, BadInputEndsWithTwoAndLeavesNothing) {
   for (const char* command : {"run", "check"}) {
     const Finished finished = evodevo({command, bad});
     EXPECT_EQ(finished.exit_code, 2);
-    EXPECT_EQ(finished.output, "evodevo: " + bad + ":2:8: experiment.seed = \"x\": expected a whole number\n");
+    EXPECT_EQ(finished.output,
+              "evodevo: " + bad + ":2:8: experiment.seed = \"x\": expected a whole number, 0 to 9007199254740991\n");
   }
   EXPECT_FALSE(fs::exists("runs/bad-1"));
   const Finished out = evodevo({"run", file_, "--out", folder_, "--threads", "-1"});

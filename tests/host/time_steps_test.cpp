@@ -66,6 +66,20 @@ TEST(TimeSteps, MaterialsThatNoSpringHasShortenNone) {
   EXPECT_DOUBLE_EQ(longest_step({.dt = std::nullopt}, with_others, places, {}, Method::implicit).dt, 0.05 / 70'001);
 }
 
+TEST(TimeSteps, AStepThatCannotBeComputedIsNotTold) {
+  const Body body = star();
+  std::vector<Vec3> places = state_at_birth(body, {}).position;
+  places[7].y = 1e200;  // its square is infinite
+  const std::string far = longest_step({.dt = std::nullopt}, body, places, {}, Method::paper_euler).failure;
+  places[7].y = std::nan("");
+  const std::string nowhere = longest_step({.dt = std::nullopt}, body, places, {}, Method::rk4).failure;
+  EXPECT_EQ(nowhere.substr(0, 13), "unstable dt: ");
+  for (const std::string& failure : {far, nowhere}) {
+    EXPECT_EQ(failure.find("nan"), std::string::npos) << failure;
+    EXPECT_EQ(failure.find("inf"), std::string::npos) << failure;
+  }
+}
+
 TEST(TimeSteps, StepsDivideTheirDuration) {
   const auto expect = [](const Pace& pace, double dt, std::uint64_t steps) {
     EXPECT_DOUBLE_EQ(pace.dt, dt);

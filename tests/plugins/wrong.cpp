@@ -76,7 +76,8 @@ struct Wrong final : evodevo::Devo {
   }
 };
 
-#elif defined(WRONG_TRANSLATION) || defined(WRONG_NAN_HIDDEN) || defined(WRONG_OBJECTIVES)
+#elif defined(WRONG_TRANSLATION) || defined(WRONG_NAN_HIDDEN) || defined(WRONG_OBJECTIVES) || \
+    defined(WRONG_OBJECTIVES_NAN)
 
 struct Wrong final : evodevo::Fitness {
   evodevo::Request observes() const override { return {0, 0.1, false}; }
@@ -87,6 +88,8 @@ struct Wrong final : evodevo::Fitness {
     return {way + seen.centre_after.x};
 #elif defined(WRONG_NAN_HIDDEN)
     return {std::isnan(way) ? 0 : way};
+#elif defined(WRONG_OBJECTIVES_NAN)
+    return {-std::nan("") * way};
 #else
     return {way, way};
 #endif
