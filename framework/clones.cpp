@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/container_hash/hash.hpp>
+#include <functional>
 #include <unordered_map>
 
 namespace evodevo {
