@@ -1,15 +1,16 @@
 #include "clones.hpp"
 
 #include <algorithm>
-#include <boost/container_hash/hash.hpp>
+#include <bit>
 #include <functional>
 #include <unordered_map>
 
 namespace evodevo {
 
 std::size_t GenomeSet::Hash::operator()(Genes genes) const {
-  std::size_t hash = 0;
-  for (const float gene : genes) boost::hash_combine(hash, std::hash<float>()(gene));  // the same of 0 and -0
+  std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a by whole genes, since genomes may have thousands
+  for (const float gene : genes)
+    hash = (hash ^ std::bit_cast<std::uint32_t>(gene + 0.0F)) * 0x100000001b3;  // of -0 comes 0, which is equal
   return hash;
 }
 

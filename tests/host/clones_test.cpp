@@ -38,7 +38,7 @@ TEST(Clones, AreThoseWithEqualGenes) {
   EXPECT_EQ(count_clones(population, {individual(2, {1, 0.75F}, {3}), individual(3, {1}, {3})}), 0);
   EXPECT_EQ(count_clones(population, {individual(2, {1, 0.5F}, {7})}), 1) << "whatever it scores";
   EXPECT_EQ(count_clones({}, {individual(2, {2}, {}), individual(3, {2}, {}), individual(4, {2}, {})}), 2);
-  EXPECT_EQ(count_clones({individual(0, {0.0F}, {})}, {individual(1, {-0.0F}, {})}), 1);
+  EXPECT_EQ(count_clones({individual(0, {0.0F}, {})}, {individual(1, {-0.0F}, {})}), 1) << "zeros are equal";
 }
 
 TEST(Copies, AreTakenOutButForOne) {
