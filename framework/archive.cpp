@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* lock_name = "lock";
-constexpr const char* format = "4";  ///< raised when a change of the tables keeps older programs from reading them
+constexpr const char* format = "5";  ///< raised when a change of the tables keeps older programs from reading them
 /// Readers and the writer do not wait for each other; but a folder that nobody may write cannot be read like this.
 constexpr const char* wait_for_nobody = "PRAGMA journal_mode = WAL";
 constexpr const char* rest_in_one_file = "PRAGMA journal_mode = DELETE";
@@ -49,7 +49,8 @@ CREATE TABLE scores(
 CREATE TABLE lives(individual INTEGER PRIMARY KEY, record BLOB NOT NULL);
 CREATE TABLE generations(
   generation INTEGER PRIMARY KEY, evaluations INTEGER NOT NULL, best REAL, median REAL,
-  diverged INTEGER NOT NULL, invalid INTEGER NOT NULL, spring_evaluations INTEGER NOT NULL, wall_time REAL NOT NULL,
+  diverged INTEGER NOT NULL, invalid INTEGER NOT NULL, clones INTEGER NOT NULL,
+  spring_evaluations INTEGER NOT NULL, wall_time REAL NOT NULL,
   maker INTEGER NOT NULL);
 -- who lived on after each generation, and how old its genes were then
 CREATE VIEW members AS
@@ -284,16 +285,17 @@ void Archive::commit(const std::vector<Individual>& newborns, const std::vector<
     drop.exec();
     drop.reset();
   }
-  SQLite::Statement add(database, "INSERT INTO generations VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SQLite::Statement add(database, "INSERT INTO generations VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   add.bind(1, summary.generation);
   add.bind(2, summary.evaluations);
   bind_optional(add, 3, summary.best);
   bind_optional(add, 4, summary.median);
   add.bind(5, summary.diverged);
   add.bind(6, summary.invalid);
-  add.bind(7, static_cast<std::int64_t>(summary.spring_evaluations));
-  add.bind(8, summary.wall_time);
-  add.bind(9, summary.maker);
+  add.bind(7, summary.clones);
+  add.bind(8, static_cast<std::int64_t>(summary.spring_evaluations));
+  add.bind(9, summary.wall_time);
+  add.bind(10, summary.maker);
   add.exec();
   transaction.commit();
 }
@@ -427,9 +429,10 @@ std::vector<Summary> Archive::generations() const {
                          .median = optional_double(row.getColumn(3)),
                          .diverged = row.getColumn(4).getInt64(),
                          .invalid = row.getColumn(5).getInt64(),
-                         .spring_evaluations = static_cast<std::uint64_t>(row.getColumn(6).getInt64()),
-                         .wall_time = row.getColumn(7).getDouble(),
-                         .maker = row.getColumn(8).getUInt()});
+                         .clones = row.getColumn(6).getInt64(),
+                         .spring_evaluations = static_cast<std::uint64_t>(row.getColumn(7).getInt64()),
+                         .wall_time = row.getColumn(8).getDouble(),
+                         .maker = row.getColumn(9).getUInt()});
   return summaries;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "evaluation.hpp"
+#include "materials.hpp"
 
 namespace evodevo {
 namespace {
@@ -54,10 +55,14 @@ std::vector<Life> Evaluation::birth(std::span<const Newborn> newborns) const {
   std::vector<BuiltBody> built = build(newborns);
   std::vector<Life> lives(newborns.size());
   simulator_.workers().for_each(lives.size(), [&](std::size_t i) {
-    if (built[i].failure.empty())
-      lives[i] = birth(std::move(built[i].body));
-    else
+    Body& body = built[i].body;
+    if (built[i].failure.empty()) {
+      body.base_materials = static_cast<std::uint32_t>(experiment_.world.materials.size());
+      drop_unused_materials(body);
+      lives[i] = birth(std::move(body));
+    } else {
       lives[i].end(Status::invalid, std::move(built[i].failure));
+    }
     lives[i].newborn = newborns[i];
   });
   return lives;

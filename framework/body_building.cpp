@@ -6,6 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "materials.hpp"
 #include "parallel.hpp"
 #include "stability.hpp"
 #include "text.hpp"
@@ -34,12 +35,13 @@ void join(Blueprint& blueprint, std::span<const IndexPair> pairs) {
   Body& body = blueprint.body;
   const std::vector<Size>& sizes = blueprint.sizes;
   body.springs.reserve(body.springs.size() + pairs.size());
+  MaterialList materials(body.materials);
   for (const auto& [a, b] : pairs) {
     const Mass &mass_a = body.masses[a], &mass_b = body.masses[b];
     // by value: the list of materials may grow
     const Material of_a = body.materials.at(static_cast<std::size_t>(mass_a.material));
     const Material of_b = body.materials.at(static_cast<std::size_t>(mass_b.material));
-    body.springs.push_back({a, b, norm(mass_a.rest - mass_b.rest), body.material_index(mean(of_a, of_b))});
+    body.springs.push_back({a, b, norm(mass_a.rest - mass_b.rest), materials.index(mean(of_a, of_b))});
     if (!sizes.empty()) set_size(body.springs.back(), sizes[a], sizes[b]);
   }
 }
@@ -125,6 +127,7 @@ BuiltBody finish(Body body) {
   leave_out_air(body);
   if (body.springs.empty()) return {{}, "no springs", {}};
   std::vector<std::uint32_t> kept = keep_largest_piece(body);
+  if (!has_extent(rest_places(body))) return {{}, "no extent", {}};
   for (Spring& spring : body.springs) spring.first_length = spring.rest_length;
   place_on_origin(body);
   return {std::move(body), "", std::move(kept)};
@@ -137,6 +140,11 @@ std::vector<Vec3> rest_places(const Body& body) {
   places.reserve(body.masses.size());
   for (const Mass& mass : body.masses) places.push_back(mass.rest);
   return places;
+}
+
+bool has_extent(std::span<const Vec3> places) {
+  constexpr double rounding = 1e-6;  // m; in what is smaller no body length can be measured
+  return !(bounding_box(places).longest_side() < rounding);
 }
 
 void check_blueprint(const Blueprint& blueprint, const World& world) {

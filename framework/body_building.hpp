@@ -35,6 +35,9 @@ void put_load(Body& body, double share, double top);
 
 std::vector<Vec3> rest_places(const Body& body);
 
+/// Whether masses do not all lie in one point. Those of a flat or a straight body do not.
+bool has_extent(std::span<const Vec3> places);
+
 /// The masses that springs do not tie to the largest piece, ascending.
 std::vector<std::uint32_t> loose_masses(const Body& body);
 

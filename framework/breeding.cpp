@@ -6,11 +6,14 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "clones.hpp"
 #include "philox.hpp"
 #include "text.hpp"
 
 namespace evodevo {
 namespace {
+
+constexpr std::uint32_t most_repeats = 16;  ///< how often a newborn that is a clone is made anew
 
 Rng stream(const Experiment& experiment, std::uint32_t generation, std::uint32_t individual, std::uint32_t where) {
   return Rng(philox, {static_cast<std::uint64_t>(experiment.seed), generation, individual, where});
@@ -30,8 +33,8 @@ void check_genome(const Genome& genome, const Layout& layout) {
   }
 }
 
-Individual newcomer(const Experiment& experiment, std::uint32_t generation, std::uint32_t id) {
-  Rng rng = stream(experiment, generation, id, place::newborn);
+Individual newcomer(const Experiment& experiment, std::uint32_t generation, std::uint32_t id, std::uint32_t repeat) {
+  Rng rng = stream(experiment, generation, id, place::again(place::newborn, repeat));
   Individual individual;
   individual.id = id;
   individual.born = individual.origin = generation;
@@ -44,7 +47,8 @@ Individual newcomer(const Experiment& experiment, std::uint32_t generation, std:
 }
 
 /// Which variation operators a child goes through: crossovers first, then mutations, counted through both lists. Each
-/// is drawn by its own probability; where none comes, one is drawn in proportion to them, so that no child is a copy.
+/// is drawn by its own probability; where none comes, one is drawn in proportion to them, so that no child goes
+/// unvaried.
 std::vector<std::size_t> draw_variation(const Experiment& experiment, Rng& rng) {
   std::vector<double> probabilities;
   for (const auto& crossover : experiment.crossovers) probabilities.push_back(crossover.probability);
@@ -60,19 +64,22 @@ std::vector<std::size_t> draw_variation(const Experiment& experiment, Rng& rng) 
 }
 
 Individual child(const Experiment& experiment, const Individual& parent, const Individual& mate,
-                 std::uint32_t generation, std::uint32_t id) {
+                 std::uint32_t generation, std::uint32_t id, std::uint32_t repeat) {
   Individual individual;
   individual.id = id;
   individual.born = generation;
   individual.origin = parent.origin;
   individual.parents = {parent.id};
   individual.genome = parent.genome;
-  Rng choice = stream(experiment, generation, id, place::variation);
+  const auto draws = [&](std::uint32_t place) {
+    return stream(experiment, generation, id, place::again(place, repeat));
+  };
+  Rng choice = draws(place::variation);
   std::vector<std::string> names;
   for (const std::size_t i : draw_variation(experiment, choice)) {
     if (i < experiment.crossovers.size()) {
       const auto& crossover = experiment.crossovers[i];
-      Rng rng = stream(experiment, generation, id, place::crossover + static_cast<std::uint32_t>(i));
+      Rng rng = draws(place::crossover + static_cast<std::uint32_t>(i));
       Genome other = mate.genome;
       call_operator(experiment, Crossover::kind, i, [&] {
         crossover.op->cross(individual.genome, other, experiment.layout, rng);
@@ -84,7 +91,7 @@ Individual child(const Experiment& experiment, const Individual& parent, const I
     } else {
       const std::size_t k = i - experiment.crossovers.size();
       const auto& mutation = experiment.mutations[k];
-      Rng rng = stream(experiment, generation, id, place::mutation + static_cast<std::uint32_t>(k));
+      Rng rng = draws(place::mutation + static_cast<std::uint32_t>(k));
       call_operator(experiment, Mutation::kind, k, [&] {
         mutation.op->mutate(individual.genome, experiment.layout, rng);
         check_genome(individual.genome, experiment.layout);
@@ -94,6 +101,17 @@ Individual child(const Experiment& experiment, const Individual& parent, const I
   }
   individual.made_by = joined(names, "+");
   return individual;
+}
+
+/// A newborn that `make(repeat)` makes: anew, with other random numbers, as long as its genome is `known`, but not for
+/// ever, since there may be no other genomes. It is known from then on.
+template <class Make>
+Individual distinct(GenomeSet& known, const Make& make) {
+  Individual newborn = make(0);
+  for (std::uint32_t repeat = 1; repeat <= most_repeats && known.contains(newborn.genome); ++repeat)
+    newborn = make(repeat);
+  known.add(newborn.genome);
+  return newborn;
 }
 
 std::vector<std::pair<std::uint32_t, std::uint32_t>> chosen_parents(const Experiment& experiment,
@@ -138,6 +156,7 @@ std::vector<Individual> breed(const Experiment& experiment, const std::vector<In
   const std::size_t newcomers =
       population.empty() ? count : std::min(count, static_cast<std::size_t>(experiment.newcomers));
   std::vector<Individual> newborns;
+  GenomeSet known(population);
   std::uint32_t id = first_id;
   if (newcomers < count) {
     const SelectionTable table(population, experiment.objectives, generation);
@@ -145,10 +164,16 @@ std::vector<Individual> breed(const Experiment& experiment, const std::vector<In
     const auto asked = static_cast<std::uint32_t>(count - newcomers);
     const auto pairs =
         call_operator(experiment, Selection::kind, 0, [&] { return chosen_parents(experiment, table, asked, rng); });
-    for (const auto& [parent, mate] : pairs)
-      newborns.push_back(child(experiment, population.at(parent), population.at(mate), generation, id++));
+    for (const auto& pair : pairs) {
+      const Individual &parent = population.at(pair.first), &mate = population.at(pair.second);
+      newborns.push_back(distinct(
+          known, [&](std::uint32_t repeat) { return child(experiment, parent, mate, generation, id, repeat); }));
+      ++id;
+    }
   }
-  while (newborns.size() < count) newborns.push_back(newcomer(experiment, generation, id++));
+  for (; newborns.size() < count; ++id)
+    newborns.push_back(
+        distinct(known, [&](std::uint32_t repeat) { return newcomer(experiment, generation, id, repeat); }));
   return newborns;
 }
 

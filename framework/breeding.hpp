@@ -23,7 +23,8 @@ class SelectionTable {
 };
 
 /// The `count` newborns of a generation, ids from `first_id`: as many newcomers as the experiment asks for, all of them
-/// where there is no population, and children. Nothing but the arguments and the experiment's seed decides.
+/// where there is no population, and children. A newborn that is genetically equal to a member of the population or to
+/// an earlier newborn is made anew, at most 16 times; only where that does not help is it a clone. Nothing but the arguments and the experiment's seed decides.
 std::vector<Individual> breed(const Experiment& experiment, const std::vector<Individual>& population,
                               std::uint32_t generation, std::uint32_t first_id, std::size_t count);
 

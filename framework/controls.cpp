@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "materials.hpp"
+
 namespace evodevo {
 namespace {
 
@@ -14,12 +16,6 @@ std::vector<std::uint8_t> marked(const std::vector<std::uint32_t>& indices, std:
 std::optional<Material> mass_material(const Body& body, std::int32_t index) {
   if (index == no_material) return std::nullopt;
   return body.materials.at(static_cast<std::size_t>(index));
-}
-
-/// The index of a material; one past the last where the body has no such material.
-std::int32_t index_of(const Material& material, const Body& body) {
-  return static_cast<std::int32_t>(std::find(body.materials.begin(), body.materials.end(), material) -
-                                   body.materials.begin());
 }
 
 /// Springs or masses to draw from by their material. What is drawn is gone.
@@ -84,6 +80,7 @@ class RandomPlacement {
       : amount_(amount),
         now_(now),
         body_(now.body),
+        numbers_(numbered(body_.materials)),
         surplus_(surplus),
         rng_(rng),
         mass_goes_(body_.masses.size(), 0),
@@ -122,7 +119,7 @@ class RandomPlacement {
   /// The materials of the springs that have to go beside those of the masses that go.
   std::vector<std::int32_t> springs_due() {
     std::vector<std::int32_t> due;
-    for (const Material& material : amount_.springs_gone) due.push_back(index_of(material, body_));
+    for (const Material& material : amount_.springs_gone) due.push_back(index_in_body(material));
     for (std::uint32_t s = 0; s < body_.springs.size(); ++s) {
       const Spring& spring = body_.springs[s];
       const auto material = static_cast<std::int32_t>(spring.material);
@@ -143,7 +140,7 @@ class RandomPlacement {
 
   void change_springs() {
     for (const Amount::SpringChange& change : amount_.springs_changed)
-      if (const auto spring = staying_springs_.draw(index_of(change.before, body_), rng_)) {
+      if (const auto spring = staying_springs_.draw(index_in_body(change.before), rng_)) {
         ChangedSpring& changed = out_.changed_springs.emplace_back(ChangedSpring{.spring = *spring});
         changed.material = change.after;
         if (change.factor) changed.rest_length = *change.factor * body_.springs[*spring].rest_length;
@@ -189,13 +186,17 @@ class RandomPlacement {
     return mass < old ? now_.place(mass) : out_.new_masses.at(mass - old).place;
   }
 
+  /// One past the last where the body has no such material.
   std::int32_t index_in_body(const std::optional<Material>& material) const {
-    return material ? index_of(*material, body_) : no_material;
+    if (!material) return no_material;
+    const auto found = numbers_.find(*material);
+    return static_cast<std::int32_t>(found != numbers_.end() ? found->second : body_.materials.size());
   }
 
   const Amount& amount_;
   const Moment& now_;
   const Body& body_;
+  MaterialNumbers numbers_;  ///< of the body's materials
   std::size_t& surplus_;
   Rng& rng_;
   Edits out_;

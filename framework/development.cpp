@@ -6,6 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "materials.hpp"
+#include "text.hpp"
+
 namespace evodevo {
 namespace {
 
@@ -38,6 +41,8 @@ class Editor {
       : living_(living),
         edits_(edits),
         now_(now),
+        old_materials_(living.body.materials.size()),
+        materials_(living.body.materials),
         spring_gone_(marked(edits.removed_springs, living.body.springs.size(), "spring")),
         mass_gone_(marked(edits.removed_masses, living.body.masses.size(), "mass")) {}
 
@@ -50,6 +55,7 @@ class Editor {
     move_springs();
     refuse_joined_pairs(arrivals);
     for (const NewSpring& spring : arrivals) add_spring(spring);
+    drop_unused_materials(living_.body);
   }
 
  private:
@@ -77,9 +83,10 @@ class Editor {
 
   static void check_material(const std::string& what, const Material& material) {
     if (is_air(material) || !std::isfinite(material.stiffness))
-      refuse(what + " by a spring of stiffness " + std::to_string(material.stiffness));
+      refuse(what + " by a spring whose stiffness is " + to_text(material.stiffness) +
+             "; expected a finite one above 0");
     if (!(material.amplitude >= 0 && material.amplitude < 1))
-      refuse(what + " by a spring of amplitude " + std::to_string(material.amplitude) + "; expected 0 to below 1");
+      refuse(what + " by a spring whose amplitude is " + to_text(material.amplitude) + "; expected 0 to below 1");
     if (!std::isfinite(material.frequency) || !std::isfinite(material.phase))
       refuse(what + " by a spring whose frequency or phase is not finite");
   }
@@ -87,15 +94,16 @@ class Editor {
   static bool is_rest_length(double length) { return length >= 0 && std::isfinite(length); }
 
   static void check_rest_length(const std::string& what, double length) {
-    if (!is_rest_length(length)) refuse(what + " by a spring of rest length " + std::to_string(length));
+    if (!is_rest_length(length))
+      refuse(what + " by a spring whose rest length is " + to_text(length) + "; expected a finite one, at least 0");
   }
 
   static void check_growth(const Growth& growth) {
     // written so that NaN fails
     const auto on_the_way = [&](double gone) { return gone >= 0 && gone <= growth.whole; };
     if (!(growth.whole > 0) || !std::isfinite(growth.whole) || !on_the_way(growth.from) || !on_the_way(growth.to))
-      refuse("grows springs from " + std::to_string(growth.from) + " to " + std::to_string(growth.to) +
-             " of a way of " + std::to_string(growth.whole) + "; expected 0 to all of it");
+      refuse("grows springs from " + to_text(growth.from) + " to " + to_text(growth.to) + " of a way of " +
+             to_text(growth.whole) + "; expected 0 to all of a finite one");
   }
 
   void grow_springs(const Growth& growth) {
@@ -106,7 +114,8 @@ class Editor {
     for (Spring& spring : living_.body.springs) {
       spring.rest_length *= relative_length(spring, growth.to) / relative_length(spring, growth.from);
       if (!is_rest_length(spring.rest_length))
-        refuse("grows a spring to a rest length of " + std::to_string(spring.rest_length));
+        refuse("grows a spring whose rest length then is " + to_text(spring.rest_length) +
+               "; expected a finite one, at least 0");
     }
   }
 
@@ -123,7 +132,7 @@ class Editor {
       if (change.material) check_material(what, *change.material);
       if (change.rest_length) check_rest_length(what, *change.rest_length);
       spring.rest_length = change.rest_length.value_or(spring.rest_length);
-      if (change.material) spring.material = body.material_index(*change.material);
+      if (change.material) spring.material = materials_.index(*change.material);
     }
   }
 
@@ -171,12 +180,12 @@ class Editor {
         add(living_.body.masses[i], living_.state.position[i], living_.state.velocity[i]);
     }
     for (const NewMass& mass : edits_.new_masses) {
-      if (!std::isfinite(norm(mass.place)) || !(mass.mass > 0) || !std::isfinite(mass.mass))
-        refuse("adds a mass of " + std::to_string(mass.mass) + " kg at a distance of " +
-               std::to_string(norm(mass.place)) + " m from the origin");
-      if (mass.material < no_material || mass.material >= static_cast<std::int64_t>(living_.body.materials.size()))
+      if (!std::isfinite(norm(mass.place))) refuse("adds a mass at a place that is not finite");
+      if (!(mass.mass > 0) || !std::isfinite(mass.mass))
+        refuse("adds a mass whose weight is " + to_text(mass.mass) + "; expected a finite one above 0 kg");
+      if (mass.material < no_material || mass.material >= static_cast<std::int64_t>(old_materials_))
         refuse("adds a mass of material " + std::to_string(mass.material) + " to a body that has " +
-               std::to_string(living_.body.materials.size()) + " materials");
+               std::to_string(old_materials_) + " materials");
       add({mass.place, mass.mass, mass.material, 0}, mass.place, {});
     }
     pass_load_on(masses);
@@ -250,12 +259,14 @@ class Editor {
 
   void add_spring(const NewSpring& spring) {
     living_.body.springs.push_back({new_index_[spring.a], new_index_[spring.b], *spring.rest_length,
-                                    living_.body.material_index(spring.material), 1, *spring.rest_length});
+                                    materials_.index(spring.material), 1, *spring.rest_length});
   }
 
   LivingBody& living_;
   const Edits& edits_;
   const Moment& now_;
+  std::size_t old_materials_;  ///< how many there were before the edits
+  MaterialList materials_;
   std::vector<std::uint8_t> spring_gone_, mass_gone_;
   std::vector<std::uint32_t> new_index_;  ///< of every old and new mass
 };

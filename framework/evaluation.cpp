@@ -5,6 +5,7 @@
 #include <mutex>
 #include <numeric>
 
+#include "body_building.hpp"
 #include "parallel.hpp"
 #include "philox.hpp"
 #include "skip_shift.hpp"
@@ -311,6 +312,10 @@ bool Evaluation::needs_work(std::size_t mark) const {
   return false;
 }
 
+bool Evaluation::opens_window(std::size_t mark) const {
+  return std::any_of(windows_.begin(), windows_.end(), [&](const Window& window) { return window.opens == mark; });
+}
+
 void Evaluation::measure(std::span<Life> lives, const Progress& progress) const {
   double now = 0;
   for (Life& life : lives) life.snapshots.assign(1, {});
@@ -326,6 +331,7 @@ void Evaluation::measure(std::span<Life> lives, const Progress& progress) const 
       snapshot.box = bounding_box(life.living.state.position);
       snapshot.centre = centre_of_mass(life.living.body, life.living.state.position);
       life.snapshots.push_back(snapshot);
+      if (opens_window(mark) && !has_extent(life.living.state.position)) life.end(Status::invalid, "no extent");
     }
     progress(marks_.back() > 0 ? now / marks_.back() : 1);
   }

@@ -149,6 +149,8 @@ class Evaluation {
   double development_time() const;
   /// Whether a fitness asks for the work in the time up to a mark.
   bool needs_work(std::size_t mark) const;
+  /// Whether the window of some fitness opens at a mark.
+  bool opens_window(std::size_t mark) const;
   void score(Life& life) const;
   void return_to_rest(Life& life) const;
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "breeding.hpp"
+#include "clones.hpp"
 #include "evodevo/pareto.hpp"
 #include "philox.hpp"
 #include "text.hpp"
@@ -89,16 +90,15 @@ class FrontLives {
   std::set<std::uint32_t> kept_;
 };
 
-/// Reduces `everyone` to the survivors, in the order of birth; returns the ids of the others.
-std::vector<std::uint32_t> select(std::vector<Individual>& everyone, const Experiment& experiment,
-                                  std::uint32_t generation) {
+/// Reduces `everyone` to the survivors, in the order of birth; adds the ids of the others to `dropped`.
+void select(std::vector<Individual>& everyone, const Experiment& experiment, std::uint32_t generation,
+            std::vector<std::uint32_t>& dropped) {
   const auto population = static_cast<std::uint32_t>(experiment.population);
   const SelectionTable table(everyone, experiment.objectives, generation);
   Rng rng(philox, {static_cast<std::uint64_t>(experiment.seed), generation, 0, place::survivors});
   const auto rows = call_operator(experiment, Selection::kind, 0,
                                   [&] { return chosen_survivors(experiment, table, population, rng); });
   std::vector<Individual> survivors;
-  std::vector<std::uint32_t> dropped;
   for (std::uint32_t i = 0; i < everyone.size(); ++i) {
     if (std::binary_search(rows.begin(), rows.end(), i))
       survivors.push_back(std::move(everyone[i]));
@@ -106,7 +106,6 @@ std::vector<std::uint32_t> select(std::vector<Individual>& everyone, const Exper
       dropped.push_back(everyone[i].id);
   }
   everyone = std::move(survivors);
-  return dropped;
 }
 
 void add_best_and_median(Summary& summary, const std::vector<Individual>& population, bool maximise) {
@@ -120,9 +119,11 @@ void add_best_and_median(Summary& summary, const std::vector<Individual>& popula
   summary.median = scores.size() % 2 == 1 ? scores[half] : (scores[half - 1] + scores[half]) / 2;
 }
 
-Summary summarise(const std::vector<Individual>& newborns, std::uint32_t generation) {
+Summary summarise(const std::vector<Individual>& population, const std::vector<Individual>& newborns,
+                  std::uint32_t generation) {
   Summary summary;
   summary.generation = generation;
+  summary.clones = count_clones(population, newborns);
   for (const Individual& individual : newborns) {
     summary.diverged += individual.result.status == Status::diverged;
     summary.invalid += individual.result.status == Status::invalid;
@@ -197,11 +198,12 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
                                              static_cast<std::uint32_t>(evaluations), static_cast<std::size_t>(count));
     evaluate(newborns, evaluation, observer);
     evaluations += count;
-    Summary summary = summarise(newborns, generation);
+    Summary summary = summarise(population, newborns, generation);
     lives.take(newborns);
     population.insert(population.end(), newborns.begin(), newborns.end());
+    std::vector<std::uint32_t> dropped = remove_copies(population);
     lives.keep_front(population, generation);
-    const std::vector<std::uint32_t> dropped = select(population, experiment, generation);
+    select(population, experiment, generation, dropped);
     lives.keep_front(population, generation);
     add_best_and_median(summary, population, experiment.objectives.front().maximise);
     summary.evaluations = evaluations;

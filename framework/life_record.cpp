@@ -35,7 +35,7 @@ void put_in_order(std::vector<std::uint32_t>& indices, std::vector<double>& caus
 /// Appends changes to bytes. Whole numbers take seven bits to a byte, the highest bit says that more follow.
 class Writer {
  public:
-  Writer(std::string& bytes, std::vector<Material>& materials) : bytes_(bytes), materials_(materials) {}
+  Writer(std::string& bytes, MaterialNumbers& materials) : bytes_(bytes), materials_(materials) {}
 
   void write(const Change& change) {
     const Edits& edits = change.edits;
@@ -97,21 +97,22 @@ class Writer {
 
   /// Its number, and the first time what it is.
   void material(const Material& material) {
-    const auto found = std::find(materials_.begin(), materials_.end(), material);
-    whole(static_cast<std::uint64_t>(found - materials_.begin()));
-    if (found != materials_.end()) return;
-    raw(material);
-    materials_.push_back(material);
+    const auto [found, is_new] = materials_.try_emplace(material, static_cast<std::uint32_t>(materials_.size()));
+    whole(found->second);
+    if (is_new) raw(material);
   }
 
   std::string& bytes_;
-  std::vector<Material>& materials_;
+  MaterialNumbers& materials_;
 };
 
 /// Reads what a Writer has written.
 class Reader {
  public:
-  Reader(const std::string& bytes, std::vector<Material>& materials) : bytes_(bytes), materials_(materials) {}
+  explicit Reader(const std::string& bytes) : bytes_(bytes) {}
+
+  /// All materials that it has come across, by their numbers.
+  const std::vector<Material>& materials() const { return materials_; }
 
   bool at_end() const { return at_ == bytes_.size(); }
 
@@ -196,7 +197,7 @@ class Reader {
   }
 
   const std::string& bytes_;
-  std::vector<Material>& materials_;
+  std::vector<Material> materials_;
   std::size_t at_ = 0;
 };
 
@@ -218,15 +219,16 @@ void set_rest_lengths(Change& change, const Body& after) {
 }
 
 LifeRecord::LifeRecord(std::string bytes) : bytes_(std::move(bytes)) {
-  for (Reader reader(bytes_, materials_); !reader.at_end();) reader.read();
+  Reader reader(bytes_);
+  while (!reader.at_end()) reader.read();
+  materials_ = numbered(reader.materials());
 }
 
 void LifeRecord::add(const Change& change) { Writer(bytes_, materials_).write(change); }
 
 std::vector<Change> LifeRecord::changes() const {
   std::vector<Change> changes;
-  std::vector<Material> materials;
-  for (Reader reader(bytes_, materials); !reader.at_end();) changes.push_back(reader.read());
+  for (Reader reader(bytes_); !reader.at_end();) changes.push_back(reader.read());
   return changes;
 }
 

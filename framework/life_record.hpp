@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "evodevo/devo.hpp"
+#include "materials.hpp"
 
 namespace evodevo {
 
@@ -43,7 +44,7 @@ class LifeRecord {
 
  private:
   std::string bytes_;
-  std::vector<Material> materials_;  ///< those written so far, which others refer to
+  MaterialNumbers materials_;  ///< those written so far, to which others refer by their numbers
 };
 
 /// Makes a change to a body again; its motion is none of it.

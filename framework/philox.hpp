@@ -18,6 +18,8 @@ inline constexpr std::uint32_t variation = 4;       ///< which operators a child
 inline constexpr std::uint32_t disturbance = 0x10;  ///< and on, of starts that differ by noise
 inline constexpr std::uint32_t crossover = 0x100;
 inline constexpr std::uint32_t mutation = 0x200;
+/// The place of what is drawn once more, where a newborn has come out as a clone so many times.
+constexpr std::uint32_t again(std::uint32_t place, std::uint32_t times) { return place + (times << 16); }
 constexpr std::uint32_t devo(std::size_t op, std::int64_t cycle) {
   return static_cast<std::uint32_t>(op + 1) << 24 | static_cast<std::uint32_t>(cycle);
 }

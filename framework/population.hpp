@@ -27,6 +27,7 @@ struct Summary {
   std::int64_t evaluations = 0;  ///< since the run began
   std::optional<double> best, median;
   std::int64_t diverged = 0, invalid = 0;  ///< among this generation's evaluations
+  std::int64_t clones = 0;  ///< likewise, genetically equal to one that lived then or to an earlier newborn
   std::uint64_t spring_evaluations = 0;    ///< of this generation
   double wall_time = 0;                    ///< of this generation, s
   std::uint32_t maker = 0;                 ///< its place among the run's makers

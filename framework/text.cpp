@@ -4,10 +4,21 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <numeric>
 
 namespace evodevo {
+namespace {
+
+/// What a number is called that has no digits; empty for all others.
+std::string word_for(double value) {
+  if (std::isnan(value)) return "not a number";
+  if (std::isinf(value)) return value > 0 ? "infinity" : "-infinity";
+  return "";
+}
+
+}  // namespace
 
 std::string program_name() {
   const char* name = std::getenv("EVODEVO_COMMAND");
@@ -15,6 +26,7 @@ std::string program_name() {
 }
 
 std::string to_text(double value) {
+  if (!std::isfinite(value)) return word_for(value);
   std::array<char, 32> buffer;
   const bool whole = value == std::floor(value) && std::abs(value) < 1e15;
   if (whole) return std::to_string(static_cast<long long>(value));
@@ -28,9 +40,17 @@ std::string to_text(double value) {
   }
 }
 
+std::string short_number(double value) {
+  if (!std::isfinite(value)) return word_for(value);
+  std::array<char, 32> buffer;
+  std::snprintf(buffer.data(), buffer.size(), "%.4g", value + 0.0);  // of -0 comes 0
+  return buffer.data();
+}
+
 std::string to_text(const Range& range) {
   if (std::isinf(range.low) && std::isinf(range.high)) return "";
   if (std::isinf(range.high)) return "at least " + to_text(range.low);
+  if (std::isinf(range.low)) return "at most " + to_text(range.high);
   return to_text(range.low) + " to " + to_text(range.high);
 }
 

@@ -13,10 +13,14 @@ namespace evodevo {
 /// How the user calls this program, for remedies that can be pasted: "evodevo", or what the launching script says.
 std::string program_name();
 
-/// A decimal text that reads back as the same number, with no more digits than that takes.
+/// A decimal text that reads back as the same number, with no more digits than that takes; "not a number", "infinity"
+/// and "-infinity" for what has none.
 std::string to_text(double value);
 
-/// "0 to 1" or "at least 0", without the unit; empty where everything is allowed.
+/// Four digits, for those who only look: "0.1234", "1.2e+08"; what is not finite in the words of to_text().
+std::string short_number(double value);
+
+/// "0 to 1", "at least 0" or "at most 1", without the unit; empty where everything is allowed.
 std::string to_text(const Range& range);
 
 /// "a, b, c".

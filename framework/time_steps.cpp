@@ -18,8 +18,7 @@ LongestStep longest_fixed_step(const StepRule& rule, const Body& body, std::span
   if (rule.run_unstable) return {*rule.dt, ""};
   if (dt > largest_contact_dt(scene, body, method))
     return failed(to_text(dt) + " s is too long for the body's lightest mass on this floor");
-  for (const Material& material : body.materials)
-    if (dt > largest_muscle_dt(material)) return failed(to_text(dt) + " s is too long for the body's fastest muscles");
+  if (dt > largest_muscle_dt(body)) return failed(to_text(dt) + " s is too long for the body's fastest muscles");
   if (!is_stable(body, places, method, dt)) return failed(to_text(dt) + " s is too long for the body's springs");
   return {*rule.dt, ""};
 }
@@ -35,7 +34,8 @@ LongestStep longest_step(const StepRule& rule, const Body& body, std::span<const
                          Method method) {
   if (rule.dt) return longest_fixed_step(rule, body, places, scene, method);
   const double dt = safe_dt(body, places, scene, method);
-  if (!(dt >= shortest_dt)) return failed("the body would need steps of " + to_text(dt) + " s");
+  if (!(dt > 0)) return failed("the body is too large, too stiff or too light for one to be computed");
+  if (dt < shortest_dt) return failed("the body would need steps of " + to_text(dt) + " s");
   return {dt, ""};
 }
 

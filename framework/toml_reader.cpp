@@ -40,11 +40,23 @@ std::string value_text(const toml::node& node) {
   const toml::array* array = node.as_array();
   if (array != nullptr && std::any_of(array->begin(), array->end(), [](const auto& item) { return item.is_table(); }))
     return "a list with tables";
-  if (const auto* number = node.as_floating_point()) return to_text(number->get());
+  if (const auto* number = node.as_floating_point(); number != nullptr && std::isfinite(number->get()))
+    return to_text(number->get());
   std::ostringstream text;
   node.visit([&](const auto& n) { text << toml::toml_formatter(n, toml::format_flags::none); });
   return text.str();
 }
+
+namespace {
+
+/// "expected a number, 0 to 1 s", without what is empty or says nothing.
+std::string expected(const std::string& what, const Range& range) {
+  const std::string ends = to_text(range), separator = what.empty() || ends.empty() ? "" : ", ";
+  const std::string unit = range.unit == "1" || ends.empty() ? "" : " " + std::string(range.unit);
+  return "expected " + what + separator + ends + unit;
+}
+
+}  // namespace
 
 std::string TomlReader::full_name(std::string_view name) const {
   return path_.empty() ? std::string(name) : path_ + "." + std::string(name);
@@ -73,17 +85,24 @@ const toml::node* TomlReader::look_up(std::string_view name) {
   return table_.get(name);
 }
 
-double TomlReader::number(const toml::node& node, std::string_view name, Range range, bool whole) const {
-  if (whole && !node.is_integer()) fail_at(node, name, "expected a whole number");
-  if (!node.is_number()) fail_at(node, name, "expected a number");
+double TomlReader::number(const toml::node& node, std::string_view name, Range range) const {
+  if (!node.is_number()) fail_at(node, name, expected("a number", range));
   const double value =
       node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
+  const bool has_ends = std::isfinite(range.low) && std::isfinite(range.high);
   // written so that NaN fails
-  if (!(value >= range.low && value <= range.high) || std::isinf(value)) {
-    const std::string unit = range.unit == "1" ? "" : " " + std::string(range.unit);
-    fail_at(node, name, "expected " + to_text(range) + unit);
-  }
+  if (!(value >= range.low && value <= range.high) || std::isinf(value))
+    fail_at(node, name, expected(has_ends ? "" : "a finite number", range));
   return value;
+}
+
+std::int64_t TomlReader::whole_number(const toml::node& node, std::string_view name, Range range) const {
+  if (!node.is_number()) fail_at(node, name, expected("a whole number", range));
+  const double value = number(node, name, range);
+  if (node.is_integer()) return node.as_integer()->get();
+  constexpr double beyond = 0x1p63;
+  if (value != std::floor(value) || !(std::abs(value) < beyond)) fail_at(node, name, expected("a whole number", range));
+  return static_cast<std::int64_t>(value);
 }
 
 const toml::array& TomlReader::three(const toml::node& node, std::string_view name) const {
@@ -93,15 +112,12 @@ const toml::array& TomlReader::three(const toml::node& node, std::string_view na
 }
 
 void TomlReader::real(double& value, std::string_view name, Range range, std::string_view) {
-  if (const toml::node* node = look_up(name)) value = number(*node, name, range, false);
+  if (const toml::node* node = look_up(name)) value = number(*node, name, range);
   resolve(name, value);
 }
 
 void TomlReader::integer(std::int64_t& value, std::string_view name, Range range, std::string_view) {
-  if (const toml::node* node = look_up(name)) {
-    number(*node, name, range, true);
-    value = node->value<std::int64_t>().value();
-  }
+  if (const toml::node* node = look_up(name)) value = whole_number(*node, name, range);
   resolve(name, value);
 }
 
@@ -128,8 +144,7 @@ void TomlReader::choice(std::string& value, std::string_view name, std::initiali
 void TomlReader::vector(Vec3& value, std::string_view name, Range range, std::string_view) {
   if (const toml::node* node = look_up(name)) {
     const toml::array& array = three(*node, name);
-    value = {number(array[0], name, range, false), number(array[1], name, range, false),
-             number(array[2], name, range, false)};
+    value = {number(array[0], name, range), number(array[1], name, range), number(array[2], name, range)};
   }
   resolve(name, toml::array{value.x, value.y, value.z});
 }
@@ -137,7 +152,7 @@ void TomlReader::vector(Vec3& value, std::string_view name, Range range, std::st
 void TomlReader::counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view) {
   if (const toml::node* node = look_up(name)) {
     const toml::array& array = three(*node, name);
-    for (std::size_t i = 0; i < 3; ++i) value[i] = static_cast<std::int64_t>(number(array[i], name, range, true));
+    for (std::size_t i = 0; i < 3; ++i) value[i] = whole_number(array[i], name, range);
   }
   resolve(name, toml::array{value[0], value[1], value[2]});
 }
@@ -161,7 +176,7 @@ void TomlReader::require(bool holds, std::string_view name, std::string_view tex
 void TomlReader::real_or_auto(std::optional<double>& value, std::string_view name, Range range, std::string_view) {
   if (const toml::node* node = look_up(name)) {
     if (!node->is_string())
-      value = number(*node, name, range, false);
+      value = number(*node, name, range);
     else if (node->value<std::string>() == "auto")
       value.reset();
     else

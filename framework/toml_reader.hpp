@@ -80,7 +80,9 @@ class TomlReader final : public Parameters {
   const toml::node* look_up(std::string_view name);
   void know(std::string_view name);
   void refuse_unknown_keys() const;
-  double number(const toml::node& node, std::string_view name, Range range, bool whole) const;
+  double number(const toml::node& node, std::string_view name, Range range) const;
+  /// Of 3 and of 3.0.
+  std::int64_t whole_number(const toml::node& node, std::string_view name, Range range) const;
   const toml::array& three(const toml::node& node, std::string_view name) const;
   [[noreturn]] void fail_at(const toml::node& node, std::string_view name, const std::string& message) const;
 

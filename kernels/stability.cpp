@@ -161,6 +161,15 @@ double disc_bound(const Body& body, std::span<const Vec3> places) {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+/// The highest frequency among the springs that are muscles, Hz; 0 where none is.
+double fastest_muscle(const Body& body) {
+  double fastest = 0;
+  for (const Spring& spring : body.springs)
+    if (const Material& material = body.materials[spring.material]; material.amplitude != 0)
+      fastest = std::max(fastest, std::abs(material.frequency));
+  return fastest;
+}
+
 }  // namespace
 
 double oscillation_limit(Method method) {
@@ -202,6 +211,11 @@ double largest_muscle_dt(const Material& material) {
   return 0.5 / std::abs(material.frequency);
 }
 
+double largest_muscle_dt(const Body& body) {
+  const double frequency = fastest_muscle(body);
+  return frequency > 0 ? 0.5 / frequency : infinity;
+}
+
 double largest_dt(const Body& body, std::span<const Vec3> places, Method method, double wanted) {
   if (!is_explicit(method)) return wanted;
   const double limit = oscillation_limit(method);
@@ -215,9 +229,8 @@ double largest_dt(const Body& body, std::span<const Vec3> places, Method method,
 double safe_dt(const Body& body, std::span<const Vec3> places, const Scene& scene, Method method) {
   constexpr double longest = 0.01, steps_of_a_stroke = 20;
   double other = std::min(longest, largest_contact_dt(scene, body, method));
-  for (const Material& material : body.materials)
-    if (material.amplitude != 0 && material.frequency != 0)
-      other = std::min(other, 1 / (steps_of_a_stroke * std::abs(material.frequency)));
+  if (const double frequency = fastest_muscle(body); frequency > 0)
+    other = std::min(other, 1 / (steps_of_a_stroke * frequency));
   if (method == Method::rk4 && scene.damping && scene.damping->rate > 0)
     other = std::min(other, 2 / scene.damping->rate);
   const double wanted = other / spring_margin;

@@ -27,6 +27,8 @@ double largest_spring_dt(const Material& material, double mass, Method method);
 /// The largest dt (s) at which the muscles of `material` are seen at all, whatever the method: half a period of their
 /// actuation. Beyond it they move as muscles of another, slower actuation would; infinite where nothing is actuated.
 double largest_muscle_dt(const Material& material);
+/// The same for all springs of a body; what else is among its materials does not count.
+double largest_muscle_dt(const Body& body);
 
 /// The largest dt (s) at which `body`, its masses at `places`, is stable, or `wanted` (s) where it bears that: dt times
 /// the highest angular frequency of the undamped body within the limit; infinite where nothing swings or the method is

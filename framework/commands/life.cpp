@@ -9,6 +9,7 @@
 #include "commands/options.hpp"
 #include "device.hpp"
 #include "living_again.hpp"
+#include "text.hpp"
 
 namespace evodevo {
 namespace {
@@ -176,8 +177,9 @@ std::string who(const Event& event) {
 }
 
 void print(const Cause& cause, const Measure& measure) {
-  std::printf(", %s %.4g%s", measure.name.c_str(), cause.number,
-              measure.unit == "1" ? "" : (" " + measure.unit).c_str());
+  const bool has_unit = measure.unit != "1" && std::isfinite(cause.number);
+  std::printf(", %s %s%s", measure.name.c_str(), short_number(cause.number).c_str(),
+              has_unit ? (" " + measure.unit).c_str() : "");
 }
 
 void print(const Event& event, const std::vector<Narrated>& operators) {

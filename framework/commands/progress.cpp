@@ -17,7 +17,7 @@ std::string formatted(const char* format, double value) {
   return text;
 }
 
-std::string optional_text(const std::optional<double>& value) { return value ? formatted("%.4g", *value) : "none"; }
+std::string optional_text(const std::optional<double>& value) { return value ? short_number(*value) : "none"; }
 
 std::string duration_text(double seconds) {
   const auto whole = static_cast<long>(seconds + 0.5);
@@ -103,8 +103,8 @@ void print_outcome(const Experiment& experiment, const Archive& archive, const P
     const ArchivedIndividual individual = *archive.individual(best.front());
     std::cout << "best: individual " << individual.id << " of generation " << individual.born;
     for (std::size_t i = 0; i < experiment.objectives.size(); ++i)
-      std::cout << ", " << experiment.objectives[i].name << ' ' << formatted("%.4g", individual.result.objectives[i])
-                << ' ' << experiment.objectives[i].unit;
+      std::cout << ", " << experiment.objectives[i].name << ' ' << short_number(individual.result.objectives[i]) << ' '
+                << experiment.objectives[i].unit;
     std::cout << "\n      look at the run: " << program_name() << " show " << archive.folder().string()
               << "\n      its body:        " << program_name() << " body " << archive.folder().string()
               << " --individual " << individual.id << '\n';
@@ -113,8 +113,8 @@ void print_outcome(const Experiment& experiment, const Archive& archive, const P
               << archive.folder().string() << '\n';
   }
   const auto springs = static_cast<double>(progress.spring_evaluations());
-  std::cout << "speed: " << formatted("%.3g", springs / progress.seconds()) << " spring evaluations/s ("
-            << formatted("%.3g", springs) << " in " << duration_text(progress.seconds()) << ")" << std::endl;
+  std::cout << "speed: " << short_number(springs / progress.seconds()) << " spring evaluations/s ("
+            << short_number(springs) << " in " << duration_text(progress.seconds()) << ")" << std::endl;
 }
 
 void print_time_spent(const TimeSpent& time, const Simulator& simulator) {

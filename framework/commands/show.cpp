@@ -36,7 +36,7 @@ class Report {
     if (const std::string control = control_of(archive_); control != "off")
       std::cout << "development under the control \"" << control << "\"\n";
     std::cout << done() << " evaluations: " << statuses.at("ok") << " ok, " << statuses.at("invalid") << " invalid, "
-              << statuses.at("diverged") << " diverged\n\n";
+              << statuses.at("diverged") << " diverged; " << clones(generations_) << " of them clones\n\n";
     print_generations();
     print_failures();
     print_best();
@@ -54,14 +54,15 @@ class Report {
   }
 
   void print_generations() const {
-    std::printf("%10s %12s %10s %10s %9s %8s\n", "generation", "evaluations", "best", "median", "diverged", "invalid");
+    std::printf("%10s %12s %10s %10s %9s %8s %7s\n", "generation", "evaluations", "best", "median", "diverged",
+                "invalid", "clones");
     const std::size_t stride = (generations_.size() + generations_shown - 1) / generations_shown;
     for (std::size_t i = 0; i < generations_.size(); ++i) {
       if (i % stride != 0 && i + 1 != generations_.size()) continue;
       const Summary& s = generations_[i];
-      std::printf("%10u %12lld %10s %10s %9lld %8lld\n", s.generation, static_cast<long long>(s.evaluations),
+      std::printf("%10u %12lld %10s %10s %9lld %8lld %7lld\n", s.generation, static_cast<long long>(s.evaluations),
                   number(s.best).c_str(), number(s.median).c_str(), static_cast<long long>(s.diverged),
-                  static_cast<long long>(s.invalid));
+                  static_cast<long long>(s.invalid), static_cast<long long>(s.clones));
     }
   }
 
@@ -96,12 +97,7 @@ class Report {
     }
   }
 
-  static std::string number(const std::optional<double>& value) {
-    if (!value) return "-";
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", *value);
-    return text;
-  }
+  static std::string number(const std::optional<double>& value) { return value ? short_number(*value) : "-"; }
 
   const Archive& archive_;
   std::vector<Objective> objectives_;

@@ -10,6 +10,7 @@
 #include "device.hpp"
 #include "living_again.hpp"
 #include "report/run_json.hpp"
+#include "text.hpp"
 
 namespace evodevo {
 namespace {
@@ -19,12 +20,7 @@ namespace po = boost::program_options;
 
 constexpr std::int64_t most_verified = 1000;
 
-std::string number(const std::optional<double>& value) {
-  if (!value) return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", *value);
-  return text;
-}
+std::string number(const std::optional<double>& value) { return value ? short_number(*value) : "-"; }
 
 }  // namespace
 

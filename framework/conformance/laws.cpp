@@ -71,11 +71,28 @@ void layout_is_whole(const AvailableOperator& subject, std::uint64_t) {
 
 // ---- variation ----
 
+constexpr std::uint32_t tries_to_change = 200;
+
 void nothing_stays_nothing(const AvailableOperator& subject, std::uint64_t seed) {
   Genome nothing;
   Rng rng = stream(seed, 0);
   create<Mutation>(subject)->mutate(nothing, Layout{}, rng);
   if (!nothing.empty()) throw Violation("it makes genes of no genes");
+}
+
+/// Of a mutation that changes nothing, every child is a clone.
+void mutates(const AvailableOperator& subject, std::uint64_t seed) {
+  const auto op = create<Mutation>(subject);
+  const Layout layout = sample_layout();
+  for (std::uint32_t input = 0; input < tries_to_change; ++input) {
+    Rng rng = stream(seed, input);
+    const Genome genome = random_genome(layout, rng);
+    Genome mutant = genome;
+    op->mutate(mutant, layout, rng);
+    if (mutant != genome) return;
+  }
+  throw Violation("it changes none of " + std::to_string(tries_to_change) +
+                  " genomes, so that its children are clones");
 }
 
 void mutants_fit(const AvailableOperator& subject, std::uint64_t seed) {
@@ -99,6 +116,21 @@ void twins_stay_twins(const AvailableOperator& subject, std::uint64_t seed) {
     op->cross(one, other, layout, rng);
     if (one != genome || other != genome) throw Violation("of two equal genomes it makes others");
   }
+}
+
+/// The child is what becomes of the first genome.
+void crosses(const AvailableOperator& subject, std::uint64_t seed) {
+  const auto op = create<Crossover>(subject);
+  const Layout layout = sample_layout();
+  for (std::uint32_t input = 0; input < tries_to_change; ++input) {
+    Rng rng = stream(seed, input);
+    const Genome genome = random_genome(layout, rng);
+    Genome one = genome, other = random_genome(layout, rng);
+    op->cross(one, other, layout, rng);
+    if (one != genome) return;
+  }
+  throw Violation("of " + std::to_string(tries_to_change) +
+                  " pairs of genomes it changes the first in none, so that its children are clones");
 }
 
 void children_fit(const AvailableOperator& subject, std::uint64_t seed) {
@@ -165,7 +197,7 @@ void unmoved_by_translation(const AvailableOperator& subject, std::uint64_t seed
       *place = *place + by;
     const auto a = op->score(here), b = op->score(there);
     for (std::size_t i = 0; i < a.size(); ++i)
-      if (!(std::abs(a[i] - b[i]) <= 1e-9 * (1 + std::abs(a[i]))))
+      if (!(std::abs(a[i] - b[i]) <= 1e-9 * (1 + std::abs(a[i]))) && (std::isfinite(a[i]) || std::isfinite(b[i])))
         throw Violation("a body that does the same elsewhere scores " + to_text(b[i]) + " instead of " + to_text(a[i]));
   }
 }
@@ -189,6 +221,11 @@ void scores_every_objective(const AvailableOperator& subject, std::uint64_t seed
                     " objectives");
   for (const Objective& objective : objectives)
     if (objective.name.empty() || objective.unit.empty()) throw Violation("an objective has no name or no unit");
+  constexpr std::uint32_t bodies = 20;
+  for (std::uint32_t input = 0; input < bodies; ++input)
+    if (std::ranges::all_of(op->score(sample_observation(seed, input)), [](double s) { return std::isfinite(s); }))
+      return;
+  throw Violation("none of " + std::to_string(bodies) + " bodies gets finite scores, so that all would be invalid");
 }
 
 // ---- selection ----
@@ -275,8 +312,9 @@ void failed_rows_lose(const AvailableOperator& subject, std::uint64_t seed) {
 
 std::vector<Case> laws_of(std::string_view kind) {
   if (kind == Encoding::kind) return {{"layout", layout_is_whole}, {"decoding", decodes}};
-  if (kind == Mutation::kind) return {{"nothing", nothing_stays_nothing}, {"layout", mutants_fit}};
-  if (kind == Crossover::kind) return {{"twins", twins_stay_twins}, {"layout", children_fit}};
+  if (kind == Mutation::kind)
+    return {{"nothing", nothing_stays_nothing}, {"changes", mutates}, {"layout", mutants_fit}};
+  if (kind == Crossover::kind) return {{"twins", twins_stay_twins}, {"changes", crosses}, {"layout", children_fit}};
   if (kind == Devo::kind) return {{"bodies", bodies_stay_sound}};
   if (kind == Fitness::kind)
     return {{"objectives", scores_every_objective}, {"translation", unmoved_by_translation}, {"nan", honest_about_nan}};

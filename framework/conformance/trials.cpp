@@ -224,6 +224,7 @@ SampleLife sample_life(std::uint64_t seed, std::uint32_t input) {
   Body& body = life.living.body;
   body.materials = sample_world().materials;
   const auto materials = static_cast<std::uint32_t>(body.materials.size());
+  body.base_materials = materials;
   // every eighth body has next to nothing, which is where operators forget to look
   const std::uint32_t masses = input % 8 == 7 ? 2 : 12 + rng.below(24);
   const bool masses_have_materials = input % 2 == 0;

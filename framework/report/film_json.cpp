@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "materials.hpp"
 #include "report/packing.hpp"
 
 namespace evodevo {
@@ -128,21 +129,44 @@ double most_stress(const Film& film) {
   return most;
 }
 
-/// The materials that springs of the film have, with what they do.
-Json materials_json(const Body& body) {
-  Json materials = Json::array();
-  for (const Material& m : body.materials)
-    materials.push_back(
-        {{"stiffness", m.stiffness}, {"amplitude", m.amplitude}, {"frequency", m.frequency}, {"phase", m.phase}});
-  return materials;
-}
+/// The materials of a film's bodies, those of the experiment first. No body has all of them.
+class FilmMaterials {
+ public:
+  explicit FilmMaterials(const Film& film) : materials_(base_materials(film.front().body)) {
+    MaterialList list(materials_);
+    for (const Shot& shot : film)
+      for (std::vector<std::int64_t>& places = places_.emplace_back(); const Material& material : shot.body.materials)
+        places.push_back(list.index(material));
+  }
+
+  /// What a material of a shot's body is in the film.
+  std::int64_t place(std::size_t shot, std::size_t material) const { return places_[shot][material]; }
+
+  Json json() const {
+    Json materials = Json::array();
+    for (const Material& m : materials_)
+      materials.push_back(
+          {{"stiffness", m.stiffness}, {"amplitude", m.amplitude}, {"frequency", m.frequency}, {"phase", m.phase}});
+    return materials;
+  }
+
+ private:
+  static std::vector<Material> base_materials(const Body& body) {
+    return {body.materials.begin(), body.materials.begin() + body.base_materials};
+  }
+
+  std::vector<Material> materials_;
+  std::vector<std::vector<std::int64_t>> places_;  ///< by shot and by material of its body
+};
 
 /// The masses' materials by their numbers; -1 where a mass has none.
-std::string packed_mass_materials(const Film& film) {
-  std::vector<std::int64_t> materials(mass_count(film), no_material);
-  for (const Shot& shot : film)
-    for (std::size_t i = 0; i < shot.numbers.size(); ++i) materials[shot.numbers[i]] = shot.body.masses[i].material;
-  return packed(materials);
+std::string packed_mass_materials(const Film& film, const FilmMaterials& materials) {
+  std::vector<std::int64_t> of_masses(mass_count(film), no_material);
+  for (std::size_t s = 0; s < film.size(); ++s)
+    for (std::size_t i = 0; i < film[s].numbers.size(); ++i)
+      if (const std::int32_t material = film[s].body.masses[i].material; material != no_material)
+        of_masses[film[s].numbers[i]] = materials.place(s, static_cast<std::size_t>(material));
+  return packed(of_masses);
 }
 
 std::vector<double> times(const std::vector<const Frame*>& frames) {
@@ -162,14 +186,19 @@ struct Motion {
 class FilmWriter {
  public:
   FilmWriter(const Film& film, const std::vector<Title>& titles)
-      : film_(film), titles_(titles), springs_(film), size_(body_size(film)), most_stress_(most_stress(film)) {}
+      : film_(film),
+        titles_(titles),
+        springs_(film),
+        materials_(film),
+        size_(body_size(film)),
+        most_stress_(most_stress(film)) {}
 
   /// Everything but the motion.
   Json still(const Detail& detail) const {
     return {{"masses", mass_count(film_)},
-            {"mass_materials", packed_mass_materials(film_)},
+            {"mass_materials", packed_mass_materials(film_, materials_)},
             {"ends", packed(springs_.ends())},
-            {"materials", materials_json(film_.back().body)},
+            {"materials", materials_.json()},
             {"most_stress", most_stress_},
             {"stress_levels", detail.stress_levels},
             {"shots", shots_json(detail.stress_levels)}};
@@ -216,7 +245,7 @@ class FilmWriter {
       shots.push_back({{"name", titles_.at(i).name},
                        {"masses", packed_changes(masses_before, film_[i].numbers)},
                        {"springs", packed_changes(springs_before, numbers)},
-                       {"materials", materials.next(numbers, materials_of(film_[i].body, indices))},
+                       {"materials", materials.next(numbers, materials_of(i, indices))},
                        {"stress", stress.next(numbers, stress_of(film_[i], indices, stress_levels))}});
       masses_before = film_[i].numbers;
       springs_before = numbers;
@@ -224,9 +253,10 @@ class FilmWriter {
     return shots;
   }
 
-  static std::vector<std::int64_t> materials_of(const Body& body, std::span<const std::size_t> springs) {
+  std::vector<std::int64_t> materials_of(std::size_t shot, std::span<const std::size_t> springs) const {
     std::vector<std::int64_t> materials;
-    for (const std::size_t s : springs) materials.push_back(body.springs[s].material);
+    for (const std::size_t s : springs)
+      materials.push_back(materials_.place(shot, film_[shot].body.springs[s].material));
     return materials;
   }
 
@@ -261,6 +291,7 @@ class FilmWriter {
   const Film& film_;
   const std::vector<Title>& titles_;
   SpringNumbers springs_;
+  FilmMaterials materials_;
   double size_;         ///< m
   double most_stress_;  ///< N
 };

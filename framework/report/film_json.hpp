@@ -29,7 +29,7 @@ struct Title {
 ///   masses          how many there ever are
 ///   mass_materials  of each; packed like all that follows in numbers
 ///   ends            of each spring, two masses
-///   materials       what they do
+///   materials       what they do, those of the experiment first
 ///   most_stress     N
 ///   stress_levels   into which the root of stress up to the most is divided
 ///   step            unit of places, m

@@ -53,6 +53,7 @@ Json generations_json(const std::vector<Summary>& generations) {
                     {"median", optional_json(s.median)},
                     {"diverged", s.diverged},
                     {"invalid", s.invalid},
+                    {"clones", s.clones},
                     {"spring_evaluations", s.spring_evaluations},
                     {"wall_time", s.wall_time},
                     {"maker", s.maker}});
@@ -66,6 +67,12 @@ Json failures_json(const std::vector<Failure>& failures) {
 }
 
 }  // namespace
+
+std::int64_t clones(const std::vector<Summary>& generations) {
+  std::int64_t sum = 0;
+  for (const Summary& summary : generations) sum += summary.clones;
+  return sum;
+}
 
 std::vector<ArchivedIndividual> ancestry(const Archive& archive, std::uint32_t id) {
   std::vector<ArchivedIndividual> line;
@@ -126,6 +133,7 @@ Json run_json(const Archive& archive, const Experiment& experiment) {
                {"finished", is_finished(experiment, generations)},
                {"verified", is_verified(archive, experiment)},
                {"statuses", archive.statuses()},
+               {"clones", clones(generations)},
                {"failures", failures_json(archive.failures())},
                {"objectives", objectives_json(archive.objectives())},
                {"makers", makers_json(archive.makers())},

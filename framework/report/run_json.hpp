@@ -7,6 +7,9 @@
 
 namespace evodevo {
 
+/// How many of all newborns were clones.
+std::int64_t clones(const std::vector<Summary>& generations);
+
 /// An individual and its first parents, back to the random individual that it comes from.
 std::vector<ArchivedIndividual> ancestry(const Archive& archive, std::uint32_t id);
 

@@ -30,7 +30,7 @@ double stopping_force(const Body& body, const State& state) {
   double speed = 0, mass = 0, stiffness = 0;
   for (const Vec3& v : state.velocity) speed = std::max(speed, norm(v));
   for (const Mass& m : body.masses) mass = std::max(mass, m.mass);
-  for (const Material& material : body.materials) stiffness = std::max(stiffness, material.stiffness);
+  for (const Spring& spring : body.springs) stiffness = std::max(stiffness, body.materials[spring.material].stiffness);
   return 2 * speed * std::sqrt(stiffness * mass / 2);
 }
 

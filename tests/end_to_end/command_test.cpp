@@ -57,11 +57,12 @@ TEST_F(Command, ShowAgreesWithTheArchive) {
   const auto json = nlohmann::json::parse(shown.output);
   ASSERT_EQ(json.at("generations").size(), 4u);
   double best = -1e300;
-  std::int64_t failed = 0;
+  std::int64_t failed = 0, clones = 0;
   for (const auto& generation : json.at("generations")) {
-    for (const char* key : {"generation", "evaluations", "best", "median", "diverged", "invalid"})
+    for (const char* key : {"generation", "evaluations", "best", "median", "diverged", "invalid", "clones"})
       ASSERT_TRUE(generation.contains(key)) << key;
     failed += generation.at("diverged").get<int>() + generation.at("invalid").get<int>();
+    clones += generation.at("clones").get<int>();
     if (!generation.at("best").is_null()) best = std::max(best, generation.at("best").get<double>());
   }
   EXPECT_EQ(json.at("generations").back().at("evaluations"), 24);
@@ -74,6 +75,8 @@ TEST_F(Command, ShowAgreesWithTheArchive) {
   const Finished text = evodevo({"show", folder_});
   EXPECT_EQ(text.exit_code, 0);
   EXPECT_THAT(text.output, HasSubstr("24 evaluations"));
+  EXPECT_EQ(json.at("clones"), clones);
+  EXPECT_THAT(text.output, HasSubstr("; " + std::to_string(clones) + " of them clones\n"));
   EXPECT_THAT(text.output, HasSubstr("best individuals\n  " + champion.at("individual").dump() + ": distance"));
   EXPECT_THAT(text.output, ::testing::Not(HasSubstr("nan")));
 }
@@ -359,7 +362,8 @@ TEST_F(Command, BadInputEndsWithTwoAndLeavesNothing) {
   for (const char* command : {"run", "check"}) {
     const Finished finished = evodevo({command, bad});
     EXPECT_EQ(finished.exit_code, 2);
-    EXPECT_EQ(finished.output, "evodevo: " + bad + ":2:8: experiment.seed = \"x\": expected a whole number\n");
+    EXPECT_EQ(finished.output,
+              "evodevo: " + bad + ":2:8: experiment.seed = \"x\": expected a whole number, 0 to 9007199254740991\n");
   }
   EXPECT_FALSE(fs::exists("runs/bad-1"));
   const Finished out = evodevo({"run", file_, "--out", folder_, "--threads", "-1"});

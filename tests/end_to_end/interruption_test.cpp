@@ -53,6 +53,7 @@ void expect_same_runs(const Archive& a, const Archive& b) {
     EXPECT_EQ(generations_a[i].median, generations_b[i].median);
     EXPECT_EQ(generations_a[i].diverged, generations_b[i].diverged);
     EXPECT_EQ(generations_a[i].invalid, generations_b[i].invalid);
+    EXPECT_EQ(generations_a[i].clones, generations_b[i].clones);
     EXPECT_EQ(generations_a[i].spring_evaluations, generations_b[i].spring_evaluations);
   }
   std::uint32_t id = 0;

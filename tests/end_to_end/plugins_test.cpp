@@ -145,7 +145,7 @@ TEST_F(Plugins, AnOperatorThatErrsIsNamedWithItsFile) {
   const Finished poisoned = run_with("nothing", {"--plugin-path", own(), "--out", folder_ + "2"});
   EXPECT_EQ(poisoned.exit_code, 1);
   EXPECT_THAT(poisoned.output, HasSubstr("mutation operator \"nothing\" of " + library_.string() +
-                                         ": made a genome with gene 0 = nan, which is not allowed" + remedy));
+                                         ": made a genome with gene 0 = not a number, which is not allowed" + remedy));
 }
 
 TEST_F(Plugins, AnOperatorThatCrashesIsNamedWithItsFile) {

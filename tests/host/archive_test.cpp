@@ -50,6 +50,7 @@ TEST_F(ArchiveTest, GivesBackWhatWasCommitted) {
                         .median = std::nullopt,
                         .diverged = 1,
                         .invalid = 0,
+                        .clones = 2,
                         .spring_evaluations = 9,
                         .wall_time = 0.5};
   {
@@ -80,6 +81,8 @@ TEST_F(ArchiveTest, GivesBackWhatWasCommitted) {
   ASSERT_EQ(archive.generations().size(), 1u);
   EXPECT_EQ(archive.generations()[0].best, 0.3);
   EXPECT_FALSE(archive.generations()[0].median.has_value());
+  EXPECT_EQ(archive.generations()[0].clones, 2);
+  EXPECT_EQ(archive.generations()[0].spring_evaluations, 9u);
   EXPECT_EQ(archive.best(9), std::vector<std::uint32_t>{4}) << "the diverged one has no place among the best";
   EXPECT_EQ(archive.statuses().at("diverged"), 1);
 }
@@ -172,7 +175,7 @@ TEST_F(ArchiveTest, ARunThatEndedBeforeItBeganIsTold) {
 TEST_F(ArchiveTest, AnotherFormatIsRefused) {
   { Archive::create(folder_, experiment_, "cpu").set_record("format", "99"); }
   EXPECT_EQ(refusal([&] { Archive::read(folder_); }),
-            folder_.string() + ": has format 99, this evodevo reads format 4; use the evodevo that wrote it, 0.1.0");
+            folder_.string() + ": has format 99, this evodevo reads format 5; use the evodevo that wrote it, 0.1.0");
 }
 
 TEST_F(ArchiveTest, ReadsOfOneMomentWhileAnotherWrites) {

@@ -248,9 +248,11 @@ TEST(Configuration, UnknownKeys) {
 
 TEST(Configuration, WrongTypes) {
   EXPECT_EQ(complaint(with("seed = 7", "seed = \"7\"")),
-            "test.toml:3:8: experiment.seed = \"7\": expected a whole number");
-  EXPECT_EQ(complaint(with("seed = 7", "seed = 7.5")), "test.toml:3:8: experiment.seed = 7.5: expected a whole number");
-  EXPECT_EQ(complaint(with("edge = 0.5", "edge = true")), "test.toml:11:8: encoding.edge = true: expected a number");
+            "test.toml:3:8: experiment.seed = \"7\": expected a whole number, 0 to 9007199254740991");
+  EXPECT_EQ(complaint(with("seed = 7", "seed = 7.5")),
+            "test.toml:3:8: experiment.seed = 7.5: expected a whole number, 0 to 9007199254740991");
+  EXPECT_EQ(complaint(with("edge = 0.5", "edge = true")).substr(0, 52),
+            "test.toml:11:8: encoding.edge = true: expected a num");
   EXPECT_EQ(complaint(with("size = [2, 1, 1]", "size = [2, 1]")),
             "test.toml:10:8: encoding.size = [ 2, 1 ]: expected a list of three numbers");
   EXPECT_EQ(complaint(with("cycles = 2", "reset = 1")),
@@ -277,6 +279,68 @@ TEST(Configuration, OutOfRange) {
             "test.toml:6:13: experiment.newcomers = 7: expected at most the population, 6");
   EXPECT_EQ(complaint(with("[simulation]", "[simulation]\ndevice = \"tpu\"")),
             "test.toml:27:10: simulation.device = \"tpu\": is not an option; known: auto, cpu, cuda");
+}
+
+TEST(Configuration, WholeNumbersMayHaveAPointOrAnExponent) {
+  const auto read = [](const std::string& key, const std::string& value) {
+    return testing::read(testing::small_experiment, {{key, value, "--set"}});
+  };
+  EXPECT_EQ(read("experiment.population", "7.0").population, 7);
+  EXPECT_EQ(read("experiment.evaluations", "1e3").evaluations, 1000);
+  EXPECT_EQ(read("experiment.newcomers", "-0.0").newcomers, 0);
+  EXPECT_EQ(read("experiment.seed", "9007199254740991.0").seed, 9007199254740991);
+  EXPECT_EQ(read("experiment.population", "7.0").resolved, read("experiment.population", "7").resolved);
+  EXPECT_EQ(read("encoding.size", "[3.0, 2, 1e0]").layout.genes.size(), 6u);
+  EXPECT_EQ(complaint(with("population = 6", "population = 6.5")),
+            "test.toml:5:14: experiment.population = 6.5: expected a whole number, 1 to 1000000");
+  EXPECT_EQ(complaint(with("size = [2, 1, 1]", "size = [2, 1.5, 1]")).substr(0, 63),
+            "test.toml:10:12: encoding.size = 1.5: expected a whole number, ");
+  EXPECT_THAT(complaint(small_experiment, {{"experiment.population", "99999999999999999999", "--set"}}),
+              ::testing::EndsWith("expected a whole number, 1 to 1000000"))
+      << "a text, as it does not fit a number";
+  EXPECT_EQ(complaint(with("population = 6", "population = 1e300")),
+            "test.toml:5:14: experiment.population = 1e+300: expected 1 to 1000000");
+  EXPECT_EQ(complaint(with("population = 6", "population = \"6\"")),
+            "test.toml:5:14: experiment.population = \"6\": expected a whole number, 1 to 1000000");
+}
+
+TEST(Configuration, NumbersThatAreNotFiniteAreRefusedWhereverTheyStand) {
+  for (const char* value : {"nan", "-nan", "+nan", "inf", "-inf"})
+    for (const char* key : {"experiment.population", "experiment.spring_evaluations", "encoding.edge", "encoding.size",
+                            "mutation.0.probability", "mutation.0.genes", "scene.gravity.slope", "simulation.dt",
+                            "simulation.refine", "development.cycle_time", "development.operator.0.from",
+                            "fitness.0.window", "fitness.0.direction", "materials.bone.phase"}) {
+      const bool is_list = std::string(key).ends_with("size") || std::string(key).ends_with("direction");
+      const std::string text = is_list ? "[1, " + std::string(value) + ", 1]" : value;
+      try {
+        testing::read(testing::small_experiment, {{key, text, "--set"}});
+        ADD_FAILURE() << key << " = " << text << " was accepted";
+      } catch (const ConfigError& error) {
+        EXPECT_THAT(error.what(), ::testing::HasSubstr(std::string("--set: ") + key + " = "));
+        EXPECT_THAT(error.what(), ::testing::ContainsRegex(": expected (a|[0-9-])")) << "what would be right";
+        EXPECT_THAT(error.what(), ::testing::Not(::testing::ContainsRegex("nan +[a-zA-Z]|at (least|most) $")));
+      }
+    }
+}
+
+/// A parameter that may have any finite value, and one with a bound on one side.
+TEST(Configuration, ARangeWithoutAnEndAsksForAFiniteNumber) {
+  const auto complaint_of = [](const std::string& text, Range range) -> std::string {
+    const toml::table table = parse_toml(text, "x");
+    TomlReader reader(table, "t");
+    double value = 0;
+    try {
+      reader.real(value, "a", range, "");
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const double none = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(complaint_of("a = nan", {}), "x:1:5: t.a = nan: expected a finite number");
+  EXPECT_EQ(complaint_of("a = inf", {0, none, "s"}), "x:1:5: t.a = inf: expected a finite number, at least 0 s");
+  EXPECT_EQ(complaint_of("a = -inf", {-none, 3}), "x:1:5: t.a = -inf: expected a finite number, at most 3");
+  EXPECT_EQ(complaint_of("a = -1e308", {}), "accepted");
 }
 
 TEST(Configuration, UnknownOperators) {

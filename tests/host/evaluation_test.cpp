@@ -429,6 +429,55 @@ TEST(Evaluation, AFaultyEncodingIsNamed) {
   }
 }
 
+/// Masses at given places, all joined by springs of one rest length.
+struct Placed final : Encoding {
+  std::vector<Vec3> places;
+  double rest_length;
+  Placed(std::vector<Vec3> places_, double rest_length_) : places(std::move(places_)), rest_length(rest_length_) {}
+
+  Layout layout(const World&) const override { return {}; }
+  Blueprint decode(const Genome&, const World& world) const override {
+    Blueprint blueprint{.body = {.masses = {}, .springs = {}, .materials = world.materials}};
+    for (const Vec3& place : places) blueprint.body.masses.push_back({place, world.mass});
+    for (std::uint32_t a = 0; a < places.size(); ++a)
+      for (std::uint32_t b = 0; b < a; ++b) blueprint.body.springs.push_back({a, b, rest_length, 1});
+    return blueprint;
+  }
+};
+
+TEST(Evaluation, OnlyABodyInOnePointHasNoExtent) {
+  for (const char* dt : {"0.00035", "\"auto\""}) {
+    Experiment experiment = testing::read(testing::small_experiment, {{"simulation.dt", dt, ""},
+                                                                      {"development.cycles", "1", ""},
+                                                                      {"development.cycle_time", "0.07", ""},
+                                                                      {"fitness.0.settle", "3.5", ""},
+                                                                      {"fitness.0.window", "0.7", ""},
+                                                                      {"fitness.1.settle", "0.7", ""},
+                                                                      {"fitness.1.window", "0.07", ""}});
+    experiment.development.operators.clear();
+    const auto result = [&](std::vector<Vec3> places, double rest_length) {
+      experiment.encoding = std::make_unique<Placed>(std::move(places), rest_length);
+      return evaluate(experiment, {{}}).front();
+    };
+    const Vec3 here{0.1, -0.3, 7};
+    for (const double rest_length : {0.0, 0.1}) {
+      const Result point = result({here, here, here}, rest_length);
+      EXPECT_EQ(point.status, Status::invalid);
+      EXPECT_EQ(point.reason, "no extent");
+      EXPECT_EQ(point.spring_evaluations, 0u) << "it is not simulated";
+    }
+    EXPECT_EQ(result({{0, 0, 0}, {0.3, 0, 0}}, 0.3).reason, "") << "straight";
+    EXPECT_EQ(result({{0, 0, 0}, {0, 0, 0.3}}, 0.3).reason, "") << "upright";
+    EXPECT_EQ(result({{0, 0, 0}, {0.3, 0, 0}, {0, 0.3, 0}}, 0.3).reason, "") << "flat";
+    // without a floor that it could lie on its springs pull it into one point
+    experiment.scene = {.damping = Damping{}};
+    const Result shrunk = result({{0, 0, 0}, {0.3, 0, 0}}, 0);
+    EXPECT_EQ(shrunk.reason, "no extent");
+    EXPECT_GT(shrunk.spring_evaluations, 0u);
+    EXPECT_TRUE(shrunk.objectives.empty());
+  }
+}
+
 /// Keeps where the body was when development looked.
 class Place final : public Devo {
  public:

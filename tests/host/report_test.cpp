@@ -265,6 +265,29 @@ TEST(FilmJson, KnowsMassesAndSpringsAgainAfterEdits) {
   EXPECT_THAT(unpacked(json["shots"][1]["springs"]), ElementsAre(0, 2));
 }
 
+TEST(FilmJson, KnowsMaterialsAgainThatABodyHasLost) {
+  const Material bone{10000, 0, 0, 0}, muscle{5000, 0.14, 1, 0}, stiffer{10500, 0, 0, 0}, stiffest{11025, 0, 0, 0};
+  Shot before = shot_of({0, 1}, {0, 1}, {{0, 1}}), between = before, after = before;
+  for (Shot* shot : {&before, &between, &after}) {
+    shot->body.materials = {bone, muscle, bone};
+    shot->body.base_materials = 3;
+    shot->body.springs.front().material = 3;
+    shot->body.masses[1].material = 1;
+  }
+  between.body.materials.push_back(stiffer);
+  after.body.materials.push_back(stiffest);
+  before.body.springs.front().material = 2;
+  const auto json = film_json({before, between, after}, {{"1"}, {"2"}, {"3"}}, 1000);
+  ASSERT_EQ(json["materials"].size(), 5u) << "the experiment's first, two of which are equal";
+  EXPECT_EQ(json["materials"][1]["stiffness"], muscle.stiffness);
+  std::int64_t material = 0;
+  for (const auto& [shot, made_of] : {std::pair{0, bone}, {1, stiffer}, {2, stiffest}}) {
+    material += unpacked(json["shots"][shot]["materials"]).front();  // the difference from what it was
+    EXPECT_EQ(json["materials"][material]["stiffness"], made_of.stiffness) << shot;
+  }
+  EXPECT_THAT(unpacked(json["mass_materials"]), ElementsAre(0, 1));
+}
+
 /// Masses in a row that swing, each at a rate of its own, for so many frames.
 Shot swinging(std::size_t masses, std::size_t frames) {
   std::vector<double> places(masses);

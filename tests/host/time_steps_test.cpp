@@ -50,6 +50,36 @@ TEST(TimeSteps, WithoutAFixedStepABodyHasItsOwn) {
             "unstable dt: the body would need steps of 5.3665631459");
 }
 
+TEST(TimeSteps, MaterialsThatNoSpringHasShortenNone) {
+  const Body body = star();
+  Body with_others = body;
+  with_others.materials.push_back({1, 0.1, 70'001, 0});  // a muscle too fast for any step
+  with_others.materials.push_back({1e15, 0, 0, 0});
+  with_others.masses.back().material = 2;
+  const std::vector<Vec3> places = state_at_birth(body, {}).position;
+  for (const Method method : {Method::paper_euler, Method::rk4, Method::implicit}) {
+    EXPECT_EQ(longest_step({.dt = std::nullopt}, with_others, places, {}, method).dt,
+              longest_step({.dt = std::nullopt}, body, places, {}, method).dt);
+    EXPECT_EQ(longest_step({.dt = 0.0002}, with_others, places, {}, method).failure, "");
+  }
+  with_others.springs.front().material = 1;
+  EXPECT_DOUBLE_EQ(longest_step({.dt = std::nullopt}, with_others, places, {}, Method::implicit).dt, 0.05 / 70'001);
+}
+
+TEST(TimeSteps, AStepThatCannotBeComputedIsNotTold) {
+  const Body body = star();
+  std::vector<Vec3> places = state_at_birth(body, {}).position;
+  places[7].y = 1e200;  // its square is infinite
+  const std::string far = longest_step({.dt = std::nullopt}, body, places, {}, Method::paper_euler).failure;
+  places[7].y = std::nan("");
+  const std::string nowhere = longest_step({.dt = std::nullopt}, body, places, {}, Method::rk4).failure;
+  EXPECT_EQ(nowhere.substr(0, 13), "unstable dt: ");
+  for (const std::string& failure : {far, nowhere}) {
+    EXPECT_EQ(failure.find("nan"), std::string::npos) << failure;
+    EXPECT_EQ(failure.find("inf"), std::string::npos) << failure;
+  }
+}
+
 TEST(TimeSteps, StepsDivideTheirDuration) {
   const auto expect = [](const Pace& pace, double dt, std::uint64_t steps) {
     EXPECT_DOUBLE_EQ(pace.dt, dt);

@@ -21,6 +21,18 @@ struct Wrong final : evodevo::Crossover {
   void cross(Genome& one, Genome&, const Layout& layout, Rng& rng) const override { one = random_genome(layout, rng); }
 };
 
+#elif defined(WRONG_CHANGES_CROSSOVER)
+
+struct Wrong final : evodevo::Crossover {
+  void cross(Genome& one, Genome& other, const Layout&, Rng&) const override { other = one; }
+};
+
+#elif defined(WRONG_CHANGES)
+
+struct Wrong final : evodevo::Mutation {
+  void mutate(Genome&, const Layout&, Rng&) const override {}
+};
+
 #elif defined(WRONG_DECODING) || defined(WRONG_DECODING_GROWTH)
 
 struct Wrong final : evodevo::Encoding {
@@ -64,7 +76,8 @@ struct Wrong final : evodevo::Devo {
   }
 };
 
-#elif defined(WRONG_TRANSLATION) || defined(WRONG_NAN_HIDDEN) || defined(WRONG_OBJECTIVES)
+#elif defined(WRONG_TRANSLATION) || defined(WRONG_NAN_HIDDEN) || defined(WRONG_OBJECTIVES) || \
+    defined(WRONG_OBJECTIVES_NAN)
 
 struct Wrong final : evodevo::Fitness {
   evodevo::Request observes() const override { return {0, 0.1, false}; }
@@ -75,6 +88,8 @@ struct Wrong final : evodevo::Fitness {
     return {way + seen.centre_after.x};
 #elif defined(WRONG_NAN_HIDDEN)
     return {std::isnan(way) ? 0 : way};
+#elif defined(WRONG_OBJECTIVES_NAN)
+    return {-std::nan("") * way};
 #else
     return {way, way};
 #endif

@@ -17,7 +17,7 @@ namespace evodevo {
 
 inline constexpr std::uint64_t plugin_magic = 0x6f7665646f7665ull;  // "evodevo", little-endian
 /// Raised whenever anything that crosses the border changes its meaning.
-inline constexpr std::uint32_t plugin_epoch = 4;
+inline constexpr std::uint32_t plugin_epoch = 5;
 
 /// A digest of the sizes of everything that crosses the border.
 inline constexpr std::uint32_t plugin_struct_digest = [] {

@@ -23,7 +23,8 @@ struct Candidate {
   bool ok() const { return !scores.empty(); }
 };
 
-/// Rows are in the order of birth. The result must not depend on that order other than to break exact ties.
+/// Rows are in the order of birth. The result must not depend on that order other than to break exact ties. No two
+/// rows are copies of each other, equal in their genes and in all scores: the host keeps one of them, the youngest.
 class Selection : public Operator {
  public:
   static constexpr std::string_view kind = "selection";

@@ -83,8 +83,11 @@ struct Body {
   std::vector<Mass> masses;
   std::vector<Spring> springs;
   std::vector<Material> materials;
+  /// How many of the materials, the first ones, are the experiment's; set by the host at birth. They stay, and every
+  /// other one goes when no spring and no mass has it any more.
+  std::uint32_t base_materials = 0;
 
-  /// The index of `material` in `materials`; appended if it is new.
+  /// The index of `material` in `materials`; appended if it is new. It looks through all of them.
   std::uint32_t material_index(const Material& material) {
     const auto found = std::find(materials.begin(), materials.end(), material);
     if (found != materials.end()) return static_cast<std::uint32_t>(found - materials.begin());

@@ -1,0 +1,39 @@
+// The materials of a body, each once.
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "evodevo/body.hpp"
+
+namespace evodevo {
+
+/// The same of materials that are equal, whatever the signs of their zeros.
+struct MaterialHash {
+  std::size_t operator()(const Material& material) const;
+};
+
+using MaterialNumbers = std::unordered_map<Material, std::uint32_t, MaterialHash>;
+
+/// The index of each material, of equal ones that of the first.
+MaterialNumbers numbered(const std::vector<Material>& materials);
+
+/// Finds materials in a list, and adds to it, without looking through all of it. Nobody else may change the list.
+class MaterialList {
+ public:
+  explicit MaterialList(std::vector<Material>& materials) : materials_(materials), numbers_(numbered(materials)) {}
+
+  /// The index of a material in the list, to which it is appended if it is new.
+  std::uint32_t index(const Material& material);
+
+ private:
+  std::vector<Material>& materials_;
+  MaterialNumbers numbers_;
+};
+
+/// Takes the materials out of a body that neither a spring nor a mass has, and all but the first of equal ones. The
+/// body's base materials stay.
+void drop_unused_materials(Body& body);
+
+}  // namespace evodevo
