@@ -5,20 +5,18 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "archive_error.hpp"
+#include "archive_journal.hpp"
 #include "maker.hpp"
 #include "population.hpp"
 #include "verification.hpp"
 
 namespace evodevo {
 
-/// A folder that cannot be written, read, or is in use. what() names folder, cause and remedy.
-struct ArchiveError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+class RunDatabase;
 
 /// An individual with the generation in which it was dropped.
 struct ArchivedIndividual : Individual {
@@ -33,16 +31,16 @@ struct Failure {
   bool varies = false;  ///< whether others have other numbers in it
 };
 
-/// A run's file in its folder.
-inline constexpr const char* database_name = "run.sqlite";
-
+/// What it is asked for it checks as input: whatever cannot be is thrown as ArchiveError.
 class Archive {
  public:
   /// Starts the record of a run in a new folder; this program on `device` is its first maker. Throws ArchiveError if
-  /// the folder is there and not empty.
-  static Archive create(const std::filesystem::path& folder, const Experiment& experiment, const std::string& device);
+  /// the folder is there and not empty. A wish for a journal holds for the whole run; without one, the folder's file
+  /// system decides.
+  static Archive create(const std::filesystem::path& folder, const Experiment& experiment, const std::string& device,
+                        std::optional<Journal> journal = std::nullopt);
   /// Opens a record to go on with it; refuses while another process writes it.
-  static Archive resume(const std::filesystem::path& folder);
+  static Archive resume(const std::filesystem::path& folder, std::optional<Journal> journal = std::nullopt);
   /// Opens a record to add what is found out about its individuals. Does not disturb a process that writes it.
   static Archive annotate(const std::filesystem::path& folder);
   /// Opens a record to read: all that it says is of the moment at which it is first asked. Does not disturb a process
@@ -60,11 +58,17 @@ class Archive {
   /// Adds verifications; they take the place of earlier ones of the same individuals.
   void add_verifications(const std::vector<Verification>& verifications);
 
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const;
+  /// Whether the file is still the one that was opened, so that what is written is kept.
+  bool is_in_place() const;
+  /// Throws ArchiveError: `what` cannot be in the record of a run.
+  [[noreturn]] void refuse(const std::string& what) const;
   /// An entry of the run's record, such as "seed" or "created". Throws ArchiveError if there is none.
   std::string record(const std::string& key) const;
   /// The same; nothing if there is none.
   std::optional<std::string> find_record(const std::string& key) const;
+  /// The same of a time, s.
+  std::optional<double> find_seconds(const std::string& key) const;
   void set_record(const std::string& key, const std::string& value);
   /// The same for several entries, all of them or none.
   void set_records(const std::map<std::string, std::string>& entries);
@@ -83,6 +87,8 @@ class Archive {
   /// Those who live on, in the order of birth.
   std::vector<Individual> population() const;
   std::optional<ArchivedIndividual> individual(std::uint32_t id) const;
+  /// One that the record itself names.
+  ArchivedIndividual known_individual(std::uint32_t id) const;
   /// The ids of the `count` individuals with the best first objective, best first; ties in the order of birth.
   std::vector<std::uint32_t> best(std::size_t count) const;
   /// What development did to an individual; nothing where it never reached the front.
@@ -91,14 +97,11 @@ class Archive {
   std::optional<Verification> verification(std::uint32_t id) const;
 
  private:
-  struct Files;
-  Archive(std::filesystem::path folder, std::unique_ptr<Files> files);
-  /// Opens the database with SQLite's `flags` and checks that it is a run that this program reads.
-  static Archive opened(const std::filesystem::path& folder, int flags);
+  explicit Archive(std::unique_ptr<RunDatabase> run);
   void insert_maker(std::uint32_t place, const Maker& maker);
+  void insert_record(const std::string& key, const std::string& value);
 
-  std::filesystem::path folder_;
-  std::unique_ptr<Files> files_;
+  std::unique_ptr<RunDatabase> run_;
 };
 
 /// The experiment that a run used, read from its record. Operators are looked for on `plugin_path` too.

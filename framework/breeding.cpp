@@ -21,16 +21,8 @@ Rng stream(const Experiment& experiment, std::uint32_t generation, std::uint32_t
 
 /// Refuses genes that the layout does not allow, so that a faulty operator is found where it errs.
 void check_genome(const Genome& genome, const Layout& layout) {
-  const auto refuse = [&](const std::string& what) { throw std::runtime_error("made a genome with " + what); };
-  if (genome.size() != layout.genes.size())
-    refuse(std::to_string(genome.size()) + " genes where there are " + std::to_string(layout.genes.size()));
-  for (std::size_t i = 0; i < genome.size(); ++i) {
-    const GeneSpec& spec = layout.genes[i];
-    const bool fits = spec.is_choice() ? genome[i] >= 0 && genome[i] < static_cast<float>(spec.choices) &&
-                                             genome[i] == std::floor(genome[i])
-                                       : genome[i] >= spec.low && genome[i] <= spec.high;
-    if (!fits) refuse("gene " + std::to_string(i) + " = " + to_text(genome[i]) + ", which is not allowed");
-  }
+  if (const std::string fault = genome_fault(genome, layout); !fault.empty())
+    throw std::runtime_error("made a genome with " + fault);
 }
 
 Individual newcomer(const Experiment& experiment, std::uint32_t generation, std::uint32_t id, std::uint32_t repeat) {
@@ -129,6 +121,19 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> chosen_parents(const Experi
 }
 
 }  // namespace
+
+std::string genome_fault(const Genome& genome, const Layout& layout) {
+  if (genome.size() != layout.genes.size())
+    return std::to_string(genome.size()) + " genes where there are " + std::to_string(layout.genes.size());
+  for (std::size_t i = 0; i < genome.size(); ++i) {
+    const GeneSpec& spec = layout.genes[i];
+    const bool fits = spec.is_choice() ? genome[i] >= 0 && genome[i] < static_cast<float>(spec.choices) &&
+                                             genome[i] == std::floor(genome[i])
+                                       : genome[i] >= spec.low && genome[i] <= spec.high;
+    if (!fits) return "gene " + std::to_string(i) + " = " + to_text(genome[i]) + ", which is not allowed";
+  }
+  return "";
+}
 
 SelectionTable::SelectionTable(const std::vector<Individual>& individuals, const std::vector<Objective>& objectives,
                                std::uint32_t generation)

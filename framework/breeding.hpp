@@ -1,6 +1,7 @@
 // New individuals: random ones, and children of a population.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "population.hpp"
@@ -21,6 +22,9 @@ class SelectionTable {
   std::vector<std::vector<double>> scores_;  ///< greater is better
   std::vector<Candidate> rows_;
 };
+
+/// What the layout does not allow in a genome; empty where it is one of its.
+std::string genome_fault(const Genome& genome, const Layout& layout);
 
 /// The `count` newborns of a generation, ids from `first_id`: as many newcomers as the experiment asks for, all of them
 /// where there is no population, and children. A newborn that is genetically equal to a member of the population or to

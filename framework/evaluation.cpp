@@ -5,7 +5,7 @@
 #include <mutex>
 #include <numeric>
 
-#include "body_building.hpp"
+#include "archive_error.hpp"
 #include "parallel.hpp"
 #include "philox.hpp"
 #include "skip_shift.hpp"
@@ -258,8 +258,15 @@ void Evaluation::make_change(Life& life, Change change, const Moment& now) const
 }
 
 void Evaluation::make_again(const std::vector<Change>& changes, Life& life, int cycle) const {
-  for (const Change& change : changes)
-    if (change.cycle == static_cast<std::uint32_t>(cycle)) make_change(life, change, moment(life, cycle, {}, {}));
+  for (const Change& change : changes) {
+    if (change.cycle != static_cast<std::uint32_t>(cycle)) continue;
+    try {
+      make_change(life, change, moment(life, cycle, {}, {}));
+    } catch (const std::invalid_argument& error) {
+      throw ArchiveError(life.newborn.recorded_in + ": the record of its life does not fit its body: after cycle " +
+                         std::to_string(cycle) + " it " + error.what() + "; put back an undamaged copy of it");
+    }
+  }
 }
 
 void Evaluation::shed_loose_pieces(Life& life, int cycle) const {

@@ -24,6 +24,7 @@ struct Newborn {
   const Genome* genome = nullptr;
   /// Of a life that is lived again: its changes are made whatever the operators would do.
   std::optional<LifeRecord> record = std::nullopt;
+  std::string recorded_in = {};  ///< whose record that is, for messages
 };
 
 /// How an evaluation ended.
@@ -139,7 +140,8 @@ class Evaluation {
   void change_as_in(Yoke& yoke, Life& life, int cycle) const;
   /// Makes and records a change whose new springs may still lack their rest lengths.
   void make_change(Life& life, Change change, const Moment& now) const;
-  /// Makes the changes after a cycle again, of all that a life went through.
+  /// Makes the changes after a cycle again, of all that a life went through. Throws ArchiveError where they do not fit
+  /// the body.
   void make_again(const std::vector<Change>& changes, Life& life, int cycle) const;
   /// What development has torn off is no longer part of the body.
   void shed_loose_pieces(Life& life, int cycle) const;

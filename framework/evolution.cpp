@@ -159,8 +159,7 @@ void for_each_time(Time& time, const Use& use) {
 void record_time_spent(Archive& archive, const TimeSpent& time) {
   std::map<std::string, std::string> entries;
   for_each_time(time, [&](const char* key, double seconds) {
-    const double before = std::stod(archive.find_record(key).value_or("0"));
-    entries[key] = to_text(before + seconds);
+    entries[key] = to_text(archive.find_seconds(key).value_or(0) + seconds);
   });
   archive.set_records(entries);
 }
@@ -168,7 +167,7 @@ void record_time_spent(Archive& archive, const TimeSpent& time) {
 std::optional<TimeSpent> recorded_time_spent(const Archive& archive) {
   if (!archive.find_record("seconds")) return std::nullopt;
   TimeSpent time;
-  for_each_time(time, [&](const char* key, double& seconds) { seconds = std::stod(archive.record(key)); });
+  for_each_time(time, [&](const char* key, double& seconds) { seconds = archive.find_seconds(key).value_or(0); });
   return time;
 }
 

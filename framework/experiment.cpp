@@ -7,6 +7,7 @@
 #include "accuracy.hpp"
 #include "overrides.hpp"
 #include "philox.hpp"
+#include "plugin_folders.hpp"
 #include "stability.hpp"
 #include "text.hpp"
 #include "toml_reader.hpp"
@@ -59,15 +60,63 @@ void declare(Parameters& p, Experiment& experiment) {
   p.integer(experiment.verify, "verify", {0, 1000}, "Best individuals to verify when the run ends.");
 }
 
-/// The folder that paths in the experiment are relative to.
-fs::path folder_of(const ExperimentSource& source) { return fs::absolute(source.file).parent_path(); }
+/// A place that [plugins] paths names, and why it is not looked at; empty where it is.
+struct PluginPlace {
+  fs::path path;
+  std::string fault;
+};
+
+/// In an experiment, whose paths are relative to its folder.
+PluginPlace place_in_experiment(const fs::path& named, const ExperimentSource& source) {
+  const fs::path path = fs::absolute(source.file).parent_path() / named;
+  if (is_plugin_path(path)) return {path, ""};
+  return {path, path.lexically_normal().string() + " is no folder and no library of operators"};
+}
+
+/// In the record of a run, where they are absolute. Whoever made the record does not decide what code runs here.
+PluginPlace place_in_record(const fs::path& named, const ExperimentSource& source) {
+  if (!named.is_absolute())
+    return {named, named.string() +
+                       " is relative, which no run records; if you trust the operators that are meant, name their "
+                       "folder with --plugin-path"};
+  if (!is_plugin_path(named))
+    return {named, named.string() +
+                       " is no folder and no library of operators any more; name the one that has taken its place with "
+                       "--plugin-path"};
+  if (!is_named_by_user(named, source.plugin_path))
+    return {named, named.string() +
+                       " is named by the record alone; if you trust the operators in it, give --plugin-path " +
+                       named.string()};
+  return {named, ""};
+}
+
+std::vector<PluginPlace> plugin_places(const toml::table& root, const ExperimentSource& source) {
+  std::vector<PluginPlace> places;
+  if (const toml::array* paths = root["plugins"]["paths"].as_array())
+    for (const toml::node& path : *paths)
+      if (const auto text = path.value<std::string>())
+        places.push_back(source.is_record ? place_in_record(*text, source) : place_in_experiment(*text, source));
+  return places;
+}
+
+/// Where operators are looked for: in those places, then in those of the command line and of the environment.
+std::vector<fs::path> plugin_path(const std::vector<PluginPlace>& places, const ExperimentSource& source) {
+  std::vector<fs::path> own;
+  for (const PluginPlace& place : places)
+    if (place.fault.empty()) own.push_back(place.path);
+  for (const fs::path& path : source.plugin_path) own.push_back(fs::absolute(path));
+  return plugin_search_path(own);
+}
 
 /// Reads the experiment's tables one after the other; each adds its resolved form.
 class Composer {
  public:
-  Composer(const toml::table& root, const Registry& registry, const std::vector<fs::path>& plugin_path,
-           const ExperimentSource& source)
-      : top_(root, ""), registry_(registry), plugin_path_(plugin_path), source_(source) {}
+  Composer(const toml::table& root, const ExperimentSource& source)
+      : top_(root, ""),
+        source_(source),
+        places_(plugin_places(root, source)),
+        plugin_path_(plugin_path(places_, source)),
+        registry_(plugin_path_) {}
 
   Experiment compose() {
     top_.expect({"experiment", "encoding", "mutation", "crossover", "scene", "simulation", "development", "fitness",
@@ -131,7 +180,7 @@ class Composer {
       const std::vector<std::string> known = registry_.names(T::kind);
       message += suggestion(name, known);
       if (nearest(name, known).empty()) message += "; [plugins] paths and --plugin-path name folders with more";
-      for (const std::string& warning : out_.warnings) message += "\n  " + warning;
+      for (const std::string& warning : out_.warnings) message += "; " + warning;
       table.fail("name", message);
     }
     std::unique_ptr<T> op = create<T>(*available);
@@ -153,12 +202,11 @@ class Composer {
 
   void read_plugins() {
     read_section("plugins", false, [&](TomlReader& t) {
-      for (const std::string& path : t.texts("paths")) {
-        const fs::path folder = (folder_of(source_) / path).lexically_normal();
-        if (is_plugin_path(folder)) continue;
-        const std::string message = folder.string() + " is no folder and no library of operators";
-        if (!source_.is_record) t.fail("paths", message);
-        out_.warnings.push_back(message + " any more; name the one that has taken its place with --plugin-path");
+      t.texts("paths");
+      for (const PluginPlace& place : places_) {
+        if (place.fault.empty()) continue;
+        if (!source_.is_record) t.fail("paths", place.fault);
+        out_.warnings.push_back(place.fault);
       }
     });
     record_plugin_path();
@@ -171,7 +219,10 @@ class Composer {
   void record_plugin_path() {
     toml::array paths;
     for (const fs::path& path : plugin_path_)
-      if (path != builtin_plugin_folder() && is_plugin_path(path)) paths.push_back(path.lexically_normal().string());
+      if (path != builtin_plugin_folder() && is_plugin_path(path)) {
+        out_.plugin_folders.push_back(path.lexically_normal());
+        paths.push_back(out_.plugin_folders.back().string());
+      }
     if (!paths.empty()) top_.resolve("plugins", toml::table{{"paths", std::move(paths)}});
   }
 
@@ -438,28 +489,18 @@ class Composer {
   }
 
   TomlReader top_;
-  const Registry& registry_;
-  const std::vector<fs::path>& plugin_path_;
   const ExperimentSource& source_;
+  std::vector<PluginPlace> places_;
+  std::vector<fs::path> plugin_path_;
+  Registry registry_;
   Experiment out_;
 };
 
 // ---- from file to experiment ----
 
-std::vector<fs::path> plugin_path(const toml::table& root, const ExperimentSource& source) {
-  std::vector<fs::path> own;
-  if (const toml::array* paths = root["plugins"]["paths"].as_array())
-    for (const toml::node& path : *paths)
-      if (const auto text = path.value<std::string>()) own.push_back(folder_of(source) / *text);
-  for (const fs::path& path : source.plugin_path) own.push_back(fs::absolute(path));
-  return plugin_search_path(own);
-}
-
 Experiment compose(toml::table root, const ExperimentSource& source) {
   for (const Override& change : source.overrides) apply_override(change, root);
-  const std::vector<fs::path> path = plugin_path(root, source);
-  const Registry registry(path);
-  Experiment experiment = Composer(root, registry, path, source).compose();
+  Experiment experiment = Composer(root, source).compose();
   experiment.name = fs::path(source.file).stem().string();
   return experiment;
 }

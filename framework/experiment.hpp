@@ -107,8 +107,9 @@ struct Experiment {
   std::unique_ptr<Selection> selection;
 
   std::vector<OperatorUse> uses;
-  std::vector<std::string> warnings;  ///< what does not keep it from running, but may not be meant
-  std::string resolved;               ///< TOML that reads back as this very experiment, with every default written out
+  std::vector<std::filesystem::path> plugin_folders;  ///< where operators were looked for, but for the program's own
+  std::vector<std::string> warnings;                  ///< what does not keep it from running, but may not be meant
+  std::string resolved;  ///< TOML that reads back as this very experiment, with every default written out
 };
 
 /// The operator that is the index-th of its kind; nullptr for one that no library has brought.
@@ -139,8 +140,8 @@ struct ExperimentSource {
   std::string file;                                     ///< for messages, and for what paths in it are relative to
   std::vector<Override> overrides;                      ///< applied in order
   std::vector<std::filesystem::path> plugin_path = {};  ///< where operators are looked for beside those that it names
-  /// Whether it is the record of a run, which names the folders that there were then: those that have gone are warned
-  /// of.
+  /// Whether it is the record of a run, which may come from elsewhere: of the folders that it names those that have
+  /// gone, and those that the user has not named, are left out and warned of.
   bool is_record = false;
   /// Whether the bodies are grown by its own encoding, so that its dt must suit its own masses and materials; a body
   /// from elsewhere is judged by itself.

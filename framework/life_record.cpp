@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <stdexcept>
@@ -128,7 +129,9 @@ class Reader {
       NewMass& mass = edits.new_masses.emplace_back();
       mass.place = raw<Vec3>();
       mass.mass = raw<double>();
-      mass.material = static_cast<std::int32_t>(index()) + no_material;
+      const std::uint32_t material = index();
+      if (material > std::numeric_limits<std::int32_t>::max()) fail();
+      mass.material = static_cast<std::int32_t>(material) + no_material;
     }
     for (std::uint32_t left = index(); left > 0; --left) {
       NewSpring& spring = edits.new_springs.emplace_back();
@@ -164,8 +167,11 @@ class Reader {
 
   std::vector<std::uint32_t> ascending_indices() {
     std::vector<std::uint32_t> indices;
-    std::uint32_t before = 0;
-    for (std::uint32_t left = index(); left > 0; --left) indices.push_back(before += index());
+    for (std::uint32_t left = index(); left > 0; --left) {
+      const std::uint64_t more = index(), before = indices.empty() ? 0 : indices.back();
+      if (before + more > std::numeric_limits<std::uint32_t>::max() || (!indices.empty() && more == 0)) fail();
+      indices.push_back(static_cast<std::uint32_t>(before + more));
+    }
     return indices;
   }
 

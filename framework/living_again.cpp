@@ -2,6 +2,8 @@
 
 #include <iostream>
 
+#include "record_check.hpp"
+
 namespace evodevo {
 
 Experiment experiment_to_live_again(const Archive& archive, std::vector<std::filesystem::path> plugin_path) {
@@ -12,7 +14,10 @@ Experiment experiment_to_live_again(const Archive& archive, std::vector<std::fil
 
 Newborn born_again(const Archive& archive, const Experiment& experiment, const Individual& individual,
                    const std::string& device) {
-  Newborn newborn{individual.id, individual.born, &individual.genome, archive.life(individual.id)};
+  check_genes(archive, experiment, individual);
+  Newborn newborn{individual.id, individual.born, &individual.genome, archive.life(individual.id),
+                  archive.folder().string() + ": individual " + std::to_string(individual.id)};
+  if (newborn.record) check_life(archive, experiment, individual.id, *newborn.record);
   const Maker then = archive.maker(individual.born), now = this_maker(experiment, device);
   if (newborn.record || are_same(then, now)) return newborn;
   const std::string difference = now.device != then.device

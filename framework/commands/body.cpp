@@ -5,6 +5,7 @@
 #include "commands/options.hpp"
 #include "device.hpp"
 #include "living_again.hpp"
+#include "record_check.hpp"
 
 namespace evodevo {
 namespace {
@@ -46,6 +47,7 @@ int body_command(const Arguments& arguments) {
   const Archive archive = Archive::read((*given)["DIR"].as<std::string>());
   const Experiment experiment = experiment_to_live_again(archive, given_plugin_path(*given));
   const ArchivedIndividual individual = chosen_individual(archive, *given);
+  check_genes(archive, experiment, individual);
   const auto simulator = make_simulator(experiment);
   const Evaluation evaluation(experiment, *simulator);
   const Shown shown = given->contains("matured")

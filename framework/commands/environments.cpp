@@ -12,6 +12,7 @@
 #include "commands/options.hpp"
 #include "device.hpp"
 #include "disturbance.hpp"
+#include "record_check.hpp"
 #include "scene_effect.hpp"
 #include "toml_reader.hpp"
 
@@ -267,6 +268,7 @@ std::vector<Individual> chosen_genomes(std::vector<Experiment>& experiments, con
     for (Experiment& experiment : experiments) experiment.seed = recorded.seed;
     for (const std::int64_t id : ids) genomes.push_back(individual_named(archive, id));
     if (ids.empty()) genomes.push_back(chosen_individual(archive, given));
+    for (const Individual& individual : genomes) check_genes(archive, recorded, individual);
     return genomes;
   }
   for (Experiment& experiment : experiments) experiment.seed = experiments.front().seed;

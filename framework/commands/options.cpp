@@ -147,7 +147,7 @@ ArchivedIndividual chosen_individual(const Archive& archive, const po::variables
   const auto best = archive.best(1);
   if (best.empty())
     throw ArchiveError(archive.folder().string() + ": no individual has a fitness; name one with --individual");
-  return *archive.individual(best.front());
+  return archive.known_individual(best.front());
 }
 
 }  // namespace evodevo

@@ -10,6 +10,8 @@
 #include "device.hpp"
 #include "evolution.hpp"
 #include "parallel.hpp"
+#include "plugin_folders.hpp"
+#include "record_check.hpp"
 #include "text.hpp"
 
 namespace evodevo {
@@ -53,13 +55,36 @@ std::string resume_command_for(const Archive& archive) {
   return program_name() + " resume " + archive.folder().string();
 }
 
-/// What a failure leaves behind.
+/// What a failure leaves behind, on a line of its own; nothing where the run's file is gone.
 std::string state_of(const Archive& archive) {
+  if (!archive.is_in_place()) return "";
   const std::vector<Summary> generations = archive.generations();
   return (generations.empty()
-              ? "no generation is complete; "
-              : "the run is complete up to generation " + std::to_string(generations.back().generation) + "; ") +
+              ? "\nno generation is complete; "
+              : "\nthe run is complete up to generation " + std::to_string(generations.back().generation) + "; ") +
          resume_command_for(archive) + " goes on from there";
+}
+
+void add_journal_option(po::options_description& options) {
+  options.add_options()("journal", po::value<std::string>(),
+                        "how SQLite keeps what is being written: wal, by which nobody waits for anybody, or delete, "
+                        "which works on file systems of other machines too; default: what the file system bears");
+}
+
+/// Throws UsageError.
+std::optional<Journal> given_journal(const po::variables_map& given) {
+  if (!given.contains("journal")) return std::nullopt;
+  const auto text = given["journal"].as<std::string>();
+  const auto journal = journal_named(text);
+  if (!journal) throw UsageError("--journal " + text + ": expected wal or delete");
+  return journal;
+}
+
+/// So that `resume` and other commands may load what this run has loaded.
+void remember_folders_of(const Experiment& experiment) {
+  if (const std::string fault = remember_plugin_folders(experiment.plugin_folders); !fault.empty())
+    std::cerr << "warning: " << fault
+              << ", so that the folders of operators are not remembered; `resume` and others need --plugin-path\n";
 }
 
 void print_warnings(const Experiment& experiment) {
@@ -121,7 +146,7 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
     time = evolve(experiment, simulator, archive, stop_requested, progress.observer());
   } catch (const std::exception& error) {
     progress.finish();
-    throw std::runtime_error(std::string(error.what()) + "\n" + state_of(archive));
+    throw std::runtime_error(error.what() + state_of(archive));
   }
   progress.finish();
   record_time_spent(archive, time);
@@ -144,27 +169,32 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
 int run_command(const Arguments& arguments) {
   CommandLine line{"run EXPERIMENT.toml [options]", {"EXPERIMENT.toml"}, {}};
   line.options.add_options()("out", po::value<std::string>(), "folder for the run; default: a new one in runs/");
+  add_journal_option(line.options);
   add_experiment_options(line.options);
   const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
   const Experiment experiment =
       read_experiment(experiment_source((*given)["EXPERIMENT.toml"].as<std::string>(), *given));
+  const std::optional<Journal> journal = given_journal(*given);
   print_warnings(experiment);
   const auto simulator = make_simulator(experiment);
+  remember_folders_of(experiment);
   const fs::path folder =
       given->contains("out") ? fs::path((*given)["out"].as<std::string>()) : new_run_folder(experiment.name);
-  Archive archive = Archive::create(folder, experiment, simulator->device());
+  Archive archive = Archive::create(folder, experiment, simulator->device(), journal);
   return evolve_and_report(experiment, *simulator, archive);
 }
 
 int resume_command(const Arguments& arguments) {
-  CommandLine line{"resume DIR [--allow-other-versions] [--plugin-path P]", {"DIR"}, {}};
+  CommandLine line{"resume DIR [--allow-other-versions] [--journal J] [--plugin-path P]", {"DIR"}, {}};
   line.options.add_options()("allow-other-versions", "go on even where an operator has another version than before");
+  add_journal_option(line.options);
   add_plugin_option(line.options);
   const auto given = parse(std::move(line), arguments);
   if (!given) return 0;
-  Archive archive = Archive::resume((*given)["DIR"].as<std::string>());
+  Archive archive = Archive::resume((*given)["DIR"].as<std::string>(), given_journal(*given));
   const Experiment experiment = recorded_experiment(archive, given_plugin_path(*given));
+  check_resumable(archive, experiment);
   if (!given->contains("allow-other-versions")) refuse_other_versions(experiment, archive);
   const auto simulator = make_simulator(experiment);
   warn_of_another_device(*simulator, archive);

@@ -1,6 +1,4 @@
 // evodevo show: what a run has come to.
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
@@ -9,6 +7,7 @@
 #include "commands/options.hpp"
 #include "report/run_json.hpp"
 #include "text.hpp"
+#include "toml_reader.hpp"
 
 namespace evodevo {
 namespace {
@@ -18,7 +17,8 @@ constexpr std::size_t generations_shown = 20;
 
 /// What the run does to development instead of the operators' own work; "off" where it does nothing.
 std::string control_of(const Archive& archive) {
-  return toml::parse(archive.record("experiment"))["development"]["control"].value_or(std::string("off"));
+  const std::string place = (archive.folder() / "record of the run").string();
+  return parse_toml(archive.record("experiment"), place)["development"]["control"].value_or(std::string("off"));
 }
 
 class Report {

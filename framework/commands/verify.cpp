@@ -27,7 +27,7 @@ std::string number(const std::optional<double>& value) { return value ? short_nu
 std::vector<Verification> verify_best(const Experiment& experiment, Simulator& simulator, Archive& archive,
                                       std::size_t count) {
   std::vector<ArchivedIndividual> individuals;
-  for (const std::uint32_t id : archive.best(count)) individuals.push_back(*archive.individual(id));
+  for (const std::uint32_t id : archive.best(count)) individuals.push_back(archive.known_individual(id));
   std::vector<Champion> champions;
   for (const ArchivedIndividual& individual : individuals)
     champions.push_back(

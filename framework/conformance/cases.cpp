@@ -280,7 +280,7 @@ void resuming(const AvailableOperator& subject, std::uint64_t seed) {
   begin("stopped", true);
   const std::string resumed = in_new_process([&] {
     Archive archive = Archive::resume(folder.path / "stopped");
-    live(recorded_experiment(archive), archive, false);
+    live(recorded_experiment(archive, {subject.file}), archive, false);
     return transcript(archive);
   });
   if (straight != resumed) throw Violation("a run that was stopped and resumed ends otherwise than one that was not");

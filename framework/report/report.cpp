@@ -38,7 +38,7 @@ class Casting {
  private:
   void add(std::uint32_t id, const std::string& role) {
     if (std::any_of(roles_.begin(), roles_.end(), [&](const Role& r) { return r.individual.id == id; })) return;
-    roles_.push_back({archive_.individual(id).value(), role});
+    roles_.push_back({archive_.known_individual(id), role});
   }
 
   /// `line` begins with the descendant and ends with the founder.

@@ -77,7 +77,7 @@ std::int64_t clones(const std::vector<Summary>& generations) {
 std::vector<ArchivedIndividual> ancestry(const Archive& archive, std::uint32_t id) {
   std::vector<ArchivedIndividual> line;
   for (std::optional<std::uint32_t> next = id; next;) {
-    line.push_back(archive.individual(*next).value());
+    line.push_back(archive.known_individual(*next));
     next = line.back().parents.empty() ? std::nullopt : std::optional(line.back().parents.front());
   }
   return line;
@@ -126,7 +126,7 @@ Json run_json(const Archive& archive, const Experiment& experiment) {
   const std::vector<Summary> generations = archive.generations();
   Json root = {{"folder", archive.folder().string()},
                {"experiment", archive.record("name")},
-               {"seed", std::stoll(archive.record("seed"))},
+               {"seed", experiment.seed},
                {"created", archive.record("created")},
                {"evaluations", generations.empty() ? 0 : generations.back().evaluations},
                {"evaluations_asked", experiment.evaluations},
@@ -139,7 +139,7 @@ Json run_json(const Archive& archive, const Experiment& experiment) {
                {"makers", makers_json(archive.makers())},
                {"generations", generations_json(generations)}};
   const auto best = archive.best(1);
-  root["best"] = best.empty() ? Json(nullptr) : individual_json(archive, *archive.individual(best.front()));
+  root["best"] = best.empty() ? Json(nullptr) : individual_json(archive, archive.known_individual(best.front()));
   return root;
 }
 

@@ -76,9 +76,12 @@ void expect_same_runs(const Archive& a, const Archive& b) {
   EXPECT_EQ(id, 75u);
 }
 
-TEST_F(Interruption, KilledAtEachLineAndResumedEndsTheSame) {
+class InterruptedJournal : public Interruption, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(InterruptedJournal, KilledAtEachLineAndResumedEndsTheSame) {
   ASSERT_EQ(testing::run(run_command("straight")).exit_code, 0);
   std::vector<std::string> command = run_command("killed");
+  command.insert(command.end(), {"--journal", GetParam()});
   std::set<std::size_t> complete;  // generations, when it was killed
   const auto run_to_line = [&](int line) {
     Process process(command);
@@ -95,6 +98,49 @@ TEST_F(Interruption, KilledAtEachLineAndResumedEndsTheSame) {
   const testing::Finished finished = testing::run(command);
   ASSERT_EQ(finished.exit_code, 0) << finished.output;
   expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(scratch_ / "killed"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Journals, InterruptedJournal, ::testing::Values("wal", "delete"),
+                         [](const auto& instance) { return std::string(instance.param); });
+
+TEST_F(Interruption, AJournalThatThereIsNotIsRefused) {
+  std::vector<std::string> command = run_command("run");
+  command.insert(command.end(), {"--journal", "off"});
+  const testing::Finished finished = testing::run(command);
+  EXPECT_EQ(finished.exit_code, 2);
+  EXPECT_EQ(finished.output, "evodevo: --journal off: expected wal or delete\n");
+}
+
+TEST_F(Interruption, AFolderThatGoesEndsTheRun) {
+  const fs::path folder = scratch_ / "run";
+  std::vector<std::string> command = run_command("run");
+  command.insert(command.end(), {"--set", "experiment.evaluations=6000"});
+  Process process(command);
+  process.read_line();
+  process.read_line();  // the first generation
+  fs::remove_all(folder);
+  EXPECT_EQ(process.wait(), 1);
+  EXPECT_THAT(process.output(),
+              HasSubstr("evodevo: " + folder.string() + ": run.sqlite was removed, moved or replaced"));
+  EXPECT_THAT(process.output(), Not(HasSubstr("goes on from there")));
+  EXPECT_FALSE(fs::exists(folder)) << "and nothing is left behind";
+}
+
+TEST_F(Interruption, AVerificationWhileARunGoesOnIsKept) {
+  const std::string folder = (scratch_ / "run").string();
+  std::vector<std::string> command = run_command("run");
+  command.insert(command.end(), {"--set", "experiment.evaluations=6000", "--set", "experiment.verify=0"});
+  Process process(command);
+  process.read_line();
+  process.read_line();
+  for (int i = 0; i < 2; ++i) {
+    const testing::Finished verified = testing::run({EVODEVO_PROGRAM, "verify", folder, "--best", "1", "--json"});
+    EXPECT_EQ(verified.exit_code, 0) << verified.output;
+    const auto id = nlohmann::json::parse(verified.output).at(0).at("individual").get<std::uint32_t>();
+    EXPECT_TRUE(Archive::read(folder).verification(id).has_value());
+  }
+  process.send(SIGINT);
+  EXPECT_EQ(process.wait(), 130) << process.output();
 }
 
 TEST_F(Interruption, AYokedRunGoesOnTheSame) {

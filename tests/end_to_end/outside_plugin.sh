@@ -7,6 +7,7 @@ set -euo pipefail
 build=$(realpath "$1") kind=$2
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
+export XDG_STATE_HOME=$scratch/state
 unset EVODEVO_COMMAND EVODEVO_PLUGIN_PATH
 
 cmake --install "$build" --prefix "$scratch/package" >/dev/null

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+
 #include "archive.hpp"
 #include "support/experiments.hpp"
 #include "support/process.hpp"
@@ -24,13 +27,22 @@ class Plugins : public ::testing::Test {
   std::string folder_ = (scratch_ / "run").string();
   fs::path library_ = scratch_ / "own" / "plugin.evodevo.so";
 
-  void SetUp() override { fs::create_directory(scratch_ / "own"); }
+  void SetUp() override {
+    fs::create_directory(scratch_ / "own");
+    become_user("one");
+  }
+  void TearDown() override { unsetenv("XDG_STATE_HOME"); }
+
+  /// Folders of operators are remembered for each.
+  void become_user(const std::string& name) const { setenv("XDG_STATE_HOME", (scratch_ / name).c_str(), 1); }
 
   /// Puts a library from tests/plugins where the user keeps plugins.
   void install(const std::string& which) {
     fs::copy_file(plugins / which / "plugin.evodevo.so", library_, fs::copy_options::overwrite_existing);
   }
   std::string own() const { return (scratch_ / "own").string(); }
+  /// As a record names it.
+  std::string recorded_own() const { return fs::path(own()).lexically_normal().string(); }
 
   static Finished evodevo(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), EVODEVO_PROGRAM);
@@ -168,6 +180,84 @@ TEST_F(Plugins, ARunOutlivesTheFolderOfItsOperators) {
                                        "taken its place with --plugin-path"));
   const Finished found = evodevo({"life", folder_, "--plugin-path", moved});
   EXPECT_EQ(found.exit_code, 0) << found.output;
+}
+
+/// Each command that takes code by what a record says.
+std::vector<std::vector<std::string>> readers_of(const std::string& folder, const std::string& file) {
+  return {{"resume", folder},
+          {"life", folder},
+          {"body", folder},
+          {"verify", folder},
+          {"show", folder, "--json"},
+          {"report", folder, "--best", "0", "--out", folder + ".html"},
+          {"film", folder, "--out", folder + ".png"},
+          {"environments", file, "--run", folder, "--starts", "1"}};
+}
+
+TEST_F(Plugins, FoldersThatTheUserHasRunWithAreRemembered) {
+  install("sound");
+  for (const char* run : {"1", "2"})
+    ASSERT_EQ(run_with("nothing", {"--set", "plugins.paths=['own']", "--out", folder_ + run}).exit_code, 0);
+  std::ifstream memory(scratch_ / "one" / "evodevo" / "plugin-folders");
+  const std::string lines{std::istreambuf_iterator<char>(memory), {}};
+  EXPECT_EQ(lines, fs::canonical(own()).string() + "\n") << "once";
+  EXPECT_EQ(evodevo({"resume", folder_ + "1"}).exit_code, 0);
+  EXPECT_EQ(evodevo({"life", folder_ + "2"}).exit_code, 0);
+}
+
+TEST_F(Plugins, ARecordOfAnotherLoadsNothingThatTheUserHasNotNamed) {
+  install("sound");
+  ASSERT_EQ(run_with("nothing", {"--set", "plugins.paths=['own']"}).exit_code, 0);
+  become_user("another");
+  for (const std::vector<std::string>& command : readers_of(folder_, file_)) {
+    const Finished refused = evodevo(command);
+    if (refused.output.find("the viewer has not been built") != std::string::npos) continue;
+    EXPECT_EQ(refused.exit_code, 2) << command.front();
+    EXPECT_THAT(refused.output, HasSubstr("no mutation operator has this name")) << command.front();
+    EXPECT_THAT(refused.output, HasSubstr("--plugin-path " + recorded_own())) << command.front();
+  }
+  EXPECT_EQ(evodevo({"life", folder_, "--plugin-path", own()}).exit_code, 0);
+  setenv("EVODEVO_PLUGIN_PATH", own().c_str(), 1);
+  EXPECT_EQ(evodevo({"life", folder_}).exit_code, 0);
+  unsetenv("EVODEVO_PLUGIN_PATH");
+  EXPECT_EQ(evodevo({"life", folder_}).exit_code, 2) << "looking at a run is not running it";
+}
+
+TEST_F(Plugins, ALibraryBesideARecordIsNotLoaded) {
+  install("sound");
+  ASSERT_EQ(run_with("nothing", {"--plugin-path", own()}).exit_code, 0);
+  fs::copy(own(), folder_ + "/own");
+  {
+    Archive archive = Archive::annotate(folder_);
+    std::string experiment = archive.record("experiment");
+    const std::string recorded = "'" + recorded_own() + "'";
+    ASSERT_NE(experiment.find(recorded), std::string::npos) << experiment;
+    archive.set_record("experiment", experiment.replace(experiment.find(recorded), recorded.size(), "'own'"));
+  }
+  for (const std::string& here : {own(), folder_}) {
+    const Finished there =
+        testing::run({"sh", "-c", "cd '" + here + "' && exec " EVODEVO_PROGRAM " life '" + folder_ + "'"});
+    EXPECT_EQ(there.exit_code, 2);
+    EXPECT_THAT(there.output, HasSubstr("no mutation operator has this name"));
+    EXPECT_THAT(there.output, HasSubstr("own is relative"));
+    EXPECT_THAT(there.output, HasSubstr("--plugin-path"));
+  }
+}
+
+TEST_F(Plugins, WithoutAHomeNothingIsRememberedOrWritten) {
+  install("sound");
+  const fs::path here = scratch_ / "here";
+  fs::create_directory(here);
+  for (const char* homes : {"-u HOME -u XDG_STATE_HOME", "HOME= XDG_STATE_HOME=", "HOME=here XDG_STATE_HOME=here"}) {
+    const Finished finished =
+        testing::run({"sh", "-c",
+                      "cd '" + here.string() + "' && exec env " + homes + " " EVODEVO_PROGRAM " run '" + file_ +
+                          "' --set mutation.0.name=nothing --plugin-path '" + own() + "' --out '" + folder_ + "'"});
+    EXPECT_EQ(finished.exit_code, 0) << finished.output;
+    EXPECT_THAT(finished.output, HasSubstr("warning: neither HOME nor XDG_STATE_HOME names a place"));
+    EXPECT_TRUE(fs::is_empty(here)) << homes;
+    fs::remove_all(folder_);
+  }
 }
 
 TEST_F(Plugins, AnOperatorOfAnUnusableLibraryIsMissedWithTheReason) {

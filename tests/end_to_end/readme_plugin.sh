@@ -7,6 +7,7 @@ set -euo pipefail
 source=$1 evodevo=$2
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
+export XDG_STATE_HOME=$scratch/state
 
 page=$source/framework/sdk/README.md
 block() { sed -n "/^\`\`\`$1\$/,/^\`\`\`\$/p" "$2" | sed '1d;$d'; }

@@ -1,0 +1,292 @@
+// The file of a run among other processes and on storage that fails: nothing is lost, nobody waits for ever, and every
+// refusal names the folder.
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <fstream>
+#include <functional>
+#include <thread>
+
+#include "archive.hpp"
+#include "archive_database.hpp"
+#include "support/experiments.hpp"
+#include "support/scratch.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+class ArchiveStorage : public ::testing::Test {
+ protected:
+  template <class Refusal>
+  static std::string refusal(const std::function<void()>& call) {
+    try {
+      call();
+    } catch (const Refusal& error) {
+      return error.what();
+    }
+    return "no refusal";
+  }
+
+  Archive created(std::optional<Journal> journal = std::nullopt) {
+    return Archive::create(folder_, experiment_, "cpu", journal);
+  }
+
+  static void commit(Archive& archive, std::uint32_t generation) {
+    Individual individual;
+    individual.id = individual.born = individual.origin = generation;
+    individual.genome = {0.5f};
+    individual.result.objectives = {0.3, 1};
+    archive.commit({individual}, {}, {}, {.generation = generation, .evaluations = generation + 1});
+  }
+
+  std::size_t generations() const { return Archive::read(folder_).generations().size(); }
+
+  testing::Scratch scratch_;
+  fs::path folder_ = scratch_ / "a run (ü)";
+  fs::path file_ = folder_ / "run.sqlite", log_ = folder_ / "run.sqlite-wal";
+  Experiment experiment_ = testing::read(testing::small_experiment);
+};
+
+/// Without the log beside it.
+TEST_F(ArchiveStorage, TheFileAloneFollowsTheRun) {
+  const fs::path copy = scratch_ / "copy";
+  fs::create_directory(copy);
+  const auto generations_alone = [&] {
+    fs::copy_file(file_, copy / "run.sqlite", fs::copy_options::overwrite_existing);
+    return Archive::read(copy).generations().size();
+  };
+  Archive archive = created();
+  EXPECT_EQ(generations_alone(), 0u) << "it is a run from the first moment on";
+  std::uint32_t generation = 0;
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  do {
+    commit(archive, generation++);
+  } while (generations_alone() == 0 && std::chrono::steady_clock::now() < give_up);
+  EXPECT_GT(generations_alone(), 0u) << "and while it goes on";
+}
+
+/// What happens to a file that a run has opened.
+struct Loss {
+  const char* name;
+  std::function<void(const fs::path& folder)> happen;
+};
+
+class LostFile : public ArchiveStorage, public ::testing::WithParamInterface<Loss> {};
+
+TEST_P(LostFile, EndsTheRunAtTheNextCommit) {
+  for (const Journal journal : {Journal::wal, Journal::rollback}) {
+    if (journal == Journal::rollback && std::string(GetParam().name) == "LogRemoved") continue;
+    SCOPED_TRACE(name(journal));
+    Archive archive = created(journal);
+    commit(archive, 0);
+    GetParam().happen(folder_);
+    EXPECT_THAT(refusal<StorageError>([&] { commit(archive, 1); }),
+                AllOf(StartsWith(folder_.string() + ": run.sqlite"), HasSubstr("removed, moved or replaced")));
+    EXPECT_FALSE(archive.is_in_place());
+    for (const char* end : {"", " elsewhere"}) fs::remove_all(folder_.string() + end);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Storage, LostFile,
+    ::testing::Values(Loss{"FolderRemoved", [](const fs::path& folder) { fs::remove_all(folder); }},
+                      Loss{"FileRemoved", [](const fs::path& folder) { fs::remove(folder / "run.sqlite"); }},
+                      Loss{"LogRemoved", [](const fs::path& folder) { fs::remove(folder / "run.sqlite-wal"); }},
+                      Loss{"FolderMoved",
+                           [](const fs::path& folder) { fs::rename(folder, folder.string() + " elsewhere"); }},
+                      Loss{"FileReplaced",
+                           [](const fs::path& folder) {
+                             fs::copy_file(folder / "run.sqlite", folder / "copy");
+                             fs::rename(folder / "copy", folder / "run.sqlite");
+                           }}),
+    [](const auto& instance) { return instance.param.name; });
+
+TEST_F(ArchiveStorage, AReaderKeepsNobodyFromGoingOn) {
+  for (const Journal journal : {Journal::wal, Journal::rollback}) {
+    SCOPED_TRACE(name(journal));
+    { created(journal); }
+    const Archive before = Archive::read(folder_);  // in the middle of a long report
+    EXPECT_EQ(before.generations().size(), 0u);
+    Archive archive = Archive::resume(folder_);
+    const Archive beside = Archive::read(folder_);
+    EXPECT_EQ(beside.generations().size(), 0u);
+    commit(archive, 0);
+    EXPECT_EQ(before.generations().size() + beside.generations().size(), 0u) << "they read of one moment";
+    EXPECT_EQ(generations(), 1u);
+    fs::remove_all(folder_);
+  }
+}
+
+TEST_F(ArchiveStorage, WritersTakeTurns) {
+  constexpr std::uint32_t turns = 200;
+  Archive run = created();
+  commit(run, 0);
+  std::string failure = "none";
+  std::thread verifier([&] {
+    try {
+      Archive archive = Archive::annotate(folder_);
+      for (std::uint32_t i = 0; i < turns; ++i)
+        archive.add_verifications({{0, 0.3, {{"trial " + std::to_string(i), Status::ok, "", 0.3}}}});
+    } catch (const std::exception& error) {
+      failure = error.what();
+    }
+  });
+  for (std::uint32_t generation = 1; generation < turns; ++generation) commit(run, generation);
+  verifier.join();
+  EXPECT_EQ(failure, "none");
+  EXPECT_EQ(generations(), turns);
+  EXPECT_EQ(Archive::read(folder_).verification(0)->trials.size(), turns);
+}
+
+TEST_F(ArchiveStorage, AnInterruptedCommitIsUndoneByWhoReads) {
+  { created(Journal::rollback); }
+  // what a process leaves that is killed while it writes: a journal, and pages that are not whole
+  SQLite::Database other(file_.string(), SQLite::OPEN_READWRITE);
+  other.exec("PRAGMA cache_size = 1; PRAGMA cache_spill = 1; BEGIN IMMEDIATE");
+  for (int i = 0; i < 2000; ++i) other.exec("INSERT INTO record VALUES('key " + std::to_string(i) + "', 'value')");
+  const fs::path killed = scratch_ / "killed";
+  fs::create_directory(killed);
+  for (const char* name : {"run.sqlite", "run.sqlite-journal"}) fs::copy_file(folder_ / name, killed / name);
+  const Archive archive = Archive::read(killed);
+  EXPECT_EQ(archive.record("seed"), "7");
+  EXPECT_FALSE(archive.find_record("key 0").has_value());
+}
+
+/// File systems without memory that processes share.
+class WithoutSharedMemory : public ArchiveStorage {
+ protected:
+  WithoutSharedMemory() { sqlite3_vfs_register(sqlite3_vfs_find("unix-dotfile"), 1); }
+  ~WithoutSharedMemory() override { sqlite3_vfs_register(sqlite3_vfs_find("unix"), 1); }
+};
+
+TEST_F(WithoutSharedMemory, ARunKeepsAnotherJournal) {
+  {
+    Archive archive = created();
+    commit(archive, 0);
+    EXPECT_FALSE(fs::exists(log_));
+  }
+  {
+    Archive archive = Archive::resume(folder_);
+    commit(archive, 1);
+  }
+  EXPECT_EQ(generations(), 2u);
+}
+
+TEST_F(WithoutSharedMemory, AWishForALogIsRefusedWithTheRemedy) {
+  EXPECT_THAT(refusal<ArchiveError>([&] { created(Journal::wal); }),
+              AllOf(StartsWith(folder_.string()), HasSubstr("--journal wal"), HasSubstr("--journal delete")));
+}
+
+TEST_F(WithoutSharedMemory, ARunWithALogGoesOnByAnotherJournal) {
+  const fs::path killed = scratch_ / "killed";
+  fs::create_directory(killed);
+  {
+    sqlite3_vfs_register(sqlite3_vfs_find("unix"), 1);
+    Archive archive = created(Journal::wal);
+    commit(archive, 0);
+    fs::copy_file(file_, killed / "run.sqlite");
+    fs::copy_file(log_, killed / "run.sqlite-wal");
+  }
+  sqlite3_vfs_register(sqlite3_vfs_find("unix-dotfile"), 1);
+  EXPECT_THAT(refusal<ArchiveError>([&] { Archive::read(killed); }),
+              AllOf(StartsWith(killed.string()), HasSubstr("--journal delete")));
+  Archive archive = Archive::resume(killed, Journal::rollback);
+  commit(archive, 1);
+  EXPECT_EQ(archive.generations().size(), 2u);
+}
+
+TEST(Journals, AreChosenByTheFileSystem) {
+  for (const std::uint32_t remote : {0x6969u, 0xff534d42u, 0xfe534d42u, 0x65735546u, 0x01021997u})
+    EXPECT_TRUE(is_remote(remote)) << remote;
+  for (const std::uint32_t local : {0xef53u, 0x58465342u, 0x9123683eu, 0x01021994u, 0x794c7630u})
+    EXPECT_FALSE(is_remote(local)) << local;
+  EXPECT_EQ(journal_for("/proc/self"), Journal::wal);
+  EXPECT_EQ(journal_for("/no/such/folder"), Journal::wal);
+  EXPECT_EQ(journal_named("wal"), Journal::wal);
+  EXPECT_EQ(journal_named("delete"), Journal::rollback);
+  EXPECT_FALSE(journal_named("memory").has_value());
+}
+
+TEST_F(ArchiveStorage, AWishForAJournalIsRemembered) {
+  { created(Journal::rollback); }
+  Archive archive = Archive::resume(folder_);
+  commit(archive, 0);
+  EXPECT_FALSE(fs::exists(log_));
+}
+
+TEST_F(ArchiveStorage, EveryErrorOfSQLiteNamesTheFolderAndARemedy) {
+  int failures = 0;
+  for (int code = SQLITE_ERROR; code <= SQLITE_NOTADB; ++code) {
+    const auto fail = [&] { throw_as_our_own(SQLite::Exception("what SQLite says", code), folder_); };
+    const std::string of_input = refusal<ArchiveError>([&] {
+      try {
+        fail();
+      } catch (const StorageError&) {
+      }
+    });
+    const bool is_failure = of_input == "no refusal";
+    failures += is_failure;
+    const std::string said = is_failure ? refusal<StorageError>(fail) : of_input;
+    EXPECT_THAT(said, AllOf(StartsWith(folder_.string() + ": run.sqlite "), HasSubstr("(what SQLite says); ")));
+    EXPECT_THAT(said, AllOf(Not(HasSubstr("\n")), Not(HasSubstr("remove")))) << code;
+  }
+  EXPECT_EQ(failures, 3) << "a full disk, errors of storage, and memory";
+}
+
+TEST_F(ArchiveStorage, WhatIsNoRunIsRefusedWithTheFolder) {
+  const auto refused = [&] {
+    std::vector<std::string> said;
+    for (const auto open : {&Archive::read, &Archive::annotate})
+      said.push_back(refusal<ArchiveError>([&] { (*open)(folder_); }));
+    said.push_back(refusal<ArchiveError>([&] { Archive::resume(folder_); }));
+    return said;
+  };
+  fs::create_directories(folder_);
+  ASSERT_EQ(mkfifo(file_.c_str(), 0600), 0);
+  for (const std::string& said : refused()) EXPECT_THAT(said, StartsWith(folder_.string() + ": there is no run here"));
+  fs::remove(file_);
+  fs::create_directory(file_);
+  for (const std::string& said : refused()) EXPECT_THAT(said, StartsWith(folder_.string() + ": there is no run here"));
+  fs::remove(file_);
+  std::ofstream(file_) << std::string(5000, 'x');
+  for (const std::string& said : refused())
+    EXPECT_THAT(said, AllOf(StartsWith(folder_.string()), HasSubstr("is no SQLite database")));
+  fs::remove(file_);
+  SQLite::Database(file_.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec("CREATE TABLE mine(a)");
+  for (const std::string& said : refused()) EXPECT_THAT(said, AllOf(StartsWith(folder_.string()), HasSubstr("lacks")));
+}
+
+TEST_F(ArchiveStorage, WhatStandsInTheTablesPlaceIsNotRun) {
+  const std::string endless = "CREATE VIEW individuals AS WITH RECURSIVE n(i) AS (SELECT 0 UNION ALL SELECT i FROM n) ";
+  for (const std::string& change : {"DROP TABLE individuals; " + endless + "SELECT i AS id FROM n",
+                                    std::string("ALTER TABLE scores ADD COLUMN more GENERATED ALWAYS AS (value)"),
+                                    std::string("ALTER TABLE generations RENAME COLUMN maker TO other")}) {
+    { created(); }
+    SQLite::Database(file_.string(), SQLite::OPEN_READWRITE).exec("DROP VIEW members; " + change);
+    EXPECT_THAT(refusal<ArchiveError>([&] { Archive::read(folder_); }),
+                AllOf(StartsWith(folder_.string()), HasSubstr("run.sqlite")))
+        << change;
+    fs::remove_all(folder_);
+  }
+  { created(); }
+  SQLite::Database(file_.string(), SQLite::OPEN_READWRITE)
+      .exec("CREATE TRIGGER spoil AFTER INSERT ON generations BEGIN DELETE FROM individuals; END");
+  {
+    Archive archive = Archive::resume(folder_);
+    commit(archive, 0);
+  }
+  EXPECT_TRUE(Archive::read(folder_).individual(0).has_value()) << "triggers of others do nothing";
+}
+
+}  // namespace
+}  // namespace evodevo

@@ -1,0 +1,235 @@
+// Records from elsewhere: whatever is in one, each command ends well or refuses it in one line that names the folder.
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "archive.hpp"
+#include "commands/commands.hpp"
+#include "commands/run.hpp"
+#include "device.hpp"
+#include "evolution.hpp"
+#include "living_again.hpp"
+#include "report/report.hpp"
+#include "support/experiments.hpp"
+#include "support/scratch.hpp"
+#include "toml_reader.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// Half of a small run, so that there is something to resume.
+class ForeignRecord : public ::testing::Test {
+ protected:
+  ForeignRecord() {
+    const Experiment experiment = testing::read(testing::small_experiment, {{"experiment.evaluations", "18", ""},
+                                                                            {"experiment.verify", "0", ""},
+                                                                            {"fitness.0.window", "0.05", ""},
+                                                                            {"fitness.1.window", "0.05", ""}});
+    const auto simulator = make_simulator(experiment);
+    Archive archive = Archive::create(original_, experiment, simulator->device());
+    std::atomic<bool> stop = false;
+    evolve(experiment, *simulator, archive, stop,
+           Observer{.generation_done = [&](const Summary& summary) { stop = summary.generation == 1; }});
+    archive.add_verifications({{archive.best(1).front(), 0.3, {{"again", Status::ok, "", 0.3}}}});
+    for (const std::uint32_t id : archive.best(12))
+      if (archive.life(id) && !archive.life(id)->empty()) recorded_ = id;
+  }
+
+  /// What a command says that does not take the record; empty where it takes it. What is none of the two is an error.
+  std::string refusal(const std::function<void()>& command) const {
+    ::testing::internal::CaptureStdout();
+    ::testing::internal::CaptureStderr();
+    std::string said;
+    try {
+      command();
+    } catch (const ArchiveError& error) {
+      said = error.what();
+    } catch (const ConfigError& error) {
+      said = error.what();
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << "neither taken nor refused: " << error.what();
+    }
+    std::fflush(stdout);
+    ::testing::internal::GetCapturedStdout();
+    ::testing::internal::GetCapturedStderr();
+    if (said.empty()) return said;
+    EXPECT_THAT(said, AllOf(HasSubstr(folder_.string()), Not(HasSubstr("\n"))));
+    return said;
+  }
+
+  /// Gives the folder to all commands; how many refuse it.
+  int refusals() const {
+    const std::string folder = folder_.string(), recorded = std::to_string(recorded_);
+    int refused = 0;
+    const auto give_to = [&](const std::function<void()>& command) { refused += !refusal(command).empty(); };
+    give_to([&] { show_command({folder}); });
+    give_to([&] { show_command({folder, "--json"}); });
+    give_to([&] { life_command({folder, "--individual", recorded}); });
+    give_to([&] { life_command({folder, "--json"}); });
+    give_to([&] { body_command({folder, "--matured", "--individual", recorded}); });
+    give_to([&] { body_command({folder}); });
+    give_to([&] {
+      const Archive archive = Archive::read(folder_);
+      const Experiment experiment = experiment_to_live_again(archive, {});
+      reported_run(archive, experiment, *make_simulator(experiment), {.best = 1, .ancestors = 1}, 1'000'000);
+    });
+    give_to([&] { resume_command({folder}); });
+    return refused;
+  }
+
+  void renew() const {
+    fs::remove_all(folder_);
+    fs::create_directory(folder_);
+    fs::copy_file(original_ / "run.sqlite", folder_ / "run.sqlite");
+  }
+  SQLite::Database database() const { return {(folder_ / "run.sqlite").string(), SQLite::OPEN_READWRITE}; }
+
+  /// Makes a change to a copy of the run; false where the tables do not allow it.
+  bool change(const std::string& sql) const {
+    renew();
+    try {
+      database().exec(sql);
+      return true;
+    } catch (const SQLite::Exception&) {
+      return false;
+    }
+  }
+
+  testing::Scratch scratch_;
+  fs::path original_ = scratch_ / "original", folder_ = scratch_ / "a foreign run";
+  std::uint32_t recorded_ = 0;  ///< an individual that has a record of its life
+};
+
+TEST_F(ForeignRecord, AnUntouchedOneIsTaken) {
+  renew();
+  EXPECT_EQ(refusals(), 0);
+  EXPECT_EQ(Archive::read(folder_).generations().size(), 3u) << "resumed";
+  EXPECT_FALSE(Archive::read(folder_).life(recorded_)->empty());
+}
+
+class ForeignTable : public ForeignRecord, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(ForeignTable, MayHoldAnything) {
+  const std::string table = GetParam();
+  EXPECT_TRUE(change("DELETE FROM " + table));
+  refusals();
+  std::vector<std::string> columns;
+  {
+    SQLite::Database database(this->database());
+    SQLite::Statement row(database, "SELECT name FROM pragma_table_info('" + table + "')");
+    while (row.executeStep()) columns.push_back(row.getColumn(0).getString());
+  }
+  int taken = 0, changes = 0;
+  for (const std::string& column : columns)
+    for (const char* value : {"NULL", "-1", "3", "9000000000000000000", "1e308", "-9e999",
+                              "'two' || char(10) || 'lines'", "x''", "x'80'", "zeroblob(4000)"}) {
+      SCOPED_TRACE(column + " = " + value);
+      // of all rows, or where that would make two equal, of one
+      const std::string update = "UPDATE " + table + " SET " + column + " = " + value;
+      if (!change(update) &&
+          !change(update + " WHERE " + columns.front() + " = (SELECT max(" + columns.front() + ") FROM " + table + ")"))
+        continue;
+      ++changes;
+      taken += refusals() == 0;
+    }
+  EXPECT_GT(changes, 2 * static_cast<int>(columns.size()));
+  EXPECT_LT(taken, changes) << "all is taken, whatever it is";
+}
+
+INSTANTIATE_TEST_SUITE_P(Tables, ForeignTable,
+                         ::testing::Values("record", "makers", "operators", "objectives", "individuals", "scores",
+                                           "lives", "generations", "verifications"),
+                         [](const auto& instance) { return std::string(instance.param); });
+
+TEST_F(ForeignRecord, WhatDoesNotFitTogetherIsNamed) {
+  const struct {
+    const char *change, *named;
+  } cases[] = {
+      {"UPDATE individuals SET parent = id", "individuals.parent"},
+      {"UPDATE individuals SET genes = x'00000000'", "1 genes where there are"},
+      {"UPDATE individuals SET genes = (SELECT replace(hex(zeroblob(length(genes) / 4)), '00', '0000c07f') "
+       "FROM individuals)",
+       "individuals.genes"},
+      {"DELETE FROM individuals", "0 individuals live"},
+      {"DELETE FROM scores", "scores"},
+      {"DELETE FROM makers", "nobody made the run"},
+      {"DELETE FROM objectives", "there are no objectives"},
+      {"UPDATE objectives SET maximise = 1 - maximise", "objective 0"},
+      {"UPDATE generations SET evaluations = 3 WHERE generation = 1", "generations.evaluations"},
+      {"UPDATE generations SET maker = 7", "generations.maker"},
+      {"UPDATE individuals SET origin = born + 1", "individuals.origin"},
+  };
+  for (const auto& [sql, named] : cases) {
+    ASSERT_TRUE(change(sql)) << sql;
+    const std::string said = refusal([&] { resume_command({folder_.string()}); });
+    EXPECT_THAT(said, HasSubstr(named)) << sql;
+  }
+}
+
+TEST_F(ForeignRecord, GenesThatAreNoNumbersBlameNoOperator) {
+  renew();
+  {
+    SQLite::Database database(this->database());
+    SQLite::Statement length(database, "SELECT max(length(genes)) FROM individuals");
+    length.executeStep();
+    std::string genes;
+    for (int i = 0; i < length.getColumn(0).getInt(); i += 4) genes += std::string("\0\0\xc0\x7f", 4);  // NaN
+    SQLite::Statement update(database, "UPDATE individuals SET genes = ?");
+    update.bind(1, genes.data(), static_cast<int>(genes.size()));
+    update.exec();
+  }
+  EXPECT_THAT(refusal([&] { resume_command({folder_.string()}); }), HasSubstr("gene 0 = "));
+  EXPECT_THAT(refusal([&] { body_command({folder_.string()}); }), HasSubstr("gene 0 = "));
+}
+
+TEST_F(ForeignRecord, RecordsOfLivesMayHoldAnyBytes) {
+  const std::string bytes = Archive::read(original_).life(recorded_)->bytes();
+  std::mt19937 random(5);
+  int taken = 0, refused = 0;
+  for (int i = 0; i < 150; ++i) {
+    std::string other = bytes;
+    for (unsigned j = 0; j <= random() % 3; ++j) other[random() % other.size()] = static_cast<char>(random());
+    if (i % 10 == 0) other.resize(random() % other.size());
+    renew();
+    {
+      SQLite::Database database(this->database());
+      SQLite::Statement update(database, "UPDATE lives SET record = ? WHERE individual = ?");
+      update.bind(1, other.data(), static_cast<int>(other.size()));
+      update.bind(2, recorded_);
+      update.exec();
+    }
+    const std::string said = refusal([&] {
+      life_command({folder_.string(), "--json", "--individual", std::to_string(recorded_)});
+    });
+    ++(said.empty() ? taken : refused);
+  }
+  EXPECT_GT(taken, 0);
+  EXPECT_GT(refused, 30);
+}
+
+TEST_F(ForeignRecord, TheFileMayHoldAnyBytes) {
+  std::ifstream stream(original_ / "run.sqlite", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  std::mt19937 random(7);
+  for (int i = 0; i < 150; ++i) {
+    std::string other = bytes;
+    for (unsigned j = 0; j <= random() % 20; ++j) other[random() % other.size()] = static_cast<char>(random());
+    if (i % 10 == 0) other.resize(random() % other.size());
+    renew();
+    std::ofstream(folder_ / "run.sqlite", std::ios::binary) << other;
+    refusal([&] { show_command({folder_.string()}); });
+    refusal([&] { life_command({folder_.string()}); });
+  }
+}
+
+}  // namespace
+}  // namespace evodevo
