@@ -1,7 +1,7 @@
 // Films, pictures and the gallery.
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync, symlinkSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmdirSync, symlinkSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { chromiumProgram, cycles, cycleTime, differing, evodevo, inPage, launch, opened, picture, Scratch, sum } from "./support.mjs";
@@ -56,6 +56,21 @@ test("pictures of two moments differ", () => {
   for (const at of ["0", "2"]) evodevo("film", scratch.run, "--at", at, "--out", scratch.path(`${at}.png`));
   assert.deepEqual(sizeOf(scratch.path("0.png")), [1280, 720]);
   assert.notDeepEqual(readFileSync(scratch.path("0.png")), readFileSync(scratch.path("2.png")));
+});
+
+test("nothing but the picture is written, wherever home is", () => {
+  const here = scratch.path("here");
+  for (const home of ["", ".", "home"]) {
+    mkdirSync(here);
+    const environment = { ...process.env, HOME: home, XDG_CACHE_HOME: "cache" };
+    execFileSync(process.env.EVODEVO_PROGRAM, ["film", scratch.run, "--out", scratch.path("home.png")], {
+      cwd: here,
+      env: environment,
+      stdio: "ignore",
+    });
+    assert.deepEqual(readdirSync(here), []);
+    rmdirSync(here);
+  }
 });
 
 test("what cannot be filmed is refused in one line", () => {
