@@ -111,9 +111,8 @@ void warn_of_other_builds(const Experiment& experiment, const Simulator& simulat
 }
 
 int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive) {
-  std::cout << experiment.name << " on " << simulator.device() << ", "
-            << thread_count(static_cast<int>(experiment.threads)) << " threads; writing " << archive.folder().string()
-            << std::endl;
+  std::cout << experiment.name << " on " << simulator.device() << ", " << simulator.workers().count()
+            << " threads; writing " << archive.folder().string() << std::endl;
   stop_on_interrupt();
   ProgressDisplay progress(experiment, archive.generations(), stop_requested);
   TimeSpent time;
