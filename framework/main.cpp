@@ -6,6 +6,7 @@
 #include "commands/commands.hpp"
 #include "crash.hpp"
 #include "output_file.hpp"
+#include "standard_streams.hpp"
 #include "text.hpp"
 #include "toml_reader.hpp"
 
@@ -74,6 +75,7 @@ int main(int argc, char** argv) {
     std::cerr << "evodevo: " << error.what() << '\n';
     return code;
   };
+  evodevo::open_standard_streams();
   evodevo::name_crashing_operators();
   std::signal(SIGPIPE, SIG_DFL);  // a reader that has gone, such as `head`, ends this program without a word
   try {
