@@ -87,6 +87,12 @@ std::optional<double> optional_double(const SQLite::Column& column) {
   return column.getDouble();
 }
 
+/// A text that somebody else may have written.
+std::string text_of(const SQLite::Column& column) {
+  constexpr std::size_t longest = 5000;  // longer than any path
+  return printable(column.getString(), longest);
+}
+
 Status status_from(const std::string& text) {
   for (const Status status : {Status::ok, Status::invalid, Status::diverged})
     if (text == name(status)) return status;
@@ -103,13 +109,13 @@ ArchivedIndividual read_individual(SQLite::Database& database, SQLite::Statement
   individual.origin = row.getColumn(2).getUInt();
   for (const int column : {3, 4})
     if (!row.isColumnNull(column)) individual.parents.push_back(row.getColumn(column).getUInt());
-  individual.made_by = row.getColumn(5).getString();
+  individual.made_by = text_of(row.getColumn(5));
   const SQLite::Column genes = row.getColumn(6);
   individual.genome.resize(static_cast<std::size_t>(genes.getBytes()) / sizeof(float));
   if (!individual.genome.empty())
     std::memcpy(individual.genome.data(), genes.getBlob(), individual.genome.size() * sizeof(float));
-  individual.result.status = status_from(row.getColumn(7).getString());
-  if (!row.isColumnNull(8)) individual.result.reason = row.getColumn(8).getString();
+  individual.result.status = status_from(text_of(row.getColumn(7)));
+  if (!row.isColumnNull(8)) individual.result.reason = text_of(row.getColumn(8));
   if (!row.isColumnNull(9)) individual.result.ended_at = row.getColumn(9).getDouble();
   individual.result.spring_evaluations = static_cast<std::uint64_t>(row.getColumn(10).getInt64());
   if (!row.isColumnNull(11)) individual.died = row.getColumn(11).getUInt();
@@ -161,7 +167,7 @@ void require_empty(const fs::path& folder) {
 }
 
 void require_run(const fs::path& folder) {
-  if (!fs::exists(folder / database_name))
+  if (std::error_code error; !fs::exists(folder / database_name, error))
     throw ArchiveError(folder.string() + ": there is no run here (no " + database_name + "); give a folder that `" +
                        program_name() + " run` has written");
 }
@@ -331,8 +337,8 @@ std::optional<Verification> Archive::verification(std::uint32_t id) const {
   Verification verification{id, 0, {}};
   while (row.executeStep()) {
     verification.fitness = row.getColumn(4).getDouble();
-    verification.trials.push_back({row.getColumn(0).getString(), status_from(row.getColumn(1).getString()),
-                                   row.isColumnNull(2) ? "" : row.getColumn(2).getString(),
+    verification.trials.push_back({text_of(row.getColumn(0)), status_from(text_of(row.getColumn(1))),
+                                   row.isColumnNull(2) ? "" : text_of(row.getColumn(2)),
                                    optional_double(row.getColumn(3))});
   }
   if (verification.trials.empty()) return std::nullopt;
@@ -390,13 +396,13 @@ std::vector<Maker> Archive::makers() const {
   std::vector<Maker> makers;
   SQLite::Statement row(files_->database, "SELECT device, evodevo, program FROM makers ORDER BY maker");
   while (row.executeStep())
-    makers.push_back({row.getColumn(0).getString(), row.getColumn(1).getString(), row.getColumn(2).getString(), {}});
+    makers.push_back({text_of(row.getColumn(0)), text_of(row.getColumn(1)), text_of(row.getColumn(2)), {}});
   SQLite::Statement use(files_->database,
                         "SELECT maker, kind, name, version, file, hash FROM operators ORDER BY rowid");
   while (use.executeStep())
     makers.at(use.getColumn(0).getUInt())
-        .operators.push_back({use.getColumn(1).getString(), use.getColumn(2).getString(), use.getColumn(3).getString(),
-                              use.getColumn(4).getString(), use.getColumn(5).getString()});
+        .operators.push_back({text_of(use.getColumn(1)), text_of(use.getColumn(2)), text_of(use.getColumn(3)),
+                              text_of(use.getColumn(4)), text_of(use.getColumn(5))});
   return makers;
 }
 
@@ -412,8 +418,7 @@ std::vector<Objective> Archive::objectives() const {
   std::vector<Objective> objectives;
   SQLite::Statement query(files_->database, "SELECT name, unit, maximise FROM objectives ORDER BY position");
   while (query.executeStep())
-    objectives.push_back(
-        {query.getColumn(0).getString(), query.getColumn(1).getString(), query.getColumn(2).getInt() != 0});
+    objectives.push_back({text_of(query.getColumn(0)), text_of(query.getColumn(1)), query.getColumn(2).getInt() != 0});
   return objectives;
 }
 
@@ -447,7 +452,7 @@ std::vector<Failure> Archive::failures() const {
                           "SELECT status, coalesce(reason, ''), count(*) FROM individuals WHERE status <> 'ok' "
                           "GROUP BY status, reason ORDER BY min(id)");
   while (query.executeStep()) {
-    const std::string status = query.getColumn(0).getString(), reason = query.getColumn(1).getString();
+    const std::string status = text_of(query.getColumn(0)), reason = text_of(query.getColumn(1));
     const std::string alike = reason.substr(0, reason.find_first_of("0123456789"));
     Failure& failure = failures.try_emplace({status, alike}, Failure{status, reason}).first->second;
     failure.count += query.getColumn(2).getInt64();
@@ -501,7 +506,7 @@ Experiment recorded_experiment(const Archive& archive, std::vector<fs::path> plu
                                                      .overrides = {},
                                                      .plugin_path = std::move(plugin_path),
                                                      .is_record = true});
-  experiment.name = archive.record("name");
+  experiment.name = printable(archive.record("name"));
   return experiment;
 }
 

@@ -5,10 +5,10 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "input_error.hpp"
 #include "maker.hpp"
 #include "population.hpp"
 #include "verification.hpp"
@@ -16,8 +16,8 @@
 namespace evodevo {
 
 /// A folder that cannot be written, read, or is in use. what() names folder, cause and remedy.
-struct ArchiveError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct ArchiveError : InputError {
+  using InputError::InputError;
 };
 
 /// An individual with the generation in which it was dropped.

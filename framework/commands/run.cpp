@@ -63,7 +63,8 @@ std::string state_of(const Archive& archive) {
 }
 
 void print_warnings(const Experiment& experiment) {
-  for (const std::string& warning : experiment.warnings) std::cerr << "warning: " << warning << '\n';
+  for (const std::string& warning : experiment.warnings)
+    std::cerr << "warning: " << printable(warning, InputError::longest_message) << '\n';
 }
 
 std::string title(const OperatorUse& use) { return use.kind + " operator \"" + use.name + "\" " + use.version; }
