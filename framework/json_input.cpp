@@ -15,7 +15,7 @@ using Json = JsonInput::Json;
 
 constexpr std::size_t most_levels = 16;
 constexpr std::size_t most_bytes = std::size_t{1} << 30;  // 1 GiB: a body of some ten million springs
-constexpr std::size_t longest_quote = 60;  ///< bytes of the file in a message
+constexpr std::size_t longest_quote = 60;                 ///< bytes of the file in a message
 
 std::string cut(std::string text, std::size_t longest) {
   if (text.size() > longest) text.replace(longest, std::string::npos, "...");
