@@ -146,7 +146,7 @@ Experiment recorded_experiment(const Archive& archive, std::vector<fs::path> plu
                                                      .overrides = {},
                                                      .plugin_path = std::move(plugin_path),
                                                      .is_record = true});
-  experiment.name = archive.record("name");
+  experiment.name = printable(archive.record("name"));
   check_objectives(archive, experiment);
   return experiment;
 }

@@ -7,6 +7,7 @@
 
 #include "archive.hpp"
 #include "archive_database.hpp"
+#include "text.hpp"
 
 namespace evodevo {
 namespace {
@@ -21,7 +22,13 @@ Status status_in(const Statement& row, int column) {
   row.refuse(column, "\"ok\", \"invalid\" or \"diverged\"");
 }
 
-std::string text_or_empty(const Statement& row, int column) { return row.is_null(column) ? "" : row.text(column); }
+/// A text that is shown as it is.
+std::string line(const Statement& row, int column) {
+  constexpr std::size_t longest = 5000;  // bytes, longer than any path
+  return printable(row.text(column), longest);
+}
+
+std::string line_or_empty(const Statement& row, int column) { return row.is_null(column) ? "" : line(row, column); }
 
 /// Seconds, as a text.
 std::optional<double> seconds_in(const std::string& text) {
@@ -66,7 +73,7 @@ class Individuals {
     individual.born = row_.index(1, *last_generation_);
     individual.origin = row_.index(2, individual.born);
     read_parents(individual);
-    individual.made_by = row_.text(5);
+    individual.made_by = line(row_, 5);
     read_genes(individual);
     read_result(individual.result);
     if (!row_.is_null(11))
@@ -105,7 +112,7 @@ class Individuals {
 
   void read_result(Result& result) {
     result.status = status_in(row_, 7);
-    result.reason = text_or_empty(row_, 8);
+    result.reason = line_or_empty(row_, 8);
     result.ended_at = row_.optional_number(9).value_or(0);
     result.spring_evaluations = static_cast<std::uint64_t>(row_.integer(10, 0, most));
   }
@@ -138,7 +145,7 @@ std::optional<Verification> Archive::verification(std::uint32_t id) const {
   row.bind(id);
   Verification verification{id, 0, {}};
   while (row.step())
-    verification.trials.push_back({row.text(0), status_in(row, 1), text_or_empty(row, 2), row.optional_number(3)});
+    verification.trials.push_back({line(row, 0), status_in(row, 1), line_or_empty(row, 2), row.optional_number(3)});
   if (verification.trials.empty()) return std::nullopt;
   const ArchivedIndividual verified = known_individual(id);
   if (verified.result.objectives.empty())
@@ -174,13 +181,13 @@ std::vector<Maker> Archive::makers() const {
   Statement row(*run_, "makers", "SELECT maker, device, evodevo, program FROM makers ORDER BY maker");
   for (std::uint32_t place = 0; row.step(); ++place) {
     row.integer(0, place, place);
-    makers.push_back({row.text(1), row.text(2), row.text(3), {}});
+    makers.push_back({line(row, 1), line(row, 2), line(row, 3), {}});
   }
   if (makers.empty()) refuse("nobody made the run");
   Statement use(*run_, "operators", "SELECT maker, kind, name, version, file, hash FROM operators ORDER BY rowid");
   while (use.step())
     makers[use.index(0, static_cast<std::uint32_t>(makers.size() - 1))].operators.push_back(
-        {use.text(1), use.text(2), use.text(3), use.text(4), use.text(5)});
+        {line(use, 1), line(use, 2), line(use, 3), line(use, 4), line(use, 5)});
   return makers;
 }
 
@@ -197,7 +204,7 @@ std::vector<Objective> Archive::objectives() const {
   Statement row(*run_, "objectives", "SELECT position, name, unit, maximise FROM objectives ORDER BY position");
   for (std::uint32_t place = 0; row.step(); ++place) {
     row.integer(0, place, place);
-    objectives.push_back({row.text(1), row.text(2), row.integer(3, 0, 1) != 0});
+    objectives.push_back({line(row, 1), line(row, 2), row.integer(3, 0, 1) != 0});
   }
   if (objectives.empty()) refuse("there are no objectives");
   return objectives;
@@ -240,7 +247,7 @@ std::vector<Failure> Archive::failures() const {
                 "SELECT status, reason, count(*) FROM individuals WHERE status <> 'ok' "
                 "GROUP BY status, reason ORDER BY min(id)");
   while (row.step()) {
-    const std::string status = name(status_in(row, 0)), reason = text_or_empty(row, 1);
+    const std::string status = name(status_in(row, 0)), reason = line_or_empty(row, 1);
     const std::string alike = reason.substr(0, reason.find_first_of("0123456789"));
     Failure& failure = failures.try_emplace({status, alike}, Failure{status, reason}).first->second;
     failure.count += row.integer(2, 0, most);

@@ -106,7 +106,7 @@ bool is_sound(const Size& size) {
 /// Why a blueprint cannot become a body; empty where it may.
 std::string blueprint_failure(const Blueprint& blueprint) {
   const std::vector<Mass>& masses = blueprint.body.masses;
-  if (!blueprint.failure.empty()) return "no body: " + blueprint.failure;
+  if (!blueprint.failure.empty()) return "no body: " + printable(blueprint.failure);
   if (masses.empty()) return "no body: no masses";
   if (!std::all_of(masses.begin(), masses.end(), [](const Mass& mass) { return is_finite(mass.rest); }))
     return "no body: a place that is not finite";

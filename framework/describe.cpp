@@ -25,7 +25,7 @@ class Describer final : public Parameters {
     add(name, "option", quoted(value), {}, text);
     std::vector<std::string> names;
     for (const std::string_view option : options) names.push_back(quoted(option));
-    found.back().allowed = joined(names);
+    found.back().allowed = printable(joined(names), 2000);
   }
   void vector(Vec3& value, std::string_view name, Range range, std::string_view text) override {
     add(name, "three numbers", "[" + to_text(value.x) + ", " + to_text(value.y) + ", " + to_text(value.z) + "]", range,
@@ -45,8 +45,8 @@ class Describer final : public Parameters {
 
  private:
   void add(std::string_view name, std::string type, std::string fallback, Range range, std::string_view text) {
-    found.push_back({std::string(name), std::move(type), std::move(fallback), to_text(range), std::string(range.unit),
-                     std::string(text)});
+    found.push_back({printable(name), std::move(type), printable(fallback), to_text(range), printable(range.unit),
+                     printable(text, 2000)});
   }
 };
 

@@ -17,7 +17,8 @@ std::unique_ptr<Simulator> make_simulator(const Experiment& experiment) {
     const std::string obstacle = "this evodevo was built without CUDA; build it where the CUDA toolkit is";
 #endif
     if (experiment.device == "cuda")
-      throw ConfigError("simulation.device = \"cuda\": " + obstacle + ", or set simulation.device to \"cpu\"");
+      throw ConfigError(experiment.device_place + ": simulation.device = \"cuda\": " + obstacle +
+                        ", or set simulation.device to \"cpu\"");
   }
   return make_cpu_simulator(experiment.scene, experiment.stepping, static_cast<int>(experiment.threads));
 }

@@ -1,6 +1,7 @@
 #include "experiment.hpp"
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
 #include <sstream>
 
@@ -18,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
+constexpr std::size_t most_materials = 1000;
 
 // ---- what each table of the file holds ----
 
@@ -180,7 +182,8 @@ class Composer {
       const std::vector<std::string> known = registry_.names(T::kind);
       message += suggestion(name, known);
       if (nearest(name, known).empty()) message += "; [plugins] paths and --plugin-path name folders with more";
-      for (const std::string& warning : out_.warnings) message += "; " + warning;
+      if (plugin_warnings_ > 0) message += "; " + out_.warnings.front();
+      if (plugin_warnings_ > 1) message += " (and " + std::to_string(plugin_warnings_ - 1) + " more such warnings)";
       table.fail("name", message);
     }
     std::unique_ptr<T> op = create<T>(*available);
@@ -196,7 +199,7 @@ class Composer {
     try {
       return call();
     } catch (const std::exception& error) {
-      table.fail("name", error.what());
+      table.fail("name", printable(error.what(), 2000));
     }
   }
 
@@ -211,18 +214,22 @@ class Composer {
     });
     record_plugin_path();
     for (const FailedLibrary& failed : registry_.failed())
-      out_.warnings.push_back("not usable: " + failed.file.string() + ": " + failed.reason);
+      out_.warnings.push_back("not usable: " + printable(failed.file.string()) + ": " + failed.reason);
+    plugin_warnings_ = out_.warnings.size();
   }
 
   /// The record names all folders but the program's own, so that the run can be resumed without the options and the
   /// environment that it was begun with.
   void record_plugin_path() {
     toml::array paths;
-    for (const fs::path& path : plugin_path_)
-      if (path != builtin_plugin_folder() && is_plugin_path(path)) {
-        out_.plugin_folders.push_back(path.lexically_normal());
-        paths.push_back(out_.plugin_folders.back().string());
-      }
+    for (const fs::path& path : plugin_path_) {
+      if (path == builtin_plugin_folder() || !is_plugin_path(path)) continue;
+      out_.plugin_folders.push_back(path.lexically_normal());
+      const std::string text = out_.plugin_folders.back().string();
+      if (const std::string fault = text_fault(text, PATH_MAX); !fault.empty())
+        throw ConfigError(top_.place("plugins") + ": plugins: the path " + fault + "; rename the folder");
+      paths.push_back(text);
+    }
     if (!paths.empty()) top_.resolve("plugins", toml::table{{"paths", std::move(paths)}});
   }
 
@@ -231,8 +238,11 @@ class Composer {
     toml::table resolved;
     if (const toml::table* table = top_.table("materials")) {
       TomlReader all(*table, "materials");
+      if (table->size() > most_materials)
+        top_.fail("materials", "expected at most " + std::to_string(most_materials) + " of them");
       for (auto&& [key, node] : *table) {
         const std::string name(key.str());
+        if (const std::string fault = text_fault(name); !fault.empty()) all.fail(name, "the name " + fault);
         if (!materials.contains(name)) warn_of_near_material(name);
         TomlReader reader(*all.table(name), "materials." + name);
         declare(reader, materials[name]);
@@ -308,6 +318,7 @@ class Composer {
     t.real_or_auto(out_.step.dt, "dt", {1e-7, 0.1, "s"}, "Time step; auto: as long as each body bears.");
     t.integer(out_.step.refine, "refine", {1, 1000}, "What every time step is divided by.");
     t.choice(unstable, "unstable", {"invalid", "run"}, "What a body is, or does, that a fixed dt is too long for.");
+    out_.device_place = t.place("device");
     t.choice(out_.device, "device", {"auto", "cpu", "cuda"}, "Where to simulate; auto: on a GPU where there is one.");
     t.integer(out_.threads, "threads", {0, 4096}, "Threads on the CPU; 0 for all cores.");
     out_.stepping.method = method_of(method);
@@ -479,6 +490,9 @@ class Composer {
       check_duration(t, "window", request.window);
       for (Objective& objective : ask(t, [&] { return fitness->objectives(); })) {
         const auto same = [&](const Objective& other) { return other.name == objective.name; };
+        for (const std::string& text : {objective.name, objective.unit})
+          if (const std::string fault = text_fault(text); !fault.empty())
+            t.fail("name", "its objective's name or unit " + fault);
         if (std::any_of(out_.objectives.begin(), out_.objectives.end(), same))
           t.fail("name", "there is an objective \"" + objective.name + "\" already");
         out_.objectives.push_back(std::move(objective));
@@ -494,6 +508,7 @@ class Composer {
   std::vector<fs::path> plugin_path_;
   Registry registry_;
   Experiment out_;
+  std::size_t plugin_warnings_ = 0;  ///< which come first
 };
 
 // ---- from file to experiment ----
@@ -501,7 +516,7 @@ class Composer {
 Experiment compose(toml::table root, const ExperimentSource& source) {
   for (const Override& change : source.overrides) apply_override(change, root);
   Experiment experiment = Composer(root, source).compose();
-  experiment.name = fs::path(source.file).stem().string();
+  experiment.name = printable(fs::path(source.file).stem().string());
   return experiment;
 }
 
@@ -529,7 +544,7 @@ const OperatorUse* use_of(const Experiment& experiment, std::string_view kind, s
 
 void blame_operator(const OperatorUse* use, std::string_view kind, const std::string& where, const std::string& what) {
   const std::string title = use == nullptr ? "operator" : "operator \"" + use->name + "\" of " + use->file.string();
-  throw std::runtime_error(std::string(kind) + " " + title + where + ": " + what +
+  throw std::runtime_error(std::string(kind) + " " + title + where + ": " + printable(what, 2000) +
                            "; correct the operator and build it again, or begin a new run without it");
 }
 

@@ -100,6 +100,7 @@ struct Experiment {
   Stepping stepping;
   StepRule step;
   std::string device = "auto";
+  std::string device_place;  ///< where that is written, for messages
   std::int64_t threads = 0;  ///< 0: all cores
   Development development;
   std::vector<std::unique_ptr<Fitness>> fitness;

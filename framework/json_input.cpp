@@ -1,13 +1,10 @@
 #include "json_input.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <set>
 
+#include "input_file.hpp"
 #include "text.hpp"
 #include "toml_reader.hpp"
 
@@ -17,7 +14,8 @@ namespace {
 using Json = JsonInput::Json;
 
 constexpr std::size_t most_levels = 16;
-constexpr std::size_t longest_quote = 60;  ///< bytes of the file in a message
+constexpr std::size_t most_bytes = std::size_t{1} << 30;  // 1 GiB: a body of some ten million springs
+constexpr std::size_t longest_quote = 60;                 ///< bytes of the file in a message
 
 std::string cut(std::string text, std::size_t longest) {
   if (text.size() > longest) text.replace(longest, std::string::npos, "...");
@@ -111,11 +109,9 @@ std::string complaint(const std::string& what) {
 }  // namespace
 
 Json JsonInput::read() const {
-  std::ifstream stream(file_);
-  if (!stream) fail("", std::string("cannot be read: ") + std::strerror(errno));
-  if (std::filesystem::is_directory(file_)) fail("", "cannot be read: it is a folder");
+  const std::string text = read_input_file(file_, most_bytes);
   try {
-    return Json::parse(stream, ParserWatch(*this));
+    return Json::parse(text, ParserWatch(*this));
   } catch (const Json::exception& error) {
     fail("", "is not JSON: " + complaint(error.what()));
   }
@@ -155,7 +151,7 @@ std::uint32_t JsonInput::index(const Json& item, const std::string& at, const st
 }
 
 void JsonInput::fail(const std::string& at, const std::string& message) const {
-  throw ConfigError(file_ + ": " + (at.empty() ? "" : at + ": ") + message);
+  throw ConfigError(printable(file_, longest_shown_path) + ": " + (at.empty() ? "" : at + ": ") + message);
 }
 
 }  // namespace evodevo

@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 constexpr const char* entry_symbol = "evodevo_plugin";
 constexpr std::string_view suffix = ".evodevo.so";
 constexpr unsigned seconds_to_load = 30;
+constexpr std::size_t longest_reason = 2000;
 
 /// Opened libraries are never closed: objects and type information of theirs may live anywhere in the process.
 std::deque<boost::dll::shared_library>& open_libraries() {
@@ -100,7 +101,14 @@ std::string title(const OperatorEntry& entry) {
   return std::string("its ") + entry.kind + " operator \"" + entry.name + "\"";
 }
 
+/// What the operators say of themselves is printed, recorded and put on pages.
+void check_text(const std::string& title, std::string_view text) {
+  if (const std::string fault = text_fault(text); !fault.empty()) refuse(title + " " + fault + "; correct it");
+}
+
 void check_entry(const OperatorEntry& entry) {
+  check_text(std::string("the name of its ") + entry.kind + " operator", entry.name);
+  check_text("the summary of " + title(entry), entry.summary);
   if (std::find(operator_kinds.begin(), operator_kinds.end(), entry.kind) == operator_kinds.end())
     refuse(std::string("its operator \"") + entry.name + "\" is of the unknown kind \"" + entry.kind +
            "\"; rebuild the plugin against this evodevo");
@@ -118,6 +126,8 @@ void check_entry(const OperatorEntry& entry) {
 std::span<const OperatorEntry> checked_entries(const boost::dll::shared_library& library, const fs::path& file) {
   const PluginManifest* manifest = read_manifest(library, file);
   check_manifest(manifest);
+  check_text("its version", manifest->version);
+  check_text("its licence", manifest->license);
   const std::span<const OperatorEntry> entries(manifest->entries, manifest->entry_count);
   for (const OperatorEntry& entry : entries) check_entry(entry);
   return entries;
@@ -156,8 +166,13 @@ std::vector<fs::path> Registry::libraries_at(const fs::path& path) {
   if (fs::is_regular_file(path, error)) return {fs::absolute(path)};
   std::vector<fs::path> files;
   try {
-    for (const fs::directory_entry& entry : fs::directory_iterator(path))
-      if (entry.path().filename().string().ends_with(suffix)) files.push_back(fs::absolute(entry.path()));
+    for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
+      if (!entry.path().filename().string().ends_with(suffix)) continue;
+      if (entry.is_regular_file(error))
+        files.push_back(fs::absolute(entry.path()));
+      else
+        failed_.push_back({entry.path(), "is no file that can be loaded; remove it"});
+    }
   } catch (const fs::filesystem_error& failure) {
     failed_.push_back({path, "cannot be read: " + failure.code().message() +
                                  "; make it readable, or leave it out of the plugin path"});
@@ -182,7 +197,7 @@ void Registry::load_all(const std::vector<fs::path>& files) {
       survived.insert(file);
       load(file);
     } catch (const std::exception& error) {
-      failed_.push_back({file, error.what()});
+      failed_.push_back({file, printable(error.what(), longest_reason)});
     }
   }
 }

@@ -1,13 +1,14 @@
 // The command `evodevo`.
 #include <csignal>
 #include <iostream>
+#include <sstream>
 
-#include "archive.hpp"
 #include "commands/commands.hpp"
 #include "crash.hpp"
+#include "input_error.hpp"
 #include "output_file.hpp"
+#include "standard_streams.hpp"
 #include "text.hpp"
-#include "toml_reader.hpp"
 
 namespace evodevo {
 namespace {
@@ -62,7 +63,21 @@ int dispatch(const Arguments& arguments) {
     if (arguments.front() == command.name) return command.function({arguments.begin() + 1, arguments.end()});
     names.emplace_back(command.name);
   }
-  throw UsageError("there is no command \"" + arguments.front() + "\"" + suggestion(arguments.front(), names));
+  throw UsageError("there is no command \"" + printable(arguments.front()) + "\"" +
+                   suggestion(arguments.front(), names));
+}
+
+/// Some failures have several lines.
+int complain(const std::exception& error, int exit_code) {
+  std::istringstream lines(error.what());
+  std::string line;
+  const auto say = [&](const char* before) {
+    std::cerr << before << printable(line, InputError::longest_message) << '\n';
+  };
+  std::getline(lines, line);
+  say("evodevo: ");
+  while (std::getline(lines, line)) say("");
+  return exit_code;
 }
 
 }  // namespace
@@ -70,23 +85,16 @@ int dispatch(const Arguments& arguments) {
 }  // namespace evodevo
 
 int main(int argc, char** argv) {
-  const auto complain = [](const std::exception& error, int code) {
-    std::cerr << "evodevo: " << error.what() << '\n';
-    return code;
-  };
+  evodevo::open_standard_streams();
   evodevo::name_crashing_operators();
   std::signal(SIGPIPE, SIG_DFL);  // a reader that has gone, such as `head`, ends this program without a word
   try {
     const int code = evodevo::dispatch({argv + 1, argv + argc});
     evodevo::finish_standard_output();
     return code;
-  } catch (const evodevo::UsageError& error) {
-    return complain(error, 2);
-  } catch (const evodevo::ConfigError& error) {
-    return complain(error, 2);
-  } catch (const evodevo::ArchiveError& error) {
-    return complain(error, 2);
+  } catch (const evodevo::InputError& error) {
+    return evodevo::complain(error, 2);
   } catch (const std::exception& error) {
-    return complain(error, 1);
+    return evodevo::complain(error, 1);
   }
 }

@@ -1,8 +1,10 @@
 #include "overrides.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <vector>
 
+#include "toml_limits.hpp"
 #include "toml_reader.hpp"
 
 namespace evodevo {
@@ -24,25 +26,44 @@ bool is_next(const toml::node& parent, const std::string& key) {
   return array != nullptr && key == std::to_string(array->size());
 }
 
+/// Nobody who writes so means a text.
+bool is_whole_number(std::string_view value) {
+  if (value.starts_with('+') || value.starts_with('-')) value.remove_prefix(1);
+  return !value.empty() && std::all_of(value.begin(), value.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
 /// The value of "key=value", as TOML where it is TOML and as a text where it is not. It remembers the option it came
 /// from as its place.
 toml::table parse_override_value(const std::string& value, const std::string& origin) {
+  const std::string line = "value = " + value;
+  expect_within_toml_limits(line, origin);
   try {
-    toml::table parsed = toml::parse("value = " + value, origin);
+    toml::table parsed = parse_toml(line, origin);
     if (parsed.size() == 1) return parsed;  // more than one: it goes on in a second line
-  } catch (const toml::parse_error&) {
+  } catch (const ConfigError&) {
+    if (is_whole_number(value)) throw;  // it has too many digits
   }
-  return parse_toml("value = '''" + value + "'''", origin);
+  toml::table parsed = parse_toml("value = ''", origin);
+  *parsed.get_as<std::string>("value") = value;
+  return parsed;
 }
 
-std::vector<std::string> split_key(const std::string& key) {
+[[noreturn]] void refuse(const Override& change, const std::string& message) {
+  throw ConfigError(change.origin + ": " + printable(change.key) + ": " + message);
+}
+
+std::vector<std::string> split_key(const Override& change) {
   std::vector<std::string> parts(1);
-  for (const char c : key) {
+  for (const char c : change.key) {
     if (c == '.')
       parts.emplace_back();
     else
       parts.back() += c;
   }
+  if (parts.size() > most_toml_levels)
+    refuse(change, "expected at most " + std::to_string(most_toml_levels) + " names joined by dots");
+  if (std::find(parts.begin(), parts.end(), "") != parts.end())
+    refuse(change, "a name is empty; expected names joined by dots, such as experiment.population");
   return parts;
 }
 
@@ -50,26 +71,34 @@ std::vector<std::string> split_key(const std::string& key) {
 template <class Value>
 void set(toml::node& parent, const std::string& key, Value&& value, const Override& change) {
   if (toml::table* table = parent.as_table()) {
-    table->insert_or_assign(key, std::forward<Value>(value));
+    toml::source_region option;
+    option.path = std::make_shared<const std::string>(change.origin);
+    table->insert_or_assign(toml::key(key, std::move(option)), std::forward<Value>(value));
   } else if (toml::array* array = parent.as_array(); array != nullptr && key == std::to_string(array->size())) {
     array->push_back(std::forward<Value>(value));
   } else if (child(parent, key) != nullptr) {
     array->replace(array->cbegin() + std::stol(key), std::forward<Value>(value));
   } else {
-    throw ConfigError(change.origin + ": " + change.key + ": there is no item " + key);
+    refuse(change, "there is no item " + printable(key));
   }
+}
+
+/// A table that a change needs on its way. One in a table is as if the file had it empty, so that complaints of what it
+/// lacks name the file; an item of a list is the option's.
+toml::table table_on_the_way(const toml::node& parent, const Override& change) {
+  const toml::source_path_ptr& file = parent.source().path;
+  return parse_toml("", parent.is_table() && file ? *file : change.origin);
 }
 
 }  // namespace
 
 void apply_override(const Override& change, toml::table& root) {
-  const std::vector<std::string> keys = split_key(change.key);
+  const std::vector<std::string> keys = split_key(change);
   toml::node* parent = &root;
   for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
-    if (is_next(*parent, keys[i]))
-      set(*parent, keys[i], std::move(*parse_override_value("{}", change.origin).get_as<toml::table>("value")), change);
+    if (is_next(*parent, keys[i])) set(*parent, keys[i], table_on_the_way(*parent, change), change);
     parent = child(*parent, keys[i]);
-    if (parent == nullptr) throw ConfigError(change.origin + ": " + change.key + ": there is no item " + keys[i]);
+    if (parent == nullptr) refuse(change, "there is no item " + printable(keys[i]));
   }
   toml::table parsed = parse_override_value(change.value, change.origin);
   parsed.get("value")->visit([&](auto& value) { set(*parent, keys.back(), std::move(value), change); });

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <numeric>
+#include <optional>
 
 namespace evodevo {
 namespace {
@@ -23,6 +24,83 @@ std::string word_for(double value) {
 std::string program_name() {
   const char* name = std::getenv("EVODEVO_COMMAND");
   return name != nullptr ? name : "evodevo";
+}
+
+namespace {
+
+/// The first character of a text that is not empty.
+struct Character {
+  std::size_t bytes = 1;
+  std::optional<char32_t> code;  ///< none: the byte begins no character of UTF-8
+};
+
+Character first_character(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (byte(0) < 0x80) return {1, byte(0)};
+  // by the number of bytes: what marks the first one, and the least code that needs as many
+  constexpr struct {
+    unsigned mask, mark;
+    char32_t least;
+  } forms[] = {{0xe0, 0xc0, 0x80}, {0xf0, 0xe0, 0x800}, {0xf8, 0xf0, 0x10000}};
+  for (std::size_t more = 1; more <= std::size(forms); ++more) {
+    const auto& form = forms[more - 1];
+    if ((byte(0) & form.mask) != form.mark) continue;
+    if (text.size() <= more) return {};
+    char32_t code = byte(0) & ~form.mask;
+    for (std::size_t i = 1; i <= more; ++i) {
+      if ((byte(i) & 0xc0) != 0x80) return {};
+      code = code << 6 | (byte(i) & 0x3f);
+    }
+    const bool surrogate = code >= 0xd800 && code < 0xe000;
+    return code < form.least || code > 0x10ffff || surrogate ? Character{} : Character{more + 1, code};
+  }
+  return {};
+}
+
+/// Controls, ends of lines and paragraphs, and what turns the direction of writing.
+bool disturbs(char32_t code) {
+  const auto within = [&](char32_t low, char32_t high) { return code >= low && code <= high; };
+  return code < 0x20 || within(0x7f, 0x9f) || within(0x2028, 0x202e) || within(0x2066, 0x2069);
+}
+
+std::string escape(const char* format, unsigned code) {
+  char text[8];
+  std::snprintf(text, sizeof text, format, code);
+  return text;
+}
+
+std::string escape(char32_t code) {
+  if (code == '\n') return "\\n";
+  if (code == '\r') return "\\r";
+  if (code == '\t') return "\\t";
+  return escape(code < 0x80 ? "\\x%02x" : "\\u%04x", code);
+}
+
+}  // namespace
+
+std::string printable(std::string_view text, std::size_t most) {
+  constexpr std::string_view cut = "...";
+  std::string clean;
+  std::size_t room = 0;  // the length up to which `cut` still fits
+  while (!text.empty()) {
+    const Character next = first_character(text);
+    if (!next.code)
+      clean += escape("\\x%02x", static_cast<unsigned char>(text[0]));
+    else if (disturbs(*next.code))
+      clean += escape(*next.code);
+    else
+      clean += text.substr(0, next.bytes);
+    if (clean.size() > most) return clean.substr(0, room) + std::string(cut);
+    if (clean.size() + cut.size() <= most) room = clean.size();
+    text.remove_prefix(next.bytes);
+  }
+  return clean;
+}
+
+std::string text_fault(std::string_view text, std::size_t most) {
+  if (printable(text, most) == text) return "";
+  return '"' + printable(text) + "\" is not at most " + std::to_string(most) +
+         " bytes of UTF-8 without control characters";
 }
 
 std::string to_text(double value) {
@@ -87,6 +165,9 @@ std::string nearest(std::string_view word, std::span<const std::string> candidat
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(word.size() / 3, 1) + 1;  // a third of the letters may be wrong
   for (const std::string& candidate : candidates) {
+    const std::size_t shorter = std::min(word.size(), candidate.size()),
+                      longer = std::max(word.size(), candidate.size());
+    if (longer - shorter >= best_distance) continue;  // as many letters at least must be added or dropped
     const std::size_t distance = edit_distance(word, candidate);
     if (distance < best_distance) {
       best = candidate;

@@ -13,6 +13,15 @@ namespace evodevo {
 /// How the user calls this program, for remedies that can be pasted: "evodevo", or what the launching script says.
 std::string program_name();
 
+/// `text` for a message, a table or a log, none of whose lines or terminals it may break: control characters, and those
+/// that turn the direction of writing, become escapes such as \n and \x1b, as do bytes that are not UTF-8. What is
+/// longer than `most` bytes ends with "...". All other UTF-8 stays whole.
+std::string printable(std::string_view text, std::size_t most = 300);
+
+/// Why `text` can be no name, or another text that is printed and recorded as it is: a sentence that begins with the
+/// text; empty where printable() changes nothing.
+std::string text_fault(std::string_view text, std::size_t most = 300);
+
 /// A decimal text that reads back as the same number, with no more digits than that takes; "not a number", "infinity"
 /// and "-infinity" for what has none.
 std::string to_text(double value);

@@ -1,36 +1,35 @@
 #include "toml_reader.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 
+#include "input_file.hpp"
 #include "text.hpp"
+#include "toml_limits.hpp"
 
 namespace evodevo {
+namespace {
+
+constexpr std::size_t most_texts = 1000;  ///< of one list
+
+}  // namespace
 
 toml::table parse_toml(std::string_view text, const std::string& origin) {
+  expect_within_toml_limits(text, origin);
   try {
     return toml::parse(text, std::string_view(origin));
   } catch (const toml::parse_error& error) {
-    throw ConfigError(place_of(error.source()) + ": " + std::string(error.description()));
+    throw ConfigError(place_of(error.source()) + ": " + printable(error.description()));
   }
 }
 
 toml::table parse_toml_file(const std::string& file) {
-  std::ifstream stream(file);
-  if (!stream) throw ConfigError(file + ": cannot be read: " + std::strerror(errno));
-  if (std::filesystem::is_directory(file)) throw ConfigError(file + ": cannot be read: it is a folder");
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  return parse_toml(text, file);
+  return parse_toml(read_input_file(file, most_toml_file_bytes), file);
 }
 
 std::string place_of(const toml::source_region& source) {
-  const std::string file = source.path ? *source.path : "";
+  const std::string file = source.path ? printable(*source.path, longest_shown_path) : "";
   if (!source.begin || file.starts_with("--")) return file;  // a command-line option has no lines
   return file + ":" + std::to_string(source.begin.line) + ":" + std::to_string(source.begin.column);
 }
@@ -44,7 +43,9 @@ std::string value_text(const toml::node& node) {
     return to_text(number->get());
   std::ostringstream text;
   node.visit([&](const auto& n) { text << toml::toml_formatter(n, toml::format_flags::none); });
-  return text.str();
+  std::string one_line = text.str();
+  std::replace(one_line.begin(), one_line.end(), '\n', ' ');  // between the items of a long list
+  return one_line;
 }
 
 namespace {
@@ -59,16 +60,22 @@ std::string expected(const std::string& what, const Range& range) {
 }  // namespace
 
 std::string TomlReader::full_name(std::string_view name) const {
-  return path_.empty() ? std::string(name) : path_ + "." + std::string(name);
+  return printable(path_.empty() ? std::string(name) : path_ + "." + std::string(name));
 }
 
 void TomlReader::fail_at(const toml::node& node, std::string_view name, const std::string& message) const {
-  throw ConfigError(place_of(node.source()) + ": " + full_name(name) + " = " + value_text(node) + ": " + message);
+  throw ConfigError(place_of(node.source()) + ": " + full_name(name) + " = " + printable(value_text(node)) + ": " +
+                    message);
+}
+
+std::string TomlReader::place(std::string_view name) const {
+  const toml::node* node = table_.get(name);
+  return place_of(node != nullptr ? node->source() : table_.source());
 }
 
 void TomlReader::fail(std::string_view name, const std::string& message) const {
   if (const toml::node* node = table_.get(name)) fail_at(*node, name, message);
-  throw ConfigError(place_of(table_.source()) + ": " + full_name(name) + ": " + message);
+  throw ConfigError(place(name) + ": " + full_name(name) + ": " + message);
 }
 
 void TomlReader::know(std::string_view name) {
@@ -202,6 +209,8 @@ std::vector<std::string> TomlReader::texts(std::string_view name) {
   const toml::node* node = look_up(name);
   if (node == nullptr) return values;
   if (!node->is_array()) fail_at(*node, name, "expected a list of texts");
+  if (node->as_array()->size() > most_texts)
+    fail_at(*node, name, "expected at most " + std::to_string(most_texts) + " texts");
   for (const toml::node& item : *node->as_array()) {
     if (!item.is_string()) fail_at(*node, name, "expected a list of texts");
     values.push_back(item.value<std::string>().value());
@@ -232,10 +241,8 @@ void TomlReader::refuse_unknown_keys() const {
   for (auto&& [key, node] : table_) {
     const std::string name(key.str());
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
-    const std::string where = path_.empty() ? "an experiment" : "[" + path_ + "]";
-    // a key that an override put there has no place of its own
-    const toml::source_region& source = key.source().path ? key.source() : node.source();
-    throw ConfigError(place_of(source) + ": " + full_name(name) + ": is not a key of " + where +
+    const std::string where = path_.empty() ? "an experiment" : "[" + printable(path_) + "]";
+    throw ConfigError(place_of(key.source()) + ": " + full_name(name) + ": is not a key of " + where +
                       suggestion(name, known_));
   }
 }

@@ -4,27 +4,28 @@
 #include <toml++/toml.h>
 
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "evodevo/parameters.hpp"
+#include "input_error.hpp"
 
 namespace evodevo {
 
-/// An experiment that cannot be run as it is written. what() is the whole message: place, value, remedy.
-struct ConfigError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+/// An experiment that cannot be run as it is written.
+struct ConfigError : InputError {
+  using InputError::InputError;
 };
 
-/// Parses TOML text. `origin` stands for the file in messages. Throws ConfigError with file:line:column.
+/// Parses TOML text. `origin` stands for the file in messages. Throws ConfigError with file:line:column, also where it
+/// goes beyond the limits of toml_limits.hpp.
 toml::table parse_toml(std::string_view text, const std::string& origin);
 
-/// Reads a whole file. Throws ConfigError where it cannot be read.
+/// Reads and parses a file. Throws ConfigError where it cannot be read.
 toml::table parse_toml_file(const std::string& file);
 
-/// "file:line:column" of a node or key.
+/// "file:line:column" of a node or key; of what an option has set, the option.
 std::string place_of(const toml::source_region& source);
 
 /// A node's value as a message shows it: `"text"`, `3`, `[1, 2]`, `a table`.
@@ -71,6 +72,8 @@ class TomlReader final : public Parameters {
   /// Throws ConfigError if the table holds a key that nothing asked for; returns the resolved table.
   toml::table finish();
 
+  /// Where key `name` is, or the table where the key is absent.
+  std::string place(std::string_view name) const;
   /// Throws ConfigError that points at key `name`, or at the table where the key is absent.
   [[noreturn]] void fail(std::string_view name, const std::string& message) const;
   /// "scene.floor.stiffness".

@@ -1,11 +1,36 @@
 #include "parallel.hpp"
 
+#include <atomic>
+#include <iostream>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <system_error>
 #include <utility>
 
 namespace evodevo {
 namespace {
 
 thread_local int turn_of_thread = 0;
+
+/// Results are the same with any number of threads.
+void warn_of_fewer_threads(std::size_t wanted, std::size_t taken) {
+  static std::atomic_flag said;
+  if (!said.test_and_set())
+    std::cerr << "warning: the system does not grant " + std::to_string(wanted) + " threads; going on with " +
+                     std::to_string(taken) + "; ask for fewer with --threads, or raise its limits (ulimit)\n";
+}
+
+/// Starts a thread, unless the system grants none.
+template <class Call>
+bool start_thread(std::vector<std::jthread>& threads, const Call& call) try {
+  threads.emplace_back(call);
+  return true;
+} catch (const std::system_error&) {
+  return false;
+} catch (const std::bad_alloc&) {
+  return false;
+}
 
 }  // namespace
 
@@ -16,13 +41,32 @@ int thread_count(int threads) {
 }
 
 Workers::Workers(int threads) {
-  for (int i = 0; i < thread_count(threads); ++i) threads_.emplace_back([this] { work(); });
+  const auto asked = static_cast<std::size_t>(thread_count(threads));
+  std::size_t wanted = asked;
+  for (start(wanted); count() < wanted; start(wanted)) {
+    wanted = (count() + 1) / 2;
+    end();
+    if (wanted == 0) throw std::runtime_error("the system grants no threads; raise its limits (ulimit -u, ulimit -v)");
+  }
+  if (wanted < asked) warn_of_fewer_threads(asked, wanted);
 }
 
-Workers::~Workers() {
-  const std::lock_guard lock(mutex_);
-  ending_ = true;
-  work_comes_.notify_all();
+Workers::~Workers() { end(); }
+
+void Workers::start(std::size_t wanted) {
+  ending_ = false;
+  threads_.reserve(wanted);
+  while (count() < wanted && start_thread(threads_, [this] { work(); })) {
+  }
+}
+
+void Workers::end() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+    work_comes_.notify_all();
+  }
+  threads_.clear();
 }
 
 void Workers::for_each(std::size_t count, const std::function<void(std::size_t)>& body) {
@@ -74,16 +118,19 @@ int Turn::of_this_thread() { return turn_of_thread; }
 
 void on_own_threads(std::size_t count, const std::function<void(std::size_t)>& body) {
   std::vector<std::exception_ptr> failures(count);
+  const auto call = [&](std::size_t i) {
+    try {
+      body(i);
+    } catch (...) {
+      failures[i] = std::current_exception();
+    }
+  };
   {
     std::vector<std::jthread> threads;
-    for (std::size_t i = 0; i < count; ++i)
-      threads.emplace_back([&, i] {
-        try {
-          body(i);
-        } catch (...) {
-          failures[i] = std::current_exception();
-        }
-      });
+    threads.reserve(count);
+    std::size_t i = 0;
+    while (i < count && start_thread(threads, [&call, i] { call(i); })) ++i;
+    for (; i < count; ++i) call(i);
   }
   for (const std::exception_ptr& failure : failures)
     if (failure) std::rethrow_exception(failure);

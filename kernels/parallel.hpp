@@ -19,7 +19,9 @@ int thread_count(int threads);
 /// turn is earlier come first.
 class Workers {
  public:
-  /// `threads` threads; 0: one for each core.
+  /// `threads` threads; 0: one for each core. Where the system grants only some of them, it takes half as many as it
+  /// got, so that room is left for the rest of the work, and says so once on stderr. Throws std::runtime_error where it
+  /// grants none.
   explicit Workers(int threads);
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
@@ -28,6 +30,8 @@ class Workers {
   /// Calls body(i) for every i < count, in no particular order, and returns when all calls have. After an exception no
   /// further call begins, and it is thrown again here. `body` must not call for_each() of the same workers.
   void for_each(std::size_t count, const std::function<void(std::size_t)>& body);
+
+  std::size_t count() const { return threads_.size(); }
 
  private:
   struct Loop {
@@ -40,6 +44,10 @@ class Workers {
     bool done() const { return next == count && under_way == 0; }
   };
 
+  /// Starts as many threads as can be, `wanted` at most.
+  void start(std::size_t wanted);
+  /// Ends all threads.
+  void end();
   void work();
   /// The loop of the earliest turn that has items left; none if no loop has.
   Loop* next_loop();
@@ -64,8 +72,9 @@ class Turn {
   int before_;
 };
 
-/// Calls body(i) for every i < count, each on a thread of its own. The first exception is thrown again here after all
-/// calls have ended.
+/// Calls body(i) for every i < count, each on a thread of its own; where the system grants no more threads, this one
+/// makes the calls that are left, one after the other. The first exception is thrown again here after all calls have
+/// ended.
 void on_own_threads(std::size_t count, const std::function<void(std::size_t)>& body);
 
 }  // namespace evodevo

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <atomic>
-#include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "input_error.hpp"
 
 namespace evodevo {
 
@@ -31,8 +32,8 @@ int gallery_command(const Arguments& arguments);
 int film_command(const Arguments& arguments);
 
 /// A command line that does not make sense.
-struct UsageError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct UsageError : InputError {
+  using InputError::InputError;
 };
 
 }  // namespace evodevo

@@ -12,8 +12,10 @@
 #include "commands/options.hpp"
 #include "device.hpp"
 #include "disturbance.hpp"
+#include "json_text.hpp"
 #include "record_check.hpp"
 #include "scene_effect.hpp"
+#include "text.hpp"
 #include "toml_reader.hpp"
 
 namespace evodevo {
@@ -233,7 +235,8 @@ void expect_same_meaning(const Experiment& experiment, const std::string& title,
 void warn_of_other_differences(const Experiment& experiment, const std::string& title, const Experiment& first) {
   for (const char* table : {"development", "simulation"})
     if (const auto other = difference(experiment, first, {table}); !other.empty())
-      std::cerr << "warning: " << title << ": " << other << "; bodies may differ by it, whatever the scene\n";
+      std::cerr << "warning: " << printable(title + ": " + other, 2000)
+                << "; bodies may differ by it, whatever the scene\n";
 }
 
 std::vector<Experiment> read_experiments(const std::vector<std::string>& files, const po::variables_map& given) {
@@ -309,7 +312,7 @@ int environments_command(const Arguments& arguments) {
   }
   Json written = Json::array();
   for (const Answer& answer : answers) written.push_back(to_json(answer));
-  std::cout << written.dump(1) << '\n';
+  std::cout << json_text(written) << '\n';
   return 0;
 }
 

@@ -1,4 +1,5 @@
 // evodevo film: one robot as a film or a picture.
+#include <cmath>
 #include <iostream>
 
 #include "commands/options.hpp"
@@ -7,6 +8,7 @@
 #include "report/camera.hpp"
 #include "report/page.hpp"
 #include "report/report.hpp"
+#include "text.hpp"
 
 namespace evodevo {
 
@@ -28,6 +30,10 @@ int film_command(const Arguments& arguments) {
     throw UsageError("--out " + file + ": expected a name ending in .mp4 or .png");
   if (!picture && given->contains("at"))
     throw UsageError("--at is the moment of a picture; give --out a name ending in .png, or leave --at out");
+  // written so that NaN fails
+  if (given->contains("at"))
+    if (const double at = (*given)["at"].as<double>(); !(at >= 0 && std::isfinite(at)))
+      throw UsageError("--at " + to_text(at) + ": expected a moment since birth, 0 s or later");
   refuse_to_overwrite("--out", file, files_of_run((*given)["DIR"].as<std::string>()));
   const std::string page = page_template();
   const Archive archive = Archive::read((*given)["DIR"].as<std::string>());

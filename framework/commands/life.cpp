@@ -8,6 +8,7 @@
 
 #include "commands/options.hpp"
 #include "device.hpp"
+#include "json_text.hpp"
 #include "living_again.hpp"
 #include "text.hpp"
 
@@ -26,7 +27,8 @@ struct Narrated {
 
   Measure measure(Causes::List list) const {
     const Measure measure = op->measure(list);
-    return is_tallied && measure.unit == "N" ? Measure{"skip-shift", "points"} : measure;
+    if (is_tallied && measure.unit == "N") return {"skip-shift", "points"};
+    return {printable(measure.name), printable(measure.unit)};
   }
 };
 
@@ -275,7 +277,7 @@ int life_command(const Arguments& arguments) {
   const Archive archive = Archive::read((*given)["DIR"].as<std::string>());
   const LifeReport report(archive, chosen_individual(archive, *given), given_plugin_path(*given));
   if (given->contains("json"))
-    std::cout << report.json().dump(1) << '\n';
+    std::cout << json_text(report.json()) << '\n';
   else
     report.print();
   return 0;

@@ -26,16 +26,17 @@ fs::path template_folder() {
 std::string checked_kind(const std::string& kind) {
   static const std::vector<std::string> kinds(operator_kinds.begin(), operator_kinds.end());
   if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
-    throw UsageError("new " + kind + ": is not a kind of operator" + suggestion(kind, kinds));
+    throw UsageError("new " + printable(kind) + ": is not a kind of operator" + suggestion(kind, kinds));
   return kind;
 }
 
 std::string checked_name(const std::string& name) {
   static const std::regex allowed("[a-z][a-z0-9]*([-.][a-z][a-z0-9]*)*");
-  if (!std::regex_match(name, allowed))
-    throw UsageError("new " + name +
-                     ": is no name for an operator; expected small letters and digits, joined by - or ., such as "
-                     "my-lab.growth");
+  constexpr std::size_t longest = 100;  // bytes; the matcher calls itself for each of them
+  if (name.size() > longest || !std::regex_match(name, allowed))
+    throw UsageError("new " + printable(name) +
+                     ": is no name for an operator; expected at most 100 small letters and digits, joined by - or ., "
+                     "such as my-lab.growth");
   return name;
 }
 

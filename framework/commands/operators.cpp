@@ -5,6 +5,7 @@
 
 #include "commands/options.hpp"
 #include "describe.hpp"
+#include "json_text.hpp"
 #include "reference.hpp"
 #include "text.hpp"
 
@@ -39,7 +40,7 @@ void print_description(const AvailableOperator& available) {
     if (!p.unit.empty() && p.unit != "1") std::printf(" %s", p.unit.c_str());
     std::printf("\n      %s\n", p.text.c_str());
   }
-  std::printf("\nfrom %s\n", available.file.c_str());
+  std::printf("\nfrom %s\n", printable(available.file.string()).c_str());
 }
 
 /// The kind that --kind names; empty for all.
@@ -48,7 +49,7 @@ std::string given_kind(const po::variables_map& given) {
   const auto kind = given["kind"].as<std::string>();
   static const std::vector<std::string> kinds(operator_kinds.begin(), operator_kinds.end());
   if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
-    throw UsageError("--kind " + kind + ": is not a kind of operator" + suggestion(kind, kinds));
+    throw UsageError("--kind " + printable(kind) + ": is not a kind of operator" + suggestion(kind, kinds));
   return kind;
 }
 
@@ -71,7 +72,7 @@ void print_operators(const Registry& registry, const std::string& kind, bool as_
     else
       std::printf("%-10s %-20s %s\n", available.entry->kind, available.entry->name, available.entry->summary);
   }
-  if (as_json) std::cout << list.dump(1) << '\n';
+  if (as_json) std::cout << json_text(list) << '\n';
 }
 
 void print_failed(const Registry& registry, bool as_json) {
@@ -80,9 +81,9 @@ void print_failed(const Registry& registry, bool as_json) {
     if (as_json)
       list.push_back({{"file", failed.file.string()}, {"reason", failed.reason}});
     else
-      std::cout << failed.file.string() << ": " << failed.reason << '\n';
+      std::cout << printable(failed.file.string()) << ": " << failed.reason << '\n';
   }
-  if (as_json) std::cout << list.dump(1) << '\n';
+  if (as_json) std::cout << json_text(list) << '\n';
 }
 
 }  // namespace
@@ -131,7 +132,7 @@ int describe_command(const Arguments& arguments) {
       print_description(available);
     found = true;
   }
-  if (!found) throw UsageError("no operator is called \"" + wanted + "\"" + suggestion(wanted, names));
+  if (!found) throw UsageError("no operator is called \"" + printable(wanted) + "\"" + suggestion(wanted, names));
   return 0;
 }
 

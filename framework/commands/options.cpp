@@ -40,7 +40,7 @@ std::optional<po::variables_map> parse(CommandLine line, const Arguments& argume
   try {
     po::store(po::command_line_parser(arguments).options(all).positional(positional).run(), given);
   } catch (const po::error& error) {
-    throw UsageError(std::string(error.what()) + "; usage: " + program_name() + " " + line.usage);
+    throw UsageError(printable(error.what()) + "; usage: " + program_name() + " " + line.usage);
   }
   if (given.contains("help")) {
     std::cout << "usage: " << program_name() << ' ' << line.usage << '\n' << line.options;
@@ -86,6 +86,11 @@ constexpr Shorthand shorthands[] = {
     {"threads", "simulation.threads", "threads on the CPU; 0 for all cores"},
 };
 
+/// An option and its value, as a message shows them.
+std::string option_text(const std::string& option, const std::string& value) {
+  return "--" + option + " " + printable(value);
+}
+
 }  // namespace
 
 void add_plugin_option(po::options_description& options) {
@@ -99,7 +104,7 @@ std::vector<std::filesystem::path> given_plugin_path(const po::variables_map& gi
   if (!given.contains("plugin-path")) return path;
   for (const std::string& item : given["plugin-path"].as<std::vector<std::string>>()) {
     if (!is_plugin_path(item))
-      throw UsageError("--plugin-path " + item +
+      throw UsageError(option_text("plugin-path", item) +
                        ": is no folder and no library NAME.evodevo.so; build the plugin first");
     path.emplace_back(item);
   }
@@ -120,14 +125,15 @@ ExperimentSource experiment_source(const std::string& file, const po::variables_
   if (given.contains("set")) {
     for (const std::string& text : given["set"].as<std::vector<std::string>>()) {
       const auto equals = text.find('=');
-      if (equals == std::string::npos || equals == 0) throw UsageError("--set " + text + ": expected --set key=value");
-      source.overrides.push_back({text.substr(0, equals), text.substr(equals + 1), "--set " + text});
+      if (equals == std::string::npos || equals == 0)
+        throw UsageError(option_text("set", text) + ": expected --set key=value");
+      source.overrides.push_back({text.substr(0, equals), text.substr(equals + 1), option_text("set", text)});
     }
   }
   for (const Shorthand& shorthand : shorthands) {
     if (!given.contains(shorthand.option)) continue;
     const auto value = given[shorthand.option].as<std::string>();
-    source.overrides.push_back({shorthand.key, value, "--" + std::string(shorthand.option) + " " + value});
+    source.overrides.push_back({shorthand.key, value, option_text(shorthand.option, value)});
   }
   return source;
 }

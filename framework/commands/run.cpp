@@ -88,7 +88,8 @@ void remember_folders_of(const Experiment& experiment) {
 }
 
 void print_warnings(const Experiment& experiment) {
-  for (const std::string& warning : experiment.warnings) std::cerr << "warning: " << warning << '\n';
+  for (const std::string& warning : experiment.warnings)
+    std::cerr << "warning: " << printable(warning, InputError::longest_message) << '\n';
 }
 
 std::string title(const OperatorUse& use) { return use.kind + " operator \"" + use.name + "\" " + use.version; }
@@ -136,9 +137,8 @@ void warn_of_other_builds(const Experiment& experiment, const Simulator& simulat
 }
 
 int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive) {
-  std::cout << experiment.name << " on " << simulator.device() << ", "
-            << thread_count(static_cast<int>(experiment.threads)) << " threads; writing " << archive.folder().string()
-            << std::endl;
+  std::cout << experiment.name << " on " << simulator.device() << ", " << simulator.workers().count()
+            << " threads; writing " << archive.folder().string() << std::endl;
   stop_on_interrupt();
   ProgressDisplay progress(experiment, archive.generations(), stop_requested);
   TimeSpent time;

@@ -5,6 +5,7 @@
 
 #include "archive.hpp"
 #include "commands/options.hpp"
+#include "json_text.hpp"
 #include "report/run_json.hpp"
 #include "text.hpp"
 #include "toml_reader.hpp"
@@ -30,11 +31,12 @@ class Report {
         last_generation_(generations_.empty() ? 0 : generations_.back().generation) {}
 
   void print() const {
-    std::cout << archive_.record("name") << ", seed " << archive_.record("seed") << ", " << devices() << ", evodevo "
-              << archive_.record("evodevo") << ", begun " << archive_.record("created") << '\n';
+    const auto recorded = [&](const char* key) { return printable(archive_.record(key)); };
+    std::cout << recorded("name") << ", seed " << recorded("seed") << ", " << devices() << ", evodevo "
+              << recorded("evodevo") << ", begun " << recorded("created") << '\n';
     const auto statuses = archive_.statuses();
     if (const std::string control = control_of(archive_); control != "off")
-      std::cout << "development under the control \"" << control << "\"\n";
+      std::cout << "development under the control \"" << printable(control) << "\"\n";
     std::cout << done() << " evaluations: " << statuses.at("ok") << " ok, " << statuses.at("invalid") << " invalid, "
               << statuses.at("diverged") << " diverged; " << clones(generations_) << " of them clones\n\n";
     print_generations();
@@ -115,7 +117,7 @@ int show_command(const Arguments& arguments) {
   if (!given) return 0;
   const Archive archive = Archive::read((*given)["DIR"].as<std::string>());
   if (given->contains("json"))
-    std::cout << run_json(archive, recorded_experiment(archive, given_plugin_path(*given))).dump(1) << '\n';
+    std::cout << json_text(run_json(archive, recorded_experiment(archive, given_plugin_path(*given)))) << '\n';
   else
     Report(archive).print();
   return 0;

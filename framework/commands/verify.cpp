@@ -8,6 +8,7 @@
 #include "commands/run.hpp"
 #include "commands/verification_report.hpp"
 #include "device.hpp"
+#include "json_text.hpp"
 #include "living_again.hpp"
 #include "report/run_json.hpp"
 #include "text.hpp"
@@ -75,7 +76,7 @@ int verify_command(const Arguments& arguments) {
     else
       print(verification, objective);
   }
-  if (given->contains("json")) std::cout << all.dump(1) << '\n';
+  if (given->contains("json")) std::cout << json_text(all) << '\n';
   return 0;
 }
 

@@ -21,13 +21,19 @@ std::uint64_t fnv(std::string_view text, std::uint64_t start) {
   return hash;
 }
 
-/// The cache's folder; empty where the environment names none.
-fs::path folder() {
-  const char* cache = std::getenv("XDG_CACHE_HOME");
-  if (cache && fs::path(cache).is_absolute()) return fs::path(cache) / "evodevo" / "kernels";
-  const char* home = std::getenv("HOME");
-  if (home && *home) return fs::path(home) / ".cache" / "evodevo" / "kernels";
-  return {};
+/// The folder that a variable of the environment names. A relative one would be another wherever a command is typed,
+/// and counts as none, as the XDG Base Directory Specification says.
+std::optional<fs::path> folder_of(const char* variable) {
+  const char* value = std::getenv(variable);
+  if (value == nullptr || !fs::path(value).is_absolute()) return std::nullopt;
+  return value;
+}
+
+/// The cache's folder, where the environment names one.
+std::optional<fs::path> folder() {
+  if (const auto cache = folder_of("XDG_CACHE_HOME")) return *cache / "evodevo" / "kernels";
+  if (const auto home = folder_of("HOME")) return *home / ".cache" / "evodevo" / "kernels";
+  return std::nullopt;
 }
 
 }  // namespace
@@ -40,7 +46,9 @@ std::string digest(std::string_view text) {
 }
 
 std::optional<std::vector<char>> load(const std::string& key) {
-  std::ifstream file(folder() / key, std::ios::binary);
+  const auto from = folder();
+  if (!from) return std::nullopt;
+  std::ifstream file(*from / key, std::ios::binary);
   const std::string content{std::istreambuf_iterator<char>(file), {}};
   // a file holds the digest of the code and the code
   const std::size_t length = digest({}).size();
@@ -51,15 +59,16 @@ std::optional<std::vector<char>> load(const std::string& key) {
 }
 
 void store(const std::string& key, const std::vector<char>& code) {
-  const fs::path to = folder();
+  const auto to = folder();
+  if (!to) return;
   std::error_code ignored;
-  fs::create_directories(to, ignored);
+  fs::create_directories(*to, ignored);
   // written aside and renamed, so that another process never reads half a file
-  const fs::path aside = to / (key + "." + std::to_string(getpid()));
+  const fs::path aside = *to / (key + "." + std::to_string(getpid()));
   std::ofstream file(aside, std::ios::binary);
   file << digest({code.data(), code.size()}) << std::string_view(code.data(), code.size());
   file.close();
-  if (file) fs::rename(aside, to / key, ignored);
+  if (file) fs::rename(aside, *to / key, ignored);
   fs::remove(aside, ignored);
 }
 

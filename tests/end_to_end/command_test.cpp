@@ -5,12 +5,14 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "evolution.hpp"
 #include "support/elsewhere.hpp"
 #include "support/experiments.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"
+#include "text.hpp"
 
 namespace evodevo {
 namespace {
@@ -374,6 +376,19 @@ TEST_F(Command, BadInputEndsWithTwoAndLeavesNothing) {
             "evodevo: --device gpu: simulation.device = \"gpu\": is not an option; known: auto, cpu, cuda\n");
 }
 
+TEST_F(Command, TextsOfARecordDisturbNoTerminal) {
+  run_small();
+  {
+    Archive archive = Archive::annotate(folder_);
+    for (const char* key : {"name", "created"}) archive.set_record(key, "ü\x1b[31m\n\x7f\u009b\xff");
+  }
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"show", folder_}, {"show", folder_, "--json"}}) {
+    std::istringstream lines(evodevo(command).output);
+    for (std::string line; std::getline(lines, line);) EXPECT_EQ(line, printable(line, 5000));
+  }
+}
+
 TEST_F(Command, UsageErrors) {
   EXPECT_EQ(evodevo({}).exit_code, 2);
   EXPECT_EQ(evodevo({"rum"}).output, "evodevo: there is no command \"rum\"; did you mean \"run\"?\n");
@@ -395,6 +410,9 @@ TEST_F(Command, FaultyBodiesAreRefusedByPlace) {
   const std::string masses = R"("masses": [{"position": [0,0,0], "mass": 1}, {"position": [1,0,0], "mass": 1}])";
   const std::string materials = R"("materials": [{"stiffness": 1, "amplitude": 0, "frequency": 0, "phase": 0}])";
   EXPECT_THAT(refusal("{"), HasSubstr(": is not JSON: "));
+  EXPECT_THAT(refusal("{\x1b\n\xff"), AllOf(HasSubstr(": is not JSON: "), HasSubstr("<U+001B>")));
+  const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
+  EXPECT_THAT(refusal(deep), HasSubstr("more than 16 levels deep"));
   EXPECT_EQ(refusal("{}"), ": \"materials\" is missing\n");
   EXPECT_EQ(refusal("{" + materials + R"(, "masses": [{"position": [0,0], "mass": 1}], "springs": []})"),
             ": masses[0].position: expected three numbers\n");

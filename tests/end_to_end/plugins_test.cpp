@@ -5,11 +5,13 @@
 
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include "archive.hpp"
 #include "support/experiments.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"
+#include "text.hpp"
 
 namespace evodevo {
 namespace {
@@ -144,6 +146,35 @@ TEST_F(Plugins, OfTwoLibrariesWithOneNameTheFirstIsUsedAndTheOtherNamed) {
   const auto mutation = std::find_if(uses.begin(), uses.end(), [](const auto& use) { return use.kind == "mutation"; });
   ASSERT_NE(mutation, uses.end());
   EXPECT_EQ(mutation->file, library_);
+}
+
+TEST_F(Plugins, TextsOfOperatorsReachNoTerminalAsTheyAre) {
+  const auto expect_clean = [](const std::string& output) {
+    std::istringstream lines(output);
+    for (std::string line; std::getline(lines, line);) EXPECT_EQ(line, printable(line, 5000));
+  };
+  install("controls_thrown");
+  const Finished thrown = run_with("nothing", {"--plugin-path", own()});
+  EXPECT_EQ(thrown.exit_code, 1);
+  EXPECT_THAT(thrown.output, HasSubstr(": \\x1b[31mnothing\\nto mutate\\xff!!!!"));
+  EXPECT_THAT(thrown.output, HasSubstr("...; correct the operator"));
+  expect_clean(thrown.output);
+  install("controls_in_parameter");
+  const Finished described = evodevo({"describe", "nothing", "--plugin-path", own()});
+  EXPECT_THAT(described.output, HasSubstr("  genes\\x1b[31m = 1\n"));
+  EXPECT_THAT(described.output, HasSubstr("      Genes\\nthat change.\\xff\n"));
+  expect_clean(described.output);
+  for (const char* form : {"--json", "--markdown"}) {
+    const Finished listed = evodevo({"operators", form, "--plugin-path", own()});
+    EXPECT_EQ(listed.exit_code, 0) << listed.output;
+    expect_clean(listed.output);
+  }
+  install("controls_in_objective");
+  const Finished refused = evodevo({"check", file_, "--plugin-path", own(), "--set", "fitness.1.name=way"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.output,
+              HasSubstr("fitness.1.name = \"way\": its objective's name or unit \"way\\x1b[31m\" is not"));
+  expect_clean(refused.output);
 }
 
 TEST_F(Plugins, AnOperatorThatErrsIsNamedWithItsFile) {

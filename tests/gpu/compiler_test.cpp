@@ -117,6 +117,28 @@ TEST_F(Compiler, DoesNotTrustADamagedCache) {
   EXPECT_EQ(load("key"), std::nullopt);
 }
 
+TEST_F(Compiler, KeepsNothingWhereNoVariableNamesAFolder) {
+  const fs::path before = fs::current_path();
+  fs::create_directories(cache_ / "here");
+  fs::current_path(cache_ / "here");
+  // a relative path would be another folder wherever a command is typed
+  for (const char* relative : {"", ".", "cache"}) {
+    ::setenv("XDG_CACHE_HOME", relative, 1);
+    const auto expect_nothing_kept = [&] {
+      store("key", {'a'});
+      EXPECT_EQ(load("key"), std::nullopt) << relative;
+      EXPECT_TRUE(files().empty()) << files().front();
+    };
+    const std::string home = std::getenv("HOME") != nullptr ? std::getenv("HOME") : "/";
+    ::setenv("HOME", relative, 1);
+    expect_nothing_kept();
+    ::unsetenv("HOME");
+    expect_nothing_kept();
+    ::setenv("HOME", home.c_str(), 1);
+  }
+  fs::current_path(before);
+}
+
 TEST_F(Compiler, WorksWithoutACache) {
   ::setenv("XDG_CACHE_HOME", "/proc/none", 1);
   EXPECT_FALSE(compile("cuda/streamed.cu", definitions(Features{}), "sm_90").empty());

@@ -64,6 +64,14 @@ TEST(BodyBuilding, ABlueprintThatGrowsToNothingIsRefused) {
   }
 }
 
+TEST(BodyBuilding, AFailureOfTheEncodingIsCleanText) {
+  Blueprint blueprint;
+  blueprint.failure = "no\x1b[31m\nroom for ü\xff" + std::string(1'000'000, '!');
+  const std::string failure = build_body(blueprint).failure;
+  EXPECT_EQ(failure.substr(0, 40), "no body: no\\x1b[31m\\nroom for ü\\xff!!!!");
+  EXPECT_LT(failure.size(), 400u);
+}
+
 TEST(BodyBuilding, NeighboursAreThoseOfThePlacesToPairAt) {
   Blueprint blueprint = row({{0, 0}, {1, 0}, {5, 0}, {6, 0}}, 1);
   // 0 and 3 are near, and 1 and 2, and 0 and 1 after that

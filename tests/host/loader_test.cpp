@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "support/scratch.hpp"
@@ -53,6 +54,24 @@ TEST(Loader, LibrariesThatDoNotFit) {
   EXPECT_EQ(refusal("constructor"),
             "its mutation operator \"nothing\" cannot be made: \"no licence\"; its constructor and parameters() must "
             "not throw");
+}
+
+TEST(Loader, TextsThatDisturbATerminalAreRefused) {
+  const std::string fault = " is not at most 300 bytes of UTF-8 without control characters; correct it";
+  EXPECT_EQ(refusal("controls_in_name"), "the name of its mutation operator \"noth\\x1b[31ming\"" + fault);
+  EXPECT_EQ(refusal("controls_in_summary"),
+            "the summary of its mutation operator \"nothing\" \"Changes\\nnothing.\"" + fault);
+  EXPECT_EQ(refusal("controls_in_version"), "its version \"1.0\\x07\"" + fault);
+}
+
+TEST(Loader, OnlyFilesAreLoaded) {
+  const testing::Scratch scratch;
+  fs::create_directory(scratch / "folder.evodevo.so");
+  fs::create_symlink("/dev/zero", scratch / "zero.evodevo.so");
+  ASSERT_EQ(mkfifo((scratch / "pipe.evodevo.so").c_str(), 0600), 0);
+  const Registry registry({scratch / ""});
+  EXPECT_EQ(registry.failed().size(), 3u);
+  for (const FailedLibrary& failed : registry.failed()) EXPECT_THAT(failed.reason, ::testing::StartsWith("is no file"));
 }
 
 TEST(Loader, ALibraryThatLacksASymbolIsRefusedWithItsName) {

@@ -2,9 +2,15 @@
 #include "parallel.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <fstream>
+#include <functional>
 #include <future>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -22,6 +28,54 @@ TEST(Workers, CallEveryItemOnce) {
       for (const std::atomic<int>& n : calls) EXPECT_EQ(n, 1);
     }
   }
+}
+
+/// The exit code of `body` in a copy of this process that has no room for 200 threads; none where it does not end.
+std::optional<int> where_threads_are_short(const std::function<bool()>& body) {
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(60);
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const rlim_t bytes = pages * static_cast<std::size_t>(getpagesize()) + (rlim_t{400} << 20);  // 8 MiB for each stack
+    const rlimit limit{bytes, bytes};
+    setrlimit(RLIMIT_AS, &limit);
+    _exit(body() ? 0 : 1);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? std::optional(WEXITSTATUS(status)) : std::nullopt;
+}
+
+TEST(Workers, GoOnWithFewerThreadsWhereTheSystemGrantsNoMore) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer needs more address space than the limit leaves";
+#endif
+  const auto all_work = [] {
+    Workers workers(200), more(200);
+    std::atomic<int> calls = 0;
+    for (Workers* each : {&workers, &more}) each->for_each(1000, [&](std::size_t) { ++calls; });
+    return workers.count() > 0 && workers.count() < 200 && more.count() > 0 && calls == 2000;
+  };
+  EXPECT_EQ(where_threads_are_short(all_work), 0);
+}
+
+TEST(OnOwnThreads, MakeTheCallsThatAreLeftWhereTheSystemGrantsNoMoreThreads) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer needs more address space than the limit leaves";
+#endif
+  const auto all_called = [] {
+    std::atomic<int> calls = 0, not_on_this = 0;
+    const auto here = std::this_thread::get_id();
+    Workers workers(2);
+    on_own_threads(300, [&](std::size_t) {
+      ++calls;
+      not_on_this += std::this_thread::get_id() != here;
+      workers.for_each(3, [](std::size_t) {});
+    });
+    return calls == 300 && not_on_this > 0;
+  };
+  EXPECT_EQ(where_threads_are_short(all_called), 0);
 }
 
 TEST(Workers, ServeSeveralCallersAtOnce) {

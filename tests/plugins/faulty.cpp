@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include "evodevo/plugin.hpp"
 
@@ -22,6 +23,11 @@ struct Nothing final : evodevo::Mutation {
 #if defined(FAULT_DEFAULT)
   std::int64_t genes = 7;
   void parameters(evodevo::Parameters& p) override { p.integer(genes, "genes", {0, 5, "1"}, "Genes that change."); }
+#elif defined(FAULT_CONTROLS_IN_PARAMETER)
+  std::int64_t genes = 1;
+  void parameters(evodevo::Parameters& p) override {
+    p.integer(genes, "genes\x1b[31m", {0, 5, "\u009b"}, "Genes\nthat change.\xff");
+  }
 #elif defined(FAULT_CONSTRUCTOR)
   Nothing() { throw std::runtime_error("no licence"); }
 #endif
@@ -29,6 +35,8 @@ struct Nothing final : evodevo::Mutation {
   void mutate([[maybe_unused]] evodevo::Genome& genome, const evodevo::Layout&, evodevo::Rng&) const override {
 #if defined(FAULT_THROWS)
     throw std::runtime_error("nothing to mutate");
+#elif defined(FAULT_CONTROLS_THROWN)
+    throw std::runtime_error("\x1b[31mnothing\nto mutate\xff" + std::string(1'000'000, '!'));
 #elif defined(FAULT_CRASH_IN_USE)
     std::raise(SIGSEGV);
 #elif defined(FAULT_NAN)
@@ -39,11 +47,25 @@ struct Nothing final : evodevo::Mutation {
   }
 };
 
+#if defined(FAULT_CONTROLS_IN_OBJECTIVE)
+struct Way final : evodevo::Fitness {
+  evodevo::Request observes() const override { return {0, 0.1, false}; }
+  std::vector<evodevo::Objective> objectives() const override { return {{"way\x1b[31m", "m", true}}; }
+  std::vector<double> score(const evodevo::Observation&) const override { return {0}; }
+};
+#endif
+
 constexpr evodevo::OperatorEntry entries[] = {
 #if defined(FAULT_TAKEN_NAME)
     evodevo::operator_entry<Nothing>("reset-weight", "Has the name of another operator."),
 #elif defined(FAULT_UNKNOWN_KIND)
     {"wing", "nothing", "Is of a kind that does not exist.", []() -> evodevo::Operator* { return new Nothing; }},
+#elif defined(FAULT_CONTROLS_IN_NAME)
+    evodevo::operator_entry<Nothing>("noth\x1b[31ming", "Changes nothing."),
+#elif defined(FAULT_CONTROLS_IN_SUMMARY)
+    evodevo::operator_entry<Nothing>("nothing", "Changes\nnothing."),
+#elif defined(FAULT_CONTROLS_IN_OBJECTIVE)
+    evodevo::operator_entry<Way>("way", "Measures nothing."),
 #else
     evodevo::operator_entry<Nothing>("nothing", "Changes nothing."),
 #if defined(FAULT_TWIN)
@@ -83,7 +105,11 @@ constexpr evodevo::PluginManifest manifest = {
 #else
     evodevo::plugin_switches,
 #endif
+#if defined(FAULT_CONTROLS_IN_VERSION)
+    "1.0\x07",
+#else
     EVODEVO_PLUGIN_VERSION,
+#endif
     EVODEVO_PLUGIN_LICENSE,
     entries,
     std::size(entries)};

@@ -1,7 +1,7 @@
 // Films, pictures and the gallery.
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync, symlinkSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmdirSync, symlinkSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { chromiumProgram, cycles, cycleTime, differing, evodevo, inPage, launch, opened, picture, Scratch, sum } from "./support.mjs";
@@ -58,6 +58,21 @@ test("pictures of two moments differ", () => {
   assert.notDeepEqual(readFileSync(scratch.path("0.png")), readFileSync(scratch.path("2.png")));
 });
 
+test("nothing but the picture is written, wherever home is", () => {
+  const here = scratch.path("here");
+  for (const home of ["", ".", "home"]) {
+    mkdirSync(here);
+    const environment = { ...process.env, HOME: home, XDG_CACHE_HOME: "cache" };
+    execFileSync(process.env.EVODEVO_PROGRAM, ["film", scratch.run, "--out", scratch.path("home.png")], {
+      cwd: here,
+      env: environment,
+      stdio: "ignore",
+    });
+    assert.deepEqual(readdirSync(here), []);
+    rmdirSync(here);
+  }
+});
+
 test("what cannot be filmed is refused in one line", () => {
   const refusal = (at, out) => {
     const arguments_ = ["film", scratch.run, "--at", at, "--out", scratch.path(out)];
@@ -67,6 +82,8 @@ test("what cannot be filmed is refused in one line", () => {
   };
   assert.match(refusal("500", "late.png"), /^evodevo: .*late\.png: --at 500: expected a moment of the life, 0 to [\d.]+ s$/m);
   assert.doesNotMatch(refusal("500", "late.png"), /^\s+at /m);
+  for (const moment of ["nan", "inf", "-0.5"])
+    assert.match(refusal(moment, "never.png"), new RegExp(`^evodevo: --at ${moment}: expected a moment since birth`));
   assert.match(refusal("1", "film.gif"), /^evodevo: --out .*film\.gif: expected a name ending in \.mp4 or \.png\n$/);
   assert.match(refusal("1", "still.mp4"), /^evodevo: --at is the moment of a picture/);
 });

@@ -5,6 +5,7 @@
 
 #include "output_file.hpp"
 #include "parallel.hpp"
+#include "standard_streams.hpp"
 #include "studies.hpp"
 
 namespace evodevo::accuracy {
@@ -38,6 +39,7 @@ void run(const Settings& settings) {
 }  // namespace evodevo::accuracy
 
 int main(int argc, char** argv) {
+  evodevo::open_standard_streams();
   try {
     if (const auto settings = evodevo::accuracy::parse(argc, argv)) evodevo::accuracy::run(*settings);
     evodevo::finish_standard_output();

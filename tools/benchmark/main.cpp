@@ -9,6 +9,7 @@
 
 #include "output_file.hpp"
 #include "settings.hpp"
+#include "standard_streams.hpp"
 #include "studies.hpp"
 
 namespace evodevo::benchmark {
@@ -57,6 +58,7 @@ void run(const Settings& settings) {
 }  // namespace evodevo::benchmark
 
 int main(int argc, char** argv) {
+  evodevo::open_standard_streams();
   try {
     if (const auto settings = evodevo::benchmark::parse(argc, argv)) evodevo::benchmark::run(*settings);
     evodevo::finish_standard_output();

@@ -6,6 +6,7 @@
 #include "device.hpp"
 #include "output_file.hpp"
 #include "overlap.hpp"
+#include "standard_streams.hpp"
 
 namespace evodevo::stress_study {
 namespace {
@@ -83,6 +84,7 @@ void run(const Settings& settings) {
 }  // namespace evodevo::stress_study
 
 int main(int argc, char** argv) {
+  evodevo::open_standard_streams();
   try {
     if (const auto settings = evodevo::stress_study::parse(argc, argv)) evodevo::stress_study::run(*settings);
     evodevo::finish_standard_output();

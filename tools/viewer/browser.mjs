@@ -1,6 +1,6 @@
 // The headless browser that draws pages without a display.
 import { accessSync, constants, readFileSync, realpathSync, statSync } from "node:fs";
-import { delimiter, join } from "node:path";
+import { delimiter, isAbsolute, join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 
@@ -43,9 +43,16 @@ export function chromiumProgram() {
   );
 }
 
+/** This process's environment without folders that are none: Chromium would write into a relative HOME. */
+function environment() {
+  const means = ([name, value]) => !/^(HOME|XDG_[A-Z]+_HOME)$/.test(name) || isAbsolute(value);
+  return Object.fromEntries(Object.entries(process.env).filter(means));
+}
+
 export const launch = async () =>
   chromium.launch({
     executablePath: chromiumProgram(),
+    env: environment(),
     chromiumSandbox: false, // root has none, nor have many containers; only pages of our own are opened
     // Mesa draws, by a GPU or without one, then twice as fast as Chromium's own SwiftShader, which steps in where there
     // is no Mesa

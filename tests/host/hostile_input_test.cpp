@@ -1,0 +1,299 @@
+// Experiments and options that nobody means well with: each is read, or refused in one clean line that names the place.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <random>
+
+#include "support/experiments.hpp"
+#include "support/scratch.hpp"
+#include "toml_limits.hpp"
+#include "toml_reader.hpp"
+
+namespace evodevo {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::small_experiment;
+using ::testing::StartsWith;
+
+/// The message that reading `text` ends with; empty where it is read.
+std::string complaint(const std::string& text, std::vector<Override> overrides = {}) {
+  try {
+    testing::read(text, std::move(overrides));
+    return "";
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+}
+
+std::string complaint_of_file(const std::string& file) {
+  try {
+    read_experiment(ExperimentSource{file, {}});
+    return "";
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+}
+
+void expect_clean(const std::string& message) { EXPECT_EQ(message, printable(message, InputError::longest_message)); }
+
+/// Whatever is wrong with a text, a message begins with its name.
+void expect_read_or_refused(const std::string& text) {
+  const std::string message = complaint(text);
+  if (message.empty()) return;
+  expect_clean(message);
+  EXPECT_THAT(message, StartsWith("test.toml"));
+}
+
+std::string times(std::size_t count, const std::string& part) {
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i) text += part;
+  return text;
+}
+
+/// The small experiment with its first `from` replaced.
+std::string with(const std::string& from, const std::string& to, std::string text = small_experiment) {
+  const auto at = text.find(from);
+  if (at == std::string::npos) throw std::logic_error("the text has no " + from);
+  return text.replace(at, from.size(), to);
+}
+
+/// Texts that are nested `depth` times, each in its own way.
+std::vector<std::string> nested(std::size_t depth) {
+  return {"a" + times(depth, ".a") + " = 1",
+          "\"a\"" + times(depth, " . 'a'") + " = 1",
+          "[a" + times(depth, ".a") + "]",
+          "[[a" + times(depth, ".a") + "]]\nb = 1",
+          "a = " + times(depth, "[") + times(depth, "]"),
+          "a = " + times(depth, "["),
+          "a = " + times(depth, "{ a = ") + "1" + times(depth, "}"),
+          "a = " + times(depth, "[{ a = ") + "1" + times(depth, "}]"),
+          "a = { b" + times(depth, ".b") + " = 1 }",
+          "x = \"\"\"\n\\\"\"\"\" # \"\"\"\"\na = " + times(depth, "["),
+          "x = '''\n''''' \na" + times(depth, ".a") + " = 1"};
+}
+
+TEST(HostileInput, NestedToAnyDepth) {
+  for (const std::size_t depth : {1, 7, 20, 21, 22, 255, 256, 257, 5'000, 50'000})
+    for (const std::string& text : nested(depth)) {
+      SCOPED_TRACE(text.substr(0, 40) + " of depth " + std::to_string(depth));
+      expect_read_or_refused(text);
+      expect_read_or_refused(small_experiment + text);
+    }
+}
+
+TEST(HostileInput, TooManyLevelsAreRefusedByPlace) {
+  const std::string levels = std::to_string(most_toml_levels);
+  const auto message = [](const std::string& text) { return complaint("# ü\nx = 'ü' # [[\n" + text); };
+  EXPECT_THAT(message("a" + times(21, ".a") + " = 1"),
+              StartsWith("test.toml:3:42: more than " + levels + " dots in one key"));
+  EXPECT_THAT(message("ü = " + times(21, "[")),
+              StartsWith("test.toml:3:25: more than " + levels + " brackets within brackets"));
+  EXPECT_THAT(message("a" + times(20, ".a") + " = 1"), HasSubstr("a: is not a key")) << "as many are read";
+}
+
+TEST(HostileInput, DotsAndBracketsCountOnlyWhereTheyMeanLevels) {
+  const std::string many = times(1000, ".[{");
+  EXPECT_EQ(complaint("# " + many + "\n" + small_experiment), "");
+  for (const std::string& name :
+       {"\"" + many + "\\\"" + many + "\"", "'" + many + "'", "'''\n" + many + "\n''" + many + "'''",
+        "\"\"\"" + many + "\\\"\"\"" + many + "\"\"\"\""})
+    EXPECT_THAT(complaint("[selection]\nname = " + name), ::testing::Not(HasSubstr("more than"))) << name.substr(0, 9);
+  EXPECT_THAT(complaint("[experiment]\nseed = [" + times(1000, "1.5, ") + "]"),
+              HasSubstr("experiment.seed = [ 1.5, 1.5, "));
+}
+
+TEST(HostileInput, OfAnySize) {
+  const std::string long_text = times(100'000, "läng");
+  for (const std::string& text :
+       {"[experiment]\n" + std::string(900'000, 'k') + " = 1", "[experiment]\nseed = '" + long_text + "'",
+        "[" + long_text + "]", "[experiment]\nseed = " + std::string(100'000, '9'),
+        "[experiment]\nseed = [" + times(200'000, "1, ") + "]", times(100'000, "[[fitness]]\n"),
+        "[plugins]\npaths = [" + times(200'000, "'a',") + "]",
+        "[encoding]\nname = 'voxel'\nmaterials = [" + times(100'000, "'a',") + "]", times(200'000, "#\n"),
+        std::string(5'000'000, ' '), std::string(5'000'000, '\0')}) {
+    SCOPED_TRACE(text.substr(0, 30));
+    expect_read_or_refused(text);
+    expect_read_or_refused(small_experiment + text);
+  }
+  std::string materials = small_experiment;
+  for (int i = 0; i < 20'000; ++i) materials += "[materials.m" + std::to_string(i) + "]\n";
+  EXPECT_THAT(complaint(materials), HasSubstr(": materials = a table: expected at most 1000 of them"));
+  EXPECT_THAT(complaint(small_experiment + "[plugins]\npaths = [" + times(1001, "'.',") + "]"),
+              HasSubstr("expected at most 1000 texts"));
+}
+
+TEST(HostileInput, OfAnyBytes) {
+  const std::string bom = "\xef\xbb\xbf";
+  std::string crlf;
+  for (const char c : small_experiment) crlf += c == '\n' ? "\r\n" : std::string(1, c);
+  EXPECT_EQ(complaint(bom + small_experiment), "");
+  EXPECT_EQ(complaint(crlf), "");
+  EXPECT_THAT(complaint(with("seed = 7", std::string("seed = \0", 8))), StartsWith("test.toml:3:"));
+  EXPECT_THAT(complaint(small_experiment + "\n\"a\\u001b[31m\\n\\u009b\" = 1"),
+              HasSubstr("a\\x1b[31m\\n\\u009b: is not a key of [selection]"));
+  EXPECT_THAT(complaint(small_experiment + "\n[materials.\"\\u001bbone\"]"),
+              HasSubstr("materials.\\x1bbone = a table: the name \"\\x1bbone\" is not"));
+  std::mt19937_64 random(20'261);
+  for (int i = 0; i < 300; ++i) {
+    std::string text = small_experiment;
+    for (std::uint64_t changes = 1 + random() % 8; changes > 0; --changes) {
+      const std::size_t at = random() % text.size();
+      static const std::string odd[] = {"\x1b[2J", "\xff", "\r",         "'''",     "\"\"\"", "[[", "]",   "{",
+                                        "}",       "=",    ".",          "..",      ",",      "\n", "nan", "-",
+                                        "1e999",   "0x",   "1979-05-27", "\\u202e", "\u202e", "#",  "ü",   " "};
+      switch (random() % 4) {
+        case 0:
+          text[at] = static_cast<char>(random() % 256);
+          break;
+        case 1:
+          text.erase(at, random() % 20);
+          break;
+        case 2:
+          text.insert(at, odd[random() % std::size(odd)]);
+          break;
+        default:
+          text.insert(at, text.substr(random() % text.size(), random() % 40));
+      }
+    }
+    SCOPED_TRACE(text);
+    expect_read_or_refused(text);
+  }
+}
+
+TEST(HostileInput, CutAnywhere) {
+  for (std::size_t length = 0; length < small_experiment.size(); length += 7)
+    expect_read_or_refused(small_experiment.substr(0, length));
+}
+
+TEST(HostileInput, OptionsOfAnyShape) {
+  const std::string deep = "experiment" + times(50'000, ".a"), long_text(100'000, 'x');
+  const std::vector<std::string> keys = {"experiment.seed",
+                                         "experiment.seed.x",
+                                         "experiment",
+                                         "experiment.\x1b[31m",
+                                         "experiment.\xff",
+                                         "a.b",
+                                         ".",
+                                         "..",
+                                         "experiment.",
+                                         ".seed",
+                                         "experiment..seed",
+                                         "fitness",
+                                         "fitness.0",
+                                         "fitness.0.window",
+                                         "fitness.2",
+                                         "fitness.2.window",
+                                         "fitness.3",
+                                         "fitness.-1.window",
+                                         "fitness.00.window",
+                                         "fitness.99999999999999999999.window",
+                                         "fitness.0x0.window",
+                                         "fitness.x",
+                                         "scene.drag.coefficient",
+                                         "scene.floor",
+                                         "materials.a\nb.stiffness",
+                                         "plugins.paths",
+                                         long_text,
+                                         deep};
+  const std::vector<std::string> values = {"",
+                                           " ",
+                                           "3",
+                                           "-3",
+                                           "nan",
+                                           "-inf",
+                                           "1e999",
+                                           "99999999999999999999",
+                                           "-99999999999999999999",
+                                           "0x7",
+                                           "7abc",
+                                           "'",
+                                           "'''",
+                                           "\"",
+                                           "\"\"\"",
+                                           "\n",
+                                           "3\nseed = 4",
+                                           "3 # four",
+                                           "{",
+                                           "{}",
+                                           "{a = 1}",
+                                           "{a = {b = 1}}",
+                                           "[",
+                                           "[]",
+                                           "[[]]",
+                                           "['x']",
+                                           "[{}]",
+                                           "true",
+                                           "\x1b[31m",
+                                           "\xff\xfe",
+                                           "ü",
+                                           "1979-05-27",
+                                           long_text,
+                                           times(50'000, "["),
+                                           times(50'000, "{a="),
+                                           "{a" + times(50'000, ".a") + " = 1}"};
+  for (const std::string& key : keys)
+    for (const std::string& value : values) {
+      const std::string origin = "--set " + printable(key + "=" + value);
+      SCOPED_TRACE(origin);
+      const std::string message = complaint(small_experiment, {{key, value, origin}});
+      if (message.empty()) continue;
+      expect_clean(message);
+      EXPECT_THAT(message, ::testing::AnyOf(StartsWith("--set "), StartsWith("test.toml:")));
+    }
+}
+
+TEST(HostileInput, NumbersOfOptionsAreRefusedByTheOption) {
+  for (const std::string value :
+       {"", "nan", "inf", "-1", "99999999999999999999", "-99999999999999999999", "7abc", "1.5", "[7]", "ü"})
+    for (const std::string key : {"experiment.seed", "experiment.evaluations", "simulation.threads"}) {
+      const std::string option = "--set " + key + "=" + value;
+      EXPECT_THAT(complaint(small_experiment, {{key, value, option}}), StartsWith(option + ": ")) << option;
+    }
+  EXPECT_THAT(complaint(small_experiment, {{"experiment.seed", "99999999999999999999", "--seed 99999999999999999999"}}),
+              HasSubstr("not representable in 64 bits"));
+}
+
+TEST(HostileInput, PlacesAreThoseOfTheFileWhateverOptionsSet) {
+  const std::string without = with("[simulation]\nthreads = 2\n", "");
+  const std::string stiff = "[scene.floor]\nstiffness = 1e9\n";
+  for (const std::string& text : {with("[scene.floor]\n", stiff, without), with("[scene.floor]\n", stiff),
+                                  with("threads = 2", "device = \"tpu\"\ndt = 7"),
+                                  with("seed = 7", "seed = -7", without), with("edge = 0.5", "edgy = 0.5", without)}) {
+    const std::string plain = complaint(text);
+    EXPECT_THAT(plain, StartsWith("test.toml:"));
+    EXPECT_EQ(complaint(text, {{"simulation.threads", "1", "--threads 1"}}), plain);
+    EXPECT_EQ(complaint(text, {{"development.cycles", "1", "--set development.cycles=1"}}), plain);
+  }
+  const std::string tpu = with("threads = 2", "device = \"tpu\"\ndt = 7");
+  EXPECT_THAT(complaint(tpu, {{"simulation.device", "cpu", "--device cpu"}}),
+              StartsWith("test.toml:28:6: simulation.dt = 7"));
+  EXPECT_THAT(complaint(without, {{"simulation.device", "tpu", "--device tpu"}}),
+              StartsWith("--device tpu: simulation.device"));
+  EXPECT_THAT(complaint(without, {{"simulation.speed", "1", "--set simulation.speed=1"}}),
+              StartsWith("--set simulation.speed=1: simulation.speed: is not a key"));
+  EXPECT_THAT(complaint(without, {{"fitness.2.window", "1", "--set fitness.2.window=1"}}),
+              StartsWith("--set fitness.2.window=1: fitness.2.name: is missing"));
+}
+
+TEST(HostileInput, FilesThatAreNone) {
+  const testing::Scratch scratch;
+  EXPECT_EQ(complaint_of_file("/dev/zero"),
+            "/dev/zero: cannot be read: it holds more than " + std::to_string(most_toml_file_bytes) + " bytes");
+  EXPECT_EQ(complaint_of_file((scratch / "").string()), (scratch / "").string() + ": cannot be read: it is a folder");
+  EXPECT_THAT(complaint_of_file(""), StartsWith("\"\": cannot be read: "));
+  EXPECT_THAT(complaint_of_file(std::string(5000, 'x')), HasSubstr("...: cannot be read: File name too long"));
+  EXPECT_EQ(complaint_of_file("no\x1b[31m\nfile"), "no\\x1b[31m\\nfile: cannot be read: No such file or directory");
+  const std::string pipe = (scratch / "pipe").string(), link = (scratch / "link").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  std::filesystem::create_symlink(pipe, link);
+  for (const std::string& file : {pipe, link})
+    EXPECT_EQ(complaint_of_file(file), file + ": cannot be read: it is a named pipe; give a file, or /dev/stdin");
+  EXPECT_THAT(complaint_of_file("/dev/null"), StartsWith("/dev/null:1:1: experiment: is missing"));
+  const std::string large = scratch.write("large.toml", small_experiment + std::string(most_toml_file_bytes, ' '));
+  EXPECT_THAT(complaint_of_file(large), HasSubstr(": cannot be read: it holds more than "));
+}
+
+}  // namespace
+}  // namespace evodevo
