@@ -2,6 +2,7 @@
 #include <csignal>
 #include <iostream>
 #include <sstream>
+#include <string_view>
 
 #include "commands/commands.hpp"
 #include "crash.hpp"
@@ -14,44 +15,62 @@ namespace evodevo {
 namespace {
 
 struct Command {
-  const char* name;
+  std::string_view name;
   int (*function)(const Arguments&);
-  const char* usage;
 };
 
 constexpr Command commands[] = {
-    {"run", run_command, "run EXPERIMENT.toml              evolve robots"},
-    {"resume", resume_command, "resume DIR                       go on with a run that was interrupted"},
-    {"show", show_command, "show DIR                         what a run has come to"},
-    {"verify", verify_command, "verify DIR                       whether its best robots keep their fitness"},
-    {"body", body_command, "body DIR                         a robot of a run, as JSON"},
-    {"life", life_command, "life DIR                         how a robot's body developed"},
-    {"simulate", simulate_command, "simulate BODY.json EXPERIMENT.toml   one body in a scene"},
-    {"environments", environments_command,
-     "environments EXPERIMENT.toml...  the bodies that one genome grows in several scenes"},
-    {"report", report_command, "report DIR...                    a page that shows runs and their robots"},
-    {"film", film_command, "film DIR                         a film or a picture of a robot"},
-    {"gallery", gallery_command, "gallery EXPERIMENT.toml          a page of random robots"},
-    {"check", check_command, "check EXPERIMENT.toml            whether an experiment can be run"},
-    {"operators", operators_command, "operators                        the operators that are there"},
-    {"describe", describe_command, "describe OPERATOR                its parameters"},
-    {"new", new_command, "new KIND NAME                    the project of a plugin"},
-    {"conform", conform_command, "conform LIBRARY...               whether plugins keep to the rules"},
+    {"run", run_command},
+    {"resume", resume_command},
+    {"show", show_command},
+    {"verify", verify_command},
+    {"body", body_command},
+    {"life", life_command},
+    {"simulate", simulate_command},
+    {"environments", environments_command},
+    {"report", report_command},
+    {"film", film_command},
+    {"gallery", gallery_command},
+    {"check", check_command},
+    {"operators", operators_command},
+    {"describe", describe_command},
+    {"new", new_command},
+    {"conform", conform_command},
 };
 
-void print_usage(std::ostream& stream) {
-  stream << "evodevo " EVODEVO_VERSION " evolves soft robots whose bodies develop during their lives\n\n";
-  for (const Command& command : commands) stream << "  " << program_name() << ' ' << command.usage << '\n';
-  stream << "\nEach command explains its options with --help.\n";
+/// A file of its own, which tools/evodevo shows where nothing is built yet.
+constexpr std::string_view help =
+#include "help.inc"
+    ;
+
+/// Whether it has one line for each command, in this order.
+constexpr bool help_is_complete() {
+  constexpr std::string_view program = "@PROGRAM@ ";
+  std::size_t at = 0;
+  for (const Command& command : commands) {
+    at = help.find(program, at);
+    if (at == help.npos) return false;
+    at += program.size();
+    if (help.substr(at, help.find(' ', at) - at) != command.name) return false;
+  }
+  return help.find(program, at) == help.npos;
+}
+static_assert(help_is_complete());
+
+void print_help(std::ostream& stream) {
+  std::string text(help);
+  replace_all(text, "@VERSION@", EVODEVO_VERSION);
+  replace_all(text, "@PROGRAM@", program_name());
+  stream << text;
 }
 
 int dispatch(const Arguments& arguments) {
   if (arguments.empty()) {
-    print_usage(std::cerr);
+    print_help(std::cerr);
     return 2;
   }
   if (arguments.front() == "--help" || arguments.front() == "help") {
-    print_usage(std::cout);
+    print_help(std::cout);
     return 0;
   }
   if (arguments.front() == "--version") {

@@ -35,6 +35,9 @@ std::string to_text(const Range& range);
 /// "a, b, c".
 std::string joined(std::span<const std::string> items, std::string_view separator = ", ");
 
+/// Puts `value` in the place of every `mark`.
+void replace_all(std::string& text, std::string_view mark, std::string_view value);
+
 /// The candidate that `word` was probably meant to be; empty if none is near.
 std::string nearest(std::string_view word, std::span<const std::string> candidates);
 

@@ -76,11 +76,6 @@ std::string for_kind(std::istream& source, const std::string& kind) {
   return text;
 }
 
-void replace_all(std::string& text, const std::string& mark, const std::string& value) {
-  for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos; at += value.size())
-    text.replace(at, mark.size(), value);
-}
-
 void write_from(const fs::path& from, const fs::path& to, const std::string& kind, const std::string& name) {
   std::ifstream source(from);
   if (!source) throw std::runtime_error(from.string() + ": cannot be read; install evodevo anew");

@@ -4,6 +4,7 @@ import contextlib
 import csv
 import os
 import pathlib
+import shlex
 import shutil
 import signal
 import sqlite3
@@ -244,7 +245,7 @@ class Comparison(unittest.TestCase):
 
     def test_a_run_that_is_killed_stops_the_comparison(self):
         killed = self.folder / "killed"
-        killed.write_text(f'#!/bin/sh\n[ "$1" = run ] && kill -9 $$\nexec {PROGRAM} "$@"\n')
+        killed.write_text(f'#!/bin/sh\n[ "$1" = run ] && kill -9 $$\nexec {shlex.quote(PROGRAM)} "$@"\n')
         killed.chmod(0o755)
         refused = subprocess.run([*COMPARE, killed, *self.command()[4:]], capture_output=True, text=True)
         self.assertEqual(refused.returncode, 2)

@@ -256,7 +256,7 @@ TEST_F(Interruption, ThreadsDoNotChangeARun) {
 
 TEST_F(Interruption, TwoRunsAtOnceTakeFoldersOfTheirOwn) {
   // without --out each makes a folder in runs/ of the current folder
-  const std::string command = "cd '" + (scratch_ / "").string() + "' && exec " + EVODEVO_PROGRAM + " run small.toml";
+  const std::string command = "cd '" + (scratch_ / "").string() + "' && exec '" + EVODEVO_PROGRAM + "' run small.toml";
   Process one({"sh", "-c", command}), two({"sh", "-c", command});
   EXPECT_EQ(one.wait(), 0) << one.output();
   EXPECT_EQ(two.wait(), 0) << two.output();

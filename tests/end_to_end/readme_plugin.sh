@@ -15,7 +15,8 @@ mkdir "$scratch/my-plugins"
 block cpp "$page" >"$scratch/erosion.cpp"
 block toml "$source/README.md" >"$scratch/experiment.toml"
 compile=$(grep '^g++ .*erosion' "$page")
-compile=${compile//-I ~\/evodevo\/include/-I$source/framework/sdk -I$source/kernels/include}
+printf -v includes -- '-I%q -I%q' "$source/framework/sdk" "$source/kernels/include"
+compile=${compile//-I ~\/evodevo\/include/"$includes"}
 cd "$scratch"
 [ "$(wc -l <erosion.cpp)" -lt 30 ] || { echo "the smallest operator has 30 lines or more"; exit 1; }
 eval "$compile"

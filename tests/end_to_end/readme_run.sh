@@ -12,12 +12,20 @@ if ! git -C "$source" rev-parse --git-dir >/dev/null 2>&1; then
   echo "skipped: this is not a git checkout, so there is no telling what belongs to it"
   exit 77
 fi
-copy=$(mktemp -d)
-trap 'rm -rf "$copy"' EXIT
-# a file that is deleted but not committed is listed and not there
-(cd "$source" && git ls-files -co --exclude-standard -z | while IFS= read -r -d '' file; do
-  [ -e "$file" ] && printf '%s\0' "$file"
-done | tar --null --files-from=- -cf -) | tar -xf - -C "$copy"
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+copy="$scratch/a (clean) copy & ü"
+mkdir "$copy"
+# without what .gitignore names, whose lines are either /NAME, beside it, or NAME, anywhere
+without=(--no-wildcards-match-slash --anchored --exclude=./.git)
+while IFS= read -r line; do
+  case $line in
+    '' | '#'*) ;;
+    /*) without+=(--anchored "--exclude=.${line%/}") ;;
+    *) without+=(--no-anchored "--exclude=${line%/}") ;;
+  esac
+done <"$source/.gitignore"
+tar -C "$source" "${without[@]}" -cf - . | tar -C "$copy" -xf -
 
 cd "$copy"
 unset EVODEVO_PRESET EVODEVO_COMMAND

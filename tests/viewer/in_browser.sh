@@ -8,7 +8,10 @@ skip() {
   exit 77
 }
 command -v node >/dev/null || skip "there is no Node.js"
+command -v python3 >/dev/null || skip "there is no Python"
 [ -e "$EVODEVO_VIEWER/page.html" ] || skip "the target evodevo_viewer has not been built"
-find_chromium='const { chromiumProgram } = await import(process.env.EVODEVO_VIEWER + "/browser.mjs"); chromiumProgram();'
+find_chromium='import { pathToFileURL } from "node:url";
+const { chromiumProgram } = await import(pathToFileURL(process.env.EVODEVO_VIEWER + "/browser.mjs"));
+chromiumProgram();'
 node --input-type=module --eval "$find_chromium" || skip "there is no Chromium"
 exec node --test "$test_file"

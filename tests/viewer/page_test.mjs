@@ -44,6 +44,19 @@ test("it opens from its file, fetches nothing, and complains of nothing", async 
   assert.deepEqual(page.complaints, []);
 });
 
+test("it is drawn without complaint where there is neither a GPU nor Mesa", async () => {
+  const software = await launch(["--use-angle=swiftshader"]);
+  try {
+    const drawn = await opened(software, report);
+    const first = await picture(drawn);
+    await inPage(drawn, ({ viewer }) => viewer.seek(2));
+    assert.ok(sum(await differing(first, await picture(drawn))) > 200);
+    assert.deepEqual(drawn.complaints, []);
+  } finally {
+    await software.close();
+  }
+});
+
 test("charts hold the archive's numbers", async () => {
   const rows = archived(
     scratch.run,

@@ -49,14 +49,15 @@ function environment() {
   return Object.fromEntries(Object.entries(process.env).filter(means));
 }
 
-export const launch = async () =>
+/** `more` are switches for Chromium, which count for more than these. */
+export const launch = async (more = []) =>
   chromium.launch({
     executablePath: chromiumProgram(),
     env: environment(),
     chromiumSandbox: false, // root has none, nor have many containers; only pages of our own are opened
     // Mesa draws, by a GPU or without one, then twice as fast as Chromium's own SwiftShader, which steps in where there
     // is no Mesa
-    args: ["--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist", "--enable-unsafe-swiftshader"],
+    args: ["--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist", "--enable-unsafe-swiftshader", ...more],
   });
 
 /** A page of the viewer, ready. `options` are Playwright's; `before` is what the page does first. */

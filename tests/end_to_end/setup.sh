@@ -1,0 +1,273 @@
+#!/usr/bin/env bash
+# What tools/evodevo and tools/test install, configure and build, and what they say where they cannot, with programs
+# that stand for apt, CMake and the rest. Nothing is installed, and no network is asked.
+#
+#   setup.sh SOURCE_FOLDER EVODEVO_PROGRAM CASE
+set -euo pipefail
+source=$1 program=$(realpath "$2") case=$3
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+unset EVODEVO_COMMAND EVODEVO_CHROMIUM
+export EVODEVO_PRESET=cpu
+
+# a checkout that holds no more than setting up reads
+checkout="$scratch/a (b) & ü"
+mkdir -p "$checkout/framework" "$scratch/bin"
+cp -r "$source/tools" "$checkout"
+cp "$source/CMakeLists.txt" "$checkout"
+cp "$source/framework/help.inc" "$checkout/framework"
+
+# the only programs are those that scripts are made of, and the stand-ins
+for name in bash env sh cat chmod dirname flock grep ln mkdir readlink rm sed awk touch tr; do
+  ln -s "$(command -v $name)" "$scratch/bin/$name"
+done
+called=$scratch/called installed=$scratch/installed
+touch "$called" "$installed"
+stand_in() {  # NAME   its program comes on standard input
+  {
+    printf '#!/usr/bin/env bash\ncheckout=%q scratch=%q\n' "$checkout" "$scratch"
+    echo 'echo "${0##*/} $*" >>"$scratch/called"'
+    cat
+  } >"$scratch/bin/$1"
+  chmod +x "$scratch/bin/$1"
+}
+stand_in id <<<'echo 0'
+stand_in sleep <<<''
+stand_in nproc <<<'echo 2'
+stand_in dpkg-query <<<'grep -qx "${!#}" "$scratch/installed" && echo "install ok installed"'
+stand_in apt-get <<'END'
+for folder in /proc/self/fd/*; do
+  [[ $(readlink "$folder") != */.setup-lock ]] || echo "apt-get holds the lock of the build" >>"$scratch/called"
+done
+installing=
+for word in "$@"; do
+  [ "$word" != install ] || installing=1
+  [[ -z $installing || $word = -* || $word = install ]] || echo "$word" >>"$scratch/installed"
+done
+[[ $installing != 1 || " $* " != *" npm "* ]] || ln -sf "$scratch/bin/id" "$scratch/bin/npm"
+END
+stand_in cmake <<'END'
+case $1 in
+  --preset)
+    mkdir -p "$checkout/build/$2"
+    for word in "$@"; do
+      [[ $word != EVODEVO_TESTS=* ]] || echo "EVODEVO_TESTS:BOOL=${word#*=}" >"$checkout/build/$2/CMakeCache.txt"
+    done
+    ;;
+  --build)
+    mkdir -p "$2/bin"
+    printf '#!/bin/sh\necho "evodevo $*"\n' >"$2/bin/evodevo"
+    chmod +x "$2/bin/evodevo"
+    ;;
+esac
+END
+stand_in ninja <<<'[ ! -e "$2/bin/evodevo" ] || echo "ninja: no work to do."'
+stand_in ctest <<<''
+
+# call COMMAND...   in the checkout; what it says is in $said (both streams) and $output (the standard output)
+call() {
+  status=0
+  output=$(cd "$checkout" && PATH=$scratch/bin "$@" 2>"$scratch/errors") || status=$?
+  errors=$(cat "$scratch/errors")
+}
+fail() {
+  printf '%s\n' "$1" "exit status $status" "standard output:" "$output" "standard error:" "$errors" "calls:" "$(cat "$called")"
+  exit 1
+}
+succeeded() { [ "$status" = 0 ] || fail "it failed"; }
+# failed_in_a_line WORDS...   no more than what is being installed is said before
+failed_in_a_line() {
+  [ "$status" = 1 ] || fail "the exit status is not 1"
+  local line
+  line=$(grep -v '^evodevo: installing [a-z+0-9 -]*$' "$scratch/errors")
+  [[ $(wc -l <<<"$line") = 1 && $line == evodevo:* ]] || fail "this is not one line"
+  local words
+  for words in "$@"; do [[ $line == *"$words"* ]] || fail "\"$words\" is missing"; done
+}
+has() { grep -qx -- "$1" "$installed" || fail "$1 is not installed"; }
+has_not() { ! grep -qx -- "$1" "$installed" || fail "$1 is installed"; }
+times() { grep -c -- "$1" "$called" || true; }
+
+case_help() {
+  EVODEVO_COMMAND=tools/evodevo "$program" --help >"$scratch/help"
+  for asked in --help help; do
+    call tools/evodevo $asked
+    succeeded
+    diff "$scratch/help" <(echo "$output") || fail "the help is another than that of the program"
+  done
+  call "$checkout/tools/evodevo" --help
+  [[ $output == *"  $(printf %q "$checkout")/tools/evodevo run "* ]] || fail "the command cannot be pasted"
+  call tools/evodevo --version
+  [ "$output" = "$("$program" --version)" ] || fail "the version is another than that of the program"
+  call tools/evodevo
+  [ "$status" = 2 ] && [ "$errors" = "$(cat "$scratch/help")" ] || fail "without arguments it does not show the help"
+  call tools/evodevo film --help
+  succeeded
+  [[ $output == "$(cat "$scratch/help")" && $errors == *"tools/evodevo operators"* ]] || fail "it does not say how to know more"
+  [ ! -s "$called" ] && [ ! -e "$checkout/build" ] || fail "asking for help sets something up"
+  call tools/evodevo operators
+  call tools/evodevo film --help
+  [ "$output" = "evodevo film --help" ] && has_not chromium || fail "what is built is not asked"
+}
+
+case_packages() {
+  call tools/evodevo run some.toml
+  succeeded
+  [ "$output" = "evodevo run some.toml" ] || fail "it does not run"
+  for package in g++ cmake make ninja-build libhwy-dev; do has $package; done
+  for package in libgtest-dev libgmock-dev python3 nodejs npm ffmpeg chromium; do has_not $package; done
+  : >"$called"
+  call tools/evodevo run some.toml
+  [ "$(times '^apt-get\|^cmake')" = 0 ] || fail "it sets up what is set up"
+  call tools/evodevo report runs/some-1
+  succeeded
+  has npm
+  for package in libgtest-dev ffmpeg chromium; do has_not $package; done
+  grep -q '^ID=ubuntu' /etc/os-release || {
+    call tools/evodevo film runs/some-1
+    for package in ffmpeg chromium libegl1; do has $package; done
+    has_not libgtest-dev
+  }
+  [[ $(cat "$called") != *"holds the lock"* ]] || fail "what is installed could hold the lock for good"
+}
+
+case_tests() {
+  call tools/evodevo operators
+  [ "$(times 'EVODEVO_TESTS=OFF')" = 1 ] || fail "a command has the tests configured"
+  call tools/test -R some
+  succeeded
+  for package in libgtest-dev libgmock-dev python3; do has $package; done
+  [ "$(times 'EVODEVO_TESTS=ON')" = 1 ] || fail "the tests are not configured"
+  grep -q '^ctest .*-R some' "$called" || fail "no test is run"
+  call tools/test
+  call tools/evodevo operators
+  [ "$(times '^cmake --preset')" = 2 ] || fail "it is configured again and again"
+}
+
+case_held_locks() {
+  for lock in lists/lock /var/cache/apt/archives/lock; do
+    stand_in apt-get <<END
+[ "\$(grep -c '^apt-get' "\$scratch/called")" -gt 3 ] || { echo "E: Could not get lock $lock. It is held by process 5 (apt)"; exit 100; }
+END
+    rm -rf "$checkout/build"
+    : >"$called"
+    call tools/evodevo operators
+    succeeded
+    [ "$(times ^sleep)" = 3 ] && [ "$(grep -c waiting <<<"$errors")" = 1 ] || fail "it does not wait, or does not say so once"
+  done
+  grep -q '^apt-get.* DPkg::Lock::Timeout=[1-9].* install' "$called" || fail "apt-get does not wait for dpkg's lock"
+  stand_in apt-get <<<'echo "E: Could not get lock /lists/lock. It is held by process 5 (apt)"; exit 100'
+  rm -rf "$checkout/build"
+  call tools/evodevo operators
+  [[ $status = 1 && $errors == *"held by process 5"* ]] || fail "it does not say who holds the lock for ever"
+}
+
+case_no_network() {
+  stand_in apt-get <<'END'
+echo "W: Failed to fetch http://deb.debian.org/debian/dists/bookworm/InRelease  Temporary failure resolving 'deb.debian.org'"
+[[ " $* " == *" update "* ]] || { for i in {1..95}; do echo "E: Unable to locate package some-$i"; done; exit 100; }
+END
+  call tools/evodevo operators
+  failed_in_a_line "resolving 'deb.debian.org'" "$checkout/build/.apt-log"
+  [ "$(grep -c some- "$checkout/build/.apt-log")" = 95 ] || fail "the log has not all"
+  call tools/test
+  failed_in_a_line "resolving 'deb.debian.org'"
+}
+
+case_no_viewer_without_network() {
+  call tools/evodevo operators
+  stand_in apt-get <<<"echo \"E: Failed to fetch http://deb.debian.org/n.deb  Temporary failure resolving 'deb.debian.org'\"; exit 100"
+  call tools/evodevo report runs/some-1
+  succeeded
+  [[ $(grep -vc 'installing nodejs npm' <<<"$errors") = 1 && $errors == *"the viewer is left out"*"resolving 'deb.debian.org'"* ]] ||
+    fail "it does not say in a line why there is no viewer"
+}
+
+case_no_root() {
+  stand_in id <<<'echo 1000'
+  call tools/evodevo operators
+  failed_in_a_line "needs root" "apt-get install g++"
+  call tools/test
+  failed_in_a_line "needs root" "libgtest-dev"
+  stand_in sudo <<<'echo "sudo: a password is required" >&2; exit 1'
+  call tools/evodevo operators
+  failed_in_a_line "sudo: a password is required"
+  stand_in sudo <<<'exec "$@"'
+  call tools/evodevo operators
+  succeeded
+  has g++
+}
+
+case_no_apt() {
+  rm "$scratch/bin/apt-get" "$scratch/bin/dpkg-query"
+  call tools/evodevo operators
+  succeeded
+  rm -r "$checkout/build"
+  stand_in cmake <<'END'
+printf '%s\n' '-- Found Threads: TRUE' 'CMake Error at CMakeLists.txt:37 (find_package):' '  By not providing "Findhwy.cmake"' \
+  '  CMake did not find one.' '' '  Could not find a package configuration file' '' 'CMake Error at other.txt:1:' >&2
+exit 1
+END
+  call tools/evodevo operators
+  failed_in_a_line 'CMakeLists.txt:37' 'By not providing "Findhwy.cmake" CMake did not find one.' 'libhwy-dev' \
+    "$checkout/build/cpu/.setup-log"
+  rm "$scratch/bin/cmake"
+  call tools/evodevo operators
+  failed_in_a_line "there is no apt-get" "libhwy-dev"
+  call tools/test
+  failed_in_a_line "there is no apt-get" "libgtest-dev"
+}
+
+case_unusable_cuda() {
+  unset EVODEVO_PRESET
+  stand_in nvcc <<<''
+  stand_in cmake <<'END'
+[ "$2" != cuda ] || { printf '%s\n' 'CMake Error at CMakeLists.txt:48 (message):' '  no CUDA toolkit of version 12.8' '' ''; exit 1; }
+mkdir -p "$2/bin" && printf '#!/bin/sh\necho "$0"\n' >"$2/bin/evodevo" && chmod +x "$2/bin/evodevo"
+END
+  call tools/evodevo operators
+  succeeded
+  [[ $output == */build/cpu/bin/evodevo ]] || fail "it does not go on without CUDA"
+  [ "$(grep -c 'no CUDA toolkit of version 12.8' <<<"$errors")" = 1 ] || fail "it does not say why"
+  call tools/evodevo operators
+  [ -z "$errors" ] || fail "it says it again and again"
+}
+
+case_paths() {
+  local mark
+  for mark in '[' ']' ';' '$' '"' '\' '#' ',' '|' '<' '>' '*' '?' "'" '`' ':' $'\n'; do
+    mv "$checkout" "$scratch/a${mark}b"
+    checkout=$scratch/a${mark}b
+    call tools/evodevo operators
+    failed_in_a_line "$(printf %q "$checkout")" "move it"
+    [ "$(times '^apt-get\|^cmake')" = 0 ] || fail "it sets something up first"
+  done
+}
+
+case_two_at_once() {
+  mkfifo "$scratch/building" "$scratch/go" "$scratch/second"
+  stand_in cmake <<'END'
+[ "$1" = --build ] || exit 0
+echo >"$scratch/building"
+read -r <"$scratch/go"
+mkdir -p "$2/bin"
+printf '#!/bin/sh\necho "evodevo $*"\n' >"$2/bin/evodevo"
+chmod +x "$2/bin/evodevo"
+END
+  cd "$checkout"
+  PATH=$scratch/bin tools/evodevo operators >"$scratch/first-output" 2>"$scratch/errors" &
+  local first=$!
+  read -r <"$scratch/building"
+  PATH=$scratch/bin tools/evodevo check some.toml 2>"$scratch/second" >"$scratch/second-output" &
+  local second=$! line
+  read -r line <"$scratch/second"
+  echo >"$scratch/go"
+  status=0 output= errors=$line
+  wait $first && wait $second || fail "one of them failed"
+  [[ $line == *waiting* ]] || fail "the second does not say that it waits"
+  [ "$(times '^cmake --build')" = 1 ] || fail "both build"
+  [ "$(cat "$scratch/first-output" "$scratch/second-output")" = "$(printf '%s\n' "evodevo operators" "evodevo check some.toml")" ] ||
+    fail "they do not both run"
+}
+
+"case_$case"
