@@ -32,24 +32,25 @@ bool is_whole_number(std::string_view value) {
   return !value.empty() && std::all_of(value.begin(), value.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// The value of "key=value", as TOML where it is TOML and as a text where it is not. It remembers the option it came
-/// from as its place.
-toml::table parse_override_value(const std::string& value, const std::string& origin) {
-  const std::string line = "value = " + value;
-  expect_within_toml_limits(line, origin);
-  try {
-    toml::table parsed = parse_toml(line, origin);
-    if (parsed.size() == 1) return parsed;  // more than one: it goes on in a second line
-  } catch (const ConfigError&) {
-    if (is_whole_number(value)) throw;  // it has too many digits
-  }
-  toml::table parsed = parse_toml("value = ''", origin);
-  *parsed.get_as<std::string>("value") = value;
-  return parsed;
-}
-
 [[noreturn]] void refuse(const Override& change, const std::string& message) {
   throw ConfigError(change.origin + ": " + printable(change.key) + ": " + message);
+}
+
+/// The value of "key=value", as TOML where it is TOML and as a text where it is not. It remembers the option it came
+/// from as its place.
+toml::table parse_override_value(const Override& change) {
+  const std::string line = "value = " + change.value;
+  expect_within_toml_limits(line, change.origin);
+  try {
+    toml::table parsed = parse_toml(line, change.origin);
+    if (parsed.size() == 1) return parsed;  // more than one: it goes on in a second line
+  } catch (const ConfigError&) {
+    if (is_whole_number(change.value))
+      refuse(change, printable(change.value) + " does not fit a whole number of 64 bits; give one with fewer digits");
+  }
+  toml::table parsed = parse_toml("value = ''", change.origin);
+  *parsed.get_as<std::string>("value") = change.value;
+  return parsed;
 }
 
 std::vector<std::string> split_key(const Override& change) {
@@ -100,7 +101,7 @@ void apply_override(const Override& change, toml::table& root) {
     parent = child(*parent, keys[i]);
     if (parent == nullptr) refuse(change, "there is no item " + printable(keys[i]));
   }
-  toml::table parsed = parse_override_value(change.value, change.origin);
+  toml::table parsed = parse_override_value(change);
   parsed.get("value")->visit([&](auto& value) { set(*parent, keys.back(), std::move(value), change); });
 }
 

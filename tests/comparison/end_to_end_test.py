@@ -129,7 +129,7 @@ class Comparison(unittest.TestCase):
         self.assertEqual(self.compare().returncode, 0)
         file = self.folder / "out/runs/plain/seed-2/run.sqlite"
         with contextlib.closing(sqlite3.connect(file)) as run, run:
-            run.execute("DROP TABLE verifications")
+            run.execute("DELETE FROM verifications")
         others = [other for other in (self.folder / "out").rglob("run.sqlite") if other != file]
         before = {other: other.stat().st_mtime_ns for other in others}
         done = self.compare()

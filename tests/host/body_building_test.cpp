@@ -173,10 +173,11 @@ TEST(BodyBuilding, SaysWhyThereIsNoBody) {
   EXPECT_EQ(build_body(failed).failure, "no body: nothing but air");
 }
 
-TEST(BodyBuilding, CoincidentMassesMakeABody) {
-  const BuiltBody built = build_body(row({{1, 0}, {1, 0}, {1, 0}}, 2));
+TEST(BodyBuilding, CoincidentMassesMakeABodyUnlessAllAre) {
+  const BuiltBody built = build_body(row({{1, 0}, {1, 0}, {2, 0}}, 2));
   EXPECT_EQ(built.failure, "");
   EXPECT_EQ(built.body.springs.size(), 3u);
+  EXPECT_EQ(build_body(row({{1, 0}, {1, 0}, {1, 0}}, 2)).failure, "no extent");
 }
 
 TEST(BodyBuilding, APopulationIsBuiltAsEachBodyAlone) {
