@@ -35,8 +35,8 @@ std::string throw_by_ground(const LivingBody& living, const Scene& scene) {
 
 }  // namespace
 
-Blueprint decoded(const Experiment& experiment, const Genome& genome) {
-  return call_operator(experiment, Encoding::kind, 0, [&] {
+Blueprint decoded(const Experiment& experiment, const Genome& genome, CallPlace place) {
+  return call_operator(experiment, Encoding::kind, 0, place, [&] {
     Blueprint blueprint = experiment.encoding->decode(genome, experiment.world);
     if (blueprint.failure.empty()) check_blueprint(blueprint, experiment.world);
     return blueprint;
@@ -45,8 +45,9 @@ Blueprint decoded(const Experiment& experiment, const Genome& genome) {
 
 std::vector<BuiltBody> Evaluation::build(std::span<const Newborn> newborns) const {
   std::vector<Blueprint> blueprints(newborns.size());
-  simulator_.workers().for_each(newborns.size(),
-                                [&](std::size_t i) { blueprints[i] = decoded(experiment_, *newborns[i].genome); });
+  simulator_.workers().for_each(newborns.size(), [&](std::size_t i) {
+    blueprints[i] = decoded(experiment_, *newborns[i].genome, {.individual = newborns[i].id});
+  });
   return build_bodies(std::move(blueprints), simulator_.neighbours(), simulator_.workers());
 }
 

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "materials.hpp"
 #include "parallel.hpp"
@@ -31,12 +33,23 @@ void set_size(Spring& spring, const Size& a, const Size& b) {
   spring.growth = static_cast<float>(end / start);
 }
 
+/// The pairs of masses that springs join, each with the lower index first, ascending.
+std::vector<IndexPair> joined_pairs(const std::vector<Spring>& springs) {
+  std::vector<IndexPair> pairs;
+  pairs.reserve(springs.size());
+  for (const Spring& spring : springs) pairs.emplace_back(std::minmax(spring.a, spring.b));
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
 void join(Blueprint& blueprint, std::span<const IndexPair> pairs) {
   Body& body = blueprint.body;
   const std::vector<Size>& sizes = blueprint.sizes;
+  const std::vector<IndexPair> joined_already = joined_pairs(body.springs);
   body.springs.reserve(body.springs.size() + pairs.size());
   MaterialList materials(body.materials);
   for (const auto& [a, b] : pairs) {
+    if (std::binary_search(joined_already.begin(), joined_already.end(), IndexPair(std::minmax(a, b)))) continue;
     const Mass &mass_a = body.masses[a], &mass_b = body.masses[b];
     // by value: the list of materials may grow
     const Material of_a = body.materials.at(static_cast<std::size_t>(mass_a.material));
@@ -133,6 +146,25 @@ BuiltBody finish(Body body) {
   return {std::move(body), "", std::move(kept)};
 }
 
+/// The first spring that joins a pair of masses that one before it joins. By the springs of each mass and a mark for
+/// each other end, since to sort them all takes several times as long.
+std::optional<std::size_t> doubled_spring(const Body& body) {
+  constexpr auto nobody = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::size_t> first(body.masses.size() + 1, 0);  // of the springs whose lower end is a mass, in `by_mass`
+  const auto lower = [](const Spring& spring) { return std::min(spring.a, spring.b); };
+  for (const Spring& spring : body.springs) ++first[lower(spring) + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::uint32_t> by_mass(body.springs.size()), mark(body.masses.size(), nobody);
+  for (std::uint32_t i = 0; i < body.springs.size(); ++i) by_mass[first[lower(body.springs[i])]++] = i;
+  std::optional<std::size_t> twin;
+  for (const std::uint32_t i : by_mass) {
+    const Spring& spring = body.springs[i];
+    const std::uint32_t last = std::exchange(mark[std::max(spring.a, spring.b)], lower(spring));
+    if (last == lower(spring) && (!twin || i < *twin)) twin = i;
+  }
+  return twin;
+}
+
 }  // namespace
 
 std::vector<Vec3> rest_places(const Body& body) {
@@ -167,6 +199,11 @@ void check_blueprint(const Blueprint& blueprint, const World& world) {
     require(spring.rest_length >= 0 && std::isfinite(spring.rest_length), "spring", i, "has no finite rest length");
     require(spring.material < materials, "spring", i, "is of a material that is not there");
     require(spring.growth > 0 && std::isfinite(spring.growth), "spring", i, "has no finite growth above 0");
+  }
+  if (const std::optional<std::size_t> twin = doubled_spring(body)) {
+    const Spring& spring = body.springs[*twin];
+    throw std::invalid_argument("spring " + std::to_string(*twin) + " joins masses " + std::to_string(spring.a) +
+                                " and " + std::to_string(spring.b) + ", which are joined already");
   }
   const auto require_one_for_each_mass = [&](const auto& list, const char* what) {
     if (!list.empty() && list.size() != body.masses.size())

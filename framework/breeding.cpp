@@ -31,7 +31,7 @@ Individual newcomer(const Experiment& experiment, std::uint32_t generation, std:
   individual.id = id;
   individual.born = individual.origin = generation;
   individual.made_by = "random";
-  call_operator(experiment, Encoding::kind, 0, [&] {
+  call_operator(experiment, Encoding::kind, 0, {.individual = id}, [&] {
     individual.genome = experiment.encoding->random(experiment.layout, rng);
     check_genome(individual.genome, experiment.layout);
   });
@@ -73,7 +73,7 @@ Individual child(const Experiment& experiment, const Individual& parent, const I
       const auto& crossover = experiment.crossovers[i];
       Rng rng = draws(place::crossover + static_cast<std::uint32_t>(i));
       Genome other = mate.genome;
-      call_operator(experiment, Crossover::kind, i, [&] {
+      call_operator(experiment, Crossover::kind, i, {.individual = id}, [&] {
         crossover.op->cross(individual.genome, other, experiment.layout, rng);
         check_genome(individual.genome, experiment.layout);
       });
@@ -84,7 +84,7 @@ Individual child(const Experiment& experiment, const Individual& parent, const I
       const std::size_t k = i - experiment.crossovers.size();
       const auto& mutation = experiment.mutations[k];
       Rng rng = draws(place::mutation + static_cast<std::uint32_t>(k));
-      call_operator(experiment, Mutation::kind, k, [&] {
+      call_operator(experiment, Mutation::kind, k, {.individual = id}, [&] {
         mutation.op->mutate(individual.genome, experiment.layout, rng);
         check_genome(individual.genome, experiment.layout);
       });
@@ -167,8 +167,8 @@ std::vector<Individual> breed(const Experiment& experiment, const std::vector<In
     const SelectionTable table(population, experiment.objectives, generation);
     Rng rng = stream(experiment, generation, 0, place::parents);
     const auto asked = static_cast<std::uint32_t>(count - newcomers);
-    const auto pairs =
-        call_operator(experiment, Selection::kind, 0, [&] { return chosen_parents(experiment, table, asked, rng); });
+    const auto pairs = call_operator(experiment, Selection::kind, 0, {},
+                                     [&] { return chosen_parents(experiment, table, asked, rng); });
     for (const auto& pair : pairs) {
       const Individual &parent = population.at(pair.first), &mate = population.at(pair.second);
       newborns.push_back(distinct(

@@ -1,23 +1,12 @@
-// Which operator a crash happens in.
+// Ends of the process in an operator's code, which are named before.
 #pragma once
 
 namespace evodevo {
 
-struct OperatorUse;
-
-/// While it lives, this thread is in the code of an operator. What it is given must outlive it; nullptr: of none.
-class InOperator {
- public:
-  explicit InOperator(const OperatorUse* use);
-  InOperator(const InOperator&) = delete;
-  InOperator& operator=(const InOperator&) = delete;
-  ~InOperator();
-
- private:
-  const OperatorUse* before_;
-};
-
-/// From now on a signal that ends the process in an operator's code names the operator on stderr first.
+/// From now on a signal that ends the process in an operator's code names the call on stderr first; stacks that
+/// overflow are told apart. An operator that ends the process by exit() is named likewise, and the exit code is 1.
 void name_crashing_operators();
+/// Signals and exit() do again what they do by default.
+void leave_crashes_unnamed();
 
 }  // namespace evodevo

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host_keys.hpp"
 #include "text.hpp"
 
 namespace evodevo {
@@ -10,7 +11,7 @@ namespace {
 
 class DeclarationCheck final : public Parameters {
  public:
-  std::vector<std::string> wrong_defaults, faults;
+  std::vector<std::string> wrong_defaults, taken_names, faults;
 
   void real(double& value, std::string_view name, Range range, std::string_view text) override {
     declare(name, text);
@@ -49,6 +50,7 @@ class DeclarationCheck final : public Parameters {
   void declare(std::string_view name, std::string_view text) {
     if (std::find(names_.begin(), names_.end(), name) != names_.end()) fault(name, "is declared twice");
     names_.emplace_back(name);
+    if (host_key::is_reserved(name)) taken_names.emplace_back(name);
     if (name.empty()) fault(name, "has no name");
     if (text.size() <= 10 || !text.ends_with('.')) fault(name, "has no sentence, ending with a full stop");
   }
@@ -80,6 +82,11 @@ DeclarationCheck checked(Operator& op) {
 std::string wrong_default(Operator& op) {
   const DeclarationCheck check = checked(op);
   return check.wrong_defaults.empty() ? "" : check.wrong_defaults.front();
+}
+
+std::string taken_name(Operator& op) {
+  const DeclarationCheck check = checked(op);
+  return check.taken_names.empty() ? "" : check.taken_names.front();
 }
 
 std::vector<std::string> declaration_faults(Operator& op) { return checked(op).faults; }

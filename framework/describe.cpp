@@ -1,11 +1,12 @@
 #include "describe.hpp"
 
+#include "loader.hpp"
 #include "text.hpp"
 
 namespace evodevo {
 namespace {
 
-std::string quoted(std::string_view text) { return '"' + std::string(text) + '"'; }
+std::string in_quotes(std::string_view text) { return '"' + std::string(text) + '"'; }
 
 class Describer final : public Parameters {
  public:
@@ -22,9 +23,9 @@ class Describer final : public Parameters {
   }
   void choice(std::string& value, std::string_view name, std::initializer_list<std::string_view> options,
               std::string_view text) override {
-    add(name, "option", quoted(value), {}, text);
+    add(name, "option", in_quotes(value), {}, text);
     std::vector<std::string> names;
-    for (const std::string_view option : options) names.push_back(quoted(option));
+    for (const std::string_view option : options) names.push_back(in_quotes(option));
     found.back().allowed = printable(joined(names), 2000);
   }
   void vector(Vec3& value, std::string_view name, Range range, std::string_view text) override {
@@ -38,7 +39,7 @@ class Describer final : public Parameters {
   }
   void materials(std::vector<std::string>& value, std::string_view name, std::string_view text) override {
     std::vector<std::string> names;
-    for (const std::string& material : value) names.push_back(quoted(material));
+    for (const std::string& material : value) names.push_back(in_quotes(material));
     add(name, "names of materials", "[" + joined(names) + "]", {}, text);
   }
   void require(bool, std::string_view, std::string_view) override {}
@@ -56,6 +57,10 @@ std::vector<ParameterDescription> describe_parameters(Operator& op) {
   Describer describer;
   op.parameters(describer);
   return std::move(describer.found);
+}
+
+std::vector<ParameterDescription> describe_parameters(const AvailableOperator& available) {
+  return in_operator({available.title}, [&] { return describe_parameters(*create<Operator>(available)); });
 }
 
 }  // namespace evodevo

@@ -8,6 +8,8 @@
 
 namespace evodevo {
 
+struct AvailableOperator;
+
 /// One declared parameter in words.
 struct ParameterDescription {
   std::string name;
@@ -20,5 +22,7 @@ struct ParameterDescription {
 
 /// The parameters of an operator that still has its defaults, in the order of their declaration.
 std::vector<ParameterDescription> describe_parameters(Operator& op);
+/// The same of a new operator.
+std::vector<ParameterDescription> describe_parameters(const AvailableOperator& available);
 
 }  // namespace evodevo

@@ -45,14 +45,13 @@ void Evaluation::set_windows() {
     if (at == marks_.size() || mark_at({time}, marks_[at]) == 1)
       marks_.insert(marks_.begin() + static_cast<std::ptrdiff_t>(at), time);
   };
-  std::vector<std::pair<double, double>> times;
-  for (const auto& fitness : experiment_.fitness) {
-    const Request request = fitness->observes();
-    const double opens = request.settle + conditions_.later;
-    times.emplace_back(opens, opens + request.window);
-  }
-  for (const auto& [opens, closes] : times) add_mark(opens), add_mark(closes);
-  for (const auto& [opens, closes] : times) windows_.push_back({mark_at(marks_, opens), mark_at(marks_, closes)});
+  std::vector<Request> requests;
+  for (std::size_t i = 0; i < experiment_.fitness.size(); ++i) requests.push_back(fitness_request(experiment_, i));
+  const auto opens = [&](const Request& request) { return request.settle + conditions_.later; };
+  const auto closes = [&](const Request& request) { return opens(request) + request.window; };
+  for (const Request& request : requests) add_mark(opens(request)), add_mark(closes(request));
+  for (const Request& request : requests)
+    windows_.push_back({request, mark_at(marks_, opens(request)), mark_at(marks_, closes(request))});
 }
 
 std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, const Progress& progress) const {
@@ -131,7 +130,7 @@ void Evaluation::live_cycles(std::span<Life> lives, bool observed, const Action&
                              const Progress& progress) const {
   const Development& development = experiment_.development;
   for (int cycle = 1; cycle <= development.cycles; ++cycle) {
-    simulate_cycle(lives, cycle, observed ? development.recording(cycle) : Recording{});
+    simulate_cycle(lives, cycle, observed ? recording(experiment_, cycle) : Recording{});
     const BusyClock::Span span(develop_);
     simulator_.workers().for_each(lives.size(), [&](std::size_t i) {
       if (!lives[i].alive()) return;
@@ -200,17 +199,14 @@ void Evaluation::shuffle_records(Life& life, int cycle) const {
 
 void Evaluation::apply_operator(Life& life, int cycle, std::size_t index) const {
   const auto& [op, schedule] = experiment_.development.operators[index];
-  const Moment now = moment(life, cycle, schedule, op->observes());
+  const Moment now = moment(life, cycle, schedule, devo_request(experiment_, index));
   Rng rng = stream(life, place::devo(index, cycle));
-  const auto where = [&] {
-    return ", individual " + std::to_string(life.newborn.id) + ", cycle " + std::to_string(cycle);
-  };
   const auto develop = [&] {
     Edits edits;
     op->develop(now, edits, rng);
     make_change(life, change_by(edits, static_cast<std::uint32_t>(index), now), now);
   };
-  call_operator(experiment_, Devo::kind, index, develop, where);
+  call_operator(experiment_, Devo::kind, index, {.individual = life.newborn.id, .cycle = cycle}, develop);
 }
 
 void Evaluation::change_as_in(Yoke& yoke, Life& life, int cycle) const {
@@ -315,7 +311,7 @@ void Evaluation::simulate(std::span<Life> lives, double duration, const Move& mo
 
 bool Evaluation::needs_work(std::size_t mark) const {
   for (std::size_t i = 0; i < windows_.size(); ++i)
-    if (experiment_.fitness[i]->observes().work && windows_[i].opens < mark && mark <= windows_[i].closes) return true;
+    if (windows_[i].request.work && windows_[i].opens < mark && mark <= windows_[i].closes) return true;
   return false;
 }
 
@@ -350,14 +346,21 @@ void Evaluation::score(Life& life) const {
   std::vector<double>& objectives = life.result.objectives;
   for (std::size_t i = 0; i < windows_.size(); ++i) {
     const Fitness& fitness = *experiment_.fitness[i];
-    const Request request = fitness.observes();
-    const Snapshot &before = life.snapshots[windows_[i].opens], &after = life.snapshots[windows_[i].closes];
+    const auto& [request, opens, closes] = windows_[i];
+    const Snapshot &before = life.snapshots[opens], &after = life.snapshots[closes];
     const Observation observation{.box = before.box,
                                   .centre_before = before.centre,
                                   .centre_after = after.centre,
                                   .window = request.window,
                                   .work = request.work ? after.work - before.work : 0};
-    const auto scores = call_operator(experiment_, Fitness::kind, i, [&] { return fitness.score(observation); });
+    const auto measured = [&] {
+      auto scores = fitness.score(observation);
+      if (const std::size_t expected = fitness.objectives().size(); scores.size() != expected)
+        throw std::runtime_error("gave " + std::to_string(scores.size()) + " scores for " + std::to_string(expected) +
+                                 " objectives");
+      return scores;
+    };
+    const auto scores = call_operator(experiment_, Fitness::kind, i, {.individual = life.newborn.id}, measured);
     objectives.insert(objectives.end(), scores.begin(), scores.end());
   }
   if (objectives.size() != experiment_.objectives.size())

@@ -78,7 +78,7 @@ struct PhaseTimes {
 };
 
 /// What the experiment's encoding makes of a genome. Blames the encoding for what cannot be a blueprint.
-Blueprint decoded(const Experiment& experiment, const Genome& genome);
+Blueprint decoded(const Experiment& experiment, const Genome& genome, CallPlace place = {});
 
 /// Runs the tasks of lives, which are in the same order.
 using Move = std::function<void(std::span<Task>, std::span<Life* const>)>;
@@ -159,8 +159,9 @@ class Evaluation {
   const Experiment& experiment_;
   Simulator& simulator_;
   Conditions conditions_;
-  /// A fitness' window, as indices of marks.
+  /// What a fitness asks for, and its window as indices of marks.
   struct Window {
+    Request request;
     std::size_t opens, closes;
   };
   std::vector<double> marks_;    ///< when some fitness looks, from the start of the final evaluation, s

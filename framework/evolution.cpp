@@ -96,7 +96,7 @@ void select(std::vector<Individual>& everyone, const Experiment& experiment, std
   const auto population = static_cast<std::uint32_t>(experiment.population);
   const SelectionTable table(everyone, experiment.objectives, generation);
   Rng rng(philox, {static_cast<std::uint64_t>(experiment.seed), generation, 0, place::survivors});
-  const auto rows = call_operator(experiment, Selection::kind, 0,
+  const auto rows = call_operator(experiment, Selection::kind, 0, {},
                                   [&] { return chosen_survivors(experiment, table, population, rng); });
   std::vector<Individual> survivors;
   for (std::uint32_t i = 0; i < everyone.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "accuracy.hpp"
+#include "host_keys.hpp"
 #include "overrides.hpp"
 #include "philox.hpp"
 #include "plugin_folders.hpp"
@@ -175,7 +176,7 @@ class Composer {
   /// The operator that a table's `name` asks for, with the table's parameters.
   template <class T>
   std::unique_ptr<T> make(TomlReader& table) {
-    const std::string name = table.text("name");
+    const std::string name = table.text(host_key::name);
     const AvailableOperator* available = registry_.find(T::kind, name);
     if (available == nullptr) {
       std::string message = "no " + std::string(T::kind) + " operator has this name";
@@ -186,18 +187,23 @@ class Composer {
       if (plugin_warnings_ > 1) message += " (and " + std::to_string(plugin_warnings_ - 1) + " more such warnings)";
       table.fail("name", message);
     }
-    std::unique_ptr<T> op = create<T>(*available);
-    op->parameters(table);
-    out_.uses.push_back(
-        {available->entry->kind, name, available->manifest->version, available->file, file_hash(available->file)});
-    return op;
+    table.require_read_among(host_key::all);
+    out_.uses.push_back({available->entry->kind, name, available->manifest->version, available->file,
+                         file_hash(available->file), available->title});
+    return ask(table, [&] {
+      std::unique_ptr<T> op = create<T>(*available);
+      op->parameters(table);
+      return op;
+    });
   }
 
-  /// Runs an operator's own code; what it objects to is reported at the operator's name.
+  /// Runs the own code of the operator that was made last; what it objects to is reported at its name.
   template <class Call>
-  static auto ask(const TomlReader& table, const Call& call) {
+  auto ask(const TomlReader& table, const Call& call) const {
     try {
-      return call();
+      return in_operator({out_.uses.back().title, {}, out_.seed}, call);
+    } catch (const ConfigError&) {
+      throw;
     } catch (const std::exception& error) {
       table.fail("name", printable(error.what(), 2000));
     }
@@ -272,7 +278,7 @@ class Composer {
   void read_encoding() {
     out_.world.philox = philox;
     read_section("encoding", true, [&](TomlReader& t) {
-      t.real(out_.world.mass, "mass", {1e-9, 1e9, "kg"}, "Mass of every point mass.");
+      t.real(out_.world.mass, host_key::mass, {1e-9, 1e9, "kg"}, "Mass of every point mass.");
       out_.encoding = make<Encoding>(t);
       out_.layout = ask(t, [&] { return out_.encoding->layout(out_.world); });
     });
@@ -393,7 +399,7 @@ class Composer {
   void read_variation(std::string_view name, std::vector<Varied<T>>& list) {
     read_array(top_, name, [&](TomlReader& t) {
       Varied<T> varied;
-      t.real(varied.probability, "probability", {0, 1}, "Probability that a child goes through this operator.");
+      t.real(varied.probability, host_key::probability, {0, 1}, "Probability that a child goes through this operator.");
       varied.op = make<T>(t);
       varied.name = out_.uses.back().name;
       list.push_back(std::move(varied));
@@ -459,6 +465,17 @@ class Composer {
              "tell; set development.probe = \"exact\", or let it go by the mean force");
   }
 
+  /// Refuses windows that no body can live through.
+  static void check_request(const TomlReader& t, const Request& request) {
+    constexpr double longest = 1e6;  // s, as of a cycle
+    const auto text = [](double time) { return std::isfinite(time) ? to_text(time) + " s" : "no finite number"; };
+    // written so that NaN fails
+    if (!(request.settle >= 0 && request.settle <= longest) || !(request.window > 0 && request.window <= longest))
+      t.fail("name", "this operator observes settle = " + text(request.settle) +
+                         " and window = " + text(request.window) + "; expected 0 to " + text(longest) +
+                         ", and above 0 to " + text(longest));
+  }
+
   void read_control(TomlReader& t) {
     std::string control = "off";
     t.choice(control, "control", {"off", "no-change", "random-places", "shuffled-stress"},
@@ -472,9 +489,9 @@ class Composer {
     const std::int64_t cycles = out_.development.cycles;
     Schedule schedule;
     schedule.to = std::max<std::int64_t>(1, cycles);
-    t.integer(schedule.from, "from", {1, place::most_cycles}, "First cycle after which the operator comes.");
-    t.integer(schedule.to, "to", {1, place::most_cycles}, "Last cycle after which it may come.");
-    t.integer(schedule.every, "every", {1, place::most_cycles}, "Cycles from one turn to the next.");
+    t.integer(schedule.from, host_key::from, {1, place::most_cycles}, "First cycle after which the operator comes.");
+    t.integer(schedule.to, host_key::to, {1, place::most_cycles}, "Last cycle after which it may come.");
+    t.integer(schedule.every, host_key::every, {1, place::most_cycles}, "Cycles from one turn to the next.");
     if (schedule.turns(cycles) == 0 && cycles > 0)
       out_.warnings.push_back(t.full_name("from") + " = " + std::to_string(schedule.from) + " to " +
                               std::to_string(schedule.to) + ": the operator never comes to its turn in " +
@@ -486,9 +503,14 @@ class Composer {
     read_array(top_, "fitness", [&](TomlReader& t) {
       std::unique_ptr<Fitness> fitness = make<Fitness>(t);
       const Request request = ask(t, [&] { return fitness->observes(); });
+      check_request(t, request);
       check_duration(t, "settle", request.settle);
       check_duration(t, "window", request.window);
-      for (Objective& objective : ask(t, [&] { return fitness->objectives(); })) {
+      std::vector<Objective> objectives = ask(t, [&] { return fitness->objectives(); });
+      if (objectives.empty()) t.fail("name", "this operator has no objectives; expected one or more from objectives()");
+      for (Objective& objective : objectives) {
+        if (objective.name.empty())
+          t.fail("name", "this operator has an objective without a name; name it in objectives()");
         const auto same = [&](const Objective& other) { return other.name == objective.name; };
         for (const std::string& text : {objective.name, objective.unit})
           if (const std::string fault = text_fault(text); !fault.empty())
@@ -521,32 +543,6 @@ Experiment compose(toml::table root, const ExperimentSource& source) {
 }
 
 }  // namespace
-
-Recording Development::recording(std::int64_t cycle) const {
-  Recording all;
-  if (control == Control::no_change) return all;
-  for (const Scheduled& scheduled : operators) {
-    if (!scheduled.schedule.contains(cycle)) continue;
-    const SpringRequest request = scheduled.op->observes();
-    all.stress |= request.stress;
-    all.peak_force |= request.peak_force;
-    all.muscle_work |= request.muscle_work;
-    all.tension |= request.tension;
-  }
-  return all;
-}
-
-const OperatorUse* use_of(const Experiment& experiment, std::string_view kind, std::size_t index) {
-  const auto use = std::find_if(experiment.uses.begin(), experiment.uses.end(),
-                                [&](const OperatorUse& other) { return other.kind == kind && index-- == 0; });
-  return use == experiment.uses.end() ? nullptr : &*use;
-}
-
-void blame_operator(const OperatorUse* use, std::string_view kind, const std::string& where, const std::string& what) {
-  const std::string title = use == nullptr ? "operator" : "operator \"" + use->name + "\" of " + use->file.string();
-  throw std::runtime_error(std::string(kind) + " " + title + where + ": " + printable(what, 2000) +
-                           "; correct the operator and build it again, or begin a new run without it");
-}
 
 Experiment read_experiment(const ExperimentSource& source) { return compose(parse_toml_file(source.file), source); }
 

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "crash.hpp"
 #include "evodevo/plugin.hpp"
 #include "loader.hpp"
+#include "operator_call.hpp"
 #include "overrides.hpp"
 #include "philox.hpp"
 #include "simulator.hpp"
@@ -63,9 +63,6 @@ struct Development {
   Probe probe = Probe::exact;
   std::int64_t skip = 100;  ///< steps from one tally to the next; paper, section IV-D1
   std::vector<Scheduled> operators;
-
-  /// What has to be recorded in a cycle for the operators whose turn it is.
-  Recording recording(std::int64_t cycle) const;
 };
 
 /// A load that every body carries from birth on. What masses that go carried comes on others.
@@ -78,10 +75,16 @@ struct Load {
 struct OperatorUse {
   std::string kind, name, version;
   std::filesystem::path file;
-  std::string hash;  ///< of the file
+  std::string hash;                      ///< of the file
+  const OperatorTitle* title = nullptr;  ///< nullptr in a record
 };
 
 struct Experiment {
+  Experiment() = default;
+  Experiment(Experiment&&) = default;
+  Experiment& operator=(Experiment&&) = default;
+  ~Experiment();  ///< names an operator whose end crashes
+
   std::string name;  ///< of the file, without folder and ending
   std::int64_t seed = 1;
   std::int64_t evaluations = 1000;  ///< in the whole run
@@ -116,25 +119,29 @@ struct Experiment {
 /// The operator that is the index-th of its kind; nullptr for one that no library has brought.
 const OperatorUse* use_of(const Experiment& experiment, std::string_view kind, std::size_t index);
 
-/// Throws std::runtime_error that names the operator, its file, `where` and `what`, and the remedy.
-[[noreturn]] void blame_operator(const OperatorUse* use, std::string_view kind, const std::string& where,
-                                 const std::string& what);
+/// Throws std::runtime_error that names the call and `what`, and the remedy.
+[[noreturn]] void blame_operator(const OperatorCall& call, std::string_view kind, const std::string& what);
 
-/// Calls the own code of an operator, the index-th of its kind, and blames it for what it throws. `where` may add to
-/// the operator's title.
-template <class Call, class Where = decltype([] { return std::string(); })>
-decltype(auto) call_operator(const Experiment& experiment, std::string_view kind, std::size_t index, const Call& call,
-                             const Where& where = {}) {
+/// Calls the own code of an operator, the index-th of its kind, and blames it for what it throws. All such calls go
+/// through here, or, while the experiment is being read, through in_operator().
+template <class Call>
+decltype(auto) call_operator(const Experiment& experiment, std::string_view kind, std::size_t index, CallPlace place,
+                             const Call& call) {
   const OperatorUse* use = use_of(experiment, kind, index);
-  const InOperator in_operator(use);
+  const OperatorCall whose{use != nullptr ? use->title : nullptr, place, experiment.seed};
   try {
-    return call();
+    return in_operator(whose, call);
   } catch (const std::exception& error) {
-    blame_operator(use, kind, where(), error.what());
-  } catch (...) {
-    blame_operator(use, kind, where(), "threw something that is no std::exception");
+    blame_operator(whose, kind, error.what());
   }
 }
+
+/// What a devo operator asks for, the index-th.
+SpringRequest devo_request(const Experiment& experiment, std::size_t index);
+/// What a fitness operator asks for, the index-th.
+Request fitness_request(const Experiment& experiment, std::size_t index);
+/// What has to be recorded in a cycle of development for the operators whose turn it is.
+Recording recording(const Experiment& experiment, std::int64_t cycle);
 
 /// Where an experiment comes from.
 struct ExperimentSource {

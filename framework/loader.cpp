@@ -51,13 +51,16 @@ std::string loader_sentence(const boost::dll::fs::system_error& error) {
 boost::dll::shared_library open(const fs::path& file) {
   boost::dll::shared_library library;
   try {
-    library.load(file, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
+    in_operator({lasting_title("library", "", file.string())},
+                [&] { library.load(file, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local); });
   } catch (const boost::dll::fs::system_error& error) {
     const std::string sentence = loader_sentence(error);
     const bool lacks = sentence.find("undefined symbol") != std::string::npos;
     refuse("cannot be loaded: " + sentence +
            (lacks ? "; link it with all that it uses (-Wl,-z,defs tells what is missing)"
                   : "; build it for this system, or remove it"));
+  } catch (const std::exception& error) {
+    throw std::logic_error(error.what());  // of a static object, through the dynamic linker, which knows no exceptions
   }
   return library;
 }
@@ -75,11 +78,16 @@ const PluginManifest* read_manifest(const boost::dll::shared_library& library, c
     refuse(std::string("has no function ") + entry_symbol + " of its own, only that of " + home.string() +
            " which it links; end one of its sources with EVODEVO_PLUGIN(...)");
   }
-  return entry();
+  return in_operator({lasting_title("library", "", file.string())}, entry);
+}
+
+void check_given(const std::string& what, const char* text) {
+  if (text == nullptr || *text == '\0') refuse(what + " is missing; say it in EVODEVO_PLUGIN(...)");
 }
 
 /// Refuses a manifest that this host may not read on. The order matters: each line vouches for the next.
 void check_manifest(const PluginManifest* manifest) {
+  const auto text = [](const char* given) { return given != nullptr ? given : "nothing"; };
   if (manifest == nullptr || manifest->magic != plugin_magic) {
     refuse(std::string("its ") + entry_symbol + " does not return an evodevo manifest; use EVODEVO_PLUGIN(...)");
   }
@@ -91,10 +99,14 @@ void check_manifest(const PluginManifest* manifest) {
   if (manifest->struct_digest != plugin_struct_digest)
     refuse_mismatch("its digest of struct sizes", std::to_string(manifest->struct_digest),
                     std::to_string(plugin_struct_digest));
-  if (std::string_view(manifest->toolchain) != plugin_toolchain)
-    refuse_mismatch("its toolchain", manifest->toolchain, plugin_toolchain);
-  if (std::string_view(manifest->switches) != plugin_switches)
-    refuse_mismatch("its list of build switches", manifest->switches, plugin_switches);
+  if (text(manifest->toolchain) != std::string_view(plugin_toolchain))
+    refuse_mismatch("its toolchain", text(manifest->toolchain), plugin_toolchain);
+  if (text(manifest->switches) != std::string_view(plugin_switches))
+    refuse_mismatch("its list of build switches", text(manifest->switches), plugin_switches);
+  check_given("its version", manifest->version);
+  check_given("its licence", manifest->license);
+  if (manifest->entries == nullptr && manifest->entry_count > 0)
+    refuse("it has no list of operators; use EVODEVO_PLUGIN(...)");
 }
 
 std::string title(const OperatorEntry& entry) {
@@ -106,20 +118,48 @@ void check_text(const std::string& title, std::string_view text) {
   if (const std::string fault = text_fault(text); !fault.empty()) refuse(title + " " + fault + "; correct it");
 }
 
-void check_entry(const OperatorEntry& entry) {
+/// Whether an object is of the class that its kind says.
+bool is_of_kind(const Operator* op, std::string_view kind) {
+  const auto is_a = [&]<class T>(const T*) { return kind == T::kind && dynamic_cast<const T*>(op) != nullptr; };
+  return is_a(static_cast<Encoding*>(nullptr)) || is_a(static_cast<Mutation*>(nullptr)) ||
+         is_a(static_cast<Crossover*>(nullptr)) || is_a(static_cast<Devo*>(nullptr)) ||
+         is_a(static_cast<Fitness*>(nullptr)) || is_a(static_cast<Selection*>(nullptr));
+}
+
+void check_texts(const OperatorEntry& entry, std::size_t index) {
+  const std::string which = "its operator " + std::to_string(index) + ": ";
+  check_given(which + "the kind", entry.kind);
+  check_given(which + "the name", entry.name);
+  check_given(which + "the summary", entry.summary);
+  if (entry.create == nullptr) refuse(which + "it has no function that creates it; use operator_entry<Class>(...)");
+}
+
+void check_entry(const OperatorEntry& entry, const OperatorTitle* named) {
   check_text(std::string("the name of its ") + entry.kind + " operator", entry.name);
   check_text("the summary of " + title(entry), entry.summary);
   if (std::find(operator_kinds.begin(), operator_kinds.end(), entry.kind) == operator_kinds.end())
     refuse(std::string("its operator \"") + entry.name + "\" is of the unknown kind \"" + entry.kind +
            "\"; rebuild the plugin against this evodevo");
-  std::string fault;
+  std::string fault, taken;
+  bool is_right = false;
   try {
-    const std::unique_ptr<Operator> op(entry.create());
-    fault = wrong_default(*op);
+    in_operator({named}, [&] {
+      const std::unique_ptr<Operator> op(entry.create());
+      is_right = is_of_kind(op.get(), entry.kind);
+      if (!is_right) return;
+      fault = wrong_default(*op);
+      taken = taken_name(*op);
+    });
   } catch (const std::exception& error) {
     refuse(title(entry) + " cannot be made: \"" + error.what() + "\"; its constructor and parameters() must not throw");
   }
+  if (!is_right)
+    refuse(title(entry) +
+           " is no object of the class of this kind; use operator_entry<Class>(...) with a class that is");
   if (!fault.empty()) refuse(title(entry) + " has a default that it does not allow: " + fault);
+  if (!taken.empty())
+    refuse(title(entry) + " calls a parameter \"" + taken +
+           "\", which is a key of the host's own in every operator's table; rename the parameter");
 }
 
 /// The operators of an opened library.
@@ -129,7 +169,8 @@ std::span<const OperatorEntry> checked_entries(const boost::dll::shared_library&
   check_text("its version", manifest->version);
   check_text("its licence", manifest->license);
   const std::span<const OperatorEntry> entries(manifest->entries, manifest->entry_count);
-  for (const OperatorEntry& entry : entries) check_entry(entry);
+  for (std::size_t i = 0; i < entries.size(); ++i) check_texts(entries[i], i);
+  for (const OperatorEntry& entry : entries) check_entry(entry, lasting_title(entry.kind, entry.name, file.string()));
   return entries;
 }
 
@@ -140,7 +181,7 @@ std::string crash_of_loading(std::span<const fs::path> files) {
       try {
         const boost::dll::shared_library library = open(file);
         checked_entries(library, file);
-      } catch (const std::exception&) {
+      } catch (const std::runtime_error&) {
         // whoever loads it for good gets the same and can report it
       }
     }
@@ -214,7 +255,7 @@ void Registry::load(const fs::path& file) {
     if (const AvailableOperator* twin = find(entry.kind, entry.name))
       refuse(title(entry) + " is already brought by " + twin->file.string() +
              ", which comes first; rename one of them, or take one off the plugin path");
-    const AvailableOperator candidate{&entry, manifest, file};
+    const AvailableOperator candidate{&entry, manifest, file, lasting_title(entry.kind, entry.name, file.string())};
     const auto same = [&](const AvailableOperator& other) { return sort_key(other) == sort_key(candidate); };
     if (std::any_of(brought.begin(), brought.end(), same)) refuse(title(entry) + " is in it twice; rename one of them");
     brought.push_back(candidate);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "evodevo/plugin.hpp"
+#include "operator_call.hpp"
 
 namespace evodevo {
 
@@ -20,6 +21,7 @@ struct AvailableOperator {
   const OperatorEntry* entry;
   const PluginManifest* manifest;
   std::filesystem::path file;
+  const OperatorTitle* title;
 };
 
 /// A library that cannot be used, and why, with the remedy.
@@ -55,10 +57,10 @@ class Registry {
   std::vector<FailedLibrary> failed_;
 };
 
-/// A new operator with default parameters. T must be the class of the operator's kind.
+/// A new operator with default parameters. T must be the class of the operator's kind, or Operator.
 template <class T>
 std::unique_ptr<T> create(const AvailableOperator& available) {
-  return std::unique_ptr<T>(static_cast<T*>(available.entry->create()));
+  return in_operator({available.title}, [&] { return std::unique_ptr<T>(static_cast<T*>(available.entry->create())); });
 }
 
 /// Where the operators that come with this program are.

@@ -1,9 +1,11 @@
 // The command `evodevo`.
 #include <csignal>
 #include <iostream>
+#include <memory>
 #include <sstream>
 #include <string_view>
 
+#include "call_watch.hpp"
 #include "commands/commands.hpp"
 #include "crash.hpp"
 #include "input_error.hpp"
@@ -79,7 +81,11 @@ int dispatch(const Arguments& arguments) {
   }
   std::vector<std::string> names;
   for (const Command& command : commands) {
-    if (arguments.front() == command.name) return command.function({arguments.begin() + 1, arguments.end()});
+    if (arguments.front() == command.name) {
+      // conform gives its cases a time limit each, in processes of their own
+      const auto watch = command.function != conform_command ? std::make_unique<CallWatch>() : nullptr;
+      return command.function({arguments.begin() + 1, arguments.end()});
+    }
     names.emplace_back(command.name);
   }
   throw UsageError("there is no command \"" + printable(arguments.front()) + "\"" +

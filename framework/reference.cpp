@@ -31,7 +31,7 @@ std::string parameter_row(const ParameterDescription& p) {
 
 std::string reference_of(const AvailableOperator& available, int heading) {
   std::string text = heading_text(heading, code(available.entry->name)) + available.entry->summary + "\n\n";
-  const auto parameters = describe_parameters(*create<Operator>(available));
+  const auto parameters = describe_parameters(available);
   if (parameters.empty()) return text + "It has no parameters.\n\n";
   text += row({"parameter", "default", "allowed", "unit", "what it is"}) + "|---|---|---|---|---|\n";
   for (const ParameterDescription& parameter : parameters) text += parameter_row(parameter);

@@ -87,6 +87,12 @@ void TomlReader::expect(std::initializer_list<std::string_view> names) {
   refuse_unknown_keys();
 }
 
+void TomlReader::require_read_among(std::span<const std::string_view> names) const {
+  for (const std::string& key : known_)
+    if (std::find(names.begin(), names.end(), key) == names.end())
+      throw std::logic_error(full_name(key) + " is read, but is none of the keys that may be");
+}
+
 const toml::node* TomlReader::look_up(std::string_view name) {
   know(name);
   return table_.get(name);

@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -62,6 +63,9 @@ class TomlReader final : public Parameters {
 
   /// Refuses every other key before any of these is read, so that a misspelt key is not reported as a missing one.
   void expect(std::initializer_list<std::string_view> names);
+
+  /// Throws std::logic_error if a key other than these has been read so far.
+  void require_read_among(std::span<const std::string_view> names) const;
 
   /// Writes a resolved part into this table's resolved form.
   template <class Node>

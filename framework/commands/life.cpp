@@ -21,12 +21,15 @@ namespace po = boost::program_options;
 /// A devo operator as a life tells of it.
 struct Narrated {
   std::string name;
-  const Devo* op = nullptr;
+  const Experiment* experiment = nullptr;
+  std::size_t index = 0;    ///< among the experiment's devo operators
   bool is_tallied = false;  ///< whether stress is in points of skip-shift
   bool is_unique = true;    ///< among the names of the experiment's devo operators
 
   Measure measure(Causes::List list) const {
-    const Measure measure = op->measure(list);
+    const Measure measure = call_operator(*experiment, Devo::kind, index, {}, [&] {
+      return experiment->development.operators.at(index).op->measure(list);
+    });
     if (is_tallied && measure.unit == "N") return {"skip-shift", "points"};
     return {printable(measure.name), printable(measure.unit)};
   }
@@ -36,9 +39,10 @@ std::vector<Narrated> narrated_operators(const Experiment& experiment) {
   std::vector<Narrated> operators;
   for (const OperatorUse& use : experiment.uses) {
     if (use.kind != Devo::kind) continue;
-    const Devo& op = *experiment.development.operators.at(operators.size()).op;
-    const bool tallied = experiment.development.probe == Probe::skip_shift && op.observes().stress;
-    Narrated& narrated = operators.emplace_back(Narrated{.name = use.name, .op = &op, .is_tallied = tallied});
+    const std::size_t index = operators.size();
+    const bool tallied = experiment.development.probe == Probe::skip_shift && devo_request(experiment, index).stress;
+    Narrated& narrated = operators.emplace_back(
+        Narrated{.name = use.name, .experiment = &experiment, .index = index, .is_tallied = tallied});
     for (Narrated& other : std::span(operators).first(operators.size() - 1))
       if (other.name == use.name) other.is_unique = narrated.is_unique = false;
   }

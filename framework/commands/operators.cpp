@@ -27,14 +27,10 @@ Json parameters_json(const std::vector<ParameterDescription>& parameters) {
   return list;
 }
 
-std::vector<ParameterDescription> parameters_of(const AvailableOperator& available) {
-  return describe_parameters(*create<Operator>(available));
-}
-
 void print_description(const AvailableOperator& available) {
   std::printf("%s (%s operator, version %s, %s)\n%s\n", available.entry->name, available.entry->kind,
               available.manifest->version, available.manifest->license, available.entry->summary);
-  for (const ParameterDescription& p : parameters_of(available)) {
+  for (const ParameterDescription& p : describe_parameters(available)) {
     std::printf("\n  %s = %s\n      %s", p.name.c_str(), p.fallback.c_str(), p.type.c_str());
     if (!p.allowed.empty()) std::printf(", %s", p.allowed.c_str());
     if (!p.unit.empty() && p.unit != "1") std::printf(" %s", p.unit.c_str());
@@ -60,7 +56,7 @@ Json operator_json(const AvailableOperator& available) {
           {"version", available.manifest->version},
           {"license", available.manifest->license},
           {"file", available.file.string()},
-          {"parameters", parameters_json(parameters_of(available))}};
+          {"parameters", parameters_json(describe_parameters(available))}};
 }
 
 void print_operators(const Registry& registry, const std::string& kind, bool as_json) {

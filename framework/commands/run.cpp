@@ -4,6 +4,7 @@
 #include <csignal>
 #include <iostream>
 
+#include "call_watch.hpp"
 #include "commands/options.hpp"
 #include "commands/progress.hpp"
 #include "commands/verification_report.hpp"
@@ -25,14 +26,15 @@ constexpr int interrupted = 130;
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
 
-/// The first Ctrl-C asks for a stop after the generation under way; the second ends the process at once, which loses
-/// nothing that is committed.
+/// The first Ctrl-C asks for a stop after the generation under way, or ends the process where an operator does not
+/// return; the second ends the process at once. Neither loses anything that is committed.
 void stop_on_interrupt() {
   struct sigaction action {};
   action.sa_handler = [](int) { stop_requested = true; };
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  end_long_calls_after(stop_requested);
 }
 
 /// What is left to do can be done later: Ctrl-C ends the process.

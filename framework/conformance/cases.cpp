@@ -9,7 +9,6 @@
 #include "declarations.hpp"
 #include "describe.hpp"
 #include "evolution.hpp"
-#include "isolation.hpp"
 #include "text.hpp"
 #include "toml_reader.hpp"
 
@@ -17,20 +16,6 @@ namespace evodevo::conformance {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::uint32_t inputs = 16;
-/// Encodings may make bodies of thousands of masses.
-constexpr std::uint32_t few_inputs = 4;
-
-std::string kind_of(const AvailableOperator& subject) { return subject.entry->kind; }
-
-Numbers try_new(const AvailableOperator& subject, std::uint64_t seed, std::uint32_t input) {
-  return try_out(kind_of(subject), *create<Operator>(subject), seed, input);
-}
-
-std::uint32_t inputs_for(const AvailableOperator& subject) {
-  return subject.entry->kind == Encoding::kind ? few_inputs : inputs;
-}
 
 // ---- declarations ----
 
@@ -234,21 +219,6 @@ std::string transcript(const Archive& archive) {
     text += individual->died ? std::to_string(*individual->died) + "\n" : "lives\n";
   }
   return text;
-}
-
-/// What `work` returns in a process that has not called the operator yet, as after a restart.
-std::string in_new_process(const std::function<std::string()>& work) {
-  const auto guarded = [&] {
-    try {
-      return "+" + work();
-    } catch (const std::exception& error) {
-      return "-" + std::string(error.what());
-    }
-  };
-  const ChildEnd end = in_child(guarded, 60);
-  if (!end.crash.empty()) throw Violation("a run with it crashes: " + end.crash);
-  if (end.text.starts_with('-')) throw Violation(end.text.substr(1));
-  return end.text.substr(1);
 }
 
 /// A folder for a run, removed in the end.

@@ -1,10 +1,12 @@
 #include "conformance/conformance.hpp"
 
-#include <chrono>
+#include <dlfcn.h>
+
 #include <ctime>
 
 #include "conformance/exports.hpp"
 #include "isolation.hpp"
+#include "surroundings.hpp"
 #include "text.hpp"
 
 namespace evodevo::conformance {
@@ -12,7 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr unsigned seconds_per_case = 120;
 constexpr double listing_limit = 0.1;  ///< CPU time, s
 
 /// What a child says of a check: the outcome, and behind a newline the reason.
@@ -29,14 +30,19 @@ std::string tell(const std::function<void()>& check) {
   }
 }
 
-Verdict judge(const std::string& subject, const char* name, const std::function<void()>& check) {
-  const ChildEnd end = in_child([&] { return tell(check); }, seconds_per_case);
+Verdict judge(const std::string& subject, const char* name, unsigned seconds, const std::function<void()>& check) {
+  const ChildEnd end = in_child([&] { return tell(check); }, seconds);
+  if (end.timed_out) return {subject, name, "failed", end.crash};
   if (!end.crash.empty()) return {subject, name, "crashed", end.crash};
   const auto newline = end.text.find('\n');
   return {subject, name, end.text.substr(0, newline), end.text.substr(newline + 1)};
 }
 
 void loads(const fs::path& library) {
+  const Surroundings before;
+  dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);  // why it may fail, the registry says
+  if (const std::string changed = before.restore(); !changed.empty())
+    throw Violation("it changes " + changed + " while it is loaded; build it without -ffast-math");
   const Registry registry({library});
   if (!registry.failed().empty()) throw Violation(registry.failed().front().reason);
   if (registry.operators().empty()) throw Violation("it brings no operator");
@@ -60,19 +66,20 @@ void lists_quickly(const fs::path& library) {
 
 }  // namespace
 
-void examine(const fs::path& library, std::uint64_t seed, const std::function<void(const Verdict&)>& report) {
+void examine(const fs::path& library, std::uint64_t seed, const std::function<void(const Verdict&)>& report,
+             unsigned seconds) {
   const std::string file = library.filename().string();
-  const Verdict loaded = judge(file, "loads", [&] { loads(library); });
+  const Verdict loaded = judge(file, "loads", seconds, [&] { loads(library); });
   report(loaded);
   if (loaded.outcome != "passed") return;
-  report(judge(file, "exports", [&] { exports_one_function(library); }));
-  report(judge(file, "listing", [&] { lists_quickly(library); }));
+  report(judge(file, "exports", seconds, [&] { exports_one_function(library); }));
+  report(judge(file, "listing", seconds, [&] { lists_quickly(library); }));
 
   const Registry registry({library});
   for (const AvailableOperator& subject : registry.operators()) {
     const std::string title = std::string(subject.entry->kind) + " " + subject.entry->name;
-    for (const auto& cases : {general_cases(), laws_of(subject.entry->kind)})
-      for (const Case& one : cases) report(judge(title, one.name, [&] { one.check(subject, seed); }));
+    for (const auto& cases : {general_cases(), process_cases(), laws_of(subject.entry->kind)})
+      for (const Case& one : cases) report(judge(title, one.name, seconds, [&] { one.check(subject, seed); }));
   }
 }
 

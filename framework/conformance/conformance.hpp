@@ -30,6 +30,8 @@ struct Case {
 
 /// The cases for operators of every kind.
 std::vector<Case> general_cases();
+/// More of them: what operators leave as it is in the process, and what they call things.
+std::vector<Case> process_cases();
 /// The laws of one kind.
 std::vector<Case> laws_of(std::string_view kind);
 
@@ -40,8 +42,11 @@ struct Verdict {
   std::string reason;   ///< empty where it passed
 };
 
-/// Runs all cases on all operators of a library; `seed` makes all inputs. Reports each verdict as it comes.
+constexpr unsigned seconds_per_case = 60;
+
+/// Runs all cases on all operators of a library; `seed` makes all inputs. Reports each verdict as it comes. A case that
+/// is not done after `seconds` is not kept.
 void examine(const std::filesystem::path& library, std::uint64_t seed,
-             const std::function<void(const Verdict&)>& report);
+             const std::function<void(const Verdict&)>& report, unsigned seconds = seconds_per_case);
 
 }  // namespace evodevo::conformance

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "isolation.hpp"
 #include "philox.hpp"
 #include "text.hpp"
 
@@ -288,6 +289,31 @@ Numbers try_out(std::string_view kind, const Operator& op, std::uint64_t seed, s
   if (kind == Devo::kind) return try_devo(static_cast<const Devo&>(op), seed, input);
   if (kind == Fitness::kind) return try_fitness(static_cast<const Fitness&>(op), seed, input);
   return try_selection(static_cast<const Selection&>(op), seed, input);
+}
+
+std::string kind_of(const AvailableOperator& subject) { return subject.entry->kind; }
+
+std::uint32_t inputs_for(const AvailableOperator& subject) {
+  return subject.entry->kind == Encoding::kind ? 4 : 16;  // encodings may make bodies of thousands of masses
+}
+
+Numbers try_new(const AvailableOperator& subject, std::uint64_t seed, std::uint32_t input) {
+  return try_out(kind_of(subject), *create<Operator>(subject), seed, input);
+}
+
+std::string in_new_process(const std::function<std::string()>& work) {
+  constexpr unsigned seconds = 60;
+  const auto guarded = [&] {
+    try {
+      return "+" + work();
+    } catch (const std::exception& error) {
+      return "-" + std::string(error.what());
+    }
+  };
+  const ChildEnd end = in_child(guarded, seconds);
+  if (!end.crash.empty()) throw Violation("in a process of its own it crashes: " + end.crash);
+  if (end.text.starts_with('-')) throw Violation(end.text.substr(1));
+  return end.text.substr(1);
 }
 
 }  // namespace evodevo::conformance

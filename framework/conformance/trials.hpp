@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -55,5 +57,15 @@ SampleTable sample_table(std::uint64_t seed, std::uint32_t input, std::size_t ro
 /// Calls all that the operator's kind asks for on the input of this number. Throws Violation where the call changes
 /// what is not its own to change.
 Numbers try_out(std::string_view kind, const Operator& op, std::uint64_t seed, std::uint32_t input);
+
+std::string kind_of(const AvailableOperator& subject);
+/// How many inputs a case has for an operator of this kind.
+std::uint32_t inputs_for(const AvailableOperator& subject);
+/// The same of a new instance with its defaults.
+Numbers try_new(const AvailableOperator& subject, std::uint64_t seed, std::uint32_t input);
+
+/// What `work` returns in a process that has not called the operator yet, as after a restart. Throws Violation where it
+/// ends otherwise.
+std::string in_new_process(const std::function<std::string()>& work);
 
 }  // namespace evodevo::conformance

@@ -54,8 +54,9 @@ class Casting {
 };
 
 double first_window(const Experiment& experiment) {
-  double opens = experiment.fitness.front()->observes().settle;
-  for (const auto& fitness : experiment.fitness) opens = std::min(opens, fitness->observes().settle);
+  double opens = fitness_request(experiment, 0).settle;
+  for (std::size_t i = 1; i < experiment.fitness.size(); ++i)
+    opens = std::min(opens, fitness_request(experiment, i).settle);
   return opens;
 }
 
@@ -122,7 +123,7 @@ Film mapping_film(const Blueprint& blueprint, BuiltBody built) {
 }
 
 Json random_robot(const Experiment& experiment, const Individual& individual, std::size_t budget) {
-  const Blueprint blueprint = decoded(experiment, individual.genome);
+  const Blueprint blueprint = decoded(experiment, individual.genome, {.individual = individual.id});
   BuiltBody built = build_body(blueprint);
   Json robot = {{"individual", individual.id}, {"role", "random"}, {"reason", built.failure}};
   robot["status"] = name(built.failure.empty() ? Status::ok : Status::invalid);

@@ -1,4 +1,6 @@
 // The conformance kit: all built-in operators keep to it, and each wrong plugin is caught by the case meant for it.
+#include "conformance/conformance.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -99,6 +101,10 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"order", "order", "failed who lives on depends on the order of birth"},
         Broken{"elite", "elite", "failed the row with the best first score does not live on"},
         Broken{"failed", "failed", "failed a failed row lives on instead of a sound one"},
+        Broken{"hidden_state", "hidden-state", "failed input "},
+        Broken{"surroundings", "surroundings", "failed it changes the locale in its calls"},
+        Broken{"names", "names", "failed the declaration of parameter \"genes\" has markup: <script>"},
+        Broken{"names_control", "names", "failed the parameter \"ge"},
         Broken{"crashing", "same-seed", "crashed Segmentation fault"}),
     [](const auto& broken) { return std::string(broken.param.plugin); });
 
@@ -113,6 +119,21 @@ TEST(Conformance, ALibraryThatDoesNotLoadIsToldAlone) {
   const Finished none = testing::run({EVODEVO_PROGRAM, "conform", "/no/such"});
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_EQ(none.output, "evodevo: conform /no/such: is no file; give the libraries to check, NAME.evodevo.so\n");
+}
+
+TEST(Conformance, WhatLoadingChangesIsAFault) {
+  const auto outcomes = verdicts(fs::path(EVODEVO_FAULTY_PLUGINS) / "rounds" / "plugin.evodevo.so", 1);
+  EXPECT_THAT(outcomes.at("loads"), ::testing::StartsWith("failed it changes the rounding mode while it is loaded"));
+}
+
+TEST(Conformance, ACaseThatNeverEndsIsNotKept) {
+  std::map<std::string, std::string> outcomes;
+  const auto note = [&](const conformance::Verdict& verdict) {
+    outcomes[verdict.name] = verdict.outcome + " " + verdict.reason;
+  };
+  conformance::examine(wrong("endless"), 1, note, 1);
+  EXPECT_THAT(outcomes.at("nothing"), ::testing::StartsWith("failed not done after 1 s"));
+  EXPECT_EQ(outcomes.at("layout"), "passed ") << "and the next case comes";
 }
 
 TEST(Conformance, ACaseThatCannotSayAnythingIsSkipped) {

@@ -182,13 +182,14 @@ TEST_F(Plugins, AnOperatorThatErrsIsNamedWithItsFile) {
   install("throws");
   const Finished thrown = run_with("nothing", {"--plugin-path", own()});
   EXPECT_EQ(thrown.exit_code, 1);
-  EXPECT_THAT(thrown.output,
-              HasSubstr("mutation operator \"nothing\" of " + library_.string() + ": nothing to mutate" + remedy));
+  EXPECT_THAT(thrown.output, HasSubstr("mutation operator \"nothing\" of " + library_.string() +
+                                       ", individual 6, seed 7: nothing to mutate" + remedy));
   install("nan");
   const Finished poisoned = run_with("nothing", {"--plugin-path", own(), "--out", folder_ + "2"});
   EXPECT_EQ(poisoned.exit_code, 1);
-  EXPECT_THAT(poisoned.output, HasSubstr("mutation operator \"nothing\" of " + library_.string() +
-                                         ": made a genome with gene 0 = not a number, which is not allowed" + remedy));
+  EXPECT_THAT(poisoned.output,
+              HasSubstr("mutation operator \"nothing\" of " + library_.string() +
+                        ", individual 6, seed 7: made a genome with gene 0 = not a number, which is not allowed" + remedy));
 }
 
 TEST_F(Plugins, AnOperatorThatCrashesIsNamedWithItsFile) {
@@ -196,7 +197,8 @@ TEST_F(Plugins, AnOperatorThatCrashesIsNamedWithItsFile) {
   const Finished crashed = run_with("nothing", {"--plugin-path", own()});
   EXPECT_NE(crashed.exit_code, 0);
   EXPECT_THAT(crashed.output, HasSubstr("evodevo: mutation operator \"nothing\" of " + library_.string() +
-                                        " crashed; `evodevo conform " + library_.string() + "` tests it."));
+                                        ", individual 6, seed 7: crashed: Segmentation fault; `evodevo conform " +
+                                        library_.string() + "` tests it."));
 }
 
 TEST_F(Plugins, ARunOutlivesTheFolderOfItsOperators) {

@@ -132,6 +132,34 @@ TEST(BodyBuilding, ListsHoldAnEntryForEachMass) {
   for (const std::size_t entries : {0u, 3u}) EXPECT_EQ(fault(&Blueprint::sizes, entries), "");
 }
 
+TEST(BodyBuilding, NoTwoSpringsJoinOnePair) {
+  Blueprint blueprint = row({{0, 0}, {1, 0}, {3, 0}, {7, 0}}, 0);
+  const World world{.materials = blueprint.body.materials};
+  const auto fault = [&](std::vector<Spring> springs) -> std::string {
+    blueprint.body.springs = std::move(springs);
+    try {
+      check_blueprint(blueprint, world);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(fault({{0, 1, 1, 0}, {2, 0, 1, 0}, {1, 2, 1, 0}, {3, 1, 1, 0}, {2, 3, 1, 0}}), "");
+  EXPECT_EQ(fault({{0, 1, 1, 0}, {3, 2, 1, 0}, {2, 3, 1, 0}, {1, 0, 1, 0}}),
+            "spring 2 joins masses 2 and 3, which are joined already");
+  EXPECT_EQ(fault({{0, 3, 1, 0}, {1, 3, 1, 0}, {0, 2, 1, 0}, {3, 0, 1, 0}}),
+            "spring 3 joins masses 3 and 0, which are joined already");
+}
+
+TEST(BodyBuilding, NeighboursThatAreJoinedAlreadyAreNotJoinedAgain) {
+  Blueprint blueprint = row({{0, 0}, {1, 0}, {3, 0}}, 1);
+  blueprint.body.springs = {{1, 0, 0.7, 0}};
+  const Body body = build_body(blueprint).body;
+  ASSERT_EQ(body.springs.size(), 2u);
+  EXPECT_EQ(body.springs[0].rest_length, 0.7) << "the encoding's own stays";
+  EXPECT_EQ(body.springs[1].a + body.springs[1].b, 3u) << "of masses 1 and 2";
+}
+
 TEST(BodyBuilding, LooseMassesAreThoseOutsideTheLargestPiece) {
   Body body = row({{0, 0}, {1, 0}, {10, 0}, {11, 0}, {12, 0}, {99, 0}}, 0).body;
   body.springs = {{0, 1, 1, 0}, {3, 2, 1, 0}, {4, 3, 1, 0}};

@@ -305,9 +305,9 @@ TEST(Development, OperatorsSeeWhatTheyAskForAlone) {
   operators.clear();
   operators.push_back({std::make_unique<Watcher>(nothing, SpringRequest{}), {}});
   operators.push_back({std::make_unique<Watcher>(peak, SpringRequest{.peak_force = true}), {.from = 2}});
-  EXPECT_FALSE(experiment.development.recording(1).of_springs()) << "the second comes later";
-  EXPECT_TRUE(experiment.development.recording(2).peak_force);
-  EXPECT_FALSE(experiment.development.recording(2).stress);
+  EXPECT_FALSE(recording(experiment, 1).of_springs()) << "the second comes later";
+  EXPECT_TRUE(recording(experiment, 2).peak_force);
+  EXPECT_FALSE(recording(experiment, 2).stress);
   matured(experiment);
   EXPECT_EQ(nothing.stress, (std::vector<std::vector<double>>(2)));
   EXPECT_EQ(nothing.peak_force, (std::vector<std::vector<double>>(2)));

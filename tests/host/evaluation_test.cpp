@@ -402,9 +402,10 @@ TEST(Evaluation, AFaultyOperatorIsNamed) {
     evaluate(experiment, {{.id = 5, .genome = {1, 1}}});
     FAIL() << "the fault went unnoticed";
   } catch (const std::runtime_error& error) {
-    EXPECT_EQ(error.what(), "devo operator \"spring-turnover\" of " + file_of(experiment, "devo") +
-                                ", individual 5, cycle 1: joins masses 0 and 0, which are one; correct the operator "
-                                "and build it again, or begin a new run without it");
+    EXPECT_EQ(error.what(),
+              "devo operator \"spring-turnover\" of " + file_of(experiment, "devo") +
+                  ", individual 5, cycle 1, seed 7: joins masses 0 and 0, which are one; correct the operator "
+                  "and build it again, or begin a new run without it");
   }
 }
 
@@ -423,9 +424,9 @@ TEST(Evaluation, AFaultyEncodingIsNamed) {
     evaluate(experiment, {{.genome = {1, 1}}});
     FAIL() << "the fault went unnoticed";
   } catch (const std::runtime_error& error) {
-    EXPECT_EQ(error.what(),
-              "encoding operator \"voxel\" of " + file_of(experiment, "encoding") +
-                  ": spring 0 dangles; correct the operator and build it again, or begin a new run without it");
+    EXPECT_EQ(error.what(), "encoding operator \"voxel\" of " + file_of(experiment, "encoding") +
+                                ", individual 0, seed 7: spring 0 dangles; correct the operator and build it again, or "
+                                "begin a new run without it");
   }
 }
 

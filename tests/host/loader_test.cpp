@@ -6,6 +6,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cfenv>
+
+#include "declarations.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo {
@@ -72,6 +75,63 @@ TEST(Loader, OnlyFilesAreLoaded) {
   const Registry registry({scratch / ""});
   EXPECT_EQ(registry.failed().size(), 3u);
   for (const FailedLibrary& failed : registry.failed()) EXPECT_THAT(failed.reason, ::testing::StartsWith("is no file"));
+}
+
+TEST(Loader, WhatAManifestLacksIsNamedAndDisturbsNoOther) {
+  const std::pair<const char*, const char*> faults[] = {
+      {"null_kind", "its operator 0: the kind is missing"},
+      {"null_name", "its operator 0: the name is missing"},
+      {"empty_name", "its operator 0: the name is missing"},
+      {"null_summary", "its operator 0: the summary is missing"},
+      {"null_create", "its operator 0: it has no function that creates it"},
+      {"creates_null", "its mutation operator \"nothing\" is no object of the class of this kind"},
+      {"other_class", "its devo operator \"nothing\" is no object of the class of this kind"},
+      {"null_toolchain", "its toolchain is nothing, this evodevo's is "},
+      {"null_version", "its version is missing"},
+      {"null_entries", "it has no list of operators"},
+      {"constructor_throws_a_number",
+       "its mutation operator \"nothing\" cannot be made: \"it threw something that is no std::exception\""},
+      {"static_throws", "crashes while it is loaded: "}};
+  std::vector<fs::path> all;
+  for (const auto& [fault, reason] : faults) {
+    EXPECT_THAT(refusal(fault), ::testing::StartsWith(reason)) << fault;
+    EXPECT_THAT(refusal(fault), ::testing::HasSubstr("; ")) << fault << " lacks a remedy";
+    all.emplace_back(fs::path(EVODEVO_FAULTY_PLUGINS) / fault);
+  }
+  all.emplace_back(fs::path(EVODEVO_FAULTY_PLUGINS) / "sound");
+  const Registry registry(all);
+  EXPECT_EQ(registry.failed().size(), std::size(faults));
+  EXPECT_NE(registry.find("mutation", "nothing"), nullptr) << "of the sound library, which came last";
+}
+
+/// Has one parameter, of a given name.
+struct Named final : Operator {
+  std::string name;
+  double value = 1;
+  void parameters(Parameters& p) override { p.real(value, name, {0, 1, "1"}, "A parameter of any name."); }
+};
+
+TEST(Loader, NoParameterTakesAKeyOfTheHost) {
+  EXPECT_THAT(refusal("reserved"),
+              ::testing::StartsWith("its mutation operator \"nothing\" calls a parameter \"every\", which is a key of "
+                                    "the host's own in every operator's table; rename"));
+  Named op;
+  for (const char* key : {"name", "mass", "probability", "from", "to", "every", "label", "over"}) {
+    op.name = key;
+    EXPECT_EQ(taken_name(op), key);
+  }
+  op.name = "masses";
+  EXPECT_EQ(taken_name(op), "");
+}
+
+TEST(Loader, WhatALibraryChangesWhileItIsLoadedIsPutBackAndNamed) {
+  ASSERT_EQ(std::fegetround(), FE_TONEAREST);
+  ::testing::internal::CaptureStderr();
+  const Registry registry({fs::path(EVODEVO_FAULTY_PLUGINS) / "rounds"});
+  const std::string said = ::testing::internal::GetCapturedStderr();
+  EXPECT_EQ(std::fegetround(), FE_TONEAREST);
+  EXPECT_NE(registry.find("mutation", "nothing"), nullptr) << "it is used";
+  EXPECT_THAT(said, ::testing::HasSubstr("rounds/plugin.evodevo.so: it changed the rounding mode, which has been put"));
 }
 
 TEST(Loader, ALibraryThatLacksASymbolIsRefusedWithItsName) {

@@ -1,4 +1,5 @@
 // Libraries with one fault each, which FAULT names: the host must refuse them, or stop where their operator errs.
+#include <cfenv>
 #include <csignal>
 #include <cstdlib>
 #include <limits>
@@ -17,6 +18,10 @@ namespace {
 [[maybe_unused]] const int crash = std::raise(SIGSEGV);
 #elif defined(FAULT_EXIT)
 [[maybe_unused]] const bool gone = (std::_Exit(3), true);
+#elif defined(FAULT_STATIC_THROWS)
+[[maybe_unused]] const bool thrown = (throw 7, true);  // NOLINT
+#elif defined(FAULT_ROUNDS)
+[[maybe_unused]] const bool rounds = (std::fesetround(FE_UPWARD), true);
 #endif
 
 struct Nothing final : evodevo::Mutation {
@@ -30,6 +35,13 @@ struct Nothing final : evodevo::Mutation {
   }
 #elif defined(FAULT_CONSTRUCTOR)
   Nothing() { throw std::runtime_error("no licence"); }
+#elif defined(FAULT_CONSTRUCTOR_THROWS_A_NUMBER)
+  Nothing() { throw 7; }
+#elif defined(FAULT_RESERVED)
+  double every = 7;
+  void parameters(evodevo::Parameters& p) override {
+    p.real(every, "every", {0, 50, "1"}, "Genes from one to the next.");
+  }
 #endif
 
   void mutate([[maybe_unused]] evodevo::Genome& genome, const evodevo::Layout&, evodevo::Rng&) const override {
@@ -66,6 +78,20 @@ constexpr evodevo::OperatorEntry entries[] = {
     evodevo::operator_entry<Nothing>("nothing", "Changes\nnothing."),
 #elif defined(FAULT_CONTROLS_IN_OBJECTIVE)
     evodevo::operator_entry<Way>("way", "Measures nothing."),
+#elif defined(FAULT_NULL_KIND)
+    {nullptr, "nothing", "Is of no kind.", []() -> evodevo::Operator* { return new Nothing; }},
+#elif defined(FAULT_NULL_NAME)
+    {"mutation", nullptr, "Has no name.", []() -> evodevo::Operator* { return new Nothing; }},
+#elif defined(FAULT_EMPTY_NAME)
+    evodevo::operator_entry<Nothing>("", "Has an empty name."),
+#elif defined(FAULT_NULL_SUMMARY)
+    evodevo::operator_entry<Nothing>("nothing", nullptr),
+#elif defined(FAULT_NULL_CREATE)
+    {"mutation", "nothing", "Has no function that creates it.", nullptr},
+#elif defined(FAULT_CREATES_NULL)
+    {"mutation", "nothing", "Is not created.", []() -> evodevo::Operator* { return nullptr; }},
+#elif defined(FAULT_OTHER_CLASS)
+    {"devo", "nothing", "Is a mutation.", []() -> evodevo::Operator* { return new Nothing; }},
 #else
     evodevo::operator_entry<Nothing>("nothing", "Changes nothing."),
 #if defined(FAULT_TWIN)
@@ -97,6 +123,8 @@ constexpr evodevo::PluginManifest manifest = {
 #endif
 #if defined(FAULT_TOOLCHAIN)
     "another compiler",
+#elif defined(FAULT_NULL_TOOLCHAIN)
+    nullptr,
 #else
     evodevo::plugin_toolchain,
 #endif
@@ -107,11 +135,17 @@ constexpr evodevo::PluginManifest manifest = {
 #endif
 #if defined(FAULT_CONTROLS_IN_VERSION)
     "1.0\x07",
+#elif defined(FAULT_NULL_VERSION)
+    nullptr,
 #else
     EVODEVO_PLUGIN_VERSION,
 #endif
     EVODEVO_PLUGIN_LICENSE,
+#if defined(FAULT_NULL_ENTRIES)
+    nullptr,
+#else
     entries,
+#endif
     std::size(entries)};
 
 }  // namespace

@@ -1,5 +1,8 @@
 // Plugins that load and break one rule each, which WRONG names.
+#include <unistd.h>
+
 #include <algorithm>
+#include <clocale>
 #include <cmath>
 #include <csignal>
 #include <ctime>
@@ -156,6 +159,10 @@ struct Wrong final : evodevo::Mutation {
   void parameters(evodevo::Parameters& p) override {
 #if defined(WRONG_DECLARATIONS)
     p.integer(genes_, "genes", {0, 5, "1"}, "");
+#elif defined(WRONG_NAMES)
+    p.integer(genes_, "genes", {0, 5, "1"}, "Genes that change <script>alert(1)</script>.");
+#elif defined(WRONG_NAMES_CONTROL)
+    p.integer(genes_, "ge\nnes", {0, 5, "1"}, "Genes that change.");
 #elif defined(WRONG_REFUSALS)
     try {
       p.integer(genes_, "genes", {0, 5, "1"}, "Genes that change.");
@@ -171,6 +178,9 @@ struct Wrong final : evodevo::Mutation {
     ++calls_in_this_process;
 #if defined(WRONG_NOTHING)
     if (genome.empty()) genome.push_back(1);
+#endif
+#if defined(WRONG_ENDLESS)
+    while (layout.genes.empty()) pause();
 #endif
     if (layout.genes.empty()) return;
     float& gene = genome[0];
@@ -189,6 +199,10 @@ struct Wrong final : evodevo::Mutation {
     gene = layout.genes[0].high + 1;
 #elif defined(WRONG_CRASHING)
     std::raise(SIGSEGV);
+#elif defined(WRONG_HIDDEN_STATE)
+    if (calls_in_this_process > 100) gene = layout.genes[0].low;
+#elif defined(WRONG_SURROUNDINGS)
+    std::setlocale(LC_ALL, "C.UTF-8");
 #endif
   }
 };

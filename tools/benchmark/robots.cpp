@@ -36,7 +36,8 @@ std::vector<Genome> random_genomes(const Experiment& experiment, std::size_t cou
       throw std::runtime_error("too few random robots of " + experiment.name + " have a muscle and " +
                                std::to_string(springs) + " springs; name an experiment with larger ones");
     Rng rng = experiment.world.rng(seed);
-    Genome genome = experiment.encoding->random(experiment.layout, rng);
+    Genome genome = call_operator(experiment, Encoding::kind, 0, {},
+                                  [&] { return experiment.encoding->random(experiment.layout, rng); });
     const auto robot = robot_of(experiment, genome);
     if (robot && has_muscle(*robot) && robot->springs.size() >= springs) genomes.push_back(std::move(genome));
   }

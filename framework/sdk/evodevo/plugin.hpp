@@ -16,7 +16,7 @@
 namespace evodevo {
 
 inline constexpr std::uint64_t plugin_magic = 0x6f7665646f7665ull;  // "evodevo", little-endian
-/// Raised whenever anything that crosses the border changes its meaning.
+/// Raised whenever anything that crosses the border changes its meaning; tests/host/plugin_border_test.cpp sees to it.
 inline constexpr std::uint32_t plugin_epoch = 5;
 
 /// A digest of the sizes of everything that crosses the border.

@@ -1,0 +1,107 @@
+// What operators of every kind leave as it is, and what they call things.
+#include <algorithm>
+#include <cstring>
+
+#include "conformance/trials.hpp"
+#include "describe.hpp"
+#include "surroundings.hpp"
+
+namespace evodevo::conformance {
+namespace {
+
+// ---- the process ----
+
+std::string bytes_of(const Numbers& numbers) {
+  std::string bytes(numbers.size() * sizeof(double), '\0');
+  std::memcpy(bytes.data(), numbers.data(), bytes.size());
+  return bytes;
+}
+
+/// Every call gives what it gives as the first of a process, whatever has been called before.
+void no_hidden_state(const AvailableOperator& subject, std::uint64_t seed) {
+  constexpr std::uint32_t rounds = 16;
+  const std::uint32_t inputs = inputs_for(subject);
+  std::vector<std::string> first;
+  for (std::uint32_t input = 0; input < inputs; ++input)
+    first.push_back(in_new_process([&] { return bytes_of(try_new(subject, seed, input)); }));
+  for (std::uint32_t call = 0; call < rounds * inputs; ++call) {
+    const std::uint32_t round = call / inputs, next = call % inputs, input = round % 2 ? next : inputs - 1 - next;
+    if (bytes_of(try_new(subject, seed, input)) != first[input])
+      throw Violation("input " + std::to_string(input) + " gives one result as the first call of a process and " +
+                      "another after " + std::to_string(call) +
+                      " calls; keep nothing between calls, in no variable of the library either");
+  }
+}
+
+/// How numbers are rounded, and the locale, are everybody's.
+void same_surroundings(const AvailableOperator& subject, std::uint64_t seed) {
+  const Surroundings before;
+  const auto require_same = [&](const char* where) {
+    if (const std::string changed = before.restore(); !changed.empty())
+      throw Violation("it changes " + changed + " in " + where);
+  };
+  // not by create(), which puts everything back
+  const std::unique_ptr<Operator> op(subject.entry->create());
+  require_same("its constructor");
+  describe_parameters(*op);
+  require_same("parameters()");
+  for (std::uint32_t input = 0; input < inputs_for(subject); ++input) {
+    try_out(kind_of(subject), *op, seed, input);
+    require_same("its calls");
+  }
+}
+
+// ---- names ----
+
+bool is_letter(char letter) { return std::isalnum(static_cast<unsigned char>(letter)) != 0; }
+
+/// Names are typed, and are keys of TOML.
+void require_name(const std::string& what, std::string_view name, std::string_view besides) {
+  const auto is_allowed = [&](char letter) { return is_letter(letter) || besides.find(letter) != besides.npos; };
+  if (name.empty() || !std::all_of(name.begin(), name.end(), is_allowed))
+    throw Violation(what + " \"" + std::string(name) + "\" is no name; expected letters, digits and " +
+                    std::string(besides));
+}
+
+/// Texts are shown on terminals and pages.
+void require_plain(const std::string& what, std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto letter = static_cast<unsigned char>(text[i]);
+    if (letter < ' ' || letter == 0x7f) throw Violation(what + " has a control character");
+    if (letter == '<' && i + 1 < text.size() && (is_letter(text[i + 1]) || text[i + 1] == '/' || text[i + 1] == '!'))
+      throw Violation(what + " has markup: " + std::string(text.substr(i)));
+  }
+}
+
+void plain_names(const AvailableOperator& subject, std::uint64_t) {
+  require_name("its name", subject.entry->name, "-._");
+  require_plain("its summary", subject.entry->summary);
+  require_plain("its version", subject.manifest->version);
+  require_plain("its licence", subject.manifest->license);
+  for (const ParameterDescription& p : describe_parameters(subject)) {
+    require_name("the parameter", p.name, "-_");
+    for (const std::string& text : {p.fallback, p.allowed, p.unit, p.text})
+      require_plain("the declaration of parameter \"" + p.name + "\"", text);
+  }
+  const auto op = create<Operator>(subject);
+  if (const auto* fitness = dynamic_cast<const Fitness*>(op.get())) {
+    for (const Objective& objective : fitness->objectives()) {
+      require_plain("the name of an objective", objective.name);
+      require_plain("the unit of an objective", objective.unit);
+    }
+  }
+  if (const auto* devo = dynamic_cast<const Devo*>(op.get())) {
+    for (const Causes::List list : Causes::lists) {
+      require_plain("the name of a measure", devo->measure(list).name);
+      require_plain("the unit of a measure", devo->measure(list).unit);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Case> process_cases() {
+  return {{"names", plain_names}, {"hidden-state", no_hidden_state}, {"surroundings", same_surroundings}};
+}
+
+}  // namespace evodevo::conformance

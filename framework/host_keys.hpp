@@ -1,0 +1,20 @@
+// The keys of an operator's table that are the host's own, whatever operator the table names.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace evodevo::host_key {
+
+inline constexpr std::string_view name = "name", mass = "mass", probability = "probability", from = "from", to = "to",
+                                  every = "every";
+/// Not read yet, but announced to those who write operators.
+inline constexpr std::string_view label = "label", over = "over";
+
+inline constexpr std::array all{name, mass, probability, from, to, every, label, over};
+
+/// Whether no operator may call a parameter so.
+constexpr bool is_reserved(std::string_view key) { return std::find(all.begin(), all.end(), key) != all.end(); }
+
+}  // namespace evodevo::host_key

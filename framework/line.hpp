@@ -1,0 +1,38 @@
+// Text that may be put together where nothing may be allocated, as in a handler of signals.
+#pragma once
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+namespace evodevo {
+
+/// A text of limited length; what goes beyond is cut off.
+class Line {
+ public:
+  Line& operator<<(std::string_view text) {
+    const std::size_t fits = std::min(text.size(), text_.size() - size_);
+    std::memcpy(text_.data() + size_, text.data(), fits);
+    size_ += fits;
+    return *this;
+  }
+  Line& operator<<(std::int64_t number) {
+    std::array<char, 24> digits;
+    const char* end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
+    return *this << std::string_view(digits.data(), end);
+  }
+
+  std::string_view text() const { return {text_.data(), size_}; }
+  void write_to(int file) const { [[maybe_unused]] const ssize_t written = write(file, text_.data(), size_); }
+
+ private:
+  std::array<char, 8192> text_;  // two of the system's longest paths
+  std::size_t size_ = 0;
+};
+
+}  // namespace evodevo

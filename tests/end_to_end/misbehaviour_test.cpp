@@ -1,0 +1,179 @@
+// Operators that misbehave: the run ends, or goes on, by name of the one who did it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "archive.hpp"
+#include "support/experiments.hpp"
+#include "support/process.hpp"
+#include "support/scratch.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Finished;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::Process;
+
+class Misbehaviour : public ::testing::Test {
+ protected:
+  testing::Scratch scratch_;
+  std::string file_ = scratch_.write("small.toml", testing::small_experiment);
+  std::string folder_ = (scratch_ / "run").string();
+  std::string library_ = (fs::path(EVODEVO_FAULTY_PLUGINS) / "misbehaving/plugin.evodevo.so").string();
+
+  /// A run in which the operator in table `table` does `how`.
+  std::vector<std::string> run_with(const std::string& table, const std::string& how,
+                                    const std::string& more = "") const {
+    return {EVODEVO_PROGRAM,
+            "run",
+            file_,
+            "--out",
+            folder_,
+            "--set",
+            table + "={name='misbehaves',how='" + how + "'" + more + "}",
+            "--plugin-path",
+            library_};
+  }
+  /// The same of a mutation that every child goes through.
+  std::vector<std::string> mutating(const std::string& how) const {
+    return run_with("mutation.0", how, ",probability=1.0");
+  }
+  std::string named(const std::string& kind) const { return kind + " operator \"misbehaves\" of " + library_; }
+  std::size_t generations_kept() const { return Archive::read(folder_).generations().size(); }
+};
+
+/// Reads on until a line has the text.
+void read_to(Process& process, const std::string& text) {
+  while (const auto line = process.read_line())
+    if (line->find(text) != std::string::npos) return;
+  ADD_FAILURE() << "no line has: " << text << "\n" << process.output();
+}
+
+/// In the environment of what is started while it lives.
+struct Patience {
+  explicit Patience(const char* seconds) { setenv("EVODEVO_PATIENCE", seconds, 1); }
+  ~Patience() { unsetenv("EVODEVO_PATIENCE"); }
+};
+
+TEST_F(Misbehaviour, ACallThatNeverEndsIsNamedAndOneCtrlCEndsIt) {
+  const Patience patience("0.05");
+  Process process(mutating("hang"));
+  read_to(process, "warning: " + named("mutation") + ", individual ");
+  process.send(SIGINT);
+  EXPECT_EQ(process.wait(), 130) << process.output();
+  EXPECT_THAT(process.output(), HasSubstr("evodevo: interrupted: " + named("mutation") + ", individual "));
+  EXPECT_THAT(process.output(), HasSubstr(", seed 7: has not returned for "));
+  EXPECT_EQ(generations_kept(), 1u);
+}
+
+TEST_F(Misbehaviour, CtrlCBeforeTheWarningSufficesToo) {
+  const Patience patience("0.5");
+  Process process(mutating("hang"));
+  read_to(process, "generation 0");
+  process.send(SIGINT);
+  EXPECT_EQ(process.wait(), 130) << process.output();
+  EXPECT_THAT(process.output(), HasSubstr("evodevo: interrupted: " + named("mutation") + ", individual "));
+  EXPECT_EQ(generations_kept(), 1u);
+}
+
+TEST_F(Misbehaviour, AnOperatorThatExitsIsNoSuccess) {
+  for (const char* how : {"exit", "exit-at-once", "quick-exit"}) {
+    fs::remove_all(folder_);
+    const Finished finished = testing::run(mutating(how));
+    EXPECT_EQ(finished.exit_code, 1) << how << finished.output;
+    EXPECT_THAT(finished.output,
+                HasSubstr(named("mutation") + ", individual 6, seed 7: it ended the process with exit code 0"))
+        << how;
+    EXPECT_EQ(generations_kept(), 1u);
+  }
+}
+
+TEST_F(Misbehaviour, AStackThatOverflowsIsNamed) {
+  const Finished on_main_thread = testing::run(mutating("overflow"));
+  EXPECT_EQ(on_main_thread.exit_code, 128 + SIGSEGV);
+  EXPECT_THAT(on_main_thread.output, HasSubstr(named("mutation") + ", individual 6, seed 7: its stack overflowed"));
+  fs::remove_all(folder_);
+  const Finished on_another = testing::run(run_with("development.operator.0", "overflow"));
+  EXPECT_EQ(on_another.exit_code, 128 + SIGSEGV);
+  EXPECT_THAT(on_another.output, ::testing::ContainsRegex("devo operator .*, cycle 2, seed 7: its stack overflowed"));
+}
+
+TEST_F(Misbehaviour, ACrashIsNamedWithIndividualCycleAndSeed) {
+  const auto crash = [&](const std::string& table, const std::string& how) {
+    fs::remove_all(folder_);
+    const Finished finished = testing::run(run_with(table, how));
+    EXPECT_EQ(finished.exit_code, 128 + SIGSEGV) << finished.output;
+    return finished.output;
+  };
+  EXPECT_THAT(
+      crash("development.operator.0", "crash"),
+      ::testing::ContainsRegex("devo operator \"misbehaves\" of .*, individual [0-5], cycle 2, seed 7: crashed"));
+  EXPECT_THAT(crash("development.operator.0", "crash-when-asked"), HasSubstr(named("devo") + ", seed 7: crashed"));
+  EXPECT_THAT(crash("encoding", "crash-in-layout"), HasSubstr(named("encoding") + ", seed 7: crashed"));
+  EXPECT_THAT(crash("encoding", "crash"),
+              ::testing::ContainsRegex("encoding operator .*, individual [0-5], seed 7: crashed"));
+  fs::remove_all(folder_);
+  const Finished at_end = testing::run(mutating("crash-at-end"));
+  EXPECT_EQ(at_end.exit_code, 128 + SIGSEGV);
+  EXPECT_THAT(at_end.output, HasSubstr(named("mutation") + ": crashed"));
+}
+
+TEST_F(Misbehaviour, WhatItChangesForAllIsPutBackAndNamed) {
+  ASSERT_EQ(testing::run(mutating("well")).exit_code, 0);
+  const double best = *Archive::read(folder_).generations().back().best;
+  for (const char* how : {"round", "flush", "locale", "thread-locale", "global-locale"}) {
+    fs::remove_all(folder_);
+    const Finished finished = testing::run(mutating(how));
+    EXPECT_EQ(finished.exit_code, 0) << how << finished.output;
+    EXPECT_THAT(finished.output, HasSubstr("warning: " + named("mutation") + ": it changed ")) << how;
+    EXPECT_EQ(*Archive::read(folder_).generations().back().best, best) << how;
+  }
+}
+
+TEST_F(Misbehaviour, WhatNoLifeCanBeMeasuredByIsRefused) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"no-window", "settle = 0 s and window = 0 s; expected"},
+      {"endless-window", "settle = 0 s and window = no finite number; expected"},
+      {"early-window", "settle = -0.1 s and window = 0.1 s; expected"},
+      {"window-that-is-no-number", "settle = no finite number and window = 0.1 s; expected"},
+      {"no-objective", "has no objectives"},
+      {"nameless-objective", "an objective without a name"}};
+  for (const auto& [how, reason] : cases) {
+    const Finished finished = testing::run(run_with("fitness.0", how));
+    EXPECT_EQ(finished.exit_code, 2) << how << finished.output;
+    EXPECT_THAT(finished.output, HasSubstr("fitness.0.name = \"misbehaves\": this operator ")) << how;
+    EXPECT_THAT(finished.output, HasSubstr(reason)) << how;
+    EXPECT_FALSE(fs::exists(folder_));
+  }
+  const Finished scores = testing::run(run_with("fitness.0", "one-score-too-many"));
+  EXPECT_EQ(scores.exit_code, 1);
+  EXPECT_THAT(scores.output, HasSubstr("gave 2 scores for 1 objectives"));
+  EXPECT_THAT(scores.output, HasSubstr(named("fitness") + ", individual "));
+}
+
+TEST_F(Misbehaviour, WhatItThrowsIsNamedWhereverItIsCalled) {
+  for (const auto& [table, how] :
+       {std::pair("encoding", "throw-in-layout"), std::pair("development.operator.0", "throw-when-asked")}) {
+    const Finished finished = testing::run(run_with(table, how));
+    EXPECT_EQ(finished.exit_code, 2) << finished.output;
+    EXPECT_THAT(finished.output, HasSubstr(std::string(table) + ".name = \"misbehaves\": it threw something"));
+  }
+}
+
+TEST_F(Misbehaviour, ABlueprintWithDoubledSpringsIsRefused) {
+  const auto refused = [&](const char* how) {
+    fs::remove_all(folder_);
+    const Finished finished = testing::run(run_with("encoding", how));
+    EXPECT_EQ(finished.exit_code, 1) << finished.output;
+    EXPECT_THAT(finished.output, HasSubstr(named("encoding") + ", individual "));
+    return finished.output;
+  };
+  EXPECT_THAT(refused("twin"), HasSubstr("spring 3 joins masses 1 and 2, which are joined already"));
+  EXPECT_THAT(refused("turned-twin"), HasSubstr("spring 3 joins masses 2 and 1, which are joined already"));
+  EXPECT_THAT(refused("loop"), HasSubstr("spring 3 joins a mass to itself"));
+}
+
+}  // namespace
+}  // namespace evodevo

@@ -1,0 +1,137 @@
+// Operators of every kind that load and then do, where `how` says so, what no operator may.
+#include <unistd.h>
+
+#include <cfenv>
+#include <chrono>
+#include <clocale>
+#include <csignal>
+#include <cstdlib>
+#include <limits>
+#include <locale>
+#include <thread>
+
+#include "evodevo/plugin.hpp"
+
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
+namespace {
+
+using evodevo::Parameters;
+
+volatile bool endless = true;
+
+/// Overflows the stack, not in a way that a compiler turns into a loop.
+int deeper(int depth) {
+  volatile char room[4096] = {};
+  room[0] = static_cast<char>(depth);
+  return endless ? deeper(depth + 1) + room[0] : depth;
+}
+
+struct Mutation final : evodevo::Mutation {
+  std::string how = "well";
+  mutable bool called = false;
+
+  ~Mutation() override {
+    if (called && how == "crash-at-end") std::raise(SIGSEGV);
+  }
+  void parameters(Parameters& p) override {
+    p.choice(how, "how",
+             {"well", "hang", "exit", "exit-at-once", "quick-exit", "overflow", "crash-at-end", "round", "flush",
+              "locale", "thread-locale", "global-locale"},
+             "What it does.");
+  }
+  void mutate(evodevo::Genome&, const evodevo::Layout&, evodevo::Rng&) const override {
+    called = true;
+    while (how == "hang") std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    if (how == "exit") std::exit(0);
+    if (how == "exit-at-once") _exit(0);
+    if (how == "quick-exit") std::_Exit(0);
+    if (how == "overflow") deeper(0);
+    if (how == "round") std::fesetround(FE_UPWARD);
+#if defined(__SSE__)
+    if (how == "flush") _mm_setcsr(_mm_getcsr() | 0x8040);
+#endif
+    if (how == "locale") std::setlocale(LC_ALL, "C.UTF-8");
+    if (how == "thread-locale") uselocale(newlocale(LC_ALL_MASK, "C.UTF-8", nullptr));
+    if (how == "global-locale") std::locale::global(std::locale("C.UTF-8"));
+  }
+};
+
+struct Encoding final : evodevo::Encoding {
+  std::string how = "well";
+
+  void parameters(Parameters& p) override {
+    p.choice(how, "how", {"well", "crash-in-layout", "throw-in-layout", "twin", "turned-twin", "loop", "crash"},
+             "What it does.");
+  }
+  evodevo::Layout layout(const evodevo::World&) const override {
+    if (how == "crash-in-layout") std::raise(SIGSEGV);
+    if (how == "throw-in-layout") throw 7;
+    evodevo::Layout layout;
+    layout.add_group(2, {0, 1});
+    return layout;
+  }
+  evodevo::Blueprint decode(const evodevo::Genome&, const evodevo::World& world) const override {
+    if (how == "crash") std::raise(SIGSEGV);
+    evodevo::Blueprint blueprint;
+    blueprint.body.materials = world.materials;
+    blueprint.body.masses = {{{0, 0, 0}, 0.2}, {{0.7, 0, 0}, 0.2}, {{0, 0.7, 0}, 0.2}};
+    blueprint.body.springs = {{0, 1, 0.7, 1}, {1, 2, 0.99, 1}, {2, 0, 0.7, 1}};
+    if (how == "twin") blueprint.body.springs.push_back({1, 2, 0.99, 1});
+    if (how == "turned-twin") blueprint.body.springs.push_back({2, 1, 0.99, 1});
+    if (how == "loop") blueprint.body.springs.push_back({2, 2, 0.99, 1});
+    return blueprint;
+  }
+};
+
+struct Devo final : evodevo::Devo {
+  std::string how = "well";
+
+  void parameters(Parameters& p) override {
+    p.choice(how, "how", {"well", "crash", "overflow", "crash-when-asked", "throw-when-asked"}, "What it does.");
+  }
+  evodevo::SpringRequest observes() const override {
+    if (how == "crash-when-asked") std::raise(SIGSEGV);
+    if (how == "throw-when-asked") throw 7;
+    return {};
+  }
+  void develop(const evodevo::Moment& now, evodevo::Edits&, evodevo::Rng&) const override {
+    if (how == "crash" && now.cycle == 2) std::raise(SIGSEGV);
+    if (how == "overflow" && now.cycle == 2) deeper(0);
+  }
+};
+
+struct Fitness final : evodevo::Fitness {
+  std::string how = "well";
+
+  void parameters(Parameters& p) override {
+    p.choice(how, "how",
+             {"well", "no-window", "endless-window", "early-window", "window-that-is-no-number", "no-objective",
+              "nameless-objective", "one-score-too-many"},
+             "What it does.");
+  }
+  evodevo::Request observes() const override {
+    if (how == "no-window") return {0, 0, false};
+    if (how == "endless-window") return {0, std::numeric_limits<double>::infinity(), false};
+    if (how == "early-window") return {-0.1, 0.1, false};
+    if (how == "window-that-is-no-number") return {std::numeric_limits<double>::quiet_NaN(), 0.1, false};
+    return {0, 0.1, false};
+  }
+  std::vector<evodevo::Objective> objectives() const override {
+    if (how == "no-objective") return {};
+    return {{how == "nameless-objective" ? "" : "one", "1", true}};
+  }
+  std::vector<double> score(const evodevo::Observation&) const override {
+    return std::vector<double>(how == "one-score-too-many" ? 2 : 1, 1.0);
+  }
+};
+
+}  // namespace
+
+EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
+               evodevo::operator_entry<Mutation>("misbehaves", "Does what it is told."),
+               evodevo::operator_entry<Encoding>("misbehaves", "Does what it is told."),
+               evodevo::operator_entry<Devo>("misbehaves", "Does what it is told."),
+               evodevo::operator_entry<Fitness>("misbehaves", "Does what it is told."))
