@@ -43,8 +43,7 @@ void Archive::commit(const std::vector<Individual>& newborns, const std::vector<
   for (const std::uint32_t id : dropped) drop.execute(summary.generation, id);
   Statement(*run_, "generations", "INSERT INTO generations VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       .execute(summary.generation, summary.evaluations, summary.best, summary.median, summary.diverged, summary.invalid,
-               summary.clones, static_cast<std::int64_t>(summary.spring_evaluations), summary.wall_time,
-               summary.maker);
+               summary.clones, static_cast<std::int64_t>(summary.spring_evaluations), summary.wall_time, summary.maker);
   transaction.commit();
 }
 

@@ -296,8 +296,8 @@ TEST(Configuration, WholeNumbersMayHaveAPointOrAnExponent) {
   EXPECT_EQ(complaint(with("size = [2, 1, 1]", "size = [2, 1.5, 1]")).substr(0, 63),
             "test.toml:10:12: encoding.size = 1.5: expected a whole number, ");
   EXPECT_THAT(complaint(small_experiment, {{"experiment.population", "99999999999999999999", "--set"}}),
-              ::testing::AllOf(::testing::HasSubstr("experiment.population"), ::testing::HasSubstr("99999999999999999999"),
-                               ::testing::HasSubstr("64 bits")));
+              ::testing::AllOf(::testing::HasSubstr("experiment.population"),
+                               ::testing::HasSubstr("99999999999999999999"), ::testing::HasSubstr("64 bits")));
   EXPECT_EQ(complaint(with("population = 6", "population = 1e300")),
             "test.toml:5:14: experiment.population = 1e+300: expected 1 to 1000000");
   EXPECT_EQ(complaint(with("population = 6", "population = \"6\"")),
