@@ -102,6 +102,7 @@ Film mapping_film(const Blueprint& blueprint, BuiltBody built) {
   if (!blueprint.origins.empty()) {
     Shot& mapping = film.emplace_back();
     mapping.body.masses = masses;
+    mapping.body.materials = blueprint.body.materials;
     mapping.numbers.resize(masses.size());
     std::iota(mapping.numbers.begin(), mapping.numbers.end(), 0u);
     for (int f = 0; f <= frames; ++f) {

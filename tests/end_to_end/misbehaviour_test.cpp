@@ -71,7 +71,7 @@ TEST_F(Misbehaviour, ACallThatNeverEndsIsNamedAndOneCtrlCEndsIt) {
 TEST_F(Misbehaviour, CtrlCBeforeTheWarningSufficesToo) {
   const Patience patience("0.5");
   Process process(mutating("hang"));
-  read_to(process, "generation 0");
+  read_to(process, "it hangs");
   process.send(SIGINT);
   EXPECT_EQ(process.wait(), 130) << process.output();
   EXPECT_THAT(process.output(), HasSubstr("evodevo: interrupted: " + named("mutation") + ", individual "));

@@ -252,7 +252,7 @@ TEST(HostileInput, NumbersOfOptionsAreRefusedByTheOption) {
       EXPECT_THAT(complaint(small_experiment, {{key, value, option}}), StartsWith(option + ": ")) << option;
     }
   EXPECT_THAT(complaint(small_experiment, {{"experiment.seed", "99999999999999999999", "--seed 99999999999999999999"}}),
-              HasSubstr("not representable in 64 bits"));
+              HasSubstr("64 bits"));
 }
 
 TEST(HostileInput, PlacesAreThoseOfTheFileWhateverOptionsSet) {

@@ -497,6 +497,22 @@ TEST(Page, HoldsDataThatNothingReadsAsMarkup) {
   EXPECT_EQ(nlohmann::json::parse(data)["name"], "</script><script>harm()");
 }
 
+TEST(Gallery, KnowsTheMaterialsOfPointsBeforeTheyAreABody) {
+  const Experiment experiment = testing::read(
+      testing::small_experiment, {{"encoding", "{name = 'neural', points = 21, neighbours = 4}", "--set"}});
+  const auto page = gallery_data(experiment, 3);
+  const auto& run = page["runs"][0];
+  ASSERT_EQ(run["robots"].size(), 3u);
+  for (const auto& robot : run["robots"]) {
+    ASSERT_EQ(robot["status"], "ok") << robot["reason"];
+    EXPECT_EQ(robot["film"]["shots"].size(), 2u);
+    const auto of_masses = unpacked(robot["film"]["mass_materials"]);
+    ASSERT_EQ(of_masses.size(), 21u);
+    for (const std::int64_t material : of_masses)
+      EXPECT_TRUE(material >= 0 && material < static_cast<std::int64_t>(run["material_names"].size())) << material;
+  }
+}
+
 TEST(Report, FilmsFollowWhatARunHasRecorded) {
   const testing::Scratch scratch;
   const Experiment experiment = testing::read(testing::small_experiment);

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <limits>
 #include <locale>
+#include <string_view>
 #include <thread>
 
 #include "evodevo/plugin.hpp"
@@ -29,6 +30,13 @@ int deeper(int depth) {
   return endless ? deeper(depth + 1) + room[0] : depth;
 }
 
+/// Never returns; says so, for those who wait for it.
+[[noreturn]] void hang() {
+  constexpr std::string_view text = "it hangs\n";
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
+  for (;;) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
+
 struct Mutation final : evodevo::Mutation {
   std::string how = "well";
   mutable bool called = false;
@@ -44,7 +52,7 @@ struct Mutation final : evodevo::Mutation {
   }
   void mutate(evodevo::Genome&, const evodevo::Layout&, evodevo::Rng&) const override {
     called = true;
-    while (how == "hang") std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    if (how == "hang") hang();
     if (how == "exit") std::exit(0);
     if (how == "exit-at-once") _exit(0);
     if (how == "quick-exit") std::_Exit(0);

@@ -82,8 +82,8 @@ test("what cannot be filmed is refused in one line", () => {
   };
   assert.match(refusal("500", "late.png"), /^evodevo: .*late\.png: --at 500: expected a moment of the life, 0 to [\d.]+ s$/m);
   assert.doesNotMatch(refusal("500", "late.png"), /^\s+at /m);
-  for (const moment of ["nan", "inf", "-0.5"])
-    assert.match(refusal(moment, "never.png"), new RegExp(`^evodevo: --at ${moment}: expected a moment since birth`));
+  for (const [moment, named] of [["nan", "not a number"], ["inf", "infinity"], ["-0.5", "-0.5"]])
+    assert.match(refusal(moment, "never.png"), new RegExp(`^evodevo: --at ${named}: expected a moment since birth`));
   assert.match(refusal("1", "film.gif"), /^evodevo: --out .*film\.gif: expected a name ending in \.mp4 or \.png\n$/);
   assert.match(refusal("1", "still.mp4"), /^evodevo: --at is the moment of a picture/);
 });

@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 
-export const { chromiumProgram, launch } = await import(pathToFileURL(join(process.env.EVODEVO_VIEWER, "browser.mjs")).href);
+export const { chromiumProgram, launch, patience } = await import(pathToFileURL(join(process.env.EVODEVO_VIEWER, "browser.mjs")).href);
 
 /** Names that would do harm, were they read as markup. */
 export const experimentName = `<img src=x onerror="window.harmed=1">`;
@@ -90,7 +90,7 @@ export async function opened(browser, file, options = {}) {
       page.complaints.push(`${message.type()}: ${message.text()}`);
   });
   page.on("pageerror", (error) => page.complaints.push(error.message));
-  await page.goto(pathToFileURL(file).href);
+  await page.goto(pathToFileURL(file).href, { timeout: patience });
   await page.evaluate(async () => void (await window.evodevo));
   return page;
 }

@@ -60,12 +60,15 @@ export const launch = async (more = []) =>
     args: ["--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist", "--enable-unsafe-swiftshader", ...more],
   });
 
+/** How long a page may take to load from its file, ms: on a busy machine that draws without a GPU, minutes. */
+export const patience = 300_000;
+
 /** A page of the viewer, ready. `options` are Playwright's; `before` is what the page does first. */
 export async function opened(browser, file, options, { hash = "", before } = {}) {
   const tab = await browser.newPage(options);
   if (before) await tab.addInitScript(before);
   tab.on("pageerror", (error) => console.error(`evodevo: the page says: ${error.message}`));
-  await tab.goto(pathToFileURL(file) + hash);
+  await tab.goto(pathToFileURL(file) + hash, { timeout: patience });
   await tab.evaluate(async () => void (await window.evodevo));
   return tab;
 }
