@@ -3,7 +3,6 @@
 #include <atomic>
 #include <iostream>
 #include <new>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -43,12 +42,11 @@ int thread_count(int threads) {
 Workers::Workers(int threads) {
   const auto asked = static_cast<std::size_t>(thread_count(threads));
   std::size_t wanted = asked;
-  for (start(wanted); count() < wanted; start(wanted)) {
-    wanted = (count() + 1) / 2;
+  for (start(wanted); threads_.size() < wanted; start(wanted)) {
+    wanted = (threads_.size() + 1) / 2;
     end();
-    if (wanted == 0) throw std::runtime_error("the system grants no threads; raise its limits (ulimit -u, ulimit -v)");
   }
-  if (wanted < asked) warn_of_fewer_threads(asked, wanted);
+  if (wanted < asked) warn_of_fewer_threads(asked, count());
 }
 
 Workers::~Workers() { end(); }
@@ -56,7 +54,7 @@ Workers::~Workers() { end(); }
 void Workers::start(std::size_t wanted) {
   ending_ = false;
   threads_.reserve(wanted);
-  while (count() < wanted && start_thread(threads_, [this] { work(); })) {
+  while (threads_.size() < wanted && start_thread(threads_, [this] { work(); })) {
   }
 }
 
@@ -70,7 +68,9 @@ void Workers::end() {
 }
 
 void Workers::for_each(std::size_t count, const std::function<void(std::size_t)>& body) {
-  if (count == 0) return;
+  if (threads_.empty())
+    for (std::size_t i = 0; i < count; ++i) body(i);
+  if (count == 0 || threads_.empty()) return;
   Loop loop{body, count, Turn::of_this_thread()};
   std::unique_lock lock(mutex_);
   loops_.push_back(&loop);

@@ -20,8 +20,8 @@ int thread_count(int threads);
 class Workers {
  public:
   /// `threads` threads; 0: one for each core. Where the system grants only some of them, it takes half as many as it
-  /// got, so that room is left for the rest of the work, and says so once on stderr. Throws std::runtime_error where it
-  /// grants none.
+  /// got, so that room is left for the rest of the work, and says so once on stderr. Where it grants none, callers of
+  /// for_each() do the work themselves.
   explicit Workers(int threads);
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
@@ -31,7 +31,8 @@ class Workers {
   /// further call begins, and it is thrown again here. `body` must not call for_each() of the same workers.
   void for_each(std::size_t count, const std::function<void(std::size_t)>& body);
 
-  std::size_t count() const { return threads_.size(); }
+  /// How many threads do the work, a caller's own included.
+  std::size_t count() const { return std::max<std::size_t>(threads_.size(), 1); }
 
  private:
   struct Loop {

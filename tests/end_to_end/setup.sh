@@ -96,7 +96,7 @@ case_help() {
     diff "$scratch/help" <(echo "$output") || fail "the help is another than that of the program"
   done
   call "$checkout/tools/evodevo" --help
-  [[ $output == *"  $(printf %q "$checkout")/tools/evodevo run "* ]] || fail "the command cannot be pasted"
+  [[ $output == *"  $(printf %q "$checkout/tools/evodevo") run "* ]] || fail "the command cannot be pasted"
   call tools/evodevo --version
   [ "$output" = "$("$program" --version)" ] || fail "the version is another than that of the program"
   call tools/evodevo
