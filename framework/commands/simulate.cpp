@@ -3,9 +3,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
-#include <iomanip>
 #include <iostream>
-#include <sstream>
 
 #include "body_json.hpp"
 #include "commands/options.hpp"
@@ -76,14 +74,8 @@ Motion go_on(const Evaluation& evaluation, Simulator& simulator, Life& life, dou
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
 }
 
-std::string short_text(double value) {
-  std::ostringstream text;
-  text << std::setprecision(4) << value;
-  return text.str();
-}
-
 std::string vector_text(Vec3 v) {
-  return "(" + short_text(v.x) + ", " + short_text(v.y) + ", " + short_text(v.z) + ")";
+  return "(" + short_number(v.x) + ", " + short_number(v.y) + ", " + short_number(v.z) + ")";
 }
 
 /// The life of the body in a file; throws ConfigError where the scene or its steps are not for it.
@@ -104,7 +96,7 @@ void print_end(const Life& life, Vec3 start, double length) {
   const Vec3 moved = centre_of_mass(life.living.body, state.position) - start;
   std::cout << "after " << to_text(state.time) << " s the centre of mass has moved by " << vector_text(moved) << " m";
   if (length > 0)
-    std::cout << ", " << short_text(norm({moved.x, moved.y, 0}) / length) << " body lengths along the ground";
+    std::cout << ", " << short_number(norm({moved.x, moved.y, 0}) / length) << " body lengths along the ground";
   std::cout << '\n';
 }
 
@@ -150,14 +142,14 @@ int simulate_command(const Arguments& arguments) {
 
   const Body& body = life.living.body;
   std::cout << body.masses.size() << " masses, " << body.springs.size() << " springs on " << simulator->device()
-            << ", steps of " << short_text(1000 * pace.dt) << " ms\n";
+            << ", steps of " << short_number(1000 * pace.dt) << " ms\n";
   if (!life.alive()) {
-    std::cout << name(life.result.status) << " after " << short_text(life.result.ended_at)
+    std::cout << name(life.result.status) << " after " << short_number(life.result.ended_at)
               << " s: " << life.result.reason << '\n';
     return 1;
   }
   print_end(life, start, length);
-  std::cout << "speed: " << short_text(static_cast<double>(motion.spring_evaluations) / motion.seconds)
+  std::cout << "speed: " << short_number(static_cast<double>(motion.spring_evaluations) / motion.seconds)
             << " spring evaluations/s\n";
   return 0;
 }
