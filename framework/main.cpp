@@ -5,13 +5,13 @@
 #include <sstream>
 #include <string_view>
 
-#include "call_watch.hpp"
+#include "base/input_error.hpp"
+#include "base/output_file.hpp"
+#include "base/standard_streams.hpp"
+#include "base/text.hpp"
 #include "commands/commands.hpp"
-#include "crash.hpp"
-#include "input_error.hpp"
-#include "output_file.hpp"
-#include "standard_streams.hpp"
-#include "text.hpp"
+#include "operators/call_watch.hpp"
+#include "operators/crash.hpp"
 
 namespace evodevo {
 namespace {

@@ -1,11 +1,11 @@
 // evodevo body: a body out of a run.
 #include <iostream>
 
-#include "body_json.hpp"
 #include "commands/options.hpp"
-#include "device.hpp"
-#include "living_again.hpp"
-#include "record_check.hpp"
+#include "evolution/record_check.hpp"
+#include "evolution/resimulation.hpp"
+#include "experiment/device.hpp"
+#include "life/body_json.hpp"
 
 namespace evodevo {
 namespace {

@@ -3,10 +3,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.hpp"
+#include "base/text.hpp"
 #include "commands/options.hpp"
 #include "conformance/conformance.hpp"
-#include "json_text.hpp"
-#include "text.hpp"
 
 namespace evodevo {
 namespace {

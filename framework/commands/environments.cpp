@@ -6,17 +6,17 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "body_distance.hpp"
-#include "body_json.hpp"
-#include "breeding.hpp"
+#include "base/json_text.hpp"
+#include "base/text.hpp"
 #include "commands/options.hpp"
-#include "device.hpp"
-#include "disturbance.hpp"
-#include "json_text.hpp"
-#include "record_check.hpp"
-#include "scene_effect.hpp"
-#include "text.hpp"
-#include "toml_reader.hpp"
+#include "environments/body_distance.hpp"
+#include "environments/scene_effect.hpp"
+#include "evolution/breeding.hpp"
+#include "evolution/record_check.hpp"
+#include "experiment/device.hpp"
+#include "experiment/toml_reader.hpp"
+#include "life/body_json.hpp"
+#include "life/perturbation.hpp"
 
 namespace evodevo {
 namespace {

@@ -2,13 +2,13 @@
 #include <cmath>
 #include <iostream>
 
+#include "base/text.hpp"
 #include "commands/options.hpp"
-#include "device.hpp"
-#include "living_again.hpp"
+#include "evolution/resimulation.hpp"
+#include "experiment/device.hpp"
 #include "report/camera.hpp"
 #include "report/page.hpp"
 #include "report/report.hpp"
-#include "text.hpp"
 
 namespace evodevo {
 

@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "base/json_text.hpp"
+#include "base/text.hpp"
 #include "commands/options.hpp"
-#include "device.hpp"
-#include "json_text.hpp"
-#include "living_again.hpp"
-#include "text.hpp"
+#include "evolution/resimulation.hpp"
+#include "experiment/device.hpp"
 
 namespace evodevo {
 namespace {

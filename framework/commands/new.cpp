@@ -7,10 +7,10 @@
 #include <regex>
 #include <sstream>
 
+#include "base/output_file.hpp"
+#include "base/text.hpp"
 #include "commands/options.hpp"
-#include "loader.hpp"
-#include "output_file.hpp"
-#include "text.hpp"
+#include "operators/loader.hpp"
 
 namespace evodevo {
 namespace {

@@ -3,11 +3,11 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.hpp"
+#include "base/text.hpp"
 #include "commands/options.hpp"
-#include "describe.hpp"
-#include "json_text.hpp"
-#include "reference.hpp"
-#include "text.hpp"
+#include "operators/describe.hpp"
+#include "operators/reference.hpp"
 
 namespace evodevo {
 namespace {

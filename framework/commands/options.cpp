@@ -6,8 +6,8 @@
 #include <iostream>
 #include <limits>
 
-#include "text.hpp"
-#include "toml_reader.hpp"
+#include "base/text.hpp"
+#include "experiment/toml_reader.hpp"
 
 namespace evodevo {
 

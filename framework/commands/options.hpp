@@ -3,9 +3,9 @@
 
 #include <boost/program_options.hpp>
 
-#include "archive.hpp"
 #include "commands.hpp"
-#include "experiment.hpp"
+#include "evolution/archive.hpp"
+#include "experiment/experiment.hpp"
 
 namespace evodevo {
 

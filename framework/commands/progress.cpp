@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <iostream>
 
-#include "text.hpp"
+#include "base/text.hpp"
 
 namespace evodevo {
 namespace {

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <chrono>
 
-#include "evolution.hpp"
+#include "evolution/evolution.hpp"
 
 namespace evodevo {
 

@@ -3,10 +3,10 @@
 
 #include <iostream>
 
+#include "base/output_file.hpp"
 #include "commands/options.hpp"
-#include "device.hpp"
-#include "living_again.hpp"
-#include "output_file.hpp"
+#include "evolution/resimulation.hpp"
+#include "experiment/device.hpp"
 #include "report/page.hpp"
 
 namespace evodevo {

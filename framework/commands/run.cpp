@@ -4,16 +4,16 @@
 #include <csignal>
 #include <iostream>
 
-#include "call_watch.hpp"
+#include "base/text.hpp"
 #include "commands/options.hpp"
 #include "commands/progress.hpp"
 #include "commands/verification_report.hpp"
-#include "device.hpp"
-#include "evolution.hpp"
-#include "parallel.hpp"
-#include "plugin_folders.hpp"
-#include "record_check.hpp"
-#include "text.hpp"
+#include "evolution/evolution.hpp"
+#include "evolution/record_check.hpp"
+#include "experiment/device.hpp"
+#include "operators/call_watch.hpp"
+#include "operators/plugin_folders.hpp"
+#include "threads/parallel.hpp"
 
 namespace evodevo {
 namespace {

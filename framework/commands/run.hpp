@@ -1,7 +1,7 @@
 // What evodevo run, resume and verify have in common.
 #pragma once
 
-#include "archive.hpp"
+#include "evolution/archive.hpp"
 
 namespace evodevo {
 

@@ -3,12 +3,12 @@
 #include <cstdio>
 #include <iostream>
 
-#include "archive.hpp"
+#include "base/json_text.hpp"
+#include "base/text.hpp"
 #include "commands/options.hpp"
-#include "json_text.hpp"
+#include "evolution/archive.hpp"
+#include "experiment/toml_reader.hpp"
 #include "report/run_json.hpp"
-#include "text.hpp"
-#include "toml_reader.hpp"
 
 namespace evodevo {
 namespace {

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <iostream>
 
-#include "body_json.hpp"
+#include "base/output_file.hpp"
+#include "base/text.hpp"
 #include "commands/options.hpp"
-#include "device.hpp"
-#include "evaluation.hpp"
-#include "output_file.hpp"
-#include "piecewise.hpp"
-#include "text.hpp"
-#include "toml_reader.hpp"
+#include "core/piecewise.hpp"
+#include "experiment/device.hpp"
+#include "experiment/toml_reader.hpp"
+#include "life/body_json.hpp"
+#include "life/evaluation.hpp"
 
 namespace evodevo {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "archive.hpp"
+#include "evolution/archive.hpp"
 
 namespace evodevo {
 

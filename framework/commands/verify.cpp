@@ -3,15 +3,15 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "archive.hpp"
+#include "base/json_text.hpp"
+#include "base/text.hpp"
 #include "commands/options.hpp"
 #include "commands/run.hpp"
 #include "commands/verification_report.hpp"
-#include "device.hpp"
-#include "json_text.hpp"
-#include "living_again.hpp"
+#include "evolution/archive.hpp"
+#include "evolution/resimulation.hpp"
+#include "experiment/device.hpp"
 #include "report/run_json.hpp"
-#include "text.hpp"
 
 namespace evodevo {
 namespace {

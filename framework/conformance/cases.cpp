@@ -4,13 +4,13 @@
 #include <cmath>
 #include <future>
 
-#include "archive.hpp"
+#include "base/text.hpp"
 #include "conformance/trials.hpp"
-#include "declarations.hpp"
-#include "describe.hpp"
-#include "evolution.hpp"
-#include "text.hpp"
-#include "toml_reader.hpp"
+#include "evolution/archive.hpp"
+#include "evolution/evolution.hpp"
+#include "experiment/toml_reader.hpp"
+#include "operators/declarations.hpp"
+#include "operators/describe.hpp"
 
 namespace evodevo::conformance {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <ctime>
 
+#include "base/text.hpp"
 #include "conformance/exports.hpp"
-#include "isolation.hpp"
-#include "surroundings.hpp"
-#include "text.hpp"
+#include "operators/isolation.hpp"
+#include "operators/surroundings.hpp"
 
 namespace evodevo::conformance {
 namespace {

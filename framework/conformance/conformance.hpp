@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "loader.hpp"
+#include "operators/loader.hpp"
 
 namespace evodevo::conformance {
 

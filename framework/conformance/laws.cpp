@@ -5,9 +5,9 @@
 #include <numeric>
 #include <set>
 
-#include "body_building.hpp"
+#include "base/text.hpp"
 #include "conformance/trials.hpp"
-#include "text.hpp"
+#include "life/body_building.hpp"
 
 namespace evodevo::conformance {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstring>
 
 #include "conformance/trials.hpp"
-#include "describe.hpp"
-#include "surroundings.hpp"
+#include "operators/describe.hpp"
+#include "operators/surroundings.hpp"
 
 namespace evodevo::conformance {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <set>
 
-#include "isolation.hpp"
-#include "philox.hpp"
-#include "text.hpp"
+#include "base/philox.hpp"
+#include "base/text.hpp"
+#include "operators/isolation.hpp"
 
 namespace evodevo::conformance {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "conformance/conformance.hpp"
-#include "development.hpp"
-#include "experiment.hpp"
+#include "experiment/experiment.hpp"
+#include "life/edits.hpp"
 
 namespace evodevo::conformance {
 

@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "base/text.hpp"
 #include "report/page.hpp"
-#include "text.hpp"
 
 namespace evodevo {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "output_file.hpp"
+#include "base/output_file.hpp"
 
 namespace evodevo {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "materials.hpp"
+#include "base/materials.hpp"
 #include "report/packing.hpp"
 
 namespace evodevo {

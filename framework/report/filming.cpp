@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "piecewise.hpp"
+#include "core/piecewise.hpp"
 
 namespace evodevo {
 namespace {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "evaluation.hpp"
+#include "life/evaluation.hpp"
 
 namespace evodevo {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <numeric>
 
-#include "body_building.hpp"
-#include "breeding.hpp"
-#include "evolution.hpp"
-#include "living_again.hpp"
+#include "evolution/breeding.hpp"
+#include "evolution/evolution.hpp"
+#include "evolution/resimulation.hpp"
+#include "life/body_building.hpp"
 #include "report/film_json.hpp"
 #include "report/filming.hpp"
 #include "report/run_json.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "archive.hpp"
+#include "evolution/archive.hpp"
 
 namespace evodevo {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "evolution.hpp"
+#include "evolution/evolution.hpp"
 
 namespace evodevo {
 namespace {

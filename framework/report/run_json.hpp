@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "archive.hpp"
+#include "evolution/archive.hpp"
 
 namespace evodevo {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/ground.hpp"
 #include "report/packing.hpp"
 
 namespace evodevo {

@@ -9,7 +9,7 @@
 #include <hwy/contrib/math/math-inl.h>
 
 #include "cpu/step.hpp"
-#include "cpu/vectors-inl.hpp"
+#include "physics/vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "colouring.hpp"
+#include "analysis/colouring.hpp"
 
 namespace evodevo::cpu {
 namespace {

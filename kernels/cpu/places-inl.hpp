@@ -9,7 +9,7 @@
 
 #include <cstdint>
 
-#include "physics.hpp"
+#include "physics/physics.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {

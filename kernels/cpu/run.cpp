@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "computed_materials.hpp"
+#include "analysis/computed_materials.hpp"
+#include "analysis/guard.hpp"
 #include "cpu/coloured_springs.hpp"
-#include "guard.hpp"
 
 namespace evodevo::cpu {
 namespace {

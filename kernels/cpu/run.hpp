@@ -1,9 +1,9 @@
 // One body's run on one CPU thread.
 #pragma once
 
+#include "core/scene.hpp"
+#include "core/simulator.hpp"
 #include "cpu/step.hpp"
-#include "scene.hpp"
-#include "simulator.hpp"
 
 namespace evodevo::cpu {
 

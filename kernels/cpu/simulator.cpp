@@ -1,8 +1,9 @@
 // The simulator on the CPU: one body at a time on each thread.
-#include "simulator.hpp"
+#include "core/simulator.hpp"
 
+#include "analysis/neighbours.hpp"
 #include "cpu/run.hpp"
-#include "parallel.hpp"
+#include "threads/parallel.hpp"
 
 namespace evodevo {
 namespace {

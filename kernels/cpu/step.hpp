@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/method.hpp"
 #include "cpu/layout.hpp"
-#include "method.hpp"
 
 namespace evodevo::cpu {
 

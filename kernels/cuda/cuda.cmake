@@ -1,8 +1,8 @@
 # The CUDA part of the simulation core. Kernels are compiled at run time; their sources become part of the program.
-set(embedded cuda/resident.cu cuda/streamed.cu cuda/neighbours.cu cuda/block.cuh cuda/check.cuh cuda/mass_step.cuh
-  cuda/resident.cuh cuda/streamed.cuh cuda/materials/computed.cuh cuda/materials/table.cuh cuda/methods/implicit.cu cuda/methods/paper_euler.cuh cuda/methods/rk4.cuh
-  cuda/methods/symplectic_euler.cuh cuda/methods/velocity_verlet.cuh cuda/methods/xpbd.cu cuda/formats.hpp
-  cuda/fixed_point.hpp cuda/point_clouds.hpp physics.hpp arithmetic.hpp energy_bound.hpp material_code.hpp)
+set(embedded cuda/device/resident.cu cuda/device/streamed.cu cuda/device/neighbours.cu cuda/device/block.cuh cuda/device/check.cuh cuda/device/mass_step.cuh
+  cuda/device/resident.cuh cuda/device/streamed.cuh cuda/device/materials/computed.cuh cuda/device/materials/table.cuh cuda/device/methods/implicit.cu cuda/device/methods/paper_euler.cuh cuda/device/methods/rk4.cuh
+  cuda/device/methods/symplectic_euler.cuh cuda/device/methods/velocity_verlet.cuh cuda/device/methods/xpbd.cu cuda/layout/formats.hpp
+  cuda/layout/fixed_point.hpp cuda/layout/point_clouds.hpp physics/physics.hpp physics/arithmetic.hpp physics/energy_bound.hpp physics/material_code.hpp)
 set(embedded_sources ${CMAKE_CURRENT_BINARY_DIR}/embedded_sources.cpp)
 
 # evodevo_embed(OUTPUT HEADER FUNCTION SOURCES...): the sources, relative to here, as what FUNCTION of HEADER gives
@@ -18,24 +18,24 @@ function(evodevo_embed output header function)
     VERBATIM)
 endfunction()
 
-evodevo_embed(${embedded_sources} cuda/compiler.hpp evodevo::cuda::embedded_sources ${embedded})
+evodevo_embed(${embedded_sources} cuda/runtime/compiler.hpp evodevo::cuda::embedded_sources ${embedded})
 
 target_sources(evodevo_kernels PRIVATE
-  cuda/arrangement.cpp
-  cuda/cache.cpp
-  cuda/compiler.cpp
-  cuda/cuda_neighbours.cpp
-  cuda/cuda_simulator.cpp
-  cuda/device.cpp
-  cuda/error.cpp
-  cuda/features.cpp
-  cuda/kernels.cpp
-  cuda/memory_store.cpp
-  cuda/ownership.cpp
-  cuda/portion.cpp
-  cuda/resident.cpp
-  cuda/row_order.cpp
-  cuda/streamed.cpp
+  cuda/layout/arrangement.cpp
+  cuda/runtime/cache.cpp
+  cuda/runtime/compiler.cpp
+  cuda/runtime/cuda_neighbours.cpp
+  cuda/runtime/cuda_simulator.cpp
+  cuda/runtime/device.cpp
+  cuda/runtime/error.cpp
+  cuda/layout/features.cpp
+  cuda/runtime/kernels.cpp
+  cuda/runtime/memory_store.cpp
+  cuda/layout/ownership.cpp
+  cuda/runtime/portion.cpp
+  cuda/layout/resident.cpp
+  cuda/layout/row_order.cpp
+  cuda/layout/streamed.cpp
   ${embedded_sources})
 target_compile_definitions(evodevo_kernels PUBLIC EVODEVO_CUDA)
 target_link_libraries(evodevo_kernels PRIVATE CUDA::cudart CUDA::nvrtc)

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "evaluation.hpp"
+#include "life/evaluation.hpp"
 #include "support/experiments.hpp"
 
 namespace evodevo::accuracy {

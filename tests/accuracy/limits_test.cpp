@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/stability.hpp"
 #include "simulation.hpp"
-#include "stability.hpp"
 
 namespace evodevo::accuracy {
 namespace {

@@ -1,5 +1,5 @@
 // The reference against solutions on paper.
-#include "reference.hpp"
+#include "operators/reference.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,12 +7,12 @@
 #include <set>
 #include <sstream>
 
-#include "evolution.hpp"
+#include "base/text.hpp"
+#include "evolution/evolution.hpp"
 #include "support/elsewhere.hpp"
 #include "support/experiments.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"
-#include "text.hpp"
 
 namespace evodevo {
 namespace {

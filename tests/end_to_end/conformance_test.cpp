@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "loader.hpp"
+#include "operators/loader.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"
 

@@ -5,7 +5,7 @@
 #include <set>
 #include <tuple>
 
-#include "archive.hpp"
+#include "evolution/archive.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"
 

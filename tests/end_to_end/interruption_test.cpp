@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "archive.hpp"
+#include "evolution/archive.hpp"
 #include "report/report.hpp"
 #include "support/experiments.hpp"
 #include "support/process.hpp"

@@ -7,11 +7,11 @@
 #include <iterator>
 #include <sstream>
 
-#include "archive.hpp"
+#include "base/text.hpp"
+#include "evolution/archive.hpp"
 #include "support/experiments.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"
-#include "text.hpp"
 
 namespace evodevo {
 namespace {
@@ -187,9 +187,10 @@ TEST_F(Plugins, AnOperatorThatErrsIsNamedWithItsFile) {
   install("nan");
   const Finished poisoned = run_with("nothing", {"--plugin-path", own(), "--out", folder_ + "2"});
   EXPECT_EQ(poisoned.exit_code, 1);
-  EXPECT_THAT(poisoned.output,
-              HasSubstr("mutation operator \"nothing\" of " + library_.string() +
-                        ", individual 6, seed 7: made a genome with gene 0 = not a number, which is not allowed" + remedy));
+  EXPECT_THAT(
+      poisoned.output,
+      HasSubstr("mutation operator \"nothing\" of " + library_.string() +
+                ", individual 6, seed 7: made a genome with gene 0 = not a number, which is not allowed" + remedy));
 }
 
 TEST_F(Plugins, AnOperatorThatCrashesIsNamedWithItsFile) {

@@ -6,8 +6,9 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "archive.hpp"
-#include "evaluation.hpp"
+#include "analysis/ground.hpp"
+#include "evolution/archive.hpp"
+#include "life/evaluation.hpp"
 #include "support/experiments.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"

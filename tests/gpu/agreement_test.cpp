@@ -1,8 +1,10 @@
 // The GPU computes what the CPU computes: to rounding, as long as rounding has not grown.
+#include "analysis/energy.hpp"
+#include "analysis/ground.hpp"
+#include "analysis/stability.hpp"
+#include "base/philox.hpp"
+#include "core/skip_shift.hpp"
 #include "gpu.hpp"
-#include "philox.hpp"
-#include "skip_shift.hpp"
-#include "stability.hpp"
 
 namespace evodevo::testing_gpu {
 namespace {

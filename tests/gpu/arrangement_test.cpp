@@ -1,5 +1,5 @@
 // The layout of bodies on the chip.
-#include "cuda/arrangement.hpp"
+#include "cuda/layout/arrangement.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 
 #include "bodies.hpp"
-#include "cuda/row_order.hpp"
+#include "cuda/layout/row_order.hpp"
 
 namespace evodevo::cuda {
 namespace {

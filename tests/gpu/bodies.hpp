@@ -5,10 +5,12 @@
 #include <random>
 #include <vector>
 
+#include "analysis/energy.hpp"
+#include "analysis/ground.hpp"
+#include "analysis/neighbours.hpp"
+#include "core/scene.hpp"
+#include "core/simulator.hpp"
 #include "evodevo/body.hpp"
-#include "neighbours.hpp"
-#include "scene.hpp"
-#include "simulator.hpp"
 
 namespace evodevo::testing_gpu {
 

@@ -1,5 +1,5 @@
 // Kernels compile without a GPU, and are compiled once.
-#include "cuda/compiler.hpp"
+#include "cuda/runtime/compiler.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,8 +9,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "cuda/cache.hpp"
-#include "cuda/features.hpp"
+#include "cuda/layout/features.hpp"
+#include "cuda/runtime/cache.hpp"
 #include "paper/paper_simulator.hpp"
 #include "paper/sources.hpp"
 #include "paper/stress_methods.hpp"
@@ -54,7 +54,7 @@ const Features every_feature{.gravity = true,
 
 /// Whether the kernels of a method are there in the form for bodies of any size.
 bool compiles_streamed(const Features& features) {
-  const char* source = is_explicit(features.method) ? "cuda/streamed.cu" : form_of(features.method).file;
+  const char* source = is_explicit(features.method) ? "cuda/device/streamed.cu" : form_of(features.method).file;
   return !compile(source, definitions(features), "sm_90").empty();
 }
 
@@ -66,7 +66,7 @@ TEST_F(Compiler, CompilesEveryFormForHopper) {
     for (Features features : {Features{}, every_feature}) {
       features.float64 = float64;
       for (const ResidentForm& form : forms)
-        EXPECT_FALSE(compile("cuda/resident.cu", definitions(features, form), "sm_90").empty());
+        EXPECT_FALSE(compile("cuda/device/resident.cu", definitions(features, form), "sm_90").empty());
       EXPECT_TRUE(compiles_streamed(features));
     }
   }
@@ -79,14 +79,16 @@ TEST_F(Compiler, CompilesEveryMethodForHopper) {
     features.method = static_cast<Method>(i);
     EXPECT_TRUE(compiles_streamed(features)) << method_names[i];
     if (is_explicit(features.method)) {
-      EXPECT_FALSE(compile("cuda/resident.cu", definitions(features, form), "sm_90").empty()) << method_names[i];
+      EXPECT_FALSE(compile("cuda/device/resident.cu", definitions(features, form), "sm_90").empty()) << method_names[i];
     }
     features = {.method = features.method, .float64 = true};
     EXPECT_TRUE(compiles_streamed(features)) << method_names[i];
   }
 }
 
-TEST_F(Compiler, CompilesTheSearchForNeighbours) { EXPECT_FALSE(compile("cuda/neighbours.cu", {}, "sm_90").empty()); }
+TEST_F(Compiler, CompilesTheSearchForNeighbours) {
+  EXPECT_FALSE(compile("cuda/device/neighbours.cu", {}, "sm_90").empty());
+}
 
 TEST_F(Compiler, CompilesThePapersMethods) {
   const Scene scene{Gravity{}, Floor{}, Friction{}, Damping{}, Drag{}};
@@ -101,12 +103,12 @@ TEST_F(Compiler, CompilesThePapersMethods) {
 }
 
 TEST_F(Compiler, ReadsTheCache) {
-  const auto compiled = compile("cuda/streamed.cu", definitions(every_feature), "sm_90");
+  const auto compiled = compile("cuda/device/streamed.cu", definitions(every_feature), "sm_90");
   ASSERT_EQ(files().size(), 1u);
   const auto written = fs::last_write_time(files().front());
-  EXPECT_EQ(compile("cuda/streamed.cu", definitions(every_feature), "sm_90"), compiled);
+  EXPECT_EQ(compile("cuda/device/streamed.cu", definitions(every_feature), "sm_90"), compiled);
   EXPECT_EQ(fs::last_write_time(files().front()), written);
-  compile("cuda/streamed.cu", definitions(Features{}), "sm_90");
+  compile("cuda/device/streamed.cu", definitions(Features{}), "sm_90");
   EXPECT_EQ(files().size(), 2u);
 }
 
@@ -141,12 +143,12 @@ TEST_F(Compiler, KeepsNothingWhereNoVariableNamesAFolder) {
 
 TEST_F(Compiler, WorksWithoutACache) {
   ::setenv("XDG_CACHE_HOME", "/proc/none", 1);
-  EXPECT_FALSE(compile("cuda/streamed.cu", definitions(Features{}), "sm_90").empty());
+  EXPECT_FALSE(compile("cuda/device/streamed.cu", definitions(Features{}), "sm_90").empty());
 }
 
 TEST_F(Compiler, NamesAnArchitectureThatIsTooOld) {
   try {
-    compile("cuda/streamed.cu", definitions(Features{}), "sm_30");
+    compile("cuda/device/streamed.cu", definitions(Features{}), "sm_30");
     FAIL();
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("sm_30"), std::string::npos) << error.what();

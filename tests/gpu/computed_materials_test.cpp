@@ -1,6 +1,8 @@
 // Springs whose materials are computed from codes move as the CPU moves them, on the chip and beyond it.
-#include "computed_materials.hpp"
+#include "analysis/computed_materials.hpp"
 
+#include "analysis/energy.hpp"
+#include "analysis/ground.hpp"
 #include "gpu.hpp"
 
 namespace evodevo::testing_gpu {

@@ -1,4 +1,5 @@
 // A body's answer is the same bits wherever and however often it is computed.
+#include "analysis/ground.hpp"
 #include "gpu.hpp"
 
 namespace evodevo::testing_gpu {

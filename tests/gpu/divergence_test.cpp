@@ -4,8 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/ground.hpp"
+#include "analysis/stability.hpp"
 #include "gpu.hpp"
-#include "stability.hpp"
 
 namespace evodevo::testing_gpu {
 namespace {

@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "cuda/cuda_simulator.hpp"
-#include "cuda/device.hpp"
-#include "cuda/error.hpp"
+#include "cuda/runtime/cuda_simulator.hpp"
+#include "cuda/runtime/device.hpp"
+#include "cuda/runtime/error.hpp"
 
 namespace evodevo::cuda {
 namespace {

@@ -1,6 +1,6 @@
 // What a scene does not ask for leaves no instruction: with a feature off, a kernel is the same machine code as one
 // that is written without it.
-#include "cuda/features.hpp"
+#include "cuda/layout/features.hpp"
 
 #include <elf.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "cuda/compiler.hpp"
+#include "cuda/runtime/compiler.hpp"
 
 namespace evodevo::cuda {
 namespace {
@@ -76,7 +76,7 @@ class Sources {
   Sources() {
     const std::string method = form_of(Method::paper_euler).file;
     for (const EmbeddedSource& source : embedded_sources()) {
-      if (source.name.starts_with("cuda/methods/") && source.name != method) continue;
+      if (source.name.starts_with("cuda/device/methods/") && source.name != method) continue;
       // comments name what they explain
       names_.emplace_back(source.name);
       texts_.push_back(std::regex_replace(std::string(source.text), std::regex(" *//[^\n]*"), ""));
@@ -166,7 +166,7 @@ class Sources {
   }
 
   /// What the host sends, whatever a kernel reads of it.
-  static constexpr const char* formats = "cuda/formats.hpp";
+  static constexpr const char* formats = "cuda/layout/formats.hpp";
 
   std::vector<std::string> names_, texts_;
 };
@@ -221,14 +221,17 @@ struct Form {
 };
 
 const std::vector<Form> forms{
-    {"resident", "cuda/resident.cu", {.rows = 15, .masses_per_thread = 1, .records_on_chip = true}},
+    {"resident", "cuda/device/resident.cu", {.rows = 15, .masses_per_thread = 1, .records_on_chip = true}},
     {"resident, springs streamed",
-     "cuda/resident.cu",
+     "cuda/device/resident.cu",
      {.rows = 8, .masses_per_thread = 5, .chunked = true, .wide_offsets = true}},
-    {"streamed", "cuda/streamed.cu", {}},
-    {"resident, float64", "cuda/resident.cu", {.rows = 15, .masses_per_thread = 2, .records_on_chip = true}, true},
+    {"streamed", "cuda/device/streamed.cu", {}},
+    {"resident, float64",
+     "cuda/device/resident.cu",
+     {.rows = 15, .masses_per_thread = 2, .records_on_chip = true},
+     true},
     {"resident, computed materials",
-     "cuda/resident.cu",
+     "cuda/device/resident.cu",
      {.rows = 15, .masses_per_thread = 1, .records_on_chip = true},
      false,
      Materials::computed},

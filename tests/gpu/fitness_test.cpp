@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "breeding.hpp"
-#include "evaluation.hpp"
+#include "evolution/breeding.hpp"
 #include "gpu.hpp"
+#include "life/evaluation.hpp"
 
 namespace evodevo::testing_gpu {
 namespace {

@@ -1,4 +1,5 @@
 // Bodies of every size take the way through the device that suits them; odd ones are bodies too.
+#include "analysis/ground.hpp"
 #include "gpu.hpp"
 
 namespace evodevo::testing_gpu {

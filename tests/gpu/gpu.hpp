@@ -11,7 +11,7 @@
 #include <tuple>
 
 #include "bodies.hpp"
-#include "cuda/cuda_simulator.hpp"
+#include "cuda/runtime/cuda_simulator.hpp"
 
 namespace evodevo::testing_gpu {
 

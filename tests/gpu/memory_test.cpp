@@ -1,16 +1,17 @@
 // Where the device's memory is scarce, batches are divided, down to one body, and give the same bits.
-#include "cuda/memory.hpp"
+#include "cuda/runtime/memory.hpp"
 
 #include <cuda_runtime_api.h>
 #include <gmock/gmock.h>
 
 #include <stdexcept>
 
-#include "cuda/cuda_neighbours.hpp"
-#include "cuda/device.hpp"
+#include "analysis/neighbours.hpp"
+#include "cuda/runtime/cuda_neighbours.hpp"
+#include "cuda/runtime/device.hpp"
 #include "gpu.hpp"
-#include "parallel.hpp"
 #include "physics/support.hpp"
+#include "threads/parallel.hpp"
 
 namespace evodevo::testing_gpu {
 namespace {

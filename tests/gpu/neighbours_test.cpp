@@ -1,12 +1,12 @@
 // Neighbours found on the GPU are those that the CPU finds, for every kind of cloud.
-#include "neighbours.hpp"
+#include "analysis/neighbours.hpp"
 
 #include <cmath>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
 
-#include "cuda/cuda_neighbours.hpp"
+#include "cuda/runtime/cuda_neighbours.hpp"
 #include "evodevo/lattice.hpp"
 #include "gpu.hpp"
 

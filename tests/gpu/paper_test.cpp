@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "agreement.hpp"
+#include "analysis/ground.hpp"
 #include "gpu.hpp"
 #include "paper/paper_simulator.hpp"
 

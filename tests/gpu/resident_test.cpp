@@ -1,5 +1,5 @@
 // What a body that stays on the chip is told.
-#include "cuda/resident.hpp"
+#include "cuda/layout/resident.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,9 @@
 #include <set>
 #include <vector>
 
+#include "analysis/computed_materials.hpp"
+#include "analysis/ground.hpp"
 #include "bodies.hpp"
-#include "computed_materials.hpp"
 
 namespace evodevo::cuda {
 namespace {

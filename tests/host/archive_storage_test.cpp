@@ -11,8 +11,8 @@
 #include <functional>
 #include <thread>
 
-#include "archive.hpp"
-#include "archive_database.hpp"
+#include "evolution/archive.hpp"
+#include "evolution/archive_database.hpp"
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"
 

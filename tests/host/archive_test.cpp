@@ -1,5 +1,5 @@
 // The archive: what goes in comes out, and nobody writes over anybody.
-#include "archive.hpp"
+#include "evolution/archive.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // From blueprints to bodies.
-#include "body_building.hpp"
+#include "life/body_building.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,8 @@
 #include <set>
 #include <stdexcept>
 #include <tuple>
+
+#include "analysis/neighbours.hpp"
 
 namespace evodevo {
 namespace {

@@ -1,5 +1,5 @@
 // Distances between grown bodies.
-#include "body_distance.hpp"
+#include "environments/body_distance.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <limits>
 #include <numeric>
 
-#include "breeding.hpp"
-#include "disturbance.hpp"
-#include "philox.hpp"
+#include "base/philox.hpp"
+#include "evolution/breeding.hpp"
+#include "life/perturbation.hpp"
 #include "support/experiments.hpp"
 
 namespace evodevo {

@@ -1,12 +1,12 @@
 // Bodies as files: every bit comes back.
-#include "body_json.hpp"
+#include "life/body_json.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "philox.hpp"
+#include "base/philox.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo {

@@ -1,5 +1,5 @@
 // Newborns and the table that selection sees.
-#include "breeding.hpp"
+#include "evolution/breeding.hpp"
 
 #include <gtest/gtest.h>
 
@@ -118,11 +118,10 @@ TEST(Breeding, AnOperatorThatLeavesTheLayoutIsNamed) {
     breed(experiment, population, 1, 2, 2);
     FAIL() << "the fault went unnoticed";
   } catch (const std::runtime_error& error) {
-    EXPECT_EQ(
-        error.what(),
-        "mutation operator \"reset-weight\" of " + experiment.uses[1].file.string() +
-            ", individual 2, seed 7: made a genome with gene 0 = not a number, which is not allowed; correct the operator and "
-            "build it again, or begin a new run without it");
+    EXPECT_EQ(error.what(), "mutation operator \"reset-weight\" of " + experiment.uses[1].file.string() +
+                                ", individual 2, seed 7: made a genome with gene 0 = not a number, which is not "
+                                "allowed; correct the operator and "
+                                "build it again, or begin a new run without it");
   }
 }
 

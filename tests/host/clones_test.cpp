@@ -1,13 +1,13 @@
 // Newborns that are genetically equal to others, and what they may not take from those.
-#include "clones.hpp"
+#include "evolution/clones.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "breeding.hpp"
-#include "evolution.hpp"
+#include "evolution/breeding.hpp"
+#include "evolution/evolution.hpp"
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <atomic>
 
-#include "breeding.hpp"
-#include "evaluation.hpp"
+#include "evolution/breeding.hpp"
+#include "life/evaluation.hpp"
 #include "support/experiments.hpp"
 
 namespace evodevo {

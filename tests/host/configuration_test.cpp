@@ -5,9 +5,9 @@
 #include <fstream>
 #include <tuple>
 
+#include "experiment/toml_reader.hpp"
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"
-#include "toml_reader.hpp"
 
 namespace evodevo {
 namespace {

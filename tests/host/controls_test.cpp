@@ -1,5 +1,5 @@
 // Controls of development, schedules of its operators, and what becomes of torn bodies.
-#include "controls.hpp"
+#include "life/controls.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,9 +8,9 @@
 #include <map>
 #include <set>
 
-#include "breeding.hpp"
-#include "evaluation.hpp"
-#include "philox.hpp"
+#include "base/philox.hpp"
+#include "evolution/breeding.hpp"
+#include "life/evaluation.hpp"
 #include "support/experiments.hpp"
 
 namespace evodevo {

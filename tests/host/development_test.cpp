@@ -1,12 +1,11 @@
 // What apply_edits does to a body, and what it refuses.
-#include "development.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "philox.hpp"
+#include "base/philox.hpp"
+#include "life/edits.hpp"
 
 namespace evodevo {
 namespace {

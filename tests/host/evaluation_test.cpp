@@ -1,5 +1,5 @@
 // Evaluations: independent of company and threads, honest about failures.
-#include "evaluation.hpp"
+#include "life/evaluation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <limits>
 #include <set>
 
-#include "body_building.hpp"
-#include "breeding.hpp"
+#include "evolution/breeding.hpp"
+#include "life/body_building.hpp"
 #include "support/experiments.hpp"
 
 namespace evodevo {

@@ -1,5 +1,5 @@
 // Runs that fail in the middle: what is committed stays, and resuming ends as if nothing had happened.
-#include "evolution.hpp"
+#include "evolution/evolution.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

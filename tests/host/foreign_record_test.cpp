@@ -7,16 +7,16 @@
 #include <iterator>
 #include <random>
 
-#include "archive.hpp"
 #include "commands/commands.hpp"
 #include "commands/run.hpp"
-#include "device.hpp"
-#include "evolution.hpp"
-#include "living_again.hpp"
+#include "evolution/archive.hpp"
+#include "evolution/evolution.hpp"
+#include "evolution/resimulation.hpp"
+#include "experiment/device.hpp"
+#include "experiment/toml_reader.hpp"
 #include "report/report.hpp"
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"
-#include "toml_reader.hpp"
 
 namespace evodevo {
 namespace {

@@ -1,5 +1,5 @@
 // The frame in which grown bodies are compared.
-#include "grown_body.hpp"
+#include "environments/grown_body.hpp"
 
 #include <gtest/gtest.h>
 

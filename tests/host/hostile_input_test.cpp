@@ -5,10 +5,10 @@
 
 #include <random>
 
+#include "experiment/toml_limits.hpp"
+#include "experiment/toml_reader.hpp"
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"
-#include "toml_limits.hpp"
-#include "toml_reader.hpp"
 
 namespace evodevo {
 namespace {

@@ -1,5 +1,5 @@
 // Work in a process of its own: whatever it does, this one goes on.
-#include "isolation.hpp"
+#include "operators/isolation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Records of lives: what goes in comes out, replaying gives the matured body to the bit, and runs keep those of the
 // front.
-#include "life_record.hpp"
+#include "life/life_record.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,9 +9,9 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "breeding.hpp"
-#include "evolution.hpp"
-#include "living_again.hpp"
+#include "evolution/breeding.hpp"
+#include "evolution/evolution.hpp"
+#include "evolution/resimulation.hpp"
 #include "support/elsewhere.hpp"
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"

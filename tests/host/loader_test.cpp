@@ -1,5 +1,5 @@
 // The border between host and plugin: what is refused, and in which words.
-#include "loader.hpp"
+#include "operators/loader.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 #include <cfenv>
 
-#include "declarations.hpp"
+#include "operators/declarations.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo {

@@ -1,5 +1,5 @@
 // The materials of a body: those of the experiment, and others for as long as something is made of them.
-#include "materials.hpp"
+#include "base/materials.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,11 +7,11 @@
 #include <cmath>
 #include <set>
 
-#include "breeding.hpp"
-#include "development.hpp"
-#include "evaluation.hpp"
-#include "life_record.hpp"
-#include "philox.hpp"
+#include "base/philox.hpp"
+#include "evolution/breeding.hpp"
+#include "life/edits.hpp"
+#include "life/evaluation.hpp"
+#include "life/life_record.hpp"
 #include "support/experiments.hpp"
 
 namespace evodevo {

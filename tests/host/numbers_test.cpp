@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <limits>
 
-#include "text.hpp"
+#include "base/text.hpp"
 
 namespace evodevo {
 namespace {

@@ -1,5 +1,5 @@
 // What is known of the calls of operators, and what they leave behind.
-#include "operator_call.hpp"
+#include "operators/operator_call.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "experiment.hpp"
+#include "experiment/experiment.hpp"
 #include "support/experiments.hpp"
 
 namespace evodevo {

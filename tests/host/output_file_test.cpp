@@ -1,5 +1,5 @@
 // Files that are written as a whole or not at all.
-#include "output_file.hpp"
+#include "base/output_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

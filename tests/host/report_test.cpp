@@ -12,8 +12,9 @@
 #include <random>
 #include <set>
 
-#include "breeding.hpp"
-#include "evolution.hpp"
+#include "analysis/ground.hpp"
+#include "evolution/breeding.hpp"
+#include "evolution/evolution.hpp"
 #include "report/film_json.hpp"
 #include "report/filming.hpp"
 #include "report/packing.hpp"

@@ -1,11 +1,11 @@
 // The permutation test of scenes.
-#include "scene_effect.hpp"
+#include "environments/scene_effect.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "philox.hpp"
+#include "base/philox.hpp"
 
 namespace evodevo {
 namespace {

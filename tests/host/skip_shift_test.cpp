@@ -1,5 +1,5 @@
 // The paper's tallies against their definition.
-#include "skip_shift.hpp"
+#include "core/skip_shift.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "breeding.hpp"
-#include "evaluation.hpp"
-#include "philox.hpp"
+#include "analysis/energy.hpp"
+#include "analysis/ground.hpp"
+#include "base/philox.hpp"
+#include "evolution/breeding.hpp"
+#include "life/evaluation.hpp"
 #include "support/experiments.hpp"
 
 namespace evodevo {

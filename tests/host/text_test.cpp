@@ -1,11 +1,11 @@
 // What foreign text becomes in messages, tables and JSON.
-#include "text.hpp"
+#include "base/text.hpp"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "json_text.hpp"
+#include "base/json_text.hpp"
 
 namespace evodevo {
 namespace {

@@ -1,10 +1,11 @@
 // Which steps a body takes.
-#include "time_steps.hpp"
+#include "experiment/time_steps.hpp"
 
 #include <gtest/gtest.h>
 
-#include "simulator.hpp"
-#include "stability.hpp"
+#include "analysis/ground.hpp"
+#include "analysis/stability.hpp"
+#include "core/simulator.hpp"
 
 namespace evodevo {
 namespace {

@@ -1,5 +1,5 @@
 // What becomes of champions that only seemed to be some.
-#include "verification.hpp"
+#include "life/verification.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <atomic>
 #include <cmath>
 
-#include "breeding.hpp"
 #include "commands/verification_report.hpp"
-#include "evolution.hpp"
+#include "evolution/breeding.hpp"
+#include "evolution/evolution.hpp"
 #include "support/elsewhere.hpp"
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"

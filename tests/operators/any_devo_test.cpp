@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "body_building.hpp"
 #include "life.hpp"
+#include "life/body_building.hpp"
 
 namespace evodevo::test {
 namespace {

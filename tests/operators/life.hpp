@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "development.hpp"
+#include "life/edits.hpp"
 #include "support.hpp"
 
 namespace evodevo::test {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "loader.hpp"
-#include "philox.hpp"
-#include "toml_reader.hpp"
+#include "base/philox.hpp"
+#include "experiment/toml_reader.hpp"
+#include "operators/loader.hpp"
 
 namespace evodevo::test {
 

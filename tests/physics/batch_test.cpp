@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "analysis/ground.hpp"
 #include "support.hpp"
 
 namespace evodevo::test {

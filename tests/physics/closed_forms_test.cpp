@@ -5,6 +5,8 @@
 #include <complex>
 #include <limits>
 
+#include "analysis/energy.hpp"
+#include "analysis/ground.hpp"
 #include "support.hpp"
 
 namespace evodevo::test {

@@ -1,5 +1,5 @@
 // Springs in colours.
-#include "colouring.hpp"
+#include "analysis/colouring.hpp"
 
 #include <gtest/gtest.h>
 

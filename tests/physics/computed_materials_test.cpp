@@ -1,5 +1,5 @@
 // Materials as springs' codes say them: near what they are, the same on the way to the GPU and on the CPU.
-#include "computed_materials.hpp"
+#include "analysis/computed_materials.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/energy.hpp"
+#include "analysis/ground.hpp"
 #include "momentum.hpp"
 #include "support.hpp"
 

@@ -3,7 +3,9 @@
 
 #include <cmath>
 
-#include "reference.hpp"
+#include "analysis/energy.hpp"
+#include "analysis/ground.hpp"
+#include "operators/reference.hpp"
 #include "support.hpp"
 
 namespace evodevo::test {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "analysis/ground.hpp"
 #include "evodevo/lattice.hpp"
 #include "support.hpp"
 

@@ -1,10 +1,13 @@
 // What each method does to the energy of a body that nothing slows down.
+#include "analysis/energy.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "stability.hpp"
+#include "analysis/ground.hpp"
+#include "analysis/stability.hpp"
 #include "support.hpp"
 
 namespace evodevo::test {

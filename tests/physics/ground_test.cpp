@@ -1,10 +1,13 @@
 // Rough ground: its shape, and masses on it.
+#include "analysis/ground.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "physics.hpp"
-#include "stability.hpp"
+#include "analysis/energy.hpp"
+#include "analysis/stability.hpp"
+#include "physics/physics.hpp"
 #include "support.hpp"
 
 namespace evodevo::test {

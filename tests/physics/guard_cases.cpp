@@ -4,6 +4,9 @@
 
 #include <cmath>
 
+#include "analysis/energy.hpp"
+#include "analysis/ground.hpp"
+
 namespace evodevo::test {
 namespace {
 

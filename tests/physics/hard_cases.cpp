@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "stability.hpp"
+#include "analysis/energy.hpp"
+#include "analysis/ground.hpp"
+#include "analysis/stability.hpp"
 
 namespace evodevo::test {
 namespace {

@@ -1,5 +1,5 @@
 // k-nearest neighbours against counting all distances.
-#include "neighbours.hpp"
+#include "analysis/neighbours.hpp"
 
 #include <gtest/gtest.h>
 

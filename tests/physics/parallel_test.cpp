@@ -1,5 +1,5 @@
 // Loops on several threads, and the clock that measures overlapping spans.
-#include "parallel.hpp"
+#include "threads/parallel.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "busy_clock.hpp"
+#include "threads/busy_clock.hpp"
 
 namespace evodevo {
 namespace {

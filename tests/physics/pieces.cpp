@@ -4,9 +4,11 @@
 
 #include <numeric>
 
+#include "analysis/energy.hpp"
+#include "analysis/ground.hpp"
+#include "analysis/stability.hpp"
+#include "core/skip_shift.hpp"
 #include "evodevo/rng.hpp"
-#include "skip_shift.hpp"
-#include "stability.hpp"
 
 namespace evodevo::test {
 namespace {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/energy.hpp"
 #include "momentum.hpp"
 #include "random_lives.hpp"
 

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <random>
 
-#include "neighbours.hpp"
-#include "stability.hpp"
+#include "analysis/energy.hpp"
+#include "analysis/ground.hpp"
+#include "analysis/neighbours.hpp"
+#include "analysis/stability.hpp"
 
 namespace evodevo::test {
 namespace {

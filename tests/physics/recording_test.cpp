@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "analysis/ground.hpp"
 #include "support.hpp"
 
 namespace evodevo::test {

@@ -6,6 +6,8 @@
 #include <optional>
 #include <tuple>
 
+#include "analysis/energy.hpp"
+#include "analysis/ground.hpp"
 #include "support.hpp"
 
 namespace evodevo::test {

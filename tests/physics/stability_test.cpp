@@ -1,5 +1,5 @@
 // The largest stable step against dense eigenvalues and against what the simulator does.
-#include "stability.hpp"
+#include "analysis/stability.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "analysis/ground.hpp"
 #include "support.hpp"
 
 namespace evodevo::test {

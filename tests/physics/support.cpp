@@ -5,8 +5,9 @@
 #include <cstring>
 #include <random>
 
+#include "analysis/energy.hpp"
+#include "analysis/neighbours.hpp"
 #include "evodevo/lattice.hpp"
-#include "neighbours.hpp"
 
 namespace evodevo::test {
 

@@ -7,9 +7,9 @@
 #include <tuple>
 #include <vector>
 
+#include "core/scene.hpp"
+#include "core/simulator.hpp"
 #include "evodevo/body.hpp"
-#include "scene.hpp"
-#include "simulator.hpp"
 
 namespace evodevo::test {
 

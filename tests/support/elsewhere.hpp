@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "experiment.hpp"
-#include "simulator.hpp"
+#include "core/simulator.hpp"
+#include "experiment/experiment.hpp"
 
 namespace evodevo::testing {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "experiment.hpp"
+#include "experiment/experiment.hpp"
 
 namespace evodevo::testing {
 

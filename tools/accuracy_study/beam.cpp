@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include "parallel.hpp"
 #include "scenes.hpp"
 #include "studies.hpp"
+#include "threads/parallel.hpp"
 
 namespace evodevo::accuracy {
 namespace {

@@ -1,8 +1,9 @@
 #include <cmath>
 
+#include "analysis/energy.hpp"
 #include "benchmark/bodies.hpp"
-#include "parallel.hpp"
 #include "studies.hpp"
+#include "threads/parallel.hpp"
 
 namespace evodevo::accuracy {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/ground.hpp"
 #include "disturbance.hpp"
 
 namespace evodevo::accuracy {

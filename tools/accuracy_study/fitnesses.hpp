@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "experiment.hpp"
+#include "experiment/experiment.hpp"
 #include "simulation.hpp"
 
 namespace evodevo::accuracy {

@@ -1,8 +1,8 @@
 // How far a step may go, in theory and as measured.
 #pragma once
 
+#include "core/method.hpp"
 #include "evodevo/body.hpp"
-#include "method.hpp"
 
 namespace evodevo::accuracy {
 

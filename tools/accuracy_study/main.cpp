@@ -3,10 +3,10 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "output_file.hpp"
-#include "parallel.hpp"
-#include "standard_streams.hpp"
+#include "base/output_file.hpp"
+#include "base/standard_streams.hpp"
 #include "studies.hpp"
+#include "threads/parallel.hpp"
 
 namespace evodevo::accuracy {
 namespace {

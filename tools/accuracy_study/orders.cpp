@@ -2,9 +2,9 @@
 #include <cmath>
 #include <limits>
 
-#include "parallel.hpp"
 #include "scenes.hpp"
 #include "studies.hpp"
+#include "threads/parallel.hpp"
 
 namespace evodevo::accuracy {
 namespace {

@@ -1,8 +1,8 @@
 // Solutions of the equations of motion that share no code with the simulator.
 #pragma once
 
+#include "core/scene.hpp"
 #include "evodevo/body.hpp"
-#include "scene.hpp"
 
 namespace evodevo::accuracy {
 

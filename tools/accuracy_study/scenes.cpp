@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "analysis/ground.hpp"
 #include "benchmark/bodies.hpp"
 #include "disturbance.hpp"
 #include "evodevo/lattice.hpp"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/scene.hpp"
 #include "evodevo/body.hpp"
-#include "scene.hpp"
 
 namespace evodevo::accuracy {
 

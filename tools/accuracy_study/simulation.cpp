@@ -4,7 +4,8 @@
 #include <ctime>
 
 #ifdef EVODEVO_CUDA
-#include "cuda/cuda_simulator.hpp"
+#include "analysis/energy.hpp"
+#include "cuda/runtime/cuda_simulator.hpp"
 #endif
 
 namespace evodevo::accuracy {

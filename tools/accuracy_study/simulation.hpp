@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "core/method.hpp"
+#include "core/scene.hpp"
+#include "core/simulator.hpp"
 #include "evodevo/body.hpp"
-#include "method.hpp"
-#include "scene.hpp"
-#include "simulator.hpp"
 
 namespace evodevo::accuracy {
 

@@ -1,4 +1,4 @@
-#include "stability.hpp"
+#include "analysis/stability.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include "benchmark/robots.hpp"
 #include "fitnesses.hpp"
 #include "limits.hpp"
-#include "parallel.hpp"
 #include "studies.hpp"
+#include "threads/parallel.hpp"
 
 namespace evodevo::accuracy {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "output_file.hpp"
+#include "base/output_file.hpp"
 
 namespace evodevo::accuracy {
 namespace {

@@ -1,9 +1,9 @@
 #include <limits>
 
 #include "benchmark/batch.hpp"
-#include "parallel.hpp"
 #include "scenes.hpp"
 #include "studies.hpp"
+#include "threads/parallel.hpp"
 
 namespace evodevo::accuracy {
 namespace {

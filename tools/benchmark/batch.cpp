@@ -6,7 +6,8 @@
 #include <stdexcept>
 
 #ifdef EVODEVO_CUDA
-#include "cuda/cuda_simulator.hpp"
+#include "analysis/ground.hpp"
+#include "cuda/runtime/cuda_simulator.hpp"
 #endif
 
 namespace evodevo::benchmark {

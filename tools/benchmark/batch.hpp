@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "core/simulator.hpp"
 #include "evodevo/body.hpp"
 #include "settings.hpp"
-#include "simulator.hpp"
 
 namespace evodevo::benchmark {
 

@@ -5,9 +5,9 @@
 #include <sstream>
 #include <utility>
 
-#include "body_json.hpp"
+#include "analysis/neighbours.hpp"
 #include "evodevo/lattice.hpp"
-#include "neighbours.hpp"
+#include "life/body_json.hpp"
 
 namespace evodevo::benchmark {
 namespace {

@@ -7,9 +7,9 @@
 #include <map>
 #include <stdexcept>
 
-#include "output_file.hpp"
+#include "base/output_file.hpp"
+#include "base/standard_streams.hpp"
 #include "settings.hpp"
-#include "standard_streams.hpp"
 #include "studies.hpp"
 
 namespace evodevo::benchmark {

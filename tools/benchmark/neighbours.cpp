@@ -1,14 +1,14 @@
 // The search for nearest neighbours on the GPU beside the same on the CPU.
-#include "neighbours.hpp"
+#include "analysis/neighbours.hpp"
 
 #include <chrono>
 #include <stdexcept>
 
 #include "batch.hpp"
 #include "bodies.hpp"
-#include "cuda/cuda_neighbours.hpp"
-#include "parallel.hpp"
+#include "cuda/runtime/cuda_neighbours.hpp"
 #include "studies.hpp"
+#include "threads/parallel.hpp"
 
 namespace evodevo::benchmark {
 namespace {

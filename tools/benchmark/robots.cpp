@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "evaluation.hpp"
+#include "analysis/ground.hpp"
+#include "core/simulator.hpp"
+#include "experiment/time_steps.hpp"
+#include "life/evaluation.hpp"
 #include "settings.hpp"
-#include "simulator.hpp"
-#include "time_steps.hpp"
 
 namespace evodevo::benchmark {
 namespace {

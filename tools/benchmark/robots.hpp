@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "evodevo/body.hpp"
-#include "experiment.hpp"
+#include "experiment/experiment.hpp"
 
 namespace evodevo::benchmark {
 

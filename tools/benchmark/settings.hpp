@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "simulator.hpp"
+#include "core/simulator.hpp"
 
 namespace evodevo::benchmark {
 

@@ -1,9 +1,9 @@
 #include <algorithm>
 
 #include "batch.hpp"
-#include "parallel.hpp"
 #include "robots.hpp"
 #include "studies.hpp"
+#include "threads/parallel.hpp"
 
 namespace evodevo::benchmark {
 namespace {

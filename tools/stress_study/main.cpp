@@ -3,10 +3,10 @@
 #include <iostream>
 #include <optional>
 
-#include "device.hpp"
-#include "output_file.hpp"
+#include "base/output_file.hpp"
+#include "base/standard_streams.hpp"
+#include "experiment/device.hpp"
 #include "overlap.hpp"
-#include "standard_streams.hpp"
 
 namespace evodevo::stress_study {
 namespace {

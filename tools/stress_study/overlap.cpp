@@ -8,8 +8,8 @@
 
 #include "benchmark/agreement.hpp"
 #include "benchmark/robots.hpp"
-#include "device.hpp"
-#include "evaluation.hpp"
+#include "experiment/device.hpp"
+#include "life/evaluation.hpp"
 
 namespace evodevo::stress_study {
 namespace {

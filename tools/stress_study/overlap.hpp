@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "accuracy_study/table.hpp"
-#include "experiment.hpp"
+#include "experiment/experiment.hpp"
 
 namespace evodevo::stress_study {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cuda/error.hpp"
+#include "cuda/runtime/error.hpp"
 
 namespace evodevo::benchmark {
 

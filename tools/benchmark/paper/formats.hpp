@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "cuda/formats.hpp"
+#include "cuda/layout/formats.hpp"
 
 namespace evodevo::benchmark {
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "cuda/answers.hpp"
+#include "analysis/ground.hpp"
+#include "cuda/layout/answers.hpp"
 
 namespace evodevo::benchmark {
 

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "core/scene.hpp"
 #include "evodevo/body.hpp"
 #include "paper/formats.hpp"
 #include "paper/spring_order.hpp"
-#include "scene.hpp"
 
 namespace evodevo::benchmark {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "cuda/answers.hpp"
-#include "cuda/device.hpp"
-#include "cuda/features.hpp"
-#include "cuda/launch.hpp"
+#include "cuda/layout/answers.hpp"
+#include "cuda/layout/features.hpp"
+#include "cuda/runtime/device.hpp"
+#include "cuda/runtime/launch.hpp"
 #include "paper/sources.hpp"
 
 namespace evodevo::benchmark {

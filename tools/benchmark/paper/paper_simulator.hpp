@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "cuda/kernels.hpp"
-#include "cuda/memory.hpp"
+#include "core/scene.hpp"
+#include "cuda/runtime/kernels.hpp"
+#include "cuda/runtime/memory.hpp"
 #include "evodevo/body.hpp"
 #include "paper/device_array.hpp"
 #include "paper/paper_layout.hpp"
-#include "scene.hpp"
 
 namespace evodevo::benchmark {
 

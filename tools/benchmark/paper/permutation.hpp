@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "arithmetic.hpp"
+#include "physics/arithmetic.hpp"
 
 namespace evodevo::benchmark {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "cuda/compiler.hpp"
+#include "cuda/runtime/compiler.hpp"
 
 namespace evodevo::benchmark {
 

@@ -2,7 +2,7 @@
 // materials in time.
 #pragma once
 
-#include "cuda/methods/paper_euler.cuh"
+#include "cuda/device/methods/paper_euler.cuh"
 #include "paper/formats.hpp"
 
 namespace evodevo::benchmark {

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "agreement.hpp"
-#include "cuda/cuda_simulator.hpp"
+#include "analysis/ground.hpp"
+#include "cuda/runtime/cuda_simulator.hpp"
 #include "paper/paper_simulator.hpp"
 #include "paper/stress_methods.hpp"
 #include "robots.hpp"

@@ -1,0 +1,27 @@
+#include "base/json_text.hpp"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace evodevo {
+
+std::string json_text(const nlohmann::ordered_json& json) {
+  const std::string dumped = json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  std::string text;
+  for (std::size_t i = 0; i < dumped.size(); ++i) {
+    // JSON itself escapes those below U+0020; U+0080 to U+009F are a byte 0xc2 and their own number
+    const auto byte = [&](std::size_t at) { return at < dumped.size() ? static_cast<unsigned char>(dumped[at]) : 0u; };
+    const bool two_bytes = byte(i) == 0xc2 && byte(i + 1) < 0xa0;
+    if (byte(i) != 0x7f && !two_bytes) {
+      text += dumped[i];
+      continue;
+    }
+    if (two_bytes) ++i;
+    char escape[8];
+    std::snprintf(escape, sizeof escape, "\\u%04x", byte(i));
+    text += escape;
+  }
+  return text;
+}
+
+}  // namespace evodevo

@@ -1,0 +1,48 @@
+#include "base/materials.hpp"
+
+#include <boost/container_hash/hash.hpp>
+#include <functional>
+
+namespace evodevo {
+
+std::size_t MaterialHash::operator()(const Material& material) const {
+  std::size_t hash = 0;
+  for (const double value : {material.stiffness, material.amplitude, material.frequency, material.phase})
+    boost::hash_combine(hash, std::hash<double>()(value));  // the same of 0 and -0
+  return hash;
+}
+
+MaterialNumbers numbered(const std::vector<Material>& materials) {
+  MaterialNumbers numbers;
+  numbers.reserve(materials.size());
+  for (std::uint32_t i = 0; i < materials.size(); ++i) numbers.try_emplace(materials[i], i);
+  return numbers;
+}
+
+std::uint32_t MaterialList::index(const Material& material) {
+  const auto [found, is_new] = numbers_.try_emplace(material, static_cast<std::uint32_t>(materials_.size()));
+  if (is_new) materials_.push_back(material);
+  return found->second;
+}
+
+void drop_unused_materials(Body& body) {
+  std::vector<std::uint8_t> used(body.materials.size(), 0);
+  for (const Spring& spring : body.springs) used[spring.material] = 1;
+  for (const Mass& mass : body.masses)
+    if (mass.material != no_material) used[static_cast<std::size_t>(mass.material)] = 1;
+
+  std::vector<Material> kept(body.materials.begin(), body.materials.begin() + body.base_materials);
+  MaterialList list(kept);
+  std::vector<std::uint32_t> new_index;
+  for (std::uint32_t i = 0; i < body.materials.size(); ++i) {
+    const bool is_base = i < body.base_materials;
+    new_index.push_back(is_base || !used[i] ? i : list.index(body.materials[i]));
+  }
+  for (Spring& spring : body.springs) spring.material = new_index[spring.material];
+  for (Mass& mass : body.masses)
+    if (mass.material != no_material)
+      mass.material = static_cast<std::int32_t>(new_index[static_cast<std::size_t>(mass.material)]);
+  body.materials = std::move(kept);
+}
+
+}  // namespace evodevo

@@ -1,0 +1,93 @@
+#include "base/output_file.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <iostream>
+#include <stdexcept>
+#include <utility>
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whether no other file can take the place of this one: a pipe, a link to nothing, what this process has opened.
+bool stays_in_place(const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (fs::exists(status) ? !fs::is_regular_file(status) : fs::is_symlink(fs::symlink_status(file, error))) return true;
+  const std::string path = fs::absolute(file).lexically_normal().string();
+  return path.starts_with("/dev/") || path.starts_with("/proc/");
+}
+
+[[noreturn]] void cannot_be_written(const std::string& title, int error) {
+  throw std::runtime_error(title + ": cannot be written: " + std::strerror(error));
+}
+
+}  // namespace
+
+OutputFile::OutputFile(const fs::path& file, std::string title) : title_(std::move(title)), target_(file) {
+  if (!stays_in_place(file)) open_beside(file);
+  if (stream_ == nullptr) stream_ = std::fopen(file.c_str(), "we");
+  if (stream_ == nullptr) fail(errno);
+}
+
+OutputFile::~OutputFile() {
+  if (stream_ == nullptr) return;
+  std::fclose(stream_);
+  if (!beside_.empty()) unlink(beside_.c_str());
+}
+
+void OutputFile::open_beside(const fs::path& file) {
+  std::error_code error;
+  const bool is_there = fs::exists(file, error);
+  if (is_there && access(file.c_str(), W_OK) != 0) fail(errno);
+  if (is_there) target_ = fs::canonical(file);
+  beside_ = target_.string() + ".unfinished-" + std::to_string(getpid());
+  stream_ = std::fopen(beside_.c_str(), "we");
+  if (stream_ == nullptr)
+    beside_.clear();
+  else if (is_there)
+    fs::permissions(beside_, fs::status(target_).permissions(), error);  // as good as what it replaces, if it may
+}
+
+void OutputFile::write(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stream_) != text.size()) fail(errno);
+}
+
+void OutputFile::finish() {
+  if (std::fflush(stream_) != 0) fail(errno);
+  const int closed = std::fclose(std::exchange(stream_, nullptr)) == 0 ? 0 : errno;
+  if (beside_.empty()) {
+    if (closed != 0) fail(closed);
+    return;
+  }
+  if (closed == 0 && std::rename(beside_.c_str(), target_.c_str()) == 0) return;
+  const int cause = closed != 0 ? closed : errno;
+  unlink(beside_.c_str());
+  fail(cause);
+}
+
+void OutputFile::fail(int error) const { cannot_be_written(title_, error); }
+
+void write_file(const fs::path& file, std::string_view text) {
+  OutputFile output(file, file.string());
+  output.write(text);
+  output.finish();
+}
+
+void finish_standard_output() {
+  errno = 0;
+  const bool flushed = std::fflush(stdout) == 0 && std::cout.flush();
+  if (flushed && std::ferror(stdout) == 0) return;
+  if (errno == 0) {  // something was lost long ago; one more byte shows why
+    std::clearerr(stdout);
+    std::fputc('\n', stdout);
+    std::fflush(stdout);
+  }
+  cannot_be_written("standard output", errno != 0 ? errno : EIO);
+}
+
+}  // namespace evodevo

@@ -1,0 +1,193 @@
+#include "base/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <numeric>
+#include <optional>
+
+namespace evodevo {
+namespace {
+
+/// What a number is called that has no digits; empty for all others.
+std::string word_for(double value) {
+  if (std::isnan(value)) return "not a number";
+  if (std::isinf(value)) return value > 0 ? "infinity" : "-infinity";
+  return "";
+}
+
+}  // namespace
+
+std::string program_name() {
+  const char* name = std::getenv("EVODEVO_COMMAND");
+  return name != nullptr ? name : "evodevo";
+}
+
+namespace {
+
+/// The first character of a text that is not empty.
+struct Character {
+  std::size_t bytes = 1;
+  std::optional<char32_t> code;  ///< none: the byte begins no character of UTF-8
+};
+
+Character first_character(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (byte(0) < 0x80) return {1, byte(0)};
+  // by the number of bytes: what marks the first one, and the least code that needs as many
+  constexpr struct {
+    unsigned mask, mark;
+    char32_t least;
+  } forms[] = {{0xe0, 0xc0, 0x80}, {0xf0, 0xe0, 0x800}, {0xf8, 0xf0, 0x10000}};
+  for (std::size_t more = 1; more <= std::size(forms); ++more) {
+    const auto& form = forms[more - 1];
+    if ((byte(0) & form.mask) != form.mark) continue;
+    if (text.size() <= more) return {};
+    char32_t code = byte(0) & ~form.mask;
+    for (std::size_t i = 1; i <= more; ++i) {
+      if ((byte(i) & 0xc0) != 0x80) return {};
+      code = code << 6 | (byte(i) & 0x3f);
+    }
+    const bool surrogate = code >= 0xd800 && code < 0xe000;
+    return code < form.least || code > 0x10ffff || surrogate ? Character{} : Character{more + 1, code};
+  }
+  return {};
+}
+
+/// Controls, ends of lines and paragraphs, and what turns the direction of writing.
+bool disturbs(char32_t code) {
+  const auto within = [&](char32_t low, char32_t high) { return code >= low && code <= high; };
+  return code < 0x20 || within(0x7f, 0x9f) || within(0x2028, 0x202e) || within(0x2066, 0x2069);
+}
+
+std::string escape(const char* format, unsigned code) {
+  char text[8];
+  std::snprintf(text, sizeof text, format, code);
+  return text;
+}
+
+std::string escape(char32_t code) {
+  if (code == '\n') return "\\n";
+  if (code == '\r') return "\\r";
+  if (code == '\t') return "\\t";
+  return escape(code < 0x80 ? "\\x%02x" : "\\u%04x", code);
+}
+
+}  // namespace
+
+std::string printable(std::string_view text, std::size_t most) {
+  constexpr std::string_view cut = "...";
+  std::string clean;
+  std::size_t room = 0;  // the length up to which `cut` still fits
+  while (!text.empty()) {
+    const Character next = first_character(text);
+    if (!next.code)
+      clean += escape("\\x%02x", static_cast<unsigned char>(text[0]));
+    else if (disturbs(*next.code))
+      clean += escape(*next.code);
+    else
+      clean += text.substr(0, next.bytes);
+    if (clean.size() > most) return clean.substr(0, room) + std::string(cut);
+    if (clean.size() + cut.size() <= most) room = clean.size();
+    text.remove_prefix(next.bytes);
+  }
+  return clean;
+}
+
+std::string text_fault(std::string_view text, std::size_t most) {
+  if (printable(text, most) == text) return "";
+  return '"' + printable(text) + "\" is not at most " + std::to_string(most) +
+         " bytes of UTF-8 without control characters";
+}
+
+std::string to_text(double value) {
+  if (!std::isfinite(value)) return word_for(value);
+  std::array<char, 32> buffer;
+  const bool whole = value == std::floor(value) && std::abs(value) < 1e15;
+  if (whole) return std::to_string(static_cast<long long>(value));
+  // six digits do for what people write; more only where the number has more
+  for (int digits = 6;; ++digits) {
+    char* const end =
+        std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits).ptr;
+    double back = 0;
+    std::from_chars(buffer.data(), end, back);
+    if (back == value || digits == 17) return {buffer.data(), end};
+  }
+}
+
+std::string short_number(double value) {
+  if (!std::isfinite(value)) return word_for(value);
+  std::array<char, 32> buffer;
+  std::snprintf(buffer.data(), buffer.size(), "%.4g", value + 0.0);  // of -0 comes 0
+  return buffer.data();
+}
+
+std::string to_text(const Range& range) {
+  if (std::isinf(range.low) && std::isinf(range.high)) return "";
+  if (std::isinf(range.high)) return "at least " + to_text(range.low);
+  if (std::isinf(range.low)) return "at most " + to_text(range.high);
+  return to_text(range.low) + " to " + to_text(range.high);
+}
+
+std::string joined(std::span<const std::string> items, std::string_view separator) {
+  std::string text;
+  for (const std::string& item : items) {
+    if (&item != items.data()) text += separator;
+    text += item;
+  }
+  return text;
+}
+
+namespace {
+
+/// Levenshtein's distance: how many letters must be added, dropped or replaced.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] != b[j]);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+void replace_all(std::string& text, std::string_view mark, std::string_view value) {
+  for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos; at += value.size())
+    text.replace(at, mark.size(), value);
+}
+
+std::string nearest(std::string_view word, std::span<const std::string> candidates) {
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(word.size() / 3, 1) + 1;  // a third of the letters may be wrong
+  for (const std::string& candidate : candidates) {
+    const std::size_t shorter = std::min(word.size(), candidate.size()),
+                      longer = std::max(word.size(), candidate.size());
+    if (longer - shorter >= best_distance) continue;  // as many letters at least must be added or dropped
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < best_distance) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+std::string suggestion(std::string_view word, std::span<const std::string> candidates) {
+  constexpr std::size_t few = 3;  // are all named, so that nobody who meant "cuda" is sent to "cpu"
+  if (candidates.empty()) return "; none is known";
+  if (const std::string near = nearest(word, candidates); !near.empty() && candidates.size() > few)
+    return "; did you mean \"" + near + "\"?";
+  return "; known: " + joined(candidates);
+}
+
+}  // namespace evodevo

@@ -1,0 +1,154 @@
+#include "evolution/archive.hpp"
+
+#include <chrono>
+#include <ctime>
+#include <fstream>
+
+#include "base/text.hpp"
+#include "evolution/archive_schema.hpp"
+#include "evolution/record_check.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+using boost::interprocess::file_lock;
+
+constexpr const char* lock_name = "lock";
+constexpr const char* journal_key = "journal";  ///< of what was wished for
+
+std::string utc_now() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+file_lock locked(const fs::path& folder) try {
+  const fs::path file = folder / lock_name;
+  if (!std::ofstream(file, std::ios::app))
+    throw ArchiveError(folder.string() + ": cannot be written; make it writable, or work on a copy of it");
+  file_lock lock(file.c_str());
+  if (!lock.try_lock())
+    throw ArchiveError(folder.string() + ": another evodevo process is writing this run; wait for it or stop it first");
+  return lock;
+} catch (const boost::interprocess::interprocess_exception& error) {
+  throw ArchiveError(folder.string() + ": cannot be locked (" + error.what() +
+                     "); choose a folder on a file system that can lock files");
+}
+
+void require_empty(const fs::path& folder) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.path().filename() != lock_name)
+      throw ArchiveError(folder.string() + ": is not empty; give another --out, or continue the run in it with `" +
+                         program_name() + " resume " + folder.string() + "`");
+}
+
+/// Anything but a file, such as a pipe, would keep a reader waiting for ever.
+void require_run(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_regular_file(folder / database_name, error))
+    throw ArchiveError(folder.string() + ": there is no run here (no " + database_name + "); give a folder that `" +
+                       program_name() + " run` has written");
+}
+
+std::optional<Journal> recorded_wish(const Archive& archive) {
+  const auto wish = archive.find_record(journal_key);
+  return wish ? journal_named(*wish) : std::nullopt;
+}
+
+}  // namespace
+
+Archive::Archive(std::unique_ptr<RunDatabase> run) : run_(std::move(run)) {}
+Archive::Archive(Archive&&) noexcept = default;
+Archive::~Archive() = default;
+
+Archive Archive::create(const fs::path& folder, const Experiment& experiment, const std::string& device,
+                        std::optional<Journal> journal) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw ArchiveError(folder.string() + ": cannot be made: " + error.message() + "; give another place with --out");
+  require_empty(folder);  // before the lock, which leaves a file behind, and again when nobody else can write
+  auto lock = locked(folder);
+  require_empty(folder);
+  Archive archive(std::make_unique<RunDatabase>(folder, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, std::move(lock)));
+  RunDatabase& run = *archive.run_;
+  run.set_journal(journal);
+  run.start_writing();
+  WriteTransaction transaction(run);
+  create_tables(run);
+  for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
+    const Objective& objective = experiment.objectives[i];
+    Statement(run, "objectives", "INSERT INTO objectives VALUES(?, ?, ?, ?)")
+        .execute(static_cast<std::uint32_t>(i), objective.name, objective.unit, objective.maximise ? 1 : 0);
+  }
+  archive.insert_maker(0, this_maker(experiment, device));
+  archive.insert_record("format", archive_format);
+  archive.insert_record("evodevo", EVODEVO_VERSION);
+  archive.insert_record("created", utc_now());
+  archive.insert_record("name", experiment.name);
+  archive.insert_record("seed", std::to_string(experiment.seed));
+  archive.insert_record("experiment", experiment.resolved);
+  if (journal) archive.insert_record(journal_key, name(*journal));
+  transaction.commit();
+  return archive;
+}
+
+Archive Archive::resume(const fs::path& folder, std::optional<Journal> journal) {
+  require_run(folder);
+  auto lock = locked(folder);
+  Archive archive(std::make_unique<RunDatabase>(folder, SQLite::OPEN_READWRITE, std::move(lock)));
+  RunDatabase& run = *archive.run_;
+  if (journal.value_or(journal_for(folder)) == Journal::rollback) run.prepare_for_rollback();
+  check_tables(run);
+  run.set_journal(journal ? journal : recorded_wish(archive));
+  run.start_writing();
+  if (journal) archive.set_record(journal_key, name(*journal));
+  return archive;
+}
+
+Archive Archive::annotate(const fs::path& folder) {
+  require_run(folder);
+  Archive archive(std::make_unique<RunDatabase>(folder, SQLite::OPEN_READWRITE, std::nullopt));
+  check_tables(*archive.run_);
+  archive.run_->start_writing();
+  return archive;
+}
+
+Archive Archive::read(const fs::path& folder) {
+  require_run(folder);
+  // what a process left behind when it was killed is put in order, for which the file has to be written
+  Archive archive(std::make_unique<RunDatabase>(folder, SQLite::OPEN_READWRITE, std::nullopt));
+  archive.run_->take_snapshot();
+  check_tables(*archive.run_);
+  return archive;
+}
+
+const fs::path& Archive::folder() const { return run_->folder(); }
+
+bool Archive::is_in_place() const {
+  try {
+    run_->require_in_place();
+    return true;
+  } catch (const StorageError&) {
+    return false;
+  }
+}
+
+void Archive::refuse(const std::string& what) const { run_->refuse(what); }
+
+Experiment recorded_experiment(const Archive& archive, std::vector<fs::path> plugin_path) {
+  Experiment experiment =
+      read_experiment(archive.record("experiment"), {.file = (archive.folder() / "record of the run").string(),
+                                                     .overrides = {},
+                                                     .plugin_path = std::move(plugin_path),
+                                                     .is_record = true});
+  experiment.name = printable(archive.record("name"));
+  check_objectives(archive, experiment);
+  return experiment;
+}
+
+}  // namespace evodevo

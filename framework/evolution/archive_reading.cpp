@@ -1,0 +1,301 @@
+// What the record of a run says, every value of it checked.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "base/text.hpp"
+#include "evolution/archive.hpp"
+#include "evolution/archive_database.hpp"
+
+namespace evodevo {
+namespace {
+
+constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t most_ids = std::int64_t{1} << 32;  ///< every evaluation takes one
+
+Status status_in(const Statement& row, int column) {
+  const std::string text = row.text(column);
+  for (const Status status : {Status::ok, Status::invalid, Status::diverged})
+    if (text == name(status)) return status;
+  row.refuse(column, "\"ok\", \"invalid\" or \"diverged\"");
+}
+
+/// A text that is shown as it is.
+std::string line(const Statement& row, int column) {
+  constexpr std::size_t longest = 5000;  // bytes, longer than any path
+  return printable(row.text(column), longest);
+}
+
+std::string line_or_empty(const Statement& row, int column) { return row.is_null(column) ? "" : line(row, column); }
+
+/// Seconds, as a text.
+std::optional<double> seconds_in(const std::string& text) {
+  double seconds = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole && seconds >= 0 && std::isfinite(seconds) ? std::optional(seconds) : std::nullopt;
+}
+
+std::int64_t count_of(const RunDatabase& run, const std::string& table) {
+  Statement row(run, table, "SELECT count(*) FROM " + table);
+  row.step();
+  return row.integer(0, 0, most);
+}
+
+constexpr const char* individual_columns =
+    "SELECT id, born, origin, parent, mate, made_by, genes, status, reason, ended_at, spring_evaluations, died "
+    "FROM individuals ";
+
+/// Reads individuals, and checks them against the generations and objectives that there are.
+class Individuals {
+ public:
+  Individuals(const RunDatabase& run, const std::string& which)
+      : run_(run),
+        objectives_(count_of(run, "objectives")),
+        row_(run, "individuals", individual_columns + which),
+        scores_(run, "scores", "SELECT objective, value FROM scores WHERE individual = ? ORDER BY objective") {
+    Statement last(run, "generations",
+                   "SELECT generation, evaluations FROM generations ORDER BY generation DESC LIMIT 1");
+    if (!last.step()) return;
+    last_generation_ = last.index(0);
+    check_ids(last.integer(1, 0, most_ids));
+  }
+
+  Statement& row() { return row_; }
+
+  std::optional<ArchivedIndividual> next() {
+    if (!row_.step()) return std::nullopt;
+    if (!last_generation_) run_.refuse("there are individuals, but no generations");
+    ArchivedIndividual individual;
+    individual.id = row_.index(0);
+    individual.born = row_.index(1, *last_generation_);
+    individual.origin = row_.index(2, individual.born);
+    read_parents(individual);
+    individual.made_by = line(row_, 5);
+    read_genes(individual);
+    read_result(individual.result);
+    if (!row_.is_null(11))
+      individual.died = static_cast<std::uint32_t>(row_.integer(11, individual.born, *last_generation_));
+    read_scores(individual);
+    return individual;
+  }
+
+ private:
+  /// That whoever comes next finds no rows of theirs there already.
+  void check_ids(std::int64_t evaluations) {
+    for (const char* column : {"individuals.id", "scores.individual", "lives.individual", "verifications.individual"}) {
+      const std::string_view name(column);
+      const std::string table(name.substr(0, name.find('.'))), key(name.substr(table.size() + 1));
+      Statement last(run_, table, "SELECT max(" + key + ") AS " + key + " FROM " + table);
+      if (last.step() && !last.is_null(0) && last.index(0) >= evaluations)
+        last.refuse(0, "less than the evaluations, " + std::to_string(evaluations));
+    }
+  }
+
+  /// Who was born before, so that no line of descent leads back to where it began.
+  void read_parents(ArchivedIndividual& individual) {
+    for (const int column : {3, 4}) {
+      if (row_.is_null(column)) continue;
+      individual.parents.push_back(row_.index(column));
+      if (individual.parents.back() >= individual.id) row_.refuse(column, "less than its own id");
+    }
+  }
+
+  void read_genes(ArchivedIndividual& individual) {
+    const std::string_view bytes = row_.bytes(6);
+    if (bytes.size() % sizeof(float) != 0) row_.refuse(6, "four bytes for each gene");
+    individual.genome.resize(bytes.size() / sizeof(float));
+    if (!bytes.empty()) std::memcpy(individual.genome.data(), bytes.data(), bytes.size());
+  }
+
+  void read_result(Result& result) {
+    result.status = status_in(row_, 7);
+    result.reason = line_or_empty(row_, 8);
+    result.ended_at = row_.optional_number(9).value_or(0);
+    result.spring_evaluations = static_cast<std::uint64_t>(row_.integer(10, 0, most));
+  }
+
+  void read_scores(ArchivedIndividual& individual) {
+    std::vector<double>& objectives = individual.result.objectives;
+    scores_.bind(individual.id);
+    while (scores_.step()) {
+      const auto place = static_cast<std::int64_t>(objectives.size());
+      scores_.integer(0, place, place);
+      objectives.push_back(scores_.number(1));
+    }
+    const std::int64_t expected = individual.result.status == Status::ok ? objectives_ : 0;
+    if (static_cast<std::int64_t>(objectives.size()) != expected)
+      run_.refuse("individual " + std::to_string(individual.id) + ", which is " + name(individual.result.status) +
+                  ", has " + std::to_string(objectives.size()) + " scores, expected " + std::to_string(expected));
+  }
+
+  const RunDatabase& run_;
+  std::int64_t objectives_;
+  Statement row_, scores_;
+  std::optional<std::uint32_t> last_generation_;
+};
+
+}  // namespace
+
+std::optional<Verification> Archive::verification(std::uint32_t id) const {
+  Statement row(*run_, "verifications",
+                "SELECT trial, status, reason, value FROM verifications WHERE individual = ? ORDER BY position");
+  row.bind(id);
+  Verification verification{id, 0, {}};
+  while (row.step())
+    verification.trials.push_back({line(row, 0), status_in(row, 1), line_or_empty(row, 2), row.optional_number(3)});
+  if (verification.trials.empty()) return std::nullopt;
+  const ArchivedIndividual verified = known_individual(id);
+  if (verified.result.objectives.empty())
+    refuse("individual " + std::to_string(id) + " is verified, but has no scores");
+  verification.fitness = verified.result.objectives.front();
+  return verification;
+}
+
+std::string Archive::record(const std::string& key) const {
+  auto value = find_record(key);
+  if (!value) refuse("there is no \"" + key + "\"");
+  return std::move(*value);
+}
+
+std::optional<std::string> Archive::find_record(const std::string& key) const {
+  Statement row(*run_, "record", "SELECT value FROM record WHERE key = ?");
+  row.bind(key);
+  if (!row.step()) return std::nullopt;
+  return row.text(0);
+}
+
+std::optional<double> Archive::find_seconds(const std::string& key) const {
+  Statement row(*run_, "record", "SELECT value FROM record WHERE key = ?");
+  row.bind(key);
+  if (!row.step()) return std::nullopt;
+  const auto seconds = seconds_in(row.text(0));
+  if (!seconds) row.refuse(0, "a number of seconds for \"" + key + "\"");
+  return seconds;
+}
+
+std::vector<Maker> Archive::makers() const {
+  std::vector<Maker> makers;
+  Statement row(*run_, "makers", "SELECT maker, device, evodevo, program FROM makers ORDER BY maker");
+  for (std::uint32_t place = 0; row.step(); ++place) {
+    row.integer(0, place, place);
+    makers.push_back({line(row, 1), line(row, 2), line(row, 3), {}});
+  }
+  if (makers.empty()) refuse("nobody made the run");
+  Statement use(*run_, "operators", "SELECT maker, kind, name, version, file, hash FROM operators ORDER BY rowid");
+  while (use.step())
+    makers[use.index(0, static_cast<std::uint32_t>(makers.size() - 1))].operators.push_back(
+        {line(use, 1), line(use, 2), line(use, 3), line(use, 4), line(use, 5)});
+  return makers;
+}
+
+Maker Archive::maker(std::uint32_t generation) const {
+  const std::vector<Maker> all = makers();
+  Statement row(*run_, "generations", "SELECT maker FROM generations WHERE generation = ?");
+  row.bind(generation);
+  if (!row.step()) refuse("there is no generation " + std::to_string(generation));
+  return all[row.index(0, static_cast<std::uint32_t>(all.size() - 1))];
+}
+
+std::vector<Objective> Archive::objectives() const {
+  std::vector<Objective> objectives;
+  Statement row(*run_, "objectives", "SELECT position, name, unit, maximise FROM objectives ORDER BY position");
+  for (std::uint32_t place = 0; row.step(); ++place) {
+    row.integer(0, place, place);
+    objectives.push_back({line(row, 1), line(row, 2), row.integer(3, 0, 1) != 0});
+  }
+  if (objectives.empty()) refuse("there are no objectives");
+  return objectives;
+}
+
+std::vector<Summary> Archive::generations() const {
+  const auto last_maker = static_cast<std::uint32_t>(makers().size() - 1);
+  std::vector<Summary> summaries;
+  Statement row(*run_, "generations",
+                "SELECT generation, evaluations, best, median, diverged, invalid, clones, spring_evaluations, "
+                "wall_time, maker FROM generations ORDER BY generation");
+  while (row.step()) {
+    const auto place = static_cast<std::int64_t>(summaries.size());
+    Summary& summary = summaries.emplace_back();
+    summary.generation = static_cast<std::uint32_t>(row.integer(0, place, place));
+    summary.evaluations = row.integer(1, place > 0 ? summaries[summaries.size() - 2].evaluations : 0, most_ids);
+    summary.best = row.optional_number(2);
+    summary.median = row.optional_number(3);
+    summary.diverged = row.integer(4, 0, summary.evaluations);
+    summary.invalid = row.integer(5, 0, summary.evaluations);
+    summary.clones = row.integer(6, 0, summary.evaluations);
+    summary.spring_evaluations = static_cast<std::uint64_t>(row.integer(7, 0, most));
+    summary.wall_time = row.number(8);
+    summary.maker = row.index(9, last_maker);
+  }
+  return summaries;
+}
+
+std::map<std::string, std::int64_t> Archive::statuses() const {
+  std::map<std::string, std::int64_t> counts;
+  for (const Status status : {Status::ok, Status::invalid, Status::diverged}) counts[name(status)] = 0;
+  Statement row(*run_, "individuals", "SELECT status, count(*) FROM individuals GROUP BY status");
+  while (row.step()) counts[name(status_in(row, 0))] = row.integer(1, 0, most);
+  return counts;
+}
+
+std::vector<Failure> Archive::failures() const {
+  std::map<std::pair<std::string, std::string>, Failure> failures;
+  Statement row(*run_, "individuals",
+                "SELECT status, reason, count(*) FROM individuals WHERE status <> 'ok' "
+                "GROUP BY status, reason ORDER BY min(id)");
+  while (row.step()) {
+    const std::string status = name(status_in(row, 0)), reason = line_or_empty(row, 1);
+    const std::string alike = reason.substr(0, reason.find_first_of("0123456789"));
+    Failure& failure = failures.try_emplace({status, alike}, Failure{status, reason}).first->second;
+    failure.count += row.integer(2, 0, most);
+    failure.varies |= failure.reason != reason;
+  }
+  std::vector<Failure> sorted;
+  for (auto& [key, failure] : failures) sorted.push_back(std::move(failure));
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Failure& a, const Failure& b) { return a.count > b.count; });
+  return sorted;
+}
+
+std::vector<Individual> Archive::population() const {
+  std::vector<Individual> population;
+  Individuals living(*run_, "WHERE died IS NULL ORDER BY id");
+  while (auto individual = living.next()) population.push_back(std::move(*individual));
+  return population;
+}
+
+std::optional<ArchivedIndividual> Archive::individual(std::uint32_t id) const {
+  Individuals one(*run_, "WHERE id = ?");
+  one.row().bind(id);
+  return one.next();
+}
+
+ArchivedIndividual Archive::known_individual(std::uint32_t id) const {
+  auto known = individual(id);
+  if (!known) refuse("there is no individual " + std::to_string(id) + ", which it names");
+  return std::move(*known);
+}
+
+std::optional<LifeRecord> Archive::life(std::uint32_t id) const try {
+  Statement row(*run_, "lives", "SELECT record FROM lives WHERE individual = ?");
+  row.bind(id);
+  if (!row.step()) return std::nullopt;
+  return LifeRecord(std::string(row.bytes(0)));
+} catch (const std::invalid_argument& error) {
+  refuse("individual " + std::to_string(id) + ": " + error.what());
+}
+
+std::vector<std::uint32_t> Archive::best(std::size_t count) const {
+  const bool maximise = objectives().front().maximise;
+  std::vector<std::uint32_t> ids;
+  Statement row(*run_, "scores",
+                std::string("SELECT individual FROM scores WHERE objective = 0 ORDER BY value ") +
+                    (maximise ? "DESC" : "ASC") + ", individual LIMIT ?");
+  row.bind(static_cast<std::int64_t>(count));
+  while (row.step()) ids.push_back(row.index(0));
+  return ids;
+}
+
+}  // namespace evodevo

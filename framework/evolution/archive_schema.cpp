@@ -1,0 +1,106 @@
+#include "evolution/archive_schema.hpp"
+
+#include <map>
+
+#include "base/text.hpp"
+
+namespace evodevo {
+namespace {
+
+constexpr const char* schema = R"sql(
+CREATE TABLE record(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+-- whom a run was begun and resumed by; numbered from 0
+CREATE TABLE makers(maker INTEGER PRIMARY KEY, device TEXT NOT NULL, evodevo TEXT NOT NULL, program TEXT NOT NULL);
+CREATE TABLE operators(maker INTEGER NOT NULL, kind TEXT NOT NULL, name TEXT NOT NULL, version TEXT NOT NULL,
+  file TEXT NOT NULL, hash TEXT NOT NULL);
+CREATE TABLE objectives(position INTEGER PRIMARY KEY, name TEXT NOT NULL, unit TEXT NOT NULL, maximise INTEGER NOT NULL);
+CREATE TABLE individuals(
+  id INTEGER PRIMARY KEY,
+  born INTEGER NOT NULL,                -- generation
+  died INTEGER,                         -- generation whose selection dropped it; null while it lives
+  origin INTEGER NOT NULL,              -- generation of its oldest genes
+  parent INTEGER, mate INTEGER,         -- ids
+  made_by TEXT NOT NULL,
+  genes BLOB NOT NULL,                  -- float32, little-endian
+  status TEXT NOT NULL, reason TEXT, ended_at REAL,
+  spring_evaluations INTEGER NOT NULL);
+CREATE INDEX individuals_by_death ON individuals(died);
+CREATE TABLE scores(
+  individual INTEGER NOT NULL, objective INTEGER NOT NULL, value REAL NOT NULL,
+  PRIMARY KEY(individual, objective)) WITHOUT ROWID;
+-- what development did to those who reached the front; see life_record.hpp
+CREATE TABLE lives(individual INTEGER PRIMARY KEY, record BLOB NOT NULL);
+CREATE TABLE generations(
+  generation INTEGER PRIMARY KEY, evaluations INTEGER NOT NULL, best REAL, median REAL,
+  diverged INTEGER NOT NULL, invalid INTEGER NOT NULL, clones INTEGER NOT NULL,
+  spring_evaluations INTEGER NOT NULL, wall_time REAL NOT NULL,
+  maker INTEGER NOT NULL);
+CREATE TABLE verifications(
+  individual INTEGER NOT NULL, trial TEXT NOT NULL, position INTEGER NOT NULL,
+  status TEXT NOT NULL, reason TEXT, value REAL,  -- of the first objective
+  PRIMARY KEY(individual, trial)) WITHOUT ROWID;
+-- who lived on after each generation, and how old its genes were then
+CREATE VIEW members AS
+  SELECT generation, id AS individual, generation - origin AS age
+  FROM generations JOIN individuals ON born <= generation AND (died IS NULL OR died > generation);
+)sql";
+
+/// What a database consists of: how each thing in it was made, by its name.
+using Things = std::map<std::string, std::string>;
+
+Things things_in(SQLite::Database& database) {
+  Things things;
+  SQLite::Statement row(database, "SELECT name, sql FROM sqlite_master WHERE sql IS NOT NULL");
+  while (row.executeStep()) things[row.getColumn(0).getString()] = row.getColumn(1).getString();
+  return things;
+}
+
+const Things& things_of_a_run() {
+  static const Things things = [] {
+    SQLite::Database database(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    database.exec(schema);
+    return things_in(database);
+  }();
+  return things;
+}
+
+[[noreturn]] void refuse_foreign(const RunDatabase& run, const std::string& what) {
+  throw ArchiveError(run.folder().string() + ": is not as a run leaves it: " + database_name + " " + what +
+                     "; give a folder that `" + program_name() + " run` has written");
+}
+
+std::string recorded(const RunDatabase& run, const char* key) {
+  Statement row(run, "record", "SELECT value FROM record WHERE key = ?");
+  row.bind(key);
+  return row.step() ? row.text(0) : "none";
+}
+
+void check_format(const RunDatabase& run) {
+  const std::string format = recorded(run, "format");
+  if (format == archive_format) return;
+  throw ArchiveError(run.folder().string() + ": has format " + format + ", this evodevo reads format " +
+                     archive_format + "; use the evodevo that wrote it, " + recorded(run, "evodevo"));
+}
+
+}  // namespace
+
+void create_tables(RunDatabase& run) { run.execute(schema); }
+
+void check_tables(const RunDatabase& run) {
+  const Things here = run.guarded([&] { return things_in(run.sqlite()); });
+  // everything up to the first generation is one transaction
+  if (here.empty())
+    throw ArchiveError(run.folder().string() + ": the run in it ended before it began; if there was a " +
+                       database_name + "-wal beside " + database_name +
+                       ", put that back, or else begin the run anew in another folder");
+  const auto check = [&](const std::string& name) {
+    const auto found = here.find(name);
+    if (found == here.end()) refuse_foreign(run, "lacks \"" + name + "\"");
+    if (found->second != things_of_a_run().at(name)) refuse_foreign(run, "has another \"" + name + "\"");
+  };
+  check("record");  // which says whether the others are those that this program knows
+  check_format(run);
+  for (const auto& [name, sql] : things_of_a_run()) check(name);
+}
+
+}  // namespace evodevo

@@ -1,0 +1,93 @@
+// What is added to the record of a run.
+#include <algorithm>
+
+#include "evolution/archive.hpp"
+#include "evolution/archive_database.hpp"
+
+namespace evodevo {
+namespace {
+
+std::string_view bytes_of(const Genome& genome) {
+  return {reinterpret_cast<const char*>(genome.data()), genome.size() * sizeof(float)};
+}
+
+void insert_newborns(const RunDatabase& run, const std::vector<Individual>& newborns) {
+  Statement insert(run, "individuals",
+                   "INSERT INTO individuals(id, born, origin, parent, mate, made_by, genes, status, reason, ended_at, "
+                   "spring_evaluations, died) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL)");
+  Statement insert_score(run, "scores", "INSERT INTO scores VALUES(?, ?, ?)");
+  for (const Individual& individual : newborns) {
+    const Result& result = individual.result;
+    const auto parent = [&](std::size_t i) {
+      return i < individual.parents.size() ? std::optional(individual.parents[i]) : std::nullopt;
+    };
+    const bool failed = result.status != Status::ok, diverged = result.status == Status::diverged;
+    insert.execute(
+        individual.id, individual.born, individual.origin, parent(0), parent(1), individual.made_by,
+        bytes_of(individual.genome), name(result.status), failed ? std::optional(result.reason) : std::nullopt,
+        diverged ? std::optional(result.ended_at) : std::nullopt, static_cast<std::int64_t>(result.spring_evaluations));
+    for (std::size_t i = 0; i < result.objectives.size(); ++i)
+      insert_score.execute(individual.id, static_cast<std::uint32_t>(i), result.objectives[i]);
+  }
+}
+
+}  // namespace
+
+void Archive::commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,
+                     const std::map<std::uint32_t, LifeRecord>& lives, const Summary& summary) {
+  WriteTransaction transaction(*run_);
+  insert_newborns(*run_, newborns);
+  Statement insert_life(*run_, "lives", "INSERT INTO lives VALUES(?, ?)");
+  for (const auto& [id, life] : lives) insert_life.execute(id, std::string_view(life.bytes()));
+  Statement drop(*run_, "individuals", "UPDATE individuals SET died = ? WHERE id = ?");
+  for (const std::uint32_t id : dropped) drop.execute(summary.generation, id);
+  Statement(*run_, "generations", "INSERT INTO generations VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+      .execute(summary.generation, summary.evaluations, summary.best, summary.median, summary.diverged, summary.invalid,
+               summary.clones, static_cast<std::int64_t>(summary.spring_evaluations), summary.wall_time, summary.maker);
+  transaction.commit();
+}
+
+void Archive::add_verifications(const std::vector<Verification>& verifications) {
+  WriteTransaction transaction(*run_);
+  Statement insert(*run_, "verifications", "INSERT OR REPLACE INTO verifications VALUES(?, ?, ?, ?, ?, ?)");
+  for (const Verification& verification : verifications) {
+    std::uint32_t position = 0;
+    for (const Trial& trial : verification.trials)
+      insert.execute(verification.individual, trial.name, position++, name(trial.status),
+                     trial.status != Status::ok ? std::optional(trial.reason) : std::nullopt, trial.value);
+  }
+  transaction.commit();
+}
+
+void Archive::insert_record(const std::string& key, const std::string& value) {
+  Statement(*run_, "record", "INSERT OR REPLACE INTO record VALUES(?, ?)").execute(key, value);
+}
+
+void Archive::set_record(const std::string& key, const std::string& value) { set_records({{key, value}}); }
+
+void Archive::set_records(const std::map<std::string, std::string>& entries) {
+  WriteTransaction transaction(*run_);
+  for (const auto& [key, value] : entries) insert_record(key, value);
+  transaction.commit();
+}
+
+void Archive::insert_maker(std::uint32_t place, const Maker& maker) {
+  Statement(*run_, "makers", "INSERT INTO makers VALUES(?, ?, ?, ?)")
+      .execute(place, maker.device, maker.version, maker.program);
+  Statement insert(*run_, "operators", "INSERT INTO operators VALUES(?, ?, ?, ?, ?, ?)");
+  for (const OperatorUse& use : maker.operators)
+    insert.execute(place, use.kind, use.name, use.version, use.file.string(), use.hash);
+}
+
+std::uint32_t Archive::add_maker(const Maker& maker) {
+  const std::vector<Maker> there = makers();
+  const auto same = std::find_if(there.begin(), there.end(), [&](const Maker& one) { return are_same(one, maker); });
+  const auto place = static_cast<std::uint32_t>(same - there.begin());
+  if (same != there.end()) return place;
+  WriteTransaction transaction(*run_);
+  insert_maker(place, maker);
+  transaction.commit();
+  return place;
+}
+
+}  // namespace evodevo

@@ -1,0 +1,185 @@
+#include "evolution/breeding.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <unordered_map>
+
+#include "base/philox.hpp"
+#include "base/text.hpp"
+#include "evolution/clones.hpp"
+
+namespace evodevo {
+namespace {
+
+constexpr std::uint32_t most_repeats = 16;  ///< how often a newborn that is a clone is made anew
+
+Rng stream(const Experiment& experiment, std::uint32_t generation, std::uint32_t individual, std::uint32_t where) {
+  return Rng(philox, {static_cast<std::uint64_t>(experiment.seed), generation, individual, where});
+}
+
+/// Refuses genes that the layout does not allow, so that a faulty operator is found where it errs.
+void check_genome(const Genome& genome, const Layout& layout) {
+  if (const std::string fault = genome_fault(genome, layout); !fault.empty())
+    throw std::runtime_error("made a genome with " + fault);
+}
+
+Individual newcomer(const Experiment& experiment, std::uint32_t generation, std::uint32_t id, std::uint32_t repeat) {
+  Rng rng = stream(experiment, generation, id, place::again(place::newborn, repeat));
+  Individual individual;
+  individual.id = id;
+  individual.born = individual.origin = generation;
+  individual.made_by = "random";
+  call_operator(experiment, Encoding::kind, 0, {.individual = id}, [&] {
+    individual.genome = experiment.encoding->random(experiment.layout, rng);
+    check_genome(individual.genome, experiment.layout);
+  });
+  return individual;
+}
+
+/// Which variation operators a child goes through: crossovers first, then mutations, counted through both lists. Each
+/// is drawn by its own probability; where none comes, one is drawn in proportion to them, so that no child goes
+/// unvaried.
+std::vector<std::size_t> draw_variation(const Experiment& experiment, Rng& rng) {
+  std::vector<double> probabilities;
+  for (const auto& crossover : experiment.crossovers) probabilities.push_back(crossover.probability);
+  for (const auto& mutation : experiment.mutations) probabilities.push_back(mutation.probability);
+  std::vector<std::size_t> drawn;
+  for (std::size_t i = 0; i < probabilities.size(); ++i)
+    if (rng.chance(probabilities[i])) drawn.push_back(i);
+  if (!drawn.empty()) return drawn;
+  double left = rng.uniform(0, std::accumulate(probabilities.begin(), probabilities.end(), 0.0));
+  std::size_t one = 0;
+  while (one + 1 < probabilities.size() && left >= probabilities[one]) left -= probabilities[one++];
+  return {one};
+}
+
+Individual child(const Experiment& experiment, const Individual& parent, const Individual& mate,
+                 std::uint32_t generation, std::uint32_t id, std::uint32_t repeat) {
+  Individual individual;
+  individual.id = id;
+  individual.born = generation;
+  individual.origin = parent.origin;
+  individual.parents = {parent.id};
+  individual.genome = parent.genome;
+  const auto draws = [&](std::uint32_t place) {
+    return stream(experiment, generation, id, place::again(place, repeat));
+  };
+  Rng choice = draws(place::variation);
+  std::vector<std::string> names;
+  for (const std::size_t i : draw_variation(experiment, choice)) {
+    if (i < experiment.crossovers.size()) {
+      const auto& crossover = experiment.crossovers[i];
+      Rng rng = draws(place::crossover + static_cast<std::uint32_t>(i));
+      Genome other = mate.genome;
+      call_operator(experiment, Crossover::kind, i, {.individual = id}, [&] {
+        crossover.op->cross(individual.genome, other, experiment.layout, rng);
+        check_genome(individual.genome, experiment.layout);
+      });
+      individual.parents = {parent.id, mate.id};
+      individual.origin = std::min(parent.origin, mate.origin);
+      names.push_back(crossover.name);
+    } else {
+      const std::size_t k = i - experiment.crossovers.size();
+      const auto& mutation = experiment.mutations[k];
+      Rng rng = draws(place::mutation + static_cast<std::uint32_t>(k));
+      call_operator(experiment, Mutation::kind, k, {.individual = id}, [&] {
+        mutation.op->mutate(individual.genome, experiment.layout, rng);
+        check_genome(individual.genome, experiment.layout);
+      });
+      names.push_back(mutation.name);
+    }
+  }
+  individual.made_by = joined(names, "+");
+  return individual;
+}
+
+/// A newborn that `make(repeat)` makes: anew, with other random numbers, as long as its genome is `known`, but not for
+/// ever, since there may be no other genomes. It is known from then on.
+template <class Make>
+Individual distinct(GenomeSet& known, const Make& make) {
+  Individual newborn = make(0);
+  for (std::uint32_t repeat = 1; repeat <= most_repeats && known.contains(newborn.genome); ++repeat)
+    newborn = make(repeat);
+  known.add(newborn.genome);
+  return newborn;
+}
+
+std::vector<std::pair<std::uint32_t, std::uint32_t>> chosen_parents(const Experiment& experiment,
+                                                                    const SelectionTable& table, std::uint32_t count,
+                                                                    Rng& rng) {
+  auto pairs = experiment.selection->parents(table.rows(), count, rng);
+  if (pairs.size() != count)
+    throw std::runtime_error("chose " + std::to_string(pairs.size()) + " pairs of parents where " +
+                             std::to_string(count) + " were asked for");
+  for (const auto& [parent, mate] : pairs)
+    if (std::max(parent, mate) >= table.rows().size())
+      throw std::runtime_error("chose row " + std::to_string(std::max(parent, mate)) + " of " +
+                               std::to_string(table.rows().size()));
+  return pairs;
+}
+
+}  // namespace
+
+std::string genome_fault(const Genome& genome, const Layout& layout) {
+  if (genome.size() != layout.genes.size())
+    return std::to_string(genome.size()) + " genes where there are " + std::to_string(layout.genes.size());
+  for (std::size_t i = 0; i < genome.size(); ++i) {
+    const GeneSpec& spec = layout.genes[i];
+    const bool fits = spec.is_choice() ? genome[i] >= 0 && genome[i] < static_cast<float>(spec.choices) &&
+                                             genome[i] == std::floor(genome[i])
+                                       : genome[i] >= spec.low && genome[i] <= spec.high;
+    if (!fits) return "gene " + std::to_string(i) + " = " + to_text(genome[i]) + ", which is not allowed";
+  }
+  return "";
+}
+
+SelectionTable::SelectionTable(const std::vector<Individual>& individuals, const std::vector<Objective>& objectives,
+                               std::uint32_t generation)
+    : scores_(individuals.size()) {
+  std::unordered_map<std::uint32_t, std::uint32_t> row_of;
+  for (std::size_t i = 0; i < individuals.size(); ++i) {
+    const Individual& individual = individuals[i];
+    row_of[individual.id] = static_cast<std::uint32_t>(i);
+    if (individual.result.status == Status::ok)
+      for (std::size_t o = 0; o < objectives.size(); ++o)
+        scores_[i].push_back(objectives[o].maximise ? individual.result.objectives[o]
+                                                    : -individual.result.objectives[o]);
+    Candidate row;
+    row.scores = scores_[i];
+    row.age = individual.age(generation);
+    if (individual.born == generation && !individual.parents.empty())
+      if (const auto parent = row_of.find(individual.parents.front()); parent != row_of.end())
+        row.challenges = parent->second;
+    rows_.push_back(row);
+  }
+}
+
+std::vector<Individual> breed(const Experiment& experiment, const std::vector<Individual>& population,
+                              std::uint32_t generation, std::uint32_t first_id, std::size_t count) {
+  const std::size_t newcomers =
+      population.empty() ? count : std::min(count, static_cast<std::size_t>(experiment.newcomers));
+  std::vector<Individual> newborns;
+  GenomeSet known(population);
+  std::uint32_t id = first_id;
+  if (newcomers < count) {
+    const SelectionTable table(population, experiment.objectives, generation);
+    Rng rng = stream(experiment, generation, 0, place::parents);
+    const auto asked = static_cast<std::uint32_t>(count - newcomers);
+    const auto pairs = call_operator(experiment, Selection::kind, 0, {},
+                                     [&] { return chosen_parents(experiment, table, asked, rng); });
+    for (const auto& pair : pairs) {
+      const Individual &parent = population.at(pair.first), &mate = population.at(pair.second);
+      newborns.push_back(distinct(
+          known, [&](std::uint32_t repeat) { return child(experiment, parent, mate, generation, id, repeat); }));
+      ++id;
+    }
+  }
+  for (; newborns.size() < count; ++id)
+    newborns.push_back(
+        distinct(known, [&](std::uint32_t repeat) { return newcomer(experiment, generation, id, repeat); }));
+  return newborns;
+}
+
+}  // namespace evodevo

@@ -1,0 +1,50 @@
+#include "evolution/clones.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <functional>
+#include <unordered_map>
+
+namespace evodevo {
+
+std::size_t GenomeSet::Hash::operator()(Genes genes) const {
+  std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a by whole genes, since genomes may have thousands
+  for (const float gene : genes)
+    hash = (hash ^ std::bit_cast<std::uint32_t>(gene + 0.0F)) * 0x100000001b3;  // of -0 comes 0, which is equal
+  return hash;
+}
+
+bool GenomeSet::Equal::operator()(Genes a, Genes b) const { return std::ranges::equal(a, b); }
+
+GenomeSet::GenomeSet(const std::vector<Individual>& individuals) {
+  for (const Individual& individual : individuals) add(individual.genome);
+}
+
+std::int64_t count_clones(const std::vector<Individual>& population, const std::vector<Individual>& newborns) {
+  GenomeSet known(population);
+  return std::count_if(newborns.begin(), newborns.end(),
+                       [&](const Individual& newborn) { return !known.add(newborn.genome); });
+}
+
+std::vector<std::uint32_t> remove_copies(std::vector<Individual>& everyone) {
+  std::vector<const Individual*> youngest_first;
+  for (const Individual& individual : everyone) youngest_first.push_back(&individual);
+  std::ranges::stable_sort(youngest_first, std::greater(), [](const Individual* one) { return one->origin; });
+
+  using Scores = std::vector<double>;
+  std::unordered_map<GenomeSet::Genes, std::vector<const Scores*>, GenomeSet::Hash, GenomeSet::Equal> scores_of;
+  std::vector<std::uint32_t> copies;
+  for (const Individual* individual : youngest_first) {
+    std::vector<const Scores*>& known = scores_of[individual->genome];
+    const Scores& own = individual->result.objectives;
+    if (std::ranges::any_of(known, [&](const Scores* scores) { return *scores == own; }))
+      copies.push_back(individual->id);
+    else
+      known.push_back(&own);
+  }
+  std::ranges::sort(copies);
+  std::erase_if(everyone, [&](const Individual& one) { return std::ranges::binary_search(copies, one.id); });
+  return copies;
+}
+
+}  // namespace evodevo

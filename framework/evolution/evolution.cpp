@@ -1,0 +1,222 @@
+#include "evolution/evolution.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+#include <utility>
+
+#include "base/philox.hpp"
+#include "base/text.hpp"
+#include "evodevo/pareto.hpp"
+#include "evolution/breeding.hpp"
+#include "evolution/clones.hpp"
+
+namespace evodevo {
+namespace {
+
+void evaluate(std::vector<Individual>& newborns, const Evaluation& evaluation, const Observer& observer) {
+  std::vector<Newborn> batch;
+  for (const Individual& individual : newborns) batch.push_back({individual.id, individual.born, &individual.genome});
+  std::vector<Result> results = evaluation.evaluate(batch, observer.generation_progress);
+  for (std::size_t i = 0; i < newborns.size(); ++i) newborns[i].result = std::move(results[i]);
+}
+
+std::vector<std::uint32_t> chosen_survivors(const Experiment& experiment, const SelectionTable& table,
+                                            std::uint32_t population, Rng& rng) {
+  auto rows = experiment.selection->survivors(table.rows(), population, rng);
+  std::sort(rows.begin(), rows.end());
+  const bool twice = std::adjacent_find(rows.begin(), rows.end()) != rows.end();
+  if (rows.empty() || rows.size() > population || twice || rows.back() >= table.rows().size())
+    throw std::runtime_error("must choose 1 to " + std::to_string(population) + " different survivors of " +
+                             std::to_string(table.rows().size()));
+  return rows;
+}
+
+/// Those whom nobody in `everyone` surpasses in the objectives and in youth.
+std::vector<const Individual*> front(const std::vector<Individual>& everyone, const Experiment& experiment,
+                                     std::uint32_t generation) {
+  const SelectionTable table(everyone, experiment.objectives, generation);
+  const std::vector<std::uint32_t> layer = pareto_layers(scores_and_youth(table.rows()));
+  std::vector<const Individual*> front;
+  for (std::size_t i = 0; i < everyone.size(); ++i)
+    if (everyone[i].result.status == Status::ok && layer[i] == 0) front.push_back(&everyone[i]);
+  return front;
+}
+
+/// Chooses the lives of which a run keeps the records: of all who are ever on the front.
+class FrontLives {
+ public:
+  FrontLives(const Experiment& experiment, const Evaluation& evaluation, const Archive& archive, const Maker& maker)
+      : experiment_(experiment), evaluation_(evaluation), archive_(archive), maker_(maker) {
+    for (const Individual& individual : archive.population())
+      if (archive.life(individual.id)) kept_.insert(individual.id);
+  }
+
+  /// Takes the records from newborns, since there is no room for those of a whole population.
+  void take(std::vector<Individual>& newborns) {
+    for (Individual& individual : newborns)
+      newborn_[individual.id] = std::exchange(individual.result.record, LifeRecord());
+  }
+
+  /// Keeps the records of those on the front. Elders whom selection has let come there, which are few, live again; but
+  /// not elders of other makers, since that might be another life than the one that was scored.
+  void keep_front(const std::vector<Individual>& everyone, std::uint32_t generation) {
+    std::vector<Newborn> elders;
+    for (const Individual* individual : front(everyone, experiment_, generation)) {
+      if (!kept_.insert(individual->id).second) continue;
+      if (const auto newborn = newborn_.extract(individual->id))
+        to_commit_[individual->id] = std::move(newborn.mapped());
+      else if (are_same(archive_.maker(individual->born), maker_))
+        elders.push_back({individual->id, individual->born, &individual->genome});
+    }
+    if (elders.empty()) return;
+    std::vector<Life> lives = evaluation_.birth(elders);
+    evaluation_.develop(lives, [](double) {});
+    for (Life& life : lives) to_commit_[life.newborn.id] = std::move(life.result.record);
+  }
+
+  /// What a generation has added.
+  std::map<std::uint32_t, LifeRecord> committed() {
+    newborn_.clear();
+    return std::exchange(to_commit_, {});
+  }
+
+ private:
+  const Experiment& experiment_;
+  const Evaluation& evaluation_;
+  const Archive& archive_;
+  const Maker& maker_;
+  std::map<std::uint32_t, LifeRecord> newborn_, to_commit_;
+  std::set<std::uint32_t> kept_;
+};
+
+/// Reduces `everyone` to the survivors, in the order of birth; adds the ids of the others to `dropped`.
+void select(std::vector<Individual>& everyone, const Experiment& experiment, std::uint32_t generation,
+            std::vector<std::uint32_t>& dropped) {
+  const auto population = static_cast<std::uint32_t>(experiment.population);
+  const SelectionTable table(everyone, experiment.objectives, generation);
+  Rng rng(philox, {static_cast<std::uint64_t>(experiment.seed), generation, 0, place::survivors});
+  const auto rows = call_operator(experiment, Selection::kind, 0, {},
+                                  [&] { return chosen_survivors(experiment, table, population, rng); });
+  std::vector<Individual> survivors;
+  for (std::uint32_t i = 0; i < everyone.size(); ++i) {
+    if (std::binary_search(rows.begin(), rows.end(), i))
+      survivors.push_back(std::move(everyone[i]));
+    else
+      dropped.push_back(everyone[i].id);
+  }
+  everyone = std::move(survivors);
+}
+
+void add_best_and_median(Summary& summary, const std::vector<Individual>& population, bool maximise) {
+  std::vector<double> scores;
+  for (const Individual& individual : population)
+    if (individual.result.status == Status::ok) scores.push_back(individual.result.objectives.front());
+  if (scores.empty()) return;
+  std::sort(scores.begin(), scores.end());
+  summary.best = maximise ? scores.back() : scores.front();
+  const std::size_t half = scores.size() / 2;
+  summary.median = scores.size() % 2 == 1 ? scores[half] : (scores[half - 1] + scores[half]) / 2;
+}
+
+Summary summarise(const std::vector<Individual>& population, const std::vector<Individual>& newborns,
+                  std::uint32_t generation) {
+  Summary summary;
+  summary.generation = generation;
+  summary.clones = count_clones(population, newborns);
+  for (const Individual& individual : newborns) {
+    summary.diverged += individual.result.status == Status::diverged;
+    summary.invalid += individual.result.status == Status::invalid;
+    summary.spring_evaluations += individual.result.spring_evaluations;
+  }
+  return summary;
+}
+
+}  // namespace
+
+bool is_finished(const Experiment& experiment, const std::vector<Summary>& generations) {
+  if (generations.empty()) return false;
+  double spring_evaluations = 0;
+  for (const Summary& summary : generations) spring_evaluations += static_cast<double>(summary.spring_evaluations);
+  return generations.back().evaluations >= experiment.evaluations ||
+         (experiment.spring_evaluations > 0 && spring_evaluations >= experiment.spring_evaluations);
+}
+
+namespace {
+
+/// The entries of the record that hold a run's times.
+template <class Time, class Use>
+void for_each_time(Time& time, const Use& use) {
+  use("seconds", time.whole);
+  use("seconds_archive", time.archive);
+  use("seconds_decode", time.evaluation.decode);
+  use("seconds_simulate", time.evaluation.simulate);
+  use("seconds_develop", time.evaluation.develop);
+}
+
+}  // namespace
+
+void record_time_spent(Archive& archive, const TimeSpent& time) {
+  std::map<std::string, std::string> entries;
+  for_each_time(time, [&](const char* key, double seconds) {
+    entries[key] = to_text(archive.find_seconds(key).value_or(0) + seconds);
+  });
+  archive.set_records(entries);
+}
+
+std::optional<TimeSpent> recorded_time_spent(const Archive& archive) {
+  if (!archive.find_record("seconds")) return std::nullopt;
+  TimeSpent time;
+  for_each_time(time, [&](const char* key, double& seconds) { seconds = archive.find_seconds(key).value_or(0); });
+  return time;
+}
+
+TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& archive, const std::atomic<bool>& stop,
+                 const Observer& observer) {
+  using Clock = std::chrono::steady_clock;
+  const auto seconds_since = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  const auto begin = Clock::now();
+  TimeSpent time;
+  const Evaluation evaluation(experiment, simulator);
+  std::vector<Summary> summaries = archive.generations();
+  if (is_finished(experiment, summaries)) return {};  // and whoever finds that has made nothing
+  auto generation = static_cast<std::uint32_t>(summaries.size());
+  std::int64_t evaluations = summaries.empty() ? 0 : summaries.back().evaluations;
+  std::vector<Individual> population = archive.population();
+  const Maker maker = this_maker(experiment, simulator.device());
+  const std::uint32_t maker_place = archive.add_maker(maker);
+  FrontLives lives(experiment, evaluation, archive, maker);
+
+  for (; !is_finished(experiment, summaries) && !stop; ++generation) {
+    const auto start = Clock::now();
+    const std::int64_t count = std::min(experiment.population, experiment.evaluations - evaluations);
+    // every evaluation takes one id, so ids go on from the evaluations so far
+    std::vector<Individual> newborns = breed(experiment, population, generation,
+                                             static_cast<std::uint32_t>(evaluations), static_cast<std::size_t>(count));
+    evaluate(newborns, evaluation, observer);
+    evaluations += count;
+    Summary summary = summarise(population, newborns, generation);
+    lives.take(newborns);
+    population.insert(population.end(), newborns.begin(), newborns.end());
+    std::vector<std::uint32_t> dropped = remove_copies(population);
+    lives.keep_front(population, generation);
+    select(population, experiment, generation, dropped);
+    lives.keep_front(population, generation);
+    add_best_and_median(summary, population, experiment.objectives.front().maximise);
+    summary.evaluations = evaluations;
+    summary.wall_time = seconds_since(start);
+    summary.maker = maker_place;
+    const auto commit = Clock::now();
+    archive.commit(newborns, dropped, lives.committed(), summary);
+    time.archive += seconds_since(commit);
+    observer.generation_done(summary);
+    summaries.push_back(summary);
+  }
+  time.whole = seconds_since(begin);
+  time.evaluation = evaluation.phase_times();
+  return time;
+}
+
+}  // namespace evodevo

@@ -1,0 +1,77 @@
+#include "evolution/record_check.hpp"
+
+#include <algorithm>
+
+#include "evolution/breeding.hpp"
+#include "evolution/evolution.hpp"
+
+namespace evodevo {
+namespace {
+
+bool has_causes(const Causes& causes) {
+  return std::any_of(Causes::lists.begin(), Causes::lists.end(), [&](auto list) { return !(causes.*list).empty(); });
+}
+
+std::string title(const Objective& objective) {
+  return (objective.maximise ? "more " : "less ") + objective.name + " in " + objective.unit;
+}
+
+/// What is wrong with a change that follows one of cycle `before`; empty where nothing is.
+std::string fault_of(const Change& change, std::uint32_t before, const Development& development) {
+  const auto cycles = static_cast<std::uint32_t>(development.cycles);
+  if (change.cycle < std::max(before, 1u) || change.cycle > cycles)
+    return "cycle " + std::to_string(change.cycle) + ", expected " + std::to_string(std::max(before, 1u)) + " to " +
+           std::to_string(cycles);
+  if (change.op && *change.op >= development.operators.size())
+    return "operator " + std::to_string(*change.op) + " of " + std::to_string(development.operators.size());
+  if (!change.op && has_causes(change.edits.causes)) return "causes, but no operator that had them";
+  return "";
+}
+
+}  // namespace
+
+void check_objectives(const Archive& archive, const Experiment& experiment) {
+  const std::vector<Objective> recorded = archive.objectives();
+  const std::vector<Objective>& now = experiment.objectives;
+  for (std::size_t i = 0; i < std::max(recorded.size(), now.size()); ++i) {
+    const std::string then_title = i < recorded.size() ? title(recorded[i]) : "none",
+                      now_title = i < now.size() ? title(now[i]) : "none";
+    if (then_title != now_title)
+      archive.refuse("objective " + std::to_string(i) + " is " + then_title +
+                     ", but the experiment's fitness operators measure " + now_title);
+  }
+}
+
+void check_genes(const Archive& archive, const Experiment& experiment, const Individual& individual) {
+  if (const std::string fault = genome_fault(individual.genome, experiment.layout); !fault.empty())
+    archive.refuse("individual " + std::to_string(individual.id) + " has " + fault);
+}
+
+void check_resumable(const Archive& archive, const Experiment& experiment) {
+  const std::size_t generations = archive.generations().size();
+  const std::vector<Individual> population = archive.population();
+  const auto least = static_cast<std::size_t>(generations > 0 ? 1 : 0),
+             most = generations > 0 ? static_cast<std::size_t>(experiment.population) : 0;
+  if (population.size() < least || population.size() > most)
+    archive.refuse(std::to_string(population.size()) + " individuals live after " + std::to_string(generations) +
+                   " generations, expected " + std::to_string(least) + " to " + std::to_string(most));
+  for (const Individual& individual : population) {
+    check_genes(archive, experiment, individual);
+    archive.life(individual.id);
+    archive.maker(individual.born);
+  }
+  archive.makers();
+  recorded_time_spent(archive);
+}
+
+void check_life(const Archive& archive, const Experiment& experiment, std::uint32_t individual,
+                const LifeRecord& record) {
+  std::uint32_t before = 0;
+  for (const Change& change : record.changes()) {
+    if (const std::string fault = fault_of(change, before, experiment.development); !fault.empty())
+      archive.refuse("the record of the life of individual " + std::to_string(individual) + " names " + fault);
+    before = change.cycle;
+  }
+}
+
+}  // namespace evodevo

@@ -1,0 +1,26 @@
+#include "experiment/device.hpp"
+
+#include "experiment/toml_reader.hpp"
+#ifdef EVODEVO_CUDA
+#include "cuda/runtime/cuda_simulator.hpp"
+#endif
+
+namespace evodevo {
+
+std::unique_ptr<Simulator> make_simulator(const Experiment& experiment) {
+  if (experiment.device != "cpu") {
+#ifdef EVODEVO_CUDA
+    const std::string obstacle = why_cuda_is_unusable();
+    if (obstacle.empty())
+      return make_cuda_simulator(experiment.scene, experiment.stepping, static_cast<int>(experiment.threads));
+#else
+    const std::string obstacle = "this evodevo was built without CUDA; build it where the CUDA toolkit is";
+#endif
+    if (experiment.device == "cuda")
+      throw ConfigError(experiment.device_place + ": simulation.device = \"cuda\": " + obstacle +
+                        ", or set simulation.device to \"cpu\"");
+  }
+  return make_cpu_simulator(experiment.scene, experiment.stepping, static_cast<int>(experiment.threads));
+}
+
+}  // namespace evodevo

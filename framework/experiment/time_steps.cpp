@@ -1,0 +1,53 @@
+#include "experiment/time_steps.hpp"
+
+#include <cmath>
+
+#include "analysis/stability.hpp"
+#include "base/text.hpp"
+
+namespace evodevo {
+namespace {
+
+constexpr double shortest_dt = 1e-7;  ///< s; below it no life ends
+
+LongestStep failed(const std::string& why) { return {0, "unstable dt: " + why}; }
+
+LongestStep longest_fixed_step(const StepRule& rule, const Body& body, std::span<const Vec3> places, const Scene& scene,
+                               Method method) {
+  const double dt = *rule.fixed();
+  if (rule.run_unstable) return {*rule.dt, ""};
+  if (dt > largest_contact_dt(scene, body, method))
+    return failed(to_text(dt) + " s is too long for the body's lightest mass on this floor");
+  if (dt > largest_muscle_dt(body)) return failed(to_text(dt) + " s is too long for the body's fastest muscles");
+  if (!is_stable(body, places, method, dt)) return failed(to_text(dt) + " s is too long for the body's springs");
+  return {*rule.dt, ""};
+}
+
+}  // namespace
+
+std::optional<double> StepRule::fixed() const {
+  if (!dt) return std::nullopt;
+  return *dt / static_cast<double>(refine);
+}
+
+LongestStep longest_step(const StepRule& rule, const Body& body, std::span<const Vec3> places, const Scene& scene,
+                         Method method) {
+  if (rule.dt) return longest_fixed_step(rule, body, places, scene, method);
+  const double dt = safe_dt(body, places, scene, method);
+  if (!(dt > 0)) return failed("the body is too large, too stiff or too light for one to be computed");
+  if (dt < shortest_dt) return failed("the body would need steps of " + to_text(dt) + " s");
+  return {dt, ""};
+}
+
+Pace pace_over(double duration, const StepRule& rule, double longest) {
+  const double steps = rule.dt ? std::round(duration / *rule.dt) : std::ceil(duration / longest);
+  const auto count = static_cast<std::uint64_t>(steps) * static_cast<std::uint64_t>(rule.refine);
+  return {rule.dt ? *rule.fixed() : duration / static_cast<double>(count), count};
+}
+
+bool is_whole_number_of_steps(double duration, double dt) {
+  const double steps = duration / dt;
+  return std::abs(steps - std::round(steps)) <= 1e-6 * std::max(1.0, steps);
+}
+
+}  // namespace evodevo

@@ -1,0 +1,261 @@
+#include "experiment/toml_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "base/input_file.hpp"
+#include "base/text.hpp"
+#include "experiment/toml_limits.hpp"
+
+namespace evodevo {
+namespace {
+
+constexpr std::size_t most_texts = 1000;  ///< of one list
+
+}  // namespace
+
+toml::table parse_toml(std::string_view text, const std::string& origin) {
+  expect_within_toml_limits(text, origin);
+  try {
+    return toml::parse(text, std::string_view(origin));
+  } catch (const toml::parse_error& error) {
+    throw ConfigError(place_of(error.source()) + ": " + printable(error.description()));
+  }
+}
+
+toml::table parse_toml_file(const std::string& file) {
+  return parse_toml(read_input_file(file, most_toml_file_bytes), file);
+}
+
+std::string place_of(const toml::source_region& source) {
+  const std::string file = source.path ? printable(*source.path, longest_shown_path) : "";
+  if (!source.begin || file.starts_with("--")) return file;  // a command-line option has no lines
+  return file + ":" + std::to_string(source.begin.line) + ":" + std::to_string(source.begin.column);
+}
+
+std::string value_text(const toml::node& node) {
+  if (node.is_table()) return "a table";
+  const toml::array* array = node.as_array();
+  if (array != nullptr && std::any_of(array->begin(), array->end(), [](const auto& item) { return item.is_table(); }))
+    return "a list with tables";
+  if (const auto* number = node.as_floating_point(); number != nullptr && std::isfinite(number->get()))
+    return to_text(number->get());
+  std::ostringstream text;
+  node.visit([&](const auto& n) { text << toml::toml_formatter(n, toml::format_flags::none); });
+  std::string one_line = text.str();
+  std::replace(one_line.begin(), one_line.end(), '\n', ' ');  // between the items of a long list
+  return one_line;
+}
+
+namespace {
+
+/// "expected a number, 0 to 1 s", without what is empty or says nothing.
+std::string expected(const std::string& what, const Range& range) {
+  const std::string ends = to_text(range), separator = what.empty() || ends.empty() ? "" : ", ";
+  const std::string unit = range.unit == "1" || ends.empty() ? "" : " " + std::string(range.unit);
+  return "expected " + what + separator + ends + unit;
+}
+
+}  // namespace
+
+std::string TomlReader::full_name(std::string_view name) const {
+  return printable(path_.empty() ? std::string(name) : path_ + "." + std::string(name));
+}
+
+void TomlReader::fail_at(const toml::node& node, std::string_view name, const std::string& message) const {
+  throw ConfigError(place_of(node.source()) + ": " + full_name(name) + " = " + printable(value_text(node)) + ": " +
+                    message);
+}
+
+std::string TomlReader::place(std::string_view name) const {
+  const toml::node* node = table_.get(name);
+  return place_of(node != nullptr ? node->source() : table_.source());
+}
+
+void TomlReader::fail(std::string_view name, const std::string& message) const {
+  if (const toml::node* node = table_.get(name)) fail_at(*node, name, message);
+  throw ConfigError(place(name) + ": " + full_name(name) + ": " + message);
+}
+
+void TomlReader::know(std::string_view name) {
+  if (std::find(known_.begin(), known_.end(), name) == known_.end()) known_.emplace_back(name);
+}
+
+void TomlReader::expect(std::initializer_list<std::string_view> names) {
+  for (const std::string_view name : names) know(name);
+  refuse_unknown_keys();
+}
+
+void TomlReader::require_read_among(std::span<const std::string_view> names) const {
+  for (const std::string& key : known_)
+    if (std::find(names.begin(), names.end(), key) == names.end())
+      throw std::logic_error(full_name(key) + " is read, but is none of the keys that may be");
+}
+
+const toml::node* TomlReader::look_up(std::string_view name) {
+  know(name);
+  return table_.get(name);
+}
+
+double TomlReader::number(const toml::node& node, std::string_view name, Range range) const {
+  if (!node.is_number()) fail_at(node, name, expected("a number", range));
+  const double value =
+      node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
+  const bool has_ends = std::isfinite(range.low) && std::isfinite(range.high);
+  // written so that NaN fails
+  if (!(value >= range.low && value <= range.high) || std::isinf(value))
+    fail_at(node, name, expected(has_ends ? "" : "a finite number", range));
+  return value;
+}
+
+std::int64_t TomlReader::whole_number(const toml::node& node, std::string_view name, Range range) const {
+  if (!node.is_number()) fail_at(node, name, expected("a whole number", range));
+  const double value = number(node, name, range);
+  if (node.is_integer()) return node.as_integer()->get();
+  constexpr double beyond = 0x1p63;
+  if (value != std::floor(value) || !(std::abs(value) < beyond)) fail_at(node, name, expected("a whole number", range));
+  return static_cast<std::int64_t>(value);
+}
+
+const toml::array& TomlReader::three(const toml::node& node, std::string_view name) const {
+  const toml::array* array = node.as_array();
+  if (array == nullptr || array->size() != 3) fail_at(node, name, "expected a list of three numbers");
+  return *array;
+}
+
+void TomlReader::real(double& value, std::string_view name, Range range, std::string_view) {
+  if (const toml::node* node = look_up(name)) value = number(*node, name, range);
+  resolve(name, value);
+}
+
+void TomlReader::integer(std::int64_t& value, std::string_view name, Range range, std::string_view) {
+  if (const toml::node* node = look_up(name)) value = whole_number(*node, name, range);
+  resolve(name, value);
+}
+
+void TomlReader::flag(bool& value, std::string_view name, std::string_view) {
+  if (const toml::node* node = look_up(name)) {
+    if (!node->is_boolean()) fail_at(*node, name, "expected true or false");
+    value = node->value<bool>().value();
+  }
+  resolve(name, value);
+}
+
+void TomlReader::choice(std::string& value, std::string_view name, std::initializer_list<std::string_view> options,
+                        std::string_view) {
+  if (const toml::node* node = look_up(name)) {
+    const std::vector<std::string> names(options.begin(), options.end());
+    if (!node->is_string()) fail_at(*node, name, "expected one of " + joined(names));
+    value = node->value<std::string>().value();
+    if (std::find(names.begin(), names.end(), value) == names.end())
+      fail_at(*node, name, "is not an option" + suggestion(value, names));
+  }
+  resolve(name, value);
+}
+
+void TomlReader::vector(Vec3& value, std::string_view name, Range range, std::string_view) {
+  if (const toml::node* node = look_up(name)) {
+    const toml::array& array = three(*node, name);
+    value = {number(array[0], name, range), number(array[1], name, range), number(array[2], name, range)};
+  }
+  resolve(name, toml::array{value.x, value.y, value.z});
+}
+
+void TomlReader::counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view) {
+  if (const toml::node* node = look_up(name)) {
+    const toml::array& array = three(*node, name);
+    for (std::size_t i = 0; i < 3; ++i) value[i] = whole_number(array[i], name, range);
+  }
+  resolve(name, toml::array{value[0], value[1], value[2]});
+}
+
+void TomlReader::materials(std::vector<std::string>& value, std::string_view name, std::string_view) {
+  if (const auto named = texts(name); !named.empty()) value = named;
+  toml::array resolved;
+  for (const std::string& material : value) {
+    if (std::find(materials_->begin(), materials_->end(), material) == materials_->end())
+      fail(name, "\"" + material + "\" is not a material" + suggestion(material, *materials_));
+    if (std::count(value.begin(), value.end(), material) > 1) fail(name, "names \"" + material + "\" twice");
+    resolved.push_back(material);
+  }
+  resolve(name, std::move(resolved));
+}
+
+void TomlReader::require(bool holds, std::string_view name, std::string_view text) {
+  if (!holds) fail(name, std::string(text));
+}
+
+void TomlReader::real_or_auto(std::optional<double>& value, std::string_view name, Range range, std::string_view) {
+  if (const toml::node* node = look_up(name)) {
+    if (!node->is_string())
+      value = number(*node, name, range);
+    else if (node->value<std::string>() == "auto")
+      value.reset();
+    else
+      fail_at(*node, name, "expected a number or \"auto\"");
+  }
+  if (value)
+    resolve(name, *value);
+  else
+    resolve(name, "auto");
+}
+
+std::string TomlReader::text(std::string_view name, const char* fallback) {
+  const toml::node* node = look_up(name);
+  if (node == nullptr && fallback == nullptr) fail(name, "is missing");
+  if (node != nullptr && !node->is_string()) fail_at(*node, name, "expected a text in quotes");
+  const std::string value = node != nullptr ? node->value<std::string>().value() : fallback;
+  resolve(name, value);
+  return value;
+}
+
+std::vector<std::string> TomlReader::texts(std::string_view name) {
+  std::vector<std::string> values;
+  const toml::node* node = look_up(name);
+  if (node == nullptr) return values;
+  if (!node->is_array()) fail_at(*node, name, "expected a list of texts");
+  if (node->as_array()->size() > most_texts)
+    fail_at(*node, name, "expected at most " + std::to_string(most_texts) + " texts");
+  for (const toml::node& item : *node->as_array()) {
+    if (!item.is_string()) fail_at(*node, name, "expected a list of texts");
+    values.push_back(item.value<std::string>().value());
+  }
+  return values;
+}
+
+const toml::table* TomlReader::table(std::string_view name) {
+  const toml::node* node = look_up(name);
+  if (node != nullptr && !node->is_table()) fail_at(*node, name, "expected a table, [" + full_name(name) + "]");
+  return node != nullptr ? node->as_table() : nullptr;
+}
+
+std::vector<const toml::table*> TomlReader::tables(std::string_view name) {
+  std::vector<const toml::table*> found;
+  const toml::node* node = look_up(name);
+  if (node == nullptr) return found;
+  const std::string remedy = "expected an array of tables, [[" + full_name(name) + "]]";
+  if (!node->is_array()) fail_at(*node, name, remedy);
+  for (const toml::node& item : *node->as_array()) {
+    if (!item.is_table()) fail_at(*node, name, remedy);
+    found.push_back(item.as_table());
+  }
+  return found;
+}
+
+void TomlReader::refuse_unknown_keys() const {
+  for (auto&& [key, node] : table_) {
+    const std::string name(key.str());
+    if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+    const std::string where = path_.empty() ? "an experiment" : "[" + printable(path_) + "]";
+    throw ConfigError(place_of(key.source()) + ": " + full_name(name) + ": is not a key of " + where +
+                      suggestion(name, known_));
+  }
+}
+
+toml::table TomlReader::finish() {
+  refuse_unknown_keys();
+  return std::move(resolved_);
+}
+
+}  // namespace evodevo

@@ -1,0 +1,267 @@
+#include "life/body_building.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "analysis/neighbours.hpp"
+#include "analysis/stability.hpp"
+#include "base/materials.hpp"
+#include "base/text.hpp"
+#include "threads/parallel.hpp"
+
+namespace evodevo {
+namespace {
+
+void leave_out_air(Body& body) {
+  std::erase_if(body.springs, [&](const Spring& spring) {
+    const bool air = is_air(body.materials[spring.material]);
+    if (air) {
+      ++body.masses[spring.a].air_contacts;
+      ++body.masses[spring.b].air_contacts;
+    }
+    return air;
+  });
+}
+
+void set_size(Spring& spring, const Size& a, const Size& b) {
+  const double start = (a.start + b.start) / 2, end = (a.end + b.end) / 2;
+  spring.rest_length *= start;
+  spring.growth = static_cast<float>(end / start);
+}
+
+/// The pairs of masses that springs join, each with the lower index first, ascending.
+std::vector<IndexPair> joined_pairs(const std::vector<Spring>& springs) {
+  std::vector<IndexPair> pairs;
+  pairs.reserve(springs.size());
+  for (const Spring& spring : springs) pairs.emplace_back(std::minmax(spring.a, spring.b));
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+void join(Blueprint& blueprint, std::span<const IndexPair> pairs) {
+  Body& body = blueprint.body;
+  const std::vector<Size>& sizes = blueprint.sizes;
+  const std::vector<IndexPair> joined_already = joined_pairs(body.springs);
+  body.springs.reserve(body.springs.size() + pairs.size());
+  MaterialList materials(body.materials);
+  for (const auto& [a, b] : pairs) {
+    if (std::binary_search(joined_already.begin(), joined_already.end(), IndexPair(std::minmax(a, b)))) continue;
+    const Mass &mass_a = body.masses[a], &mass_b = body.masses[b];
+    // by value: the list of materials may grow
+    const Material of_a = body.materials.at(static_cast<std::size_t>(mass_a.material));
+    const Material of_b = body.materials.at(static_cast<std::size_t>(mass_b.material));
+    body.springs.push_back({a, b, norm(mass_a.rest - mass_b.rest), materials.index(mean(of_a, of_b))});
+    if (!sizes.empty()) set_size(body.springs.back(), sizes[a], sizes[b]);
+  }
+}
+
+/// For every mass the lowest index among the masses that springs tie it to.
+std::vector<std::uint32_t> pieces(const Body& body) {
+  std::vector<std::uint32_t> leader(body.masses.size());
+  std::iota(leader.begin(), leader.end(), 0u);
+  const auto find = [&](std::uint32_t i) {
+    while (leader[i] != i) i = leader[i] = leader[leader[i]];
+    return i;
+  };
+  for (const Spring& spring : body.springs) {
+    const auto [low, high] = std::minmax({find(spring.a), find(spring.b)});
+    leader[high] = low;
+  }
+  for (std::uint32_t i = 0; i < leader.size(); ++i) leader[i] = find(i);
+  return leader;
+}
+
+/// The leader of the piece with most masses; of equal ones that of the lowest index.
+std::uint32_t largest_piece(const std::vector<std::uint32_t>& leader) {
+  std::vector<std::uint32_t> size(leader.size(), 0);
+  for (const std::uint32_t i : leader) ++size[i];
+  return static_cast<std::uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
+}
+
+/// Returns the masses kept.
+std::vector<std::uint32_t> keep_largest_piece(Body& body) {
+  const std::vector<std::uint32_t> leader = pieces(body);
+  const std::uint32_t largest = largest_piece(leader);
+  std::vector<std::uint32_t> new_index(body.masses.size(), 0), kept;
+  std::vector<Mass> masses;
+  for (std::uint32_t i = 0; i < leader.size(); ++i) {
+    if (leader[i] != largest) continue;
+    new_index[i] = static_cast<std::uint32_t>(masses.size());
+    kept.push_back(i);
+    masses.push_back(body.masses[i]);
+  }
+  std::erase_if(body.springs, [&](const Spring& spring) { return leader[spring.a] != largest; });
+  for (Spring& spring : body.springs) {
+    spring.a = new_index[spring.a];
+    spring.b = new_index[spring.b];
+  }
+  body.masses = std::move(masses);
+  return kept;
+}
+
+void place_on_origin(Body& body) {
+  const std::vector<Vec3> places = rest_places(body);
+  const Vec3 centre = centre_of_mass(body, places);
+  const Vec3 shift{centre.x, centre.y, bounding_box(places).low.z};
+  for (Mass& mass : body.masses) mass.rest = mass.rest - shift;
+}
+
+bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+bool is_sound(const Size& size) {
+  return size.start > 0 && size.end > 0 && std::isfinite(size.start) && std::isfinite(size.end);
+}
+
+/// Why a blueprint cannot become a body; empty where it may.
+std::string blueprint_failure(const Blueprint& blueprint) {
+  const std::vector<Mass>& masses = blueprint.body.masses;
+  if (!blueprint.failure.empty()) return "no body: " + printable(blueprint.failure);
+  if (masses.empty()) return "no body: no masses";
+  if (!std::all_of(masses.begin(), masses.end(), [](const Mass& mass) { return is_finite(mass.rest); }))
+    return "no body: a place that is not finite";
+  if (!std::all_of(blueprint.paired_at.begin(), blueprint.paired_at.end(), is_finite))
+    return "no body: a place to pair masses at that is not finite";
+  if (!std::all_of(blueprint.sizes.begin(), blueprint.sizes.end(), is_sound))
+    return "no body: a size that is not finite or not above 0";
+  return "";
+}
+
+/// Where the masses' neighbours are searched for.
+std::vector<Vec3> pairing_places(const Blueprint& blueprint) {
+  return blueprint.paired_at.empty() ? rest_places(blueprint.body) : blueprint.paired_at;
+}
+
+/// What is left to do once neighbours are joined.
+BuiltBody finish(Body body) {
+  leave_out_air(body);
+  if (body.springs.empty()) return {{}, "no springs", {}};
+  std::vector<std::uint32_t> kept = keep_largest_piece(body);
+  if (!has_extent(rest_places(body))) return {{}, "no extent", {}};
+  for (Spring& spring : body.springs) spring.first_length = spring.rest_length;
+  place_on_origin(body);
+  return {std::move(body), "", std::move(kept)};
+}
+
+/// The first spring that joins a pair of masses that one before it joins. By the springs of each mass and a mark for
+/// each other end, since to sort them all takes several times as long.
+std::optional<std::size_t> doubled_spring(const Body& body) {
+  constexpr auto nobody = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::size_t> first(body.masses.size() + 1, 0);  // of the springs whose lower end is a mass, in `by_mass`
+  const auto lower = [](const Spring& spring) { return std::min(spring.a, spring.b); };
+  for (const Spring& spring : body.springs) ++first[lower(spring) + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::uint32_t> by_mass(body.springs.size()), mark(body.masses.size(), nobody);
+  for (std::uint32_t i = 0; i < body.springs.size(); ++i) by_mass[first[lower(body.springs[i])]++] = i;
+  std::optional<std::size_t> twin;
+  for (const std::uint32_t i : by_mass) {
+    const Spring& spring = body.springs[i];
+    const std::uint32_t last = std::exchange(mark[std::max(spring.a, spring.b)], lower(spring));
+    if (last == lower(spring) && (!twin || i < *twin)) twin = i;
+  }
+  return twin;
+}
+
+}  // namespace
+
+std::vector<Vec3> rest_places(const Body& body) {
+  std::vector<Vec3> places;
+  places.reserve(body.masses.size());
+  for (const Mass& mass : body.masses) places.push_back(mass.rest);
+  return places;
+}
+
+bool has_extent(std::span<const Vec3> places) {
+  constexpr double rounding = 1e-6;  // m; in what is smaller no body length can be measured
+  return !(bounding_box(places).longest_side() < rounding);
+}
+
+void check_blueprint(const Blueprint& blueprint, const World& world) {
+  const auto require = [](bool holds, const char* what, std::size_t index, const char* fault) {
+    if (!holds) throw std::invalid_argument(std::string(what) + " " + std::to_string(index) + " " + fault);
+  };
+  const Body& body = blueprint.body;
+  const auto materials = static_cast<std::int64_t>(body.materials.size());
+  for (std::size_t i = 0; i < world.materials.size(); ++i)
+    require(i < body.materials.size() && body.materials[i] == world.materials[i], "material", i, "is not the world's");
+  for (std::size_t i = 0; i < body.masses.size(); ++i) {
+    const Mass& mass = body.masses[i];
+    require(mass.mass > 0 && std::isfinite(mass.mass), "mass", i, "weighs nothing, or has no finite mass");
+    require(mass.material >= no_material && mass.material < materials, "mass", i, "is of a material that is not there");
+  }
+  for (std::size_t i = 0; i < body.springs.size(); ++i) {
+    const Spring& spring = body.springs[i];
+    require(std::max(spring.a, spring.b) < body.masses.size(), "spring", i, "dangles");
+    require(spring.a != spring.b, "spring", i, "joins a mass to itself");
+    require(spring.rest_length >= 0 && std::isfinite(spring.rest_length), "spring", i, "has no finite rest length");
+    require(spring.material < materials, "spring", i, "is of a material that is not there");
+    require(spring.growth > 0 && std::isfinite(spring.growth), "spring", i, "has no finite growth above 0");
+  }
+  if (const std::optional<std::size_t> twin = doubled_spring(body)) {
+    const Spring& spring = body.springs[*twin];
+    throw std::invalid_argument("spring " + std::to_string(*twin) + " joins masses " + std::to_string(spring.a) +
+                                " and " + std::to_string(spring.b) + ", which are joined already");
+  }
+  const auto require_one_for_each_mass = [&](const auto& list, const char* what) {
+    if (!list.empty() && list.size() != body.masses.size())
+      throw std::invalid_argument(std::to_string(list.size()) + " " + what + " for " +
+                                  std::to_string(body.masses.size()) + " masses");
+  };
+  require_one_for_each_mass(blueprint.paired_at, "places to pair at");
+  require_one_for_each_mass(blueprint.sizes, "sizes");
+  require_one_for_each_mass(blueprint.origins, "origins");
+}
+
+BuiltBody build_body(Blueprint blueprint) {
+  if (std::string failure = blueprint_failure(blueprint); !failure.empty()) return {{}, std::move(failure), {}};
+  join(blueprint, nearest_pairs(pairing_places(blueprint), blueprint.neighbours));
+  return finish(std::move(blueprint.body));
+}
+
+std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, Workers& workers) {
+  std::vector<BuiltBody> built(blueprints.size());
+  std::vector<std::vector<Vec3>> places(blueprints.size());
+  workers.for_each(blueprints.size(), [&](std::size_t i) {
+    built[i].failure = blueprint_failure(blueprints[i]);
+    if (built[i].failure.empty()) places[i] = pairing_places(blueprints[i]);
+  });
+  std::vector<PointCloud> clouds;
+  for (std::size_t i = 0; i < blueprints.size(); ++i) clouds.push_back({places[i], blueprints[i].neighbours});
+  search.find(clouds, workers, [&](std::size_t i, std::span<const IndexPair> pairs) {
+    if (!built[i].failure.empty()) return;
+    join(blueprints[i], pairs);
+    built[i] = finish(std::move(blueprints[i].body));
+  });
+  return built;
+}
+
+void put_load(Body& body, double share, double top) {
+  const Box box = bounding_box(rest_places(body));
+  const double lowest = box.high.z - top * (box.high.z - box.low.z);
+  double own = 0;
+  std::vector<Mass*> carriers;
+  for (Mass& mass : body.masses) {
+    own += mass.mass;
+    if (mass.rest.z >= lowest) carriers.push_back(&mass);
+  }
+  for (Mass* mass : carriers) {
+    mass->load = share * own / static_cast<double>(carriers.size());
+    mass->mass += mass->load;
+  }
+  place_on_origin(body);
+}
+
+std::vector<std::uint32_t> loose_masses(const Body& body) {
+  const std::vector<std::uint32_t> leader = pieces(body);
+  const std::uint32_t largest = largest_piece(leader);
+  std::vector<std::uint32_t> loose;
+  for (std::uint32_t i = 0; i < leader.size(); ++i)
+    if (leader[i] != largest) loose.push_back(i);
+  return loose;
+}
+
+}  // namespace evodevo

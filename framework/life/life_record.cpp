@@ -1,0 +1,287 @@
+#include "life/life_record.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+
+#include "life/edits.hpp"
+
+namespace evodevo {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
+
+/// Behind the bits that say which lists of causes a change has: whether springs grow, and Change::lengths_given.
+constexpr std::uint32_t growth_bit = 1u << Causes::lists.size(), lengths_given_bit = growth_bit << 1;
+
+/// Puts indices in ascending order and keeps each once, with its cause.
+void put_in_order(std::vector<std::uint32_t>& indices, std::vector<double>& causes) {
+  const bool have_causes = !causes.empty();
+  if (have_causes && causes.size() != indices.size()) return;
+  std::map<std::uint32_t, double> ordered;
+  for (std::size_t i = 0; i < indices.size(); ++i) ordered.emplace(indices[i], have_causes ? causes[i] : 0);
+  indices.clear();
+  if (have_causes) causes.clear();
+  for (const auto& [index, cause] : ordered) {
+    indices.push_back(index);
+    if (have_causes) causes.push_back(cause);
+  }
+}
+
+/// Appends changes to bytes. Whole numbers take seven bits to a byte, the highest bit says that more follow.
+class Writer {
+ public:
+  Writer(std::string& bytes, MaterialNumbers& materials) : bytes_(bytes), materials_(materials) {}
+
+  void write(const Change& change) {
+    const Edits& edits = change.edits;
+    whole(change.cycle);
+    whole(change.op ? *change.op + 1 : 0);
+    ascending_indices(edits.removed_masses);
+    ascending_indices(edits.removed_springs);
+    whole(edits.changed_springs.size());
+    for (const ChangedSpring& spring : edits.changed_springs) changed(spring);
+    whole(edits.new_masses.size());
+    for (const NewMass& mass : edits.new_masses) {
+      raw(mass.place), raw(mass.mass);
+      whole(static_cast<std::uint64_t>(mass.material - no_material));
+    }
+    whole(edits.new_springs.size());
+    for (const NewSpring& spring : edits.new_springs) {
+      whole(spring.a), whole(spring.b);
+      material(spring.material);
+      raw(spring.rest_length.value());
+    }
+    causes_and_growth(change);
+  }
+
+ private:
+  /// Says first which of the lists there are: bit i stands for the i-th.
+  void causes_and_growth(const Change& change) {
+    const Edits& edits = change.edits;
+    std::uint32_t given = (edits.growth ? growth_bit : 0) | (change.lengths_given ? lengths_given_bit : 0);
+    for (std::size_t i = 0; i < Causes::lists.size(); ++i)
+      if (!(edits.causes.*Causes::lists[i]).empty()) given |= 1u << i;
+    whole(given);
+    for (const auto list : Causes::lists)
+      for (const double cause : edits.causes.*list) raw(static_cast<float>(cause));
+    if (edits.growth) raw(*edits.growth);
+  }
+
+  void whole(std::uint64_t value) {
+    for (; value >= 0x80; value >>= 7) bytes_.push_back(static_cast<char>(value | 0x80));
+    bytes_.push_back(static_cast<char>(value));
+  }
+
+  template <class T>
+  void raw(const T& value) {
+    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+
+  void ascending_indices(const std::vector<std::uint32_t>& indices) {
+    whole(indices.size());
+    std::uint32_t before = 0;
+    for (const std::uint32_t index : indices) whole(index - before), before = index;
+  }
+
+  void changed(const ChangedSpring& spring) {
+    whole(spring.spring);
+    whole((spring.rest_length ? 1u : 0u) | (spring.material ? 2u : 0u));
+    if (spring.rest_length) raw(*spring.rest_length);
+    if (spring.material) material(*spring.material);
+  }
+
+  /// Its number, and the first time what it is.
+  void material(const Material& material) {
+    const auto [found, is_new] = materials_.try_emplace(material, static_cast<std::uint32_t>(materials_.size()));
+    whole(found->second);
+    if (is_new) raw(material);
+  }
+
+  std::string& bytes_;
+  MaterialNumbers& materials_;
+};
+
+/// Reads what a Writer has written.
+class Reader {
+ public:
+  explicit Reader(const std::string& bytes) : bytes_(bytes) {}
+
+  /// All materials that it has come across, by their numbers.
+  const std::vector<Material>& materials() const { return materials_; }
+
+  bool at_end() const { return at_ == bytes_.size(); }
+
+  Change read() {
+    Change change;
+    Edits& edits = change.edits;
+    change.cycle = index();
+    if (const std::uint32_t op = index(); op > 0) change.op = op - 1;
+    edits.removed_masses = ascending_indices();
+    edits.removed_springs = ascending_indices();
+    for (std::uint32_t left = index(); left > 0; --left) edits.changed_springs.push_back(changed());
+    for (std::uint32_t left = index(); left > 0; --left) {
+      NewMass& mass = edits.new_masses.emplace_back();
+      mass.place = raw<Vec3>();
+      mass.mass = raw<double>();
+      const std::uint32_t material = index();
+      if (material > std::numeric_limits<std::int32_t>::max()) fail();
+      mass.material = static_cast<std::int32_t>(material) + no_material;
+    }
+    for (std::uint32_t left = index(); left > 0; --left) {
+      NewSpring& spring = edits.new_springs.emplace_back();
+      spring.a = index(), spring.b = index();
+      spring.material = material();
+      spring.rest_length = raw<double>();
+    }
+    read_causes_and_growth(change);
+    return change;
+  }
+
+ private:
+  [[noreturn]] static void fail() { throw std::invalid_argument("the record of a life is damaged"); }
+
+  std::uint32_t index() {
+    std::uint64_t value = 0;
+    for (int shift = 0; shift < 35; shift += 7) {
+      const auto byte = raw<std::uint8_t>();
+      value |= static_cast<std::uint64_t>(byte & 0x7f) << shift;
+      if (byte < 0x80) return value > 0xffffffff ? (fail(), 0) : static_cast<std::uint32_t>(value);
+    }
+    fail();
+  }
+
+  template <class T>
+  T raw() {
+    if (bytes_.size() - at_ < sizeof(T)) fail();
+    T value;
+    std::memcpy(&value, bytes_.data() + at_, sizeof value);
+    at_ += sizeof value;
+    return value;
+  }
+
+  std::vector<std::uint32_t> ascending_indices() {
+    std::vector<std::uint32_t> indices;
+    for (std::uint32_t left = index(); left > 0; --left) {
+      const std::uint64_t more = index(), before = indices.empty() ? 0 : indices.back();
+      if (before + more > std::numeric_limits<std::uint32_t>::max() || (!indices.empty() && more == 0)) fail();
+      indices.push_back(static_cast<std::uint32_t>(before + more));
+    }
+    return indices;
+  }
+
+  void read_causes_and_growth(Change& change) {
+    Edits& edits = change.edits;
+    const std::array counts{edits.removed_springs.size(), edits.removed_masses.size(), edits.changed_springs.size(),
+                            edits.new_masses.size(), edits.new_springs.size()};
+    const std::uint32_t given = index();
+    change.lengths_given = (given & lengths_given_bit) != 0;
+    for (std::size_t i = 0; i < Causes::lists.size(); ++i)
+      for (std::size_t left = (given >> i & 1) != 0 ? counts[i] : 0; left > 0; --left)
+        (edits.causes.*Causes::lists[i]).push_back(static_cast<double>(raw<float>()));
+    if ((given & growth_bit) != 0) edits.growth = raw<Growth>();
+  }
+
+  ChangedSpring changed() {
+    ChangedSpring spring{.spring = index()};
+    const std::uint32_t parts = index();
+    if ((parts & 1) != 0) spring.rest_length = raw<double>();
+    if ((parts & 2) != 0) spring.material = material();
+    return spring;
+  }
+
+  Material material() {
+    const std::uint32_t number = index();
+    if (number > materials_.size()) fail();
+    if (number == materials_.size()) materials_.push_back(raw<Material>());
+    return materials_[number];
+  }
+
+  const std::string& bytes_;
+  std::vector<Material> materials_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace
+
+Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const Moment& now) {
+  Change change{static_cast<std::uint32_t>(now.cycle), op, edits};
+  put_in_order(change.edits.removed_masses, change.edits.causes.removed_masses);
+  put_in_order(change.edits.removed_springs, change.edits.causes.removed_springs);
+  change.lengths_given = std::any_of(edits.new_springs.begin(), edits.new_springs.end(),
+                                     [](const NewSpring& spring) { return spring.rest_length.has_value(); });
+  return change;
+}
+
+void set_rest_lengths(Change& change, const Body& after) {
+  std::vector<NewSpring>& springs = change.edits.new_springs;
+  const std::size_t first = after.springs.size() - springs.size();
+  for (std::size_t i = 0; i < springs.size(); ++i) springs[i].rest_length = after.springs[first + i].rest_length;
+}
+
+LifeRecord::LifeRecord(std::string bytes) : bytes_(std::move(bytes)) {
+  Reader reader(bytes_);
+  while (!reader.at_end()) reader.read();
+  materials_ = numbered(reader.materials());
+}
+
+void LifeRecord::add(const Change& change) { Writer(bytes_, materials_).write(change); }
+
+std::vector<Change> LifeRecord::changes() const {
+  std::vector<Change> changes;
+  for (Reader reader(bytes_); !reader.at_end();) changes.push_back(reader.read());
+  return changes;
+}
+
+void replay(Body& body, const Change& change) {
+  const Genome genome;
+  const Layout layout;
+  LivingBody living{.body = std::move(body)};
+  living.state.position.resize(living.body.masses.size());
+  living.state.velocity.resize(living.body.masses.size());
+  living.stress.resize(living.body.springs.size());
+  // rest lengths are given, so nothing depends on where masses are and when
+  apply_edits(living, change.edits,
+              {.body = living.body,
+               .state = living.state,
+               .stress = living.stress,
+               .cycle = static_cast<int>(change.cycle),
+               .cycles = 0,
+               .turn = 0,
+               .turns = 0,
+               .time = 0,
+               .bounds = {},
+               .mass = 0,
+               .resets = false,
+               .genome = genome,
+               .layout = layout});
+  body = std::move(living.body);
+}
+
+MassNumbers::MassNumbers(std::size_t born) : numbers_(born), next_(static_cast<std::uint32_t>(born)) {
+  std::iota(numbers_.begin(), numbers_.end(), 0u);
+}
+
+std::uint32_t MassNumbers::add() { return numbers_.emplace_back(next_++); }
+
+void MassNumbers::remove(const std::vector<std::uint32_t>& masses) {
+  for (auto mass = masses.rbegin(); mass != masses.rend(); ++mass) numbers_.erase(numbers_.begin() + *mass);
+}
+
+void MassNumbers::apply(const Edits& edits) {
+  for (std::size_t i = 0; i < edits.new_masses.size(); ++i) add();
+  remove(edits.removed_masses);
+}
+
+std::vector<std::uint32_t> mass_numbers(std::size_t born, const LifeRecord& record) {
+  MassNumbers masses(born);
+  for (const Change& change : record.changes()) masses.apply(change.edits);
+  return masses.numbers();
+}
+
+}  // namespace evodevo

@@ -1,0 +1,85 @@
+#include "operators/crash.hpp"
+
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+
+#include "base/line.hpp"
+#include "operators/operator_call.hpp"
+
+namespace evodevo {
+namespace {
+
+constexpr int fatal_signals[] = {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT};
+
+std::atomic<bool> names_exits = false;
+
+void say(const OperatorCall& call, std::string_view what) {
+  static std::atomic_flag said;
+  if (said.test_and_set())
+    while (true) pause();  // another thread ends the process
+  Line line;
+  line << "\nevodevo: " << call << ": " << what << "; `evodevo conform " << call.title->file
+       << "` tests it. The generations of a run that are complete are kept.\n";
+  line.write_to(STDERR_FILENO);
+}
+
+/// Whether a thread touched what lies at the end of its stack, or shortly beyond.
+bool is_beyond_stack(const void* address) {
+  constexpr std::ptrdiff_t beyond = 1 << 20, before = 1 << 16;
+  const char* lowest = lowest_of_stack();
+  return lowest != nullptr && address > lowest - beyond && address < lowest + before;
+}
+
+void blame_and_die(int signal, siginfo_t* info, void*) {
+  if (const OperatorCall call = current_call(); call.title != nullptr) {
+    Line what;
+    if (signal == SIGSEGV && is_beyond_stack(info->si_addr))
+      what << "its stack overflowed; it calls itself without end, or keeps large arrays as local variables";
+    else
+      what << "crashed: " << sigdescr_np(signal);
+    say(call, what.text());
+  }
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+/// Nothing that an operator does is a regular end.
+void refuse_to_exit(int status) {
+  const OperatorCall call = current_call();
+  if (!names_exits || call.title == nullptr) return;
+  Line what;
+  what << "it ended the process with exit code " << status << ", which no operator may";
+  say(call, what.text());
+  syscall(SYS_exit_group, 1);
+}
+
+}  // namespace
+
+void name_crashing_operators() {
+  struct sigaction action {};
+  action.sa_sigaction = blame_and_die;
+  action.sa_flags = SA_SIGINFO | SA_ONSTACK;
+  for (const int signal : fatal_signals) sigaddset(&action.sa_mask, signal);
+  for (const int signal : fatal_signals) sigaction(signal, &action, nullptr);
+  names_exits = true;
+  on_exit([](int status, void*) { refuse_to_exit(status); }, nullptr);
+}
+
+void leave_crashes_unnamed() {
+  for (const int signal : fatal_signals) std::signal(signal, SIG_DFL);
+  names_exits = false;
+}
+
+}  // namespace evodevo
+
+// In place of the C library's, for operators too, since the dynamic linker looks into the program first.
+extern "C" __attribute__((visibility("default"))) void _exit(int status) {
+  evodevo::refuse_to_exit(status);
+  while (true) syscall(SYS_exit_group, status);
+}
+extern "C" __attribute__((visibility("default"))) void _Exit(int status) noexcept { _exit(status); }

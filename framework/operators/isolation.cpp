@@ -1,0 +1,138 @@
+#include "operators/isolation.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <system_error>
+
+#include "operators/crash.hpp"
+
+namespace evodevo {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// What a child writes first: how long the text behind it is, so that nobody waits for a process of the child's own
+/// that holds the pipe open, and whether that is a result or of an exception.
+struct Header {
+  std::size_t size = 0;
+  bool thrown = false;
+};
+
+/// The handlers of this program, or of a sanitizer, would speak of a crash that is expected and turn it into an exit.
+void become_silent() {
+  leave_crashes_unnamed();
+  for (const int signal : {SIGALRM, SIGTERM, SIGINT}) std::signal(signal, SIG_DFL);
+  const rlimit none{0, 0};
+  setrlimit(RLIMIT_CORE, &none);
+  const int nowhere = open("/dev/null", O_RDWR);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, stream);
+}
+
+/// A child lives no longer than its parent, and what it starts no longer than it.
+void join_fate(pid_t parent) {
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);
+}
+
+void write_all(int pipe, const void* data, std::size_t size) {
+  for (std::size_t done = 0; done < size;) {
+    const ssize_t count = write(pipe, static_cast<const char*>(data) + done, size - done);
+    if (count < 0 && errno != EINTR) _exit(1);
+    if (count > 0) done += static_cast<std::size_t>(count);
+  }
+}
+
+/// Runs `work` and never returns: the parent's stack, buffers and objects are the parent's.
+[[noreturn]] void live_as_child(const std::function<std::string()>& work, int pipe, pid_t parent) {
+  join_fate(parent);
+  become_silent();
+  on_exit([](int status, void*) { _exit(status); }, nullptr);
+  std::string text;
+  bool thrown = true;
+  try {
+    text = work();
+    thrown = false;
+  } catch (const std::exception& error) {
+    text = std::string("\"") + error.what() + '"';
+  } catch (...) {
+    text = "something that is no std::exception";
+  }
+  const Header header{text.size(), thrown};
+  write_all(pipe, &header, sizeof header);
+  write_all(pipe, text.data(), text.size());
+  _exit(0);
+}
+
+enum class Read { whole, ended, late };
+
+/// Reads until `size` bytes are there, the pipe ends, or it is `deadline`.
+Read read_all(int pipe, void* data, std::size_t size, Clock::time_point deadline) {
+  for (std::size_t done = 0; done < size;) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    if (left <= 0) return Read::late;
+    pollfd ready{pipe, POLLIN, 0};
+    if (poll(&ready, 1, static_cast<int>(left)) <= 0) continue;
+    const ssize_t count = read(pipe, static_cast<char*>(data) + done, size - done);
+    if (count == 0 || (count < 0 && errno != EINTR)) return Read::ended;
+    if (count > 0) done += static_cast<std::size_t>(count);
+  }
+  return Read::whole;
+}
+
+int wait_for(pid_t child) {
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
+std::string crash_text(int status) {
+  if (WIFEXITED(status)) return "it ended the process with exit code " + std::to_string(WEXITSTATUS(status));
+  return strsignal(WTERMSIG(status));
+}
+
+}  // namespace
+
+ChildEnd in_child(const std::function<std::string()>& work, unsigned seconds) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
+  const pid_t parent = getpid(), child = fork();
+  if (child < 0) {
+    const int error = errno;
+    close(ends[0]);
+    close(ends[1]);
+    throw std::system_error(error, std::generic_category(), "fork");
+  }
+  if (child == 0) live_as_child(work, ends[1], parent);
+  setpgid(child, child);  // whichever of the two comes first
+  close(ends[1]);
+  const auto deadline = Clock::now() + std::chrono::seconds(seconds);
+  Header header;
+  std::string text;
+  Read got = read_all(ends[0], &header, sizeof header, deadline);
+  if (got == Read::whole) {
+    text.resize(header.size);
+    got = read_all(ends[0], text.data(), text.size(), deadline);
+  }
+  close(ends[0]);
+  kill(-child, SIGKILL);  // how a process ends that is ending already stays as it is
+  const int status = wait_for(child);
+  if (got == Read::late) return {"", "not done after " + std::to_string(seconds) + " s", true};
+  if (got == Read::ended) return {"", crash_text(status)};
+  if (header.thrown) return {"", "it threw " + text};
+  return {std::move(text), ""};
+}
+
+}  // namespace evodevo

@@ -1,0 +1,59 @@
+#include "analysis/computed_materials.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evodevo {
+namespace {
+
+constexpr std::uint32_t phases = 1u << (32 - phase_shift);  // of a turn
+constexpr double most_stiffness = 65'520, most_amplitude = 1'020, most_frequency = 1'020;
+
+std::uint32_t counted(double value, double unit) {
+  return unit > 0 ? static_cast<std::uint32_t>(std::lround(std::abs(value) / unit)) : 0;
+}
+
+/// The phase (rad) of the same motion with an amplitude and a frequency that are not negative.
+double phase_of(const Material& material) {
+  const double phase = material.frequency < 0 ? turn / 2 - material.phase : material.phase;
+  return material.amplitude < 0 ? phase + turn / 2 : phase;
+}
+
+}  // namespace
+
+MaterialUnits material_units(const Body& body) {
+  MaterialUnits largest;
+  for (const Spring& spring : body.springs) {
+    const Material& material = body.materials[spring.material];
+    largest.stiffness = std::max(largest.stiffness, material.stiffness);
+    largest.amplitude = std::max(largest.amplitude, std::abs(material.amplitude));
+    largest.frequency = std::max(largest.frequency, std::abs(material.frequency));
+  }
+  return {largest.stiffness / most_stiffness, largest.amplitude / most_amplitude, largest.frequency / most_frequency};
+}
+
+MaterialCode code_of(const Material& material, const MaterialUnits& units) {
+  const double turns = phase_of(material) / turn;
+  // the last half of a step is the next turn's first
+  const auto phase = static_cast<std::uint32_t>(std::lround((turns - std::floor(turns)) * phases)) % phases;
+  const std::uint32_t least = material.stiffness > 0 ? 1 : 0;  // no spring loses its force
+  return {std::max(least, counted(material.stiffness, units.stiffness)),
+          phase << phase_shift | counted(material.amplitude, units.amplitude) << amplitude_shift |
+              counted(material.frequency, units.frequency)};
+}
+
+Material material_of(const MaterialCode& code, const MaterialUnits& units) {
+  return {code.stiffness * units.stiffness, ((code.wave & amplitude_mask) >> amplitude_shift) * units.amplitude,
+          (code.wave & frequency_mask) * units.frequency, (code.wave >> phase_shift) * (turn / phases)};
+}
+
+std::vector<Material> simulated_materials(const Body& body, Materials way) {
+  std::vector<Material> simulated = body.materials;
+  if (way == Materials::table) return simulated;
+  const MaterialUnits units = material_units(body);
+  for (const Spring& spring : body.springs)
+    simulated[spring.material] = material_of(code_of(body.materials[spring.material], units), units);
+  return simulated;
+}
+
+}  // namespace evodevo

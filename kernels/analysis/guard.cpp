@@ -1,0 +1,120 @@
+#include "analysis/guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "physics/physics.hpp"
+
+namespace evodevo {
+namespace {
+
+double epsilon(Precision precision) {
+  return precision == Precision::float32 ? std::numeric_limits<float>::epsilon()
+                                         : std::numeric_limits<double>::epsilon();
+}
+
+/// The largest distance from the origin along an axis, m.
+double extent(const State& state) {
+  double largest = 0;
+  for (const Vec3& p : state.position) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  return largest;
+}
+
+/// P/sqrt(2), J^(1/2)/s.
+double drive_of(const Body& body) {
+  double sum = 0;
+  for (const Spring& spring : body.springs) {
+    const Material& material = body.materials[spring.material];
+    const double rate = 2 * 3.14159265358979323846 * material.frequency * material.amplitude * spring.rest_length;
+    sum += material.stiffness * rate * rate;
+  }
+  return std::sqrt(sum / 2);
+}
+
+/// The strain of all muscles from full extension to full contraction, J.
+double strain_allowance(const Body& body) {
+  double sum = 0;
+  for (const Spring& spring : body.springs) {
+    const Material& material = body.materials[spring.material];
+    const double stroke = 2 * material.amplitude * spring.rest_length;
+    sum += 0.5 * material.stiffness * stroke * stroke;
+  }
+  return sum;
+}
+
+/// The strain of all springs by rounding, J: 16,384 units in the last place of each spring and of its place.
+double rounding_allowance(const Body& body, const State& state, Precision precision) {
+  const double rounding = 16384 * epsilon(precision), places = extent(state);
+  double sum = 0;
+  for (const Spring& spring : body.springs) {
+    const double noise = rounding * (spring.rest_length + places);
+    sum += 0.5 * body.materials[spring.material].stiffness * noise * noise;
+  }
+  return sum;
+}
+
+/// What masses that sag into the floor set free, J: m g (m g/k + g dt^2) each.
+double sag_allowance(const Body& body, const Scene& scene, double dt) {
+  if (!scene.gravity || !scene.floor || scene.floor->stiffness <= 0) return 0;
+  const double g = scene.gravity->downwards();
+  double sum = 0;
+  for (const Mass& mass : body.masses) sum += mass.mass * g * (mass.mass * g / scene.floor->stiffness + g * dt * dt);
+  return sum;
+}
+
+/// The sum of mass times height, kg m.
+double moment_of(const Body& body, const State& state, const Scene& scene) {
+  const double grade = scene.gravity ? scene.gravity->grade() : 0;
+  double sum = 0;
+  for (std::size_t i = 0; i < body.masses.size(); ++i)
+    sum += body.masses[i].mass * physics::height(state.position[i].x, state.position[i].z, grade);
+  return sum;
+}
+
+std::string with_numbers(const char* format, double a, double b) {
+  char text[128];
+  std::snprintf(text, sizeof text, format, a, b);
+  return text;
+}
+
+}  // namespace
+
+Course course_of(const Task& task, const Scene& scene, Precision precision) {
+  if (task.course) return *task.course;
+  const Body& body = *task.body;
+  const State& state = *task.state;
+  const EnergyBound bound{.start = state.start_energy,
+                          .drive = drive_of(body),
+                          .allowance = strain_allowance(body) + rounding_allowance(body, state, precision) +
+                                       sag_allowance(body, scene, task.dt)};
+  return {.origin = state.time, .bound = bound, .fallen = fallen_energy(scene, moment_of(body, state, scene))};
+}
+
+bool is_checked(const Task& task, const Course& course) {
+  const std::uint64_t begun = task.course ? task.course->steps : 0;
+  return course.steps % guard_interval == 0 || (task.later_steps == 0 && course.steps == begun + task.steps);
+}
+
+double fallen_energy(const Scene& scene, double moment) {
+  return scene.gravity ? std::max(0.0, -scene.gravity->downwards() * moment) : 0;
+}
+
+std::string verdict(const Course& course, double dt, double kinetic, double elastic, bool finite) {
+  const double energy = kinetic + elastic;
+  if (!finite || !std::isfinite(energy)) return "non-finite place, velocity or energy";
+  const double limit = course.bound.limit(course.elapsed(dt), course.fallen);
+  if (!(energy <= limit)) return with_numbers("energy of %.3g J above the bound of %.3g J", energy, limit);
+  return {};
+}
+
+void take_course(Task& task, const Course& course) {
+  State& state = *task.state;
+  state.time = course.time(task.dt);
+  state.start_energy = course.bound.start + course.bound.added(course.elapsed(task.dt), course.fallen);
+  task.course.reset();
+  if (task.status == Status::ok && task.later_steps > 0) task.course = course;
+}
+
+}  // namespace evodevo

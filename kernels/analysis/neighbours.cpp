@@ -1,0 +1,91 @@
+#include "analysis/neighbours.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <nanoflann.hpp>
+
+#include "threads/parallel.hpp"
+
+namespace evodevo {
+namespace {
+
+/// Places as nanoflann reads them.
+struct Points {
+  std::span<const Vec3> places;
+
+  std::size_t kdtree_get_point_count() const { return places.size(); }
+  double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    const Vec3& p = places[i];
+    return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
+  }
+  template <class Bounds>
+  bool kdtree_get_bbox(Bounds&) const {
+    return false;  // nanoflann finds it
+  }
+};
+
+/// The `capacity` nearest found so far but for the place itself; among equally near ones those of lower index.
+class NearestOthers {
+ public:
+  using DistanceType = double;
+
+  NearestOthers(std::uint32_t self, std::size_t capacity) : self_(self), capacity_(capacity) {
+    found_.reserve(capacity);
+  }
+
+  std::size_t size() const { return found_.size(); }
+  bool full() const { return found_.size() == capacity_; }
+
+  bool addPoint(double squared, std::uint32_t index) {
+    const std::pair candidate(squared, index);
+    if (index == self_ || (full() && candidate > found_.back())) return true;
+    if (full()) found_.pop_back();
+    found_.insert(std::upper_bound(found_.begin(), found_.end(), candidate), candidate);
+    return true;
+  }
+
+  /// The tree leaves out what is not nearer than this. A little more than the worst, so that equally near places are
+  /// looked at in spite of the rounding of its distances to cells.
+  double worstDist() const {
+    if (!full()) return std::numeric_limits<double>::max();
+    return found_.back().first * (1 + 1e-9) + std::numeric_limits<double>::min();
+  }
+
+  const std::vector<std::pair<double, std::uint32_t>>& found() const { return found_; }
+
+ private:
+  std::uint32_t self_;
+  std::size_t capacity_;
+  std::vector<std::pair<double, std::uint32_t>> found_;  ///< (squared distance, index), ascending
+};
+
+using Tree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Points>, Points, 3, std::uint32_t>;
+
+class CpuNeighbourSearch final : public NeighbourSearch {
+ public:
+  void find(std::span<const PointCloud> clouds, Workers& workers, const Use& use) override {
+    workers.for_each(clouds.size(), [&](std::size_t i) { use(i, nearest_pairs(clouds[i].places, clouds[i].k)); });
+  }
+};
+
+}  // namespace
+
+std::vector<IndexPair> nearest_pairs(std::span<const Vec3> places, std::uint32_t k) {
+  std::vector<IndexPair> pairs;
+  if (places.size() < 2 || k == 0) return pairs;
+  const Points points{places};
+  const Tree tree(3, points);
+  for (std::uint32_t i = 0; i < places.size(); ++i) {
+    NearestOthers nearest(i, std::min<std::size_t>(k, places.size() - 1));
+    tree.findNeighbors(nearest, &places[i].x, nanoflann::SearchParams());
+    for (const auto& [squared, j] : nearest.found()) pairs.push_back(std::minmax(i, j));
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+
+std::unique_ptr<NeighbourSearch> make_cpu_neighbour_search() { return std::make_unique<CpuNeighbourSearch>(); }
+
+}  // namespace evodevo

@@ -1,0 +1,66 @@
+#include "core/piecewise.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "threads/parallel.hpp"
+
+namespace evodevo {
+namespace {
+
+/// A task on its way from one run to the next.
+class Piecewise {
+ public:
+  explicit Piecewise(Task& whole) : whole_(whole) { whole_.spring_evaluations = 0; }
+
+  bool is_over() const { return whole_.status != Status::ok || done_ == whole_.steps; }
+
+  Task piece(std::uint64_t steps) {
+    Task piece{.body = whole_.body, .state = whole_.state, .dt = whole_.dt};
+    piece.steps = std::min(steps, whole_.steps - done_);
+    piece.later_steps = whole_.later_steps + whole_.steps - done_ - piece.steps;
+    piece.course = whole_.course;
+    piece.preparation = std::move(whole_.preparation);
+    return piece;
+  }
+
+  void take(Task& piece) {
+    whole_.status = piece.status;
+    whole_.ended_at = piece.ended_at;
+    whole_.reason = piece.reason;
+    whole_.course = piece.course;
+    whole_.preparation = std::move(piece.preparation);
+    whole_.spring_evaluations += piece.spring_evaluations;
+    done_ += piece.steps;
+  }
+
+ private:
+  Task& whole_;
+  std::uint64_t done_ = 0;
+};
+
+}  // namespace
+
+void run_in_pieces(Simulator& simulator, std::span<Task> tasks, Recording recording,
+                   const std::function<std::uint64_t(std::size_t)>& next_steps,
+                   const std::function<void(std::size_t, const Task&)>& look) {
+  std::vector<Piecewise> on_way;
+  std::vector<std::size_t> moving;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    on_way.emplace_back(tasks[i]);
+    moving.push_back(i);
+  }
+  for (;;) {
+    std::erase_if(moving, [&](std::size_t i) { return on_way[i].is_over(); });
+    if (moving.empty()) return;
+    std::vector<Task> pieces;
+    for (const std::size_t i : moving) pieces.push_back(on_way[i].piece(next_steps(i)));
+    simulator.run(pieces, recording);
+    simulator.workers().for_each(moving.size(), [&](std::size_t k) {
+      on_way[moving[k]].take(pieces[k]);
+      look(moving[k], pieces[k]);
+    });
+  }
+}
+
+}  // namespace evodevo

@@ -1,0 +1,61 @@
+#include "core/skip_shift.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "core/piecewise.hpp"
+
+namespace evodevo {
+namespace {
+
+/// The absolute force of a spring now, N.
+double force(const Body& body, const State& state, const Spring& spring) {
+  const Material& material = body.materials[spring.material];
+  const double distance = norm(state.position[spring.b] - state.position[spring.a]);
+  return std::abs(material.stiffness * (distance - spring.rest_length * material.relative_length(state.time)));
+}
+
+void refuse(Task& task, std::uint64_t skip) {
+  task.status = Status::invalid;
+  task.reason = "no tally in a cycle of " + std::to_string(task.steps) +
+                " steps; set development.skip = " + std::to_string(skip) + " to at most as many";
+  task.clear({}, 0);
+}
+
+}  // namespace
+
+void tally(const Body& body, const State& state, Rng& random, std::vector<double>& points) {
+  std::vector<std::uint32_t> order(body.springs.size());
+  std::iota(order.begin(), order.end(), 0u);
+  random.shuffle(order);
+  std::vector<double> forces;
+  for (const std::uint32_t s : order) forces.push_back(force(body, state, body.springs[s]));
+  const std::size_t groups = std::min(most_tally_groups, order.size() / 2);
+  for (std::size_t group = 0; group < groups; ++group) {
+    const auto first = forces.begin() + static_cast<std::ptrdiff_t>(group * order.size() / groups);
+    const auto last = forces.begin() + static_cast<std::ptrdiff_t>((group + 1) * order.size() / groups);
+    // the first among equals, and the order is random
+    points[order[static_cast<std::size_t>(std::max_element(first, last) - forces.begin())]] += 1;
+    points[order[static_cast<std::size_t>(std::min_element(first, last) - forces.begin())]] -= 1;
+  }
+}
+
+void run_with_tallies(Simulator& simulator, std::span<Task> tasks, std::uint64_t skip, std::span<Rng> random) {
+  for (Task& task : tasks) {
+    task.clear({.stress = true}, task.body->springs.size());
+    if (task.status == Status::ok && task.steps < skip) refuse(task, skip);
+  }
+  const auto next_steps = [&](std::size_t) { return skip; };
+  const auto look = [&](std::size_t i, const Task& piece) {
+    Task& task = tasks[i];
+    if (task.status != Status::ok)
+      task.clear({}, 0);
+    else if (piece.steps == skip)
+      tally(*task.body, *task.state, random[i], task.stress);
+  };
+  run_in_pieces(simulator, tasks, {}, next_steps, look);
+}
+
+}  // namespace evodevo

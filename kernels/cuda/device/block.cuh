@@ -1,0 +1,64 @@
+// What the methods share that move a whole body in one thread block, its places and velocities on the chip where there
+// is room.
+#pragma once
+
+#include "cuda/device/streamed.cuh"
+
+namespace evodevo::cuda {
+
+extern __shared__ __align__(32) unsigned char chip[];
+
+/// Array `index` of MethodForm::points_on_chip, one point for each mass.
+__device__ __forceinline__ Point<Number>* points_on_chip(const Body& body, unsigned index) {
+  return reinterpret_cast<Point<Number>*>(chip) + index * body.masses;
+}
+
+/// a - b
+__device__ __forceinline__ Place difference(const Place& a, const Place& b) { return sum(a, Number(-1), b); }
+
+/// Calls function(mass) for the masses of a thread.
+template <class Function>
+__device__ __forceinline__ void for_each_mass(const Body& body, const Function& function) {
+  for (unsigned mass = threadIdx.x; mass < body.masses; mass += blockDim.x) function(mass);
+}
+
+__device__ __forceinline__ Moving moving(const Body& body, unsigned mass) {
+  return {
+      triple(body.places[mass]), triple(body.velocities[mass]), {0, 0, 0}, body.mass[mass], body.inverse_mass[mass]};
+}
+
+__device__ __forceinline__ void store(const Body& body, unsigned mass, const Moving& m) {
+  body.places[mass] = point(m.place);
+  body.velocities[mass] = point(m.velocity);
+}
+
+/// Calls advance(body, count) for the steps of leg `index`, if the body has any.
+template <class Advance>
+__device__ __forceinline__ void advance_leg(const Body& stored, std::uint64_t index, const Advance& advance) {
+  const Leg leg(stored.stretch, index);
+  if (leg.empty() || stored.answer->diverged) return;
+  Body body = stored;
+  if (body.on_chip) {
+    body.places = points_on_chip(body, 0);
+    body.velocities = points_on_chip(body, 1);
+    for_each_mass(body, [&](unsigned mass) { store(body, mass, moving(stored, mass)); });
+    __syncthreads();
+  }
+  advance(body, leg.steps());
+  if (body.on_chip) for_each_mass(body, [&](unsigned mass) { store(stored, mass, moving(body, mass)); });
+}
+
+/// Adds a spring's tension (N) to what is recorded of it, at `joint`, and to the sum of power, at `mass`.
+__device__ __forceinline__ void note(const Body& body, unsigned row, unsigned joint, unsigned mass, unsigned entry,
+                                     Number rest_length, Number tension) {
+  if constexpr (stress) body.stress[joint] += fabs(tension);
+  if constexpr (work) {
+    const Number watts = physics::actuation_power(tension, body.rates[row * body.entries + entry] * rest_length);
+    body.power[mass] += watts;
+    if constexpr (muscle_work) body.powers[joint] += watts;
+  }
+  if constexpr (peak_force) body.peak[joint] = fmax(body.peak[joint], fabs(tension));
+  if constexpr (mean_tension) body.tensions[joint] += tension;
+}
+
+}  // namespace evodevo::cuda

@@ -1,0 +1,94 @@
+// Materials that each spring carries as a code, decoded in registers (paper, section V). All that steps have in common
+// is a clock: how far the body's unit of frequency has turned.
+#pragma once
+
+#include "cuda/device/resident.cuh"
+#include "physics/material_code.hpp"
+
+namespace evodevo::cuda {
+
+/// The springs' records and codes, from one of them on.
+struct Records {
+  struct Read : Record<Number> {
+    unsigned wave;  // MaterialCode::wave
+  };
+  const Record<Number>* first;
+  const std::uint32_t* first_wave;
+
+  __device__ __forceinline__ Read operator[](unsigned i) const {
+    Read read{first[i], 0};
+    if constexpr (actuation) read.wave = first_wave[i];
+    return read;
+  }
+  __device__ __forceinline__ Records from(unsigned slot) const { return {first + slot, first_wave + slot}; }
+
+  static __device__ __forceinline__ Records of(const Body& body) {
+    return {array_of(body.records, body.record_offset), array_of(body.waves, body.wave_offset)};
+  }
+  static __device__ __forceinline__ void load(const Body& body, unsigned count) {
+    bring(body.records, body.record_offset, count);
+    if constexpr (actuation) bring(body.waves, body.wave_offset, count);
+  }
+};
+
+/// What a spring's material does in a pass.
+struct SpringMaterial {
+  unsigned wave;
+  Entry<Number> entry;
+};
+
+/// The lengths of one pass.
+struct Lengths {
+  const CodeUnits<Number>& units;
+  unsigned row;    // offset of the clock's reading
+  unsigned clock;  // turns of the unit of frequency/2^32, whole ones left out
+
+  __device__ __forceinline__ explicit Lengths(const Body& body)
+      : units(body.units), row(body.table_offset), clock(on_chip<unsigned>(row)) {}
+
+  /// Where in its cycle a spring is, rad from -pi to pi. Overflow is whole turns.
+  __device__ __forceinline__ Number angle(unsigned wave) const {
+    const unsigned turns = (wave & phase_mask) + (wave & frequency_mask) * clock;
+    return static_cast<Number>(static_cast<int>(turns)) * Number(turn * 0x1p-32);
+  }
+
+  __device__ __forceinline__ Number amplitude(unsigned wave) const {
+    return static_cast<Number>(wave & amplitude_mask) * units.amplitude;
+  }
+
+  __device__ __forceinline__ SpringMaterial operator()(const Records::Read& read) const {
+    const Number stiffness = static_cast<Number>(read.packed >> 16) * units.stiffness;
+    Number length = 1;  // L/L0
+    if constexpr (actuation) length = physics::multiply_add(amplitude(read.wave), __sinf(angle(read.wave)), length);
+    return {read.wave, {stiffness, stiffness * length}};
+  }
+
+  /// The rate of L/L0, 1/s.
+  __device__ __forceinline__ Number rate_of(const SpringMaterial& material) const {
+    Number rate = 0;
+    if constexpr (actuation)
+      rate = amplitude(material.wave) * __cosf(angle(material.wave)) *
+             (static_cast<Number>(material.wave & frequency_mask) * units.angular_frequency);
+    return rate;
+  }
+
+  __device__ __forceinline__ void go_on(const Body&, unsigned rows_on) {
+    row += rows_on * sizeof(unsigned);
+    clock = on_chip<unsigned>(row);
+  }
+};
+
+/// Sets the clock for `count` rows from step `step` of the stretch on. It is read off in double precision, so that late
+/// times lose no digits.
+__device__ __noinline__ void fill_lengths(const Body& body, std::uint64_t step, unsigned count) {
+  const double interval = body.world.exact_dt / rows_per_step;
+  const std::uint64_t row = (body.stretch.first_step + step) * rows_per_step;
+  for (unsigned i = threadIdx.x; i < count; i += blockDim.x) {
+    const double time = body.stretch.origin + static_cast<double>(row + i) * interval;
+    const double turns = body.units.frequency * time;
+    on_chip<unsigned>(body.table_offset + i * sizeof(unsigned)) =
+        static_cast<unsigned>(__double2ull_rn((turns - floor(turns)) * 0x1p32));
+  }
+}
+
+}  // namespace evodevo::cuda

@@ -1,0 +1,70 @@
+// Materials in a table in shared memory: what each of the body's does in each of the next steps.
+#pragma once
+
+#include "cuda/device/resident.cuh"
+
+namespace evodevo::cuda {
+
+constexpr unsigned entry_shift = EVODEVO_ENTRY_SHIFT;  // what offsets of the table's entries are shifted by
+
+/// The springs' records, from one of them on.
+struct Records {
+  using Read = Record<Number>;
+  const Record<Number>* first;
+
+  __device__ __forceinline__ Read operator[](unsigned i) const { return first[i]; }
+  __device__ __forceinline__ Records from(unsigned slot) const { return {first + slot}; }
+
+  static __device__ __forceinline__ Records of(const Body& body) {
+    return {array_of(body.records, body.record_offset)};
+  }
+  static __device__ __forceinline__ void load(const Body& body, unsigned count) {
+    bring(body.records, body.record_offset, count);
+  }
+};
+
+/// What a spring's material does in a pass.
+struct SpringMaterial {
+  unsigned table_entry;  // offset from the table's beginning
+  Entry<Number> entry;
+};
+
+/// Where the lengths of one pass lie in the table, and the rates at which they change.
+struct Lengths {
+  unsigned table;
+  unsigned rates = 0;
+
+  __device__ __forceinline__ explicit Lengths(const Body& body) : table(body.table_offset) {
+    if constexpr (work) rates = body.rate_offset;
+  }
+
+  __device__ __forceinline__ SpringMaterial operator()(const Records::Read& record) const {
+    const unsigned offset = (static_cast<unsigned>(record.packed) >> 16) << entry_shift;
+    return {offset, on_chip<Entry<Number>>(table + offset)};
+  }
+
+  /// The rate of L/L0, 1/s.
+  __device__ __forceinline__ Number rate_of(const SpringMaterial& material) const {
+    return on_chip<Number>(rates + material.table_entry / 2);
+  }
+
+  __device__ __forceinline__ void go_on(const Body& body, unsigned rows_on) {
+    const unsigned row_bytes = body.entries * sizeof(Entry<Number>);
+    table += rows_on * row_bytes;
+    if constexpr (work) rates += rows_on * row_bytes / 2;
+  }
+};
+
+/// Fills in `count` rows of the table from step `step` of the stretch on.
+__device__ __noinline__ void fill_lengths(const Body& body, std::uint64_t step, unsigned count) {
+  const double interval = body.world.exact_dt / rows_per_step;
+  const std::uint64_t row = (body.stretch.first_step + step) * rows_per_step;
+  for (unsigned i = threadIdx.x; i < count * body.entries; i += blockDim.x) {
+    const Actuator actuator = body.actuators[i % body.entries];
+    const double time = body.stretch.origin + static_cast<double>(row + i / body.entries) * interval;
+    on_chip<Entry<Number>>(body.table_offset + i * sizeof(Entry<Number>)) = entry_of(actuator, time);
+    if constexpr (work) on_chip<Number>(body.rate_offset + i * sizeof(Number)) = length_rate(actuator, time);
+  }
+}
+
+}  // namespace evodevo::cuda

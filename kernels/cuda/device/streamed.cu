@@ -1,0 +1,61 @@
+// Bodies that are too large for the chip: their state lies in the device's memory, and every pass over the springs is
+// one launch over the masses of all of them. Each mass gathers the forces of its springs in a fixed order, so each
+// spring is computed twice.
+#include EVODEVO_METHOD
+#include "cuda/device/streamed.cuh"
+
+namespace evodevo::cuda {
+
+static_assert(sizeof(Method::Kept) <= (EVODEVO_NUMBERS_OF_MASS > 0 ? EVODEVO_NUMBERS_OF_MASS * sizeof(Number) : 1));
+
+/// The sum of the spring forces at a mass, N. Adds to the sums of stress and power where the pass is `noted`.
+__device__ __forceinline__ Place spring_forces(const Body& body, unsigned mass, const Point<Number>* places,
+                                               unsigned row, bool noted) {
+  const Entry<Number>* table = body.table + row * body.entries;
+  const Place own = triple(places[mass]);
+  Place force{0, 0, 0};
+  Number power = 0;
+  for_each_joint(body, mass, [&](unsigned i, const Joint<Number> joint) {
+    const Entry<Number> entry = table[joint.entry];
+    const auto s = physics::separation(own, triple(places[joint.other]));
+    const Number inverse = physics::inverse_length(s);
+    const Number factor =
+        physics::spring_factor_by_inverse(inverse, entry.stiffness, entry.rest_force * joint.rest_length);
+    if (joint.owned && noted) {
+      const Number tension = factor * physics::length_by_inverse(s, inverse);
+      if constexpr (stress) body.stress[i] += fabs(tension);
+      if constexpr (work) {
+        const Number watts =
+            physics::actuation_power(tension, body.rates[row * body.entries + joint.entry] * joint.rest_length);
+        power += watts;
+        if constexpr (muscle_work) body.powers[i] += watts;
+      }
+      if constexpr (peak_force) body.peak[i] = fmax(body.peak[i], fabs(tension));
+      if constexpr (mean_tension) body.tensions[i] += tension;
+    }
+    force.x = physics::multiply_add(factor, s.d.x, force.x);
+    force.y = physics::multiply_add(factor, s.d.y, force.y);
+    force.z = physics::multiply_add(factor, s.d.z, force.z);
+  });
+  if constexpr (work) body.power[mass] += power;
+  return force;
+}
+
+/// Makes pass `pass` of leg `index`, whose lengths begin with the tables, for all bodies that have as many. Even passes
+/// of a run read the first half of the places and write the second, odd ones the other way.
+extern "C" __global__ void evodevo_pass_streamed(const Body* bodies, std::uint64_t index, unsigned pass) {
+  const Body& body = bodies[blockIdx.y];
+  const unsigned mass = blockIdx.x * blockDim.x + threadIdx.x;
+  const Leg leg(body.stretch, index);
+  if (mass >= body.masses || pass >= leg.passes() || body.answer->diverged) return;
+  const auto half = static_cast<unsigned>((passes_before(leg, index) + pass) % 2);
+  const Point<Number>* from = body.places + half * body.masses;
+  const Place place = triple(from[mass]), velocity = triple(body.velocities[mass]);
+  const Place force = spring_forces(body, mass, from, Method::row(pass), Method::is_noted(pass));
+  Moving m{place, velocity, force, body.mass[mass], body.inverse_mass[mass]};
+  Method::move(body.world, {pass, pass + 1 == leg.passes()}, reinterpret_cast<Method::Kept*>(body.scratch)[mass], m);
+  body.places[(1 - half) * body.masses + mass] = point(m.place);
+  body.velocities[mass] = point(m.velocity);
+}
+
+}  // namespace evodevo::cuda

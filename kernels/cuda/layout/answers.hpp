@@ -1,0 +1,82 @@
+// From what the device wrote down about a body to the task's answer.
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+
+#include "analysis/guard.hpp"
+#include "core/simulator.hpp"
+#include "cuda/layout/formats.hpp"
+
+namespace evodevo::cuda {
+
+/// What the device is told of a task's way, whose course has begun.
+inline Stretch stretch_of(const Task& task) {
+  const Course& course = *task.course;
+  return {.origin = course.origin,
+          .first_step = course.steps,
+          .steps = task.steps,
+          .bound = course.bound,
+          .since_check = static_cast<std::uint32_t>(course.steps % guard_interval),
+          .is_last = task.later_steps == 0,
+          .left_range = course.left_range};
+}
+
+/// Fills in a task's status, reason, work and times.
+inline void read_answer(const Answer& answer, Recording recording, Task& task) {
+  Course course = *task.course;
+  course.steps += answer.steps;
+  course.fallen = answer.fallen;
+  course.left_range = answer.out_of_range != 0;
+  task.spring_evaluations = answer.steps * task.body->springs.size();
+  task.work = recording.work ? answer.work : 0;
+  if (answer.diverged) {
+    task.status = Status::diverged;
+    task.ended_at = course.time(task.dt);
+    task.work = 0;
+    task.clear({}, 0);
+    task.reason = verdict(course, task.dt, answer.kinetic, answer.elastic, answer.finite != 0);
+    if (task.reason.empty()) {
+      char text[96];
+      std::snprintf(text, sizeof text, "force range: the force of a spring grew beyond %.3g N", course.forces.largest);
+      task.reason = text;
+    }
+  }
+  take_course(task, course);
+}
+
+/// The actuator of a material whose stiffness is given in units of `resolution` (N).
+inline Actuator actuator_of(const Material& material, double resolution) {
+  constexpr double pi = 3.14159265358979323846;
+  return {material.stiffness / resolution, material.amplitude, material.frequency,
+          std::remainder(material.phase, 2 * pi) / pi};
+}
+
+/// The time in which a constant acceleration would add to an undamped velocity what it adds to a damped one in `time`,
+/// s.
+inline double push(double damping_rate, double time) {
+  return damping_rate > 0 ? -std::expm1(-damping_rate * time) / damping_rate : time;
+}
+
+template <class T>
+World<T> world_of(const Scene& scene, double dt) {
+  const auto as_t = [](double value) { return static_cast<T>(value); };
+  const double rate = scene.damping ? scene.damping->rate : 0;
+  return {.acceleration = as_t(scene.gravity ? scene.gravity->downwards() : 0),
+          .floor_stiffness = as_t(scene.floor ? scene.floor->stiffness : 0),
+          .friction_dt = as_t(scene.friction ? scene.friction->coefficient : 0) * as_t(dt),
+          .drag_coefficient = as_t(scene.drag ? scene.drag->coefficient : 0),
+          .decay = as_t(std::exp(-rate * dt)),
+          .dt = as_t(dt),
+          .push = as_t(push(rate, dt)),
+          .half_decay = as_t(std::exp(-rate * dt / 2)),
+          .half_push = as_t(push(rate, dt / 2)),
+          .damping_rate = as_t(rate),
+          .grade = as_t(scene.gravity ? scene.gravity->grade() : 0),
+          .roughness = as_t(scene.floor ? scene.floor->roughness : 0),
+          .cells = as_t(scene.floor ? 2 / scene.floor->wavelength : 0),
+          .seed = scene.floor ? scene.floor->first_line() : 0,
+          .exact_dt = dt};
+}
+
+}  // namespace evodevo::cuda

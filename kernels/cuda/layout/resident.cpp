@@ -1,0 +1,312 @@
+#include "cuda/layout/resident.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace evodevo::cuda {
+namespace {
+
+constexpr std::size_t longest_table = 50;        // steps; refilling costs a little each time
+constexpr std::size_t table_bytes = 8 << 10;     // that a table should not exceed
+constexpr std::size_t reserved_bytes = 1 << 10;  // of shared memory, by the kernel and the system
+constexpr std::size_t largest_offset = 0xffff;
+
+std::size_t aligned(std::size_t size) { return (size + 15) / 16 * 16; }
+
+template <class T>
+std::size_t offset_of_place(std::uint32_t place) {
+  return place / lanes * group_bytes<T> + place % lanes * sizeof(T);
+}
+
+template <class T>
+std::size_t masses_bytes(std::size_t groups) {
+  return (groups + 1) * group_bytes<T>;  // and one that empty slots lead to
+}
+
+/// The force of a spring that stops two masses in motion: 2 v sqrt(k m/2) at most, of the greatest v, k and m there
+/// are.
+double stopping_force(const Body& body, const State& state) {
+  double speed = 0, mass = 0, stiffness = 0;
+  for (const Vec3& v : state.velocity) speed = std::max(speed, norm(v));
+  for (const Mass& m : body.masses) mass = std::max(mass, m.mass);
+  for (const Spring& spring : body.springs) stiffness = std::max(stiffness, body.materials[spring.material].stiffness);
+  return 2 * speed * std::sqrt(stiffness * mass / 2);
+}
+
+}  // namespace
+
+ArrangedBody::ArrangedBody(const Body& body, Arrangement arrangement_, unsigned largest_block)
+    : arrangement(std::move(arrangement_)), outline_(body), largest_block_(largest_block) {}
+
+std::shared_ptr<const ArrangedBody> ArrangedBody::of(const Body& body, unsigned largest_block,
+                                                     const std::shared_ptr<const Preparation>& earlier) {
+  const auto before = std::dynamic_pointer_cast<const ArrangedBody>(earlier);
+  if (before && before->largest_block_ == largest_block) {
+    if (before->outline_.fits(body)) return before;
+    return std::make_shared<const ArrangedBody>(
+        body, Arrangement(body, largest_block, before->arrangement, before->outline_), largest_block);
+  }
+  return std::make_shared<const ArrangedBody>(body, Arrangement(body, largest_block), largest_block);
+}
+
+template <class T>
+ForceRange force_range(const Body& body, const State& state, const Scene& scene) {
+  double weight = 0;
+  if (scene.gravity)
+    for (const Mass& mass : body.masses) weight += mass.mass * std::abs(scene.gravity->acceleration);
+  double largest = std::max(weight, stopping_force(body, state)), doubled = 0;
+  bool driven = false;
+  std::vector<std::uint32_t> valence(body.masses.size());
+  for (const Spring& spring : body.springs) {
+    const Material& material = body.materials[spring.material];
+    const double length = spring.rest_length * (1 + std::abs(material.amplitude));
+    const double strain = norm(state.position[spring.b] - state.position[spring.a]) - spring.rest_length;
+    doubled = std::max(doubled, std::abs(material.stiffness) * length);
+    largest = std::max(largest, std::abs(material.stiffness) * 2 * std::abs(strain));
+    driven = driven || material.amplitude * material.frequency != 0;
+    ++valence[spring.a], ++valence[spring.b];
+  }
+  largest = std::max(largest, driven ? 2 * doubled : doubled);
+  ForceRange range;
+  const std::uint32_t terms = valence.empty() ? 1 : std::max(1u, *std::max_element(valence.begin(), valence.end()));
+  // one percent for the rounding of the force itself
+  const double units = 0.99 * std::min(FixedPoint<T>::largest_term, FixedPoint<T>::largest_sum / terms);
+  if (largest > 0 && std::isfinite(largest)) range.resolution = std::exp2(std::ceil(std::log2(largest / units)));
+  range.largest = units * range.resolution;
+  return range;
+}
+
+template ForceRange force_range<float>(const Body&, const State&, const Scene&);
+template ForceRange force_range<double>(const Body&, const State&, const Scene&);
+
+template <class T>
+std::size_t Resident<T>::largest_chip(std::size_t shared_bytes) {
+  return shared_bytes - reserved_bytes;
+}
+
+template <class T>
+std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features& features, std::size_t shared_bytes) {
+  // before the work of arranging it: whether the masses and one step's table fit
+  const std::size_t entries = has_codes(features) ? 0 : task.body->materials.size() + 1;
+  const std::size_t least =
+      masses_bytes<T>((task.body->masses.size() + lanes - 1) / lanes) + entries * (sizeof(Entry<T>) + sizeof(T));
+  if (least > largest_chip(shared_bytes) || entries * sizeof(Entry<T>) > largest_offset * sizeof(T))
+    return std::nullopt;
+  Resident resident(task, features);
+  const std::size_t chip = largest_chip(shared_bytes);
+  resident.divide_chip(true, chip);
+  if (resident.chip_.size > chip) return std::nullopt;
+  resident.divide_chip(features.work, chip);
+  resident.reserve();
+  return resident;
+}
+
+template <class T>
+Resident<T>::Resident(const Task& task, const Features& features)
+    : task_(&task),
+      features_(features),
+      arranged_(ArrangedBody::of(*task.body, largest_block(features.float64), task.preparation)) {}
+
+/// Divides up shared memory, with room for the lengths' rates where `with_rates`; springs have what is left.
+template <class T>
+void Resident<T>::divide_chip(bool with_rates, std::size_t shared_bytes) {
+  const bool codes = has_codes(features_);
+  const std::size_t entries = task_->body->materials.size() + 1;
+  // of a row: what each material does then, or what the clock shows
+  const std::size_t lengths = codes ? sizeof(std::uint32_t) : entries * sizeof(Entry<T>);
+  const std::size_t rates = with_rates && !codes ? entries * sizeof(T) : 0;
+  const std::size_t masses = masses_bytes<T>(arrangement().groups), slots = arrangement().shape.slots();
+  const std::size_t records = slots * sizeof(Record<T>), waves = waves_in(slots) * sizeof(std::uint32_t);
+  const MethodForm& method = form_of(features_.method);
+  const std::size_t steps =
+      std::clamp<std::size_t>(table_bytes / (lengths + rates) / method.rows_per_step, 1, longest_table);
+  // the clock is read a row ahead
+  const std::size_t rows = (features_.actuation ? method.rows(static_cast<unsigned>(steps)) : 1) + (codes ? 1 : 0);
+  records_on_chip_ = aligned(masses) + aligned(rows * (lengths + rates)) + 32 + records + waves <= shared_bytes;
+  chip_.table_steps = static_cast<std::uint32_t>(steps);
+  chip_.table_offset = aligned(masses);
+  chip_.rate_offset = aligned(chip_.table_offset + rows * lengths);
+  chip_.record_offset = aligned(chip_.rate_offset + rows * rates);
+  chip_.wave_offset = chip_.record_offset + records;
+  chip_.size = chip_.record_offset + (records_on_chip_ ? records + waves : 0);
+}
+
+/// How many of `slots` springs' waves there are: springs that keep their length need none.
+template <class T>
+std::size_t Resident<T>::waves_in(std::size_t slots) const {
+  return has_codes(features_) && features_.actuation ? slots : 0;
+}
+
+template <class T>
+void Resident<T>::reserve() {
+  const std::size_t places = lanes * arrangement().groups;
+  Extent input, state, sums;
+  records_ = input.add<Record<T>>(arrangement().slots.size());
+  waves_ = input.add<std::uint32_t>(waves_in(arrangement().slots.size()));
+  first_group_ = input.add<std::uint32_t>(arrangement().first_group.size());
+  turns_ = input.add<std::uint32_t>(arrangement().turns.size());
+  actuators_ = input.add<Actuator>(task_->body->materials.size() + 1);
+  mass_ = input.add<T>(places);
+  inverse_mass_ = input.add<T>(places);
+  start_ = input.add<typename FixedPoint<T>::Integer>(places);
+  for (Section<T>& plane : motion_) plane = state.add<T>(places);
+  answer_ = state.add<Answer>(1);
+  stress_ = sums.add<double>(features_.stress ? arrangement().slots.size() : 0);
+  recent_stress_ = sums.add<T>(features_.stress && form().chunked ? arrangement().slots.size() : 0);
+  peak_ = sums.add<typename FixedPoint<T>::Integer>(features_.peak_force ? arrangement().slots.size() : 0);
+  powers_ = sums.add<double>(features_.muscle_work ? arrangement().slots.size() : 0);
+  tensions_ = sums.add<double>(features_.tension ? arrangement().slots.size() : 0);
+  sizes_ = {input.size(), state.size(), sums.size()};
+}
+
+template <class T>
+ResidentForm Resident<T>::form() const {
+  const Shape& shape = arrangement().shape;
+  return {
+      .rows = shape.rows,
+      .masses_per_thread = shape.masses_per_thread,
+      .chunked = shape.chunks > 1,
+      .records_on_chip = records_on_chip_,
+      .wide_offsets = masses_bytes<T>(arrangement().groups) > largest_offset,
+      .wide_table = !has_codes(features_) && (task_->body->materials.size() + 1) * sizeof(Entry<T>) > largest_offset};
+}
+
+/// The high half of Record::packed for each material.
+template <class T>
+std::vector<typename FixedPoint<T>::Integer> Resident<T>::materials_in_records(const MaterialUnits& units) const {
+  const std::vector<Material>& materials = task_->body->materials;
+  const unsigned entry_size = sizeof(Entry<T>) / (form().wide_table ? sizeof(T) : 1);
+  std::vector<typename FixedPoint<T>::Integer> halves;
+  for (std::uint32_t i = 0; i < materials.size(); ++i)
+    halves.push_back(has_codes(features_) ? code_of(materials[i], units).stiffness : (i + 1) * entry_size);
+  return halves;
+}
+
+template <class T>
+void Resident<T>::pack_records(Record<T>* to, const MaterialUnits& units) const {
+  using Integer = typename FixedPoint<T>::Integer;
+  const std::size_t unit = form().wide_offsets ? sizeof(T) : 1;
+  const auto offset_of = [&](std::uint32_t place) { return static_cast<Integer>(offset_of_place<T>(place) / unit); };
+  const std::vector<Integer> materials = materials_in_records(units);
+  const std::vector<Arrangement::Slot>& slots = arrangement().slots;
+  for (std::size_t slot = 0; slot < slots.size(); ++slot)
+    if (slots[slot].spring == Arrangement::none) to[slot] = {T(0), offset_of(slots[slot].other)};
+  // in their own order, in which they are read in half the time
+  for (std::size_t i = 0; i < task_->body->springs.size(); ++i) {
+    const Spring& spring = task_->body->springs[i];
+    const std::uint32_t slot = arrangement().slot_of[i];
+    to[slot] = {static_cast<T>(spring.rest_length), offset_of(slots[slot].other) | materials[spring.material] << 16};
+  }
+}
+
+template <class T>
+void Resident<T>::pack_waves(std::uint32_t* to, const MaterialUnits& units) const {
+  std::vector<std::uint32_t> waves;
+  for (const Material& material : task_->body->materials) waves.push_back(code_of(material, units).wave);
+  for (const Arrangement::Slot& slot : arrangement().slots)
+    *to++ = slot.spring == Arrangement::none ? 0 : waves[task_->body->springs[slot.spring].material];
+}
+
+template <class T>
+void Resident<T>::pack_masses(const Regions& host) const {
+  const std::size_t places = lanes * arrangement().groups;
+  std::fill_n(mass_.in(host.input), places, T(0));
+  std::fill_n(inverse_mass_.in(host.input), places, T(0));
+  for (const Section<T>& plane : motion_) std::fill_n(plane.in(host.state), places, T(0));
+  for (std::size_t i = 0; i < task_->body->masses.size(); ++i) {
+    const std::uint32_t place = arrangement().place_of[i];
+    const double mass = task_->body->masses[i].mass;
+    mass_.in(host.input)[place] = static_cast<T>(mass);
+    // a mass of 0 kg stays where it is
+    inverse_mass_.in(host.input)[place] = static_cast<T>(mass > 0 ? 1 / mass : 0);
+    const Vec3 x = task_->state->position[i], v = task_->state->velocity[i];
+    const double numbers[] = {x.x, x.y, x.z, v.x, v.y, v.z};
+    for (std::size_t c = 0; c < 6; ++c) motion_[c].in(host.state)[place] = static_cast<T>(numbers[c]);
+  }
+}
+
+template <class T>
+ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, const Scene& scene) const {
+  using Integer = typename FixedPoint<T>::Integer;
+  const MaterialUnits units = has_codes(features_) ? material_units(*task_->body) : MaterialUnits{};
+  pack_records(records_.in(host.input), units);
+  if (waves_in(slots()) > 0) pack_waves(waves_.in(host.input), units);
+  pack_masses(host);
+  std::copy(arrangement().first_group.begin(), arrangement().first_group.end(), first_group_.in(host.input));
+  std::copy(arrangement().turns.begin(), arrangement().turns.end(), turns_.in(host.input));
+  std::transform(arrangement().magic_numbers.begin(), arrangement().magic_numbers.end(), start_.in(host.input),
+                 [](std::int32_t count) { return static_cast<Integer>(count) * FixedPoint<T>::magic_bits; });
+  actuators_.in(host.input)[0] = {};
+  const std::vector<Material> materials = simulated_materials(*task_->body, features_.materials);
+  std::transform(materials.begin(), materials.end(), actuators_.in(host.input) + 1,
+                 [&](const Material& material) { return actuator_of(material, range().resolution); });
+  *answer_.in(host.state) = {.fallen = task_->course->fallen};
+  return {.world = world_of<T>(scene, task_->dt),
+          .units = {.stiffness = static_cast<T>(units.stiffness / range().resolution),
+                    .amplitude = static_cast<T>(units.amplitude / (1 << amplitude_shift)),
+                    .angular_frequency = static_cast<T>(turn * units.frequency),
+                    .frequency = units.frequency},
+          .records = records_.in(device.input),
+          .waves = waves_.in(device.input),
+          .first_group = first_group_.in(device.input),
+          .turns = turns_.in(device.input),
+          .actuators = actuators_.in(device.input),
+          .mass = mass_.in(device.input),
+          .inverse_mass = inverse_mass_.in(device.input),
+          .start = start_.in(device.input),
+          .motion = {motion_[0].in(device.state), motion_[1].in(device.state), motion_[2].in(device.state),
+                     motion_[3].in(device.state), motion_[4].in(device.state), motion_[5].in(device.state)},
+          .stress = stress_.in(device.sums),
+          .recent_stress = recent_stress_.in(device.sums),
+          .peak = peak_.in(device.sums),
+          .powers = powers_.in(device.sums),
+          .tensions = tensions_.in(device.sums),
+          .answer = answer_.in(device.state),
+          .stretch = stretch_of(*task_),
+          .resolution = range().resolution,
+          .largest_force = static_cast<T>(range().largest / range().resolution),
+          .groups = arrangement().groups,
+          .warps = arrangement().shape.warps,
+          .chunks = arrangement().shape.chunks,
+          .entries = static_cast<std::uint32_t>(task_->body->materials.size() + 1),
+          .table_steps = chip_.table_steps,
+          .table_offset = static_cast<std::uint32_t>(chip_.table_offset),
+          .rate_offset = static_cast<std::uint32_t>(chip_.rate_offset),
+          .record_offset = static_cast<std::uint32_t>(chip_.record_offset),
+          .wave_offset = static_cast<std::uint32_t>(chip_.wave_offset)};
+}
+
+template <class T>
+void Resident<T>::unpack(const Regions& host, Recording recording, Task& task) const {
+  if (!answer_.in(host.state)->diverged) unpack_springs(host, task);
+  read_answer(*answer_.in(host.state), recording, task);
+  task.preparation = arranged_;
+  const auto at = [&](std::size_t plane, std::uint32_t place) -> double {
+    return motion_[plane].in(host.state)[place];
+  };
+  for (std::size_t i = 0; i < task.body->masses.size(); ++i) {
+    const std::uint32_t place = arrangement().place_of[i];
+    task.state->position[i] = {at(0, place), at(1, place), at(2, place)};
+    task.state->velocity[i] = {at(3, place), at(4, place), at(5, place)};
+  }
+}
+
+/// Reads what was recorded of the springs; the task's lists have room for it. Needs the course.
+template <class T>
+void Resident<T>::unpack_springs(const Regions& host, Task& task) const {
+  const auto steps = static_cast<double>(task.steps);
+  const auto read = [&](std::vector<double>& to, const auto& number_at) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = number_at(arrangement().slot_of[i]);
+  };
+  read(task.stress, [&](std::size_t slot) { return stress_.in(host.sums)[slot] / steps; });
+  read(task.peak_force,
+       [&](std::size_t slot) { return range().resolution * std::bit_cast<T>(peak_.in(host.sums)[slot]); });
+  read(task.muscle_work, [&](std::size_t slot) { return range().resolution * task.dt * powers_.in(host.sums)[slot]; });
+  read(task.tension, [&](std::size_t slot) { return range().resolution * tensions_.in(host.sums)[slot] / steps; });
+}
+
+template class Resident<float>;
+template class Resident<double>;
+
+}  // namespace evodevo::cuda

@@ -1,0 +1,108 @@
+// A body whose state stays on the chip: its memory and what resident.cu is told about it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "analysis/computed_materials.hpp"
+#include "cuda/layout/answers.hpp"
+#include "cuda/layout/arrangement.hpp"
+#include "cuda/layout/features.hpp"
+#include "cuda/layout/formats.hpp"
+#include "cuda/layout/packing.hpp"
+
+namespace evodevo::cuda {
+
+/// Shared memory of a block.
+struct ChipMemory {
+  std::size_t table_offset = 0, rate_offset = 0, record_offset = 0, wave_offset = 0, size = 0;
+  std::uint32_t table_steps = 1;
+};
+
+/// The range for a body: up to the force at which its strongest spring is twice as long as it wants to be, or three
+/// times where muscles drive the body, for resonance stretches springs by more than their length; to twice what a
+/// spring's force is now, to what it takes to stop the masses' motion, and to the body's weight; soft or short springs
+/// may have to bear more of these than of the first.
+template <class T>
+ForceRange force_range(const Body& body, const State& state, const Scene& scene);
+
+/// A body's arrangement, which depends on the body's outline alone.
+class ArrangedBody final : public Preparation {
+ public:
+  ArrangedBody(const Body& body, Arrangement arrangement, unsigned largest_block);
+
+  /// The arrangement in `earlier` if it is one for `body`, else one that keeps as much of it as possible.
+  static std::shared_ptr<const ArrangedBody> of(const Body& body, unsigned largest_block,
+                                                const std::shared_ptr<const Preparation>& earlier);
+
+  const Arrangement arrangement;
+
+ private:
+  Outline outline_;
+  unsigned largest_block_;
+};
+
+template <class T>
+class Resident {
+ public:
+  /// The body of `task`, whose course has begun, on a chip whose blocks have up to `shared_bytes`; nothing where it
+  /// does not fit, which does not depend on what is recorded.
+  static std::optional<Resident> arrange(const Task& task, const Features& features, std::size_t shared_bytes);
+
+  /// Bytes of `shared_bytes` that a body can have; the kernel and the system have the rest.
+  static std::size_t largest_chip(std::size_t shared_bytes);
+
+  ResidentForm form() const;
+  const Features& features() const { return features_; }
+  unsigned threads() const { return 32 * arrangement().shape.block; }
+  std::size_t slots() const { return arrangement().slots.size(); }
+  std::size_t chip_bytes() const { return chip_.size; }
+  Sizes sizes() const { return sizes_; }
+
+  /// Writes the body into its part of the host's regions; `device` is where these will be on the device.
+  ResidentBody<T> pack(const Regions& host, const Regions& device, const Scene& scene) const;
+
+  /// Reads the task's answer.
+  void unpack(const Regions& host, Recording recording, Task& task) const;
+
+ private:
+  Resident(const Task& task, const Features& features);
+  void divide_chip(bool rates, std::size_t shared_bytes);
+  std::size_t waves_in(std::size_t slots) const;
+  void reserve();
+  std::vector<typename FixedPoint<T>::Integer> materials_in_records(const MaterialUnits& units) const;
+  void pack_records(Record<T>* to, const MaterialUnits& units) const;
+  void pack_waves(std::uint32_t* to, const MaterialUnits& units) const;
+  void pack_masses(const Regions& host) const;
+  void unpack_springs(const Regions& host, Task& task) const;
+
+  const Arrangement& arrangement() const { return arranged_->arrangement; }
+  const ForceRange& range() const { return task_->course->forces; }
+
+  const Task* task_;
+  Features features_;
+  std::shared_ptr<const ArrangedBody> arranged_;
+  ChipMemory chip_;
+  bool records_on_chip_ = true;
+
+  Sizes sizes_;
+  Section<Record<T>> records_;
+  Section<std::uint32_t> waves_;
+  Section<std::uint32_t> first_group_, turns_;
+  Section<Actuator> actuators_;
+  Section<T> mass_, inverse_mass_;
+  Section<typename FixedPoint<T>::Integer> start_;
+  Section<T> motion_[6];
+  Section<Answer> answer_;
+  Section<double> stress_;
+  Section<T> recent_stress_;
+  Section<typename FixedPoint<T>::Integer> peak_;
+  Section<double> powers_, tensions_;
+};
+
+extern template class Resident<float>;
+extern template class Resident<double>;
+
+}  // namespace evodevo::cuda

@@ -1,0 +1,191 @@
+#include "cuda/layout/streamed.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+
+#include "analysis/colouring.hpp"
+#include "analysis/computed_materials.hpp"
+#include "cuda/layout/arrangement.hpp"
+
+namespace evodevo::cuda {
+
+template <class T>
+Streamed<T>::Streamed(const Task& task, const Features& features, std::size_t largest_chip)
+    : task_(&task),
+      features_(features),
+      chip_bytes_(form_of(features.method).points_on_chip * sizeof(Point<T>) * task.body->masses.size()),
+      place_of_(places_by_valence(*task.body)),
+      first_row_(1),
+      owned_joint_(task.body->springs.size()) {
+  if (chip_bytes_ > largest_chip) chip_bytes_ = 0;
+  const Body& body = *task.body;
+  std::vector<std::uint32_t> valence(body.masses.size());
+  for (const Spring& spring : body.springs) ++valence[place_of_[spring.a]], ++valence[place_of_[spring.b]];
+  // the first mass of a group has the most springs
+  for (std::size_t i = 0; i < valence.size(); i += lanes) first_row_.push_back(first_row_.back() + valence[i]);
+
+  std::vector<std::uint32_t> next(body.masses.size());
+  for (std::size_t i = 0; i < owned_joint_.size(); ++i) {
+    const std::uint32_t a = place_of_[body.springs[i].a];
+    owned_joint_[i] = joint_at(a, next[a]++);
+    ++next[place_of_[body.springs[i].b]];
+  }
+  if (form_of(features.method).coloured) colour_ = spring_colours(body);
+  if (!colour_.empty()) colours_ = *std::max_element(colour_.begin(), colour_.end()) + 1;
+  reserve();
+}
+
+template <class T>
+void Streamed<T>::reserve() {
+  const MethodForm& method = form_of(features_.method);
+  const std::size_t entries = task_->body->materials.size() + 1, table = method.rows(guard_interval) * entries;
+  Extent input, state, sums, scratch;
+  rows_ = input.add<std::uint32_t>(first_row_.size());
+  joints_ = input.add<Joint<T>>(joints());
+  coloured_ = input.add<ColouredSpring<T>>(colour_.size());
+  first_of_colour_ = input.add<std::uint32_t>(colours_ + 1);
+  actuators_ = input.add<Actuator>(entries);
+  mass_ = input.add<T>(masses());
+  inverse_mass_ = input.add<T>(masses());
+  places_ = state.add<Point<T>>(2 * masses());
+  velocities_ = state.add<Point<T>>(masses());
+  answer_ = state.add<Answer>(1);
+  table_ = sums.add<Entry<T>>(table);
+  rates_ = sums.add<T>(features_.work ? table : 0);
+  stress_ = sums.add<double>(features_.stress ? joints() : 0);
+  power_ = sums.add<double>(features_.work ? masses() : 0);
+  peak_ = sums.add<T>(features_.peak_force ? joints() : 0);
+  powers_ = sums.add<double>(features_.muscle_work ? joints() : 0);
+  tensions_ = sums.add<double>(features_.tension ? joints() : 0);
+  scratch_ = scratch.add<T>(method.numbers_of_mass * masses() + method.numbers_of_joint * joints());
+  sizes_ = {input.size(), state.size(), sums.size(), scratch.size()};
+}
+
+template <class T>
+unsigned Streamed<T>::threads() const {
+  if (is_explicit(features_.method)) return 128;
+  // a colour has at most half as many springs as there are masses, and on average about a quarter
+  const std::uint32_t busy = form_of(features_.method).coloured ? masses() / 4 : masses();
+  return std::clamp(std::bit_ceil(busy), lanes, lanes * largest_block(features_.float64));
+}
+
+template <class T>
+unsigned Streamed<T>::steps_of_leg(std::uint64_t leg) const {
+  if (leg >= legs()) return 0;
+  const std::uint64_t begin = leg == 0 ? 0 : leg * guard_interval - since_check();
+  return static_cast<unsigned>(std::min(task_->steps, (leg + 1) * guard_interval - since_check()) - begin);
+}
+
+template <class T>
+void Streamed<T>::pack_joints(const Regions& host) const {
+  Joint<T>* to = joints_.in(host.input);
+  // an empty joint leads to its own mass and has entry 0, no material
+  for (std::uint32_t place = 0; place < lanes * (first_row_.size() - 1); ++place)
+    for (std::uint32_t row = 0; row < first_row_[place / lanes + 1] - first_row_[place / lanes]; ++row)
+      to[joint_at(place, row)] = {T(0), std::min(place, masses() - 1), 0, 0};
+  std::vector<std::uint32_t> next(masses());
+  for (const Spring& spring : task_->body->springs) {
+    const std::uint32_t a = place_of_[spring.a], b = place_of_[spring.b];
+    const auto length = static_cast<T>(spring.rest_length);
+    to[joint_at(a, next[a]++)] = {length, b, spring.material + 1, 1};
+    to[joint_at(b, next[b]++)] = {length, a, spring.material + 1, 0};
+  }
+}
+
+/// Writes the springs by colour, in the body's order where it is the same.
+template <class T>
+void Streamed<T>::pack_colours(const Regions& host) const {
+  std::uint32_t* first = first_of_colour_.in(host.input);
+  std::fill_n(first, colours_ + 1, 0u);
+  for (const std::uint32_t colour : colour_) ++first[colour + 1];
+  std::partial_sum(first, first + colours_ + 1, first);
+  std::vector<std::uint32_t> next(first, first + colours_);
+  for (std::uint32_t i = 0; i < colour_.size(); ++i) {
+    const Spring& spring = task_->body->springs[i];
+    coloured_.in(host.input)[next[colour_[i]]++] = {static_cast<T>(spring.rest_length), place_of_[spring.a],
+                                                    place_of_[spring.b], spring.material + 1, owned_joint_[i]};
+  }
+}
+
+template <class T>
+StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, const Scene& scene) const {
+  const Body& body = *task_->body;
+  std::copy(first_row_.begin(), first_row_.end(), rows_.in(host.input));
+  pack_joints(host);
+  pack_colours(host);
+  actuators_.in(host.input)[0] = {};
+  const std::vector<Material> materials = simulated_materials(body, features_.materials);
+  std::transform(materials.begin(), materials.end(), actuators_.in(host.input) + 1,
+                 [](const Material& material) { return actuator_of(material, 1); });
+  const auto point = [](Vec3 v) {
+    return Point<T>{static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z), T(0)};
+  };
+  for (std::size_t i = 0; i < body.masses.size(); ++i) {
+    const std::uint32_t place = place_of_[i];
+    const double mass = body.masses[i].mass;
+    mass_.in(host.input)[place] = static_cast<T>(mass);
+    // a mass of 0 kg stays where it is
+    inverse_mass_.in(host.input)[place] = static_cast<T>(mass > 0 ? 1 / mass : 0);
+    places_.in(host.state)[place] = point(task_->state->position[i]);
+    velocities_.in(host.state)[place] = point(task_->state->velocity[i]);
+  }
+  *answer_.in(host.state) = {.fallen = task_->course->fallen};
+  return {.world = world_of<T>(scene, task_->dt),
+          .first_row = rows_.in(device.input),
+          .joints = joints_.in(device.input),
+          .coloured = coloured_.in(device.input),
+          .first_of_colour = first_of_colour_.in(device.input),
+          .actuators = actuators_.in(device.input),
+          .mass = mass_.in(device.input),
+          .inverse_mass = inverse_mass_.in(device.input),
+          .places = places_.in(device.state),
+          .velocities = velocities_.in(device.state),
+          .scratch = scratch_.in(device.scratch),
+          .table = table_.in(device.sums),
+          .rates = rates_.in(device.sums),
+          .stress = stress_.in(device.sums),
+          .power = power_.in(device.sums),
+          .peak = peak_.in(device.sums),
+          .powers = powers_.in(device.sums),
+          .tensions = tensions_.in(device.sums),
+          .answer = answer_.in(device.state),
+          .stretch = stretch_of(*task_),
+          .masses = masses(),
+          .entries = static_cast<std::uint32_t>(body.materials.size() + 1),
+          .colours = colours_,
+          .on_chip = chip_bytes_ > 0};
+}
+
+template <class T>
+void Streamed<T>::unpack(const Regions& host, Recording recording, Task& task) const {
+  const Answer& answer = *answer_.in(host.state);
+  const std::uint64_t half = form_of(features_.method).passes(answer.steps, since_check()) % 2;
+  read_answer(answer, recording, task);
+  const Point<T>* places = places_.in(host.state) + half * masses();
+  const Point<T>* velocities = velocities_.in(host.state);
+  for (std::size_t i = 0; i < masses(); ++i) {
+    const Point<T>&x = places[place_of_[i]], &v = velocities[place_of_[i]];
+    task.state->position[i] = {x.x, x.y, x.z};
+    task.state->velocity[i] = {v.x, v.y, v.z};
+  }
+  if (task.status == Status::ok) unpack_springs(host, task);
+}
+
+/// Reads what was recorded of the springs; the task's lists have room for it.
+template <class T>
+void Streamed<T>::unpack_springs(const Regions& host, Task& task) const {
+  const auto steps = static_cast<double>(task.steps);
+  const auto read = [&](std::vector<double>& to, const auto& number_at) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = number_at(owned_joint_[i]);
+  };
+  read(task.stress, [&](std::size_t joint) { return stress_.in(host.sums)[joint] / steps; });
+  read(task.peak_force, [&](std::size_t joint) { return peak_.in(host.sums)[joint]; });
+  read(task.muscle_work, [&](std::size_t joint) { return task.dt * powers_.in(host.sums)[joint]; });
+  read(task.tension, [&](std::size_t joint) { return tensions_.in(host.sums)[joint] / steps; });
+}
+
+template class Streamed<float>;
+template class Streamed<double>;
+
+}  // namespace evodevo::cuda

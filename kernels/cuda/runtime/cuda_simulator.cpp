@@ -1,0 +1,210 @@
+// The simulator on a GPU: bodies in portions that its memory holds.
+#include "cuda/runtime/cuda_simulator.hpp"
+
+#include <algorithm>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "analysis/guard.hpp"
+#include "cuda/runtime/cuda_neighbours.hpp"
+#include "cuda/runtime/device.hpp"
+#include "cuda/runtime/portion.hpp"
+#include "threads/parallel.hpp"
+
+namespace evodevo {
+namespace {
+
+static_assert(cuda::guard_interval == guard_interval);
+
+constexpr std::size_t most_streams = 12;  // of one batch
+constexpr int batches_at_once = 16;       // one moves, others are prepared, read out or on their way
+// of the free memory, which other programs want to use too
+constexpr double share_of_memory = 0.8;
+
+/// What a batch has of the device to itself.
+struct Lane {
+  Lane() {
+    for (std::size_t i = 0; i < most_streams; ++i) urgent.emplace_back(true), patient.emplace_back();
+  }
+
+  std::vector<cuda::Stream> urgent, patient;
+};
+
+/// Lanes that are made when they are needed and used again.
+class Lanes {
+ public:
+  /// A lane until its end.
+  class Loan {
+   public:
+    explicit Loan(Lanes& lanes) : lanes_(lanes), lane_(lanes.take()) {}
+    Loan(const Loan&) = delete;
+    Loan& operator=(const Loan&) = delete;
+    ~Loan() { lanes_.give_back(std::move(lane_)); }
+    Lane* operator->() const { return lane_.get(); }
+
+   private:
+    Lanes& lanes_;
+    std::unique_ptr<Lane> lane_;
+  };
+
+ private:
+  std::unique_ptr<Lane> take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return std::make_unique<Lane>();
+    std::unique_ptr<Lane> lane = std::move(free_.back());
+    free_.pop_back();
+    return lane;
+  }
+  void give_back(std::unique_ptr<Lane> lane) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(lane));
+  }
+
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Lane>> free_;
+};
+
+template <class T>
+class DeviceSimulator final : public CudaSimulator {
+ public:
+  DeviceSimulator(const Scene& scene, const Stepping& stepping, int threads, std::size_t memory)
+      : scene_(scene),
+        stepping_(stepping),
+        largest_portion_(memory),
+        device_(cuda::current_device()),
+        kernels_(device_.architecture),
+        workers_(threads),
+        neighbours_(make_cuda_neighbour_search()) {}
+
+  void run(std::span<Task> tasks, Recording recording) override {
+    const std::vector<Task*> live = begin(tasks, recording);
+    const cuda::Run run{scene_, stepping_, recording, device_.shared_bytes};
+    std::vector<cuda::Plan<T>> plans = plan(live, run);
+    double seconds = 0;
+    std::size_t portions = 0;
+    for (std::span<cuda::Plan<T>> left = plans; !left.empty(); ++portions)
+      left = left.subspan(simulate_some(left, run, seconds));
+    const std::lock_guard lock(mutex_);
+    device_seconds_ = seconds;
+    most_portions_ = std::max(most_portions_, portions);
+  }
+
+  NeighbourSearch& neighbours() override { return *neighbours_; }
+
+  Workers& workers() override { return workers_; }
+
+  int concurrency() const override { return batches_at_once; }
+
+  std::string device() const override { return "cuda, " + device_.name + ", " + device_.architecture; }
+
+  std::optional<DeviceUse> device_use() const override {
+    const std::lock_guard lock(mutex_);
+    return DeviceUse{busy_.seconds(), most_portions_};
+  }
+
+  double device_seconds() const override {
+    const std::lock_guard lock(mutex_);
+    return device_seconds_;
+  }
+
+ private:
+  /// Empties the answers and gives the tasks that need the device; bodies without masses only grow older.
+  std::vector<Task*> begin(std::span<Task> tasks, Recording recording) const {
+    std::vector<Task*> live;
+    for (Task& task : tasks) {
+      if (task.status != Status::ok) continue;
+      task.clear(recording, task.body->springs.size());
+      task.work = 0;
+      task.spring_evaluations = 0;
+      if (task.steps > 0 && !task.body->masses.empty()) {
+        live.push_back(&task);
+        continue;
+      }
+      Course course = begun(task);
+      course.steps += task.steps;
+      take_course(task, course);
+    }
+    return live;
+  }
+
+  /// The course that a task goes on with or begins.
+  Course begun(const Task& task) const {
+    Course course = course_of(task, scene_, stepping_.precision);
+    if (!task.course) course.forces = cuda::force_range<T>(*task.body, *task.state, scene_);
+    return course;
+  }
+
+  std::vector<cuda::Plan<T>> plan(const std::vector<Task*>& tasks, const cuda::Run& run) {
+    std::vector<std::optional<cuda::Plan<T>>> planned(tasks.size());
+    workers_.for_each(tasks.size(), [&](std::size_t i) {
+      tasks[i]->course = begun(*tasks[i]);
+      planned[i].emplace(*tasks[i], run);
+    });
+    std::vector<cuda::Plan<T>> plans;
+    for (auto& one : planned) plans.push_back(*std::move(one));
+    return plans;
+  }
+
+  /// Simulates as many of the next plans as the device's memory bears together; returns how many. `seconds` grows by
+  /// the time of the kernels.
+  std::size_t simulate_some(std::span<cuda::Plan<T>> plans, const cuda::Run& run, double& seconds) {
+    const auto attempt = [&](std::size_t count) {
+      const Lanes::Loan lane(lanes_);
+      // after a run with records of springs the host has work to do; meanwhile runs without it fill the device
+      const std::vector<cuda::Stream>& streams = run.recording.of_springs() ? lane->urgent : lane->patient;
+      seconds += cuda::Portion<T>(plans.first(count), run, *memory_).simulate(kernels_, streams, workers_, busy_);
+    };
+    try {
+      return memory_->with_fewer(bearable(plans), attempt);
+    } catch (const cuda::OutOfMemory& error) {
+      throw std::runtime_error(why_not_even_one(plans.front(), error));
+    }
+  }
+
+  /// How many of the next plans should fit the memory that is free; at least one.
+  std::size_t bearable(std::span<const cuda::Plan<T>> plans) {
+    const auto free = static_cast<double>(memory_->available());
+    const std::size_t budget = std::min(largest_portion_, static_cast<std::size_t>(share_of_memory * free));
+    cuda::Sizes sizes;
+    std::size_t count = 0;
+    for (; count < plans.size(); ++count) {
+      sizes += plans[count].sizes();
+      if (cuda::Portion<T>::bytes_for(sizes, count + 1) > budget) break;
+    }
+    return std::max<std::size_t>(count, 1);
+  }
+
+  std::string why_not_even_one(const cuda::Plan<T>& plan, const cuda::OutOfMemory& error) const {
+    return "CUDA: a body of " + std::to_string(plan.task->body->masses.size()) + " masses and " +
+           std::to_string(plan.task->body->springs.size()) + " springs needs " +
+           cuda::in_mebibytes(cuda::Portion<T>::bytes_for(plan.sizes(), 1)) + " of the GPU's memory, and " +
+           cuda::in_mebibytes(memory_->available()) + " are free: " + error.what();
+  }
+
+  Scene scene_;
+  Stepping stepping_;
+  std::size_t largest_portion_;  // bytes
+  cuda::Device device_;
+  cuda::KernelStore kernels_;
+  Workers workers_;
+  std::shared_ptr<cuda::MemoryStore> memory_ = cuda::MemoryStore::of_process();
+  std::unique_ptr<NeighbourSearch> neighbours_;
+  Lanes lanes_;
+  BusyClock busy_;
+  mutable std::mutex mutex_;
+  double device_seconds_ = 0;
+  std::size_t most_portions_ = 1;
+};
+
+}  // namespace
+
+std::unique_ptr<CudaSimulator> make_cuda_simulator(const Scene& scene, const Stepping& stepping, int threads,
+                                                   std::size_t memory) {
+  if (stepping.precision == Precision::float64)
+    return std::make_unique<DeviceSimulator<double>>(scene, stepping, threads, memory);
+  return std::make_unique<DeviceSimulator<float>>(scene, stepping, threads, memory);
+}
+
+}  // namespace evodevo

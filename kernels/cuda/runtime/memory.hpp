@@ -1,0 +1,132 @@
+// Memory on the device and its image on the host.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "cuda/runtime/error.hpp"
+
+namespace evodevo::cuda {
+
+/// As messages say it, rounded up.
+inline std::string in_mebibytes(std::size_t bytes) {
+  return std::to_string((bytes + (std::size_t{1} << 20) - 1) >> 20) + " MiB";
+}
+
+/// Memory of the device together with as much on the host that copies go to and come from, and more that is on the
+/// device alone.
+class MirroredMemory {
+ public:
+  MirroredMemory() = default;
+  MirroredMemory(const MirroredMemory&) = delete;
+  MirroredMemory& operator=(const MirroredMemory&) = delete;
+  ~MirroredMemory() { release(); }
+
+  /// Whether there is room for `mirrored` bytes on both and, behind them, `more` on the device.
+  bool holds(std::size_t mirrored, std::size_t more) const {
+    return mirrored <= host_size_ && mirrored + more <= size_;
+  }
+
+  /// Makes room for as much; what was there is lost. Throws OutOfMemory, after which there is none at all.
+  void resize(std::size_t mirrored, std::size_t more) {
+    if (holds(mirrored, more)) return;
+    try {
+      // bodies grow by little, and taking memory makes the device wait
+      take(rounded(mirrored), rounded(more));
+    } catch (const OutOfMemory&) {
+      take(mirrored, more);
+    }
+  }
+
+  std::byte* device() const { return static_cast<std::byte*>(device_); }
+  std::byte* host() const { return static_cast<std::byte*>(host_); }
+  std::size_t size() const { return size_; }  ///< on the device, bytes
+
+ private:
+  static std::size_t rounded(std::size_t size) {
+    constexpr std::size_t piece = std::size_t{32} << 20;
+    return (size + piece - 1) / piece * piece;
+  }
+
+  void take(std::size_t mirrored, std::size_t more) {
+    release();
+    const std::size_t size = mirrored + more;
+    try {
+      check(cudaMalloc(&device_, size), "taking " + in_mebibytes(size) + " of the GPU's memory");
+      check(cudaMallocHost(&host_, mirrored), "taking " + in_mebibytes(mirrored) + " of the host's memory");
+    } catch (const OutOfMemory&) {
+      release();
+      throw;
+    }
+    size_ = size;
+    host_size_ = mirrored;
+  }
+
+  void release() {
+    cudaFree(device_);
+    cudaFreeHost(host_);
+    device_ = host_ = nullptr;
+    size_ = host_size_ = 0;
+  }
+
+  void* device_ = nullptr;
+  void* host_ = nullptr;
+  std::size_t size_ = 0, host_size_ = 0;
+};
+
+/// The order in which the device works off what it is given.
+class Stream {
+ public:
+  /// What is in an `urgent` stream is begun before what waits in others.
+  explicit Stream(bool urgent = false) {
+    int least = 0, greatest = 0;
+    check(cudaDeviceGetStreamPriorityRange(&least, &greatest), "asking for the priorities of streams");
+    check(cudaStreamCreateWithPriority(&stream_, cudaStreamNonBlocking, urgent ? greatest : least), "opening a stream");
+  }
+  Stream(Stream&& other) noexcept : stream_(std::exchange(other.stream_, nullptr)) {}
+  Stream& operator=(Stream&&) = delete;
+  ~Stream() {
+    if (stream_) cudaStreamDestroy(stream_);
+  }
+  operator cudaStream_t() const { return stream_; }
+
+ private:
+  cudaStream_t stream_ = nullptr;
+};
+
+/// Waits at its end until streams have done what they were given, whatever has thrown meanwhile: nobody takes back
+/// memory that the device still works on.
+class Quiet {
+ public:
+  explicit Quiet(std::span<const Stream> streams) : streams_(streams) {}
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+  ~Quiet() {
+    for (const Stream& stream : streams_) cudaStreamSynchronize(stream);  // a failure has been or will be reported
+  }
+
+ private:
+  std::span<const Stream> streams_;
+};
+
+/// A moment in a stream.
+class Event {
+ public:
+  /// A thread that waits for a `blocking` event sleeps; else it keeps asking.
+  explicit Event(bool blocking = false) {
+    check(cudaEventCreateWithFlags(&event_, blocking ? cudaEventBlockingSync : cudaEventDefault), "making an event");
+  }
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+  ~Event() { cudaEventDestroy(event_); }
+  operator cudaEvent_t() const { return event_; }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+}  // namespace evodevo::cuda

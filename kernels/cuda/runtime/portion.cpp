@@ -1,0 +1,266 @@
+#include "cuda/runtime/portion.hpp"
+
+#include <algorithm>
+#include <deque>
+
+#include "cuda/runtime/launch.hpp"
+
+namespace evodevo::cuda {
+namespace {
+
+/// Room for one body's description of either kind.
+template <class T>
+constexpr std::size_t header_bytes = (std::max(sizeof(ResidentBody<T>), sizeof(StreamedBody<T>)) + 31) / 32 * 32;
+
+bool has_muscles(const Body& body) {
+  return std::any_of(body.materials.begin(), body.materials.end(), [](const Material& m) { return m.amplitude != 0; });
+}
+
+template <class T>
+Sizes sizes_of(std::span<const Plan<T>> plans) {
+  Sizes sizes;
+  for (const Plan<T>& plan : plans) sizes += plan.sizes();
+  return sizes;
+}
+
+/// Waits until all streams have done what they were given; asleep, because other batches need the core. Not on the
+/// device, where other batches' launches could be queued behind a stream that waits. Returns the time since `begin`, s.
+double wait_for(std::span<const Stream> streams, const Event& begin) {
+  std::deque<Event> ends;
+  for (const Stream& stream : streams) check(cudaEventRecord(ends.emplace_back(true), stream), "recording an event");
+  float longest = 0;
+  for (const Event& end : ends) {
+    float milliseconds = 0;
+    check(cudaEventSynchronize(end), "simulating on the GPU");
+    check(cudaEventElapsedTime(&milliseconds, begin, end), "reading a time");
+    longest = std::max(longest, milliseconds);
+  }
+  return longest / 1000.0;
+}
+
+}  // namespace
+
+template <class T>
+Plan<T>::Plan(Task& task_, const Run& run)
+    : task(&task_), body([&]() -> decltype(body) {
+        const Features features = features_of(run.scene, run.stepping, run.recording, has_muscles(*task_.body));
+        if (is_explicit(run.stepping.method))
+          if (auto resident = Resident<T>::arrange(task_, features, run.shared_bytes)) return *std::move(resident);
+        return Streamed<T>(task_, features, Resident<T>::largest_chip(run.shared_bytes));
+      }()) {}
+
+template <class T>
+Sizes Plan<T>::sizes() const {
+  return std::visit([](const auto& b) { return b.sizes(); }, body);
+}
+
+template <class T>
+std::size_t Portion<T>::bytes_for(const Sizes& sizes, std::size_t bodies) {
+  return sizes.total() + bodies * header_bytes<T>;
+}
+
+template <class T>
+Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store)
+    : Portion(plans, run, store, sizes_of<T>(plans)) {}
+
+template <class T>
+Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store, const Sizes& sizes)
+    : plans_(plans),
+      run_(run),
+      sizes_(sizes),
+      memory_(store, plans.size() * header_bytes<T> + sizes.mirrored(), sizes.scratch) {
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    if (const auto* resident = std::get_if<Resident<T>>(&plans[i].body)) {
+      resident_[{resident->features(), resident->form(), resident->threads()}].push_back(i);
+    } else {
+      const auto& streamed = std::get<Streamed<T>>(plans[i].body);
+      streamed_[{streamed.features(), streamed.threads()}].push_back(i);
+    }
+  }
+  for (auto& [launch, members] : resident_)
+    std::stable_sort(members.begin(), members.end(), [&](std::size_t a, std::size_t b) {
+      return std::get<Resident<T>>(plans[a].body).slots() > std::get<Resident<T>>(plans[b].body).slots();
+    });
+  const std::size_t headers = plans.size() * header_bytes<T>;
+  // descriptions, then inputs, then states, then sums, then scratch
+  const auto regions = [&](std::byte* base) {
+    std::byte* input = base + headers;
+    return Regions{input, input + sizes_.input, input + sizes_.input + sizes_.state};
+  };
+  Regions host = regions(memory_->host()), device = regions(memory_->device());
+  device.scratch = memory_->device() + headers + sizes_.mirrored();
+  for (const Plan<T>& plan : plans) {
+    host_.push_back(host);
+    device_.push_back(device);
+    host = host.behind(plan.sizes());
+    device = device.behind(plan.sizes());
+  }
+}
+
+template <class T>
+void Portion<T>::pack(Workers& workers) {
+  // resident bodies by launch, then streamed ones; all descriptions take the same room
+  std::vector<std::size_t> order;
+  for (const auto& [launch, bodies] : resident_) order.insert(order.end(), bodies.begin(), bodies.end());
+  const std::size_t first_streamed = order.size();
+  for (const auto& [launch, bodies] : streamed_) order.insert(order.end(), bodies.begin(), bodies.end());
+  auto* resident = reinterpret_cast<ResidentBody<T>*>(memory_->host());
+  auto* streamed = reinterpret_cast<StreamedBody<T>*>(memory_->host() + first_streamed * header_bytes<T>);
+  workers.for_each(order.size(), [&](std::size_t i) {
+    const std::size_t at = order[i];
+    const Plan<T>& plan = plans_[at];
+    if (const auto* body = std::get_if<Resident<T>>(&plan.body))
+      resident[i] = body->pack(host_[at], device_[at], run_.scene);
+    else
+      streamed[i - first_streamed] = std::get<Streamed<T>>(plan.body).pack(host_[at], device_[at], run_.scene);
+  });
+}
+
+template <class T>
+void Portion<T>::upload(cudaStream_t stream) {
+  const std::size_t headers = plans_.size() * header_bytes<T>;
+  check(cudaMemcpyAsync(memory_->device(), memory_->host(), headers + sizes_.input + sizes_.state,
+                        cudaMemcpyHostToDevice, stream),
+        "copying bodies to the GPU");
+  check(cudaMemsetAsync(device_.front().sums, 0, sizes_.sums, stream), "clearing the GPU's memory");
+}
+
+template <class T>
+std::vector<typename Portion<T>::ReadyLaunch> Portion<T>::ready_launches(KernelStore& kernels, Workers& workers) const {
+  const auto* bodies = reinterpret_cast<const ResidentBody<T>*>(memory_->device());
+  std::vector<ReadyLaunch> launches;
+  for (const auto& [launch, members] : resident_) {
+    launches.push_back({launch, nullptr, members, bodies});
+    bodies += members.size();
+  }
+  // those that have never run are compiled on all cores
+  workers.for_each(launches.size(), [&](std::size_t i) {
+    const Launch& launch = launches[i].launch;
+    launches[i].kernel =
+        kernels.get("cuda/device/resident.cu", "evodevo_run_resident", definitions(launch.features, launch.form));
+  });
+  // the largest first, so that small ones fill the gaps at the end
+  std::sort(launches.begin(), launches.end(), [](const ReadyLaunch& a, const ReadyLaunch& b) {
+    return a.launch.threads * a.launch.form.rows > b.launch.threads * b.launch.form.rows;
+  });
+  return launches;
+}
+
+/// Lets a kernel have as much shared memory as any body needs: always the most, because other threads may be about to
+/// start the same kernel.
+template <class T>
+void Portion<T>::allow_largest_chip(cudaKernel_t kernel) const {
+  check(cudaFuncSetAttribute(reinterpret_cast<const void*>(kernel), cudaFuncAttributeMaxDynamicSharedMemorySize,
+                             static_cast<int>(Resident<T>::largest_chip(run_.shared_bytes))),
+        "asking for shared memory");
+}
+
+template <class T>
+void Portion<T>::launch_resident(KernelStore& kernels, std::span<const Stream> streams, Workers& workers) {
+  const Event ready;
+  check(cudaEventRecord(ready, streams[0]), "recording an event");
+  std::size_t next = 0;
+  for (const ReadyLaunch& one : ready_launches(kernels, workers)) {
+    std::size_t shared_bytes = 0;
+    for (const std::size_t i : one.members)
+      shared_bytes = std::max(shared_bytes, std::get<Resident<T>>(plans_[i].body).chip_bytes());
+    allow_largest_chip(one.kernel);
+    const cudaStream_t stream = streams[next++ % streams.size()];
+    check(cudaStreamWaitEvent(stream, ready), "waiting for an event");
+    launch(one.kernel, dim3(static_cast<unsigned>(one.members.size())), one.launch.threads, shared_bytes, stream,
+           one.bodies);
+  }
+}
+
+template <class T>
+void Portion<T>::launch_streamed(KernelStore& kernels, std::span<const Stream> streams) {
+  const Event ready;
+  check(cudaEventRecord(ready, streams[0]), "recording an event");
+  std::size_t count = 0;
+  for (const auto& [launch, members] : streamed_) count += members.size();
+  const auto* bodies =
+      reinterpret_cast<const StreamedBody<T>*>(memory_->device() + (plans_.size() - count) * header_bytes<T>);
+  std::size_t next = 0;
+  for (const auto& [launch, members] : streamed_) {
+    const cudaStream_t stream = streams[next++ % streams.size()];
+    check(cudaStreamWaitEvent(stream, ready), "waiting for an event");
+    launch_streamed(kernels, stream, members, bodies);
+    bodies += members.size();
+  }
+}
+
+template <class T>
+void Portion<T>::launch_streamed(KernelStore& kernels, cudaStream_t stream, std::span<const std::size_t> members,
+                                 const StreamedBody<T>* bodies) {
+  const MethodForm& method = form_of(run_.stepping.method);
+  const bool by_block = !is_explicit(run_.stepping.method);
+  unsigned masses = 1;
+  std::uint64_t legs = 0;
+  std::size_t shared_bytes = 0;
+  for (const std::size_t i : members) {
+    const auto& body = std::get<Streamed<T>>(plans_[i].body);
+    masses = std::max(masses, body.masses());
+    legs = std::max(legs, body.legs());
+    shared_bytes = std::max(shared_bytes, body.chip_bytes());
+  }
+  const auto& first = std::get<Streamed<T>>(plans_[members.front()].body);
+  const unsigned threads = first.threads();
+  const auto kernel = [&](const char* name) {
+    return kernels.get(by_block ? method.file : "cuda/device/streamed.cu", name, definitions(first.features()));
+  };
+  const cudaKernel_t fill = kernel("evodevo_fill_tables"), check_bodies = kernel("evodevo_check_streamed"),
+                     move = kernel(by_block ? "evodevo_advance_streamed" : "evodevo_pass_streamed");
+  if (by_block) allow_largest_chip(move);
+  const auto count = static_cast<unsigned>(members.size());
+  const dim3 over_masses((masses + threads - 1) / threads, count);
+  for (std::uint64_t leg = 0; leg < legs; ++leg) {
+    unsigned steps = 0;
+    for (const std::size_t i : members)
+      steps = std::max(steps, std::get<Streamed<T>>(plans_[i].body).steps_of_leg(leg));
+    launch(fill, dim3(count), 256, 0, stream, bodies, leg, method.rows(steps));
+    if (by_block) launch(move, dim3(count), threads, shared_bytes, stream, bodies, leg);
+    for (unsigned pass = 0; pass < method.passes(steps); ++pass)
+      launch(move, over_masses, threads, 0, stream, bodies, leg, pass);
+    launch(fill, dim3(count), 256, 0, stream, bodies, leg + 1, 1u);
+    launch(check_bodies, dim3(count), check_threads, 0, stream, bodies, leg);
+  }
+}
+
+template <class T>
+void Portion<T>::download(cudaStream_t stream) {
+  check(cudaMemcpyAsync(host_.front().state, device_.front().state, sizes_.state + sizes_.sums, cudaMemcpyDeviceToHost,
+                        stream),
+        "copying bodies from the GPU");
+  const Event done(true);
+  check(cudaEventRecord(done, stream), "recording an event");
+  check(cudaEventSynchronize(done), "copying bodies from the GPU");
+}
+
+template <class T>
+double Portion<T>::simulate(KernelStore& kernels, std::span<const Stream> streams, Workers& workers, BusyClock& busy) {
+  const Event begin;
+  double seconds = 0;
+  pack(workers);
+  {
+    const BusyClock::Span span(busy);
+    const Quiet quiet(streams);
+    upload(streams[0]);
+    check(cudaEventRecord(begin, streams[0]), "recording an event");
+    launch_resident(kernels, streams, workers);
+    launch_streamed(kernels, streams);
+    seconds = wait_for(streams, begin);
+    download(streams[0]);
+  }
+  workers.for_each(plans_.size(), [&](std::size_t i) {
+    Plan<T>& plan = plans_[i];
+    std::visit([&](const auto& body) { body.unpack(host_[i], run_.recording, *plan.task); }, plan.body);
+  });
+  return seconds;
+}
+
+template struct Plan<float>;
+template struct Plan<double>;
+template class Portion<float>;
+template class Portion<double>;
+
+}  // namespace evodevo::cuda
