@@ -1,5 +1,5 @@
 // The reference against solutions on paper.
-#include "operators/reference.hpp"
+#include "reference.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include "analysis/energy.hpp"
 #include "analysis/ground.hpp"
-#include "operators/reference.hpp"
+#include "reference.hpp"
 #include "support.hpp"
 
 namespace evodevo::test {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <ctime>
 
-#ifdef EVODEVO_CUDA
 #include "analysis/energy.hpp"
+#ifdef EVODEVO_CUDA
 #include "cuda/runtime/cuda_simulator.hpp"
 #endif
 

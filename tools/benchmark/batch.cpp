@@ -5,8 +5,8 @@
 #include <optional>
 #include <stdexcept>
 
-#ifdef EVODEVO_CUDA
 #include "analysis/ground.hpp"
+#ifdef EVODEVO_CUDA
 #include "cuda/runtime/cuda_simulator.hpp"
 #endif
 
