@@ -64,7 +64,7 @@ std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, cons
   std::vector<double> done(cohorts, 0.0);
   on_own_threads(cohorts, [&](std::size_t i) {
     // the first cohort comes first all the way, so that its last, long simulation goes on while others develop
-    const Turn turn(static_cast<int>(i));
+    const Priority priority(static_cast<int>(i));
     const std::size_t begin = i * newborns.size() / cohorts, end = (i + 1) * newborns.size() / cohorts;
     std::vector<Result> of_cohort = evaluate_cohort(newborns.subspan(begin, end - begin), [&](double part) {
       const std::lock_guard lock(progress_mutex);

@@ -8,9 +8,9 @@ namespace {
 
 /// The springs by falling number of springs at their two ends together.
 std::vector<std::uint32_t> most_connected_first(const Body& body) {
-  std::vector<std::uint32_t> valence(body.masses.size()), order(body.springs.size());
-  for (const Spring& spring : body.springs) ++valence[spring.a], ++valence[spring.b];
-  const auto connections = [&](std::uint32_t i) { return valence[body.springs[i].a] + valence[body.springs[i].b]; };
+  std::vector<std::uint32_t> degree(body.masses.size()), order(body.springs.size());
+  for (const Spring& spring : body.springs) ++degree[spring.a], ++degree[spring.b];
+  const auto connections = [&](std::uint32_t i) { return degree[body.springs[i].a] + degree[body.springs[i].b]; };
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t i, std::uint32_t j) { return connections(i) > connections(j); });

@@ -6,7 +6,7 @@
 namespace evodevo {
 namespace {
 
-constexpr std::uint32_t phases = 1u << (32 - phase_shift);  // of a turn
+constexpr std::uint32_t phases = 1u << (32 - phase_shift);  // of a full_turn
 constexpr double most_stiffness = 65'520, most_amplitude = 1'020, most_frequency = 1'020;
 
 std::uint32_t counted(double value, double unit) {
@@ -15,8 +15,8 @@ std::uint32_t counted(double value, double unit) {
 
 /// The phase (rad) of the same motion with an amplitude and a frequency that are not negative.
 double phase_of(const Material& material) {
-  const double phase = material.frequency < 0 ? turn / 2 - material.phase : material.phase;
-  return material.amplitude < 0 ? phase + turn / 2 : phase;
+  const double phase = material.frequency < 0 ? full_turn / 2 - material.phase : material.phase;
+  return material.amplitude < 0 ? phase + full_turn / 2 : phase;
 }
 
 }  // namespace
@@ -33,8 +33,8 @@ MaterialUnits material_units(const Body& body) {
 }
 
 MaterialCode code_of(const Material& material, const MaterialUnits& units) {
-  const double turns = phase_of(material) / turn;
-  // the last half of a step is the next turn's first
+  const double turns = phase_of(material) / full_turn;
+  // the last half of a step is the next full_turn's first
   const auto phase = static_cast<std::uint32_t>(std::lround((turns - std::floor(turns)) * phases)) % phases;
   const std::uint32_t least = material.stiffness > 0 ? 1 : 0;  // no spring loses its force
   return {std::max(least, counted(material.stiffness, units.stiffness)),
@@ -44,7 +44,7 @@ MaterialCode code_of(const Material& material, const MaterialUnits& units) {
 
 Material material_of(const MaterialCode& code, const MaterialUnits& units) {
   return {code.stiffness * units.stiffness, ((code.wave & amplitude_mask) >> amplitude_shift) * units.amplitude,
-          (code.wave & frequency_mask) * units.frequency, (code.wave >> phase_shift) * (turn / phases)};
+          (code.wave & frequency_mask) * units.frequency, (code.wave >> phase_shift) * (full_turn / phases)};
 }
 
 std::vector<Material> simulated_materials(const Body& body, Materials way) {

@@ -8,17 +8,17 @@
 
 namespace evodevo {
 
-double ground_height(const Scene& scene, const Vec3& place) {
+double ground_height(const Scene& scene, const Vec3& position) {
   if (!scene.floor || !scene.floor->rough()) return 0;
   const physics::Roughness<double> rough{scene.floor->roughness, 2 / scene.floor->wavelength,
                                          scene.floor->first_line()};
-  return physics::ground_at(place.x, place.y, rough).height;
+  return physics::ground_at(position.x, position.y, rough).height;
 }
 
-void put_on_ground(std::vector<Vec3>& places, const Scene& scene) {
+void put_on_ground(std::vector<Vec3>& positions, const Scene& scene) {
   double lowest = std::numeric_limits<double>::infinity();
-  for (const Vec3& place : places) lowest = std::min(lowest, place.z - ground_height(scene, place));
-  for (Vec3& place : places) place.z -= lowest;
+  for (const Vec3& position : positions) lowest = std::min(lowest, position.z - ground_height(scene, position));
+  for (Vec3& position : positions) position.z -= lowest;
 }
 
 State state_at_birth(const Body& body, const Scene& scene) {
@@ -26,7 +26,7 @@ State state_at_birth(const Body& body, const Scene& scene) {
   for (const Mass& mass : body.masses) state.position.push_back(mass.rest);
   state.velocity.resize(body.masses.size());
   const Vec3 centre = centre_of_mass(body, state.position);
-  for (Vec3& place : state.position) place = place - Vec3{centre.x, centre.y, 0};
+  for (Vec3& position : state.position) position = position - Vec3{centre.x, centre.y, 0};
   put_on_ground(state.position, scene);
   state.start_energy = total_energy(body, state, scene);
   return state;

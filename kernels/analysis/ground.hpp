@@ -8,14 +8,14 @@
 
 namespace evodevo {
 
-/// Sets `state` to the start of a life: the rest places moved so that the lowest mass is on the ground and the centre
-/// of mass over the origin, at rest, at t = 0; `start_energy` for the scene.
+/// Sets `state` to the start of a life: the rest positions moved so that the lowest mass is on the ground and the
+/// centre of mass over the origin, at rest, at t = 0; `start_energy` for the scene.
 State state_at_birth(const Body& body, const Scene& scene);
 
 /// How high the ground is under a place, m; 0 without a floor.
-double ground_height(const Scene& scene, const Vec3& place);
+double ground_height(const Scene& scene, const Vec3& position);
 
-/// Moves places up or down, all alike, until the lowest is on the ground.
-void put_on_ground(std::vector<Vec3>& places, const Scene& scene);
+/// Moves positions up or down, all alike, until the lowest is on the ground.
+void put_on_ground(std::vector<Vec3>& positions, const Scene& scene);
 
 }  // namespace evodevo

@@ -44,12 +44,12 @@ double strain_allowance(const Body& body) {
   return sum;
 }
 
-/// The strain of all springs by rounding, J: 16,384 units in the last place of each spring and of its place.
+/// The strain of all springs by rounding, J: 16,384 units in the last position of each spring and of its position.
 double rounding_allowance(const Body& body, const State& state, Precision precision) {
-  const double rounding = 16384 * epsilon(precision), places = extent(state);
+  const double rounding = 16384 * epsilon(precision), positions = extent(state);
   double sum = 0;
   for (const Spring& spring : body.springs) {
-    const double noise = rounding * (spring.rest_length + places);
+    const double noise = rounding * (spring.rest_length + positions);
     sum += 0.5 * body.materials[spring.material].stiffness * noise * noise;
   }
   return sum;
@@ -65,7 +65,7 @@ double sag_allowance(const Body& body, const Scene& scene, double dt) {
 }
 
 /// The sum of mass times height, kg m.
-double moment_of(const Body& body, const State& state, const Scene& scene) {
+double height_moment_of(const Body& body, const State& state, const Scene& scene) {
   const double grade = scene.gravity ? scene.gravity->grade() : 0;
   double sum = 0;
   for (std::size_t i = 0; i < body.masses.size(); ++i)
@@ -89,7 +89,7 @@ Course course_of(const Task& task, const Scene& scene, Precision precision) {
                           .drive = drive_of(body),
                           .allowance = strain_allowance(body) + rounding_allowance(body, state, precision) +
                                        sag_allowance(body, scene, task.dt)};
-  return {.origin = state.time, .bound = bound, .fallen = fallen_energy(scene, moment_of(body, state, scene))};
+  return {.origin = state.time, .bound = bound, .fallen = fallen_energy(scene, height_moment_of(body, state, scene))};
 }
 
 bool is_checked(const Task& task, const Course& course) {
@@ -97,19 +97,19 @@ bool is_checked(const Task& task, const Course& course) {
   return course.steps % guard_interval == 0 || (task.later_steps == 0 && course.steps == begun + task.steps);
 }
 
-double fallen_energy(const Scene& scene, double moment) {
-  return scene.gravity ? std::max(0.0, -scene.gravity->downwards() * moment) : 0;
+double fallen_energy(const Scene& scene, double height_moment) {
+  return scene.gravity ? std::max(0.0, -scene.gravity->downwards() * height_moment) : 0;
 }
 
-std::string verdict(const Course& course, double dt, double kinetic, double elastic, bool finite) {
+std::string divergence_reason(const Course& course, double dt, double kinetic, double elastic, bool finite) {
   const double energy = kinetic + elastic;
-  if (!finite || !std::isfinite(energy)) return "non-finite place, velocity or energy";
+  if (!finite || !std::isfinite(energy)) return "non-finite position, velocity or energy";
   const double limit = course.bound.limit(course.elapsed(dt), course.fallen);
   if (!(energy <= limit)) return with_numbers("energy of %.3g J above the bound of %.3g J", energy, limit);
   return {};
 }
 
-void take_course(Task& task, const Course& course) {
+void apply_course(Task& task, const Course& course) {
   State& state = *task.state;
   state.time = course.time(task.dt);
   state.start_energy = course.bound.start + course.bound.added(course.elapsed(task.dt), course.fallen);

@@ -40,14 +40,14 @@ Course course_of(const Task& task, const Scene& scene, Precision precision);
 /// Whether a body is checked after as many steps as its course has.
 bool is_checked(const Task& task, const Course& course);
 
-/// What falling below the origin has set free, J. `moment`: the sum of mass times physics::height(), kg m.
-double fallen_energy(const Scene& scene, double moment);
+/// What falling below the origin has set free, J. `height_moment`: the sum of mass times physics::height(), kg m.
+double fallen_energy(const Scene& scene, double height_moment);
 
-/// Why a body has diverged; empty where it has not. `kinetic` and `elastic` in J; `finite`: whether all places and
+/// Why a body has diverged; empty where it has not. `kinetic` and `elastic` in J; `finite`: whether all positions and
 /// velocities are. The course's `fallen` is that of now.
-std::string verdict(const Course& course, double dt, double kinetic, double elastic, bool finite);
+std::string divergence_reason(const Course& course, double dt, double kinetic, double elastic, bool finite);
 
 /// Sets a task's state and course to those after `course`, which has the steps that it made.
-void take_course(Task& task, const Course& course);
+void apply_course(Task& task, const Course& course);
 
 }  // namespace evodevo

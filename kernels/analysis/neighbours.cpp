@@ -11,11 +11,11 @@ namespace {
 
 /// Places as nanoflann reads them.
 struct Points {
-  std::span<const Vec3> places;
+  std::span<const Vec3> positions;
 
-  std::size_t kdtree_get_point_count() const { return places.size(); }
+  std::size_t kdtree_get_point_count() const { return positions.size(); }
   double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    const Vec3& p = places[i];
+    const Vec3& p = positions[i];
     return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
   }
   template <class Bounds>
@@ -24,7 +24,7 @@ struct Points {
   }
 };
 
-/// The `capacity` nearest found so far but for the place itself; among equally near ones those of lower index.
+/// The `capacity` nearest found so far but for the position itself; among equally near ones those of lower index.
 class NearestOthers {
  public:
   using DistanceType = double;
@@ -44,7 +44,7 @@ class NearestOthers {
     return true;
   }
 
-  /// The tree leaves out what is not nearer than this. A little more than the worst, so that equally near places are
+  /// The tree leaves out what is not nearer than this. A little more than the worst, so that equally near positions are
   /// looked at in spite of the rounding of its distances to cells.
   double worstDist() const {
     if (!full()) return std::numeric_limits<double>::max();
@@ -65,20 +65,20 @@ using Tree =
 class CpuNeighbourSearch final : public NeighbourSearch {
  public:
   void find(std::span<const PointCloud> clouds, Workers& workers, const Use& use) override {
-    workers.for_each(clouds.size(), [&](std::size_t i) { use(i, nearest_pairs(clouds[i].places, clouds[i].k)); });
+    workers.for_each(clouds.size(), [&](std::size_t i) { use(i, nearest_pairs(clouds[i].positions, clouds[i].k)); });
   }
 };
 
 }  // namespace
 
-std::vector<IndexPair> nearest_pairs(std::span<const Vec3> places, std::uint32_t k) {
+std::vector<IndexPair> nearest_pairs(std::span<const Vec3> positions, std::uint32_t k) {
   std::vector<IndexPair> pairs;
-  if (places.size() < 2 || k == 0) return pairs;
-  const Points points{places};
+  if (positions.size() < 2 || k == 0) return pairs;
+  const Points points{positions};
   const Tree tree(3, points);
-  for (std::uint32_t i = 0; i < places.size(); ++i) {
-    NearestOthers nearest(i, std::min<std::size_t>(k, places.size() - 1));
-    tree.findNeighbors(nearest, &places[i].x, nanoflann::SearchParams());
+  for (std::uint32_t i = 0; i < positions.size(); ++i) {
+    NearestOthers nearest(i, std::min<std::size_t>(k, positions.size() - 1));
+    tree.findNeighbors(nearest, &positions[i].x, nanoflann::SearchParams());
     for (const auto& [squared, j] : nearest.found()) pairs.push_back(std::minmax(i, j));
   }
   std::sort(pairs.begin(), pairs.end());

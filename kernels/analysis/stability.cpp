@@ -14,11 +14,11 @@ namespace {
 /// over the springs, e a spring's direction. Its eigenvalues are the squares of the body's angular frequencies.
 class StiffnessMatrix {
  public:
-  StiffnessMatrix(const Body& body, std::span<const Vec3> places)
+  StiffnessMatrix(const Body& body, std::span<const Vec3> positions)
       : size_(3 * static_cast<Eigen::Index>(body.masses.size())) {
     for (const Mass& mass : body.masses) weight_.push_back(mass.mass > 0 ? 1 / std::sqrt(mass.mass) : 0);
     for (const Spring& spring : body.springs) {
-      const Vec3 d = places[spring.b] - places[spring.a];
+      const Vec3 d = positions[spring.b] - positions[spring.a];
       const double length = norm(d);
       const double stiffness = body.materials[spring.material].stiffness;
       const Eigen::Vector3d direction = Eigen::Vector3d(d.x, d.y, d.z).normalized();  // of zero: zero
@@ -59,10 +59,10 @@ class StiffnessMatrix {
 /// A bound of the matrix's largest eigenvalue. Since |xb - xa|^2 <= 2 |xa|^2 + 2 |xb|^2, K is at most twice its blocks
 /// on the diagonal: 2 lambda/m, lambda the largest eigenvalue of the sum of k e e^T over a mass's springs. Unlike
 /// Gershgorin's bound, 2 sum(k)/m, it knows that springs of different directions do not add up.
-double eigenvalue_bound(const Body& body, std::span<const Vec3> places) {
+double eigenvalue_bound(const Body& body, std::span<const Vec3> positions) {
   std::vector<Eigen::Matrix3d> block(body.masses.size(), Eigen::Matrix3d::Zero());
   for (const Spring& spring : body.springs) {
-    const Vec3 d = places[spring.b] - places[spring.a];
+    const Vec3 d = positions[spring.b] - positions[spring.a];
     const double stiffness = body.materials[spring.material].stiffness, square = dot(d, d);
     const Eigen::Vector3d e(d.x, d.y, d.z);
     const Eigen::Matrix3d k = square != 0 ? (stiffness / square * e * e.transpose()).eval()
@@ -143,8 +143,8 @@ double largest_eigenvalue(const StiffnessMatrix& matrix, double enough) {
 }
 
 /// The cheapest bound of the largest eigenvalue, by Gershgorin's discs on blocks of one mass: 2 sum(k)/m, at most. NaN
-/// where a place is not finite.
-double disc_bound(const Body& body, std::span<const Vec3> places) {
+/// where a position is not finite.
+double disc_bound(const Body& body, std::span<const Vec3> positions) {
   std::vector<double> sum(body.masses.size());
   for (const Spring& spring : body.springs) {
     const double stiffness = body.materials[spring.material].stiffness;
@@ -154,7 +154,7 @@ double disc_bound(const Body& body, std::span<const Vec3> places) {
   double largest = 0, not_finite = 0;
   for (std::size_t i = 0; i < sum.size(); ++i) {
     if (body.masses[i].mass > 0) largest = std::max(largest, 2 * sum[i] / body.masses[i].mass);
-    not_finite += 0 * (places[i].x + places[i].y + places[i].z);
+    not_finite += 0 * (positions[i].x + positions[i].y + positions[i].z);
   }
   return largest + not_finite;
 }
@@ -216,17 +216,17 @@ double largest_muscle_dt(const Body& body) {
   return frequency > 0 ? 0.5 / frequency : infinity;
 }
 
-double largest_dt(const Body& body, std::span<const Vec3> places, Method method, double wanted) {
+double largest_dt(const Body& body, std::span<const Vec3> positions, Method method, double wanted) {
   if (!is_explicit(method)) return wanted;
   const double limit = oscillation_limit(method);
-  if (wanted * std::sqrt(disc_bound(body, places)) <= limit) return wanted;
-  const double bound = eigenvalue_bound(body, places);
+  if (wanted * std::sqrt(disc_bound(body, positions)) <= limit) return wanted;
+  const double bound = eigenvalue_bound(body, positions);
   if (bound == 0 || wanted * std::sqrt(bound) <= limit) return wanted;
-  const double largest = limit / std::sqrt(largest_eigenvalue(StiffnessMatrix(body, places), infinity));
+  const double largest = limit / std::sqrt(largest_eigenvalue(StiffnessMatrix(body, positions), infinity));
   return largest >= wanted ? wanted : largest;  // NaN stays NaN
 }
 
-double safe_dt(const Body& body, std::span<const Vec3> places, const Scene& scene, Method method) {
+double safe_dt(const Body& body, std::span<const Vec3> positions, const Scene& scene, Method method) {
   constexpr double longest = 0.01, steps_of_a_stroke = 20;
   double other = std::min(longest, largest_contact_dt(scene, body, method));
   if (const double frequency = fastest_muscle(body); frequency > 0)
@@ -234,15 +234,15 @@ double safe_dt(const Body& body, std::span<const Vec3> places, const Scene& scen
   if (method == Method::rk4 && scene.damping && scene.damping->rate > 0)
     other = std::min(other, 2 / scene.damping->rate);
   const double wanted = other / spring_margin;
-  const double springs = largest_dt(body, places, method, wanted);
+  const double springs = largest_dt(body, positions, method, wanted);
   return springs == wanted ? other : spring_margin * springs;
 }
 
-bool is_stable(const Body& body, std::span<const Vec3> places, Method method, double dt) {
+bool is_stable(const Body& body, std::span<const Vec3> positions, Method method, double dt) {
   if (!is_explicit(method)) return true;
   const double limit = std::pow(oscillation_limit(method) / dt, 2);
-  return disc_bound(body, places) <= limit || eigenvalue_bound(body, places) <= limit ||
-         largest_eigenvalue(StiffnessMatrix(body, places), limit) <= limit;
+  return disc_bound(body, positions) <= limit || eigenvalue_bound(body, positions) <= limit ||
+         largest_eigenvalue(StiffnessMatrix(body, positions), limit) <= limit;
 }
 
 }  // namespace evodevo

@@ -30,24 +30,24 @@ double largest_muscle_dt(const Material& material);
 /// The same for all springs of a body; what else is among its materials does not count.
 double largest_muscle_dt(const Body& body);
 
-/// The largest dt (s) at which `body`, its masses at `places`, is stable, or `wanted` (s) where it bears that: dt times
-/// the highest angular frequency of the undamped body within the limit; infinite where nothing swings or the method is
-/// not explicit. A bound of the frequency decides where it can: for random robots 1.35 times the true one on average
-/// and 1.40 at most. Else Lanczos' iteration finds it: at most 2 % below the true limit, and above it only for bodies
-/// whose highest frequencies lie close together, such as long chains, by half a percent at most.
-double largest_dt(const Body& body, std::span<const Vec3> places, Method method,
+/// The largest dt (s) at which `body`, its masses at `positions`, is stable, or `wanted` (s) where it bears that: dt
+/// times the highest angular frequency of the undamped body within the limit; infinite where nothing swings or the
+/// method is not explicit. A bound of the frequency decides where it can: for random robots 1.35 times the true one on
+/// average and 1.40 at most. Else Lanczos' iteration finds it: at most 2 % below the true limit, and above it only for
+/// bodies whose highest frequencies lie close together, such as long chains, by half a percent at most.
+double largest_dt(const Body& body, std::span<const Vec3> positions, Method method,
                   double wanted = std::numeric_limits<double>::infinity());
 
-/// What a step chosen by largest_dt() leaves to what it does not know: places and the directions of springs change
+/// What a step chosen by largest_dt() leaves to what it does not know: positions and the directions of springs change
 /// before anybody looks again, and springs under tension resist turning as well.
 inline constexpr double spring_margin = 0.9;
 
 /// The largest dt (s) for a body of an explicit method in a scene, at most 0.01 s: spring_margin of largest_dt(); the
 /// contact limit, which holds a margin of its own; a twentieth of the fastest muscle's period, so that it is seen; and
-/// 2/rate where damping is a force (rk4). NaN where a place is not finite.
-double safe_dt(const Body& body, std::span<const Vec3> places, const Scene& scene, Method method);
+/// 2/rate where damping is a force (rk4). NaN where a position is not finite.
+double safe_dt(const Body& body, std::span<const Vec3> positions, const Scene& scene, Method method);
 
 /// Whether `dt` is at most largest_dt().
-bool is_stable(const Body& body, std::span<const Vec3> places, Method method, double dt);
+bool is_stable(const Body& body, std::span<const Vec3> positions, Method method, double dt);
 
 }  // namespace evodevo

@@ -1,4 +1,4 @@
-// The time-stepping methods.
+// The time-stepping methods: their names, and whether they are explicit. kernels/README.md compares them.
 #pragma once
 
 #include <array>
@@ -7,12 +7,17 @@
 
 namespace evodevo {
 
-/// How a body is moved by one time step. All but the last two are explicit: beyond a step that depends on the body they
-/// diverge. implicit bears any step and damps what swings faster than it. So does xpbd, but beyond some three times the
-/// largest step of the explicit methods it lets bodies sag under their weight, and beyond some seven times one pass
-/// leaves so much unsolved that sparse bodies gain energy. At any step it turns bodies whose muscles pull, by about
-/// dt^2: springs that come later in the pass see what the earlier have changed. Passing backwards in every second step
-/// would leave dt^4 of that, but bodies would gain energy from twice the explicit methods' largest step on.
+/// How a body is moved by one time step.
+///
+/// The first four methods are explicit: they diverge where the step is longer than a limit that depends on the body
+/// (analysis/stability.hpp). implicit is stable at any step; it damps oscillations that are faster than the step.
+///
+/// xpbd damps them as well. At steps longer than about three times the explicit methods' limit it lets bodies sag under
+/// their weight, and longer than about seven times, one Gauss-Seidel pass leaves so large a residual that bodies with
+/// few springs gain energy. At any step it rotates bodies with active muscles, by an angle of order dt^2, because
+/// springs that come later in the pass use velocities that earlier springs have changed. A reversed order in every
+/// second step would reduce that to order dt^4, but then bodies gain energy already at twice the explicit methods'
+/// limit.
 enum class Method {
   paper_euler,       ///< semi-implicit Euler, the new velocity multiplied by exp(-rate dt); order 1
   symplectic_euler,  ///< semi-implicit Euler with damping and drag that end in the true terminal velocity; order 1
@@ -22,13 +27,13 @@ enum class Method {
   xpbd,              ///< springs as compliant constraints, one coloured Gauss-Seidel pass a step; order 1
 };
 
-/// As `[simulation] method` calls them, in the enumerators' order.
+/// The names that users know, in the order of the enumerators.
 inline constexpr std::array<std::string_view, 6> method_names = {"paper-euler", "symplectic-euler", "velocity-verlet",
                                                                  "rk4",         "implicit",         "xpbd"};
 
 constexpr std::string_view name(Method method) { return method_names[static_cast<std::size_t>(method)]; }
 
-/// The method called `name`, one of method_names.
+/// The method called `name`, which must be one of method_names; otherwise throws std::out_of_range.
 constexpr Method method_of(std::string_view name) {
   std::size_t i = 0;
   while (method_names.at(i) != name) ++i;

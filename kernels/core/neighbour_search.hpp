@@ -1,4 +1,4 @@
-// The interface of a search for the nearest neighbours in many bodies.
+// The interface of the search for nearest neighbours in many point clouds.
 #pragma once
 
 #include <cstddef>
@@ -12,25 +12,26 @@
 
 namespace evodevo {
 
-/// The indices of two places, the lower first.
+/// The indices of two points, the lower index first.
 using IndexPair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// The places of one body and how many nearest ones each of them is joined to.
+/// The points of one body. Each point is joined to its `k` nearest other points.
 struct PointCloud {
-  std::span<const Vec3> places;
+  std::span<const Vec3> positions;  ///< m
   std::uint32_t k = 0;
 };
 
-/// Finds the neighbours in all bodies of a population. Several threads may search at once.
+/// Finds the pairs of neighbours in all clouds of a population. Several threads may search at once.
 class NeighbourSearch {
  public:
   virtual ~NeighbourSearch() = default;
 
-  /// Takes a cloud's index and its pairs, which are there only during the call.
+  /// Receives a cloud's index and its pairs. The pairs are valid only during the call.
   using Use = std::function<void(std::size_t, std::span<const IndexPair>)>;
 
-  /// Calls use(i, nearest_pairs of clouds[i]) once for every cloud, in no particular order and on the threads of
-  /// `workers`. The first exception that it throws is thrown again here.
+  /// Calls use(i, pairs) once for every cloud i, on the threads of `workers` and in no particular order. `pairs` is
+  /// what nearest_pairs() (analysis/neighbours.hpp) gives for clouds[i]. The first exception that `use` throws is
+  /// thrown again here.
   virtual void find(std::span<const PointCloud> clouds, Workers& workers, const Use& use) = 0;
 };
 

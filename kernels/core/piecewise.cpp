@@ -8,7 +8,7 @@
 namespace evodevo {
 namespace {
 
-/// A task on its way from one run to the next.
+/// A task of which some pieces have been made.
 class Piecewise {
  public:
   explicit Piecewise(Task& whole) : whole_(whole) { whole_.spring_evaluations = 0; }

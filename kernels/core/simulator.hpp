@@ -1,4 +1,8 @@
-// The simulation core's interface: batches of bodies in, moved bodies out.
+// The simulation core's interface.
+//
+//   Task: body, state, dt, steps ─► Simulator::run ─► state after the steps, status, records of the springs
+//
+// A batch is a span of tasks, one per body. Each device has its own simulator.
 #pragma once
 
 #include <array>
@@ -19,18 +23,19 @@ namespace evodevo {
 
 enum class Precision { float32, float64 };
 
-/// How a GPU knows the materials of springs: from a table of the body's, or computed from a short code of each spring
-/// (paper, section V). Codes round materials (computed_materials.hpp), on every device.
+/// How a GPU gets the material of a spring: from a table of the body's materials, or by decoding a short code that each
+/// spring carries (paper, section V). The codes round materials (analysis/computed_materials.hpp); a simulator on any
+/// device uses the rounded materials.
 enum class Materials { table, computed };
 
-/// How steps are made. How long they are is each task's own.
+/// How steps are made. Each task has a step length of its own.
 struct Stepping {
   Method method = Method::paper_euler;
   Precision precision = Precision::float32;
   Materials materials = Materials::table;
 };
 
-/// What is recorded beside the motion; what is not asked for costs nothing.
+/// What a run records beside the motion. What is not asked for costs no time.
 struct Recording {
   bool stress = false;       ///< SpringRecords::stress
   bool work = false;         ///< Task::work
@@ -41,17 +46,18 @@ struct Recording {
   bool of_springs() const { return stress || peak_force || muscle_work || tension; }
 };
 
-/// What was recorded of every spring of a body over a run; a list is empty where it was not asked for.
+/// What a run has recorded of a body's springs: one number for each spring. A list that was not asked for is empty.
 struct SpringRecords {
-  std::vector<double> stress;       ///< mean absolute force, N
-  std::vector<double> peak_force;   ///< largest absolute force, N
-  std::vector<double> muscle_work;  ///< positive work of the spring's muscle on the body, J
-  std::vector<double> tension;      ///< mean force, N: positive where the spring pulled, negative where it pushed
+  std::vector<double> stress;      ///< mean absolute force over the run, N
+  std::vector<double> peak_force;  ///< largest absolute force, N
+  std::vector<double>
+      muscle_work;  ///< work that the spring's muscle has put into the body, J; what it takes out is not subtracted
+  std::vector<double> tension;  ///< mean force, N: positive if the spring pulled, negative if it pushed
 
   static constexpr std::array lists{&SpringRecords::stress, &SpringRecords::peak_force, &SpringRecords::muscle_work,
                                     &SpringRecords::tension};
 
-  /// Zeros for `springs` springs in what `recording` asks for.
+  /// Sets the lists that `recording` asks for to zeros for `springs` springs, and empties the others.
   void clear(Recording recording, std::size_t springs) {
     stress.assign(recording.stress ? springs : 0, 0.0);
     peak_force.assign(recording.peak_force ? springs : 0, 0.0);
@@ -60,71 +66,75 @@ struct SpringRecords {
   }
 };
 
-/// What a simulator has worked out about a body's masses and springs and need not work out again while they stay.
+/// What a simulator has computed about a body's masses and springs (on a GPU, their arrangement in memory) and can use
+/// again while they stay the same.
 class Preparation {
  public:
   virtual ~Preparation() = default;
 };
 
-/// One body's share of a batch: `steps` time steps of `dt`, the i-th of them at State::time + i dt. `body` to
-/// `later_steps` are given; the rest, and what was recorded of the springs, is the answer. The records are empty after
-/// a divergence.
+/// One body of a batch and what to do with it: `steps` time steps of length `dt`, the i-th of them at State::time + i
+/// dt. The caller sets `body`, `state`, `dt`, `steps` and, where they apply, `later_steps`, `course` and `preparation`;
+/// the simulator sets the rest. The records are empty after a divergence.
 ///
-/// A run can be made in pieces: each piece but the last says how many `later_steps` are to follow, and hands its
-/// `course` to the next, with the same body and dt. State and verdict are then those of one run, to the bit; what was
-/// recorded is of the piece alone, and sums of pieces may differ from the whole's by rounding.
+/// A run can be made in pieces with the same body and dt: each piece except the last says how many `later_steps`
+/// follow, and the caller hands its `course` to the next piece. State and status are then those of one run, to the bit.
+/// Records and work are those of the piece alone; their sums over the pieces may differ from those of one run by
+/// rounding.
 struct Task : SpringRecords {
   const Body* body = nullptr;
   State* state = nullptr;  ///< moved in place
   double dt = 0.0005;      ///< time step, s; paper, Table II
   std::uint64_t steps = 0;
-  std::uint64_t later_steps = 0;  ///< of the same run, in pieces still to come
-  std::optional<Course> course;   ///< of the same run's pieces so far; afterwards for the next, where one is to come
-  /// Of the body's last run, or none; afterwards of this one. One that no longer fits the body is not used.
+  std::uint64_t later_steps = 0;  ///< steps of the same run in pieces still to come
+  std::optional<Course> course;   ///< before: from the run's earlier piece, if any; after: for the next piece, if any
+  /// Before: from the body's last run, or null; after: of this run. One that does not fit the body any more is ignored.
   std::shared_ptr<const Preparation> preparation;
 
-  Status status = Status::ok;            ///< ok or diverged; a task that does not come in as ok is left alone
-  double ended_at = 0;                   ///< time of a divergence since birth, s; found to within 100 steps
-  std::string reason;                    ///< of a divergence
-  double work = 0;                       ///< positive work of the muscles on the body, J; 0 unless recorded
-  std::uint64_t spring_evaluations = 0;  ///< springs times steps, however often a method's step looks at a spring
+  Status status = Status::ok;  ///< afterwards ok or diverged; a task that is not ok before the run is skipped
+  double ended_at = 0;         ///< time of the divergence since birth, s; detected up to 100 steps late
+  std::string reason;          ///< why the body has diverged
+  double work = 0;             ///< work of the muscles on the body, J; 0 unless recorded
+  std::uint64_t spring_evaluations =
+      0;  ///< springs times steps, independent of how often a method evaluates each spring in a step
 };
 
-/// How a device of its own, such as a GPU, was used since its simulator was made.
+/// How a device such as a GPU was used since its simulator was made.
 struct DeviceUse {
-  double busy = 0;           ///< time in which it had something to do, s
-  std::size_t portions = 1;  ///< that a batch had to be divided into, at most, for the device's memory
+  double busy = 0;           ///< time in which the device was working, s
+  std::size_t portions = 1;  ///< largest number of portions into which a batch was divided to fit the device's memory
 };
 
-/// Moves bodies through a scene; a mass of 0 kg stays where it is. A body's answer is the same bits alone, in any
-/// batch, and for any number of threads.
+/// Moves bodies through a scene. A mass of 0 kg stays where it is. The answer for a body is the same, to the bit,
+/// whether the body is alone or in any batch, and for any number of threads.
 class Simulator {
  public:
   virtual ~Simulator() = default;
 
-  /// Moves every task's body. A body that diverges stops there and disturbs no other. May be called from several
-  /// threads at once.
+  /// Moves every task's body through its steps and records what `recording` asks for. A body that diverges stops, and
+  /// does not affect the others. Several threads may call this at once.
   virtual void run(std::span<Task> tasks, Recording recording) = 0;
 
-  /// A search for neighbours on the same device.
+  /// A search for nearest neighbours on the same device.
   virtual NeighbourSearch& neighbours() = 0;
 
-  /// The threads that prepare and read out bodies. What else is done between calls of run() belongs on them too, so
-  /// that no more threads than cores compete and turns hold for all work.
+  /// The threads that prepare bodies and read their answers. Other work between calls of run() should use them too, so
+  /// that no more threads than cores compete and priorities (threads/parallel.hpp) apply to all work.
   virtual Workers& workers() = 0;
 
-  /// How many calls of run() at once keep the device busy: while the bodies of one move, those of others are prepared.
+  /// How many simultaneous calls of run() keep the device busy: while one batch moves, others are prepared.
   virtual int concurrency() const { return 1; }
 
-  /// Nothing where the device is the host's own processor.
+  /// How the device was used; none if the device is the host's own processor.
   virtual std::optional<DeviceUse> device_use() const { return std::nullopt; }
 
-  /// The device and the instruction set in words, for example "cpu, AVX-512". Results may differ in the last bit
-  /// between devices, never on one.
+  /// The device and its instruction set, for example "cpu, AVX-512". Results on equal devices are equal; between
+  /// different ones they may differ in the last bit.
   virtual std::string device() const = 0;
 };
 
-/// A simulator on `threads` cores (0: all of them) with the best instruction set that this processor has.
+/// A simulator on the CPU with `threads` threads (0: one per core). It uses the best instruction set that the processor
+/// has.
 std::unique_ptr<Simulator> make_cpu_simulator(const Scene& scene, const Stepping& stepping, int threads);
 
 }  // namespace evodevo

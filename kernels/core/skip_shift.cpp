@@ -10,7 +10,7 @@
 namespace evodevo {
 namespace {
 
-/// The absolute force of a spring now, N.
+/// The absolute force of a spring in `state`, N.
 double force(const Body& body, const State& state, const Spring& spring) {
   const Material& material = body.materials[spring.material];
   const double distance = norm(state.position[spring.b] - state.position[spring.a]);
@@ -19,8 +19,8 @@ double force(const Body& body, const State& state, const Spring& spring) {
 
 void refuse(Task& task, std::uint64_t skip) {
   task.status = Status::invalid;
-  task.reason = "no tally in a cycle of " + std::to_string(task.steps) +
-                " steps; set development.skip = " + std::to_string(skip) + " to at most as many";
+  task.reason = "no tally in a cycle of " + std::to_string(task.steps) + " steps: tallies are " + std::to_string(skip) +
+                " steps apart; make them at most as many steps apart as a cycle has";
   task.clear({}, 0);
 }
 
@@ -36,7 +36,7 @@ void tally(const Body& body, const State& state, Rng& random, std::vector<double
   for (std::size_t group = 0; group < groups; ++group) {
     const auto first = forces.begin() + static_cast<std::ptrdiff_t>(group * order.size() / groups);
     const auto last = forces.begin() + static_cast<std::ptrdiff_t>((group + 1) * order.size() / groups);
-    // the first among equals, and the order is random
+    // of equal forces the first is taken, which is a random one because the order is random
     points[order[static_cast<std::size_t>(std::max_element(first, last) - forces.begin())]] += 1;
     points[order[static_cast<std::size_t>(std::min_element(first, last) - forces.begin())]] -= 1;
   }

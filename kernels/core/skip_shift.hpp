@@ -1,4 +1,5 @@
-// The paper's estimate of stress, Skip-Shift (section IV-D1).
+// The paper's estimate of stress, Skip-Shift (section IV-D1). Stress is the mean absolute force of a spring over a
+// cycle, in N; the estimate only ranks springs by it.
 #pragma once
 
 #include <cstdint>
@@ -9,22 +10,23 @@
 
 namespace evodevo {
 
-/// Groups that the springs of a body are dealt out to, as many as the paper's blocks have threads. Bodies of fewer
-/// than 512 springs have half as many groups as springs: the one spring of a group of one would gain a point and lose
-/// it.
+/// The number of groups into which a body's springs are divided: as many as the paper's blocks have threads. Bodies of
+/// fewer than 512 springs have half as many groups as springs, because the only spring of a group would gain a point
+/// and lose it again.
 inline constexpr std::size_t most_tally_groups = 256;
 
-/// Moves every task's body and, after each `skip` steps, tallies its springs: they are dealt out to the groups in a new
-/// random order, and each group's spring of largest absolute force gains one point, that of least force loses one;
-/// among equals chance decides. The points are the task's `stress`, so that the springs with the fewest and the most
-/// are the least and the most stressed. A task of fewer than `skip` steps has no tally and ends as invalid before the
-/// first. `random` has a stream for each task, which is all that the order depends on.
+/// Moves every task's body and tallies its springs after every `skip` steps. A tally divides the springs among the
+/// groups in a new random order; in each group the spring of largest absolute force gains one point and the spring of
+/// smallest absolute force loses one; ties are decided at random. The points become the task's `stress`: the springs
+/// with the most points are the most stressed. A task of fewer than `skip` steps would have no tally; it ends as
+/// invalid before its first step. `random` has one stream per task; the orders depend on nothing else.
 ///
-/// The steps between two tallies are a run of the simulator each, and the tally is made on the host, the same for every
-/// device. So this costs more than the exact stress, instead of which it repeats the paper.
+/// The simulator moves the bodies from one tally to the next, and the host makes the tallies, the same way for every
+/// device. That costs more than recording the exact stress; this function is here to repeat the paper.
 void run_with_tallies(Simulator& simulator, std::span<Task> tasks, std::uint64_t skip, std::span<Rng> random);
 
-/// The points of one tally, added to those of before: one for each spring, in the body's order.
+/// Makes one tally of `body` in `state` and adds its points to `points`, which has one entry for each of the body's
+/// springs.
 void tally(const Body& body, const State& state, Rng& random, std::vector<double>& points);
 
 }  // namespace evodevo

@@ -32,15 +32,15 @@ ColouredSprings<T>::ColouredSprings(const Body& body, const Layout<T>& layout) {
   for (auto* numbers : {&stiffness, &rest_length, &inverse_mass_a, &inverse_mass_b}) *numbers = Array<T>(size);
   material = Array<Index<T>>(size);
 
-  std::vector<std::uint32_t> place_of(layout.masses);
-  for (std::uint32_t place = 0; place < layout.masses; ++place) place_of[layout.mass_at[place]] = place;
+  std::vector<std::uint32_t> index_of(layout.masses);
+  for (std::uint32_t index = 0; index < layout.masses; ++index) index_of[layout.mass_at[index]] = index;
   std::size_t first = 0;
   for (const auto& springs : colours) {
     std::size_t at = first;
     for (const std::uint32_t i : springs) {
       const Spring& spring = body.springs[i];
-      a[at] = static_cast<std::uint32_t>(place_stride * place_of[spring.a]);
-      b[at] = static_cast<std::uint32_t>(place_stride * place_of[spring.b]);
+      a[at] = static_cast<std::uint32_t>(position_stride * index_of[spring.a]);
+      b[at] = static_cast<std::uint32_t>(position_stride * index_of[spring.b]);
       slot[at] = layout.slot_of[i];
       stiffness[at] = static_cast<T>(body.materials[spring.material].stiffness);
       rest_length[at] = static_cast<T>(spring.rest_length);

@@ -13,7 +13,7 @@ struct ColouredSprings {
   ColouredSprings(const Body& body, const Layout<T>& layout);
 
   std::size_t size = 0;
-  Array<std::uint32_t> a, b;                ///< place_stride times the places of the masses
+  Array<std::uint32_t> a, b;                ///< position_stride times the places of the masses
   Array<std::uint32_t> slot;                ///< Layout::slot_of
   Array<T> stiffness;                       ///< N/m
   Array<T> rest_length;                     ///< m

@@ -20,18 +20,18 @@ struct Incidence {
     }
   }
 
-  std::uint32_t valence(std::uint32_t mass) const { return first[mass + 1] - first[mass]; }
-  std::span<const std::uint32_t> of(std::uint32_t mass) const { return {spring.data() + first[mass], valence(mass)}; }
+  std::uint32_t degree(std::uint32_t mass) const { return first[mass + 1] - first[mass]; }
+  std::span<const std::uint32_t> of(std::uint32_t mass) const { return {spring.data() + first[mass], degree(mass)}; }
 
   std::vector<std::uint32_t> first, spring;
 };
 
-/// The masses by falling valence, and by index where it is equal.
+/// The masses by falling degree, and by index where it is equal.
 std::vector<std::uint32_t> sorted_masses(const Incidence& incidence, std::size_t masses) {
   std::vector<std::uint32_t> order(masses);
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return incidence.valence(a) > incidence.valence(b); });
+                   [&](std::uint32_t a, std::uint32_t b) { return incidence.degree(a) > incidence.degree(b); });
   return order;
 }
 
@@ -47,10 +47,10 @@ Layout<T>::Layout(const Body& body, std::size_t lanes_)
       first_row(groups + 1) {
   const Incidence incidence(body);
   mass_at = sorted_masses(incidence, masses);
-  std::vector<std::uint32_t> place_of(masses);
-  for (std::uint32_t place = 0; place < masses; ++place) place_of[mass_at[place]] = place;
+  std::vector<std::uint32_t> index_of(masses);
+  for (std::uint32_t index = 0; index < masses; ++index) index_of[mass_at[index]] = index;
   // the first mass of a group has the most springs
-  for (std::size_t g = 0; g < groups; ++g) first_row[g + 1] = first_row[g] + incidence.valence(mass_at[g * lanes]);
+  for (std::size_t g = 0; g < groups; ++g) first_row[g + 1] = first_row[g] + incidence.degree(mass_at[g * lanes]);
 
   neighbour = Array<std::uint32_t>(slots() + lanes);  // the loop over rows reads one ahead
   stiffness = Array<T>(slots());
@@ -58,13 +58,13 @@ Layout<T>::Layout(const Body& body, std::size_t lanes_)
   material = Array<Index<T>>(slots());
   for (std::size_t g = 0; g < groups; ++g)
     for (std::size_t slot = first_row[g] * lanes; slot < first_row[g + 1] * lanes; ++slot)
-      neighbour[slot] = static_cast<std::uint32_t>(place_stride * (g * lanes + slot % lanes));
-  for (std::uint32_t place = 0; place < masses; ++place) {
-    std::size_t slot = first_row[place / lanes] * lanes + place % lanes;
-    for (const std::uint32_t i : incidence.of(mass_at[place])) {
+      neighbour[slot] = static_cast<std::uint32_t>(position_stride * (g * lanes + slot % lanes));
+  for (std::uint32_t index = 0; index < masses; ++index) {
+    std::size_t slot = first_row[index / lanes] * lanes + index % lanes;
+    for (const std::uint32_t i : incidence.of(mass_at[index])) {
       const Spring& spring = body.springs[i];
-      const std::uint32_t other = spring.a == mass_at[place] ? spring.b : spring.a;
-      neighbour[slot] = static_cast<std::uint32_t>(place_stride * place_of[other]);
+      const std::uint32_t other = spring.a == mass_at[index] ? spring.b : spring.a;
+      neighbour[slot] = static_cast<std::uint32_t>(position_stride * index_of[other]);
       stiffness[slot] = static_cast<T>(body.materials[spring.material].stiffness);
       rest_length[slot] = static_cast<T>(spring.rest_length);
       material[slot] = static_cast<Index<T>>(spring.material);

@@ -16,7 +16,7 @@ template <class T>
 using Index = std::conditional_t<sizeof(T) == sizeof(float), std::int32_t, std::int64_t>;
 
 /// The numbers of one place: x, y, z and one that fills up, so that one load brings a neighbour.
-inline constexpr std::size_t place_stride = 4;
+inline constexpr std::size_t position_stride = 4;
 
 /// A body's springs as its masses see them. Masses are sorted by how many springs they have and handled in groups of
 /// `lanes`, one lane each. A group has as many rows as its most connected mass has springs; row r holds every mass's
@@ -31,10 +31,10 @@ struct Layout {
   std::vector<std::uint32_t> mass_at;    ///< [masses] index into Body::masses of the mass at each place
   std::vector<std::uint32_t> slot_of;    ///< [springs] one slot of each spring
   std::vector<std::uint32_t> first_row;  ///< [groups + 1] the rows of group g are first_row[g] .. first_row[g + 1] - 1
-  Array<std::uint32_t> neighbour;        ///< [slots + lanes] place_stride times the place of the mass at the other end
-  Array<T> stiffness;                    ///< [slots] N/m
-  Array<T> rest_length;                  ///< [slots] m
-  Array<Index<T>> material;              ///< [slots] index into Body::materials
+  Array<std::uint32_t> neighbour;  ///< [slots + lanes] position_stride times the place of the mass at the other end
+  Array<T> stiffness;              ///< [slots] N/m
+  Array<T> rest_length;            ///< [slots] m
+  Array<Index<T>> material;        ///< [slots] index into Body::materials
 
   std::size_t padded_masses() const { return groups * lanes; }
   std::size_t slots() const { return first_row.back() * lanes; }

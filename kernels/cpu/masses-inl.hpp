@@ -7,20 +7,20 @@
 #define EVODEVO_CPU_MASSES_INL_HPP
 #endif
 
-#include "cpu/places-inl.hpp"
+#include "cpu/positions-inl.hpp"
 #include "cpu/step.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
 template <class T>
-HWY_INLINE void add_gravity(const cpu::Motion<T>& m, const cpu::World<T>& world, std::size_t masses) {
+HWY_INLINE void add_gravity(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, std::size_t masses) {
   const hn::ScalableTag<T> d;
-  const auto acceleration = hn::Set(d, world.acceleration);
+  const auto acceleration = hn::Set(d, constants.acceleration);
   for (std::size_t i = 0; i < masses; i += hn::Lanes(d))
     hn::Store(hn::Load(d, m.fz + i) + weight(hn::Load(d, m.mass + i), acceleration), d, m.fz + i);
-  if (!world.slope) return;
-  const auto grade = hn::Set(d, world.grade);
+  if (!constants.slope) return;
+  const auto grade = hn::Set(d, constants.grade);
   for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
     const auto pull = downhill_force(weight(hn::Load(d, m.mass + i), acceleration), grade);
     hn::Store(hn::Load(d, m.fx + i) + pull, d, m.fx + i);
@@ -29,30 +29,31 @@ HWY_INLINE void add_gravity(const cpu::Motion<T>& m, const cpu::World<T>& world,
 
 /// The rough ground under the masses from i on.
 template <class T>
-HWY_INLINE auto ground_under(const cpu::Motion<T>& m, const cpu::World<T>& world, std::size_t i) {
+HWY_INLINE auto ground_under(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, std::size_t i) {
   const hn::ScalableTag<T> d;
-  return ground_at(hn::Load(d, m.x + i), hn::Load(d, m.y + i),
-                   Roughness<hn::Vec<decltype(d)>>{hn::Set(d, world.roughness), hn::Set(d, world.cells), world.seed});
+  return ground_at(
+      hn::Load(d, m.x + i), hn::Load(d, m.y + i),
+      Roughness<hn::Vec<decltype(d)>>{hn::Set(d, constants.roughness), hn::Set(d, constants.cells), constants.seed});
 }
 
 /// Adds the ground's push along its normal, `push` along z.
 template <class V>
-HWY_INLINE Triple<V> pushed_off(const Ground<V>& ground, const Triple<V>& v, V push) {
-  const Triple<V> sum = leaned(ground, v, push);
-  return {sum.x, sum.y, sum.z + push};
+HWY_INLINE Triple<V> add_along_normal(const Ground<V>& ground, const Triple<V>& v, V up) {
+  const Triple<V> sum = add_horizontal_part(ground, v, up);
+  return {sum.x, sum.y, sum.z + up};
 }
 
 template <class T>
-HWY_INLINE void add_rough_floor(const cpu::Motion<T>& m, const cpu::World<T>& world, std::size_t masses) {
+HWY_INLINE void add_rough_floor(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, std::size_t masses) {
   const hn::ScalableTag<T> d;
   using V = hn::Vec<decltype(d)>;
-  const V stiffness = hn::Set(d, world.floor_stiffness);
+  const V stiffness = hn::Set(d, constants.floor_stiffness);
   for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
-    const Ground<V> ground = ground_under(m, world, i);
-    const V push = floor_force(stiffness, hn::Load(d, m.z + i) - ground.height);
+    const Ground<V> ground = ground_under(m, constants, i);
+    const V normal_force = floor_force(stiffness, hn::Load(d, m.z + i) - ground.height);
     const Triple<V> force{hn::Load(d, m.fx + i), hn::Load(d, m.fy + i), hn::Load(d, m.fz + i)};
-    const Triple<V> sum = pushed_off(ground, force, push);
-    hn::Store(push, d, m.floor_force + i);
+    const Triple<V> sum = add_along_normal(ground, force, normal_force);
+    hn::Store(normal_force, d, m.floor_force + i);
     hn::Store(sum.x, d, m.fx + i);
     hn::Store(sum.y, d, m.fy + i);
     hn::Store(sum.z, d, m.fz + i);
@@ -60,22 +61,22 @@ HWY_INLINE void add_rough_floor(const cpu::Motion<T>& m, const cpu::World<T>& wo
 }
 
 template <class T>
-HWY_INLINE void add_floor(const cpu::Motion<T>& m, const cpu::World<T>& world, std::size_t masses) {
-  if (world.rough) return add_rough_floor(m, world, masses);
+HWY_INLINE void add_floor(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, std::size_t masses) {
+  if (constants.rough) return add_rough_floor(m, constants, masses);
   const hn::ScalableTag<T> d;
-  const auto stiffness = hn::Set(d, world.floor_stiffness);
+  const auto stiffness = hn::Set(d, constants.floor_stiffness);
   for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
-    const auto push = floor_force(stiffness, hn::Load(d, m.z + i));
-    hn::Store(push, d, m.floor_force + i);
-    hn::Store(hn::Load(d, m.fz + i) + push, d, m.fz + i);
+    const auto normal_force = floor_force(stiffness, hn::Load(d, m.z + i));
+    hn::Store(normal_force, d, m.floor_force + i);
+    hn::Store(hn::Load(d, m.fz + i) + normal_force, d, m.fz + i);
   }
 }
 
 template <class T>
-HWY_INLINE void add_drag(const cpu::Motion<T>& m, const cpu::World<T>& world, std::size_t masses) {
+HWY_INLINE void add_drag(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, std::size_t masses) {
   const hn::ScalableTag<T> d;
   using V = hn::Vec<decltype(d)>;
-  const V coefficient = hn::Set(d, world.drag_coefficient);
+  const V coefficient = hn::Set(d, constants.drag_coefficient);
   for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
     const Triple<V> v{hn::Load(d, m.vx + i), hn::Load(d, m.vy + i), hn::Load(d, m.vz + i)};
     const V factor = drag_factor(coefficient, v);
@@ -87,9 +88,9 @@ HWY_INLINE void add_drag(const cpu::Motion<T>& m, const cpu::World<T>& world, st
 
 /// Damping as a force.
 template <class T>
-HWY_INLINE void add_damping(const cpu::Motion<T>& m, const cpu::World<T>& world, std::size_t masses) {
+HWY_INLINE void add_damping(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, std::size_t masses) {
   const hn::ScalableTag<T> d;
-  const auto rate = hn::Set(d, world.damping_rate);
+  const auto rate = hn::Set(d, constants.damping_rate);
   for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
     const auto factor = damping_factor(rate, hn::Load(d, m.mass + i));
     hn::Store(multiply_add(factor, hn::Load(d, m.vx + i), hn::Load(d, m.fx + i)), d, m.fx + i);
@@ -100,13 +101,14 @@ HWY_INLINE void add_damping(const cpu::Motion<T>& m, const cpu::World<T>& world,
 
 /// Drag for a time in which acceleration adds `push`: scales the velocities and, where forces act in it, the forces.
 template <bool forces_too, class T>
-HWY_INLINE void yield_to_drag(const cpu::Motion<T>& m, const cpu::World<T>& world, T push, std::size_t masses) {
+HWY_INLINE void apply_drag(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, T damped_dt,
+                           std::size_t masses) {
   const hn::ScalableTag<T> d;
   using V = hn::Vec<decltype(d)>;
-  const V coefficient_push = hn::Set(d, world.drag_coefficient * push);
+  const V coefficient_dt = hn::Set(d, constants.drag_coefficient * damped_dt);
   for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
     const Triple<V> v{hn::Load(d, m.vx + i), hn::Load(d, m.vy + i), hn::Load(d, m.vz + i)};
-    const V kept = drag_retention(coefficient_push * hn::Load(d, m.inverse_mass + i), v);
+    const V kept = drag_retention(coefficient_dt * hn::Load(d, m.inverse_mass + i), v);
     hn::Store(v.x * kept, d, m.vx + i);
     hn::Store(v.y * kept, d, m.vy + i);
     hn::Store(v.z * kept, d, m.vz + i);
@@ -138,9 +140,10 @@ HWY_INLINE void damp(const cpu::Motion<T>& m, T decay_, std::size_t masses) {
 
 /// What friction leaves, after `time` under the normal forces floor_force, of the tangential velocities vx, vy.
 template <class T>
-HWY_INLINE void rub(const cpu::Motion<T>& m, const cpu::World<T>& world, T time, T* vx_, T* vy_, std::size_t masses) {
+HWY_INLINE void apply_friction(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, T time, T* vx_, T* vy_,
+                               std::size_t masses) {
   const hn::ScalableTag<T> d;
-  const auto coefficient_dt = hn::Set(d, world.friction_coefficient * time);
+  const auto coefficient_dt = hn::Set(d, constants.friction_coefficient * time);
   for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
     const auto vx = hn::Load(d, vx_ + i), vy = hn::Load(d, vy_ + i);
     const auto loss = coefficient_dt * hn::Load(d, m.floor_force + i) * hn::Load(d, m.inverse_mass + i);
@@ -152,26 +155,26 @@ HWY_INLINE void rub(const cpu::Motion<T>& m, const cpu::World<T>& world, T time,
 
 /// Copies x, y, z to where neighbours read them.
 template <class T>
-HWY_INLINE void show_places(const cpu::Motion<T>& m, std::size_t masses) {
+HWY_INLINE void interleave_positions(const cpu::Motion<T>& m, std::size_t masses) {
   const hn::ScalableTag<T> d;
   for (std::size_t i = 0; i < masses; i += hn::Lanes(d))
-    store_places(d, Triple<hn::Vec<decltype(d)>>{hn::Load(d, m.x + i), hn::Load(d, m.y + i), hn::Load(d, m.z + i)},
-                 m.places + cpu::place_stride * i);
+    store_positions(d, Triple<hn::Vec<decltype(d)>>{hn::Load(d, m.x + i), hn::Load(d, m.y + i), hn::Load(d, m.z + i)},
+                    m.interleaved_positions + cpu::position_stride * i);
 }
 
 /// x <- x + dt v, in both copies of the places.
 template <class T>
-HWY_INLINE void move(const cpu::Motion<T>& m, T time_step, std::size_t masses) {
+HWY_INLINE void advance_positions(const cpu::Motion<T>& m, T time_step, std::size_t masses) {
   const hn::ScalableTag<T> d;
   const auto dt = hn::Set(d, time_step);
   for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
-    const auto x = moved(hn::Load(d, m.x + i), hn::Load(d, m.vx + i), dt);
-    const auto y = moved(hn::Load(d, m.y + i), hn::Load(d, m.vy + i), dt);
-    const auto z = moved(hn::Load(d, m.z + i), hn::Load(d, m.vz + i), dt);
+    const auto x = advanced_position(hn::Load(d, m.x + i), hn::Load(d, m.vx + i), dt);
+    const auto y = advanced_position(hn::Load(d, m.y + i), hn::Load(d, m.vy + i), dt);
+    const auto z = advanced_position(hn::Load(d, m.z + i), hn::Load(d, m.vz + i), dt);
     hn::Store(x, d, m.x + i);
     hn::Store(y, d, m.y + i);
     hn::Store(z, d, m.z + i);
-    store_places(d, Triple<hn::Vec<decltype(d)>>{x, y, z}, m.places + cpu::place_stride * i);
+    store_positions(d, Triple<hn::Vec<decltype(d)>>{x, y, z}, m.interleaved_positions + cpu::position_stride * i);
   }
 }
 

@@ -13,12 +13,12 @@ namespace {
 template <class T>
 TimeSpan<T> time_span(const Scene& scene, double dt) {
   const double rate = scene.damping ? scene.damping->rate : 0;
-  const double push = rate > 0 ? -std::expm1(-rate * dt) / rate : dt;
-  return {static_cast<T>(dt), static_cast<T>(std::exp(-rate * dt)), static_cast<T>(push)};
+  const double damped_dt = rate > 0 ? -std::expm1(-rate * dt) / rate : dt;
+  return {static_cast<T>(dt), static_cast<T>(std::exp(-rate * dt)), static_cast<T>(damped_dt)};
 }
 
 template <class T>
-World<T> world_of(const Scene& scene, double dt) {
+StepConstants<T> step_constants(const Scene& scene, double dt) {
   const auto as_t = [](double value) { return static_cast<T>(value); };
   return {.gravity = scene.gravity.has_value(),
           .slope = scene.gravity && scene.gravity->slope != 0,
@@ -84,7 +84,7 @@ class MovingBody {
       : layout_(body, lanes),
         mass_(layout_.padded_masses()),
         inverse_mass_(layout_.padded_masses()),
-        places_(place_stride * layout_.padded_masses()),
+        interleaved_positions_(position_stride * layout_.padded_masses()),
         mass_scratch_(integrator.mass_arrays * layout_.padded_masses()),
         slot_scratch_(integrator.slot_arrays * layout_.slots()),
         force_sum_(sums.force ? layout_.slots() : 0),
@@ -103,7 +103,7 @@ class MovingBody {
       inverse_mass_[i] = static_cast<T>(mass > 0 ? 1 / mass : 0);
       put(position_, i, state.position[from]);
       put(velocity_, i, state.velocity[from]);
-      for (std::size_t c = 0; c < 3; ++c) places_[place_stride * i + c] = position_[c][i];
+      for (std::size_t c = 0; c < 3; ++c) interleaved_positions_[position_stride * i + c] = position_[c][i];
     }
   }
 
@@ -128,7 +128,7 @@ class MovingBody {
             .x = position_[0].data(),
             .y = position_[1].data(),
             .z = position_[2].data(),
-            .places = places_.data(),
+            .interleaved_positions = interleaved_positions_.data(),
             .vx = velocity_[0].data(),
             .vy = velocity_[1].data(),
             .vz = velocity_[2].data(),
@@ -178,15 +178,15 @@ class MovingBody {
 
   Layout<T> layout_;
   ColouredSprings<T> coloured_;
-  Array<T> mass_, inverse_mass_, places_, mass_scratch_, slot_scratch_, floor_force_;
+  Array<T> mass_, inverse_mass_, interleaved_positions_, mass_scratch_, slot_scratch_, floor_force_;
   Array<T> force_sum_, power_sum_, peak_, tension_sum_;
   Array<T> position_[3], velocity_[3], force_[3];
 };
 
 /// Ends the run of a body that has diverged.
 void check(Task& task, Course& course, const Scene& scene, const Energies& e) {
-  if (e.finite) course.fallen = std::max(course.fallen, fallen_energy(scene, e.moment));
-  task.reason = verdict(course, task.dt, e.kinetic, e.elastic, e.finite);
+  if (e.finite) course.fallen = std::max(course.fallen, fallen_energy(scene, e.height_moment));
+  task.reason = divergence_reason(course, task.dt, e.kinetic, e.elastic, e.finite);
   if (task.reason.empty()) return;
   task.status = Status::diverged;
   task.ended_at = course.time(task.dt);
@@ -208,7 +208,7 @@ void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels
                   .power = recording.work || recording.muscle_work,
                   .peak = recording.peak_force,
                   .tension = recording.tension};
-  const World<T> world = world_of<T>(scene, task.dt);
+  const StepConstants<T> constants = step_constants<T>(scene, task.dt);
   Course course = course_of(task, scene, stepping.precision);
   const Integrator<T>& integrator = kernels.integrator[static_cast<std::size_t>(stepping.method)];
   const std::size_t rows = integrator.rows_per_step;
@@ -223,14 +223,14 @@ void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels
     const std::size_t now = std::min(end - course.steps, guard_interval - course.steps % guard_interval);
     kernels.actuate(tables.view(), course.origin, course.steps * rows, now * rows + 1,
                     task.dt / static_cast<double>(rows));
-    integrator.advance(moving.view(), world, tables.view(), now, sums);
+    integrator.advance(moving.view(), constants, tables.view(), now, sums);
     moving.collect(task);
     course.steps += now;
     task.spring_evaluations += now * body.springs.size();
     if (is_checked(task, course))
-      check(task, course, scene, kernels.energies(moving.view(), world, tables.view(now * rows)));
+      check(task, course, scene, kernels.energies(moving.view(), constants, tables.view(now * rows)));
   }
-  take_course(task, course);
+  apply_course(task, course);
   if (task.steps > 0) moving.write(state);  // else not even round it
   if (!recording.work || task.status != Status::ok) task.work = 0;
   for (auto* means : {&task.stress, &task.tension})

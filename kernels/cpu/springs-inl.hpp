@@ -7,7 +7,7 @@
 #endif
 
 #include "cpu/actuation-inl.hpp"
-#include "cpu/places-inl.hpp"
+#include "cpu/positions-inl.hpp"
 #include "cpu/step.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -43,11 +43,11 @@ HWY_INLINE void set_spring_forces(const cpu::Motion<T>& motion, const Sums& sums
   const std::size_t end = motion.first_row[group + 1] * lanes;
   std::size_t slot = motion.first_row[group] * lanes;
   // one row ahead: the next row's places are on their way while this row waits for its root and its division
-  Separation<V> next = separation(own, load_places(d, motion.places, motion.neighbour + slot));
+  Separation<V> next = separation(own, load_positions(d, motion.interleaved_positions, motion.neighbour + slot));
   for (; slot < end; slot += lanes) {
     const Separation<V> s = next;
     const V distance = length(s);
-    next = separation(own, load_places(d, motion.places, motion.neighbour + slot + lanes));
+    next = separation(own, load_positions(d, motion.interleaved_positions, motion.neighbour + slot + lanes));
     const cpu::Index<T>* material = motion.material + slot;
     const V rest_length = hn::Load(d, motion.rest_length + slot);
     const V factor = spring_factor(distance, hn::Load(d, motion.stiffness + slot), rest_length * lengths.at(material));

@@ -14,14 +14,14 @@ namespace evodevo::cpu {
 /// A step or a part of one.
 template <class T>
 struct TimeSpan {
-  T dt;     ///< s
-  T decay;  ///< exp(-damping rate dt): what damping leaves of a velocity
-  T push;   ///< (1 - decay)/rate, s: what a constant acceleration adds to it meanwhile
+  T dt;         ///< s
+  T decay;      ///< exp(-damping rate dt): what damping leaves of a velocity
+  T damped_dt;  ///< (1 - decay)/rate, s: what a constant acceleration adds to it meanwhile
 };
 
 /// The scene and the step in the arithmetic of the simulation; a force that is off is not computed.
 template <class T>
-struct World {
+struct StepConstants {
   bool gravity, slope, floor, rough, friction, drag, damping;
   T acceleration;      ///< of gravity along -z, m/s^2
   T grade;             ///< Gravity::grade()
@@ -64,15 +64,15 @@ struct Motion {
   const Index<T>* material;
   ColouredView<T> coloured;  ///< where Integrator::coloured asks for it
 
-  const T* mass;          ///< kg
-  const T* inverse_mass;  ///< 1/kg; 0 for what never moves
-  T *x, *y, *z;           ///< m
-  T* places;              ///< x, y, z again, place_stride numbers a mass, for neighbours to read
-  T *vx, *vy, *vz;        ///< m/s
-  T *fx, *fy, *fz;        ///< N
-  T* floor_force;         ///< N
-  T* mass_scratch;        ///< Integrator::mass_arrays arrays, one number for each mass
-  T* slot_scratch;        ///< Integrator::slot_arrays arrays, one number for each slot
+  const T* mass;             ///< kg
+  const T* inverse_mass;     ///< 1/kg; 0 for what never moves
+  T *x, *y, *z;              ///< m
+  T* interleaved_positions;  ///< x, y, z again, position_stride numbers a mass, for neighbours to read
+  T *vx, *vy, *vz;           ///< m/s
+  T *fx, *fy, *fz;           ///< N
+  T* floor_force;            ///< N
+  T* mass_scratch;           ///< Integrator::mass_arrays arrays, one number for each mass
+  T* slot_scratch;           ///< Integrator::slot_arrays arrays, one number for each slot
   std::size_t slots;
 
   // [slots]; null where Sums does not ask for them
@@ -93,7 +93,7 @@ struct Actuation {
 
 struct Energies {
   double kinetic, elastic;  ///< J
-  double moment;            ///< sum of mass times height, kg m
+  double height_moment;     ///< sum of mass times height, kg m
   bool finite;              ///< whether all places and velocities are
 };
 
@@ -105,7 +105,7 @@ struct Integrator {
   std::size_t slot_arrays;
   bool coloured;  ///< whether it needs the springs by colour
   /// Moves the body by `steps` steps; `actuation` holds the relative lengths from their beginning to their end.
-  void (*advance)(const Motion<T>&, const World<T>&, const Actuation<T>& actuation, std::size_t steps, Sums);
+  void (*advance)(const Motion<T>&, const StepConstants<T>&, const Actuation<T>& actuation, std::size_t steps, Sums);
 };
 
 /// The functions of one instruction set for one precision.
@@ -119,7 +119,7 @@ struct Kernels {
   void (*actuate)(const Actuation<T>&, double start, std::uint64_t first, std::size_t rows, double dt);
   Integrator<T> integrator[method_names.size()];  ///< by Method
   /// The energies now, with the relative lengths of the table's row 0.
-  Energies (*energies)(const Motion<T>&, const World<T>&, const Actuation<T>& actuation);
+  Energies (*energies)(const Motion<T>&, const StepConstants<T>&, const Actuation<T>& actuation);
 };
 
 /// The functions for the best instruction set that this processor has.

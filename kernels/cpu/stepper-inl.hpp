@@ -42,19 +42,19 @@ SpringPass<T> spring_pass(const cpu::Actuation<T>& actuation, cpu::Sums sums) {
   return spring_pass_with<TableInMemory<T>, T>(sums);
 }
 
-/// A body, its world and the passes over its springs.
+/// A body, its constants and the passes over its springs.
 template <class T>
 struct Stepper {
   const cpu::Motion<T>& motion;
-  const cpu::World<T>& world;
+  const cpu::StepConstants<T>& constants;
   const cpu::Actuation<T>& actuation;
   cpu::Sums sums;
-  std::size_t masses;           ///< padded to whole groups
-  SpringPass<T> springs;        ///< adds to no sum
-  SpringPass<T> noted_springs;  ///< adds to the sums that are on
+  std::size_t masses;               ///< padded to whole groups
+  SpringPass<T> springs;            ///< adds to no sum
+  SpringPass<T> recording_springs;  ///< adds to the sums that are on
 
   /// Whether any sum is on.
-  bool notes() const { return sums.force || sums.power || sums.peak || sums.tension; }
+  bool is_recording() const { return sums.force || sums.power || sums.peak || sums.tension; }
 
   /// Array `index` of the method's own.
   T* scratch(std::size_t index) const { return motion.mass_scratch + index * masses; }
@@ -71,10 +71,10 @@ struct StepMethod {
 };
 
 template <class M, class T>
-void advance(const cpu::Motion<T>& motion, const cpu::World<T>& world, const cpu::Actuation<T>& actuation,
+void advance(const cpu::Motion<T>& motion, const cpu::StepConstants<T>& constants, const cpu::Actuation<T>& actuation,
              std::size_t steps, cpu::Sums sums) {
   const Stepper<T> stepper{motion,
-                           world,
+                           constants,
                            actuation,
                            sums,
                            motion.groups * hn::Lanes(hn::ScalableTag<T>()),

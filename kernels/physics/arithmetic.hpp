@@ -1,4 +1,5 @@
-// The arithmetic that physics.hpp is written in, for plain numbers.
+// The arithmetic operations that physics.hpp uses, for plain numbers (float, double). vectors-inl.hpp has the same
+// operations for SIMD vectors.
 #pragma once
 
 #include <cmath>
@@ -19,13 +20,14 @@ EVODEVO_HD T constant(double value) {
   return static_cast<T>(value);
 }
 
-/// A square (m^2) beyond which no distance is told from zero.
+/// A squared distance (m^2) so small that it counts as zero. It is added to every squared distance, so that dividing by
+/// a distance never gives infinity or NaN.
 template <class T>
 EVODEVO_HD T vanishing_square() {
   return sizeof(T) == sizeof(float) ? static_cast<T>(1e-30) : static_cast<T>(1e-48);
 }
 
-/// a b + c, rounded once.
+/// a b + c, rounded once (fused multiply-add).
 template <class T>
 EVODEVO_HD T multiply_add(T a, T b, T c) {
   return std::fma(a, b, c);
@@ -47,7 +49,7 @@ EVODEVO_HD T square_root(T a) {
   return std::sqrt(a);
 }
 
-/// 1/sqrt(a); on a GPU its approximation, in float32 good to 2 units in the last place.
+/// 1/sqrt(a). On a GPU this is the hardware's approximation, which in float32 is accurate to 2 units in the last place.
 template <class T>
 EVODEVO_HD T inverse_square_root(T a) {
 #ifdef __CUDA_ARCH__
@@ -65,22 +67,24 @@ EVODEVO_HD T zero_unless_greater(T a, T threshold, T value) {
 
 /// The largest whole number that is not above a.
 template <class T>
-EVODEVO_HD T whole_below(T a) {
+EVODEVO_HD T round_down(T a) {
   return std::floor(a);
 }
 
-/// Mixes the bits of a number (Wellons, Prospecting for hash functions, 2018).
-EVODEVO_HD std::uint32_t mixed(std::uint32_t n) {
+/// A hash of 32 bits: every bit of `n` influences every bit of the result (Wellons, Prospecting for hash functions,
+/// 2018).
+EVODEVO_HD std::uint32_t mix_bits(std::uint32_t n) {
   n = (n ^ n >> 16) * 0x7feb352du;
   n = (n ^ n >> 15) * 0x846ca68bu;
   return n ^ n >> 16;
 }
 
-/// A random number in [-1, 1) for two whole numbers and a seed, of 24 bits, so the same in any arithmetic.
+/// A pseudo-random number in [-1, 1) that depends on the whole numbers i and j and the seed alone. It has 24 random
+/// bits, so that float and double hold the same number.
 template <class T>
 EVODEVO_HD T random_of(T i, T j, std::uint32_t seed) {
-  const std::uint32_t row = mixed(seed + static_cast<std::uint32_t>(static_cast<std::int32_t>(j)));
-  const std::uint32_t bits = mixed(row + static_cast<std::uint32_t>(static_cast<std::int32_t>(i)));
+  const std::uint32_t row = mix_bits(seed + static_cast<std::uint32_t>(static_cast<std::int32_t>(j)));
+  const std::uint32_t bits = mix_bits(row + static_cast<std::uint32_t>(static_cast<std::int32_t>(i)));
   return static_cast<T>(bits >> 8) * static_cast<T>(0x1p-23) - T(1);
 }
 

@@ -1,24 +1,26 @@
-// How much energy a body can have, as the host and the GPU work it out: guard.hpp says why.
+// The largest energy that a body can have at a time, computed by the same code on the host and on the GPU. The
+// derivation is in analysis/guard.hpp.
 #pragma once
 
 #include "physics/arithmetic.hpp"
 
 namespace evodevo {
 
-/// What bounds the energy of a body during a run, settled where the run begins.
+/// The numbers that bound a body's energy during a run. They are computed once, at the beginning of the run.
 struct EnergyBound {
-  double start = 0;      ///< height + kinetic + elastic energy at the beginning, at most, J
-  double drive = 0;      ///< how fast muscles can raise the square root of the energy, J^(1/2)/s
-  double allowance = 0;  ///< for what steps, rounding and masses that sag into the floor bring, J
+  double start = 0;      ///< upper bound of height + kinetic + elastic energy at the beginning, J
+  double drive = 0;      ///< largest rate at which muscles can raise the square root of the energy, J^(1/2)/s
+  double allowance = 0;  ///< for muscle strain, rounding, and masses that sink into the floor, J
 
-  /// What muscles can have added to height + kinetic + elastic energy `time` s after the beginning, J. `fallen`: the
-  /// most that falling below the origin has set free until then, J.
+  /// The most (J) that muscles can have added to height + kinetic + elastic energy `time` seconds after the beginning.
+  /// `fallen` is the most energy (J) that falling below the origin has released until then.
   EVODEVO_HD double added(double time, double fallen) const {
     const double root = drive * time, before = physics::maximum(start, 0.0) + fallen;
     return root * (root + 2 * physics::square_root(before));
   }
 
-  /// What kinetic + elastic energy must not pass then, J: ten times what there can be, for what the steps do.
+  /// The limit (J) of kinetic + elastic energy at that time: ten times what exact motion can have, because the energy
+  /// of motion in finite steps swings around that of exact motion.
   EVODEVO_HD double limit(double time, double fallen) const {
     return 10 * (physics::maximum(start, 0.0) + added(time, fallen) + fallen + allowance);
   }

@@ -1,9 +1,10 @@
-// The arithmetic that physics.hpp is written in, for the vectors of one instruction set; included once for each.
-#if defined(EVODEVO_CPU_VECTORS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef EVODEVO_CPU_VECTORS_INL_HPP
-#undef EVODEVO_CPU_VECTORS_INL_HPP
+// The arithmetic operations that physics.hpp uses, for SIMD vectors: the counterpart of arithmetic.hpp. This file is
+// included once for each instruction set.
+#if defined(EVODEVO_PHYSICS_VECTORS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef EVODEVO_PHYSICS_VECTORS_INL_HPP
+#undef EVODEVO_PHYSICS_VECTORS_INL_HPP
 #else
-#define EVODEVO_CPU_VECTORS_INL_HPP
+#define EVODEVO_PHYSICS_VECTORS_INL_HPP
 #endif
 
 #include <hwy/highway.h>
@@ -54,19 +55,19 @@ HWY_INLINE V zero_unless_greater(V a, V threshold, V value) {
 }
 
 template <class V>
-HWY_INLINE V whole_below(V a) {
+HWY_INLINE V round_down(V a) {
   return hn::Floor(a);
 }
 
 template <class U>
-HWY_INLINE U mixed(U n) {
+HWY_INLINE U mix_bits(U n) {
   const hn::DFromV<U> d;
   n = hn::Xor(n, hn::ShiftRight<16>(n)) * hn::Set(d, 0x7feb352du);
   n = hn::Xor(n, hn::ShiftRight<15>(n)) * hn::Set(d, 0x846ca68bu);
   return hn::Xor(n, hn::ShiftRight<16>(n));
 }
 
-/// The lanes as 32-bit numbers, and back.
+/// Converts lanes that hold whole numbers to 32-bit integers, and back.
 template <class V>
 HWY_INLINE auto as_bits(V whole) {
   const hn::Rebind<std::int32_t, hn::DFromV<V>> d;
@@ -88,8 +89,8 @@ HWY_INLINE V as_number(U bits) {
 
 template <class V>
 HWY_INLINE V random_of(V i, V j, std::uint32_t seed) {
-  const auto row = mixed(as_bits(j) + hn::Set(hn::Rebind<std::uint32_t, hn::DFromV<V>>(), seed));
-  const auto bits = mixed(row + as_bits(i));
+  const auto row = mix_bits(as_bits(j) + hn::Set(hn::Rebind<std::uint32_t, hn::DFromV<V>>(), seed));
+  const auto bits = mix_bits(row + as_bits(i));
   return multiply_add(as_number<V>(hn::ShiftRight<8>(bits)), constant<V>(0x1p-23), constant<V>(-1));
 }
 

@@ -1,4 +1,4 @@
-// How long something was under way on any thread.
+// Measures how long at least one thread was busy with something.
 #pragma once
 
 #include <chrono>
@@ -6,7 +6,7 @@
 
 namespace evodevo {
 
-/// Measures the time in which at least one span is open; spans of several threads may overlap.
+/// Measures the time in which at least one Span exists. Spans of several threads may overlap.
 class BusyClock {
  public:
   class Span {
@@ -20,7 +20,7 @@ class BusyClock {
     BusyClock& clock_;
   };
 
-  /// The time in closed spans and open ones so far, s.
+  /// The time covered by spans so far, s.
   double seconds() const {
     const std::lock_guard lock(mutex_);
     const auto now = open_ > 0 ? Clock::now() - since_ : Clock::duration::zero();

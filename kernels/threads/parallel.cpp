@@ -10,17 +10,17 @@
 namespace evodevo {
 namespace {
 
-thread_local int turn_of_thread = 0;
+thread_local int priority_of_thread = 0;
 
-/// Results are the same with any number of threads.
+/// Prints the warning once per process. Fewer threads change only the speed, never a result.
 void warn_of_fewer_threads(std::size_t wanted, std::size_t taken) {
   static std::atomic_flag said;
   if (!said.test_and_set())
     std::cerr << "warning: the system does not grant " + std::to_string(wanted) + " threads; going on with " +
-                     std::to_string(taken) + "; ask for fewer with --threads, or raise its limits (ulimit)\n";
+                     std::to_string(taken) + "; ask for fewer threads, or raise the system's limits (ulimit)\n";
 }
 
-/// Starts a thread, unless the system grants none.
+/// Starts a thread; returns false if the system refuses.
 template <class Call>
 bool start_thread(std::vector<std::jthread>& threads, const Call& call) try {
   threads.emplace_back(call);
@@ -71,7 +71,7 @@ void Workers::for_each(std::size_t count, const std::function<void(std::size_t)>
   if (threads_.empty())
     for (std::size_t i = 0; i < count; ++i) body(i);
   if (count == 0 || threads_.empty()) return;
-  Loop loop{body, count, Turn::of_this_thread()};
+  Loop loop{body, count, Priority::of_this_thread()};
   std::unique_lock lock(mutex_);
   loops_.push_back(&loop);
   work_comes_.notify_all();
@@ -80,8 +80,8 @@ void Workers::for_each(std::size_t count, const std::function<void(std::size_t)>
 }
 
 Workers::Loop* Workers::next_loop() {
-  const auto earliest =
-      std::min_element(loops_.begin(), loops_.end(), [](const Loop* a, const Loop* b) { return a->turn < b->turn; });
+  const auto earliest = std::min_element(loops_.begin(), loops_.end(),
+                                         [](const Loop* a, const Loop* b) { return a->priority < b->priority; });
   return earliest == loops_.end() ? nullptr : *earliest;
 }
 
@@ -112,9 +112,9 @@ void Workers::work() {
   }
 }
 
-Turn::Turn(int turn) : before_(std::exchange(turn_of_thread, turn)) {}
-Turn::~Turn() { turn_of_thread = before_; }
-int Turn::of_this_thread() { return turn_of_thread; }
+Priority::Priority(int priority) : before_(std::exchange(priority_of_thread, priority)) {}
+Priority::~Priority() { priority_of_thread = before_; }
+int Priority::of_this_thread() { return priority_of_thread; }
 
 void on_own_threads(std::size_t count, const std::function<void(std::size_t)>& body) {
   std::vector<std::exception_ptr> failures(count);

@@ -40,10 +40,10 @@ void expect_sound(const Arrangement& a, const Body& body, unsigned largest_block
       --terms[slot.other];
       EXPECT_EQ(a.slot_of[slot.spring], 32 * row + lane);
       const Spring& spring = body.springs[slot.spring];
-      const std::set<std::uint32_t> ends{a.place_of[spring.a], a.place_of[spring.b]};
+      const std::set<std::uint32_t> ends{a.index_of[spring.a], a.index_of[spring.b]};
       EXPECT_EQ(ends, (std::set<std::uint32_t>{owner, slot.other}));
     }
-    if (a.turns[row / a.shape.rows] >> row % a.shape.rows & 1) ++group;
+    if (a.group_ends[row / a.shape.rows] >> row % a.shape.rows & 1) ++group;
   }
   EXPECT_EQ(seen, std::vector<int>(body.springs.size(), 1));
   for (std::size_t place = 0; place < terms.size(); ++place) EXPECT_EQ(terms[place], a.magic_numbers[place]) << place;
@@ -85,7 +85,7 @@ TEST(Rearrangement, StaysSoundAndKeepsBanksApartThroughALife) {
     arrangement = Arrangement(body, 32, arrangement, before);
     expect_sound(arrangement, body, 32);
   }
-  EXPECT_LT(arrangement.passes_per_row(), 1.25);
+  EXPECT_LT(arrangement.wavefronts_per_row(), 1.25);
 }
 
 TEST(Rearrangement, KeepsWhatStays) {
@@ -94,7 +94,7 @@ TEST(Rearrangement, KeepsWhatStays) {
   const Outline outline(body);
   body.springs.erase(body.springs.begin() + 100);
   const Arrangement after(body, 32, before, outline);
-  EXPECT_EQ(after.place_of, before.place_of);
+  EXPECT_EQ(after.index_of, before.index_of);
   std::size_t moved = 0;
   for (std::uint32_t i = 0; i < body.springs.size(); ++i) moved += after.slot_of[i] != before.slot_of[i + (i >= 100)];
   EXPECT_LT(moved, body.springs.size() / 10);
@@ -135,8 +135,8 @@ TEST(Arrangement, HoldsLargeAndUnevenBodies) {
 }
 
 TEST(Arrangement, KeepsBanksApart) {
-  EXPECT_LT(Arrangement(random_body(1000, 25, 1), 32).passes_per_row(), 1.05);
-  EXPECT_LT(Arrangement(random_body(500, 25, 1), 32).passes_per_row(), 1.2);
+  EXPECT_LT(Arrangement(random_body(1000, 25, 1), 32).wavefronts_per_row(), 1.05);
+  EXPECT_LT(Arrangement(random_body(500, 25, 1), 32).wavefronts_per_row(), 1.2);
 }
 
 TEST(RowOrder, ColoursWhatCanBeColoured) {

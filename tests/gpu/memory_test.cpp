@@ -138,7 +138,7 @@ TEST_F(ScarceMemory, DividesASearchForNeighbours) {
   const auto search = make_cuda_neighbour_search();
   const Ballast ballast(8 * mebibyte);
   search->find(clouds, workers, [&](std::size_t i, std::span<const IndexPair> found) { pairs[i] += found.size(); });
-  for (const std::size_t i : {0, 200, 399}) EXPECT_EQ(pairs[i], nearest_pairs(clouds[i].places, 25).size()) << i;
+  for (const std::size_t i : {0, 200, 399}) EXPECT_EQ(pairs[i], nearest_pairs(clouds[i].positions, 25).size()) << i;
 }
 
 TEST(Quiet, WaitsForStreamsWhateverIsThrown) {

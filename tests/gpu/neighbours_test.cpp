@@ -40,8 +40,8 @@ void compare(NeighbourSearch& search, const std::vector<PointCloud>& clouds) {
   for (std::size_t i = 0; i < clouds.size(); ++i) {
     EXPECT_EQ(calls[i], 1) << "cloud " << i;
     // no printing of a million pairs
-    EXPECT_TRUE(found[i] == nearest_pairs(clouds[i].places, clouds[i].k))
-        << "cloud " << i << ", " << clouds[i].places.size() << " points, k = " << clouds[i].k;
+    EXPECT_TRUE(found[i] == nearest_pairs(clouds[i].positions, clouds[i].k))
+        << "cloud " << i << ", " << clouds[i].positions.size() << " points, k = " << clouds[i].k;
   }
 }
 

@@ -181,7 +181,7 @@ TEST(SkipShift, ACycleWithoutATallyIsInvalid) {
   const Body body = chain(3);
   const Tallied none = run(*simulator, body, resting(body, {}), 19, 20);
   EXPECT_EQ(none.task.status, Status::invalid);
-  EXPECT_EQ(none.task.reason, "no tally in a cycle of 19 steps; set development.skip = 20 to at most as many");
+  EXPECT_EQ(none.task.reason, "no tally in a cycle of 19 steps: tallies are 20 steps apart; make them at most as many steps apart as a cycle has");
   EXPECT_TRUE(none.task.stress.empty());
   EXPECT_EQ(run(*simulator, body, resting(body, {}), 20, 20).task.status, Status::ok);
 }

@@ -16,13 +16,13 @@ TEST(Colouring, NoTwoSpringsOfAColourShareAMass) {
     const std::vector<std::uint32_t> colours = spring_colours(body);
     ASSERT_EQ(colours.size(), body.springs.size());
     std::vector<std::set<std::uint32_t>> at(body.masses.size());
-    std::size_t highest_valence = 0;
+    std::size_t highest_degree = 0;
     for (std::size_t i = 0; i < colours.size(); ++i)
       for (const std::uint32_t mass : {body.springs[i].a, body.springs[i].b}) {
         EXPECT_TRUE(at[mass].insert(colours[i]).second) << "spring " << i;
-        highest_valence = std::max(highest_valence, at[mass].size());
+        highest_degree = std::max(highest_degree, at[mass].size());
       }
-    EXPECT_LT(*std::max_element(colours.begin(), colours.end()), 2 * highest_valence - 1);
+    EXPECT_LT(*std::max_element(colours.begin(), colours.end()), 2 * highest_degree - 1);
   }
 }
 

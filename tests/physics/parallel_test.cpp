@@ -106,7 +106,7 @@ TEST(Workers, DoWhatHasAnEarlierTurnFirst) {
   std::atomic<bool> urgent_done = false;
   std::size_t items = 0, items_before = 0;  // of the loop that can wait; only the one worker counts
   on_own_threads(2, [&](std::size_t caller) {
-    const Turn turn(caller == 0 ? 1 : 0);
+    const Priority priority(caller == 0 ? 1 : 0);
     if (caller == 0) {
       workers.for_each(many, [&](std::size_t) {
         if (items++ == 0) begun.set_value();

@@ -12,7 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
 /// With u = decay v, the velocity v' = u + c at the end of a step follows from
-///   (M + push (dt K+ + R)) c = push (F - (dt K + R) u),   then x <- x + dt v',
+///   (M + damped_dt (dt K+ + R)) c = damped_dt (F - (dt K + R) u),   then x <- x + dt v',
 /// F the forces at these places with the springs' lengths and K their stiffness at the end of the step (Baraff and
 /// Witkin, Large steps in cloth simulation, 1998). R is diagonal: drag, c |v|, and for each mass that touches the
 /// floor, z + dt v_z < 0, dt times the floor's stiffness along z, so that the floor pushes with k (-z - dt v'_z); on
@@ -26,20 +26,20 @@ struct Implicit : StepMethod {
   static void step(const Stepper<T>& s, std::size_t row) {
     const Memory<T> memory(s);
     s.springs(s.motion, s.actuation, row + 1);
-    if (s.world.gravity) add_gravity(s.motion, s.world, s.masses);
+    if (s.constants.gravity) add_gravity(s.motion, s.constants, s.masses);
     set_resistance(s, memory);
-    if (s.world.damping) damp(s.motion, s.world.step.decay, s.masses);
-    if (s.world.rough) lean_resistance(s, memory);
+    if (s.constants.damping) damp(s.motion, s.constants.step.decay, s.masses);
+    if (s.constants.rough) subtract_rough_resistance(s, memory);
     set_stiffness(s, memory, row + 1);
     set_residual(s, memory);
     solve(s, memory);
     add_correction(s, memory);
-    if (s.world.friction) {
+    if (s.constants.friction) {
       set_floor_force(s, memory);
-      rub(s.motion, s.world, s.world.step.dt, s.motion.vx, s.motion.vy, s.masses);
+      apply_friction(s.motion, s.constants, s.constants.step.dt, s.motion.vx, s.motion.vy, s.masses);
     }
-    move(s.motion, s.world.step.dt, s.masses);
-    if (s.notes()) s.noted_springs(s.motion, s.actuation, row + 1);
+    advance_positions(s.motion, s.constants.step.dt, s.masses);
+    if (s.is_recording()) s.recording_springs(s.motion, s.actuation, row + 1);
   }
 
  private:
@@ -62,7 +62,7 @@ struct Implicit : StepMethod {
           inverse_diagonal(s.scratch(12)),
           resistance(s.scratch(15)),
           vertical_resistance(s.scratch(16)),
-          shown(s.scratch(17)),
+          interleaved(s.scratch(17)),
           transverse(s.motion.slot_scratch),
           along{transverse + s.motion.slots, transverse + 2 * s.motion.slots, transverse + 3 * s.motion.slots} {}
 
@@ -71,7 +71,7 @@ struct Implicit : StepMethod {
     T* inverse_diagonal;  ///< of the matrix: the preconditioner; 0 for masses that do not move
     T* resistance;        ///< R along x and y, kg/s
     T* vertical_resistance;
-    T* shown;  ///< a vector as neighbours read it, place_stride numbers for each mass
+    T* interleaved;  ///< a vector as neighbours read it, position_stride numbers for each mass
     T* transverse;
     T* along[3];  ///< of the springs' SpringStiffness, K+
   };
@@ -82,18 +82,18 @@ struct Implicit : StepMethod {
     const hn::ScalableTag<T> d;
     using V = hn::Vec<decltype(d)>;
     const cpu::Motion<T>& m = s.motion;
-    const V coefficient = hn::Set(d, s.world.drag_coefficient), zero = hn::Zero(d);
-    const V dt = hn::Set(d, s.world.step.dt), floor = hn::Set(d, s.world.floor_stiffness);
+    const V coefficient = hn::Set(d, s.constants.drag_coefficient), zero = hn::Zero(d);
+    const V dt = hn::Set(d, s.constants.step.dt), floor = hn::Set(d, s.constants.floor_stiffness);
     for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
       const V vz = hn::Load(d, m.vz + i);
       V across = zero, touching = zero;
-      if (s.world.drag)
+      if (s.constants.drag)
         across = zero - drag_factor(coefficient, Triple<V>{hn::Load(d, m.vx + i), hn::Load(d, m.vy + i), vz});
-      if (s.world.rough) {
+      if (s.constants.rough) {
         touching = add_ground(s, i);
-      } else if (s.world.floor) {
+      } else if (s.constants.floor) {
         const V z = hn::Load(d, m.z + i);
-        touching = zero_unless_greater(zero - moved(z, vz, dt), zero, floor);
+        touching = zero_unless_greater(zero - advanced_position(z, vz, dt), zero, floor);
         hn::Store(negative_multiply_add(touching, z, hn::Load(d, m.fz + i)), d, m.fz + i);
       }
       hn::Store(across, d, memory.resistance + i);
@@ -107,12 +107,12 @@ struct Implicit : StepMethod {
     const hn::ScalableTag<T> d;
     using V = hn::Vec<decltype(d)>;
     const cpu::Motion<T>& m = s.motion;
-    const Ground<V> ground = ground_under(m, s.world, i);
+    const Ground<V> ground = ground_under(m, s.constants, i);
     const V depth = ground.height - hn::Load(d, m.z + i);
-    const V end = negative_multiply_add(hn::Set(d, s.world.step.dt),
-                                        off_ground(ground, load(m.vx + i, m.vy + i, m.vz + i)), depth);
-    const V touching = zero_unless_greater(end, hn::Zero(d), hn::Set(d, s.world.floor_stiffness));
-    const Triple<V> force = pushed_off(ground, load(m.fx + i, m.fy + i, m.fz + i), touching * depth);
+    const V end = negative_multiply_add(hn::Set(d, s.constants.step.dt),
+                                        along_normal(ground, load(m.vx + i, m.vy + i, m.vz + i)), depth);
+    const V touching = zero_unless_greater(end, hn::Zero(d), hn::Set(d, s.constants.floor_stiffness));
+    const Triple<V> force = add_along_normal(ground, load(m.fx + i, m.fy + i, m.fz + i), touching * depth);
     hn::Store(force.x, d, m.fx + i);
     hn::Store(force.y, d, m.fy + i);
     hn::Store(force.z, d, m.fz + i);
@@ -121,21 +121,22 @@ struct Implicit : StepMethod {
 
   /// What rough ground adds to R times v for the masses from i on: that it pushes along its normal instead of z.
   template <class T, class V>
-  static HWY_INLINE Triple<V> lean(const Stepper<T>& s, const Memory<T>& memory, std::size_t i, const Triple<V>& v) {
+  static HWY_INLINE Triple<V> rough_resistance(const Stepper<T>& s, const Memory<T>& memory, std::size_t i,
+                                               const Triple<V>& v) {
     const hn::ScalableTag<T> d;
     const V touching = hn::Load(d, memory.vertical_resistance + i) - hn::Load(d, memory.resistance + i);
-    const Ground<V> ground = ground_under(s.motion, s.world, i);
+    const Ground<V> ground = ground_under(s.motion, s.constants, i);
     const V zero = hn::Zero(d);
-    return pushed_off(ground, Triple<V>{zero, zero, zero - touching * v.z}, touching * off_ground(ground, v));
+    return add_along_normal(ground, Triple<V>{zero, zero, zero - touching * v.z}, touching * along_normal(ground, v));
   }
 
   /// Takes from the forces what lean() is of the velocities.
   template <class T>
-  static void lean_resistance(const Stepper<T>& s, const Memory<T>& memory) {
+  static void subtract_rough_resistance(const Stepper<T>& s, const Memory<T>& memory) {
     const hn::ScalableTag<T> d;
     const cpu::Motion<T>& m = s.motion;
     for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
-      const auto resisted = lean(s, memory, i, load(m.vx + i, m.vy + i, m.vz + i));
+      const auto resisted = rough_resistance(s, memory, i, load(m.vx + i, m.vy + i, m.vz + i));
       hn::Store(hn::Load(d, m.fx + i) - resisted.x, d, m.fx + i);
       hn::Store(hn::Load(d, m.fy + i) - resisted.y, d, m.fy + i);
       hn::Store(hn::Load(d, m.fz + i) - resisted.z, d, m.fz + i);
@@ -144,10 +145,10 @@ struct Implicit : StepMethod {
 
   /// Shows the vectors x, y, z to neighbours.
   template <class T>
-  static void show(const Stepper<T>& s, const Memory<T>& memory, const T* x, const T* y, const T* z) {
+  static void interleave(const Stepper<T>& s, const Memory<T>& memory, const T* x, const T* y, const T* z) {
     const hn::ScalableTag<T> d;
     for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d))
-      store_places(d, load(x + i, y + i, z + i), memory.shown + cpu::place_stride * i);
+      store_positions(d, load(x + i, y + i, z + i), memory.interleaved + cpu::position_stride * i);
   }
 
   template <class T>
@@ -161,7 +162,7 @@ struct Implicit : StepMethod {
   static void set_stiffness(const Stepper<T>& s, const Memory<T>& memory, std::size_t row) {
     const cpu::Motion<T>& m = s.motion;
     const TableInMemory<T> lengths(s.actuation.relative_length + row * s.actuation.padded);
-    show(s, memory, m.vx, m.vy, m.vz);
+    interleave(s, memory, m.vx, m.vy, m.vz);
     for (std::size_t group = 0; group < m.groups; ++group) set_stiffness_of(s, memory, lengths, group);
   }
 
@@ -175,8 +176,8 @@ struct Implicit : StepMethod {
     const Triple<V> x = load(m.x + i, m.y + i, m.z + i), v = load(m.vx + i, m.vy + i, m.vz + i);
     Triple<V> diagonal{hn::Zero(d), hn::Zero(d), hn::Zero(d)}, rate = diagonal;
     for (std::size_t slot = m.first_row[group] * hn::Lanes(d); slot < end; slot += hn::Lanes(d)) {
-      const Separation<V> between = separation(x, load_places(d, m.places, m.neighbour + slot));
-      const Triple<V> other = load_places(d, memory.shown, m.neighbour + slot);
+      const Separation<V> between = separation(x, load_positions(d, m.interleaved_positions, m.neighbour + slot));
+      const Triple<V> other = load_positions(d, memory.interleaved, m.neighbour + slot);
       const V distance = length(between), k = hn::Load(d, m.stiffness + slot);
       const V spring_length = hn::Load(d, m.rest_length + slot) * lengths.at(m.material + slot);
       const V factor = spring_factor(distance, k, spring_length);
@@ -193,7 +194,7 @@ struct Implicit : StepMethod {
       rate = {rate.x + change.x, rate.y + change.y, rate.z + change.z};
     }
     set_preconditioner(s, memory, i, diagonal);
-    const V dt = hn::Set(d, s.world.step.dt);
+    const V dt = hn::Set(d, s.constants.step.dt);
     hn::Store(multiply_add(dt, rate.x, hn::Load(d, m.fx + i)), d, m.fx + i);
     hn::Store(multiply_add(dt, rate.y, hn::Load(d, m.fy + i)), d, m.fy + i);
     hn::Store(multiply_add(dt, rate.z, hn::Load(d, m.fz + i)), d, m.fz + i);
@@ -204,14 +205,15 @@ struct Implicit : StepMethod {
   static HWY_INLINE void set_preconditioner(const Stepper<T>& s, const Memory<T>& memory, std::size_t i,
                                             const Triple<V>& stiffness) {
     const hn::ScalableTag<T> d;
-    const V push = hn::Set(d, s.world.step.push), dt = hn::Set(d, s.world.step.dt), one = hn::Set(d, T(1));
+    const V damped_dt = hn::Set(d, s.constants.step.damped_dt), dt = hn::Set(d, s.constants.step.dt),
+            one = hn::Set(d, T(1));
     const V mass = hn::Load(d, s.motion.mass + i), inverse_mass = hn::Load(d, s.motion.inverse_mass + i);
     const V across = hn::Load(d, memory.resistance + i), vertical = hn::Load(d, memory.vertical_resistance + i);
     const V resistances[] = {multiply_add(dt, stiffness.x, across), multiply_add(dt, stiffness.y, across),
                              multiply_add(dt, stiffness.z, vertical)};
     for (std::size_t c = 0; c < 3; ++c) {
       // what never moves may have no mass to divide by; its quotient is not used
-      const V inverse = one / multiply_add(push, resistances[c], mass);
+      const V inverse = one / multiply_add(damped_dt, resistances[c], mass);
       hn::Store(zero_unless_greater(inverse_mass, hn::Zero(d), inverse), d, memory.inverse_diagonal + c * s.masses + i);
     }
   }
@@ -221,11 +223,11 @@ struct Implicit : StepMethod {
   static void set_residual(const Stepper<T>& s, const Memory<T>& memory) {
     const hn::ScalableTag<T> d;
     const cpu::Motion<T>& m = s.motion;
-    const auto push = hn::Set(d, s.world.step.push);
+    const auto damped_dt = hn::Set(d, s.constants.step.damped_dt);
     const auto set = [&](const T* force, const T* resistance, const T* velocity, T* to) HWY_ATTR {
       for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
         const auto resisted_by = hn::Load(d, resistance + i) * hn::Load(d, velocity + i);
-        hn::Store(push * (hn::Load(d, force + i) - resisted_by), d, to + i);
+        hn::Store(damped_dt * (hn::Load(d, force + i) - resisted_by), d, to + i);
       }
     };
     set(m.fx, memory.resistance, m.vx, memory.residual);
@@ -233,7 +235,7 @@ struct Implicit : StepMethod {
     set(m.fz, memory.vertical_resistance, m.vz, memory.residual + 2 * s.masses);
   }
 
-  /// push (dt K+ + R) times the shown vector, of which the masses of `group` have `own`.
+  /// damped_dt (dt K+ + R) times the interleaved vector, of which the masses of `group` have `own`.
   template <class T, class V>
   static HWY_INLINE Triple<V> resisted(const Stepper<T>& s, const Memory<T>& memory, std::size_t group,
                                        const Triple<V>& own) {
@@ -242,23 +244,23 @@ struct Implicit : StepMethod {
     const std::size_t i = group * hn::Lanes(d), end = m.first_row[group + 1] * hn::Lanes(d);
     Triple<V> sum{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
     for (std::size_t slot = m.first_row[group] * hn::Lanes(d); slot < end; slot += hn::Lanes(d)) {
-      const Triple<V> other = load_places(d, memory.shown, m.neighbour + slot);
+      const Triple<V> other = load_positions(d, memory.interleaved, m.neighbour + slot);
       const SpringStiffness<V> matrix{hn::Load(d, memory.transverse + slot),
                                       {hn::Load(d, memory.along[0] + slot), hn::Load(d, memory.along[1] + slot),
                                        hn::Load(d, memory.along[2] + slot)}};
       const Triple<V> force = times(matrix, Triple<V>{own.x - other.x, own.y - other.y, own.z - other.z});
       sum = {sum.x + force.x, sum.y + force.y, sum.z + force.z};
     }
-    const V dt = hn::Set(d, s.world.step.dt), push = hn::Set(d, s.world.step.push);
-    if (s.world.rough) {
-      const Triple<V> leaning = lean(s, memory, i, own);
-      const V inverse_dt = hn::Set(d, 1 / s.world.step.dt);
-      sum = {multiply_add(inverse_dt, leaning.x, sum.x), multiply_add(inverse_dt, leaning.y, sum.y),
-             multiply_add(inverse_dt, leaning.z, sum.z)};
+    const V dt = hn::Set(d, s.constants.step.dt), damped_dt = hn::Set(d, s.constants.step.damped_dt);
+    if (s.constants.rough) {
+      const Triple<V> rough = rough_resistance(s, memory, i, own);
+      const V inverse_dt = hn::Set(d, 1 / s.constants.step.dt);
+      sum = {multiply_add(inverse_dt, rough.x, sum.x), multiply_add(inverse_dt, rough.y, sum.y),
+             multiply_add(inverse_dt, rough.z, sum.z)};
     }
     const V across = hn::Load(d, memory.resistance + i), vertical = hn::Load(d, memory.vertical_resistance + i);
-    return {push * multiply_add(dt, sum.x, across * own.x), push * multiply_add(dt, sum.y, across * own.y),
-            push * multiply_add(dt, sum.z, vertical * own.z)};
+    return {damped_dt * multiply_add(dt, sum.x, across * own.x), damped_dt * multiply_add(dt, sum.y, across * own.y),
+            damped_dt * multiply_add(dt, sum.z, vertical * own.z)};
   }
 
   /// Finds the correction that leaves no residual by conjugate gradients; <r, P r> measures what is left, r the
@@ -272,7 +274,7 @@ struct Implicit : StepMethod {
       if (!(curvature > 0)) break;  // so near to nothing that its square is 0
       const T before = left;
       left = advance_along(s, memory, left / curvature);
-      turn(s, memory, left / before);
+      update_direction(s, memory, left / before);
     }
   }
 
@@ -296,7 +298,7 @@ struct Implicit : StepMethod {
     const hn::ScalableTag<T> d;
     using V = hn::Vec<decltype(d)>;
     const T *x = memory.direction, *y = x + s.masses, *z = y + s.masses;
-    show(s, memory, x, y, z);
+    interleave(s, memory, x, y, z);
     V sum = hn::Zero(d);
     for (std::size_t group = 0; group < s.motion.groups; ++group) {
       const std::size_t i = group * hn::Lanes(d);
@@ -331,7 +333,7 @@ struct Implicit : StepMethod {
 
   /// The next direction: P r and `share` of the last.
   template <class T>
-  static void turn(const Stepper<T>& s, const Memory<T>& memory, T share_) {
+  static void update_direction(const Stepper<T>& s, const Memory<T>& memory, T share_) {
     const hn::ScalableTag<T> d;
     const auto share = hn::Set(d, share_);
     for (std::size_t i = 0; i < 3 * s.masses; i += hn::Lanes(d)) {
@@ -351,18 +353,18 @@ struct Implicit : StepMethod {
     }
   }
 
-  /// The floor's push at the end of the step, N; it does not hold on to what leaves it.
+  /// The floor's damped_dt at the end of the step, N; it does not hold on to what leaves it.
   template <class T>
   static void set_floor_force(const Stepper<T>& s, const Memory<T>& memory) {
     const hn::ScalableTag<T> d;
     const cpu::Motion<T>& m = s.motion;
-    const auto stiffness = hn::Set(d, s.world.floor_stiffness), dt = hn::Set(d, s.world.step.dt);
+    const auto stiffness = hn::Set(d, s.constants.floor_stiffness), dt = hn::Set(d, s.constants.step.dt);
     for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
-      auto z = moved(hn::Load(d, m.z + i), hn::Load(d, m.vz + i), dt);
-      if (s.world.rough) {
-        const auto ground = ground_under(m, s.world, i);
-        const auto velocity = off_ground(ground, load(m.vx + i, m.vy + i, m.vz + i));
-        z = moved(hn::Load(d, m.z + i), velocity, dt) - ground.height;
+      auto z = advanced_position(hn::Load(d, m.z + i), hn::Load(d, m.vz + i), dt);
+      if (s.constants.rough) {
+        const auto ground = ground_under(m, s.constants, i);
+        const auto velocity = along_normal(ground, load(m.vx + i, m.vy + i, m.vz + i));
+        z = advanced_position(hn::Load(d, m.z + i), velocity, dt) - ground.height;
       }
       const auto touches = hn::Load(d, memory.vertical_resistance + i) - hn::Load(d, memory.resistance + i);
       hn::Store(zero_unless_greater(touches, hn::Zero(d), floor_force(stiffness, z)), d, m.floor_force + i);

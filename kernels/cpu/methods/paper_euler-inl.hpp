@@ -16,14 +16,15 @@ namespace evodevo::HWY_NAMESPACE {
 struct PaperEuler : StepMethod {
   template <class T>
   static void step(const Stepper<T>& s, std::size_t row) {
-    s.noted_springs(s.motion, s.actuation, row);
-    if (s.world.gravity) add_gravity(s.motion, s.world, s.masses);
-    if (s.world.floor) add_floor(s.motion, s.world, s.masses);
-    if (s.world.drag) add_drag(s.motion, s.world, s.masses);
-    advance_velocities(s.motion, s.world.step.dt, s.masses);
-    if (s.world.damping) damp(s.motion, s.world.step.decay, s.masses);
-    if (s.world.friction) rub(s.motion, s.world, s.world.step.dt, s.motion.vx, s.motion.vy, s.masses);
-    move(s.motion, s.world.step.dt, s.masses);
+    s.recording_springs(s.motion, s.actuation, row);
+    if (s.constants.gravity) add_gravity(s.motion, s.constants, s.masses);
+    if (s.constants.floor) add_floor(s.motion, s.constants, s.masses);
+    if (s.constants.drag) add_drag(s.motion, s.constants, s.masses);
+    advance_velocities(s.motion, s.constants.step.dt, s.masses);
+    if (s.constants.damping) damp(s.motion, s.constants.step.decay, s.masses);
+    if (s.constants.friction)
+      apply_friction(s.motion, s.constants, s.constants.step.dt, s.motion.vx, s.motion.vy, s.masses);
+    advance_positions(s.motion, s.constants.step.dt, s.masses);
   }
 };
 

@@ -19,17 +19,17 @@ struct Rk4 : StepMethod {
 
   template <class T>
   static void step(const Stepper<T>& s, std::size_t row) {
-    const T dt = s.world.step.dt, half = s.world.half_step.dt;
+    const T dt = s.constants.step.dt, half = s.constants.half_step.dt;
     begin_stages(s);
-    set_forces(s, s.noted_springs, row);
+    set_forces(s, s.recording_springs, row);
     add_stage(s, T(1) / 6);
-    go_ahead(s, half);
+    go_to_stage(s, half);
     set_forces(s, s.springs, row + 1);
     add_stage(s, T(1) / 3);
-    go_ahead(s, half);
+    go_to_stage(s, half);
     set_forces(s, s.springs, row + 1);
     add_stage(s, T(1) / 3);
-    go_ahead(s, dt);
+    go_to_stage(s, dt);
     set_forces(s, s.springs, row + 2);
     add_stage(s, T(1) / 6);
     finish(s, dt);
@@ -39,19 +39,19 @@ struct Rk4 : StepMethod {
   /// One coordinate of all masses.
   template <class T>
   struct Axis {
-    T *place, *velocity;
+    T *position, *velocity;
     const T* force;
-    T *first_place, *first_velocity;  ///< at the beginning of the step
+    T *first_position, *first_velocity;  ///< at the beginning of the step
     T *mean_velocity, *mean_acceleration;
   };
 
   template <class T>
   static Axis<T> axis(const Stepper<T>& s, std::size_t c) {
     const cpu::Motion<T>& m = s.motion;
-    T* const places[] = {m.x, m.y, m.z};
+    T* const positions[] = {m.x, m.y, m.z};
     T* const velocities[] = {m.vx, m.vy, m.vz};
     const T* const forces[] = {m.fx, m.fy, m.fz};
-    return {places[c], velocities[c], forces[c], s.scratch(c), s.scratch(3 + c), s.scratch(6 + c), s.scratch(9 + c)};
+    return {positions[c], velocities[c], forces[c], s.scratch(c), s.scratch(3 + c), s.scratch(6 + c), s.scratch(9 + c)};
   }
 
   template <class T>
@@ -65,7 +65,7 @@ struct Rk4 : StepMethod {
     for (std::size_t c = 0; c < 3; ++c) {
       const Axis<T> a = axis(s, c);
       for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
-        hn::Store(hn::Load(d, a.place + i), d, a.first_place + i);
+        hn::Store(hn::Load(d, a.position + i), d, a.first_position + i);
         hn::Store(hn::Load(d, a.velocity + i), d, a.first_velocity + i);
         hn::Store(hn::Zero(d), d, a.mean_velocity + i);
         hn::Store(hn::Zero(d), d, a.mean_acceleration + i);
@@ -77,10 +77,10 @@ struct Rk4 : StepMethod {
   template <class T>
   static void set_forces(const Stepper<T>& s, SpringPass<T> springs, std::size_t row) {
     springs(s.motion, s.actuation, row);
-    if (s.world.gravity) add_gravity(s.motion, s.world, s.masses);
-    if (s.world.floor) add_floor(s.motion, s.world, s.masses);
-    if (s.world.drag) add_drag(s.motion, s.world, s.masses);
-    if (s.world.damping) add_damping(s.motion, s.world, s.masses);
+    if (s.constants.gravity) add_gravity(s.motion, s.constants, s.masses);
+    if (s.constants.floor) add_floor(s.motion, s.constants, s.masses);
+    if (s.constants.drag) add_drag(s.motion, s.constants, s.masses);
+    if (s.constants.damping) add_damping(s.motion, s.constants, s.masses);
   }
 
   /// Adds the velocities, accelerations and normal forces of this stage to their means.
@@ -97,26 +97,27 @@ struct Rk4 : StepMethod {
         add(i, hn::Load(d, a.force + i) * hn::Load(d, s.motion.inverse_mass + i), a.mean_acceleration);
       }
     }
-    if (s.world.friction)
+    if (s.constants.friction)
       for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d))
         add(i, hn::Load(d, s.motion.floor_force + i), mean_floor_force(s));
   }
 
   /// To where the velocities and accelerations of this stage lead from the beginning of the step in `time` s.
   template <class T>
-  static void go_ahead(const Stepper<T>& s, T time) {
+  static void go_to_stage(const Stepper<T>& s, T time) {
     const hn::ScalableTag<T> d;
     const auto dt = hn::Set(d, time);
     for (std::size_t c = 0; c < 3; ++c) {
       const Axis<T> a = axis(s, c);
       for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
         const auto dt_over_mass = dt * hn::Load(d, s.motion.inverse_mass + i);
-        hn::Store(moved(hn::Load(d, a.first_place + i), hn::Load(d, a.velocity + i), dt), d, a.place + i);
+        hn::Store(advanced_position(hn::Load(d, a.first_position + i), hn::Load(d, a.velocity + i), dt), d,
+                  a.position + i);
         hn::Store(advanced_velocity(hn::Load(d, a.first_velocity + i), hn::Load(d, a.force + i), dt_over_mass), d,
                   a.velocity + i);
       }
     }
-    show_places(s.motion, s.masses);
+    interleave_positions(s.motion, s.masses);
   }
 
   template <class T>
@@ -126,25 +127,26 @@ struct Rk4 : StepMethod {
     for (std::size_t c = 0; c < 3; ++c) {
       const Axis<T> a = axis(s, c);
       for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d))
-        hn::Store(moved(hn::Load(d, a.first_velocity + i), hn::Load(d, a.mean_acceleration + i), dt), d,
+        hn::Store(multiply_add(dt, hn::Load(d, a.mean_acceleration + i), hn::Load(d, a.first_velocity + i)), d,
                   a.velocity + i);
     }
-    if (s.world.friction) rub_over_step(s, time);
+    if (s.constants.friction) apply_friction_over_step(s, time);
     for (std::size_t c = 0; c < 3; ++c) {
       const Axis<T> a = axis(s, c);
       for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d))
-        hn::Store(moved(hn::Load(d, a.first_place + i), hn::Load(d, a.mean_velocity + i), dt), d, a.place + i);
+        hn::Store(advanced_position(hn::Load(d, a.first_position + i), hn::Load(d, a.mean_velocity + i), dt), d,
+                  a.position + i);
     }
-    show_places(s.motion, s.masses);
+    interleave_positions(s.motion, s.masses);
   }
 
   template <class T>
-  static void rub_over_step(const Stepper<T>& s, T time) {
+  static void apply_friction_over_step(const Stepper<T>& s, T time) {
     const hn::ScalableTag<T> d;
     for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d))
       hn::Store(hn::Load(d, mean_floor_force(s) + i), d, s.motion.floor_force + i);
-    rub(s.motion, s.world, time, s.motion.vx, s.motion.vy, s.masses);
-    rub(s.motion, s.world, time / 2, axis(s, 0).mean_velocity, axis(s, 1).mean_velocity, s.masses);
+    apply_friction(s.motion, s.constants, time, s.motion.vx, s.motion.vy, s.masses);
+    apply_friction(s.motion, s.constants, time / 2, axis(s, 0).mean_velocity, axis(s, 1).mean_velocity, s.masses);
   }
 };
 

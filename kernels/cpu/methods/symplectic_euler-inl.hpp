@@ -11,20 +11,20 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
-/// v <- (decay v + push F/m)/(1 + push c |v|/m), then x <- x + dt v: damping and drag are exact where no force acts,
-/// and under a constant force the velocity ends where they balance it, at any dt.
+/// v <- (decay v + damped_dt F/m)/(1 + damped_dt c |v|/m), then x <- x + dt v: damping and drag are exact where no
+/// force acts, and under a constant force the velocity ends where they balance it, at any dt.
 struct SymplecticEuler : StepMethod {
   template <class T>
   static void step(const Stepper<T>& s, std::size_t row) {
-    const cpu::TimeSpan<T>& time = s.world.step;
-    s.noted_springs(s.motion, s.actuation, row);
-    if (s.world.gravity) add_gravity(s.motion, s.world, s.masses);
-    if (s.world.floor) add_floor(s.motion, s.world, s.masses);
-    if (s.world.drag) yield_to_drag<true>(s.motion, s.world, time.push, s.masses);
-    if (s.world.damping) damp(s.motion, time.decay, s.masses);
-    advance_velocities(s.motion, time.push, s.masses);
-    if (s.world.friction) rub(s.motion, s.world, time.dt, s.motion.vx, s.motion.vy, s.masses);
-    move(s.motion, time.dt, s.masses);
+    const cpu::TimeSpan<T>& time = s.constants.step;
+    s.recording_springs(s.motion, s.actuation, row);
+    if (s.constants.gravity) add_gravity(s.motion, s.constants, s.masses);
+    if (s.constants.floor) add_floor(s.motion, s.constants, s.masses);
+    if (s.constants.drag) apply_drag<true>(s.motion, s.constants, time.damped_dt, s.masses);
+    if (s.constants.damping) damp(s.motion, time.decay, s.masses);
+    advance_velocities(s.motion, time.damped_dt, s.masses);
+    if (s.constants.friction) apply_friction(s.motion, s.constants, time.dt, s.motion.vx, s.motion.vy, s.masses);
+    advance_positions(s.motion, time.dt, s.masses);
   }
 };
 

@@ -23,8 +23,8 @@ struct VelocityVerlet : StepMethod {
   static void step(const Stepper<T>& s, std::size_t row) {
     slow_down(s);
     kick(s);
-    move(s.motion, s.world.step.dt, s.masses);
-    set_forces(s, s.noted_springs, row + 1);
+    advance_positions(s.motion, s.constants.step.dt, s.masses);
+    set_forces(s, s.recording_springs, row + 1);
     kick(s);
     slow_down(s);
   }
@@ -33,23 +33,23 @@ struct VelocityVerlet : StepMethod {
   template <class T>
   static void set_forces(const Stepper<T>& s, SpringPass<T> springs, std::size_t row) {
     springs(s.motion, s.actuation, row);
-    if (s.world.gravity) add_gravity(s.motion, s.world, s.masses);
-    if (s.world.floor) add_floor(s.motion, s.world, s.masses);
+    if (s.constants.gravity) add_gravity(s.motion, s.constants, s.masses);
+    if (s.constants.floor) add_floor(s.motion, s.constants, s.masses);
   }
 
   /// Half a step of damping and drag, exactly.
   template <class T>
   static void slow_down(const Stepper<T>& s) {
-    if (s.world.drag) yield_to_drag<false>(s.motion, s.world, s.world.half_step.push, s.masses);
-    if (s.world.damping) damp(s.motion, s.world.half_step.decay, s.masses);
+    if (s.constants.drag) apply_drag<false>(s.motion, s.constants, s.constants.half_step.damped_dt, s.masses);
+    if (s.constants.damping) damp(s.motion, s.constants.half_step.decay, s.masses);
   }
 
   /// Half a step of the forces, and of the friction that goes with them.
   template <class T>
   static void kick(const Stepper<T>& s) {
-    const T time = s.world.half_step.dt;
+    const T time = s.constants.half_step.dt;
     advance_velocities(s.motion, time, s.masses);
-    if (s.world.friction) rub(s.motion, s.world, time, s.motion.vx, s.motion.vy, s.masses);
+    if (s.constants.friction) apply_friction(s.motion, s.constants, time, s.motion.vx, s.motion.vy, s.masses);
   }
 };
 

@@ -17,53 +17,55 @@ namespace evodevo::HWY_NAMESPACE {
 /// in physics simulation, 2019), and it tends to it with dt. The unknowns are velocities instead of places, x + dt v
 /// the place at the end of the step: in float32, velocities that are differences of places would be mostly rounding.
 struct Xpbd : StepMethod {
-  static constexpr std::size_t mass_arrays = cpu::place_stride;
+  static constexpr std::size_t mass_arrays = cpu::position_stride;
   static constexpr bool coloured = true;
 
   template <class T>
   static void step(const Stepper<T>& s, std::size_t row) {
-    fall(s);
-    show_velocities(s);
+    apply_gravity(s);
+    interleave_velocities(s);
     for (std::size_t at = 0; at < s.motion.coloured.size; at += hn::Lanes(hn::ScalableTag<T>()))
       solve_springs(s, row + 1, at);
-    take_velocities(s);
-    if (s.world.floor) s.world.rough ? solve_rough_floor(s) : solve_floor(s);
-    if (s.world.friction) rub(s.motion, s.world, s.world.step.dt, s.motion.vx, s.motion.vy, s.masses);
-    move(s.motion, s.world.step.dt, s.masses);
+    deinterleave_velocities(s);
+    if (s.constants.floor) s.constants.rough ? solve_rough_floor(s) : solve_floor(s);
+    if (s.constants.friction)
+      apply_friction(s.motion, s.constants, s.constants.step.dt, s.motion.vx, s.motion.vy, s.masses);
+    advance_positions(s.motion, s.constants.step.dt, s.masses);
   }
 
  private:
-  /// The velocities as springs read and write them, place_stride numbers for each mass.
+  /// The velocities as springs read and write them, position_stride numbers for each mass.
   template <class T>
-  static T* shown(const Stepper<T>& s) {
+  static T* interleaved(const Stepper<T>& s) {
     return s.scratch(0);
   }
 
   /// Gravity, drag and damping, as in symplectic-euler.
   template <class T>
-  static void fall(const Stepper<T>& s) {
+  static void apply_gravity(const Stepper<T>& s) {
     const hn::ScalableTag<T> d;
     for (T* force : {s.motion.fx, s.motion.fy, s.motion.fz})
       for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) hn::Store(hn::Zero(d), d, force + i);
-    if (s.world.gravity) add_gravity(s.motion, s.world, s.masses);
-    if (s.world.drag) yield_to_drag<true>(s.motion, s.world, s.world.step.push, s.masses);
-    if (s.world.damping) damp(s.motion, s.world.step.decay, s.masses);
-    if (s.world.gravity) advance_velocities(s.motion, s.world.step.push, s.masses);
+    if (s.constants.gravity) add_gravity(s.motion, s.constants, s.masses);
+    if (s.constants.drag) apply_drag<true>(s.motion, s.constants, s.constants.step.damped_dt, s.masses);
+    if (s.constants.damping) damp(s.motion, s.constants.step.decay, s.masses);
+    if (s.constants.gravity) advance_velocities(s.motion, s.constants.step.damped_dt, s.masses);
   }
 
   template <class T>
-  static void show_velocities(const Stepper<T>& s) {
+  static void interleave_velocities(const Stepper<T>& s) {
     const hn::ScalableTag<T> d;
     const cpu::Motion<T>& m = s.motion;
     for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d))
-      store_places(d, Triple<hn::Vec<decltype(d)>>{hn::Load(d, m.vx + i), hn::Load(d, m.vy + i), hn::Load(d, m.vz + i)},
-                   shown(s) + cpu::place_stride * i);
+      store_positions(d,
+                      Triple<hn::Vec<decltype(d)>>{hn::Load(d, m.vx + i), hn::Load(d, m.vy + i), hn::Load(d, m.vz + i)},
+                      interleaved(s) + cpu::position_stride * i);
   }
 
   template <class T>
-  static void take_velocities(const Stepper<T>& s) {
-    const T* velocity = shown(s);
-    for (std::size_t i = 0; i < s.masses; ++i, velocity += cpu::place_stride) {
+  static void deinterleave_velocities(const Stepper<T>& s) {
+    const T* velocity = interleaved(s);
+    for (std::size_t i = 0; i < s.masses; ++i, velocity += cpu::position_stride) {
       s.motion.vx[i] = velocity[0];
       s.motion.vy[i] = velocity[1];
       s.motion.vz[i] = velocity[2];
@@ -78,26 +80,27 @@ struct Xpbd : StepMethod {
     const cpu::ColouredView<T>& springs = s.motion.coloured;
     const std::uint32_t *a = springs.a + at, *b = springs.b + at;
     const TableInMemory<T> lengths(s.actuation.relative_length + row * s.actuation.padded);
-    const V dt = hn::Set(d, s.world.step.dt), push = hn::Set(d, s.world.step.push);
+    const V dt = hn::Set(d, s.constants.step.dt), damped_dt = hn::Set(d, s.constants.step.damped_dt);
     const V rest_length = hn::Load(d, springs.rest_length + at), k = hn::Load(d, springs.stiffness + at);
     const V wa = hn::Load(d, springs.inverse_mass_a + at), wb = hn::Load(d, springs.inverse_mass_b + at);
 
-    const Triple<V> va = load_places(d, shown(s), a), vb = load_places(d, shown(s), b);
-    const Triple<V> xa = load_places(d, s.motion.places, a), xb = load_places(d, s.motion.places, b);
+    const Triple<V> va = load_positions(d, interleaved(s), a), vb = load_positions(d, interleaved(s), b);
+    const Triple<V> xa = load_positions(d, s.motion.interleaved_positions, a),
+                    xb = load_positions(d, s.motion.interleaved_positions, b);
     const Triple<V> x = {xb.x - xa.x, xb.y - xa.y, xb.z - xa.z}, v = {vb.x - va.x, vb.y - va.y, vb.z - va.z};
     const Separation<V> ends =
         separation(Triple<V>{hn::Zero(d), hn::Zero(d), hn::Zero(d)},
                    Triple<V>{multiply_add(dt, v.x, x.x), multiply_add(dt, v.y, x.y), multiply_add(dt, v.z, x.z)});
     const V distance = length(ends);
     const V stretch = distance - rest_length * lengths.at(springs.material + at);
-    const V factor = compliant_force(k, stretch, dt * push, wa + wb) / distance;
-    store_velocities(s, at, a, pushed(va, push * factor * wa, ends.d));
-    store_velocities(s, at, b, pushed(vb, hn::Zero(d) - push * factor * wb, ends.d));
-    if (s.notes()) note(s, row, at, spring_tension(ends, distance, factor));
+    const V factor = compliant_force(k, stretch, dt * damped_dt, wa + wb) / distance;
+    store_velocities(s, at, a, add_scaled(va, damped_dt * factor * wa, ends.d));
+    store_velocities(s, at, b, add_scaled(vb, hn::Zero(d) - damped_dt * factor * wb, ends.d));
+    if (s.is_recording()) record(s, row, at, spring_tension(ends, distance, factor));
   }
 
   template <class V>
-  static HWY_INLINE Triple<V> pushed(const Triple<V>& v, V by, const Triple<V>& d) {
+  static HWY_INLINE Triple<V> add_scaled(const Triple<V>& v, V by, const Triple<V>& d) {
     return {multiply_add(by, d.x, v.x), multiply_add(by, d.y, v.y), multiply_add(by, d.z, v.z)};
   }
 
@@ -111,17 +114,17 @@ struct Xpbd : StepMethod {
   static HWY_INLINE void store_velocities(const Stepper<T>& s, std::size_t at, const std::uint32_t* offset,
                                           const Triple<V>& v) {
     const hn::ScalableTag<T> d;
-    HWY_ALIGN T rows[cpu::place_stride * hn::MaxLanes(hn::ScalableTag<T>())];
-    store_places(d, v, rows);
+    HWY_ALIGN T rows[cpu::position_stride * hn::MaxLanes(hn::ScalableTag<T>())];
+    store_positions(d, v, rows);
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
       if (!is_spring(s, at + lane)) continue;
-      for (std::size_t c = 0; c < 3; ++c) shown(s)[offset[lane] + c] = rows[cpu::place_stride * lane + c];
+      for (std::size_t c = 0; c < 3; ++c) interleaved(s)[offset[lane] + c] = rows[cpu::position_stride * lane + c];
     }
   }
 
   /// Adds to the sums that are on.
   template <class T, class V>
-  static void note(const Stepper<T>& s, std::size_t row, std::size_t at, V tension) {
+  static void record(const Stepper<T>& s, std::size_t row, std::size_t at, V tension) {
     const hn::ScalableTag<T> d;
     const auto add = [](T sum, T value) { return sum + value; };
     if (s.sums.force) put_into_slots(s, at, hn::Abs(tension), s.motion.force_sum, add);
@@ -137,15 +140,15 @@ struct Xpbd : StepMethod {
     }
   }
 
-  /// Sets the slots of what is noted to join(before, value).
+  /// Sets the slots of what is recorded to join(before, value).
   template <class T, class V, class Join>
-  static void put_into_slots(const Stepper<T>& s, std::size_t at, V values, T* noted, const Join& join) {
+  static void put_into_slots(const Stepper<T>& s, std::size_t at, V values, T* recorded, const Join& join) {
     const hn::ScalableTag<T> d;
     HWY_ALIGN T numbers[hn::MaxLanes(hn::ScalableTag<T>())];
     hn::Store(values, d, numbers);
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
       if (!is_spring(s, at + lane)) continue;
-      T& slot = noted[s.motion.coloured.slot[at + lane]];
+      T& slot = recorded[s.motion.coloured.slot[at + lane]];
       slot = join(slot, numbers[lane]);
     }
   }
@@ -156,16 +159,16 @@ struct Xpbd : StepMethod {
     const hn::ScalableTag<T> d;
     using V = hn::Vec<decltype(d)>;
     const cpu::Motion<T>& m = s.motion;
-    const V dt = hn::Set(d, s.world.step.dt), push = hn::Set(d, s.world.step.push);
-    const V stiffness = hn::Set(d, s.world.floor_stiffness);
+    const V dt = hn::Set(d, s.constants.step.dt), damped_dt = hn::Set(d, s.constants.step.damped_dt);
+    const V stiffness = hn::Set(d, s.constants.floor_stiffness);
     for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
-      const Ground<V> ground = ground_under(m, s.world, i);
+      const Ground<V> ground = ground_under(m, s.constants, i);
       const Triple<V> v{hn::Load(d, m.vx + i), hn::Load(d, m.vy + i), hn::Load(d, m.vz + i)};
-      const V depth = ground.height - moved(hn::Load(d, m.z + i), off_ground(ground, v), dt);
+      const V depth = ground.height - advanced_position(hn::Load(d, m.z + i), along_normal(ground, v), dt);
       const V inverse_mass = hn::Load(d, m.inverse_mass + i);
-      const V force =
-          compliant_force(stiffness, maximum(depth, hn::Zero(d)), dt * push, inverse_mass * normal_squared(ground));
-      const Triple<V> pushed = pushed_off(ground, v, force * push * inverse_mass);
+      const V force = compliant_force(stiffness, maximum(depth, hn::Zero(d)), dt * damped_dt,
+                                      inverse_mass * normal_squared(ground));
+      const Triple<V> pushed = add_along_normal(ground, v, force * damped_dt * inverse_mass);
       hn::Store(force, d, m.floor_force + i);
       hn::Store(pushed.x, d, m.vx + i);
       hn::Store(pushed.y, d, m.vy + i);
@@ -178,14 +181,14 @@ struct Xpbd : StepMethod {
   static void solve_floor(const Stepper<T>& s) {
     const hn::ScalableTag<T> d;
     const cpu::Motion<T>& m = s.motion;
-    const auto dt = hn::Set(d, s.world.step.dt), push = hn::Set(d, s.world.step.push);
-    const auto stiffness = hn::Set(d, s.world.floor_stiffness);
+    const auto dt = hn::Set(d, s.constants.step.dt), damped_dt = hn::Set(d, s.constants.step.damped_dt);
+    const auto stiffness = hn::Set(d, s.constants.floor_stiffness);
     for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
       const auto vz = hn::Load(d, m.vz + i), inverse_mass = hn::Load(d, m.inverse_mass + i);
-      const auto depth = maximum(hn::Zero(d) - moved(hn::Load(d, m.z + i), vz, dt), hn::Zero(d));
-      const auto force = compliant_force(stiffness, depth, dt * push, inverse_mass);
+      const auto depth = maximum(hn::Zero(d) - advanced_position(hn::Load(d, m.z + i), vz, dt), hn::Zero(d));
+      const auto force = compliant_force(stiffness, depth, dt * damped_dt, inverse_mass);
       hn::Store(force, d, m.floor_force + i);
-      hn::Store(advanced_velocity(vz, force, push * inverse_mass), d, m.vz + i);
+      hn::Store(advanced_velocity(vz, force, damped_dt * inverse_mass), d, m.vz + i);
     }
   }
 };

@@ -1,5 +1,5 @@
-// What the methods share that move a whole body in one thread block, its places and velocities on the chip where there
-// is room.
+// What the methods share that move a whole body in one thread block, its positions and velocities on the chip where
+// there is room.
 #pragma once
 
 #include "cuda/device/streamed.cuh"
@@ -14,7 +14,7 @@ __device__ __forceinline__ Point<Number>* points_on_chip(const Body& body, unsig
 }
 
 /// a - b
-__device__ __forceinline__ Place difference(const Place& a, const Place& b) { return sum(a, Number(-1), b); }
+__device__ __forceinline__ Vector difference(const Vector& a, const Vector& b) { return sum(a, Number(-1), b); }
 
 /// Calls function(mass) for the masses of a thread.
 template <class Function>
@@ -24,33 +24,33 @@ __device__ __forceinline__ void for_each_mass(const Body& body, const Function& 
 
 __device__ __forceinline__ Moving moving(const Body& body, unsigned mass) {
   return {
-      triple(body.places[mass]), triple(body.velocities[mass]), {0, 0, 0}, body.mass[mass], body.inverse_mass[mass]};
+      triple(body.positions[mass]), triple(body.velocities[mass]), {0, 0, 0}, body.mass[mass], body.inverse_mass[mass]};
 }
 
 __device__ __forceinline__ void store(const Body& body, unsigned mass, const Moving& m) {
-  body.places[mass] = point(m.place);
+  body.positions[mass] = point(m.position);
   body.velocities[mass] = point(m.velocity);
 }
 
-/// Calls advance(body, count) for the steps of leg `index`, if the body has any.
+/// Calls advance(body, count) for the steps of span `index`, if the body has any.
 template <class Advance>
-__device__ __forceinline__ void advance_leg(const Body& stored, std::uint64_t index, const Advance& advance) {
-  const Leg leg(stored.stretch, index);
-  if (leg.empty() || stored.answer->diverged) return;
+__device__ __forceinline__ void advance_span(const Body& stored, std::uint64_t index, const Advance& advance) {
+  const CheckSpan span(stored.piece, index);
+  if (span.empty() || stored.answer->diverged) return;
   Body body = stored;
   if (body.on_chip) {
-    body.places = points_on_chip(body, 0);
+    body.positions = points_on_chip(body, 0);
     body.velocities = points_on_chip(body, 1);
     for_each_mass(body, [&](unsigned mass) { store(body, mass, moving(stored, mass)); });
     __syncthreads();
   }
-  advance(body, leg.steps());
+  advance(body, span.steps());
   if (body.on_chip) for_each_mass(body, [&](unsigned mass) { store(stored, mass, moving(body, mass)); });
 }
 
 /// Adds a spring's tension (N) to what is recorded of it, at `joint`, and to the sum of power, at `mass`.
-__device__ __forceinline__ void note(const Body& body, unsigned row, unsigned joint, unsigned mass, unsigned entry,
-                                     Number rest_length, Number tension) {
+__device__ __forceinline__ void record(const Body& body, unsigned row, unsigned joint, unsigned mass, unsigned entry,
+                                       Number rest_length, Number tension) {
   if constexpr (stress) body.stress[joint] += fabs(tension);
   if constexpr (work) {
     const Number watts = physics::actuation_power(tension, body.rates[row * body.entries + entry] * rest_length);

@@ -30,33 +30,36 @@ __device__ inline double sum_for_all(double value) {
   return total;
 }
 
-/// 0 where a place and a velocity are finite: zero times anything finite is zero, and a sum with one that is not stays
-/// so.
-__device__ __forceinline__ Number not_finite(const Place& place, const Place& velocity) {
-  return Number(0) * ((place.x + place.y + place.z) + (velocity.x + velocity.y + velocity.z));
+/// 0 where a position and a velocity are finite: zero times anything finite is zero, and a sum with one that is not
+/// stays so.
+__device__ __forceinline__ Number not_finite(const Vector& position, const Vector& velocity) {
+  return Number(0) * ((position.x + position.y + position.z) + (velocity.x + velocity.y + velocity.z));
 }
 
-/// A mass's part of the moment, kg m: mass times height.
-__device__ __forceinline__ double moment_of(Number mass, const Place& place, const World<Number>& world) {
-  double height = place.z;
-  if constexpr (slope) height = physics::height<double>(place.x, place.z, world.grade);
+/// A mass's part of the height_moment, kg m: mass times height.
+__device__ __forceinline__ double height_moment_of(Number mass, const Vector& position,
+                                                   const StepConstants<Number>& constants) {
+  double height = position.z;
+  if constexpr (slope) height = physics::height<double>(position.x, position.z, constants.grade);
   return mass * height;
 }
 
-/// Whether a body is checked after `steps` steps of its stretch.
-__device__ __forceinline__ bool is_checked(const Stretch& stretch, std::uint64_t steps) {
-  return (stretch.since_check + steps) % guard_interval == 0 || (stretch.is_last && steps == stretch.steps);
+/// Whether a body is checked after `steps` steps of its piece.
+__device__ __forceinline__ bool is_checked(const RunPiece& piece, std::uint64_t steps) {
+  return (piece.since_check + steps) % guard_interval == 0 || (piece.is_last && steps == piece.steps);
 }
 
-/// Writes down what falling below the origin has set free at most. `moment`: the sum of mass times height, kg m.
-__device__ __forceinline__ void note_fall(double moment, const World<Number>& world, Answer& answer) {
-  answer.fallen = physics::maximum(answer.fallen, -static_cast<double>(world.acceleration) * moment);
+/// Writes down what falling below the origin has set free at most. `height_moment`: the sum of mass times height, kg m.
+__device__ __forceinline__ void record_fall(double height_moment, const StepConstants<Number>& constants,
+                                            Answer& answer) {
+  answer.fallen = physics::maximum(answer.fallen, -static_cast<double>(constants.acceleration) * height_moment);
 }
 
 /// Whether a checked body, whose energies and steps are in its answer, has gained energy from nothing.
-__device__ __forceinline__ bool has_gained(const Stretch& stretch, const World<Number>& world, const Answer& answer) {
-  const double elapsed = static_cast<double>(stretch.first_step + answer.steps) * world.exact_dt;
-  return !(answer.kinetic + answer.elastic <= stretch.bound.limit(elapsed, answer.fallen));
+__device__ __forceinline__ bool has_gained(const RunPiece& piece, const StepConstants<Number>& constants,
+                                           const Answer& answer) {
+  const double elapsed = static_cast<double>(piece.first_step + answer.steps) * constants.exact_dt;
+  return !(answer.kinetic + answer.elastic <= piece.bound.limit(elapsed, answer.fallen));
 }
 
 }  // namespace evodevo::cuda

@@ -27,7 +27,7 @@ constexpr unsigned end_rows = EVODEVO_END_ROWS;                // 1 where a step
 constexpr unsigned opening_passes = EVODEVO_OPENING_PASSES;    // over the springs, before the first of some steps
 constexpr unsigned passes_per_step = EVODEVO_PASSES_PER_STEP;  // over the springs
 
-using Place = physics::Triple<Number>;
+using Vector = physics::Triple<Number>;
 
 /// Where in its cycle a material is at `time` (s since birth), half turns. It is reduced in double precision, so that
 /// late times lose no digits.
@@ -53,12 +53,12 @@ __device__ __forceinline__ Number length_rate(const Actuator& actuator, double t
 
 /// A mass while it is moved.
 struct Moving {
-  Place place;          ///< m
-  Place velocity;       ///< m/s
-  Place force;          ///< N
-  Number mass;          ///< kg
-  Number inverse_mass;  ///< 1/kg; 0 for what never moves
-  Number push = 0;      ///< of the floor, N
+  Vector position;          ///< m
+  Vector velocity;          ///< m/s
+  Vector force;             ///< N
+  Number mass;              ///< kg
+  Number inverse_mass;      ///< 1/kg; 0 for what never moves
+  Number normal_force = 0;  ///< of the floor, N
 };
 
 /// A pass over all springs, after which every mass is moved.
@@ -67,83 +67,88 @@ struct Pass {
   bool last;       ///< of them
 };
 
-/// What a method may leave as it is. It adds `move(world, pass, kept, m)`: what the forces of a pass do to a mass.
+/// What a method may leave as it is. It adds `move(constants, pass, kept, m)`: what the forces of a pass do to a mass.
 struct OnePass {
   /// What a mass keeps from one pass to the next.
   struct Kept {};
   /// The row of the tables, from the one at the beginning of the steps, that pass `index` takes the lengths from.
   static __device__ __forceinline__ unsigned row(unsigned index) { return index; }
   /// Whether the forces of pass `index` count for stress and work.
-  static __device__ __forceinline__ bool is_noted(unsigned) { return true; }
+  static __device__ __forceinline__ bool is_recorded(unsigned) { return true; }
 };
 
 /// a + factor b
-__device__ __forceinline__ Place sum(const Place& a, Number factor, const Place& b) {
+__device__ __forceinline__ Vector sum(const Vector& a, Number factor, const Vector& b) {
   return {physics::multiply_add(factor, b.x, a.x), physics::multiply_add(factor, b.y, a.y),
           physics::multiply_add(factor, b.z, a.z)};
 }
 
-__device__ __forceinline__ Place scaled(const Place& a, Number factor) {
+__device__ __forceinline__ Vector scaled(const Vector& a, Number factor) {
   return {a.x * factor, a.y * factor, a.z * factor};
 }
 
-__device__ __forceinline__ void add_gravity(const World<Number>& world, Moving& m) {
-  if constexpr (gravity) m.force.z += physics::weight(m.mass, world.acceleration);
-  if constexpr (slope) m.force.x += physics::downhill_force(physics::weight(m.mass, world.acceleration), world.grade);
+__device__ __forceinline__ void add_gravity(const StepConstants<Number>& constants, Moving& m) {
+  if constexpr (gravity) m.force.z += physics::weight(m.mass, constants.acceleration);
+  if constexpr (slope)
+    m.force.x += physics::downhill_force(physics::weight(m.mass, constants.acceleration), constants.grade);
 }
 
-/// The rough ground under a place.
-__device__ __forceinline__ auto ground_under(const World<Number>& world, const Place& place) {
-  return physics::ground_at(place.x, place.y, physics::Roughness<Number>{world.roughness, world.cells, world.seed});
+/// The rough ground under a position.
+__device__ __forceinline__ auto ground_under(const StepConstants<Number>& constants, const Vector& position) {
+  return physics::ground_at(position.x, position.y,
+                            physics::Roughness<Number>{constants.roughness, constants.cells, constants.seed});
 }
 
 /// How far a mass is above the ground, m.
-__device__ __forceinline__ Number clearance(const World<Number>& world, const Place& place) {
-  Number z = place.z;
-  if constexpr (rough) z -= ground_under(world, place).height;
+__device__ __forceinline__ Number clearance(const StepConstants<Number>& constants, const Vector& position) {
+  Number z = position.z;
+  if constexpr (rough) z -= ground_under(constants, position).height;
   return z;
 }
 
 /// A mass's velocity away from the ground, as far as z counts, m/s.
-__device__ __forceinline__ Number rise(const World<Number>& world, const Place& place, const Place& velocity) {
+__device__ __forceinline__ Number normal_velocity(const StepConstants<Number>& constants, const Vector& position,
+                                                  const Vector& velocity) {
   Number up = velocity.z;
-  if constexpr (rough) up = physics::off_ground(ground_under(world, place), velocity);
+  if constexpr (rough) up = physics::along_normal(ground_under(constants, position), velocity);
   return up;
 }
 
 /// Where a mass is above the ground after a step, m, the ground going on as it is at its beginning.
-__device__ __forceinline__ Number next_clearance(const World<Number>& world, const Moving& m) {
-  return physics::moved(clearance(world, m.place), rise(world, m.place, m.velocity), world.dt);
+__device__ __forceinline__ Number next_clearance(const StepConstants<Number>& constants, const Moving& m) {
+  return physics::advanced_position(clearance(constants, m.position),
+                                    normal_velocity(constants, m.position, m.velocity), constants.dt);
 }
 
 /// Adds what the ground's push, `up` along z, has along x and y where the ground is not level.
-__device__ __forceinline__ void lean(const World<Number>& world, const Place& place, Number up, Place& v) {
-  if constexpr (rough) v = physics::leaned(ground_under(world, place), v, up);
+__device__ __forceinline__ void add_horizontal_part(const StepConstants<Number>& constants, const Vector& position,
+                                                    Number up, Vector& v) {
+  if constexpr (rough) v = physics::add_horizontal_part(ground_under(constants, position), v, up);
 }
 
-__device__ __forceinline__ void add_floor(const World<Number>& world, Moving& m) {
+__device__ __forceinline__ void add_floor(const StepConstants<Number>& constants, Moving& m) {
   if constexpr (floor_on) {
-    m.push = physics::floor_force(world.floor_stiffness, clearance(world, m.place));
-    m.force.z += m.push;
-    lean(world, m.place, m.push, m.force);
+    m.normal_force = physics::floor_force(constants.floor_stiffness, clearance(constants, m.position));
+    m.force.z += m.normal_force;
+    add_horizontal_part(constants, m.position, m.normal_force, m.force);
   }
 }
 
-__device__ __forceinline__ void add_drag(const World<Number>& world, Moving& m) {
-  if constexpr (drag) m.force = sum(m.force, physics::drag_factor(world.drag_coefficient, m.velocity), m.velocity);
+__device__ __forceinline__ void add_drag(const StepConstants<Number>& constants, Moving& m) {
+  if constexpr (drag) m.force = sum(m.force, physics::drag_factor(constants.drag_coefficient, m.velocity), m.velocity);
 }
 
 /// Damping as a force.
-__device__ __forceinline__ void add_damping(const World<Number>& world, Moving& m) {
-  if constexpr (damping) m.force = sum(m.force, physics::damping_factor(world.damping_rate, m.mass), m.velocity);
+__device__ __forceinline__ void add_damping(const StepConstants<Number>& constants, Moving& m) {
+  if constexpr (damping) m.force = sum(m.force, physics::damping_factor(constants.damping_rate, m.mass), m.velocity);
 }
 
 /// Drag for a time in which acceleration adds `time` (s) of itself: scales the velocity and, where forces act in it,
 /// the forces.
 template <bool forces_too>
-__device__ __forceinline__ void yield_to_drag(const World<Number>& world, Number time, Moving& m) {
+__device__ __forceinline__ void apply_drag(const StepConstants<Number>& constants, Number time, Moving& m) {
   if constexpr (drag) {
-    const Number coefficient = world.drag_coefficient * time * m.inverse_mass;
+    const Number coefficient = constants.drag_coefficient * time * m.inverse_mass;
     const Number kept = physics::drag_retention(coefficient, m.velocity);
     m.velocity = scaled(m.velocity, kept);
     if constexpr (forces_too) m.force = scaled(m.force, kept);
@@ -163,11 +168,12 @@ __device__ __forceinline__ void damp(Number decay, Moving& m) {
 }
 
 /// What the floor's friction leaves of a velocity; `friction_time`: its coefficient times the time, s.
-__device__ __forceinline__ void rub(Number friction_time, const Moving& m, Place& velocity) {
+__device__ __forceinline__ void apply_friction(Number friction_time, const Moving& m, Vector& velocity) {
   if constexpr (friction) {
     // of a mass off the floor it takes nothing, and most are
-    if (m.push > 0) {
-      const Number kept = physics::friction_factor(velocity.x, velocity.y, friction_time * m.push * m.inverse_mass);
+    if (m.normal_force > 0) {
+      const Number kept =
+          physics::friction_factor(velocity.x, velocity.y, friction_time * m.normal_force * m.inverse_mass);
       velocity.x *= kept;
       velocity.y *= kept;
     }
@@ -175,10 +181,10 @@ __device__ __forceinline__ void rub(Number friction_time, const Moving& m, Place
 }
 
 /// x <- x + time v
-__device__ __forceinline__ void move_on(Number time, Moving& m) {
-  m.place.x = physics::moved(m.place.x, m.velocity.x, time);
-  m.place.y = physics::moved(m.place.y, m.velocity.y, time);
-  m.place.z = physics::moved(m.place.z, m.velocity.z, time);
+__device__ __forceinline__ void advance_position(Number time, Moving& m) {
+  m.position.x = physics::advanced_position(m.position.x, m.velocity.x, time);
+  m.position.y = physics::advanced_position(m.position.y, m.velocity.y, time);
+  m.position.z = physics::advanced_position(m.position.z, m.velocity.z, time);
 }
 
 }  // namespace evodevo::cuda

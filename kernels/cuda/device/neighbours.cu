@@ -142,7 +142,7 @@ __device__ bool reaches(const Reach& reach, std::uint64_t square, unsigned index
   return square < reach.square || (square == reach.square && index <= reach.index);
 }
 
-/// Calls emit(place, b) for every pair (a, b), a < b; b ascends with its place. Gives the number of pairs.
+/// Calls emit(rank, b) for every pair (a, b), a < b; b ascends with the rank. Gives the number of pairs.
 template <class Emit>
 __device__ unsigned for_each_pair(const Points& points, unsigned a, const Emit& emit) {
   const Reach reach = points.reach[a];
@@ -185,7 +185,7 @@ extern "C" __global__ void __launch_bounds__(search_threads) evodevo_count_pairs
 }
 
 /// Where the pairs of every point begin. One warp for each cloud.
-extern "C" __global__ void __launch_bounds__(search_threads) evodevo_place_pairs(const DeviceClouds all) {
+extern "C" __global__ void __launch_bounds__(search_threads) evodevo_find_first_pairs(const DeviceClouds all) {
   const unsigned index = this_point();
   if (index >= all.count) return;
   DeviceCloud& cloud = all.clouds[index];
@@ -209,7 +209,7 @@ extern "C" __global__ void __launch_bounds__(search_threads)
   const DeviceCloud& cloud = cloud_of(all, point);
   const unsigned a = point - cloud.first_point;
   DevicePair* own = pairs + cloud.first_pair + all.first_pair[point];
-  for_each_pair(points_of(all, cloud), a, [&](unsigned place, unsigned b) { own[place] = {a, b}; });
+  for_each_pair(points_of(all, cloud), a, [&](unsigned rank, unsigned b) { own[rank] = {a, b}; });
 }
 
 }  // namespace evodevo::cuda

@@ -14,12 +14,12 @@ using Integer = Fixed::Integer;
 constexpr unsigned plane = plane_bytes<Number>;
 constexpr unsigned group_size = group_bytes<Number>;
 
-__device__ __forceinline__ Place place_at(unsigned offset) {
+__device__ __forceinline__ Vector position_at(unsigned offset) {
   return {on_chip<Number>(offset), on_chip<Number>(offset + plane), on_chip<Number>(offset + 2 * plane)};
 }
 
-__device__ __forceinline__ unsigned offset_of_place(unsigned place) {
-  return place / lanes * group_size + place % lanes * static_cast<unsigned>(sizeof(Number));
+__device__ __forceinline__ unsigned offset_of_mass(unsigned index) {
+  return index / lanes * group_size + index % lanes * static_cast<unsigned>(sizeof(Number));
 }
 
 __device__ __forceinline__ Integer bits(float value) { return __float_as_uint(value); }
@@ -30,25 +30,25 @@ struct Spring {
   Number rest_length;
   unsigned other;  // offset
   SpringMaterial material;
-  Place place;
+  Vector position;
 
   __device__ __forceinline__ Spring(const Records::Read& record, const Lengths& lengths)
       : rest_length(record.rest_length),
         other((static_cast<unsigned>(record.packed) & 0xffffu) << offset_shift),
         material(lengths(record)),
-        place(place_at(other)) {}
+        position(position_at(other)) {}
 };
 
 /// The mass whose springs a thread goes through, and the force on it so far.
 struct Owner {
   unsigned offset;
-  Place place;
+  Vector position;
   Integer fx, fy, fz;
 
   __device__ __forceinline__ explicit Owner(unsigned offset_)
-      : offset(offset_), place(place_at(offset_)), fx(0), fy(0), fz(0) {}
+      : offset(offset_), position(position_at(offset_)), fx(0), fy(0), fz(0) {}
 
-  __device__ __forceinline__ void hand_in() const {
+  __device__ __forceinline__ void flush() const {
     atomicAdd(&on_chip<Integer>(offset + 3 * plane), fx);
     atomicAdd(&on_chip<Integer>(offset + 4 * plane), fy);
     atomicAdd(&on_chip<Integer>(offset + 5 * plane), fz);
@@ -73,8 +73,8 @@ struct Share {
   Records records;  // of all slots
   unsigned owner;   // offset of the mass that it begins with
   unsigned first_slot;
-  unsigned chunks;             // 0: the warp has no springs
-  const std::uint32_t* turns;  // of the warp's chunks
+  unsigned chunks;                  // 0: the warp has no springs
+  const std::uint32_t* group_ends;  // of the warp's chunks
 
   __device__ __forceinline__ unsigned slot(unsigned chunk) const { return first_slot + chunk * rows * lanes; }
 };
@@ -84,21 +84,21 @@ __device__ __forceinline__ Share share_of(const Body& body) {
   const unsigned warp = threadIdx.x / lanes, chunks = chunked ? body.chunks : 1;
   share.chunks = warp < body.warps ? chunks : 0;
   share.first_slot = warp * chunks * rows * lanes + threadIdx.x % lanes;
-  share.turns = body.turns + warp * chunks;
-  share.owner = offset_of_place(body.first_group[warp] * lanes + threadIdx.x % lanes);
+  share.group_ends = body.group_ends + warp * chunks;
+  share.owner = offset_of_mass(body.first_group[warp] * lanes + threadIdx.x % lanes);
   return share;
 }
 
 /// A pass over the springs.
 struct SpringPass {
   Lengths lengths;
-  bool noted = true;  // whether its forces count for stress and work
+  bool recorded = true;  // whether its forces count for stress and work
 };
 
 /// Adds the force of the spring at `slot` to both of its ends; returns its size, units.
 __device__ __forceinline__ Number add_force(const Body& body, unsigned slot, const Spring& spring, Owner& owner,
                                             const SpringPass& pass, Sums& sums) {
-  const auto s = physics::separation(owner.place, spring.place);
+  const auto s = physics::separation(owner.position, spring.position);
   const Number inverse = physics::inverse_length(s);
   const Entry<Number>& entry = spring.material.entry;
   const Number factor =
@@ -108,14 +108,14 @@ __device__ __forceinline__ Number add_force(const Body& body, unsigned slot, con
   if constexpr (work) {
     const Number rate = pass.lengths.rate_of(spring.material) * spring.rest_length;
     const Number watts = physics::actuation_power(tension, rate);
-    if (pass.noted) sums.power += watts;
+    if (pass.recorded) sums.power += watts;
     if constexpr (muscle_work)
-      if (pass.noted) atomicAdd(in_memory(body.powers) + slot, static_cast<double>(watts));
+      if (pass.recorded) atomicAdd(in_memory(body.powers) + slot, static_cast<double>(watts));
   }
   if constexpr (peak_force)
-    if (pass.noted) atomicMax(in_memory(body.peak) + slot, bits(fabs(tension)));
+    if (pass.recorded) atomicMax(in_memory(body.peak) + slot, bits(fabs(tension)));
   if constexpr (mean_tension)
-    if (pass.noted) atomicAdd(in_memory(body.tensions) + slot, static_cast<double>(tension));
+    if (pass.recorded) atomicAdd(in_memory(body.tensions) + slot, static_cast<double>(tension));
   const Integer x = bits(physics::multiply_add(-factor, s.d.x, Fixed::magic));
   const Integer y = bits(physics::multiply_add(-factor, s.d.y, Fixed::magic));
   const Integer z = bits(physics::multiply_add(-factor, s.d.z, Fixed::magic));
@@ -130,7 +130,7 @@ __device__ __forceinline__ Number add_force(const Body& body, unsigned slot, con
 
 /// Adds the forces of `rows` rows, the first of which is at `slot`. The next row's reads are issued before this row's
 /// atomics, which the compiler may not pass.
-__device__ __forceinline__ void add_forces(const Body& body, const Share& share, unsigned slot, unsigned turns,
+__device__ __forceinline__ void add_forces(const Body& body, const Share& share, unsigned slot, unsigned group_ends,
                                            const SpringPass& pass, Owner& owner, Sums& sums) {
   const Records records = share.records.from(slot);
   Records::Read record = records[rows > 1 ? lanes : 0];
@@ -143,34 +143,34 @@ __device__ __forceinline__ void add_forces(const Body& body, const Share& share,
     const Number force = add_force(body, slot + row * lanes, spring, owner, pass, sums);
     if constexpr (stress) {
       // no thread waits for the sum in memory, which has no other writer and so no order
-      const Number noted = pass.noted ? force : Number(0);
+      const Number recorded = pass.recorded ? force : Number(0);
       if constexpr (chunked)
-        atomicAdd(in_memory(body.recent_stress) + slot + row * lanes, noted);
+        atomicAdd(in_memory(body.recent_stress) + slot + row * lanes, recorded);
       else
-        sums.row_stress[row] += noted;
+        sums.row_stress[row] += recorded;
     }
-    if (turns >> row & 1) {
-      owner.hand_in();
+    if (group_ends >> row & 1) {
+      owner.flush();
       owner = Owner(owner.offset + group_size);
     }
   }
 }
 
-__device__ __forceinline__ void add_spring_forces(const Body& body, const Share& share, unsigned turns,
+__device__ __forceinline__ void add_spring_forces(const Body& body, const Share& share, unsigned group_ends,
                                                   const SpringPass& pass, Sums& sums) {
   Owner owner(share.owner);
   if constexpr (chunked) {
     for (unsigned chunk = 0; chunk < share.chunks; ++chunk)
-      add_forces(body, share, share.slot(chunk), share.turns[chunk], pass, owner, sums);
+      add_forces(body, share, share.slot(chunk), share.group_ends[chunk], pass, owner, sums);
   } else {
-    add_forces(body, share, share.first_slot, turns, pass, owner, sums);
+    add_forces(body, share, share.first_slot, group_ends, pass, owner, sums);
   }
-  owner.hand_in();
+  owner.flush();
 }
 
-/// The masses that a thread moves: those at place threadIdx.x, threadIdx.x + blockDim.x, ..
+/// The masses that a thread moves: those of index threadIdx.x, threadIdx.x + blockDim.x, ..
 struct Movers {
-  Place velocity[masses_per_thread];
+  Vector velocity[masses_per_thread];
   Method::Kept kept[masses_per_thread];
 };
 
@@ -178,8 +178,8 @@ template <class Function>
 __device__ __forceinline__ void for_each_mover(const Body& body, const Function& function) {
 #pragma unroll
   for (unsigned i = 0; i < masses_per_thread; ++i) {
-    const unsigned place = threadIdx.x + i * blockDim.x;
-    if (place < body.groups * lanes) function(i, place, offset_of_place(place));
+    const unsigned index = threadIdx.x + i * blockDim.x;
+    if (index < body.groups * lanes) function(i, index, offset_of_mass(index));
   }
 }
 
@@ -189,29 +189,30 @@ __device__ __forceinline__ void set_force(unsigned offset, Integer value) {
   on_chip<Integer>(offset + 5 * plane) = value;
 }
 
-__device__ __forceinline__ void set_place(unsigned offset, Place place) {
-  on_chip<Number>(offset) = place.x;
-  on_chip<Number>(offset + plane) = place.y;
-  on_chip<Number>(offset + 2 * plane) = place.z;
+__device__ __forceinline__ void set_position(unsigned offset, Vector position) {
+  on_chip<Number>(offset) = position.x;
+  on_chip<Number>(offset + plane) = position.y;
+  on_chip<Number>(offset + 2 * plane) = position.z;
 }
 
 /// The sum of the spring forces at a mass, N; made ready for the next pass's sum.
-__device__ __forceinline__ Place take_force(unsigned offset, Integer start, Number resolution) {
+__device__ __forceinline__ Vector take_force(unsigned offset, Integer start, Number resolution) {
   const auto newtons = [&](unsigned at) {
     return static_cast<Number>(static_cast<Fixed::Signed>(on_chip<Integer>(at))) * resolution;
   };
-  const Place force{newtons(offset + 3 * plane), newtons(offset + 4 * plane), newtons(offset + 5 * plane)};
+  const Vector force{newtons(offset + 3 * plane), newtons(offset + 4 * plane), newtons(offset + 5 * plane)};
   set_force(offset, start);
   return force;
 }
 
-__device__ __forceinline__ void move_masses(const Body& body, const World<Number>& world, Number resolution, Pass pass,
-                                            Movers& movers) {
-  for_each_mover(body, [&](unsigned i, unsigned place, unsigned offset) {
-    const Place force = take_force(offset, __ldg(body.start + place), resolution);
-    Moving m{place_at(offset), movers.velocity[i], force, __ldg(body.mass + place), __ldg(body.inverse_mass + place)};
-    Method::move(world, pass, movers.kept[i], m);
-    set_place(offset, m.place);
+__device__ __forceinline__ void move_masses(const Body& body, const StepConstants<Number>& constants, Number resolution,
+                                            Pass pass, Movers& movers) {
+  for_each_mover(body, [&](unsigned i, unsigned index, unsigned offset) {
+    const Vector force = take_force(offset, __ldg(body.start + index), resolution);
+    Moving m{position_at(offset), movers.velocity[i], force, __ldg(body.mass + index),
+             __ldg(body.inverse_mass + index)};
+    Method::move(constants, pass, movers.kept[i], m);
+    set_position(offset, m.position);
     movers.velocity[i] = m.velocity;
   });
 }
@@ -219,15 +220,15 @@ __device__ __forceinline__ void move_masses(const Body& body, const World<Number
 /// Brings the body onto the chip.
 __device__ __forceinline__ void load(const Body& body, Movers& movers) {
   const Motion<Number>& m = body.motion;
-  for_each_mover(body, [&](unsigned i, unsigned place, unsigned offset) {
-    set_place(offset, {m.x[place], m.y[place], m.z[place]});
-    movers.velocity[i] = {m.vx[place], m.vy[place], m.vz[place]};
-    set_force(offset, body.start[place]);
+  for_each_mover(body, [&](unsigned i, unsigned index, unsigned offset) {
+    set_position(offset, {m.x[index], m.y[index], m.z[index]});
+    movers.velocity[i] = {m.vx[index], m.vy[index], m.vz[index]};
+    set_force(offset, body.start[index]);
   });
   // the masses that empty slots lead to
   if (threadIdx.x < lanes) {
-    const unsigned offset = offset_of_place(body.groups * lanes + threadIdx.x);
-    set_place(offset, {0, 0, 0});
+    const unsigned offset = offset_of_mass(body.groups * lanes + threadIdx.x);
+    set_position(offset, {0, 0, 0});
     set_force(offset, 0);
   }
   if constexpr (records_on_chip) {
@@ -238,14 +239,14 @@ __device__ __forceinline__ void load(const Body& body, Movers& movers) {
 
 __device__ __forceinline__ void store(const Body& body, const Movers& movers) {
   const Motion<Number>& m = body.motion;
-  for_each_mover(body, [&](unsigned i, unsigned place, unsigned offset) {
-    const Place at = place_at(offset);
-    m.x[place] = at.x;
-    m.y[place] = at.y;
-    m.z[place] = at.z;
-    m.vx[place] = movers.velocity[i].x;
-    m.vy[place] = movers.velocity[i].y;
-    m.vz[place] = movers.velocity[i].z;
+  for_each_mover(body, [&](unsigned i, unsigned index, unsigned offset) {
+    const Vector at = position_at(offset);
+    m.x[index] = at.x;
+    m.y[index] = at.y;
+    m.z[index] = at.z;
+    m.vx[index] = movers.velocity[i].x;
+    m.vy[index] = movers.velocity[i].y;
+    m.vz[index] = movers.velocity[i].z;
   });
 }
 
@@ -255,15 +256,15 @@ __device__ double elastic_energy(const Body& body, const Share& share) {
   double sum = 0;
   unsigned offset = share.owner;
   for (unsigned chunk = 0; chunk < share.chunks; ++chunk) {
-    const unsigned turns = share.turns[chunk];
+    const unsigned group_ends = share.group_ends[chunk];
     for (unsigned row = 0; row < rows; ++row) {
       const Spring spring(share.records[share.slot(chunk) + row * lanes], lengths);
-      const auto s = physics::separation(place_at(offset), spring.place);
+      const auto s = physics::separation(position_at(offset), spring.position);
       // an empty slot has no stiffness
       const Entry<Number>& entry = spring.material.entry;
       const Number relative = entry.rest_force / physics::maximum(entry.stiffness, Number(1e-30));
       sum += physics::elastic_energy(s, entry.stiffness, spring.rest_length * relative);
-      if (turns >> row & 1) offset += group_size;
+      if (group_ends >> row & 1) offset += group_size;
     }
   }
   return sum;
@@ -272,43 +273,43 @@ __device__ double elastic_energy(const Body& body, const Share& share) {
 /// A thread's part of what a check looks at; by value, because what a called function takes by reference leaves the
 /// registers for good.
 struct Check {
-  double kinetic = 0;     // J
-  double moment = 0;      // kg m
-  Number not_finite = 0;  // 0 where all places and velocities are finite
+  double kinetic = 0;        // J
+  double height_moment = 0;  // kg m
+  Number not_finite = 0;     // 0 where all positions and velocities are finite
   Totals totals;
 };
 
 __device__ __forceinline__ Check check_of(const Body& body, const Movers& movers, const Totals& totals) {
   Check check;
   check.totals = totals;
-  for_each_mover(body, [&](unsigned i, unsigned place_index, unsigned offset) {
-    const Place place = place_at(offset), v = movers.velocity[i];
-    const Number mass = body.mass[place_index];
+  for_each_mover(body, [&](unsigned i, unsigned index, unsigned offset) {
+    const Vector position = position_at(offset), v = movers.velocity[i];
+    const Number mass = body.mass[index];
     check.kinetic += physics::kinetic_energy(mass, v);
-    if constexpr (gravity) check.moment += moment_of(mass, place, body.world);
-    check.not_finite += not_finite(place, v);
+    if constexpr (gravity) check.height_moment += height_moment_of(mass, position, body.constants);
+    check.not_finite += not_finite(position, v);
   });
   return check;
 }
 
-/// Writes down the body's energies after `steps` steps of its stretch and says whether it has diverged, which is judged
+/// Writes down the body's energies after `steps` steps of its piece and says whether it has diverged, which is judged
 /// where a check is due; the same for all threads.
 __device__ __noinline__ bool has_diverged(const Body& body, Check check, std::uint64_t steps) {
   __shared__ double of_warps[4][lanes];
   const bool finite = !__syncthreads_or(check.not_finite != 0);
   const bool out_of_range =
-      __syncthreads_or(!(check.totals.largest <= body.largest_force)) || body.stretch.left_range != 0;
+      __syncthreads_or(!(check.totals.largest <= body.largest_force)) || body.piece.left_range != 0;
   const double kinetic = block_sum(check.kinetic, of_warps[0]);
   const double elastic = body.resolution * block_sum(elastic_energy(body, share_of(body)), of_warps[1]);
-  const bool checked = is_checked(body.stretch, steps);
+  const bool checked = is_checked(body.piece, steps);
   Answer& answer = *body.answer;
   if constexpr (gravity) {
-    const double moment = block_sum(check.moment, of_warps[2]);
-    if (threadIdx.x == 0 && checked && finite) note_fall(moment, body.world, answer);
+    const double height_moment = block_sum(check.height_moment, of_warps[2]);
+    if (threadIdx.x == 0 && checked && finite) record_fall(height_moment, body.constants, answer);
   }
   if constexpr (work) {
     const double power = block_sum(check.totals.power, of_warps[3]);
-    if (threadIdx.x == 0) answer.work += body.world.exact_dt * body.resolution * power;
+    if (threadIdx.x == 0) answer.work += body.constants.exact_dt * body.resolution * power;
   }
   bool diverged = false;
   if (threadIdx.x == 0) {
@@ -317,7 +318,7 @@ __device__ __noinline__ bool has_diverged(const Body& body, Check check, std::ui
     answer.elastic = elastic;
     answer.finite = finite;
     answer.out_of_range = out_of_range;
-    diverged = checked && (!finite || out_of_range || has_gained(body.stretch, body.world, answer));
+    diverged = checked && (!finite || out_of_range || has_gained(body.piece, body.constants, answer));
     answer.diverged = diverged;
   }
   return __syncthreads_or(diverged);
@@ -350,20 +351,20 @@ __device__ __forceinline__ void collect(const Body& body, const Share& share, co
 /// Makes `count` steps, whose lengths are known. The sums live no longer than this, so that no call of a
 /// function drives them out of the registers. A warp without springs only moves masses.
 template <bool has_springs>
-__device__ __forceinline__ void advance(const Body& body, const World<Number>& world, const Share& share,
-                                        unsigned turns, unsigned count, Movers& movers, Totals& totals) {
+__device__ __forceinline__ void advance(const Body& body, const StepConstants<Number>& constants, const Share& share,
+                                        unsigned group_ends, unsigned count, Movers& movers, Totals& totals) {
   const Number resolution = static_cast<Number>(body.resolution);
   SpringPass springs{Lengths(body)};
   [[maybe_unused]] Sums sums;
   const unsigned passes = opening_passes + count * passes_per_step;
   for (unsigned pass = 0; pass < passes; ++pass) {
-    springs.noted = Method::is_noted(pass);
-    if constexpr (has_springs) add_spring_forces(body, share, turns, springs, sums);
+    springs.recorded = Method::is_recorded(pass);
+    if constexpr (has_springs) add_spring_forces(body, share, group_ends, springs, sums);
     __syncthreads();
-    move_masses(body, world, resolution, {pass, pass + 1 == passes}, movers);
+    move_masses(body, constants, resolution, {pass, pass + 1 == passes}, movers);
     __syncthreads();
     const unsigned rows_on = Method::row(pass + 1) - Method::row(pass);
-    if constexpr (actuation) springs.lengths.go_on(body, rows_on);
+    if constexpr (actuation) springs.lengths.advance_rows(body, rows_on);
   }
   if constexpr (has_springs) collect(body, share, sums, totals);
 }
@@ -371,15 +372,15 @@ __device__ __forceinline__ void advance(const Body& body, const World<Number>& w
 extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1) evodevo_run_resident(const Body* bodies) {
   const Body& body = bodies[blockIdx.x];
   const Share share = share_of(body);
-  const unsigned turns = chunked ? 0 : *share.turns;
+  const unsigned group_ends = chunked ? 0 : *share.group_ends;
   Movers movers;
   Totals totals;
   load(body, movers);
   fill_lengths(body, 0, 1);
   __syncthreads();
-  const std::uint64_t steps = body.stretch.steps;
+  const std::uint64_t steps = body.piece.steps;
   for (std::uint64_t done = 0; done < steps;) {
-    const unsigned since_check = static_cast<unsigned>((body.stretch.since_check + done) % guard_interval);
+    const unsigned since_check = static_cast<unsigned>((body.piece.since_check + done) % guard_interval);
     const unsigned until_check =
         static_cast<unsigned>(min(steps - done, static_cast<std::uint64_t>(guard_interval - since_check)));
     unsigned now = until_check;
@@ -389,9 +390,9 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1) evodevo_run
       __syncthreads();
     }
     if (share.chunks > 0)
-      advance<true>(body, body.world, share, turns, now, movers, totals);
+      advance<true>(body, body.constants, share, group_ends, now, movers, totals);
     else
-      advance<false>(body, body.world, share, turns, now, movers, totals);
+      advance<false>(body, body.constants, share, group_ends, now, movers, totals);
     done += now;
     if (now < until_check) continue;
     if constexpr (actuation) {

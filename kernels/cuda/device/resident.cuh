@@ -35,7 +35,7 @@ __device__ __forceinline__ const T* array_of(const T* in_device, unsigned offset
 
 /// Brings such an array onto the chip.
 template <class T>
-__device__ __forceinline__ void bring(const T* from, unsigned offset, unsigned count) {
+__device__ __forceinline__ void copy_to_chip(const T* from, unsigned offset, unsigned count) {
   T* to = &on_chip<T>(offset);
   for (unsigned i = threadIdx.x; i < count; i += blockDim.x) to[i] = from[i];
 }

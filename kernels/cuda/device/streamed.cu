@@ -8,20 +8,20 @@ namespace evodevo::cuda {
 
 static_assert(sizeof(Method::Kept) <= (EVODEVO_NUMBERS_OF_MASS > 0 ? EVODEVO_NUMBERS_OF_MASS * sizeof(Number) : 1));
 
-/// The sum of the spring forces at a mass, N. Adds to the sums of stress and power where the pass is `noted`.
-__device__ __forceinline__ Place spring_forces(const Body& body, unsigned mass, const Point<Number>* places,
-                                               unsigned row, bool noted) {
+/// The sum of the spring forces at a mass, N. Adds to the sums of stress and power where the pass is `recorded`.
+__device__ __forceinline__ Vector spring_forces(const Body& body, unsigned mass, const Point<Number>* positions,
+                                                unsigned row, bool recorded) {
   const Entry<Number>* table = body.table + row * body.entries;
-  const Place own = triple(places[mass]);
-  Place force{0, 0, 0};
+  const Vector own = triple(positions[mass]);
+  Vector force{0, 0, 0};
   Number power = 0;
   for_each_joint(body, mass, [&](unsigned i, const Joint<Number> joint) {
     const Entry<Number> entry = table[joint.entry];
-    const auto s = physics::separation(own, triple(places[joint.other]));
+    const auto s = physics::separation(own, triple(positions[joint.other]));
     const Number inverse = physics::inverse_length(s);
     const Number factor =
         physics::spring_factor_by_inverse(inverse, entry.stiffness, entry.rest_force * joint.rest_length);
-    if (joint.owned && noted) {
+    if (joint.owned && recorded) {
       const Number tension = factor * physics::length_by_inverse(s, inverse);
       if constexpr (stress) body.stress[i] += fabs(tension);
       if constexpr (work) {
@@ -41,20 +41,21 @@ __device__ __forceinline__ Place spring_forces(const Body& body, unsigned mass, 
   return force;
 }
 
-/// Makes pass `pass` of leg `index`, whose lengths begin with the tables, for all bodies that have as many. Even passes
-/// of a run read the first half of the places and write the second, odd ones the other way.
+/// Makes pass `pass` of span `index`, whose lengths begin with the tables, for all bodies that have as many. Even
+/// passes of a run read the first half of the positions and write the second, odd ones the other way.
 extern "C" __global__ void evodevo_pass_streamed(const Body* bodies, std::uint64_t index, unsigned pass) {
   const Body& body = bodies[blockIdx.y];
   const unsigned mass = blockIdx.x * blockDim.x + threadIdx.x;
-  const Leg leg(body.stretch, index);
-  if (mass >= body.masses || pass >= leg.passes() || body.answer->diverged) return;
-  const auto half = static_cast<unsigned>((passes_before(leg, index) + pass) % 2);
-  const Point<Number>* from = body.places + half * body.masses;
-  const Place place = triple(from[mass]), velocity = triple(body.velocities[mass]);
-  const Place force = spring_forces(body, mass, from, Method::row(pass), Method::is_noted(pass));
-  Moving m{place, velocity, force, body.mass[mass], body.inverse_mass[mass]};
-  Method::move(body.world, {pass, pass + 1 == leg.passes()}, reinterpret_cast<Method::Kept*>(body.scratch)[mass], m);
-  body.places[(1 - half) * body.masses + mass] = point(m.place);
+  const CheckSpan span(body.piece, index);
+  if (mass >= body.masses || pass >= span.passes() || body.answer->diverged) return;
+  const auto half = static_cast<unsigned>((passes_before(span, index) + pass) % 2);
+  const Point<Number>* from = body.positions + half * body.masses;
+  const Vector position = triple(from[mass]), velocity = triple(body.velocities[mass]);
+  const Vector force = spring_forces(body, mass, from, Method::row(pass), Method::is_recorded(pass));
+  Moving m{position, velocity, force, body.mass[mass], body.inverse_mass[mass]};
+  Method::move(body.constants, {pass, pass + 1 == span.passes()}, reinterpret_cast<Method::Kept*>(body.scratch)[mass],
+               m);
+  body.positions[(1 - half) * body.masses + mass] = point(m.position);
   body.velocities[mass] = point(m.velocity);
 }
 

@@ -11,7 +11,7 @@
 namespace evodevo::cuda {
 
 /// What the device is told of a task's way, whose course has begun.
-inline Stretch stretch_of(const Task& task) {
+inline RunPiece run_piece_of(const Task& task) {
   const Course& course = *task.course;
   return {.origin = course.origin,
           .first_step = course.steps,
@@ -35,14 +35,14 @@ inline void read_answer(const Answer& answer, Recording recording, Task& task) {
     task.ended_at = course.time(task.dt);
     task.work = 0;
     task.clear({}, 0);
-    task.reason = verdict(course, task.dt, answer.kinetic, answer.elastic, answer.finite != 0);
+    task.reason = divergence_reason(course, task.dt, answer.kinetic, answer.elastic, answer.finite != 0);
     if (task.reason.empty()) {
       char text[96];
       std::snprintf(text, sizeof text, "force range: the force of a spring grew beyond %.3g N", course.forces.largest);
       task.reason = text;
     }
   }
-  take_course(task, course);
+  apply_course(task, course);
 }
 
 /// The actuator of a material whose stiffness is given in units of `resolution` (N).
@@ -54,12 +54,12 @@ inline Actuator actuator_of(const Material& material, double resolution) {
 
 /// The time in which a constant acceleration would add to an undamped velocity what it adds to a damped one in `time`,
 /// s.
-inline double push(double damping_rate, double time) {
+inline double damped_time(double damping_rate, double time) {
   return damping_rate > 0 ? -std::expm1(-damping_rate * time) / damping_rate : time;
 }
 
 template <class T>
-World<T> world_of(const Scene& scene, double dt) {
+StepConstants<T> step_constants(const Scene& scene, double dt) {
   const auto as_t = [](double value) { return static_cast<T>(value); };
   const double rate = scene.damping ? scene.damping->rate : 0;
   return {.acceleration = as_t(scene.gravity ? scene.gravity->downwards() : 0),
@@ -68,9 +68,9 @@ World<T> world_of(const Scene& scene, double dt) {
           .drag_coefficient = as_t(scene.drag ? scene.drag->coefficient : 0),
           .decay = as_t(std::exp(-rate * dt)),
           .dt = as_t(dt),
-          .push = as_t(push(rate, dt)),
+          .damped_dt = as_t(damped_time(rate, dt)),
           .half_decay = as_t(std::exp(-rate * dt / 2)),
-          .half_push = as_t(push(rate, dt / 2)),
+          .half_damped_dt = as_t(damped_time(rate, dt / 2)),
           .damping_rate = as_t(rate),
           .grade = as_t(scene.gravity ? scene.gravity->grade() : 0),
           .roughness = as_t(scene.floor ? scene.floor->roughness : 0),

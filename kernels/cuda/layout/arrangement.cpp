@@ -42,40 +42,39 @@ Shape shape_for(std::size_t rows, std::uint32_t groups, unsigned largest_block) 
 
 }  // namespace
 
-std::vector<std::uint32_t> places_by_valence(const Body& body) {
-  std::vector<std::uint32_t> valence(body.masses.size()), order(body.masses.size()), place(body.masses.size());
-  for (const Spring& spring : body.springs) ++valence[spring.a], ++valence[spring.b];
+std::vector<std::uint32_t> indices_by_degree(const Body& body) {
+  std::vector<std::uint32_t> degree(body.masses.size()), order(body.masses.size()), index(body.masses.size());
+  for (const Spring& spring : body.springs) ++degree[spring.a], ++degree[spring.b];
   std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return valence[a] > valence[b]; });
-  for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
-  return place;
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return degree[a] > degree[b]; });
+  for (std::uint32_t i = 0; i < order.size(); ++i) index[order[i]] = i;
+  return index;
 }
 
-/// A place below `places` for each mass of `body`: its earlier one where the mass was there before, else one that is
-/// left.
-std::vector<std::uint32_t> places_after(const Body& body, std::uint32_t places,
-                                        std::span<const std::uint32_t> earlier_place,
-                                        std::span<const Vec3> earlier_rest) {
-  std::vector<std::uint32_t> place_of;
-  std::vector<bool> taken(places, false);
+/// A index below `padded_masses` for each mass of `body`: its earlier one where the mass was there before, else one
+/// that is left.
+std::vector<std::uint32_t> indices_after(const Body& body, std::uint32_t padded_masses,
+                                         std::span<const std::uint32_t> earlier_index,
+                                         std::span<const Vec3> earlier_rest) {
+  std::vector<std::uint32_t> index_of;
+  std::vector<bool> taken(padded_masses, false);
   auto next = earlier_rest.begin();
   for (const Mass& mass : body.masses) {
     const auto found = std::find(next, earlier_rest.end(), mass.rest);
-    place_of.push_back(
-        found == earlier_rest.end() ? open : earlier_place[static_cast<std::size_t>(found - earlier_rest.begin())]);
+    index_of.push_back(
+        found == earlier_rest.end() ? open : earlier_index[static_cast<std::size_t>(found - earlier_rest.begin())]);
     if (found != earlier_rest.end()) next = found + 1;
-    // a body that has become smaller has fewer places
-    if (place_of.back() >= places) place_of.back() = open;
-    if (place_of.back() != open) taken[place_of.back()] = true;
+    // a body that has become smaller has fewer padded_masses
+    if (index_of.back() >= padded_masses) index_of.back() = open;
+    if (index_of.back() != open) taken[index_of.back()] = true;
   }
   std::uint32_t free = 0;
-  for (std::uint32_t& place : place_of) {
-    if (place != open) continue;
+  for (std::uint32_t& index : index_of) {
+    if (index != open) continue;
     while (taken[free]) ++free;
-    place = free++;
+    index = free++;
   }
-  return place_of;
+  return index_of;
 }
 
 Outline::Outline(const Body& body) {
@@ -92,23 +91,23 @@ bool Outline::fits(const Body& body) const {
 }
 
 Arrangement::Arrangement(const Body& body, unsigned largest_block)
-    : groups(divided(body.masses.size(), 32)), place_of(places_by_valence(body)) {
+    : groups(divided(body.masses.size(), 32)), index_of(indices_by_degree(body)) {
   const std::vector<std::uint32_t> all_open(body.springs.size(), open);
   arrange(body, largest_block, {all_open, all_open});
 }
 
 Arrangement::Arrangement(const Body& body, unsigned largest_block, const Arrangement& earlier, const Outline& outline)
     : groups(divided(body.masses.size(), 32)),
-      place_of(places_after(body, 32 * groups, earlier.place_of, outline.rest)) {
+      index_of(indices_after(body, 32 * groups, earlier.index_of, outline.rest)) {
   Settled settled;
   settled.owner.reserve(body.springs.size());
   settled.row.reserve(body.springs.size());
   const std::vector<std::uint32_t> group_of_row = earlier.groups_of_rows();
   auto next = outline.ends.begin();
   for (const Spring& spring : body.springs) {
-    const std::uint32_t a = place_of[spring.a], b = place_of[spring.b];
+    const std::uint32_t a = index_of[spring.a], b = index_of[spring.b];
     const auto found = std::find_if(next, outline.ends.end(), [&](const auto& ends) {
-      const std::uint32_t c = earlier.place_of[ends.first], d = earlier.place_of[ends.second];
+      const std::uint32_t c = earlier.index_of[ends.first], d = earlier.index_of[ends.second];
       // without branches, because which of them a new mass has come to is anyone's guess
       return ((c == a) & (d == b)) | ((d == a) & (c == b));
     });
@@ -135,22 +134,22 @@ std::vector<std::uint32_t> Arrangement::groups_of_rows() const {
 
 void Arrangement::arrange(const Body& body, unsigned largest_block, Settled settled) {
   std::vector<std::uint32_t> owner = settled.owner;
-  choose_owners(body, place_of, groups, owner);
+  choose_owners(body, index_of, groups, owner);
   Members members = members_of_groups(body, owner, settled);
   const std::size_t needed = std::accumulate(members.rows.begin(), members.rows.end(), std::size_t{0});
   shape = shape_for(needed, groups, largest_block);
   // rows that are left over stay empty, with the last group that has any
   const auto last = std::find_if(members.rows.rbegin(), members.rows.rend(), [](std::size_t rows) { return rows > 0; });
   if (groups > 0) (last == members.rows.rend() ? members.rows.front() : *last) += shape.slots() / 32 - needed;
-  lay(members);
+  assign_slots(members);
   fill_empty_slots();
 }
 
-/// Counts, for the magic numbers, the springs that lead to each place too.
+/// Counts, for the magic numbers, the springs that lead to each index too.
 Arrangement::Members Arrangement::members_of_groups(const Body& body, const std::vector<std::uint32_t>& owner,
                                                     const Settled& settled) {
   std::vector<std::uint32_t> owned(32 * groups, 0);
-  for (const std::uint32_t place : owner) ++owned[place];
+  for (const std::uint32_t index : owner) ++owned[index];
   Members members{.rows = std::vector<std::size_t>(groups),
                   .first = std::vector<std::size_t>(groups + 1),
                   .links = std::vector<Link>(owner.size()),
@@ -163,7 +162,7 @@ Arrangement::Members Arrangement::members_of_groups(const Body& body, const std:
   magic_numbers.assign(32 * groups, 0);
   std::vector<std::size_t> next = members.first;
   for (std::uint32_t i = 0; i < owner.size(); ++i) {
-    const std::uint32_t other = place_of[body.springs[i].a] + place_of[body.springs[i].b] - owner[i];
+    const std::uint32_t other = index_of[body.springs[i].a] + index_of[body.springs[i].b] - owner[i];
     const std::size_t at = next[owner[i] / 32]++;
     members.links[at] = {static_cast<std::uint8_t>(owner[i] % 32), static_cast<std::uint8_t>(other % 32),
                          owner[i] == settled.owner[i] ? settled.row[i] : open};
@@ -174,10 +173,10 @@ Arrangement::Members Arrangement::members_of_groups(const Body& body, const std:
 }
 
 /// Gives every spring its slot and every row its group.
-void Arrangement::lay(Members& members) {
+void Arrangement::assign_slots(Members& members) {
   slots.resize(shape.slots());
   slot_of.resize(members.slots.size());
-  turns.assign(std::size_t{shape.block} * shape.chunks, 0);
+  group_ends.assign(std::size_t{shape.block} * shape.chunks, 0);
   first_group.assign(shape.block, 0);
   first_row.assign(groups + 1, static_cast<std::uint32_t>(rows()));
   const std::size_t rows_of_warp = std::size_t{shape.chunks} * shape.rows;
@@ -196,8 +195,8 @@ void Arrangement::lay(Members& members) {
     const std::size_t end = row + members.rows[g];
     for (; row < end; ++row)
       if (row % rows_of_warp == 0) first_group[row / rows_of_warp] = g;
-    // no warp turns to another group after its last row
-    if (end % rows_of_warp != 0) turns[(end - 1) / shape.rows] |= 1u << (end - 1) % shape.rows;
+    // no warp group_ends to another group after its last row
+    if (end % rows_of_warp != 0) group_ends[(end - 1) / shape.rows] |= 1u << (end - 1) % shape.rows;
   }
 }
 
@@ -216,15 +215,15 @@ void Arrangement::fill_empty_slots() {
   }
 }
 
-double Arrangement::passes_per_row() const {
-  std::size_t passes = 0;
+double Arrangement::wavefronts_per_row() const {
+  std::size_t wavefronts = 0;
   for (std::size_t row = 0; row < slots.size(); row += 32) {
     std::array<std::uint32_t, 32> in_bank{};
     std::uint32_t most = 0;
     for (std::size_t lane = 0; lane < 32; ++lane) most = std::max(most, ++in_bank[slots[row + lane].other % 32]);
-    passes += most;
+    wavefronts += most;
   }
-  return slots.empty() ? 0 : 32 * static_cast<double>(passes) / static_cast<double>(slots.size());
+  return slots.empty() ? 0 : 32 * static_cast<double>(wavefronts) / static_cast<double>(slots.size());
 }
 
 }  // namespace evodevo::cuda

@@ -11,7 +11,7 @@
 namespace evodevo::cuda {
 
 /// A place for each mass of `body`: by falling number of springs, so that neighbouring lanes have about as many each.
-std::vector<std::uint32_t> places_by_valence(const Body& body);
+std::vector<std::uint32_t> indices_by_degree(const Body& body);
 
 /// The sizes that a kernel is compiled for and a body is arranged to.
 struct Shape {
@@ -58,19 +58,19 @@ struct Arrangement {
 
   Shape shape;
   std::uint32_t groups = 0;
-  std::vector<std::uint32_t> place_of;   ///< [masses] the place of each mass
+  std::vector<std::uint32_t> index_of;   ///< [masses] the place of each mass
   std::vector<Slot> slots;               ///< [warps][chunks][rows][32]
   std::vector<std::uint32_t> slot_of;    ///< [springs]
   std::vector<std::uint32_t> first_row;  ///< [groups + 1] the rows of group g are first_row[g] .. first_row[g + 1] - 1
   std::vector<std::uint32_t> first_group;   ///< [block] the group that each warp begins with
-  std::vector<std::uint32_t> turns;         ///< [block][chunks] bit r: the next group begins after row r
+  std::vector<std::uint32_t> group_ends;    ///< [block][chunks] bit r: the next group begins after row r
   std::vector<std::int32_t> magic_numbers;  ///< [places] how many a place's force sum has to begin with
 
   /// The rows of all warps.
   std::size_t rows() const { return slots.size() / 32; }
 
   /// How many times a warp's access to 32 masses takes, on average; 1 where no two are in one bank.
-  double passes_per_row() const;
+  double wavefronts_per_row() const;
 
  private:
   /// What is settled of a body's springs.
@@ -90,7 +90,7 @@ struct Arrangement {
   std::vector<std::uint32_t> groups_of_rows() const;
   void arrange(const Body& body, unsigned largest_block, Settled settled);
   Members members_of_groups(const Body& body, const std::vector<std::uint32_t>& owner, const Settled& settled);
-  void lay(Members& members);
+  void assign_slots(Members& members);
   void fill_empty_slots();
 };
 

@@ -39,7 +39,7 @@ struct Actuator {
   double stiffness;  ///< as in Entry
   double amplitude;  ///< 1
   double frequency;  ///< Hz
-  double phase;      ///< in half turns
+  double phase;      ///< in half group_ends
 };
 
 /// What the numbers in the codes of a body's computed materials count (material_code.hpp).
@@ -53,16 +53,16 @@ struct CodeUnits {
 
 /// The scene and a body's step in the arithmetic of the simulation. What paper-euler reads comes first, some in pairs.
 template <class T>
-struct World {
+struct StepConstants {
   T acceleration;      ///< of gravity along -z, m/s^2
   T floor_stiffness;   ///< N/m
   T friction_dt;       ///< friction coefficient times dt, s
   T drag_coefficient;  ///< kg/m
   T decay;             ///< exp(-damping rate dt): what damping leaves of a velocity
   T dt;                ///< s
-  T push;              ///< (1 - decay)/rate, s: what a constant acceleration adds to it meanwhile
+  T damped_dt;         ///< (1 - decay)/rate, s: what a constant acceleration adds to it meanwhile
   T half_decay;        ///< both for half a step
-  T half_push;         ///< s
+  T half_damped_dt;    ///< s
   T damping_rate;      ///< 1/s
   T grade;             ///< Gravity::grade()
   T roughness;         ///< m
@@ -72,7 +72,7 @@ struct World {
 };
 
 /// Where a run stands that may be a piece of one: Course.
-struct Stretch {
+struct RunPiece {
   double origin;             ///< State::time where the whole run began, s
   std::uint64_t first_step;  ///< that the whole run had made before
   std::uint64_t steps;       ///< to make
@@ -103,17 +103,17 @@ struct Motion {
 template <class T>
 struct ResidentBody {
   using Integer = typename FixedPoint<T>::Integer;
-  World<T> world;
+  StepConstants<T> constants;
   CodeUnits<T> units;                ///< where materials are computed
   const Record<T>* records;          ///< [warps][chunks][rows][lanes]
   const std::uint32_t* waves;        ///< likewise, MaterialCode::wave where materials are computed
   const std::uint32_t* first_group;  ///< [block's warps] whose masses a warp's first row belongs to
-  const std::uint32_t* turns;        ///< [block's warps][chunks] bit r: the next group begins after row r
+  const std::uint32_t* group_ends;   ///< [block's warps][chunks] bit r: the next group begins after row r
   const Actuator* actuators;         ///< [entries]; entry 0 is no material
-  const T* mass;                     ///< [places] kg
-  const T* inverse_mass;             ///< [places] 1/kg, 0 for what never moves
-  const Integer* start;              ///< [places] what a force sum starts from, so that the magic numbers cancel
-  Motion<T> motion;                  ///< [places]
+  const T* mass;                     ///< [padded masses] kg
+  const T* inverse_mass;             ///< [padded masses] 1/kg, 0 for what never moves
+  const Integer* start;              ///< [padded masses] what a force sum starts from, so that the magic numbers cancel
+  Motion<T> motion;                  ///< [padded masses]
   double* stress;                    ///< [slots] sum of |force|, N
   T* recent_stress;                  ///< [slots] of it what is not yet in `stress`, units; where chunked
   // [slots] where they are recorded, by reductions that nobody waits for; a slot has one writer
@@ -121,7 +121,7 @@ struct ResidentBody {
   double* powers;    ///< sum of power, units m/s
   double* tensions;  ///< sum of force, units
   Answer* answer;
-  Stretch stretch;
+  RunPiece piece;
   double resolution;                             ///< N, a power of two
   T largest_force;                               ///< units of the resolution; a larger one leaves the range
   std::uint32_t groups, warps, chunks, entries;  ///< warps: that have springs
@@ -159,7 +159,7 @@ struct alignas(4 * sizeof(T)) Point {
 /// number of springs, so that those of a group have about as many.
 template <class T>
 struct StreamedBody {
-  World<T> world;
+  StepConstants<T> constants;
   const std::uint32_t* first_row;        ///< [groups of 32 masses + 1]
   const Joint<T>* joints;                ///< [rows][lanes]; a mass's joints are in the rows of its group, in its lane
   const ColouredSpring<T>* coloured;     ///< by colour (spring_colours()); where the method asks for them
@@ -167,7 +167,7 @@ struct StreamedBody {
   const Actuator* actuators;             ///< [entries]; stiffness in N/m
   const T* mass;                         ///< [masses] kg
   const T* inverse_mass;                 ///< [masses] 1/kg, 0 for what never moves
-  Point<T>* places;                      ///< [2][masses] m; a pass reads one half and writes the other
+  Point<T>* positions;                   ///< [2][masses] m; a pass reads one half and writes the other
   Point<T>* velocities;                  ///< [masses] m/s
   T* scratch;                            ///< the method's own, 16 bytes aligned
   Entry<T>* table;                       ///< [rows][entries] from one check to the next
@@ -179,7 +179,7 @@ struct StreamedBody {
   double* powers;    ///< [rows][lanes] sum of power, W
   double* tensions;  ///< [rows][lanes] sum of force, N
   Answer* answer;
-  Stretch stretch;
+  RunPiece piece;
   std::uint32_t masses, entries, colours;
   std::uint32_t on_chip;  ///< whether MethodForm::points_on_chip lie in shared memory
 };

@@ -6,13 +6,13 @@
 namespace evodevo::cuda {
 namespace {
 
-constexpr int passes = 4;    // over springs without an owner; more take longer than they gain
+constexpr int sweeps = 4;    // over springs without an owner; more take longer than they gain
 constexpr int penalty = 16;  // for each spring above a mass's even share, in springs of a bank
 
 /// How many springs each mass owns, and how many of each group's lead to each bank.
-class Loads {
+class Distribution {
  public:
-  Loads(std::uint32_t groups, std::size_t masses, std::size_t springs)
+  Distribution(std::uint32_t groups, std::size_t masses, std::size_t springs)
       : lane_(32 * groups), bank_(32 * groups), even_share_(static_cast<int>(springs / masses) + 1) {}
 
   /// What one more spring of `owner` costs: it competes with others in the owner's lane and in the bank of `other`.
@@ -33,39 +33,40 @@ class Loads {
 
 }  // namespace
 
-void choose_owners(const Body& body, std::span<const std::uint32_t> place_of, std::uint32_t groups,
+void choose_owners(const Body& body, std::span<const std::uint32_t> index_of, std::uint32_t groups,
                    std::span<std::uint32_t> owner) {
-  Loads loads(groups, body.masses.size(), body.springs.size());
+  Distribution distribution(groups, body.masses.size(), body.springs.size());
   std::vector<std::uint32_t> other(owner.size());
-  const auto turn_over_where_cheaper = [&](std::size_t i) {
-    const bool cheaper = loads.cost_of_adding(other[i], owner[i]) < loads.cost_of_adding(owner[i], other[i]);
+  const auto swap_ends_where_cheaper = [&](std::size_t i) {
+    const bool cheaper =
+        distribution.cost_of_adding(other[i], owner[i]) < distribution.cost_of_adding(owner[i], other[i]);
     if (cheaper) std::swap(owner[i], other[i]);
     return cheaper;
   };
   std::vector<std::size_t> undecided;
   for (std::size_t i = 0; i < owner.size(); ++i) {
-    const std::uint32_t a = place_of[body.springs[i].a], b = place_of[body.springs[i].b];
+    const std::uint32_t a = index_of[body.springs[i].a], b = index_of[body.springs[i].b];
     if (owner[i] == open) {
       undecided.push_back(i);
       owner[i] = a;
     } else {
-      loads.add(owner[i], a + b - owner[i], 1);
+      distribution.add(owner[i], a + b - owner[i], 1);
     }
     other[i] = a + b - owner[i];
   }
   for (const std::size_t i : undecided) {
-    turn_over_where_cheaper(i);
-    loads.add(owner[i], other[i], 1);
+    swap_ends_where_cheaper(i);
+    distribution.add(owner[i], other[i], 1);
   }
   // a spring changes hands where that is cheaper
-  const int last_pass = 2 * undecided.size() < owner.size() ? 1 : passes;
+  const int last_sweep = 2 * undecided.size() < owner.size() ? 1 : sweeps;
   bool changed = true;
-  for (int pass = 0; pass < last_pass && changed; ++pass) {
+  for (int sweep = 0; sweep < last_sweep && changed; ++sweep) {
     changed = false;
     for (std::size_t i = 0; i < owner.size(); ++i) {
-      loads.add(owner[i], other[i], -1);
-      changed |= turn_over_where_cheaper(i);
-      loads.add(owner[i], other[i], 1);
+      distribution.add(owner[i], other[i], -1);
+      changed |= swap_ends_where_cheaper(i);
+      distribution.add(owner[i], other[i], 1);
     }
   }
 }

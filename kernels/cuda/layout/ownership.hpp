@@ -12,9 +12,9 @@ namespace evodevo::cuda {
 inline constexpr std::uint32_t open = 0xffffffff;
 
 /// Chooses the place of the mass that owns each spring. Spreads the springs evenly over the masses, which are a group's
-/// lanes, and over the banks that each group's springs lead to. `place_of` gives each mass's place. Where an owner is
+/// lanes, and over the banks that each group's springs lead to. `index_of` gives each mass's place. Where an owner is
 /// given in `owner`, it is one of the spring's two and hardly needs to change.
-void choose_owners(const Body& body, std::span<const std::uint32_t> place_of, std::uint32_t groups,
+void choose_owners(const Body& body, std::span<const std::uint32_t> index_of, std::uint32_t groups,
                    std::span<std::uint32_t> owner);
 
 }  // namespace evodevo::cuda

@@ -15,8 +15,8 @@ constexpr std::size_t largest_offset = 0xffff;
 std::size_t aligned(std::size_t size) { return (size + 15) / 16 * 16; }
 
 template <class T>
-std::size_t offset_of_place(std::uint32_t place) {
-  return place / lanes * group_bytes<T> + place % lanes * sizeof(T);
+std::size_t offset_of_mass(std::uint32_t index) {
+  return index / lanes * group_bytes<T> + index % lanes * sizeof(T);
 }
 
 template <class T>
@@ -57,7 +57,7 @@ ForceRange force_range(const Body& body, const State& state, const Scene& scene)
     for (const Mass& mass : body.masses) weight += mass.mass * std::abs(scene.gravity->acceleration);
   double largest = std::max(weight, stopping_force(body, state)), doubled = 0;
   bool driven = false;
-  std::vector<std::uint32_t> valence(body.masses.size());
+  std::vector<std::uint32_t> degree(body.masses.size());
   for (const Spring& spring : body.springs) {
     const Material& material = body.materials[spring.material];
     const double length = spring.rest_length * (1 + std::abs(material.amplitude));
@@ -65,11 +65,11 @@ ForceRange force_range(const Body& body, const State& state, const Scene& scene)
     doubled = std::max(doubled, std::abs(material.stiffness) * length);
     largest = std::max(largest, std::abs(material.stiffness) * 2 * std::abs(strain));
     driven = driven || material.amplitude * material.frequency != 0;
-    ++valence[spring.a], ++valence[spring.b];
+    ++degree[spring.a], ++degree[spring.b];
   }
   largest = std::max(largest, driven ? 2 * doubled : doubled);
   ForceRange range;
-  const std::uint32_t terms = valence.empty() ? 1 : std::max(1u, *std::max_element(valence.begin(), valence.end()));
+  const std::uint32_t terms = degree.empty() ? 1 : std::max(1u, *std::max_element(degree.begin(), degree.end()));
   // one percent for the rounding of the force itself
   const double units = 0.99 * std::min(FixedPoint<T>::largest_term, FixedPoint<T>::largest_sum / terms);
   if (largest > 0 && std::isfinite(largest)) range.resolution = std::exp2(std::ceil(std::log2(largest / units)));
@@ -140,17 +140,17 @@ std::size_t Resident<T>::waves_in(std::size_t slots) const {
 
 template <class T>
 void Resident<T>::reserve() {
-  const std::size_t places = lanes * arrangement().groups;
+  const std::size_t padded_masses = lanes * arrangement().groups;
   Extent input, state, sums;
   records_ = input.add<Record<T>>(arrangement().slots.size());
   waves_ = input.add<std::uint32_t>(waves_in(arrangement().slots.size()));
   first_group_ = input.add<std::uint32_t>(arrangement().first_group.size());
-  turns_ = input.add<std::uint32_t>(arrangement().turns.size());
+  group_ends_ = input.add<std::uint32_t>(arrangement().group_ends.size());
   actuators_ = input.add<Actuator>(task_->body->materials.size() + 1);
-  mass_ = input.add<T>(places);
-  inverse_mass_ = input.add<T>(places);
-  start_ = input.add<typename FixedPoint<T>::Integer>(places);
-  for (Section<T>& plane : motion_) plane = state.add<T>(places);
+  mass_ = input.add<T>(padded_masses);
+  inverse_mass_ = input.add<T>(padded_masses);
+  start_ = input.add<typename FixedPoint<T>::Integer>(padded_masses);
+  for (Section<T>& plane : motion_) plane = state.add<T>(padded_masses);
   answer_ = state.add<Answer>(1);
   stress_ = sums.add<double>(features_.stress ? arrangement().slots.size() : 0);
   recent_stress_ = sums.add<T>(features_.stress && form().chunked ? arrangement().slots.size() : 0);
@@ -187,7 +187,7 @@ template <class T>
 void Resident<T>::pack_records(Record<T>* to, const MaterialUnits& units) const {
   using Integer = typename FixedPoint<T>::Integer;
   const std::size_t unit = form().wide_offsets ? sizeof(T) : 1;
-  const auto offset_of = [&](std::uint32_t place) { return static_cast<Integer>(offset_of_place<T>(place) / unit); };
+  const auto offset_of = [&](std::uint32_t index) { return static_cast<Integer>(offset_of_mass<T>(index) / unit); };
   const std::vector<Integer> materials = materials_in_records(units);
   const std::vector<Arrangement::Slot>& slots = arrangement().slots;
   for (std::size_t slot = 0; slot < slots.size(); ++slot)
@@ -210,19 +210,19 @@ void Resident<T>::pack_waves(std::uint32_t* to, const MaterialUnits& units) cons
 
 template <class T>
 void Resident<T>::pack_masses(const Regions& host) const {
-  const std::size_t places = lanes * arrangement().groups;
-  std::fill_n(mass_.in(host.input), places, T(0));
-  std::fill_n(inverse_mass_.in(host.input), places, T(0));
-  for (const Section<T>& plane : motion_) std::fill_n(plane.in(host.state), places, T(0));
+  const std::size_t padded_masses = lanes * arrangement().groups;
+  std::fill_n(mass_.in(host.input), padded_masses, T(0));
+  std::fill_n(inverse_mass_.in(host.input), padded_masses, T(0));
+  for (const Section<T>& plane : motion_) std::fill_n(plane.in(host.state), padded_masses, T(0));
   for (std::size_t i = 0; i < task_->body->masses.size(); ++i) {
-    const std::uint32_t place = arrangement().place_of[i];
+    const std::uint32_t index = arrangement().index_of[i];
     const double mass = task_->body->masses[i].mass;
-    mass_.in(host.input)[place] = static_cast<T>(mass);
+    mass_.in(host.input)[index] = static_cast<T>(mass);
     // a mass of 0 kg stays where it is
-    inverse_mass_.in(host.input)[place] = static_cast<T>(mass > 0 ? 1 / mass : 0);
+    inverse_mass_.in(host.input)[index] = static_cast<T>(mass > 0 ? 1 / mass : 0);
     const Vec3 x = task_->state->position[i], v = task_->state->velocity[i];
     const double numbers[] = {x.x, x.y, x.z, v.x, v.y, v.z};
-    for (std::size_t c = 0; c < 6; ++c) motion_[c].in(host.state)[place] = static_cast<T>(numbers[c]);
+    for (std::size_t c = 0; c < 6; ++c) motion_[c].in(host.state)[index] = static_cast<T>(numbers[c]);
   }
 }
 
@@ -234,7 +234,7 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
   if (waves_in(slots()) > 0) pack_waves(waves_.in(host.input), units);
   pack_masses(host);
   std::copy(arrangement().first_group.begin(), arrangement().first_group.end(), first_group_.in(host.input));
-  std::copy(arrangement().turns.begin(), arrangement().turns.end(), turns_.in(host.input));
+  std::copy(arrangement().group_ends.begin(), arrangement().group_ends.end(), group_ends_.in(host.input));
   std::transform(arrangement().magic_numbers.begin(), arrangement().magic_numbers.end(), start_.in(host.input),
                  [](std::int32_t count) { return static_cast<Integer>(count) * FixedPoint<T>::magic_bits; });
   actuators_.in(host.input)[0] = {};
@@ -242,15 +242,15 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
   std::transform(materials.begin(), materials.end(), actuators_.in(host.input) + 1,
                  [&](const Material& material) { return actuator_of(material, range().resolution); });
   *answer_.in(host.state) = {.fallen = task_->course->fallen};
-  return {.world = world_of<T>(scene, task_->dt),
+  return {.constants = step_constants<T>(scene, task_->dt),
           .units = {.stiffness = static_cast<T>(units.stiffness / range().resolution),
                     .amplitude = static_cast<T>(units.amplitude / (1 << amplitude_shift)),
-                    .angular_frequency = static_cast<T>(turn * units.frequency),
+                    .angular_frequency = static_cast<T>(full_turn * units.frequency),
                     .frequency = units.frequency},
           .records = records_.in(device.input),
           .waves = waves_.in(device.input),
           .first_group = first_group_.in(device.input),
-          .turns = turns_.in(device.input),
+          .group_ends = group_ends_.in(device.input),
           .actuators = actuators_.in(device.input),
           .mass = mass_.in(device.input),
           .inverse_mass = inverse_mass_.in(device.input),
@@ -263,7 +263,7 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
           .powers = powers_.in(device.sums),
           .tensions = tensions_.in(device.sums),
           .answer = answer_.in(device.state),
-          .stretch = stretch_of(*task_),
+          .piece = run_piece_of(*task_),
           .resolution = range().resolution,
           .largest_force = static_cast<T>(range().largest / range().resolution),
           .groups = arrangement().groups,
@@ -282,13 +282,13 @@ void Resident<T>::unpack(const Regions& host, Recording recording, Task& task) c
   if (!answer_.in(host.state)->diverged) unpack_springs(host, task);
   read_answer(*answer_.in(host.state), recording, task);
   task.preparation = arranged_;
-  const auto at = [&](std::size_t plane, std::uint32_t place) -> double {
-    return motion_[plane].in(host.state)[place];
+  const auto at = [&](std::size_t plane, std::uint32_t index) -> double {
+    return motion_[plane].in(host.state)[index];
   };
   for (std::size_t i = 0; i < task.body->masses.size(); ++i) {
-    const std::uint32_t place = arrangement().place_of[i];
-    task.state->position[i] = {at(0, place), at(1, place), at(2, place)};
-    task.state->velocity[i] = {at(3, place), at(4, place), at(5, place)};
+    const std::uint32_t index = arrangement().index_of[i];
+    task.state->position[i] = {at(0, index), at(1, index), at(2, index)};
+    task.state->velocity[i] = {at(3, index), at(4, index), at(5, index)};
   }
 }
 

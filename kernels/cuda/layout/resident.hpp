@@ -90,7 +90,7 @@ class Resident {
   Sizes sizes_;
   Section<Record<T>> records_;
   Section<std::uint32_t> waves_;
-  Section<std::uint32_t> first_group_, turns_;
+  Section<std::uint32_t> first_group_, group_ends_;
   Section<Actuator> actuators_;
   Section<T> mass_, inverse_mass_;
   Section<typename FixedPoint<T>::Integer> start_;

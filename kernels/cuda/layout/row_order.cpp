@@ -28,7 +28,7 @@ class Colouring {
   }
 
   /// Gives link `i` a row in which neither its lane nor its bank has another; false if one of them is full.
-  bool place(int i) {
+  bool assign(int i) {
     const int lane = links_[i].lane, bank = 32 + links_[i].bank;
     if (free_[lane] == 0 || free_[bank] == 0) return false;
     std::uint64_t common = free_[lane] & free_[bank];
@@ -110,7 +110,7 @@ void choose_rows(std::span<Link> links, std::size_t rows) {
   for (int i = 0; i < static_cast<int>(links.size()); ++i)
     if (links[i].row >= rows || !colouring.keep(i)) unplaced.push_back(i);
   for (const int i : unplaced)
-    if (!colouring.place(i)) left.push_back(i);
+    if (!colouring.assign(i)) left.push_back(i);
   for (const int i : left) colouring.squeeze(i);
 }
 

@@ -15,21 +15,21 @@ Streamed<T>::Streamed(const Task& task, const Features& features, std::size_t la
     : task_(&task),
       features_(features),
       chip_bytes_(form_of(features.method).points_on_chip * sizeof(Point<T>) * task.body->masses.size()),
-      place_of_(places_by_valence(*task.body)),
+      index_of_(indices_by_degree(*task.body)),
       first_row_(1),
       owned_joint_(task.body->springs.size()) {
   if (chip_bytes_ > largest_chip) chip_bytes_ = 0;
   const Body& body = *task.body;
-  std::vector<std::uint32_t> valence(body.masses.size());
-  for (const Spring& spring : body.springs) ++valence[place_of_[spring.a]], ++valence[place_of_[spring.b]];
+  std::vector<std::uint32_t> degree(body.masses.size());
+  for (const Spring& spring : body.springs) ++degree[index_of_[spring.a]], ++degree[index_of_[spring.b]];
   // the first mass of a group has the most springs
-  for (std::size_t i = 0; i < valence.size(); i += lanes) first_row_.push_back(first_row_.back() + valence[i]);
+  for (std::size_t i = 0; i < degree.size(); i += lanes) first_row_.push_back(first_row_.back() + degree[i]);
 
   std::vector<std::uint32_t> next(body.masses.size());
   for (std::size_t i = 0; i < owned_joint_.size(); ++i) {
-    const std::uint32_t a = place_of_[body.springs[i].a];
+    const std::uint32_t a = index_of_[body.springs[i].a];
     owned_joint_[i] = joint_at(a, next[a]++);
-    ++next[place_of_[body.springs[i].b]];
+    ++next[index_of_[body.springs[i].b]];
   }
   if (form_of(features.method).coloured) colour_ = spring_colours(body);
   if (!colour_.empty()) colours_ = *std::max_element(colour_.begin(), colour_.end()) + 1;
@@ -48,7 +48,7 @@ void Streamed<T>::reserve() {
   actuators_ = input.add<Actuator>(entries);
   mass_ = input.add<T>(masses());
   inverse_mass_ = input.add<T>(masses());
-  places_ = state.add<Point<T>>(2 * masses());
+  positions_ = state.add<Point<T>>(2 * masses());
   velocities_ = state.add<Point<T>>(masses());
   answer_ = state.add<Answer>(1);
   table_ = sums.add<Entry<T>>(table);
@@ -71,22 +71,22 @@ unsigned Streamed<T>::threads() const {
 }
 
 template <class T>
-unsigned Streamed<T>::steps_of_leg(std::uint64_t leg) const {
-  if (leg >= legs()) return 0;
-  const std::uint64_t begin = leg == 0 ? 0 : leg * guard_interval - since_check();
-  return static_cast<unsigned>(std::min(task_->steps, (leg + 1) * guard_interval - since_check()) - begin);
+unsigned Streamed<T>::steps_of_span(std::uint64_t span) const {
+  if (span >= check_spans()) return 0;
+  const std::uint64_t begin = span == 0 ? 0 : span * guard_interval - since_check();
+  return static_cast<unsigned>(std::min(task_->steps, (span + 1) * guard_interval - since_check()) - begin);
 }
 
 template <class T>
 void Streamed<T>::pack_joints(const Regions& host) const {
   Joint<T>* to = joints_.in(host.input);
   // an empty joint leads to its own mass and has entry 0, no material
-  for (std::uint32_t place = 0; place < lanes * (first_row_.size() - 1); ++place)
-    for (std::uint32_t row = 0; row < first_row_[place / lanes + 1] - first_row_[place / lanes]; ++row)
-      to[joint_at(place, row)] = {T(0), std::min(place, masses() - 1), 0, 0};
+  for (std::uint32_t index = 0; index < lanes * (first_row_.size() - 1); ++index)
+    for (std::uint32_t row = 0; row < first_row_[index / lanes + 1] - first_row_[index / lanes]; ++row)
+      to[joint_at(index, row)] = {T(0), std::min(index, masses() - 1), 0, 0};
   std::vector<std::uint32_t> next(masses());
   for (const Spring& spring : task_->body->springs) {
-    const std::uint32_t a = place_of_[spring.a], b = place_of_[spring.b];
+    const std::uint32_t a = index_of_[spring.a], b = index_of_[spring.b];
     const auto length = static_cast<T>(spring.rest_length);
     to[joint_at(a, next[a]++)] = {length, b, spring.material + 1, 1};
     to[joint_at(b, next[b]++)] = {length, a, spring.material + 1, 0};
@@ -103,8 +103,8 @@ void Streamed<T>::pack_colours(const Regions& host) const {
   std::vector<std::uint32_t> next(first, first + colours_);
   for (std::uint32_t i = 0; i < colour_.size(); ++i) {
     const Spring& spring = task_->body->springs[i];
-    coloured_.in(host.input)[next[colour_[i]]++] = {static_cast<T>(spring.rest_length), place_of_[spring.a],
-                                                    place_of_[spring.b], spring.material + 1, owned_joint_[i]};
+    coloured_.in(host.input)[next[colour_[i]]++] = {static_cast<T>(spring.rest_length), index_of_[spring.a],
+                                                    index_of_[spring.b], spring.material + 1, owned_joint_[i]};
   }
 }
 
@@ -122,16 +122,16 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
     return Point<T>{static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z), T(0)};
   };
   for (std::size_t i = 0; i < body.masses.size(); ++i) {
-    const std::uint32_t place = place_of_[i];
+    const std::uint32_t index = index_of_[i];
     const double mass = body.masses[i].mass;
-    mass_.in(host.input)[place] = static_cast<T>(mass);
+    mass_.in(host.input)[index] = static_cast<T>(mass);
     // a mass of 0 kg stays where it is
-    inverse_mass_.in(host.input)[place] = static_cast<T>(mass > 0 ? 1 / mass : 0);
-    places_.in(host.state)[place] = point(task_->state->position[i]);
-    velocities_.in(host.state)[place] = point(task_->state->velocity[i]);
+    inverse_mass_.in(host.input)[index] = static_cast<T>(mass > 0 ? 1 / mass : 0);
+    positions_.in(host.state)[index] = point(task_->state->position[i]);
+    velocities_.in(host.state)[index] = point(task_->state->velocity[i]);
   }
   *answer_.in(host.state) = {.fallen = task_->course->fallen};
-  return {.world = world_of<T>(scene, task_->dt),
+  return {.constants = step_constants<T>(scene, task_->dt),
           .first_row = rows_.in(device.input),
           .joints = joints_.in(device.input),
           .coloured = coloured_.in(device.input),
@@ -139,7 +139,7 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
           .actuators = actuators_.in(device.input),
           .mass = mass_.in(device.input),
           .inverse_mass = inverse_mass_.in(device.input),
-          .places = places_.in(device.state),
+          .positions = positions_.in(device.state),
           .velocities = velocities_.in(device.state),
           .scratch = scratch_.in(device.scratch),
           .table = table_.in(device.sums),
@@ -150,7 +150,7 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
           .powers = powers_.in(device.sums),
           .tensions = tensions_.in(device.sums),
           .answer = answer_.in(device.state),
-          .stretch = stretch_of(*task_),
+          .piece = run_piece_of(*task_),
           .masses = masses(),
           .entries = static_cast<std::uint32_t>(body.materials.size() + 1),
           .colours = colours_,
@@ -162,10 +162,10 @@ void Streamed<T>::unpack(const Regions& host, Recording recording, Task& task) c
   const Answer& answer = *answer_.in(host.state);
   const std::uint64_t half = form_of(features_.method).passes(answer.steps, since_check()) % 2;
   read_answer(answer, recording, task);
-  const Point<T>* places = places_.in(host.state) + half * masses();
+  const Point<T>* positions = positions_.in(host.state) + half * masses();
   const Point<T>* velocities = velocities_.in(host.state);
   for (std::size_t i = 0; i < masses(); ++i) {
-    const Point<T>&x = places[place_of_[i]], &v = velocities[place_of_[i]];
+    const Point<T>&x = positions[index_of_[i]], &v = velocities[index_of_[i]];
     task.state->position[i] = {x.x, x.y, x.z};
     task.state->velocity[i] = {v.x, v.y, v.z};
   }

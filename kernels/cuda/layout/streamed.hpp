@@ -23,8 +23,8 @@ class Streamed {
   std::uint32_t masses() const { return static_cast<std::uint32_t>(task_->body->masses.size()); }
   const Features& features() const { return features_; }
   /// From one check to the next, or from the beginning or to the end of the task's steps.
-  std::uint64_t legs() const { return (since_check() + task_->steps + guard_interval - 1) / guard_interval; }
-  unsigned steps_of_leg(std::uint64_t leg) const;
+  std::uint64_t check_spans() const { return (since_check() + task_->steps + guard_interval - 1) / guard_interval; }
+  unsigned steps_of_span(std::uint64_t span) const;
 
   /// Writes the body into its part of the host's regions; `device` is where these will be on the device.
   StreamedBody<T> pack(const Regions& host, const Regions& device, const Scene& scene) const;
@@ -38,9 +38,9 @@ class Streamed {
   void pack_joints(const Regions& host) const;
   void pack_colours(const Regions& host) const;
   void unpack_springs(const Regions& host, Task& task) const;
-  /// Where the `row`-th joint of the mass at `place` lies.
-  std::uint32_t joint_at(std::uint32_t place, std::uint32_t row) const {
-    return lanes * (first_row_[place / lanes] + row) + place % lanes;
+  /// Where the `row`-th joint of the mass at `index` lies.
+  std::uint32_t joint_at(std::uint32_t index, std::uint32_t row) const {
+    return lanes * (first_row_[index / lanes] + row) + index % lanes;
   }
   std::size_t joints() const { return std::size_t{lanes} * first_row_.back(); }
 
@@ -48,7 +48,7 @@ class Streamed {
   Features features_;
   Sizes sizes_;
   std::size_t chip_bytes_;
-  std::vector<std::uint32_t> place_of_;     ///< [masses] by falling number of springs
+  std::vector<std::uint32_t> index_of_;     ///< [masses] by falling number of springs
   std::vector<std::uint32_t> first_row_;    ///< [groups of 32 masses + 1]
   std::vector<std::uint32_t> owned_joint_;  ///< [springs] the one at end a, where the spring's stress is summed
   std::vector<std::uint32_t> colour_;       ///< [springs] where the method asks for it
@@ -60,7 +60,7 @@ class Streamed {
   Section<std::uint32_t> first_of_colour_;
   Section<Actuator> actuators_;
   Section<T> mass_, inverse_mass_;
-  Section<Point<T>> places_, velocities_;
+  Section<Point<T>> positions_, velocities_;
   Section<Answer> answer_;
   Section<Entry<T>> table_;
   Section<T> rates_;

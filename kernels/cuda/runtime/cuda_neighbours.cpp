@@ -26,7 +26,7 @@ struct Job {
   std::size_t index;
   PointCloud cloud;
 
-  std::size_t points() const { return cloud.places.size(); }
+  std::size_t points() const { return cloud.positions.size(); }
   std::size_t neighbours() const { return std::min<std::size_t>(cloud.k, points() - 1); }
   /// There are no more: every point brings as many, and each pair of points is one pair.
   std::size_t most_pairs() const { return std::min(points() * neighbours(), points() * (points() - 1) / 2); }
@@ -55,10 +55,10 @@ struct Kernels {
   explicit Kernels(cuda::KernelStore& store)
       : find_reach(store.get(source, "evodevo_find_reach", {})),
         count_pairs(store.get(source, "evodevo_count_pairs", {})),
-        place_pairs(store.get(source, "evodevo_place_pairs", {})),
+        find_first_pairs(store.get(source, "evodevo_find_first_pairs", {})),
         write_pairs(store.get(source, "evodevo_write_pairs", {})) {}
 
-  cudaKernel_t find_reach, count_pairs, place_pairs, write_pairs;
+  cudaKernel_t find_reach, count_pairs, find_first_pairs, write_pairs;
 };
 
 /// Clouds that are searched together.
@@ -81,7 +81,7 @@ class Portion {
 
   void find(const NeighbourSearch::Use& use) {
     {
-      const cuda::Quiet quiet({&stream_, 1});
+      const cuda::StreamsAtRest at_rest({&stream_, 1});
       pack();
       count();
       write();
@@ -111,14 +111,14 @@ class Portion {
     }
     std::byte* host = arrays_->host();
     workers_.for_each(jobs_.size(), [&](std::size_t i) {
-      const std::span<const Vec3> places = jobs_[i].cloud.places;
+      const std::span<const Vec3> positions = jobs_[i].cloud.positions;
       double* const to[] = {layout_.axes[0].in(host) + clouds()[i].first_point,
                             layout_.axes[1].in(host) + clouds()[i].first_point,
                             layout_.axes[2].in(host) + clouds()[i].first_point};
-      for (std::size_t p = 0; p < places.size(); ++p)
-        to[0][p] = places[p].x, to[1][p] = places[p].y, to[2][p] = places[p].z;
+      for (std::size_t p = 0; p < positions.size(); ++p)
+        to[0][p] = positions[p].x, to[1][p] = positions[p].y, to[2][p] = positions[p].z;
       // rounding keeps the order, so that no distance within the box comes out larger
-      const Box box = bounding_box(places);
+      const Box box = bounding_box(positions);
       clouds()[i].largest_square = dot(box.high - box.low, box.high - box.low);
     });
   }
@@ -162,7 +162,7 @@ class Portion {
                 "copying points to the GPU");
     launch(kernels_.find_reach, layout_.points);
     launch(kernels_.count_pairs, layout_.points);
-    launch(kernels_.place_pairs, jobs_.size());
+    launch(kernels_.find_first_pairs, jobs_.size());
     copy_clouds(cudaMemcpyDeviceToHost);
     cuda::check(cudaStreamSynchronize(stream_), "finding neighbours on the GPU");
   }
@@ -199,7 +199,7 @@ class CudaNeighbourSearch final : public NeighbourSearch {
     std::vector<Job> jobs;
     std::vector<std::size_t> without_pairs;
     for (std::size_t i = 0; i < clouds.size(); ++i) {
-      if (clouds[i].places.size() < 2 || clouds[i].k == 0)
+      if (clouds[i].positions.size() < 2 || clouds[i].k == 0)
         without_pairs.push_back(i);
       else
         jobs.push_back({i, clouds[i]});

@@ -24,46 +24,46 @@ constexpr int batches_at_once = 16;       // one moves, others are prepared, rea
 constexpr double share_of_memory = 0.8;
 
 /// What a batch has of the device to itself.
-struct Lane {
-  Lane() {
+struct BatchResources {
+  BatchResources() {
     for (std::size_t i = 0; i < most_streams; ++i) urgent.emplace_back(true), patient.emplace_back();
   }
 
   std::vector<cuda::Stream> urgent, patient;
 };
 
-/// Lanes that are made when they are needed and used again.
-class Lanes {
+/// BatchResourcePool that are made when they are needed and used again.
+class BatchResourcePool {
  public:
-  /// A lane until its end.
+  /// A resources until its end.
   class Loan {
    public:
-    explicit Loan(Lanes& lanes) : lanes_(lanes), lane_(lanes.take()) {}
+    explicit Loan(BatchResourcePool& pool) : batch_resources_(pool), resources_(pool.take()) {}
     Loan(const Loan&) = delete;
     Loan& operator=(const Loan&) = delete;
-    ~Loan() { lanes_.give_back(std::move(lane_)); }
-    Lane* operator->() const { return lane_.get(); }
+    ~Loan() { batch_resources_.give_back(std::move(resources_)); }
+    BatchResources* operator->() const { return resources_.get(); }
 
    private:
-    Lanes& lanes_;
-    std::unique_ptr<Lane> lane_;
+    BatchResourcePool& batch_resources_;
+    std::unique_ptr<BatchResources> resources_;
   };
 
  private:
-  std::unique_ptr<Lane> take() {
+  std::unique_ptr<BatchResources> take() {
     const std::lock_guard lock(mutex_);
-    if (free_.empty()) return std::make_unique<Lane>();
-    std::unique_ptr<Lane> lane = std::move(free_.back());
+    if (free_.empty()) return std::make_unique<BatchResources>();
+    std::unique_ptr<BatchResources> resources = std::move(free_.back());
     free_.pop_back();
-    return lane;
+    return resources;
   }
-  void give_back(std::unique_ptr<Lane> lane) {
+  void give_back(std::unique_ptr<BatchResources> resources) {
     const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(lane));
+    free_.push_back(std::move(resources));
   }
 
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Lane>> free_;
+  std::vector<std::unique_ptr<BatchResources>> free_;
 };
 
 template <class T>
@@ -85,7 +85,7 @@ class DeviceSimulator final : public CudaSimulator {
     double seconds = 0;
     std::size_t portions = 0;
     for (std::span<cuda::Plan<T>> left = plans; !left.empty(); ++portions)
-      left = left.subspan(simulate_some(left, run, seconds));
+      left = left.subspan(simulate_next_portion(left, run, seconds));
     const std::lock_guard lock(mutex_);
     device_seconds_ = seconds;
     most_portions_ = std::max(most_portions_, portions);
@@ -124,7 +124,7 @@ class DeviceSimulator final : public CudaSimulator {
       }
       Course course = begun(task);
       course.steps += task.steps;
-      take_course(task, course);
+      apply_course(task, course);
     }
     return live;
   }
@@ -149,22 +149,22 @@ class DeviceSimulator final : public CudaSimulator {
 
   /// Simulates as many of the next plans as the device's memory bears together; returns how many. `seconds` grows by
   /// the time of the kernels.
-  std::size_t simulate_some(std::span<cuda::Plan<T>> plans, const cuda::Run& run, double& seconds) {
+  std::size_t simulate_next_portion(std::span<cuda::Plan<T>> plans, const cuda::Run& run, double& seconds) {
     const auto attempt = [&](std::size_t count) {
-      const Lanes::Loan lane(lanes_);
+      const BatchResourcePool::Loan resources(batch_resources_);
       // after a run with records of springs the host has work to do; meanwhile runs without it fill the device
-      const std::vector<cuda::Stream>& streams = run.recording.of_springs() ? lane->urgent : lane->patient;
+      const std::vector<cuda::Stream>& streams = run.recording.of_springs() ? resources->urgent : resources->patient;
       seconds += cuda::Portion<T>(plans.first(count), run, *memory_).simulate(kernels_, streams, workers_, busy_);
     };
     try {
-      return memory_->with_fewer(bearable(plans), attempt);
+      return memory_->with_fewer(plans_that_fit(plans), attempt);
     } catch (const cuda::OutOfMemory& error) {
       throw std::runtime_error(why_not_even_one(plans.front(), error));
     }
   }
 
   /// How many of the next plans should fit the memory that is free; at least one.
-  std::size_t bearable(std::span<const cuda::Plan<T>> plans) {
+  std::size_t plans_that_fit(std::span<const cuda::Plan<T>> plans) {
     const auto free = static_cast<double>(memory_->available());
     const std::size_t budget = std::min(largest_portion_, static_cast<std::size_t>(share_of_memory * free));
     cuda::Sizes sizes;
@@ -191,7 +191,7 @@ class DeviceSimulator final : public CudaSimulator {
   Workers workers_;
   std::shared_ptr<cuda::MemoryStore> memory_ = cuda::MemoryStore::of_process();
   std::unique_ptr<NeighbourSearch> neighbours_;
-  Lanes lanes_;
+  BatchResourcePool batch_resources_;
   BusyClock busy_;
   mutable std::mutex mutex_;
   double device_seconds_ = 0;

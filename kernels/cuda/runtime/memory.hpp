@@ -100,12 +100,12 @@ class Stream {
 
 /// Waits at its end until streams have done what they were given, whatever has thrown meanwhile: nobody takes back
 /// memory that the device still works on.
-class Quiet {
+class StreamsAtRest {
  public:
-  explicit Quiet(std::span<const Stream> streams) : streams_(streams) {}
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
-  ~Quiet() {
+  explicit StreamsAtRest(std::span<const Stream> streams) : streams_(streams) {}
+  StreamsAtRest(const StreamsAtRest&) = delete;
+  StreamsAtRest& operator=(const StreamsAtRest&) = delete;
+  ~StreamsAtRest() {
     for (const Stream& stream : streams_) cudaStreamSynchronize(stream);  // a failure has been or will be reported
   }
 
@@ -113,7 +113,7 @@ class Quiet {
   std::span<const Stream> streams_;
 };
 
-/// A moment in a stream.
+/// A height_moment in a stream.
 class Event {
  public:
   /// A thread that waits for a `blocking` event sleeps; else it keeps asking.

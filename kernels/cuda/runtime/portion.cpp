@@ -195,12 +195,12 @@ void Portion<T>::launch_streamed(KernelStore& kernels, cudaStream_t stream, std:
   const MethodForm& method = form_of(run_.stepping.method);
   const bool by_block = !is_explicit(run_.stepping.method);
   unsigned masses = 1;
-  std::uint64_t legs = 0;
+  std::uint64_t check_spans = 0;
   std::size_t shared_bytes = 0;
   for (const std::size_t i : members) {
     const auto& body = std::get<Streamed<T>>(plans_[i].body);
     masses = std::max(masses, body.masses());
-    legs = std::max(legs, body.legs());
+    check_spans = std::max(check_spans, body.check_spans());
     shared_bytes = std::max(shared_bytes, body.chip_bytes());
   }
   const auto& first = std::get<Streamed<T>>(plans_[members.front()].body);
@@ -213,16 +213,16 @@ void Portion<T>::launch_streamed(KernelStore& kernels, cudaStream_t stream, std:
   if (by_block) allow_largest_chip(move);
   const auto count = static_cast<unsigned>(members.size());
   const dim3 over_masses((masses + threads - 1) / threads, count);
-  for (std::uint64_t leg = 0; leg < legs; ++leg) {
+  for (std::uint64_t span = 0; span < check_spans; ++span) {
     unsigned steps = 0;
     for (const std::size_t i : members)
-      steps = std::max(steps, std::get<Streamed<T>>(plans_[i].body).steps_of_leg(leg));
-    launch(fill, dim3(count), 256, 0, stream, bodies, leg, method.rows(steps));
-    if (by_block) launch(move, dim3(count), threads, shared_bytes, stream, bodies, leg);
+      steps = std::max(steps, std::get<Streamed<T>>(plans_[i].body).steps_of_span(span));
+    launch(fill, dim3(count), 256, 0, stream, bodies, span, method.rows(steps));
+    if (by_block) launch(move, dim3(count), threads, shared_bytes, stream, bodies, span);
     for (unsigned pass = 0; pass < method.passes(steps); ++pass)
-      launch(move, over_masses, threads, 0, stream, bodies, leg, pass);
-    launch(fill, dim3(count), 256, 0, stream, bodies, leg + 1, 1u);
-    launch(check_bodies, dim3(count), check_threads, 0, stream, bodies, leg);
+      launch(move, over_masses, threads, 0, stream, bodies, span, pass);
+    launch(fill, dim3(count), 256, 0, stream, bodies, span + 1, 1u);
+    launch(check_bodies, dim3(count), check_threads, 0, stream, bodies, span);
   }
 }
 
@@ -243,7 +243,7 @@ double Portion<T>::simulate(KernelStore& kernels, std::span<const Stream> stream
   pack(workers);
   {
     const BusyClock::Span span(busy);
-    const Quiet quiet(streams);
+    const StreamsAtRest at_rest(streams);
     upload(streams[0]);
     check(cudaEventRecord(begin, streams[0]), "recording an event");
     launch_resident(kernels, streams, workers);

@@ -16,8 +16,8 @@ extern "C" __global__ void evodevo_paper_springs(const PaperBatch batch, unsigne
   const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= body.springs) return;
   const PaperSpring spring = batch.springs[body.first_spring + i];
-  const Point<Number>* places = batch.places + body.first_mass;
-  const auto [force, tension] = pull_of(spring, triple(places[spring.a]), triple(places[spring.b]),
+  const Point<Number>* positions = batch.positions + body.first_mass;
+  const auto [force, tension] = pull_of(spring, triple(positions[spring.a]), triple(positions[spring.b]),
                                         batch.table[row * batch.entries + spring.entry]);
   Point<Number>* forces = batch.forces + body.first_mass;
   add(forces[spring.a], force.x, force.y, force.z);
@@ -25,12 +25,12 @@ extern "C" __global__ void evodevo_paper_springs(const PaperBatch batch, unsigne
 }
 
 /// Moves all masses and takes their spring forces away.
-extern "C" __global__ void evodevo_paper_masses(const World<Number> world, const PaperBatch batch) {
+extern "C" __global__ void evodevo_paper_masses(const StepConstants<Number> constants, const PaperBatch batch) {
   const PaperBody body = batch.bodies[blockIdx.y];
   const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= body.masses) return;
   const unsigned mass = body.first_mass + i;
-  move(world, batch, mass, triple(batch.places[mass]), triple(batch.forces[mass]));
+  move(constants, batch, mass, triple(batch.positions[mass]), triple(batch.forces[mass]));
   batch.forces[mass] = {0, 0, 0, 0};
 }
 

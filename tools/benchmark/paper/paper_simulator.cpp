@@ -33,7 +33,7 @@ PaperSimulator::PaperSimulator(std::span<const Body> bodies, std::uint32_t copie
       copies_(copies),
       method_(method),
       layout_(bodies, copies, scene, method.order),
-      world_(cuda::world_of<float>(scene, dt)),
+      constants_(cuda::step_constants<float>(scene, dt)),
       kernels_(cuda::current_device().architecture, paper_sources()),
       body_table_(layout_.bodies),
       springs_(layout_.springs),
@@ -109,8 +109,8 @@ double PaperSimulator::run(std::uint64_t steps) {
 }
 
 void PaperSimulator::launch_table(unsigned count) {
-  cuda::launch(fill_table_, dim3(1), 1024, 0, stream_, world_, static_cast<const cuda::Actuator*>(actuators_.data()),
-               batch_.entries, steps_, count, table_.data());
+  cuda::launch(fill_table_, dim3(1), 1024, 0, stream_, constants_,
+               static_cast<const cuda::Actuator*>(actuators_.data()), batch_.entries, steps_, count, table_.data());
 }
 
 void PaperSimulator::launch_step(unsigned row) {
@@ -120,11 +120,11 @@ void PaperSimulator::launch_step(unsigned row) {
   ++steps_;
   if (method_.memory == MassMemory::global) {
     cuda::launch(add_forces_, over(layout_.most_springs), threads, 0, stream_, batch_, row);
-    cuda::launch(move_masses_, over(layout_.most_masses), threads, 0, stream_, world_, batch_);
+    cuda::launch(move_masses_, over(layout_.most_masses), threads, 0, stream_, constants_, batch_);
     return;
   }
   const bool tallies = method_.stress == StressMethod::skip_shift && steps_ % method_.skip == 0;
-  cuda::launch(step_, dim3(bodies), threads, shared_bytes_of(layout_), stream_, world_, batch_, row,
+  cuda::launch(step_, dim3(bodies), threads, shared_bytes_of(layout_), stream_, constants_, batch_, row,
                tallies ? static_cast<unsigned>(steps_ / method_.skip) : 0u);
 }
 
@@ -132,7 +132,7 @@ State PaperSimulator::state(std::size_t body) const {
   const PaperBody& at = layout_.bodies[body * copies_];
   const std::vector<cuda::Point<float>> places = places_.download(), velocities = velocities_.download();
   State state;
-  state.time = static_cast<double>(steps_) * world_.exact_dt;
+  state.time = static_cast<double>(steps_) * constants_.exact_dt;
   for (std::uint32_t i = at.first_mass; i < at.first_mass + at.masses; ++i) {
     const auto &p = places[i], &v = velocities[i];
     if (!std::isfinite(p.x + p.y + p.z + v.x + v.y + v.z))

@@ -68,7 +68,7 @@ class PaperSimulator {
   std::uint32_t copies_;
   PaperMethod method_;
   PaperLayout layout_;
-  cuda::World<float> world_;
+  cuda::StepConstants<float> constants_;
   std::uint64_t steps_ = 0;  // since birth
 
   cuda::KernelStore kernels_;

@@ -20,7 +20,7 @@ struct OnChip {
   __device__ __forceinline__ explicit OnChip(unsigned masses)
       : x(chip), y(x + masses), z(y + masses), fx(z + masses), fy(fx + masses), fz(fy + masses) {}
 
-  __device__ __forceinline__ Place place(unsigned mass) const { return {x[mass], y[mass], z[mass]}; }
+  __device__ __forceinline__ Vector position(unsigned mass) const { return {x[mass], y[mass], z[mass]}; }
   __device__ __forceinline__ void add(unsigned mass, Number ax, Number ay, Number az) const {
     atomicAdd(&fx[mass], ax);
     atomicAdd(&fy[mass], ay);
@@ -30,18 +30,18 @@ struct OnChip {
 
 __device__ __forceinline__ void load(const PaperBatch& batch, const PaperBody& body, const OnChip& masses) {
   for (unsigned i = threadIdx.x; i < body.masses; i += blockDim.x) {
-    const Point<Number> place = batch.places[body.first_mass + i];
-    masses.x[i] = place.x;
-    masses.y[i] = place.y;
-    masses.z[i] = place.z;
+    const Point<Number> position = batch.positions[body.first_mass + i];
+    masses.x[i] = position.x;
+    masses.y[i] = position.y;
+    masses.z[i] = position.z;
     masses.fx[i] = masses.fy[i] = masses.fz[i] = 0;
   }
 }
 
-__device__ __forceinline__ void move_masses(const PaperBatch& batch, const PaperBody& body, const World<Number>& world,
-                                            const OnChip& masses) {
+__device__ __forceinline__ void move_masses(const PaperBatch& batch, const PaperBody& body,
+                                            const StepConstants<Number>& constants, const OnChip& masses) {
   for (unsigned i = threadIdx.x; i < body.masses; i += blockDim.x)
-    move(world, batch, body.first_mass + i, masses.place(i), {masses.fx[i], masses.fy[i], masses.fz[i]});
+    move(constants, batch, body.first_mass + i, masses.position(i), {masses.fx[i], masses.fy[i], masses.fz[i]});
 }
 
 /// The least and the most stressed of some springs. The upper half of a number is |force|, whose bits are ordered like
@@ -66,7 +66,8 @@ __device__ __forceinline__ Extremes add_forces(const PaperBatch& batch, const Pa
   for (unsigned i = threadIdx.x; i < body.springs; i += blockDim.x) {
     const unsigned at = body.first_spring + order(i);
     const PaperSpring spring = batch.springs[at];
-    const auto [force, tension] = pull_of(spring, masses.place(spring.a), masses.place(spring.b), table[spring.entry]);
+    const auto [force, tension] =
+        pull_of(spring, masses.position(spring.a), masses.position(spring.b), table[spring.entry]);
     masses.add(spring.a, force.x, force.y, force.z);
     masses.add(spring.b, -force.x, -force.y, -force.z);
     if constexpr (sums_on) atomicAdd(&batch.stress[at], fabs(tension));
@@ -108,7 +109,7 @@ __device__ __forceinline__ void count(const PaperBatch& batch, const PaperBody& 
 /// Makes the step whose lengths are in the table's row `row`. `tally`: of Skip-Shift, the number of the tally in this
 /// step, from 1; 0 where there is none.
 extern "C" __global__ void __launch_bounds__(EVODEVO_THREADS)
-    evodevo_paper_step(const World<Number> world, const PaperBatch batch, unsigned row, unsigned tally) {
+    evodevo_paper_step(const StepConstants<Number> constants, const PaperBatch batch, unsigned row, unsigned tally) {
   const PaperBody body = batch.bodies[blockIdx.x];
   const OnChip masses(body.masses);
   load(batch, body, masses);
@@ -124,7 +125,7 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_THREADS)
     if (extremes_on && threadIdx.x == 0 && body.springs > 0) count(batch, body, extremes, in_place);
   }
   __syncthreads();
-  move_masses(batch, body, world, masses);
+  move_masses(batch, body, constants, masses);
 }
 
 }  // namespace evodevo::benchmark

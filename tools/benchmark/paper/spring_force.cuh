@@ -9,18 +9,18 @@ namespace evodevo::benchmark {
 
 using cuda::Entry;
 using cuda::Number;
-using cuda::Place;
 using cuda::Point;
-using cuda::World;
+using cuda::StepConstants;
+using cuda::Vector;
 
-__device__ __forceinline__ Place triple(const Point<Number>& p) { return {p.x, p.y, p.z}; }
+__device__ __forceinline__ Vector triple(const Point<Number>& p) { return {p.x, p.y, p.z}; }
 
 struct Pull {
-  Place force;     // on the spring's end a, N
+  Vector force;    // on the spring's end a, N
   Number tension;  // N
 };
 
-__device__ __forceinline__ Pull pull_of(const PaperSpring& spring, Place a, Place b, Entry<Number> entry) {
+__device__ __forceinline__ Pull pull_of(const PaperSpring& spring, Vector a, Vector b, Entry<Number> entry) {
   const auto s = physics::separation(a, b);
   const Number inverse = physics::inverse_length(s);
   const Number factor =
@@ -28,22 +28,22 @@ __device__ __forceinline__ Pull pull_of(const PaperSpring& spring, Place a, Plac
   return {{factor * s.d.x, factor * s.d.y, factor * s.d.z}, factor * physics::length_by_inverse(s, inverse)};
 }
 
-/// Moves the mass at `place` by a step in which springs pull with `force` (N).
-__device__ __forceinline__ void move(const World<Number>& world, const PaperBatch& batch, unsigned mass, Place place,
-                                     Place force) {
+/// Moves the mass at `position` by a step in which springs pull with `force` (N).
+__device__ __forceinline__ void move(const StepConstants<Number>& constants, const PaperBatch& batch, unsigned mass,
+                                     Vector position, Vector force) {
   cuda::Method::Kept nothing;
-  cuda::Moving m{place, triple(batch.velocities[mass]), force, batch.mass[mass], batch.inverse_mass[mass]};
-  cuda::Method::move(world, {}, nothing, m);
-  batch.places[mass] = {m.place.x, m.place.y, m.place.z, 0};
+  cuda::Moving m{position, triple(batch.velocities[mass]), force, batch.mass[mass], batch.inverse_mass[mass]};
+  cuda::Method::move(constants, {}, nothing, m);
+  batch.positions[mass] = {m.position.x, m.position.y, m.position.z, 0};
   batch.velocities[mass] = {m.velocity.x, m.velocity.y, m.velocity.z, 0};
 }
 
 /// Fills in the table for `count` steps from `step` since birth on.
-extern "C" __global__ void evodevo_paper_table(const World<Number> world, const cuda::Actuator* actuators,
+extern "C" __global__ void evodevo_paper_table(const StepConstants<Number> constants, const cuda::Actuator* actuators,
                                                unsigned entries, std::uint64_t step, unsigned count,
                                                Entry<Number>* table) {
   for (unsigned i = threadIdx.x; i < count * entries; i += blockDim.x)
-    table[i] = cuda::entry_of(actuators[i % entries], static_cast<double>(step + i / entries) * world.exact_dt);
+    table[i] = cuda::entry_of(actuators[i % entries], static_cast<double>(step + i / entries) * constants.exact_dt);
 }
 
 }  // namespace evodevo::benchmark

@@ -26,8 +26,8 @@ struct Records {
     return {array_of(body.records, body.record_offset), array_of(body.waves, body.wave_offset)};
   }
   static __device__ __forceinline__ void load(const Body& body, unsigned count) {
-    bring(body.records, body.record_offset, count);
-    if constexpr (actuation) bring(body.waves, body.wave_offset, count);
+    copy_to_chip(body.records, body.record_offset, count);
+    if constexpr (actuation) copy_to_chip(body.waves, body.wave_offset, count);
   }
 };
 
@@ -49,7 +49,7 @@ struct Lengths {
   /// Where in its cycle a spring is, rad from -pi to pi. Overflow is whole turns.
   __device__ __forceinline__ Number angle(unsigned wave) const {
     const unsigned turns = (wave & phase_mask) + (wave & frequency_mask) * clock;
-    return static_cast<Number>(static_cast<int>(turns)) * Number(turn * 0x1p-32);
+    return static_cast<Number>(static_cast<int>(turns)) * Number(full_turn * 0x1p-32);
   }
 
   __device__ __forceinline__ Number amplitude(unsigned wave) const {
@@ -72,19 +72,19 @@ struct Lengths {
     return rate;
   }
 
-  __device__ __forceinline__ void go_on(const Body&, unsigned rows_on) {
+  __device__ __forceinline__ void advance_rows(const Body&, unsigned rows_on) {
     row += rows_on * sizeof(unsigned);
     clock = on_chip<unsigned>(row);
   }
 };
 
-/// Sets the clock for `count` rows from step `step` of the stretch on. It is read off in double precision, so that late
+/// Sets the clock for `count` rows from step `step` of the piece on. It is read off in double precision, so that late
 /// times lose no digits.
 __device__ __noinline__ void fill_lengths(const Body& body, std::uint64_t step, unsigned count) {
-  const double interval = body.world.exact_dt / rows_per_step;
-  const std::uint64_t row = (body.stretch.first_step + step) * rows_per_step;
+  const double interval = body.constants.exact_dt / rows_per_step;
+  const std::uint64_t row = (body.piece.first_step + step) * rows_per_step;
   for (unsigned i = threadIdx.x; i < count; i += blockDim.x) {
-    const double time = body.stretch.origin + static_cast<double>(row + i) * interval;
+    const double time = body.piece.origin + static_cast<double>(row + i) * interval;
     const double turns = body.units.frequency * time;
     on_chip<unsigned>(body.table_offset + i * sizeof(unsigned)) =
         static_cast<unsigned>(__double2ull_rn((turns - floor(turns)) * 0x1p32));

@@ -19,7 +19,7 @@ struct Records {
     return {array_of(body.records, body.record_offset)};
   }
   static __device__ __forceinline__ void load(const Body& body, unsigned count) {
-    bring(body.records, body.record_offset, count);
+    copy_to_chip(body.records, body.record_offset, count);
   }
 };
 
@@ -48,20 +48,20 @@ struct Lengths {
     return on_chip<Number>(rates + material.table_entry / 2);
   }
 
-  __device__ __forceinline__ void go_on(const Body& body, unsigned rows_on) {
+  __device__ __forceinline__ void advance_rows(const Body& body, unsigned rows_on) {
     const unsigned row_bytes = body.entries * sizeof(Entry<Number>);
     table += rows_on * row_bytes;
     if constexpr (work) rates += rows_on * row_bytes / 2;
   }
 };
 
-/// Fills in `count` rows of the table from step `step` of the stretch on.
+/// Fills in `count` rows of the table from step `step` of the piece on.
 __device__ __noinline__ void fill_lengths(const Body& body, std::uint64_t step, unsigned count) {
-  const double interval = body.world.exact_dt / rows_per_step;
-  const std::uint64_t row = (body.stretch.first_step + step) * rows_per_step;
+  const double interval = body.constants.exact_dt / rows_per_step;
+  const std::uint64_t row = (body.piece.first_step + step) * rows_per_step;
   for (unsigned i = threadIdx.x; i < count * body.entries; i += blockDim.x) {
     const Actuator actuator = body.actuators[i % body.entries];
-    const double time = body.stretch.origin + static_cast<double>(row + i / body.entries) * interval;
+    const double time = body.piece.origin + static_cast<double>(row + i / body.entries) * interval;
     on_chip<Entry<Number>>(body.table_offset + i * sizeof(Entry<Number>)) = entry_of(actuator, time);
     if constexpr (work) on_chip<Number>(body.rate_offset + i * sizeof(Number)) = length_rate(actuator, time);
   }

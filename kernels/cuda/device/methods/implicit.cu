@@ -35,48 +35,50 @@ static_assert(6 * sizeof(Point<Number>) == EVODEVO_NUMBERS_OF_MASS * sizeof(Numb
 static_assert(sizeof(Stiffness) + sizeof(Number) == EVODEVO_NUMBERS_OF_JOINT * sizeof(Number));
 
 /// Component by component.
-__device__ __forceinline__ Place product(const Place& a, const Place& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+__device__ __forceinline__ Vector product(const Vector& a, const Vector& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
 
-__device__ __forceinline__ Number dot(const Place& a, const Place& b) {
+__device__ __forceinline__ Number dot(const Vector& a, const Vector& b) {
   return physics::multiply_add(a.z, b.z, physics::multiply_add(a.y, b.y, a.x * b.x));
 }
 
 /// R; adds the floor to the force.
-__device__ __forceinline__ Place resistance_of(const World<Number>& world, Moving& m) {
+__device__ __forceinline__ Vector resistance_of(const StepConstants<Number>& constants, Moving& m) {
   Number across = 0, touching = 0;
-  if constexpr (drag) across = -physics::drag_factor(world.drag_coefficient, m.velocity);
+  if constexpr (drag) across = -physics::drag_factor(constants.drag_coefficient, m.velocity);
   if constexpr (floor_on) {
-    touching = physics::zero_unless_greater(-next_clearance(world, m), Number(0), world.floor_stiffness);
-    const Number above = clearance(world, m.place);
+    touching = physics::zero_unless_greater(-next_clearance(constants, m), Number(0), constants.floor_stiffness);
+    const Number above = clearance(constants, m.position);
     m.force.z = physics::negative_multiply_add(touching, above, m.force.z);
-    lean(world, m.place, -touching * above, m.force);
+    add_horizontal_part(constants, m.position, -touching * above, m.force);
   }
-  return {across, across, physics::multiply_add(world.dt, touching, across)};
+  return {across, across, physics::multiply_add(constants.dt, touching, across)};
 }
 
 /// R times a vector.
-__device__ __forceinline__ Place resisted(const World<Number>& world, const Place& place, const Place& resistance,
-                                          const Place& v) {
-  Place all = product(resistance, v);
+__device__ __forceinline__ Vector resisted(const StepConstants<Number>& constants, const Vector& position,
+                                           const Vector& resistance, const Vector& v) {
+  Vector all = product(resistance, v);
   if constexpr (rough) {
     // along the ground's normal, not z
     const Number touching = resistance.z - resistance.x;
-    const Number up = touching * rise(world, place, v);
+    const Number up = touching * normal_velocity(constants, position, v);
     all.z += up - touching * v.z;
-    lean(world, place, up, all);
+    add_horizontal_part(constants, position, up, all);
   }
   return all;
 }
 
 /// Adds F + dt K u to the force, u the damped velocity, and sets K+; returns its diagonal.
-__device__ __forceinline__ Place add_springs(const World<Number>& world, const Body& body, const Memory& memory,
-                                             unsigned row, unsigned mass, Moving& m) {
-  Place diagonal{0, 0, 0}, rate{0, 0, 0};
+__device__ __forceinline__ Vector add_springs(const StepConstants<Number>& constants, const Body& body,
+                                              const Memory& memory, unsigned row, unsigned mass, Moving& m) {
+  Vector diagonal{0, 0, 0}, rate{0, 0, 0};
   for_each_joint(body, mass, [&](unsigned i, const Joint<Number> joint) {
     const Entry<Number> entry = body.table[row * body.entries + joint.entry];
     Moving other = moving(body, joint.other);
-    damp(world.decay, other);
-    const auto s = physics::separation(m.place, other.place);
+    damp(constants.decay, other);
+    const auto s = physics::separation(m.position, other.position);
     const Number distance = physics::length(s);
     const Number factor =
         physics::spring_factor_by_inverse(1 / distance, entry.stiffness, entry.rest_force * joint.rest_length);
@@ -86,33 +88,35 @@ __device__ __forceinline__ Place add_springs(const World<Number>& world, const B
     diagonal = sum(diagonal, Number(1), product(matrix.along, matrix.along));
     diagonal = sum(diagonal, matrix.transverse, {1, 1, 1});
     m.force = sum(m.force, factor, s.d);
-    const Place velocity = difference(other.velocity, m.velocity);
+    const Vector velocity = difference(other.velocity, m.velocity);
     rate = sum(rate, Number(1), physics::spring_force_rate(s, entry.stiffness, factor, velocity));
   });
-  m.force = sum(m.force, world.dt, rate);
+  m.force = sum(m.force, constants.dt, rate);
   return diagonal;
 }
 
 /// 1/(mass + push resistance); 0 where nothing moves the mass.
-__device__ __forceinline__ Number inverse(const World<Number>& world, const Moving& m, Number resistance) {
+__device__ __forceinline__ Number inverse(const StepConstants<Number>& constants, const Moving& m, Number resistance) {
   return physics::zero_unless_greater(m.inverse_mass, Number(0),
-                                      1 / physics::multiply_add(world.push, resistance, m.mass));
+                                      1 / physics::multiply_add(constants.damped_dt, resistance, m.mass));
 }
 
 /// Sets the equation up, and its residual and the first direction where nothing is corrected yet. Returns <r, P r>, r
 /// the residual and P the preconditioner, which measures what is left.
-__device__ __forceinline__ double begin(const World<Number>& world, const Body& body, const Memory& memory,
+__device__ __forceinline__ double begin(const StepConstants<Number>& constants, const Body& body, const Memory& memory,
                                         unsigned row) {
   double left = 0;
   for_each_mass(body, [&](unsigned mass) {
     Moving m = moving(body, mass);
-    const Place resistance = resistance_of(world, m);
-    add_gravity(world, m);
-    damp(world.decay, m);
-    const Place all = sum(resistance, world.dt, add_springs(world, body, memory, row, mass, m));
-    const Place inverse_diagonal{inverse(world, m, all.x), inverse(world, m, all.y), inverse(world, m, all.z)};
-    const Place residual = scaled(difference(m.force, resisted(world, m.place, resistance, m.velocity)), world.push);
-    const Place direction = product(inverse_diagonal, residual);
+    const Vector resistance = resistance_of(constants, m);
+    add_gravity(constants, m);
+    damp(constants.decay, m);
+    const Vector all = sum(resistance, constants.dt, add_springs(constants, body, memory, row, mass, m));
+    const Vector inverse_diagonal{inverse(constants, m, all.x), inverse(constants, m, all.y),
+                                  inverse(constants, m, all.z)};
+    const Vector residual =
+        scaled(difference(m.force, resisted(constants, m.position, resistance, m.velocity)), constants.damped_dt);
+    const Vector direction = product(inverse_diagonal, residual);
     memory.resistance[mass] = point(resistance);
     memory.inverse_diagonal[mass] = point(inverse_diagonal);
     memory.residual[mass] = point(residual);
@@ -124,18 +128,19 @@ __device__ __forceinline__ double begin(const World<Number>& world, const Body& 
 }
 
 /// Applies the matrix to the direction. Returns the scalar product of the two.
-__device__ __forceinline__ double apply(const World<Number>& world, const Body& body, const Memory& memory) {
+__device__ __forceinline__ double apply(const StepConstants<Number>& constants, const Body& body,
+                                        const Memory& memory) {
   double curvature = 0;
   for_each_mass(body, [&](unsigned mass) {
-    const Place own = triple(memory.direction[mass]);
-    Place force{0, 0, 0};
+    const Vector own = triple(memory.direction[mass]);
+    Vector force{0, 0, 0};
     for_each_joint(body, mass, [&](unsigned i, const Joint<Number>&) {
-      const Place across = difference(own, triple(memory.direction[memory.other[i]]));
+      const Vector across = difference(own, triple(memory.direction[memory.other[i]]));
       force = sum(force, Number(1), physics::times(memory.stiffness[i], across));
     });
-    const Place all =
-        sum(resisted(world, triple(body.places[mass]), triple(memory.resistance[mass]), own), world.dt, force);
-    const Place applied = sum(scaled(all, world.push), body.mass[mass], own);
+    const Vector all = sum(resisted(constants, triple(body.positions[mass]), triple(memory.resistance[mass]), own),
+                           constants.dt, force);
+    const Vector applied = sum(scaled(all, constants.damped_dt), body.mass[mass], own);
     memory.applied[mass] = point(applied);
     curvature += dot(own, applied);
   });
@@ -146,9 +151,9 @@ __device__ __forceinline__ double apply(const World<Number>& world, const Body& 
 __device__ __forceinline__ double advance_along(const Body& body, const Memory& memory, Number share) {
   double left = 0;
   for_each_mass(body, [&](unsigned mass) {
-    const Place direction = triple(memory.direction[mass]), applied = triple(memory.applied[mass]);
+    const Vector direction = triple(memory.direction[mass]), applied = triple(memory.applied[mass]);
     memory.correction[mass] = point(sum(triple(memory.correction[mass]), share, direction));
-    const Place residual = sum(triple(memory.residual[mass]), -share, applied);
+    const Vector residual = sum(triple(memory.residual[mass]), -share, applied);
     memory.residual[mass] = point(residual);
     left += dot(product(residual, residual), triple(memory.inverse_diagonal[mass]));
   });
@@ -156,69 +161,71 @@ __device__ __forceinline__ double advance_along(const Body& body, const Memory& 
 }
 
 /// The next direction: P r and `share` of the last.
-__device__ __forceinline__ void turn(const Body& body, const Memory& memory, Number share) {
+__device__ __forceinline__ void update_direction(const Body& body, const Memory& memory, Number share) {
   for_each_mass(body, [&](unsigned mass) {
-    const Place steepest = product(triple(memory.inverse_diagonal[mass]), triple(memory.residual[mass]));
+    const Vector steepest = product(triple(memory.inverse_diagonal[mass]), triple(memory.residual[mass]));
     memory.direction[mass] = point(sum(steepest, share, triple(memory.direction[mass])));
   });
   __syncthreads();
 }
 
 /// Finds the correction that leaves no residual.
-__device__ __forceinline__ void solve(const World<Number>& world, const Body& body, const Memory& memory, double left) {
+__device__ __forceinline__ void solve(const StepConstants<Number>& constants, const Body& body, const Memory& memory,
+                                      double left) {
   const double enough = tolerance * tolerance * left;
   for (int i = 0; i < most_iterations && left > enough; ++i) {
-    const double curvature = apply(world, body, memory);
+    const double curvature = apply(constants, body, memory);
     if (!(curvature > 0)) break;  // so near to nothing that it is 0
     const double before = left;
     left = advance_along(body, memory, static_cast<Number>(left / curvature));
-    turn(body, memory, static_cast<Number>(left / before));
+    update_direction(body, memory, static_cast<Number>(left / before));
   }
 }
 
-__device__ __forceinline__ void move(const World<Number>& world, const Body& body, const Memory& memory) {
+__device__ __forceinline__ void move(const StepConstants<Number>& constants, const Body& body, const Memory& memory) {
   for_each_mass(body, [&](unsigned mass) {
     Moving m = moving(body, mass);
-    damp(world.decay, m);
+    damp(constants.decay, m);
     m.velocity = sum(m.velocity, Number(1), triple(memory.correction[mass]));
     if constexpr (friction) {
       // the floor's push at the end of the step; it does not hold on to what leaves it
-      const Number z = next_clearance(world, m);
+      const Number z = next_clearance(constants, m);
       const Number touches = memory.resistance[mass].z - memory.resistance[mass].x;
-      m.push = physics::zero_unless_greater(touches, Number(0), physics::floor_force(world.floor_stiffness, z));
+      m.normal_force =
+          physics::zero_unless_greater(touches, Number(0), physics::floor_force(constants.floor_stiffness, z));
     }
-    rub(world.friction_dt, m, m.velocity);
-    move_on(world.dt, m);
+    apply_friction(constants.friction_dt, m, m.velocity);
+    advance_position(constants.dt, m);
     store(body, mass, m);
   });
   __syncthreads();
 }
 
 /// Adds the springs' tensions now to what is recorded.
-__device__ __forceinline__ void note_tensions(const Body& body, unsigned row) {
+__device__ __forceinline__ void record_tensions(const Body& body, unsigned row) {
   for_each_mass(body, [&](unsigned mass) {
-    const Place own = triple(body.places[mass]);
+    const Vector own = triple(body.positions[mass]);
     for_each_joint(body, mass, [&](unsigned i, const Joint<Number> joint) {
       if (!joint.owned) return;
       const Entry<Number> entry = body.table[row * body.entries + joint.entry];
-      const auto s = physics::separation(own, triple(body.places[joint.other]));
+      const auto s = physics::separation(own, triple(body.positions[joint.other]));
       const Number distance = physics::length(s);
       const Number factor =
           physics::spring_factor_by_inverse(1 / distance, entry.stiffness, entry.rest_force * joint.rest_length);
-      note(body, row, i, mass, joint.entry, joint.rest_length, physics::spring_tension(s, distance, factor));
+      record(body, row, i, mass, joint.entry, joint.rest_length, physics::spring_tension(s, distance, factor));
     });
   });
 }
 
-/// Makes the steps of leg `index`, the lengths at whose beginning are in the tables' first row.
+/// Makes the steps of span `index`, the lengths at whose beginning are in the tables' first row.
 extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS)
     evodevo_advance_streamed(const Body* bodies, std::uint64_t index) {
-  advance_leg(bodies[blockIdx.x], index, [](const Body& body, unsigned count) {
+  advance_span(bodies[blockIdx.x], index, [](const Body& body, unsigned count) {
     const Memory memory(body);
     for (unsigned step = 0; step < count; ++step) {
-      solve(body.world, body, memory, begin(body.world, body, memory, step + 1));
-      move(body.world, body, memory);
-      if constexpr (stress || work || peak_force || mean_tension) note_tensions(body, step + 1);
+      solve(body.constants, body, memory, begin(body.constants, body, memory, step + 1));
+      move(body.constants, body, memory);
+      if constexpr (stress || work || peak_force || mean_tension) record_tensions(body, step + 1);
     }
   });
 }

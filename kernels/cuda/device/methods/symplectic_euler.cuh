@@ -6,14 +6,14 @@
 namespace evodevo::cuda {
 
 struct Method : OnePass {
-  static __device__ __forceinline__ void move(const World<Number>& world, Pass, Kept&, Moving& m) {
-    add_gravity(world, m);
-    add_floor(world, m);
-    yield_to_drag<true>(world, world.push, m);
-    damp(world.decay, m);
-    advance_velocity(world.push, m);
-    rub(world.friction_dt, m, m.velocity);
-    move_on(world.dt, m);
+  static __device__ __forceinline__ void move(const StepConstants<Number>& constants, Pass, Kept&, Moving& m) {
+    add_gravity(constants, m);
+    add_floor(constants, m);
+    apply_drag<true>(constants, constants.damped_dt, m);
+    damp(constants.decay, m);
+    advance_velocity(constants.damped_dt, m);
+    apply_friction(constants.friction_dt, m, m.velocity);
+    advance_position(constants.dt, m);
   }
 };
 

@@ -8,32 +8,32 @@ namespace evodevo::cuda {
 /// A pass ends one step and begins the next, so that its forces, which serve both, need not be kept. Before some steps
 /// there is one that only begins; the last only ends.
 struct Method : OnePass {
-  static __device__ __forceinline__ bool is_noted(unsigned index) { return index > 0; }
+  static __device__ __forceinline__ bool is_recorded(unsigned index) { return index > 0; }
 
-  static __device__ __forceinline__ void move(const World<Number>& world, Pass pass, Kept&, Moving& m) {
-    add_gravity(world, m);
-    add_floor(world, m);
+  static __device__ __forceinline__ void move(const StepConstants<Number>& constants, Pass pass, Kept&, Moving& m) {
+    add_gravity(constants, m);
+    add_floor(constants, m);
     if (pass.index > 0) {
-      kick(world, m);
-      slow_down(world, m);
+      kick(constants, m);
+      slow_down(constants, m);
     }
     if (pass.last) return;
-    slow_down(world, m);
-    kick(world, m);
-    move_on(world.dt, m);
+    slow_down(constants, m);
+    kick(constants, m);
+    advance_position(constants.dt, m);
   }
 
  private:
   /// Half a step of damping and drag, exactly.
-  static __device__ __forceinline__ void slow_down(const World<Number>& world, Moving& m) {
-    yield_to_drag<false>(world, world.half_push, m);
-    damp(world.half_decay, m);
+  static __device__ __forceinline__ void slow_down(const StepConstants<Number>& constants, Moving& m) {
+    apply_drag<false>(constants, constants.half_damped_dt, m);
+    damp(constants.half_decay, m);
   }
 
   /// Half a step of the forces, and of the friction that goes with them.
-  static __device__ __forceinline__ void kick(const World<Number>& world, Moving& m) {
-    advance_velocity(world.dt / 2, m);
-    rub(world.friction_dt / 2, m, m.velocity);
+  static __device__ __forceinline__ void kick(const StepConstants<Number>& constants, Moving& m) {
+    advance_velocity(constants.dt / 2, m);
+    apply_friction(constants.friction_dt / 2, m, m.velocity);
   }
 };
 
