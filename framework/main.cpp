@@ -10,6 +10,7 @@
 #include "base/standard_streams.hpp"
 #include "base/text.hpp"
 #include "commands/commands.hpp"
+#include "experiment/device.hpp"
 #include "operators/call_watch.hpp"
 #include "operators/crash.hpp"
 
@@ -94,7 +95,7 @@ int dispatch(const Arguments& arguments) {
 
 /// Some failures have several lines.
 int complain(const std::exception& error, int exit_code) {
-  std::istringstream lines(error.what());
+  std::istringstream lines(error.what() + remedy_for(error));
   std::string line;
   const auto say = [&](const char* before) {
     std::cerr << before << printable(line, InputError::longest_message) << '\n';

@@ -148,7 +148,7 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
     time = evolve(experiment, simulator, archive, stop_requested, progress.observer());
   } catch (const std::exception& error) {
     progress.finish();
-    throw std::runtime_error(error.what() + state_of(archive));
+    throw std::runtime_error(error.what() + remedy_for(error) + state_of(archive));
   }
   progress.finish();
   record_time_spent(archive, time);

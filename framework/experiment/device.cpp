@@ -23,4 +23,9 @@ std::unique_ptr<Simulator> make_simulator(const Experiment& experiment) {
   return make_cpu_simulator(experiment.scene, experiment.stepping, static_cast<int>(experiment.threads));
 }
 
+std::string remedy_for(const std::exception& failure) {
+  if (dynamic_cast<const DeviceOutOfMemory*>(&failure) == nullptr) return {};
+  return "; simulation.device = \"cpu\" (--device cpu) simulates on the CPU";
+}
+
 }  // namespace evodevo

@@ -1,5 +1,8 @@
 #include "operators/loader.hpp"
 
+#define XXH_INLINE_ALL  // from the header alone, so that no library is needed at run time
+#include <xxhash.h>
+
 #include <algorithm>
 #include <boost/dll/runtime_symbol_info.hpp>
 #include <boost/dll/shared_library.hpp>
@@ -306,11 +309,10 @@ bool is_plugin_path(const fs::path& path) {
 
 std::string file_hash(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a
-  for (std::istreambuf_iterator<char> byte(stream), end; byte != end; ++byte)
-    hash = (hash ^ static_cast<unsigned char>(*byte)) * 0x100000001b3;
+  const std::string content{std::istreambuf_iterator<char>(stream), {}};
   char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  std::snprintf(text, sizeof text, "%016llx",
+                static_cast<unsigned long long>(XXH3_64bits(content.data(), content.size())));
   return text;
 }
 

@@ -73,7 +73,7 @@ std::vector<std::filesystem::path> plugin_search_path(const std::vector<std::fil
 /// A folder, or a library by itself.
 bool is_plugin_path(const std::filesystem::path& path);
 
-/// 64 bits in hexadecimal that tell one build of a library or program from another.
+/// The hash of a file (XXH3, 64 bits) in hexadecimal. It tells one build of a library or program from another.
 std::string file_hash(const std::filesystem::path& file);
 
 }  // namespace evodevo

@@ -6,7 +6,7 @@
 namespace evodevo {
 namespace {
 
-/// The springs by falling number of springs at their two ends together.
+/// The indices of the springs by falling degree of their two masses together.
 std::vector<std::uint32_t> most_connected_first(const Body& body) {
   std::vector<std::uint32_t> degree(body.masses.size()), order(body.springs.size());
   for (const Spring& spring : body.springs) ++degree[spring.a], ++degree[spring.b];
@@ -17,7 +17,7 @@ std::vector<std::uint32_t> most_connected_first(const Body& body) {
   return order;
 }
 
-/// The colours that the springs at one mass have.
+/// The set of colours of the springs at one mass.
 class Palette {
  public:
   bool has(std::uint32_t colour) const { return colour < used_.size() && used_[colour]; }

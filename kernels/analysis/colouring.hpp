@@ -1,4 +1,5 @@
-// Springs in colours: no two of one colour share a mass, so that a colour's springs can be handled all at once.
+// An edge colouring of a body: no two springs of a colour share a mass, so that all springs of a colour can be solved
+// at the same time.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +9,9 @@
 
 namespace evodevo {
 
-/// The colour of every spring, from 0: the lowest that is free at both ends, springs between the most connected masses
-/// first and in the body's order where they are equal. Fewer than twice the highest number of springs at a mass.
+/// The colour of every spring, counted from 0. Springs get their colours in the order of falling degree (number of
+/// springs) of their two masses together, equal ones in the body's order; each gets the lowest colour that no spring at
+/// its two masses has. There are fewer than twice as many colours as the highest degree.
 std::vector<std::uint32_t> spring_colours(const Body& body);
 
 }  // namespace evodevo

@@ -6,14 +6,14 @@
 namespace evodevo {
 namespace {
 
-constexpr std::uint32_t phases = 1u << (32 - phase_shift);  // of a full_turn
+constexpr std::uint32_t phases = 1u << (32 - phase_shift);  // per turn
 constexpr double most_stiffness = 65'520, most_amplitude = 1'020, most_frequency = 1'020;
 
 std::uint32_t counted(double value, double unit) {
   return unit > 0 ? static_cast<std::uint32_t>(std::lround(std::abs(value) / unit)) : 0;
 }
 
-/// The phase (rad) of the same motion with an amplitude and a frequency that are not negative.
+/// The phase (rad) that gives the same motion when amplitude and frequency are replaced by their absolute values.
 double phase_of(const Material& material) {
   const double phase = material.frequency < 0 ? full_turn / 2 - material.phase : material.phase;
   return material.amplitude < 0 ? phase + full_turn / 2 : phase;
@@ -34,7 +34,7 @@ MaterialUnits material_units(const Body& body) {
 
 MaterialCode code_of(const Material& material, const MaterialUnits& units) {
   const double turns = phase_of(material) / full_turn;
-  // the last half of a step is the next full_turn's first
+  // a phase that rounds up to a whole turn is phase 0
   const auto phase = static_cast<std::uint32_t>(std::lround((turns - std::floor(turns)) * phases)) % phases;
   const std::uint32_t least = material.stiffness > 0 ? 1 : 0;  // no spring loses its force
   return {std::max(least, counted(material.stiffness, units.stiffness)),

@@ -22,7 +22,7 @@ double extent(const State& state) {
   return largest;
 }
 
-/// P/sqrt(2), J^(1/2)/s.
+/// EnergyBound::drive: P/sqrt(2) of guard.hpp, J^(1/2)/s.
 double drive_of(const Body& body) {
   double sum = 0;
   for (const Spring& spring : body.springs) {
@@ -33,7 +33,7 @@ double drive_of(const Body& body) {
   return std::sqrt(sum / 2);
 }
 
-/// The strain of all muscles from full extension to full contraction, J.
+/// The strain energy of all muscles from full extension to full contraction, J.
 double strain_allowance(const Body& body) {
   double sum = 0;
   for (const Spring& spring : body.springs) {
@@ -44,7 +44,8 @@ double strain_allowance(const Body& body) {
   return sum;
 }
 
-/// The strain of all springs by rounding, J: 16,384 units in the last position of each spring and of its position.
+/// The energy (J) of all springs strained by rounding: by 16,384 rounding units of the spring's length and of the
+/// largest distance from the origin.
 double rounding_allowance(const Body& body, const State& state, Precision precision) {
   const double rounding = 16384 * epsilon(precision), positions = extent(state);
   double sum = 0;
@@ -55,7 +56,7 @@ double rounding_allowance(const Body& body, const State& state, Precision precis
   return sum;
 }
 
-/// What masses that sag into the floor set free, J: m g (m g/k + g dt^2) each.
+/// The height energy that masses lose by sinking into the floor, J: m g (m g/k + g dt^2) each.
 double sag_allowance(const Body& body, const Scene& scene, double dt) {
   if (!scene.gravity || !scene.floor || scene.floor->stiffness <= 0) return 0;
   const double g = scene.gravity->downwards();
@@ -64,7 +65,7 @@ double sag_allowance(const Body& body, const Scene& scene, double dt) {
   return sum;
 }
 
-/// The sum of mass times height, kg m.
+/// The first moment of mass over height: the sum of mass times height, kg m.
 double height_moment_of(const Body& body, const State& state, const Scene& scene) {
   const double grade = scene.gravity ? scene.gravity->grade() : 0;
   double sum = 0;

@@ -1,24 +1,26 @@
-// The guard against bodies that gain energy from nothing.
+// The guard against bodies that gain energy by numerical error.
 //
-// Let K be the kinetic, U the elastic and V the height energy of a body, which counts from the origin, W what the floor
-// stores, and F the most that -V has been so far (a floor at z = 0 keeps it near 0). Damping, drag and friction only
-// take energy, so K + U + V + W grows by the muscles' power alone. A spring of stiffness k that stores U_i pulls with
-// sqrt(2 k U_i), so that by the inequality of Cauchy and Schwarz, L' the rate of its rest length,
+// Let K be the kinetic, U the elastic and V the height energy of a body, with V = 0 at the origin, W the energy stored
+// in the floor, and F the largest value that -V has had so far (a floor at z = 0 keeps F near 0). Damping, drag and
+// friction only take energy away, so K + U + V + W grows by the muscles' power alone. A spring of stiffness k that
+// stores the energy U_i pulls with the force sqrt(2 k U_i). With L' the rate of change of its length L(t), the
+// inequality of Cauchy and Schwarz gives
 //
 //   d(K + U + V + W)/dt <= sum sqrt(2 k U_i) |L'| <= sqrt(2 U) sqrt(sum k L'^2) <= sqrt(2 (K + U + V + W + F)) P,
 //   P = sqrt(sum k (2 pi frequency amplitude L0)^2), in J^(1/2)/s,
 //
-// and, from an energy E (J) at the beginning, after t (s)
+// and therefore, with the energy E (J) at the beginning, after the time t (s)
 //
 //   K + U <= K + U + V + W + F <= (sqrt(E + F) + t P/sqrt(2))^2.
 //
-// This holds for any motion, for resonance too. Exact motion stays below it; that of finite steps swings around it,
-// near the limit of the step by a factor of 39, and gains a little in contact. So a body may have ten times as much,
-// and ten times the strain of all muscles from full extension to full contraction, what rounding strains springs by and
-// what masses lose that sag into the floor. One that gains energy from nothing passes 1e20 times that.
+// This bound holds for any exact motion, resonance included. The energy of motion in finite steps swings around the
+// exact one, near the limit of the step by a factor of 39, and grows a little in contact. The limit is therefore ten
+// times the sum of this bound, the strain energy of all muscles from full extension to full contraction, the energy of
+// springs strained by rounding, and the height energy that masses lose by sinking into the floor. The energy of a body
+// that diverges passes 1e20 times this limit.
 //
-// What the bound allows a body at the end of a run, less F, is State::start_energy of the next, to which development
-// adds what it brings: a life in cycles has the bound of a life in one run.
+// The bound at the end of a run, without F, becomes State::start_energy of the next run; development adds the energy
+// that its edits bring. So a life in cycles has the same bound as a life in one run.
 #pragma once
 
 #include <cstdint>
@@ -31,23 +33,24 @@
 
 namespace evodevo {
 
-/// Steps between two checks of a body, counted from where its run began; the run's end is checked too.
+/// Steps between two checks of a body, counted from the beginning of its run. The end of the run is checked too.
 inline constexpr std::uint64_t guard_interval = 100;
 
-/// Where a task's run stands: its course, or one that begins now.
+/// The course of a task's run: that of its earlier piece, or one that begins now.
 Course course_of(const Task& task, const Scene& scene, Precision precision);
 
-/// Whether a body is checked after as many steps as its course has.
+/// Whether a body is checked when its run has made `course.steps` steps.
 bool is_checked(const Task& task, const Course& course);
 
-/// What falling below the origin has set free, J. `height_moment`: the sum of mass times physics::height(), kg m.
+/// The energy (J) that falling below the origin has released. `height_moment` is the first moment of mass over height:
+/// the sum of mass times physics::height(), kg m.
 double fallen_energy(const Scene& scene, double height_moment);
 
-/// Why a body has diverged; empty where it has not. `kinetic` and `elastic` in J; `finite`: whether all positions and
-/// velocities are. The course's `fallen` is that of now.
+/// Why a body has diverged; empty if it has not. `kinetic` and `elastic` are its energies (J); `finite` says whether
+/// all its positions and velocities are finite. `course.fallen` must be up to date.
 std::string divergence_reason(const Course& course, double dt, double kinetic, double elastic, bool finite);
 
-/// Sets a task's state and course to those after `course`, which has the steps that it made.
+/// Writes the end of a run into its task: the time and start_energy of its state, and the course for the next piece.
 void apply_course(Task& task, const Course& course);
 
 }  // namespace evodevo

@@ -9,7 +9,7 @@
 namespace evodevo {
 namespace {
 
-/// Places as nanoflann reads them.
+/// Points in the form that nanoflann reads.
 struct Points {
   std::span<const Vec3> positions;
 
@@ -20,11 +20,12 @@ struct Points {
   }
   template <class Bounds>
   bool kdtree_get_bbox(Bounds&) const {
-    return false;  // nanoflann finds it
+    return false;  // nanoflann computes it
   }
 };
 
-/// The `capacity` nearest found so far but for the position itself; among equally near ones those of lower index.
+/// The nearest points found so far, `capacity` at most, without the point itself; of equally near ones those of lower
+/// index.
 class NearestOthers {
  public:
   using DistanceType = double;
@@ -44,8 +45,8 @@ class NearestOthers {
     return true;
   }
 
-  /// The tree leaves out what is not nearer than this. A little more than the worst, so that equally near positions are
-  /// looked at in spite of the rounding of its distances to cells.
+  /// The squared distance (m^2) beyond which the tree need not search. It is a little larger than that of the farthest
+  /// point found, so that the tree visits equally near points in spite of rounding in its distances to cells.
   double worstDist() const {
     if (!full()) return std::numeric_limits<double>::max();
     return found_.back().first * (1 + 1e-9) + std::numeric_limits<double>::min();

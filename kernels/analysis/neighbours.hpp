@@ -1,4 +1,4 @@
-// k-nearest neighbours.
+// The k nearest neighbours of every point of a cloud, on the CPU.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,12 @@
 
 namespace evodevo {
 
-/// Every pair (i, j), i < j, in which one position is among the k nearest of the other; ties go to the lower index.
-/// Sorted, each pair once. k >= the number of positions joins all. Distances must be finite when squared.
+/// The pairs (i, j), i < j, in which one point is among the k nearest of the other; of equally near points the one of
+/// lower index counts as nearer. The pairs are sorted, and each is there once. If k is not less than the number of
+/// points, all pairs are joined. `positions` in m; all squared distances must be finite.
 std::vector<IndexPair> nearest_pairs(std::span<const Vec3> positions, std::uint32_t k);
 
-/// A search on the workers alone.
+/// A search that uses the CPU alone.
 std::unique_ptr<NeighbourSearch> make_cpu_neighbour_search();
 
 }  // namespace evodevo

@@ -21,7 +21,8 @@ class StiffnessMatrix {
       const Vec3 d = positions[spring.b] - positions[spring.a];
       const double length = norm(d);
       const double stiffness = body.materials[spring.material].stiffness;
-      const Eigen::Vector3d direction = Eigen::Vector3d(d.x, d.y, d.z).normalized();  // of zero: zero
+      const Eigen::Vector3d direction =
+          Eigen::Vector3d(d.x, d.y, d.z).normalized();  // zero for a spring without length
       links_.push_back({spring.a, spring.b, stiffness, length != 0, direction});
     }
   }
@@ -34,7 +35,7 @@ class StiffnessMatrix {
     for (const Link& link : links_) {
       const double wa = weight_[link.a], wb = weight_[link.b];
       const Eigen::Vector3d across = wb * v.segment<3>(3 * link.b) - wa * v.segment<3>(3 * link.a);
-      // a spring without a direction resists in all of them, which bounds whatever it will do
+      // a spring without a direction counts as resisting in every direction: an upper bound for whichever it will have
       const Eigen::Vector3d force =
           link.stiffness * (link.directed ? (link.direction.dot(across) * link.direction).eval() : across);
       result.segment<3>(3 * link.a) -= wa * force;
@@ -56,9 +57,10 @@ class StiffnessMatrix {
   std::vector<Link> links_;
 };
 
-/// A bound of the matrix's largest eigenvalue. Since |xb - xa|^2 <= 2 |xa|^2 + 2 |xb|^2, K is at most twice its blocks
-/// on the diagonal: 2 lambda/m, lambda the largest eigenvalue of the sum of k e e^T over a mass's springs. Unlike
-/// Gershgorin's bound, 2 sum(k)/m, it knows that springs of different directions do not add up.
+/// An upper bound of the matrix's largest eigenvalue, 1/s^2. Because |xb - xa|^2 <= 2 |xa|^2 + 2 |xb|^2, K is at most
+/// twice its diagonal blocks. The bound is therefore the largest 2 lambda/m over the masses, lambda being the largest
+/// eigenvalue of the sum of k e e^T over the mass's springs. Gershgorin's bound, 2 sum(k)/m, is larger because it
+/// ignores that springs have different directions.
 double eigenvalue_bound(const Body& body, std::span<const Vec3> positions) {
   std::vector<Eigen::Matrix3d> block(body.masses.size(), Eigen::Matrix3d::Zero());
   for (const Spring& spring : body.springs) {
@@ -74,7 +76,7 @@ double eigenvalue_bound(const Body& body, std::span<const Vec3> positions) {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   for (std::size_t i = 0; i < block.size(); ++i) {
     if (!(body.masses[i].mass > 0)) continue;
-    // the trace bounds it too and costs nothing
+    // the trace is an upper bound of lambda that costs nothing
     if (2 * block[i].trace() <= largest * body.masses[i].mass) continue;
     solver.computeDirect(block[i], Eigen::EigenvaluesOnly);
     const double bound = 2 * solver.eigenvalues()[2] / body.masses[i].mass;
@@ -84,14 +86,14 @@ double eigenvalue_bound(const Body& body, std::span<const Vec3> positions) {
   return largest;
 }
 
-/// A start for an iteration: no eigenvector of any regular body, and the same every time.
+/// A unit vector to start an iteration from: always the same, and not an eigenvector of any regular body.
 Eigen::VectorXd scattered(Eigen::Index size) {
   Eigen::VectorXd v(size);
   for (Eigen::Index i = 0; i < size; ++i) v[i] = std::sin(1 + 12.9898 * static_cast<double>(i + 1) * (i % 7 + 1));
   return v.normalized();
 }
 
-/// The matrices that Lanczos' iteration is made of: tridiagonal, one row more for each step.
+/// The tridiagonal matrix that Lanczos' iteration builds, one row per step.
 class Tridiagonal {
  public:
   void add_row(double diagonal, double off_diagonal) {
@@ -99,8 +101,8 @@ class Tridiagonal {
     off_diagonal_.push_back(off_diagonal);
   }
 
-  /// The largest eigenvalue, and the last component of its vector: times the next off-diagonal element it is how far
-  /// from an eigenvector of the whole the iteration still is.
+  /// The largest eigenvalue, and the absolute last component of its eigenvector. That component times the next
+  /// off-diagonal element is the residual of the eigenvector in the full matrix.
   std::pair<double, double> largest() const {
     const auto size = static_cast<Eigen::Index>(diagonal_.size());
     const Eigen::Map<const Eigen::VectorXd> d(diagonal_.data(), size), o(off_diagonal_.data() + 1, size - 1);
@@ -113,9 +115,10 @@ class Tridiagonal {
   std::vector<double> diagonal_, off_diagonal_;  // the first off-diagonal element lies outside
 };
 
-/// The largest eigenvalue of `matrix` or, where that is above `enough`, something between, by Lanczos' form of the
-/// power iteration. Its estimates rise towards the eigenvalue; a margin of 2 %, one in frequency, covers what is
-/// missing when the residual is below 1 % (after some 15 iterations for a thousand-mass body) or after 60 iterations.
+/// The largest eigenvalue (1/s^2) of `matrix` by Lanczos' iteration; if it is above `enough`, some number between
+/// `enough` and the eigenvalue. The estimates rise towards the eigenvalue. The iteration ends when the residual is
+/// below 1 % (after about 15 iterations for a body of a thousand masses) or after 60 iterations; a margin of 2 %, which
+/// is 1 % in frequency, covers the remaining error.
 double largest_eigenvalue(const StiffnessMatrix& matrix, double enough) {
   constexpr int iterations = 60, between_looks = 3;
   constexpr double margin = 1.02, residual = 0.01;
@@ -142,8 +145,8 @@ double largest_eigenvalue(const StiffnessMatrix& matrix, double enough) {
   return margin * estimate;
 }
 
-/// The cheapest bound of the largest eigenvalue, by Gershgorin's discs on blocks of one mass: 2 sum(k)/m, at most. NaN
-/// where a position is not finite.
+/// The cheapest upper bound of the largest eigenvalue (1/s^2), by Gershgorin's discs on blocks of one mass: the largest
+/// 2 sum(k)/m. NaN if a position is not finite.
 double disc_bound(const Body& body, std::span<const Vec3> positions) {
   std::vector<double> sum(body.masses.size());
   for (const Spring& spring : body.springs) {
@@ -161,7 +164,7 @@ double disc_bound(const Body& body, std::span<const Vec3> positions) {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The highest frequency among the springs that are muscles, Hz; 0 where none is.
+/// The highest frequency among the springs that are muscles, Hz; 0 if there is none.
 double fastest_muscle(const Body& body) {
   double fastest = 0;
   for (const Spring& spring : body.springs)
@@ -189,7 +192,7 @@ double oscillation_limit(Method method) {
 
 double largest_contact_dt(const Scene& scene, double mass, Method method) {
   if (!is_explicit(method) || !scene.floor || scene.floor->stiffness <= 0) return infinity;
-  // rough ground pushes sideways too
+  // rough ground has horizontal force components too
   const double stiffness = scene.floor->stiffness * (1 + std::pow(scene.floor->steepest(), 2));
   return 1.2 * std::sqrt(mass / stiffness);
 }

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -99,6 +100,12 @@ struct Task : SpringRecords {
       0;  ///< springs times steps, independent of how often a method evaluates each spring in a step
 };
 
+/// A device has too little free memory for even one body.
+class DeviceOutOfMemory : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// How a device such as a GPU was used since its simulator was made.
 struct DeviceUse {
   double busy = 0;           ///< time in which the device was working, s
@@ -112,7 +119,8 @@ class Simulator {
   virtual ~Simulator() = default;
 
   /// Moves every task's body through its steps and records what `recording` asks for. A body that diverges stops, and
-  /// does not affect the others. Several threads may call this at once.
+  /// does not affect the others. Several threads may call this at once. Throws DeviceOutOfMemory, or another
+  /// std::runtime_error if the device fails.
   virtual void run(std::span<Task> tasks, Recording recording) = 0;
 
   /// A search for nearest neighbours on the same device.

@@ -19,8 +19,8 @@ double force(const Body& body, const State& state, const Spring& spring) {
 
 void refuse(Task& task, std::uint64_t skip) {
   task.status = Status::invalid;
-  task.reason = "no tally in a cycle of " + std::to_string(task.steps) + " steps: tallies are " + std::to_string(skip) +
-                " steps apart; make them at most as many steps apart as a cycle has";
+  task.reason = "no tally in a cycle of " + std::to_string(task.steps) + " steps, because skip is " +
+                std::to_string(skip) + "; choose a smaller one";
   task.clear({}, 0);
 }
 

@@ -1,4 +1,4 @@
-// How long springs want to be: tables of relative lengths; included once per instruction set.
+// Actuation: tables of the relative length L(t)/L0 of each material. Included once per instruction set.
 #if defined(EVODEVO_CPU_ACTUATION_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef EVODEVO_CPU_ACTUATION_INL_HPP
 #undef EVODEVO_CPU_ACTUATION_INL_HPP
@@ -14,15 +14,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
-/// Tables of at most this many entries are held in registers.
+/// A row of at most this many materials is held in registers; 0: never.
 template <class T>
 constexpr std::size_t register_table_size() {
   constexpr std::size_t lanes = hn::MaxLanes(hn::ScalableTag<T>());
   return lanes >= 8 ? 16 : 0;
 }
 
-/// A row of a table of materials that is read from memory, one lane after the other: gathers are slower on many
-/// processors.
+/// A row of a table, read from memory one lane after the other: gather instructions are slower on many processors.
 template <class T>
 struct TableInMemory {
   using D = hn::ScalableTag<T>;
@@ -30,7 +29,7 @@ struct TableInMemory {
 
   HWY_INLINE explicit TableInMemory(const T* row_) : row(row_) {}
 
-  /// The entries of the materials in material[0], material[1], ..
+  /// The entries of the materials material[0], material[1], .., one per lane.
   HWY_INLINE hn::Vec<D> at(const cpu::Index<T>* material) const {
     HWY_ALIGN T values[lanes];
     for (std::size_t lane = 0; lane < lanes; ++lane) values[lane] = row[material[lane]];
@@ -40,7 +39,7 @@ struct TableInMemory {
   const T* row;
 };
 
-/// A row of up to 16 entries that stays in one or two registers.
+/// A row of up to 16 entries, held in one or two registers.
 template <class T>
 struct TableInRegisters {
   using D = hn::ScalableTag<T>;
@@ -64,7 +63,7 @@ struct TableInRegisters {
   hn::Vec<D> low, high;
 };
 
-/// Stores doubles as numbers of type T.
+/// Stores doubles as doubles or floats.
 template <class D>
 HWY_INLINE void store_as(D d, hn::Vec<D> values, double* to) {
   hn::Store(values, d, to);
@@ -75,6 +74,7 @@ HWY_INLINE void store_as(D, hn::Vec<D> values, float* to) {
   hn::Store(hn::DemoteTo(df, values), df, to);
 }
 
+/// Kernels::actuate.
 template <class T>
 void actuate(const cpu::Actuation<T>& actuation, double start, std::uint64_t first, std::size_t rows, double dt) {
   const hn::ScalableTag<double> d;
@@ -84,7 +84,7 @@ void actuate(const cpu::Actuation<T>& actuation, double start, std::uint64_t fir
     for (std::size_t m = 0; m < actuation.padded; m += hn::Lanes(d)) {
       const auto amplitude = hn::Load(d, actuation.amplitude + m);
       const auto frequency = hn::Load(d, actuation.frequency + m);
-      // the phase is reduced in double, so that late times lose no digits
+      // the phase is reduced in double precision, so that late times lose no digits
       const auto turns = frequency * time;
       const auto angle = full_turn * (turns - hn::Floor(turns)) + hn::Load(d, actuation.phase + m);
       const std::size_t entry = row * actuation.padded + m;

@@ -1,4 +1,4 @@
-// Arrays aligned for vectors.
+// Arrays aligned for SIMD vectors.
 #pragma once
 
 #include <hwy/aligned_allocator.h>
@@ -8,7 +8,7 @@
 
 namespace evodevo::cpu {
 
-/// `size` numbers, zero at first, aligned for the widest vectors.
+/// An array of `size` numbers, zero at first, aligned for the widest SIMD vectors.
 template <class T>
 class Array {
  public:

@@ -7,7 +7,7 @@
 namespace evodevo::cpu {
 namespace {
 
-/// The springs of each colour, in the body's order.
+/// The indices of the springs of each colour, in the body's order.
 std::vector<std::vector<std::uint32_t>> by_colour(const Body& body) {
   std::vector<std::vector<std::uint32_t>> springs;
   const std::vector<std::uint32_t> colours = spring_colours(body);
@@ -18,7 +18,7 @@ std::vector<std::vector<std::uint32_t>> by_colour(const Body& body) {
   return springs;
 }
 
-/// 1/kg; 0 for what never moves.
+/// The inverse of a mass (kg), 1/kg; 0 for a mass of 0 kg, which never moves.
 double inverse(double mass) { return mass > 0 ? 1 / mass : 0; }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A moving body's energies, for the guard against divergence; included once per instruction set.
+// The energies of a body, which the guard against divergence checks. Included once per instruction set.
 #if defined(EVODEVO_CPU_ENERGIES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef EVODEVO_CPU_ENERGIES_INL_HPP
 #undef EVODEVO_CPU_ENERGIES_INL_HPP
@@ -30,7 +30,7 @@ double elastic_energy_of(const cpu::Motion<T>& m, const cpu::Actuation<T>& actua
       sum = sum + elastic_energy(s, hn::Load(d, m.stiffness + slot), length);
     }
   }
-  // every spring is in two slots
+  // every spring is in two slots, one at each end
   return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, sum))) / 2;
 }
 
@@ -46,7 +46,7 @@ cpu::Energies energies(const cpu::Motion<T>& m, const cpu::StepConstants<T>& con
     const V mass = hn::Load(d, m.mass + i), x = hn::Load(d, m.x + i), z = hn::Load(d, m.z + i);
     kinetic = kinetic + kinetic_energy(mass, v);
     height_moment = multiply_add(mass, height(x, z, grade), height_moment);
-    // zero times anything finite is zero, and a sum with one that is not stays so
+    // zero times a finite number is 0; zero times infinity or NaN is NaN, and so is every sum with it
     const V total = (x + hn::Load(d, m.y + i) + z) + (v.x + v.y + v.z);
     not_finite = multiply_add(total, hn::Zero(d), not_finite);
   }

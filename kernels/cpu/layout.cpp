@@ -26,7 +26,7 @@ struct Incidence {
   std::vector<std::uint32_t> first, spring;
 };
 
-/// The masses by falling degree, and by index where it is equal.
+/// The indices of the masses by falling degree; masses of equal degree by rising index.
 std::vector<std::uint32_t> sorted_masses(const Incidence& incidence, std::size_t masses) {
   std::vector<std::uint32_t> order(masses);
   std::iota(order.begin(), order.end(), 0u);
@@ -49,10 +49,10 @@ Layout<T>::Layout(const Body& body, std::size_t lanes_)
   mass_at = sorted_masses(incidence, masses);
   std::vector<std::uint32_t> index_of(masses);
   for (std::uint32_t index = 0; index < masses; ++index) index_of[mass_at[index]] = index;
-  // the first mass of a group has the most springs
+  // the first mass of a group has its highest degree
   for (std::size_t g = 0; g < groups; ++g) first_row[g + 1] = first_row[g] + incidence.degree(mass_at[g * lanes]);
 
-  neighbour = Array<std::uint32_t>(slots() + lanes);  // the loop over rows reads one ahead
+  neighbour = Array<std::uint32_t>(slots() + lanes);  // the loop over rows reads one row ahead
   stiffness = Array<T>(slots());
   rest_length = Array<T>(slots());
   material = Array<Index<T>>(slots());

@@ -1,5 +1,5 @@
-// Passes over a body's masses, padded to whole groups: one per force, and those that move it; included once per
-// instruction set.
+// Loops over a body's masses, padded to whole SIMD vectors: one for each force, and those that advance velocities and
+// positions. They read and write the arrays of cpu::Motion. Included once per instruction set.
 #if defined(EVODEVO_CPU_MASSES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef EVODEVO_CPU_MASSES_INL_HPP
 #undef EVODEVO_CPU_MASSES_INL_HPP
@@ -27,7 +27,7 @@ HWY_INLINE void add_gravity(const cpu::Motion<T>& m, const cpu::StepConstants<T>
   }
 }
 
-/// The rough ground under the masses from i on.
+/// The rough ground under the masses of the vector that begins at index i.
 template <class T>
 HWY_INLINE auto ground_under(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, std::size_t i) {
   const hn::ScalableTag<T> d;
@@ -36,7 +36,7 @@ HWY_INLINE auto ground_under(const cpu::Motion<T>& m, const cpu::StepConstants<T
       Roughness<hn::Vec<decltype(d)>>{hn::Set(d, constants.roughness), hn::Set(d, constants.cells), constants.seed});
 }
 
-/// Adds the ground's push along its normal, `push` along z.
+/// Adds the vector up (-slope_x, -slope_y, 1), parallel to the ground's normal, to v.
 template <class V>
 HWY_INLINE Triple<V> add_along_normal(const Ground<V>& ground, const Triple<V>& v, V up) {
   const Triple<V> sum = add_horizontal_part(ground, v, up);
@@ -86,7 +86,7 @@ HWY_INLINE void add_drag(const cpu::Motion<T>& m, const cpu::StepConstants<T>& c
   }
 }
 
-/// Damping as a force.
+/// Adds damping as a force.
 template <class T>
 HWY_INLINE void add_damping(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, std::size_t masses) {
   const hn::ScalableTag<T> d;
@@ -99,7 +99,8 @@ HWY_INLINE void add_damping(const cpu::Motion<T>& m, const cpu::StepConstants<T>
   }
 }
 
-/// Drag for a time in which acceleration adds `push`: scales the velocities and, where forces act in it, the forces.
+/// Applies quadratic drag over a step (drag_retention()): scales the velocities and, if `forces_too`, the forces that
+/// act during the step.
 template <bool forces_too, class T>
 HWY_INLINE void apply_drag(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, T damped_dt,
                            std::size_t masses) {
@@ -138,7 +139,8 @@ HWY_INLINE void damp(const cpu::Motion<T>& m, T decay_, std::size_t masses) {
     for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) hn::Store(hn::Load(d, v + i) * decay, d, v + i);
 }
 
-/// What friction leaves, after `time` under the normal forces floor_force, of the tangential velocities vx, vy.
+/// Reduces the tangential velocities vx, vy (m/s) by the friction of a time `time` (s) under the normal forces
+/// m.floor_force.
 template <class T>
 HWY_INLINE void apply_friction(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, T time, T* vx_, T* vy_,
                                std::size_t masses) {
@@ -153,7 +155,7 @@ HWY_INLINE void apply_friction(const cpu::Motion<T>& m, const cpu::StepConstants
   }
 }
 
-/// Copies x, y, z to where neighbours read them.
+/// Copies the positions x, y, z to the interleaved array, from which neighbours read them.
 template <class T>
 HWY_INLINE void interleave_positions(const cpu::Motion<T>& m, std::size_t masses) {
   const hn::ScalableTag<T> d;
@@ -162,7 +164,7 @@ HWY_INLINE void interleave_positions(const cpu::Motion<T>& m, std::size_t masses
                     m.interleaved_positions + cpu::position_stride * i);
 }
 
-/// x <- x + dt v, in both copies of the places.
+/// x <- x + dt v, in both copies of the positions.
 template <class T>
 HWY_INLINE void advance_positions(const cpu::Motion<T>& m, T time_step, std::size_t masses) {
   const hn::ScalableTag<T> d;

@@ -1,5 +1,5 @@
-// Places as x, y, z, x, y, z: how vectors of them are read from wherever a body's neighbours lie, and written; included
-// once per instruction set.
+// Reading and writing interleaved positions (x, y, z, padding, x, y, z, padding, ..): SIMD vectors of x, of y and of z
+// are read for masses anywhere in the array, and written for consecutive masses. Included once per instruction set.
 #if defined(EVODEVO_CPU_POSITIONS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef EVODEVO_CPU_POSITIONS_INL_HPP
 #undef EVODEVO_CPU_POSITIONS_INL_HPP
@@ -31,8 +31,8 @@ HWY_INLINE void store_positions(D d, const Triple<hn::Vec<D>>& positions, T* to)
 
 #else
 
-/// A vector of blocks of 16 bytes: block b comes from positions + offset[b * stride]. Every load fills all blocks and
-/// blends keep the right one, which costs less than inserting blocks one after the other.
+/// A vector whose 16-byte block b comes from positions + offset[b * stride]. Each load fills all blocks, and blends
+/// keep the right one; this is faster than inserting the blocks one after the other.
 template <class D, class T = hn::TFromD<D>>
 HWY_INLINE hn::Vec<D> load_blocks(D d, const T* positions, const std::uint32_t* offset, std::size_t stride) {
   constexpr std::size_t blocks = hn::MaxLanes(D()) * sizeof(T) / 16;
@@ -52,8 +52,8 @@ HWY_INLINE hn::Vec<D> load_blocks(D d, const T* positions, const std::uint32_t* 
   }
 }
 
-/// The positions (x, y, z) of the masses at positions + offset[lane]. Loading each whole and turning rows into columns
-/// takes about half the time of three gathers.
+/// The positions (m) of the masses at positions + offset[lane]. Loading each position whole and transposing takes about
+/// half the time of three gathers.
 template <class D>
 HWY_INLINE Triple<hn::Vec<D>> load_positions(D d, const float* positions, const std::uint32_t* offset) {
   const auto r0 = load_blocks(d, positions, offset + 0, 4);

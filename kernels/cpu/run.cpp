@@ -40,7 +40,7 @@ StepConstants<T> step_constants(const Scene& scene, double dt) {
           .half_step = time_span<T>(scene, dt / 2)};
 }
 
-/// The memory behind Actuation.
+/// Owns the memory of Actuation.
 template <class T>
 class ActuationTables {
  public:
@@ -59,7 +59,7 @@ class ActuationTables {
     }
   }
 
-  /// The tables from row `first` on.
+  /// The tables, beginning with row `first`.
   Actuation<T> view(std::size_t first = 0) {
     return {.materials = materials_,
             .padded = padded_,
@@ -76,7 +76,7 @@ class ActuationTables {
   Array<T> length_, rate_;
 };
 
-/// The memory behind Motion.
+/// Owns the memory of Motion.
 template <class T>
 class MovingBody {
  public:
@@ -99,7 +99,7 @@ class MovingBody {
       const std::uint32_t from = layout_.mass_at[i];
       const double mass = body.masses[from].mass;
       mass_[i] = static_cast<T>(mass);
-      // a mass of 0 kg stays where it is
+      // an inverse mass of 0 keeps a mass of 0 kg where it is
       inverse_mass_[i] = static_cast<T>(mass > 0 ? 1 / mass : 0);
       put(position_, i, state.position[from]);
       put(velocity_, i, state.velocity[from]);
@@ -145,7 +145,8 @@ class MovingBody {
             .tension_sum = data_of(tension_sum_)};
   }
 
-  /// Adds the slots' sums to the task's and starts them again from zero; in between, float32 stays exact enough.
+  /// Adds the sums of the slots to the task's records and sets them to zero. A sum over the steps between two checks is
+  /// short enough for float32.
   void collect(Task& task) {
     for (std::size_t i = 0; i < layout_.springs; ++i) {
       const std::uint32_t slot = layout_.slot_of[i];
@@ -183,7 +184,7 @@ class MovingBody {
   Array<T> position_[3], velocity_[3], force_[3];
 };
 
-/// Ends the run of a body that has diverged.
+/// Checks a body, and ends its run if it has diverged.
 void check(Task& task, Course& course, const Scene& scene, const Energies& e) {
   if (e.finite) course.fallen = std::max(course.fallen, fallen_energy(scene, e.height_moment));
   task.reason = divergence_reason(course, task.dt, e.kinetic, e.elastic, e.finite);
@@ -197,7 +198,7 @@ void check(Task& task, Course& course, const Scene& scene, const Energies& e) {
 
 template <class T>
 void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels<T>& kernels, Recording recording) {
-  Body coded;  // where its materials are computed
+  Body coded;  // the body with rounded materials, if materials are computed
   if (stepping.materials == Materials::computed) {
     coded = *task.body;
     coded.materials = simulated_materials(*task.body, stepping.materials);
@@ -231,7 +232,7 @@ void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels
       check(task, course, scene, kernels.energies(moving.view(), constants, tables.view(now * rows)));
   }
   apply_course(task, course);
-  if (task.steps > 0) moving.write(state);  // else not even round it
+  if (task.steps > 0) moving.write(state);  // without steps the state is not even rounded to T
   if (!recording.work || task.status != Status::ok) task.work = 0;
   for (auto* means : {&task.stress, &task.tension})
     for (double& mean : *means) mean /= static_cast<double>(std::max<std::uint64_t>(task.steps, 1));

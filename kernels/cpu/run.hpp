@@ -1,4 +1,4 @@
-// One body's run on one CPU thread.
+// The run of one body on one CPU thread.
 #pragma once
 
 #include "core/scene.hpp"
@@ -8,6 +8,14 @@
 namespace evodevo::cpu {
 
 /// Moves one task's body and fills in its answer.
+///
+///   arrange   body, state ─► arrays in Layout's order
+///   repeat until the end or a divergence, up to the next check:
+///     actuate   times ─► relative lengths of the materials
+///     advance   arrays, lengths ─► arrays after these steps
+///     collect   sums of the slots ─► records of the springs
+///     check     energies ─► status
+///   write     arrays ─► state; sums ─► means over the run
 template <class T>
 void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels<T>& kernels, Recording recording);
 

@@ -1,4 +1,4 @@
-// The simulator on the CPU: one body at a time on each thread.
+// The simulator on the CPU. Each thread moves one body at a time.
 #include "core/simulator.hpp"
 
 #include "analysis/neighbours.hpp"

@@ -1,4 +1,4 @@
-// The loop over a body's springs; included once per instruction set.
+// The loop over a body's springs. Included once per instruction set.
 #if defined(EVODEVO_CPU_SPRINGS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef EVODEVO_CPU_SPRINGS_INL_HPP
 #undef EVODEVO_CPU_SPRINGS_INL_HPP
@@ -13,7 +13,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
-/// Sums that are known when the code is compiled: those that most runs ask for, whose loops hold nothing else.
+/// A choice of sums that is known at compile time, so that the loop contains no code for other sums. Most runs use one
+/// of these.
 template <bool force_on, bool power_on>
 struct UsualSums {
   template <class T>
@@ -21,15 +22,19 @@ struct UsualSums {
   static constexpr bool force = force_on, power = power_on, peak = false, tension = false;
 };
 
-/// Sums that a motion has room for.
+/// A choice of sums that is known at run time: those that the motion has arrays for.
 struct AnySums : cpu::Sums {
   template <class T>
   explicit AnySums(const cpu::Motion<T>& m)
       : Sums{m.force_sum != nullptr, m.power_sum != nullptr, m.peak != nullptr, m.tension_sum != nullptr} {}
 };
 
-/// Sets the motion's forces on a group's masses to the sums of the spring forces, and adds to the sums that are on.
-/// `lengths` and `rates` are rows of the tables; without power, `rates` is not read.
+/// Computes the spring forces on the masses of one group.
+///
+///   in:  positions, springs of the group, `lengths` (relative length of each material now), `rates` (its rate of
+///   change,
+///        1/s; not read without sums.power)
+///   out: motion.fx, fy, fz: the sum of spring forces on each mass, N; the sums that are on, for each slot
 template <class Sums, class Table, class T>
 HWY_INLINE void set_spring_forces(const cpu::Motion<T>& motion, const Sums& sums, std::size_t group,
                                   const Table& lengths, const Table& rates) {
@@ -42,7 +47,7 @@ HWY_INLINE void set_spring_forces(const cpu::Motion<T>& motion, const Sums& sums
   Triple<V> force{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
   const std::size_t end = motion.first_row[group + 1] * lanes;
   std::size_t slot = motion.first_row[group] * lanes;
-  // one row ahead: the next row's places are on their way while this row waits for its root and its division
+  // positions are read one row ahead, so that memory works while this row waits for its square root and division
   Separation<V> next = separation(own, load_positions(d, motion.interleaved_positions, motion.neighbour + slot));
   for (; slot < end; slot += lanes) {
     const Separation<V> s = next;

@@ -1,6 +1,11 @@
-// The border between code for any processor and code compiled once per instruction set. What crosses it is plain data
-// and raw pointers: an inline function of the standard library that both sides instantiate could end up in the binary
-// with instructions that not every processor has.
+// The interface between portable code (run.cpp) and code that is compiled once per instruction set (step.cpp).
+//
+//   Kernels::actuate      material parameters, times ─► tables of relative lengths
+//   Integrator::advance   Motion, StepConstants, tables ─► Motion after some steps
+//   Kernels::energies     Motion, lengths now ─► Energies, for the guard
+//
+// Only plain data and raw pointers cross this interface. If both sides instantiated the same inline function of the
+// standard library, the linker could keep the copy with instructions that not every processor has.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +16,15 @@
 
 namespace evodevo::cpu {
 
-/// A step or a part of one.
+/// The length of a step, or of half a step.
 template <class T>
 struct TimeSpan {
   T dt;         ///< s
-  T decay;      ///< exp(-damping rate dt): what damping leaves of a velocity
-  T damped_dt;  ///< (1 - decay)/rate, s: what a constant acceleration adds to it meanwhile
+  T decay;      ///< exp(-damping rate dt): the fraction of a velocity that damping leaves
+  T damped_dt;  ///< (1 - decay)/rate, s: a constant acceleration times this is what it adds to a damped velocity in dt
 };
 
-/// The scene and the step in the arithmetic of the simulation; a force that is off is not computed.
+/// The constants of a step: the scene and the step length as numbers of type T. A force that is off is not computed.
 template <class T>
 struct StepConstants {
   bool gravity, slope, floor, rough, friction, drag, damping;
@@ -27,7 +32,7 @@ struct StepConstants {
   T grade;             ///< Gravity::grade()
   T floor_stiffness;   ///< N/m
   T roughness;         ///< m
-  T cells;             ///< of rough ground, in a metre
+  T cells;             ///< of rough ground, 1/m
   std::uint32_t seed;  ///< Floor::first_line()
   T friction_coefficient;
   T drag_coefficient;  ///< kg/m
@@ -35,15 +40,15 @@ struct StepConstants {
   TimeSpan<T> step, half_step;
 };
 
-/// What is added up for each slot during the steps.
+/// What is summed for each slot during the steps.
 struct Sums {
-  bool force = false;    ///< |force|, for stress
-  bool power = false;    ///< power of actuation
+  bool force = false;    ///< |force|, whose mean over the steps is the stress
+  bool power = false;    ///< power that the muscle puts into the body
   bool peak = false;     ///< the largest |force|
-  bool tension = false;  ///< force, positive where the spring pulls
+  bool tension = false;  ///< force, positive if the spring pulls
 };
 
-/// ColouredSprings, as arrays.
+/// ColouredSprings as raw pointers.
 template <class T>
 struct ColouredView {
   std::size_t size;
@@ -52,7 +57,7 @@ struct ColouredView {
   const Index<T>* material;
 };
 
-/// One body in motion, as arrays. All arrays of masses are padded to whole groups with masses that nothing moves.
+/// One body in motion, as raw pointers. All arrays of masses are padded to whole groups with masses of inverse mass 0.
 template <class T>
 struct Motion {
   // springs, as in Layout
@@ -62,12 +67,12 @@ struct Motion {
   const T* stiffness;
   const T* rest_length;
   const Index<T>* material;
-  ColouredView<T> coloured;  ///< where Integrator::coloured asks for it
+  ColouredView<T> coloured;  ///< only if Integrator::coloured
 
   const T* mass;             ///< kg
-  const T* inverse_mass;     ///< 1/kg; 0 for what never moves
+  const T* inverse_mass;     ///< 1/kg; 0 for masses that never move
   T *x, *y, *z;              ///< m
-  T* interleaved_positions;  ///< x, y, z again, position_stride numbers a mass, for neighbours to read
+  T* interleaved_positions;  ///< a copy of x, y, z that neighbours read: position_stride numbers per mass, m
   T *vx, *vy, *vz;           ///< m/s
   T *fx, *fy, *fz;           ///< N
   T* floor_force;            ///< N
@@ -75,36 +80,36 @@ struct Motion {
   T* slot_scratch;           ///< Integrator::slot_arrays arrays, one number for each slot
   std::size_t slots;
 
-  // [slots]; null where Sums does not ask for them
+  // [slots]; null if Sums does not ask for them
   T* force_sum;    ///< N
   T* power_sum;    ///< W
   T* peak;         ///< N
   T* tension_sum;  ///< N
 };
 
-/// Materials in arrays, padded to `padded`, and what they do at each of some times.
+/// The materials as arrays of `padded` entries, and tables of their relative lengths with one row for each time.
 template <class T>
 struct Actuation {
   std::size_t materials, padded;
   const double *amplitude, *frequency, *phase;
   T* relative_length;  ///< [row][padded] L(t)/L0
-  T* relative_rate;    ///< [row][padded] its rate of change, 1/s; null where Sums::power is off
+  T* relative_rate;    ///< [row][padded] its rate of change, 1/s; null if Sums::power is off
 };
 
 struct Energies {
   double kinetic, elastic;  ///< J
-  double height_moment;     ///< sum of mass times height, kg m
-  bool finite;              ///< whether all places and velocities are
+  double height_moment;     ///< first moment of mass over height: sum of mass times height, kg m
+  bool finite;              ///< whether all positions and velocities are finite
 };
 
 /// A time-stepping method.
 template <class T>
 struct Integrator {
-  std::size_t rows_per_step;  ///< rows of the tables that time advances by in a step
-  std::size_t mass_arrays;    ///< memory of its own; what it holds need not outlive a call
-  std::size_t slot_arrays;
-  bool coloured;  ///< whether it needs the springs by colour
-  /// Moves the body by `steps` steps; `actuation` holds the relative lengths from their beginning to their end.
+  std::size_t rows_per_step;  ///< rows of the tables per step
+  std::size_t mass_arrays;    ///< scratch arrays, one number per mass each; their content is not kept between calls
+  std::size_t slot_arrays;    ///< scratch arrays, one number per slot each
+  bool coloured;              ///< whether it needs the springs by colour
+  /// Moves the body by `steps` steps. `actuation` has the relative lengths from their beginning to their end.
   void (*advance)(const Motion<T>&, const StepConstants<T>&, const Actuation<T>& actuation, std::size_t steps, Sums);
 };
 
@@ -115,10 +120,10 @@ struct Kernels {
   std::size_t lanes;
   std::size_t table_size;  ///< Actuation::padded is a multiple of this
 
-  /// Fills in `rows` rows of the tables: for the times start + first dt, start + (first + 1) dt, ..
+  /// Fills `rows` rows of the tables, for the times start + first dt, start + (first + 1) dt, .. (s).
   void (*actuate)(const Actuation<T>&, double start, std::uint64_t first, std::size_t rows, double dt);
   Integrator<T> integrator[method_names.size()];  ///< by Method
-  /// The energies now, with the relative lengths of the table's row 0.
+  /// The energies now; row 0 of the tables holds the relative lengths now.
   Energies (*energies)(const Motion<T>&, const StepConstants<T>&, const Actuation<T>& actuation);
 };
 

@@ -1,4 +1,10 @@
-// What the time-stepping methods are written with; included once per instruction set.
+// The frame of all time-stepping methods on the CPU. Included once per instruction set.
+//
+// Each step of a method calls, in its own order:
+//   springs(..)              positions, relative lengths ─► spring forces (and records of the springs)
+//   add_gravity, add_floor.. positions, velocities ─► added to the forces
+//   advance_velocities, damp, apply_drag, apply_friction   forces ─► velocities
+//   advance_positions        velocities ─► positions
 #if defined(EVODEVO_CPU_STEPPER_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef EVODEVO_CPU_STEPPER_INL_HPP
 #undef EVODEVO_CPU_STEPPER_INL_HPP
@@ -12,7 +18,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
-/// Sets the motion's forces to those of the springs, whose relative lengths are in row `row` of the tables.
+/// Sets the motion's forces to the spring forces at the relative lengths in row `row` of the tables.
 template <class T>
 using SpringPass = void (*)(const cpu::Motion<T>&, const cpu::Actuation<T>&, std::size_t row);
 
@@ -34,7 +40,7 @@ SpringPass<T> spring_pass_with(cpu::Sums sums) {
   return set_spring_forces<Table, UsualSums<false, false>, T>;
 }
 
-/// The pass that adds to `sums`.
+/// The pass over the springs that adds to the given sums.
 template <class T>
 SpringPass<T> spring_pass(const cpu::Actuation<T>& actuation, cpu::Sums sums) {
   if constexpr (register_table_size<T>() > 0)
@@ -42,7 +48,7 @@ SpringPass<T> spring_pass(const cpu::Actuation<T>& actuation, cpu::Sums sums) {
   return spring_pass_with<TableInMemory<T>, T>(sums);
 }
 
-/// A body, its constants and the passes over its springs.
+/// What a method gets: a body in motion, the constants of the step and the passes over the springs.
 template <class T>
 struct Stepper {
   const cpu::Motion<T>& motion;
@@ -50,22 +56,22 @@ struct Stepper {
   const cpu::Actuation<T>& actuation;
   cpu::Sums sums;
   std::size_t masses;               ///< padded to whole groups
-  SpringPass<T> springs;            ///< adds to no sum
-  SpringPass<T> recording_springs;  ///< adds to the sums that are on
+  SpringPass<T> springs;            ///< records nothing
+  SpringPass<T> recording_springs;  ///< also records: adds to the sums that are on
 
-  /// Whether any sum is on.
+  /// Whether anything is recorded.
   bool is_recording() const { return sums.force || sums.power || sums.peak || sums.tension; }
 
-  /// Array `index` of the method's own.
+  /// Array `index` of the method's scratch memory, one number for each mass.
   T* scratch(std::size_t index) const { return motion.mass_scratch + index * masses; }
 };
 
-/// What a method may leave as it is. It adds `step(stepper, row)`: one step, at whose beginning the relative lengths
-/// are those in row `row` of the tables.
+/// The base of a method: defaults that it may override. The method adds `step(stepper, row)`, which makes one step; row
+/// `row` of the tables holds the relative lengths at the beginning of the step.
 struct StepMethod {
   static constexpr std::size_t rows_per_step = 1, mass_arrays = 0, slot_arrays = 0;
   static constexpr bool coloured = false;
-  /// Called before the first of some steps.
+  /// Called before the first step of each call of Integrator::advance.
   template <class T>
   static void begin(const Stepper<T>&) {}
 };

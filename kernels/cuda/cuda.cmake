@@ -1,11 +1,32 @@
 # The CUDA part of the simulation core. Kernels are compiled at run time; their sources become part of the program.
-set(embedded cuda/device/resident.cu cuda/device/streamed.cu cuda/device/neighbours.cu cuda/device/block.cuh cuda/device/check.cuh cuda/device/mass_step.cuh
-  cuda/device/resident.cuh cuda/device/streamed.cuh cuda/device/materials/computed.cuh cuda/device/materials/table.cuh cuda/device/methods/implicit.cu cuda/device/methods/paper_euler.cuh cuda/device/methods/rk4.cuh
-  cuda/device/methods/symplectic_euler.cuh cuda/device/methods/velocity_verlet.cuh cuda/device/methods/xpbd.cu cuda/layout/formats.hpp
-  cuda/layout/fixed_point.hpp cuda/layout/point_clouds.hpp physics/physics.hpp physics/arithmetic.hpp physics/energy_bound.hpp physics/material_code.hpp)
+set(embedded
+  cuda/device/block.cuh
+  cuda/device/check.cuh
+  cuda/device/mass_step.cuh
+  cuda/device/materials/computed.cuh
+  cuda/device/materials/table.cuh
+  cuda/device/methods/implicit.cu
+  cuda/device/methods/paper_euler.cuh
+  cuda/device/methods/rk4.cuh
+  cuda/device/methods/symplectic_euler.cuh
+  cuda/device/methods/velocity_verlet.cuh
+  cuda/device/methods/xpbd.cu
+  cuda/device/neighbours.cu
+  cuda/device/resident.cu
+  cuda/device/resident.cuh
+  cuda/device/streamed.cu
+  cuda/device/streamed.cuh
+  cuda/layout/fixed_point.hpp
+  cuda/layout/formats.hpp
+  cuda/layout/point_clouds.hpp
+  physics/arithmetic.hpp
+  physics/energy_bound.hpp
+  physics/material_code.hpp
+  physics/physics.hpp)
 set(embedded_sources ${CMAKE_CURRENT_BINARY_DIR}/embedded_sources.cpp)
 
-# evodevo_embed(OUTPUT HEADER FUNCTION SOURCES...): the sources, relative to here, as what FUNCTION of HEADER gives
+# evodevo_embed(OUTPUT HEADER FUNCTION SOURCES...): writes a C++ file with FUNCTION, declared in HEADER, which returns the
+# texts of SOURCES (relative to the current source folder)
 function(evodevo_embed output header function)
   set(script ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/embed.cmake)
   list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE files)
@@ -22,20 +43,20 @@ evodevo_embed(${embedded_sources} cuda/runtime/compiler.hpp evodevo::cuda::embed
 
 target_sources(evodevo_kernels PRIVATE
   cuda/layout/arrangement.cpp
+  cuda/layout/features.cpp
+  cuda/layout/ownership.cpp
+  cuda/layout/resident.cpp
+  cuda/layout/row_order.cpp
+  cuda/layout/streamed.cpp
   cuda/runtime/cache.cpp
   cuda/runtime/compiler.cpp
   cuda/runtime/cuda_neighbours.cpp
   cuda/runtime/cuda_simulator.cpp
   cuda/runtime/device.cpp
   cuda/runtime/error.cpp
-  cuda/layout/features.cpp
   cuda/runtime/kernels.cpp
   cuda/runtime/memory_store.cpp
-  cuda/layout/ownership.cpp
   cuda/runtime/portion.cpp
-  cuda/layout/resident.cpp
-  cuda/layout/row_order.cpp
-  cuda/layout/streamed.cpp
   ${embedded_sources})
 target_compile_definitions(evodevo_kernels PUBLIC EVODEVO_CUDA)
 target_link_libraries(evodevo_kernels PRIVATE CUDA::cudart CUDA::nvrtc)

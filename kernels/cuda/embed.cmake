@@ -1,5 +1,5 @@
-# Writes the files of the list SOURCES (relative to ROOT) as constants of the C++ file OUTPUT: what FUNCTION, which
-# HEADER declares, gives. cmake -DROOT= -DSOURCES= -DHEADER= -DFUNCTION= -DOUTPUT= -P
+# Writes the C++ file OUTPUT with the function FUNCTION, declared in HEADER, that returns the texts of the files SOURCES
+# (a list, relative to ROOT): cmake -DROOT= -DSOURCES= -DHEADER= -DFUNCTION= -DOUTPUT= -P embed.cmake
 set(entries "")
 foreach(name IN LISTS SOURCES)
   file(READ ${ROOT}/${name} text)

@@ -1,6 +1,7 @@
 // The paper's tallies against their definition.
 #include "core/skip_shift.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,6 +17,9 @@
 
 namespace evodevo {
 namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
 
 Rng stream(std::uint32_t individual) { return Rng(philox, {5, 0, individual, 0}); }
 
@@ -181,7 +185,7 @@ TEST(SkipShift, ACycleWithoutATallyIsInvalid) {
   const Body body = chain(3);
   const Tallied none = run(*simulator, body, resting(body, {}), 19, 20);
   EXPECT_EQ(none.task.status, Status::invalid);
-  EXPECT_EQ(none.task.reason, "no tally in a cycle of 19 steps: tallies are 20 steps apart; make them at most as many steps apart as a cycle has");
+  EXPECT_THAT(none.task.reason, AllOf(HasSubstr("19 steps"), HasSubstr("skip is 20")));
   EXPECT_TRUE(none.task.stress.empty());
   EXPECT_EQ(run(*simulator, body, resting(body, {}), 20, 20).task.status, Status::ok);
 }

@@ -1,4 +1,4 @@
-// Backward Euler, linearised, by conjugate gradients; included once per instruction set.
+// implicit: linearised backward Euler, solved by conjugate gradients. Included once per instruction set.
 #if defined(EVODEVO_CPU_METHODS_IMPLICIT_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef EVODEVO_CPU_METHODS_IMPLICIT_INL_HPP
 #undef EVODEVO_CPU_METHODS_IMPLICIT_INL_HPP
@@ -11,14 +11,23 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
-/// With u = decay v, the velocity v' = u + c at the end of a step follows from
-///   (M + damped_dt (dt K+ + R)) c = damped_dt (F - (dt K + R) u),   then x <- x + dt v',
-/// F the forces at these places with the springs' lengths and K their stiffness at the end of the step (Baraff and
-/// Witkin, Large steps in cloth simulation, 1998). R is diagonal: drag, c |v|, and for each mass that touches the
-/// floor, z + dt v_z < 0, dt times the floor's stiffness along z, so that the floor pushes with k (-z - dt v'_z); on
-/// rough ground along its normal, which is no longer diagonal. K+ is
-/// spring_stiffness(), without what would be negative, so the matrix is symmetric and positive definite at any dt; K
-/// is spring_force_rate(), with it, or springs under tension would brake every turn of a body.
+/// Let u = decay v be the damped velocity. The correction c, and with it the velocity v' = u + c at the end of a step,
+/// is the solution of (Baraff and Witkin, Large steps in cloth simulation, 1998)
+///
+///   (M + damped_dt (dt K+ + R)) c = damped_dt (F - (dt K + R) u),   then x <- x + dt v'.
+///
+///   M   the masses
+///   F   the forces at the present positions, with the springs' lengths at the end of the step
+///   K   the springs' stiffness matrix with its negative transverse part (spring_force_rate()); without that part,
+///       springs under tension would brake every rotation of a body
+///   K+  the stiffness matrix without the negative part (spring_stiffness()), so that the matrix of the equation is
+///       symmetric and positive definite at any dt
+///   R   diagonal: drag (coefficient times |v|) and, for a mass that touches the floor at the end of the step
+///       (z + dt v_z < 0), dt times the floor's stiffness along z, so that the floor's force is k (-z - dt v'_z). On
+///       rough ground the force is along the ground's normal; that part of R is not diagonal (rough_resistance()).
+///
+/// A step: set_resistance, set_stiffness, set_residual ─► the equation; solve ─► c; add_correction ─► velocities;
+/// friction; advance_positions.
 struct Implicit : StepMethod {
   static constexpr std::size_t mass_arrays = 21, slot_arrays = 4;
 
@@ -43,15 +52,16 @@ struct Implicit : StepMethod {
   }
 
  private:
-  /// The residual, in the preconditioner's norm, at which the correction is good: relative to what it is without one.
-  /// In float32 rounding alone leaves about 1e-4 at twenty times the explicit methods' largest dt, where the matrix has
-  /// a condition of 1,600; in float64 1e-6 is far below the error of the method itself.
+  /// The solver stops when the residual, in the preconditioner's norm, is this fraction of what it was at the start.
+  /// In float32 rounding alone leaves about 1e-4 at twenty times the explicit methods' largest dt, where the condition
+  /// number of the matrix is 1,600. In float64, 1e-6 is far below the error of the method itself.
   template <class T>
   static constexpr T tolerance = sizeof(T) == sizeof(float) ? T(1e-4) : T(1e-6);
-  /// A bound for what never gets there; what is left then is an error, but no energy.
+  /// The solver stops after this many iterations in any case. The remaining residual is an error of the motion, but
+  /// adds no energy.
   static constexpr int most_iterations = 500;
 
-  /// Vectors lie as all x, all y, all z.
+  /// The solver's memory. A vector has the x of all masses, then all y, then all z.
   template <class T>
   struct Memory {
     explicit Memory(const Stepper<T>& s)
@@ -67,16 +77,16 @@ struct Implicit : StepMethod {
           along{transverse + s.motion.slots, transverse + 2 * s.motion.slots, transverse + 3 * s.motion.slots} {}
 
     T *residual, *direction, *correction;
-    T* applied;           ///< the matrix times the direction
-    T* inverse_diagonal;  ///< of the matrix: the preconditioner; 0 for masses that do not move
-    T* resistance;        ///< R along x and y, kg/s
-    T* vertical_resistance;
-    T* interleaved;  ///< a vector as neighbours read it, position_stride numbers for each mass
+    T* applied;              ///< the matrix times the direction
+    T* inverse_diagonal;     ///< of the matrix's diagonal: the preconditioner; 0 for masses that do not move
+    T* resistance;           ///< R along x and y, kg/s
+    T* vertical_resistance;  ///< R along z, kg/s
+    T* interleaved;          ///< a copy of a vector that neighbours read: position_stride numbers for each mass
     T* transverse;
-    T* along[3];  ///< of the springs' SpringStiffness, K+
+    T* along[3];  ///< with `transverse`: SpringStiffness of the springs, K+
   };
 
-  /// Sets R, and adds the floor to the forces.
+  /// Sets R, and adds the floor's forces at the present positions to F.
   template <class T>
   static void set_resistance(const Stepper<T>& s, const Memory<T>& memory) {
     const hn::ScalableTag<T> d;
@@ -101,7 +111,8 @@ struct Implicit : StepMethod {
     }
   }
 
-  /// Adds what rough ground does to the masses from i on that touch it; returns its stiffness, 0 for the others.
+  /// Adds the force of rough ground to those masses of the vector at index i that touch it. Returns the stiffness of
+  /// the ground (N/m) for them and 0 for the others.
   template <class T>
   static HWY_INLINE hn::Vec<hn::ScalableTag<T>> add_ground(const Stepper<T>& s, std::size_t i) {
     const hn::ScalableTag<T> d;
@@ -119,7 +130,8 @@ struct Implicit : StepMethod {
     return touching;
   }
 
-  /// What rough ground adds to R times v for the masses from i on: that it pushes along its normal instead of z.
+  /// The part of R v that is not in the diagonal, for the vector of masses at index i: rough ground pushes along its
+  /// normal instead of along z.
   template <class T, class V>
   static HWY_INLINE Triple<V> rough_resistance(const Stepper<T>& s, const Memory<T>& memory, std::size_t i,
                                                const Triple<V>& v) {
@@ -130,7 +142,7 @@ struct Implicit : StepMethod {
     return add_along_normal(ground, Triple<V>{zero, zero, zero - touching * v.z}, touching * along_normal(ground, v));
   }
 
-  /// Takes from the forces what lean() is of the velocities.
+  /// Subtracts rough_resistance() of the velocities from the forces.
   template <class T>
   static void subtract_rough_resistance(const Stepper<T>& s, const Memory<T>& memory) {
     const hn::ScalableTag<T> d;
@@ -143,7 +155,7 @@ struct Implicit : StepMethod {
     }
   }
 
-  /// Shows the vectors x, y, z to neighbours.
+  /// Copies the vector (x, y, z) to memory.interleaved, from which neighbours read it.
   template <class T>
   static void interleave(const Stepper<T>& s, const Memory<T>& memory, const T* x, const T* y, const T* z) {
     const hn::ScalableTag<T> d;
@@ -157,7 +169,7 @@ struct Implicit : StepMethod {
     return {hn::Load(d, x), hn::Load(d, y), hn::Load(d, z)};
   }
 
-  /// Sets K+ and the preconditioner, and takes dt K u from the forces.
+  /// Sets K+ and the preconditioner, and subtracts dt K u from the forces. Row `row` of the tables has the lengths.
   template <class T>
   static void set_stiffness(const Stepper<T>& s, const Memory<T>& memory, std::size_t row) {
     const cpu::Motion<T>& m = s.motion;
@@ -200,7 +212,7 @@ struct Implicit : StepMethod {
     hn::Store(multiply_add(dt, rate.z, hn::Load(d, m.fz + i)), d, m.fz + i);
   }
 
-  /// For the masses from i on; `stiffness` is the diagonal of K+.
+  /// Sets the preconditioner for the vector of masses at index i. `stiffness` is the diagonal of K+, N/m.
   template <class T, class V>
   static HWY_INLINE void set_preconditioner(const Stepper<T>& s, const Memory<T>& memory, std::size_t i,
                                             const Triple<V>& stiffness) {
@@ -212,13 +224,14 @@ struct Implicit : StepMethod {
     const V resistances[] = {multiply_add(dt, stiffness.x, across), multiply_add(dt, stiffness.y, across),
                              multiply_add(dt, stiffness.z, vertical)};
     for (std::size_t c = 0; c < 3; ++c) {
-      // what never moves may have no mass to divide by; its quotient is not used
+      // for a mass of 0 kg this may divide by zero, but then the quotient is not used
       const V inverse = one / multiply_add(damped_dt, resistances[c], mass);
       hn::Store(zero_unless_greater(inverse_mass, hn::Zero(d), inverse), d, memory.inverse_diagonal + c * s.masses + i);
     }
   }
 
-  /// What the equation lacks without a correction, kg m/s; dt K u has gone from the forces already.
+  /// Sets the residual at c = 0, which is the right-hand side of the equation, kg m/s. dt K u has been subtracted from
+  /// the forces before.
   template <class T>
   static void set_residual(const Stepper<T>& s, const Memory<T>& memory) {
     const hn::ScalableTag<T> d;
@@ -235,7 +248,7 @@ struct Implicit : StepMethod {
     set(m.fz, memory.vertical_resistance, m.vz, memory.residual + 2 * s.masses);
   }
 
-  /// damped_dt (dt K+ + R) times the interleaved vector, of which the masses of `group` have `own`.
+  /// damped_dt (dt K+ + R) times the interleaved vector, for the masses of `group`; `own` is their part of the vector.
   template <class T, class V>
   static HWY_INLINE Triple<V> resisted(const Stepper<T>& s, const Memory<T>& memory, std::size_t group,
                                        const Triple<V>& own) {
@@ -263,22 +276,22 @@ struct Implicit : StepMethod {
             damped_dt * multiply_add(dt, sum.z, vertical * own.z)};
   }
 
-  /// Finds the correction that leaves no residual by conjugate gradients; <r, P r> measures what is left, r the
-  /// residual and P the preconditioner.
+  /// Solves the equation for the correction by preconditioned conjugate gradients. <r, P r> measures the residual r,
+  /// with P the preconditioner.
   template <class T>
   static void solve(const Stepper<T>& s, const Memory<T>& memory) {
     T left = start(s, memory);
     const T enough = tolerance<T> * tolerance<T> * left;
     for (int i = 0; i < most_iterations && left > enough; ++i) {
       const T curvature = apply(s, memory);
-      if (!(curvature > 0)) break;  // so near to nothing that its square is 0
+      if (!(curvature > 0)) break;  // the direction is so small that its square is 0
       const T before = left;
       left = advance_along(s, memory, left / curvature);
       update_direction(s, memory, left / before);
     }
   }
 
-  /// No correction yet, and the first direction P r. Returns <r, P r>.
+  /// Sets the correction to zero and the direction to P r. Returns <r, P r>.
   template <class T>
   static T start(const Stepper<T>& s, const Memory<T>& memory) {
     const hn::ScalableTag<T> d;
@@ -292,7 +305,7 @@ struct Implicit : StepMethod {
     return hn::GetLane(hn::SumOfLanes(d, sum));
   }
 
-  /// Applies the matrix to the direction. Returns the scalar product of the two.
+  /// Sets memory.applied to the matrix times the direction d. Returns <d, applied>.
   template <class T>
   static T apply(const Stepper<T>& s, const Memory<T>& memory) {
     const hn::ScalableTag<T> d;
@@ -315,7 +328,7 @@ struct Implicit : StepMethod {
     return hn::GetLane(hn::SumOfLanes(d, sum));
   }
 
-  /// Corrects by `share` of the direction. Returns the new <r, P r>.
+  /// Adds `share` times the direction to the correction and updates the residual. Returns the new <r, P r>.
   template <class T>
   static T advance_along(const Stepper<T>& s, const Memory<T>& memory, T share_) {
     const hn::ScalableTag<T> d;
@@ -331,7 +344,7 @@ struct Implicit : StepMethod {
     return hn::GetLane(hn::SumOfLanes(d, sum));
   }
 
-  /// The next direction: P r and `share` of the last.
+  /// Sets the next direction: P r + share times the last direction.
   template <class T>
   static void update_direction(const Stepper<T>& s, const Memory<T>& memory, T share_) {
     const hn::ScalableTag<T> d;
@@ -353,7 +366,7 @@ struct Implicit : StepMethod {
     }
   }
 
-  /// The floor's damped_dt at the end of the step, N; it does not hold on to what leaves it.
+  /// Sets the floor's force at the end of the step, N; never negative, so the floor does not hold masses that leave it.
   template <class T>
   static void set_floor_force(const Stepper<T>& s, const Memory<T>& memory) {
     const hn::ScalableTag<T> d;

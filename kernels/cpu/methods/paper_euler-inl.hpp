@@ -1,4 +1,5 @@
-// The method that the paper's equations read as; included once per instruction set.
+// paper-euler: semi-implicit Euler as the paper's equations are read here (section IV-C; kernels/README.md). Included
+// once per instruction set.
 #if defined(EVODEVO_CPU_METHODS_PAPER_EULER_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef EVODEVO_CPU_METHODS_PAPER_EULER_INL_HPP
 #undef EVODEVO_CPU_METHODS_PAPER_EULER_INL_HPP
@@ -11,8 +12,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
-/// All forces from the places, velocities from the forces, places from the velocities. The velocity is multiplied by
-/// exp(-rate dt) after the forces have acted, so a falling mass ends short of g/rate by a share that grows with dt.
+/// A step: positions, velocities ─► forces; v <- (v + dt F/m) exp(-rate dt); friction; x <- x + dt v. Because damping
+/// acts after the forces, the terminal velocity of a falling mass is below g/rate, by a share that grows with dt.
 struct PaperEuler : StepMethod {
   template <class T>
   static void step(const Stepper<T>& s, std::size_t row) {

@@ -1,4 +1,4 @@
-// The classical Runge-Kutta method of fourth order; included once per instruction set.
+// rk4: the classical Runge-Kutta method of fourth order. Included once per instruction set.
 #if defined(EVODEVO_CPU_METHODS_RK4_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef EVODEVO_CPU_METHODS_RK4_INL_HPP
 #undef EVODEVO_CPU_METHODS_RK4_INL_HPP
@@ -11,9 +11,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
-/// Four stages, with damping, drag and floor in the right-hand side. Friction acts once, after the step, as a constant
-/// force: with the mean of the stages' normal forces it takes mu N dt/m of the velocity and half of that of the mean
-/// velocity, so a mass inside the cone stays where it is.
+/// A step: four stages, with damping, drag and floor as forces; their weighted means advance position and velocity.
+/// Friction acts once, at the end of the step, as a constant force: with N, the mean normal force of the stages, it
+/// takes mu N dt/m from the velocity and half of that from the mean velocity, so that a mass inside the friction cone
+/// stays where it is.
 struct Rk4 : StepMethod {
   static constexpr std::size_t rows_per_step = 2, mass_arrays = 13;
 
@@ -83,7 +84,7 @@ struct Rk4 : StepMethod {
     if (s.constants.damping) add_damping(s.motion, s.constants, s.masses);
   }
 
-  /// Adds the velocities, accelerations and normal forces of this stage to their means.
+  /// Adds `share` of this stage's velocities, accelerations and normal forces to their means.
   template <class T>
   static void add_stage(const Stepper<T>& s, T share) {
     const hn::ScalableTag<T> d;
@@ -102,7 +103,8 @@ struct Rk4 : StepMethod {
         add(i, hn::Load(d, s.motion.floor_force + i), mean_floor_force(s));
   }
 
-  /// To where the velocities and accelerations of this stage lead from the beginning of the step in `time` s.
+  /// Sets positions and velocities for the next stage: those at the beginning of the step, advanced by `time` (s) with
+  /// the velocities and accelerations of this stage.
   template <class T>
   static void go_to_stage(const Stepper<T>& s, T time) {
     const hn::ScalableTag<T> d;

@@ -1,4 +1,4 @@
-// Semi-implicit Euler that ends in the true terminal velocity; included once per instruction set.
+// symplectic-euler: semi-implicit Euler with the true terminal velocity. Included once per instruction set.
 #if defined(EVODEVO_CPU_METHODS_SYMPLECTIC_EULER_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef EVODEVO_CPU_METHODS_SYMPLECTIC_EULER_INL_HPP
 #undef EVODEVO_CPU_METHODS_SYMPLECTIC_EULER_INL_HPP
@@ -11,8 +11,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
-/// v <- (decay v + damped_dt F/m)/(1 + damped_dt c |v|/m), then x <- x + dt v: damping and drag are exact where no
-/// force acts, and under a constant force the velocity ends where they balance it, at any dt.
+/// A step: positions ─► forces F; v <- (decay v + damped_dt F/m)/(1 + damped_dt c |v|/m); friction; x <- x + dt v. c is
+/// the coefficient of drag. Damping and drag are exact where no force acts, and under a constant force the velocity
+/// tends to the one at which they balance it, at any dt.
 struct SymplecticEuler : StepMethod {
   template <class T>
   static void step(const Stepper<T>& s, std::size_t row) {

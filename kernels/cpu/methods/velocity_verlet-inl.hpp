@@ -1,4 +1,4 @@
-// Velocity Verlet; included once per instruction set.
+// velocity-verlet. Included once per instruction set.
 #if defined(EVODEVO_CPU_METHODS_VELOCITY_VERLET_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef EVODEVO_CPU_METHODS_VELOCITY_VERLET_INL_HPP
 #undef EVODEVO_CPU_METHODS_VELOCITY_VERLET_INL_HPP
@@ -11,8 +11,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
-/// Kick, drift, kick, with half a step of damping and drag before and after: the same from either end, so of second
-/// order. The forces at the end of a step are those at the beginning of the next.
+/// A step: half a step of damping and drag; kick (half a step of forces and friction); drift (x <- x + dt v); forces at
+/// the new positions; kick; half a step of damping and drag. The sequence is symmetric, hence of second order. The
+/// forces at the end of a step serve the beginning of the next.
 struct VelocityVerlet : StepMethod {
   template <class T>
   static void begin(const Stepper<T>& s) {
@@ -37,14 +38,14 @@ struct VelocityVerlet : StepMethod {
     if (s.constants.floor) add_floor(s.motion, s.constants, s.masses);
   }
 
-  /// Half a step of damping and drag, exactly.
+  /// Half a step of damping and drag, solved exactly.
   template <class T>
   static void slow_down(const Stepper<T>& s) {
     if (s.constants.drag) apply_drag<false>(s.motion, s.constants, s.constants.half_step.damped_dt, s.masses);
     if (s.constants.damping) damp(s.motion, s.constants.half_step.decay, s.masses);
   }
 
-  /// Half a step of the forces, and of the friction that goes with them.
+  /// Half a step of the forces and of friction under their normal forces.
   template <class T>
   static void kick(const Stepper<T>& s) {
     const T time = s.constants.half_step.dt;

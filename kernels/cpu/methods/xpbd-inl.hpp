@@ -1,4 +1,4 @@
-// Extended position-based dynamics; included once per instruction set.
+// xpbd: extended position-based dynamics. Included once per instruction set.
 #if defined(EVODEVO_CPU_METHODS_XPBD_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef EVODEVO_CPU_METHODS_XPBD_INL_HPP
 #undef EVODEVO_CPU_METHODS_XPBD_INL_HPP
@@ -11,11 +11,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
-/// Springs as constraints |d| = L of compliance 1/k and the floor as one of z >= 0, solved one after the other in the
-/// order of the springs' colours, the floor last (Macklin et al., XPBD, 2016). They are solved once a step: at the same
-/// cost, one pass over a smaller step is nearer the truth than several over a larger one (Macklin et al., Small steps
-/// in physics simulation, 2019), and it tends to it with dt. The unknowns are velocities instead of places, x + dt v
-/// the place at the end of the step: in float32, velocities that are differences of places would be mostly rounding.
+/// A step: gravity, drag and damping ─► predicted velocities; one Gauss-Seidel pass over the springs, by colour ─►
+/// corrected velocities; floor; friction; x <- x + dt v.
+///
+/// Each spring is a constraint |d| = L of compliance 1/k, and the floor is a constraint z >= 0 (Macklin et al., XPBD,
+/// 2016). One pass per step is made because, at equal cost, one pass with smaller steps is more accurate than several
+/// passes with larger ones (Macklin et al., Small steps in physics simulation, 2019). The unknowns are the velocities
+/// v, from which the positions at the end of the step follow as x + dt v. If they were the positions, float32
+/// velocities would be differences of almost equal positions, mostly rounding error.
 struct Xpbd : StepMethod {
   static constexpr std::size_t mass_arrays = cpu::position_stride;
   static constexpr bool coloured = true;
@@ -34,13 +37,13 @@ struct Xpbd : StepMethod {
   }
 
  private:
-  /// The velocities as springs read and write them, position_stride numbers for each mass.
+  /// The velocities that springs read and write: position_stride numbers for each mass, m/s.
   template <class T>
   static T* interleaved(const Stepper<T>& s) {
     return s.scratch(0);
   }
 
-  /// Gravity, drag and damping, as in symplectic-euler.
+  /// Predicts the velocities: applies gravity, drag and damping as symplectic-euler does.
   template <class T>
   static void apply_gravity(const Stepper<T>& s) {
     const hn::ScalableTag<T> d;
@@ -72,7 +75,7 @@ struct Xpbd : StepMethod {
     }
   }
 
-  /// Solves the springs `at`, `at` + 1, .. of one colour, a vector of them.
+  /// Solves the springs at, at + 1, .., one SIMD vector of springs of the same colour.
   template <class T>
   static void solve_springs(const Stepper<T>& s, std::size_t row, std::size_t at) {
     const hn::ScalableTag<T> d;
@@ -104,7 +107,7 @@ struct Xpbd : StepMethod {
     return {multiply_add(by, d.x, v.x), multiply_add(by, d.y, v.y), multiply_add(by, d.z, v.z)};
   }
 
-  /// Whether a lane holds a spring, and not what fills its colour up.
+  /// Whether entry `at` is a spring, and not padding of its colour.
   template <class T>
   static bool is_spring(const Stepper<T>& s, std::size_t at) {
     return s.motion.coloured.stiffness[at] > T(0);
@@ -122,7 +125,7 @@ struct Xpbd : StepMethod {
     }
   }
 
-  /// Adds to the sums that are on.
+  /// Adds the springs' tensions (N) to the sums that are on.
   template <class T, class V>
   static void record(const Stepper<T>& s, std::size_t row, std::size_t at, V tension) {
     const hn::ScalableTag<T> d;
@@ -140,7 +143,7 @@ struct Xpbd : StepMethod {
     }
   }
 
-  /// Sets the slots of what is recorded to join(before, value).
+  /// Replaces the number in each spring's slot of `recorded` by join(number, value).
   template <class T, class V, class Join>
   static void put_into_slots(const Stepper<T>& s, std::size_t at, V values, T* recorded, const Join& join) {
     const hn::ScalableTag<T> d;
@@ -153,7 +156,7 @@ struct Xpbd : StepMethod {
     }
   }
 
-  /// The same on rough ground, as steep as it is at the beginning of the step.
+  /// The same on rough ground, with the slope that it has at the beginning of the step.
   template <class T>
   static void solve_rough_floor(const Stepper<T>& s) {
     const hn::ScalableTag<T> d;
@@ -176,7 +179,7 @@ struct Xpbd : StepMethod {
     }
   }
 
-  /// Pushes up what would end below the floor.
+  /// Solves the floor: pushes up masses that would end the step below it.
   template <class T>
   static void solve_floor(const Stepper<T>& s) {
     const hn::ScalableTag<T> d;

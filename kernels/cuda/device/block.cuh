@@ -1,5 +1,5 @@
-// What the methods share that move a whole body in one thread block, its positions and velocities on the chip where
-// there is room.
+// Shared code of the methods that move a whole body in one thread block (implicit, xpbd). Positions and velocities are
+// on the chip if there is room.
 #pragma once
 
 #include "cuda/device/streamed.cuh"
@@ -16,7 +16,7 @@ __device__ __forceinline__ Point<Number>* points_on_chip(const Body& body, unsig
 /// a - b
 __device__ __forceinline__ Vector difference(const Vector& a, const Vector& b) { return sum(a, Number(-1), b); }
 
-/// Calls function(mass) for the masses of a thread.
+/// Calls function(mass) for each mass that belongs to this thread.
 template <class Function>
 __device__ __forceinline__ void for_each_mass(const Body& body, const Function& function) {
   for (unsigned mass = threadIdx.x; mass < body.masses; mass += blockDim.x) function(mass);
@@ -32,7 +32,8 @@ __device__ __forceinline__ void store(const Body& body, unsigned mass, const Mov
   body.velocities[mass] = point(m.velocity);
 }
 
-/// Calls advance(body, count) for the steps of span `index`, if the body has any.
+/// Calls advance(body, count) for the `count` steps of check span `index`, if the body has any. In `body`, positions
+/// and velocities are copied to the chip before and copied back afterwards, if there is room.
 template <class Advance>
 __device__ __forceinline__ void advance_span(const Body& stored, std::uint64_t index, const Advance& advance) {
   const CheckSpan span(stored.piece, index);
@@ -48,7 +49,7 @@ __device__ __forceinline__ void advance_span(const Body& stored, std::uint64_t i
   if (body.on_chip) for_each_mass(body, [&](unsigned mass) { store(stored, mass, moving(body, mass)); });
 }
 
-/// Adds a spring's tension (N) to what is recorded of it, at `joint`, and to the sum of power, at `mass`.
+/// Records a spring's tension (N): adds to the spring's sums at index `joint` and to the sum of power at index `mass`.
 __device__ __forceinline__ void record(const Body& body, unsigned row, unsigned joint, unsigned mass, unsigned entry,
                                        Number rest_length, Number tension) {
   if constexpr (stress) body.stress[joint] += fabs(tension);

@@ -1,4 +1,4 @@
-// How both kernels look for bodies that have diverged.
+// Shared code of the checks for divergence: sums over a block, and the energy guard (analysis/guard.hpp).
 #pragma once
 
 #include "cuda/device/mass_step.cuh"
@@ -11,8 +11,8 @@ __device__ __forceinline__ double warp_sum(double value) {
   return value;
 }
 
-/// The sum of a value over the block, in an order that depends on nothing but its size; for thread 0. `of_warps` is
-/// shared memory that nothing else uses until the block is synchronised again.
+/// The sum of a value over the block, in an order that depends on the block's size alone; thread 0 gets the result.
+/// `of_warps` is shared memory that nothing else may use until the block is synchronised again.
 __device__ inline double block_sum(double value, double (&of_warps)[lanes]) {
   const unsigned lane = threadIdx.x % lanes, warp = threadIdx.x / lanes;
   const double sum = warp_sum(value);
@@ -21,7 +21,8 @@ __device__ inline double block_sum(double value, double (&of_warps)[lanes]) {
   return warp > 0 ? 0 : warp_sum(lane < blockDim.x / lanes ? of_warps[lane] : 0);
 }
 
-/// The sum of a value over the block, in such an order; for all threads. Synchronises the block before and after.
+/// The sum of a value over the block, in the same order; all threads get the result. Synchronises the block before and
+/// after.
 __device__ inline double sum_for_all(double value) {
   __shared__ double of_warps[lanes], total;
   const double sum = block_sum(value, of_warps);
@@ -30,13 +31,13 @@ __device__ inline double sum_for_all(double value) {
   return total;
 }
 
-/// 0 where a position and a velocity are finite: zero times anything finite is zero, and a sum with one that is not
-/// stays so.
+/// 0 if a position and a velocity are finite, otherwise NaN: zero times a finite number is 0, and zero times infinity
+/// or NaN is NaN.
 __device__ __forceinline__ Number not_finite(const Vector& position, const Vector& velocity) {
   return Number(0) * ((position.x + position.y + position.z) + (velocity.x + velocity.y + velocity.z));
 }
 
-/// A mass's part of the height_moment, kg m: mass times height.
+/// A mass's part of the first moment of mass over height: mass times height, kg m.
 __device__ __forceinline__ double height_moment_of(Number mass, const Vector& position,
                                                    const StepConstants<Number>& constants) {
   double height = position.z;
@@ -44,18 +45,19 @@ __device__ __forceinline__ double height_moment_of(Number mass, const Vector& po
   return mass * height;
 }
 
-/// Whether a body is checked after `steps` steps of its piece.
+/// Whether a body is checked when `steps` steps of its piece have been made.
 __device__ __forceinline__ bool is_checked(const RunPiece& piece, std::uint64_t steps) {
   return (piece.since_check + steps) % guard_interval == 0 || (piece.is_last && steps == piece.steps);
 }
 
-/// Writes down what falling below the origin has set free at most. `height_moment`: the sum of mass times height, kg m.
+/// Updates the most energy that falling below the origin has released. `height_moment`: the sum of mass times height,
+/// kg m.
 __device__ __forceinline__ void record_fall(double height_moment, const StepConstants<Number>& constants,
                                             Answer& answer) {
   answer.fallen = physics::maximum(answer.fallen, -static_cast<double>(constants.acceleration) * height_moment);
 }
 
-/// Whether a checked body, whose energies and steps are in its answer, has gained energy from nothing.
+/// Whether a body, whose energies and steps are in its answer, is above the limit of energy.
 __device__ __forceinline__ bool has_gained(const RunPiece& piece, const StepConstants<Number>& constants,
                                            const Answer& answer) {
   const double elapsed = static_cast<double>(piece.first_step + answer.steps) * constants.exact_dt;

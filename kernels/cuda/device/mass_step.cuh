@@ -1,5 +1,10 @@
-// What all kernels share: the features that they are compiled for, the materials in time and what methods move a mass
-// with.
+// Shared code of all kernels: the features for which they are compiled, the materials as functions of time, and the
+// parts of a step for one mass.
+//
+// A method's `move` gets a mass with the sum of its spring forces (Moving) and calls, in its own order:
+//   add_gravity, add_floor, add_drag, add_damping   position, velocity ─► added to the force
+//   advance_velocity, damp, apply_drag, apply_friction   force ─► velocity
+//   advance_position                                velocity ─► position
 #pragma once
 
 #include "cuda/layout/formats.hpp"
@@ -22,28 +27,28 @@ constexpr bool peak_force = EVODEVO_PEAK_FORCE;
 constexpr bool muscle_work = EVODEVO_MUSCLE_WORK;
 constexpr bool mean_tension = EVODEVO_TENSION;
 
-constexpr unsigned rows_per_step = EVODEVO_ROWS_PER_STEP;      // of the tables of lengths
-constexpr unsigned end_rows = EVODEVO_END_ROWS;                // 1 where a step reads the row at its end, else 0
-constexpr unsigned opening_passes = EVODEVO_OPENING_PASSES;    // over the springs, before the first of some steps
+constexpr unsigned rows_per_step = EVODEVO_ROWS_PER_STEP;      // rows of the tables of lengths
+constexpr unsigned end_rows = EVODEVO_END_ROWS;                // 1 if a step reads the row at its end, otherwise 0
+constexpr unsigned opening_passes = EVODEVO_OPENING_PASSES;    // over the springs, before the first step after a check
 constexpr unsigned passes_per_step = EVODEVO_PASSES_PER_STEP;  // over the springs
 
 using Vector = physics::Triple<Number>;
 
-/// Where in its cycle a material is at `time` (s since birth), half turns. It is reduced in double precision, so that
-/// late times lose no digits.
+/// The phase of a material's actuation at `time` (s since birth), half turns. The phase is reduced in double precision,
+/// so that late times lose no digits.
 __device__ __forceinline__ double half_turns(const Actuator& actuator, double time) {
   const double turns = actuator.frequency * time;
   return 2 * (turns - floor(turns)) + actuator.phase;
 }
 
-/// A material at a time.
+/// A material at a time (s since birth).
 __device__ __forceinline__ Entry<Number> entry_of(const Actuator& actuator, double time) {
   double length = 1;  // L/L0
   if constexpr (actuation) length += actuator.amplitude * sinpi(half_turns(actuator, time));
   return {static_cast<Number>(actuator.stiffness), static_cast<Number>(actuator.stiffness * length)};
 }
 
-/// The rate of L/L0 at a time, 1/s.
+/// The rate of change of L/L0 at a time (s since birth), 1/s.
 __device__ __forceinline__ Number length_rate(const Actuator& actuator, double time) {
   double rate = 0;
   if constexpr (actuation)
@@ -57,23 +62,24 @@ struct Moving {
   Vector velocity;          ///< m/s
   Vector force;             ///< N
   Number mass;              ///< kg
-  Number inverse_mass;      ///< 1/kg; 0 for what never moves
+  Number inverse_mass;      ///< 1/kg; 0 for masses that never move
   Number normal_force = 0;  ///< of the floor, N
 };
 
-/// A pass over all springs, after which every mass is moved.
+/// A pass over all springs, after which every mass is moved. Passes are numbered from one check to the next.
 struct Pass {
-  unsigned index;  ///< of some steps'
-  bool last;       ///< of them
+  unsigned index;  ///< from 0
+  bool last;       ///< whether no pass follows before the next check
 };
 
-/// What a method may leave as it is. It adds `move(constants, pass, kept, m)`: what the forces of a pass do to a mass.
+/// The base of an explicit method: defaults that it may override. The method adds `move(constants, pass, kept, m)`,
+/// which moves the mass m by the forces of a pass.
 struct OnePass {
-  /// What a mass keeps from one pass to the next.
+  /// The state that a mass keeps from one pass to the next.
   struct Kept {};
-  /// The row of the tables, from the one at the beginning of the steps, that pass `index` takes the lengths from.
+  /// The row of the tables from which pass `index` reads the lengths.
   static __device__ __forceinline__ unsigned row(unsigned index) { return index; }
-  /// Whether the forces of pass `index` count for stress and work.
+  /// Whether the forces of pass `index` are recorded.
   static __device__ __forceinline__ bool is_recorded(unsigned) { return true; }
 };
 
@@ -93,20 +99,20 @@ __device__ __forceinline__ void add_gravity(const StepConstants<Number>& constan
     m.force.x += physics::downhill_force(physics::weight(m.mass, constants.acceleration), constants.grade);
 }
 
-/// The rough ground under a position.
+/// The rough ground under a point.
 __device__ __forceinline__ auto ground_under(const StepConstants<Number>& constants, const Vector& position) {
   return physics::ground_at(position.x, position.y,
                             physics::Roughness<Number>{constants.roughness, constants.cells, constants.seed});
 }
 
-/// How far a mass is above the ground, m.
+/// The height of a point above the ground, m.
 __device__ __forceinline__ Number clearance(const StepConstants<Number>& constants, const Vector& position) {
   Number z = position.z;
   if constexpr (rough) z -= ground_under(constants, position).height;
   return z;
 }
 
-/// A mass's velocity away from the ground, as far as z counts, m/s.
+/// The scalar product of a velocity with the ground's normal (-slope_x, -slope_y, 1), m/s.
 __device__ __forceinline__ Number normal_velocity(const StepConstants<Number>& constants, const Vector& position,
                                                   const Vector& velocity) {
   Number up = velocity.z;
@@ -114,13 +120,14 @@ __device__ __forceinline__ Number normal_velocity(const StepConstants<Number>& c
   return up;
 }
 
-/// Where a mass is above the ground after a step, m, the ground going on as it is at its beginning.
+/// The height of a mass above the ground at the end of the step (m), with the ground's slope at the beginning of the
+/// step.
 __device__ __forceinline__ Number next_clearance(const StepConstants<Number>& constants, const Moving& m) {
   return physics::advanced_position(clearance(constants, m.position),
                                     normal_velocity(constants, m.position, m.velocity), constants.dt);
 }
 
-/// Adds what the ground's push, `up` along z, has along x and y where the ground is not level.
+/// On rough ground, adds the x and y components of the vector up (-slope_x, -slope_y, 1) to v.
 __device__ __forceinline__ void add_horizontal_part(const StepConstants<Number>& constants, const Vector& position,
                                                     Number up, Vector& v) {
   if constexpr (rough) v = physics::add_horizontal_part(ground_under(constants, position), v, up);
@@ -138,13 +145,13 @@ __device__ __forceinline__ void add_drag(const StepConstants<Number>& constants,
   if constexpr (drag) m.force = sum(m.force, physics::drag_factor(constants.drag_coefficient, m.velocity), m.velocity);
 }
 
-/// Damping as a force.
+/// Adds damping as a force.
 __device__ __forceinline__ void add_damping(const StepConstants<Number>& constants, Moving& m) {
   if constexpr (damping) m.force = sum(m.force, physics::damping_factor(constants.damping_rate, m.mass), m.velocity);
 }
 
-/// Drag for a time in which acceleration adds `time` (s) of itself: scales the velocity and, where forces act in it,
-/// the forces.
+/// Applies quadratic drag over a step whose damped_dt is `time` (s): scales the velocity and, if `forces_too`, the
+/// force that acts during the step (physics::drag_retention()).
 template <bool forces_too>
 __device__ __forceinline__ void apply_drag(const StepConstants<Number>& constants, Number time, Moving& m) {
   if constexpr (drag) {
@@ -167,10 +174,10 @@ __device__ __forceinline__ void damp(Number decay, Moving& m) {
   if constexpr (damping) m.velocity = scaled(m.velocity, decay);
 }
 
-/// What the floor's friction leaves of a velocity; `friction_time`: its coefficient times the time, s.
+/// Reduces a velocity by the floor's friction. `friction_time` is the coefficient of friction times the time, s.
 __device__ __forceinline__ void apply_friction(Number friction_time, const Moving& m, Vector& velocity) {
   if constexpr (friction) {
-    // of a mass off the floor it takes nothing, and most are
+    // most masses do not touch the floor, and those keep their velocity
     if (m.normal_force > 0) {
       const Number kept =
           physics::friction_factor(velocity.x, velocity.y, friction_time * m.normal_force * m.inverse_mass);

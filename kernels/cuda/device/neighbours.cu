@@ -1,6 +1,12 @@
-// Nearest neighbours by comparing all distances: one warp for each point. The k-th least distance is found digit by
-// digit, so that neither k nor points that are equally far cost more; a pair is joined where it lies within the reach
-// of one of its points. Distances are computed as neighbours.cpp computes them, to the same bits.
+// The search for nearest neighbours: one warp for each point, which compares the distances to all other points.
+//
+//   find_reach        points ─► Reach of each point: the k-th smallest distance, found digit by digit
+//   count_pairs       points, reaches ─► number of pairs of each point
+//   find_first_pairs  numbers ─► index of each point's first pair, number of pairs of each cloud
+//   write_pairs       points, reaches, indices ─► pairs
+//
+// Two points are a pair if one is within the reach of the other. The search digit by digit takes the same time for any
+// k and any number of equally distant points. Distances have the same bits as in analysis/neighbours.cpp.
 #include "cuda/layout/point_clouds.hpp"
 
 namespace evodevo::cuda {
@@ -8,11 +14,11 @@ namespace evodevo::cuda {
 constexpr unsigned lanes = 32, every_lane = 0xffffffffu, no_limit = 0xffffffffu;
 constexpr unsigned bins = 256, bins_per_lane = bins / lanes;
 
-// the first digit has 16 values for each doubling of a squared distance, for 16 doublings below the largest; the last
-// of its bins holds all that is nearer
+// the first digit has 16 bins for each doubling of the squared distance, over 16 doublings below the largest; the bin
+// of the smallest distances holds everything below as well
 constexpr unsigned first_shift = 48;
 
-/// A cloud as its points see it.
+/// The points of one cloud.
 struct Points {
   const double *x, *y, *z;
   const Reach* reach;
@@ -31,7 +37,7 @@ __device__ Points points_of(const DeviceClouds& all, const DeviceCloud& cloud) {
   return {all.x + first, all.y + first, all.z + first, all.reach + first, cloud.points};
 }
 
-/// The cloud that a point belongs to.
+/// The cloud of a point of the launch.
 __device__ DeviceCloud& cloud_of(const DeviceClouds& all, unsigned point) {
   unsigned low = 0;
   for (unsigned high = all.count; high - low > 1;) {
@@ -51,7 +57,8 @@ __device__ T sum_up_to_lane(T value) {
   return value;
 }
 
-/// Squared distances from `low` to `high`, both included, in bins of 2^shift; the first bin takes what is below it too.
+/// The squared distances (as bits of doubles) from `low` to `high`, both included, divided into bins of 2^shift. The
+/// first bin also takes everything below it.
 struct Interval {
   std::uint64_t low, high;
   unsigned shift;
@@ -63,7 +70,7 @@ struct Interval {
     return below < bins ? static_cast<unsigned>(bins - 1 - below) : 0;
   }
 
-  /// What a bin holds, itself divided as finely as it can be.
+  /// The interval of a bin, divided again as finely as possible.
   __device__ Interval within(unsigned bin) const {
     Interval part = *this;
     part.high -= static_cast<std::uint64_t>(bins - 1 - bin) << shift;
@@ -75,7 +82,7 @@ struct Interval {
   }
 };
 
-/// Fills `histogram` with the numbers of other points in the interval's bins.
+/// Counts the other points in each of the interval's bins.
 __device__ void count_bins(const Points& points, unsigned self, const Interval& interval, unsigned* histogram) {
   for (unsigned i = this_lane(); i < bins; i += lanes) histogram[i] = 0;
   __syncwarp();
@@ -87,7 +94,7 @@ __device__ void count_bins(const Points& points, unsigned self, const Interval& 
 }
 
 struct Bin {
-  unsigned index, before, size;  ///< before: points in the bins below
+  unsigned index, before, size;  ///< before: number of points in the bins below
 };
 
 /// The bin that holds the `wanted`-th point, counted from 1.
@@ -123,7 +130,7 @@ __device__ unsigned index_among_equals(const Points& points, unsigned self, std:
   }
 }
 
-/// How far the `wanted` nearest of the other points reach.
+/// The reach of the `wanted` nearest other points.
 __device__ Reach reach_of(const Points& points, unsigned self, unsigned wanted, double largest_square,
                           unsigned* histogram) {
   Interval interval{0, static_cast<std::uint64_t>(__double_as_longlong(largest_square)), first_shift};
@@ -142,7 +149,8 @@ __device__ bool reaches(const Reach& reach, std::uint64_t square, unsigned index
   return square < reach.square || (square == reach.square && index <= reach.index);
 }
 
-/// Calls emit(rank, b) for every pair (a, b), a < b; b ascends with the rank. Gives the number of pairs.
+/// Calls emit(rank, b) for every pair (a, b) with a < b, the ranks counting from 0 with rising b. Returns the number of
+/// pairs.
 template <class Emit>
 __device__ unsigned for_each_pair(const Points& points, unsigned a, const Emit& emit) {
   const Reach reach = points.reach[a];
@@ -161,10 +169,10 @@ __device__ unsigned for_each_pair(const Points& points, unsigned a, const Emit& 
   return found;
 }
 
-/// The number of this warp's point, or one that does not exist.
+/// The point of this warp; there may be no point of that number.
 __device__ __forceinline__ unsigned this_point() { return blockIdx.x * (search_threads / lanes) + threadIdx.x / lanes; }
 
-/// How far the neighbours of every point reach. One warp for each point.
+/// Finds the reach of every point. One warp for each point.
 extern "C" __global__ void __launch_bounds__(search_threads) evodevo_find_reach(const DeviceClouds all) {
   __shared__ unsigned histograms[search_threads / lanes][bins];
   const unsigned point = this_point();
@@ -175,7 +183,7 @@ extern "C" __global__ void __launch_bounds__(search_threads) evodevo_find_reach(
   if (this_lane() == 0) all.reach[point] = reach;
 }
 
-/// How many pairs begin at every point. One warp for each point.
+/// Counts the pairs (a, b), a < b, of every point a. One warp for each point.
 extern "C" __global__ void __launch_bounds__(search_threads) evodevo_count_pairs(const DeviceClouds all) {
   const unsigned point = this_point();
   if (point >= all.points) return;
@@ -184,7 +192,7 @@ extern "C" __global__ void __launch_bounds__(search_threads) evodevo_count_pairs
   if (this_lane() == 0) all.first_pair[point] = pairs;
 }
 
-/// Where the pairs of every point begin. One warp for each cloud.
+/// Turns the numbers of pairs into the index of each point's first pair. One warp for each cloud.
 extern "C" __global__ void __launch_bounds__(search_threads) evodevo_find_first_pairs(const DeviceClouds all) {
   const unsigned index = this_point();
   if (index >= all.count) return;
@@ -201,7 +209,7 @@ extern "C" __global__ void __launch_bounds__(search_threads) evodevo_find_first_
   if (this_lane() == 0) cloud.pairs = before;
 }
 
-/// Writes down all pairs. One warp for each point.
+/// Writes all pairs. One warp for each point.
 extern "C" __global__ void __launch_bounds__(search_threads)
     evodevo_write_pairs(const DeviceClouds all, DevicePair* pairs) {
   const unsigned point = this_point();

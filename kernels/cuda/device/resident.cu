@@ -1,9 +1,19 @@
-// A body's whole run in one thread block, its state on the chip from the first step to the last.
+// The run of a body in one thread block. The body's state is on the chip from the first step to the last.
 //
-// Each lane of a warp owns a mass and goes through the springs that the mass owns, one spring per row: it adds up the
-// force in registers and adds the opposite to the mass at the other end by an atomic on integers in shared memory. So
-// each spring is computed once, and no sum depends on an order. The host compiles this file at run time, once for each
-// combination of the features below that a scene and a body ask for; what is off leaves no instruction.
+//   load                body in the device's memory ─► shared memory, registers
+//   repeat until the end or a divergence:
+//     fill_lengths      times ─► lengths of the materials in the next steps
+//     advance, for each pass over the springs:
+//       add_spring_forces   positions, lengths ─► force sums (integers) in shared memory; records of the springs
+//       move_masses         force sums ─► velocities, positions
+//     collect           sums of these steps ─► records in the device's memory
+//     has_diverged      energies ─► answer, whether to stop
+//   store               registers, shared memory ─► body in the device's memory
+//
+// Each lane of a warp takes a mass and computes the springs that the mass owns, one spring per row. It sums their
+// forces in registers, and adds the opposite force to the mass at the other end by atomic additions of integers in
+// shared memory. So each spring is computed once, and no sum depends on an order. The host compiles this file at run
+// time for each combination of features that a scene and a body ask for; a feature that is off leaves no instruction.
 #include EVODEVO_METHOD
 #include EVODEVO_MATERIALS
 
@@ -25,10 +35,10 @@ __device__ __forceinline__ unsigned offset_of_mass(unsigned index) {
 __device__ __forceinline__ Integer bits(float value) { return __float_as_uint(value); }
 __device__ __forceinline__ Integer bits(double value) { return static_cast<Integer>(__double_as_longlong(value)); }
 
-/// A spring and the mass at its other end, read ahead of their use.
+/// A spring and the position of the mass at its other end. They are read ahead of their use.
 struct Spring {
   Number rest_length;
-  unsigned other;  // offset
+  unsigned other;  // offset of the mass at the other end
   SpringMaterial material;
   Vector position;
 
@@ -39,7 +49,7 @@ struct Spring {
         position(position_at(other)) {}
 };
 
-/// The mass whose springs a thread goes through, and the force on it so far.
+/// The mass whose springs a thread is computing, and the sum of their forces so far.
 struct Owner {
   unsigned offset;
   Vector position;
@@ -55,26 +65,26 @@ struct Owner {
   }
 };
 
-/// What a thread adds up over its springs in some steps.
+/// Sums of a thread over its springs and some steps.
 struct Sums {
   Number largest = 0;            // |force|, units
-  Number row_stress[rows] = {};  // sum of |force| of the spring in each row of its only chunk, units
-  Number power = 0;              // of all, units m/s
+  Number row_stress[rows] = {};  // sum of |force| of the spring in each row, if there is one chunk, units
+  Number power = 0;              // sum over the springs, units m/s
 };
 
-/// What a thread adds up between two checks.
+/// Sums of a thread between two checks.
 struct Totals {
   double power = 0;    // units m/s
   Number largest = 0;  // |force|, units
 };
 
-/// Where a thread's springs lie.
+/// The springs of a thread.
 struct Share {
-  Records records;  // of all slots
-  unsigned owner;   // offset of the mass that it begins with
+  Records records;  // of all slots of the body
+  unsigned owner;   // offset of the mass that owns the first row
   unsigned first_slot;
-  unsigned chunks;                  // 0: the warp has no springs
-  const std::uint32_t* group_ends;  // of the warp's chunks
+  unsigned chunks;                  // 0 if the warp has no springs
+  const std::uint32_t* group_ends;  // for the warp's chunks: bit r is set if a group ends with row r
 
   __device__ __forceinline__ unsigned slot(unsigned chunk) const { return first_slot + chunk * rows * lanes; }
 };
@@ -92,10 +102,10 @@ __device__ __forceinline__ Share share_of(const Body& body) {
 /// A pass over the springs.
 struct SpringPass {
   Lengths lengths;
-  bool recorded = true;  // whether its forces count for stress and work
+  bool recorded = true;  // whether its forces are recorded
 };
 
-/// Adds the force of the spring at `slot` to both of its ends; returns its size, units.
+/// Adds the force of the spring at `slot` to the sums of both its masses. Returns the absolute force, units.
 __device__ __forceinline__ Number add_force(const Body& body, unsigned slot, const Spring& spring, Owner& owner,
                                             const SpringPass& pass, Sums& sums) {
   const auto s = physics::separation(owner.position, spring.position);
@@ -128,8 +138,8 @@ __device__ __forceinline__ Number add_force(const Body& body, unsigned slot, con
   return fabs(tension);
 }
 
-/// Adds the forces of `rows` rows, the first of which is at `slot`. The next row's reads are issued before this row's
-/// atomics, which the compiler may not pass.
+/// Adds the forces of `rows` rows, beginning at `slot`. The reads of the next row are issued before the atomics of this
+/// row, because the compiler must not move them across atomics.
 __device__ __forceinline__ void add_forces(const Body& body, const Share& share, unsigned slot, unsigned group_ends,
                                            const SpringPass& pass, Owner& owner, Sums& sums) {
   const Records records = share.records.from(slot);
@@ -142,7 +152,7 @@ __device__ __forceinline__ void add_forces(const Body& body, const Share& share,
     if (row + 2 < rows) record = records[(row + 2) * lanes];
     const Number force = add_force(body, slot + row * lanes, spring, owner, pass, sums);
     if constexpr (stress) {
-      // no thread waits for the sum in memory, which has no other writer and so no order
+      // no thread waits for the sum in memory; it has one writer, so its order is fixed
       const Number recorded = pass.recorded ? force : Number(0);
       if constexpr (chunked)
         atomicAdd(in_memory(body.recent_stress) + slot + row * lanes, recorded);
@@ -168,7 +178,7 @@ __device__ __forceinline__ void add_spring_forces(const Body& body, const Share&
   owner.flush();
 }
 
-/// The masses that a thread moves: those of index threadIdx.x, threadIdx.x + blockDim.x, ..
+/// The velocities of the masses that a thread moves: those of index threadIdx.x, threadIdx.x + blockDim.x, ..
 struct Movers {
   Vector velocity[masses_per_thread];
   Method::Kept kept[masses_per_thread];
@@ -195,7 +205,7 @@ __device__ __forceinline__ void set_position(unsigned offset, Vector position) {
   on_chip<Number>(offset + 2 * plane) = position.z;
 }
 
-/// The sum of the spring forces at a mass, N; made ready for the next pass's sum.
+/// Returns the sum of the spring forces on a mass, N, and sets the sum to its start value for the next pass.
 __device__ __forceinline__ Vector take_force(unsigned offset, Integer start, Number resolution) {
   const auto newtons = [&](unsigned at) {
     return static_cast<Number>(static_cast<Fixed::Signed>(on_chip<Integer>(at))) * resolution;
@@ -217,7 +227,7 @@ __device__ __forceinline__ void move_masses(const Body& body, const StepConstant
   });
 }
 
-/// Brings the body onto the chip.
+/// Copies the body onto the chip.
 __device__ __forceinline__ void load(const Body& body, Movers& movers) {
   const Motion<Number>& m = body.motion;
   for_each_mover(body, [&](unsigned i, unsigned index, unsigned offset) {
@@ -250,7 +260,7 @@ __device__ __forceinline__ void store(const Body& body, const Movers& movers) {
   });
 }
 
-/// The elastic energy of a thread's springs, units m. The first row of lengths is that of now.
+/// The elastic energy of a thread's springs, units m. The first row of lengths must be that of now.
 __device__ double elastic_energy(const Body& body, const Share& share) {
   const Lengths lengths(body);
   double sum = 0;
@@ -270,12 +280,12 @@ __device__ double elastic_energy(const Body& body, const Share& share) {
   return sum;
 }
 
-/// A thread's part of what a check looks at; by value, because what a called function takes by reference leaves the
-/// registers for good.
+/// A thread's part of the numbers that a check needs. It is passed by value: variables that are passed by reference to
+/// a function that is not inlined would be kept in memory instead of registers everywhere.
 struct Check {
   double kinetic = 0;        // J
   double height_moment = 0;  // kg m
-  Number not_finite = 0;     // 0 where all positions and velocities are finite
+  Number not_finite = 0;     // 0 if all positions and velocities are finite
   Totals totals;
 };
 
@@ -292,8 +302,8 @@ __device__ __forceinline__ Check check_of(const Body& body, const Movers& movers
   return check;
 }
 
-/// Writes down the body's energies after `steps` steps of its piece and says whether it has diverged, which is judged
-/// where a check is due; the same for all threads.
+/// Writes the body's energies after `steps` steps of its piece into its answer. Returns to all threads whether the body
+/// has diverged; that is decided only if a check is due.
 __device__ __noinline__ bool has_diverged(const Body& body, Check check, std::uint64_t steps) {
   __shared__ double of_warps[4][lanes];
   const bool finite = !__syncthreads_or(check.not_finite != 0);
@@ -324,7 +334,7 @@ __device__ __noinline__ bool has_diverged(const Body& body, Check check, std::ui
   return __syncthreads_or(diverged);
 }
 
-/// Adds the sums of some steps to the body's.
+/// Adds the sums of some steps to the body's records and to the totals.
 __device__ __forceinline__ void collect(const Body& body, const Share& share, const Sums& sums, Totals& totals) {
   totals.largest = fmax(totals.largest, sums.largest);
   if constexpr (work) totals.power += sums.power;
@@ -332,7 +342,7 @@ __device__ __forceinline__ void collect(const Body& body, const Share& share, co
     for (unsigned chunk = 0; chunk < (chunked ? share.chunks : 1); ++chunk) {
       double* to = body.stress + share.slot(chunk);
       Number* recent = body.recent_stress + share.slot(chunk);
-      double before[rows];  // read all at once, because a read must wait for the write before it
+      double before[rows];  // all read before the first write, because a read after a write would wait for it
       Number forces[rows];
 #pragma unroll
       for (unsigned row = 0; row < rows; ++row) {
@@ -348,8 +358,8 @@ __device__ __forceinline__ void collect(const Body& body, const Share& share, co
   }
 }
 
-/// Makes `count` steps, whose lengths are known. The sums live no longer than this, so that no call of a
-/// function drives them out of the registers. A warp without springs only moves masses.
+/// Makes `count` steps; the table holds their lengths. The sums exist only here, where no function is called that is
+/// not inlined, so they stay in registers. A warp without springs only moves masses.
 template <bool has_springs>
 __device__ __forceinline__ void advance(const Body& body, const StepConstants<Number>& constants, const Share& share,
                                         unsigned group_ends, unsigned count, Movers& movers, Totals& totals) {

@@ -1,6 +1,10 @@
-// Bodies that are too large for the chip: their state lies in the device's memory, and every pass over the springs is
-// one launch over the masses of all of them. Each mass gathers the forces of its springs in a fixed order, so each
-// spring is computed twice.
+// Bodies that are too large for the chip. Their state is in the device's memory, and every pass over the springs is a
+// launch over the masses of all these bodies:
+//
+//   positions, velocities before ─► spring_forces (gathered by each mass) ─► Method::move ─► positions, velocities
+//   after
+//
+// A mass gathers the forces of its springs in a fixed order, so each spring is computed twice.
 #include EVODEVO_METHOD
 #include "cuda/device/streamed.cuh"
 
@@ -8,7 +12,7 @@ namespace evodevo::cuda {
 
 static_assert(sizeof(Method::Kept) <= (EVODEVO_NUMBERS_OF_MASS > 0 ? EVODEVO_NUMBERS_OF_MASS * sizeof(Number) : 1));
 
-/// The sum of the spring forces at a mass, N. Adds to the sums of stress and power where the pass is `recorded`.
+/// The sum of the spring forces on a mass, N. If `recorded`, adds to the records of the springs that the mass owns.
 __device__ __forceinline__ Vector spring_forces(const Body& body, unsigned mass, const Point<Number>* positions,
                                                 unsigned row, bool recorded) {
   const Entry<Number>* table = body.table + row * body.entries;
@@ -41,8 +45,8 @@ __device__ __forceinline__ Vector spring_forces(const Body& body, unsigned mass,
   return force;
 }
 
-/// Makes pass `pass` of span `index`, whose lengths begin with the tables, for all bodies that have as many. Even
-/// passes of a run read the first half of the positions and write the second, odd ones the other way.
+/// Makes pass `pass` of check span `index` for all bodies that have so many passes. The tables hold the lengths of this
+/// span. Even passes read the first half of the positions and write the second; odd passes do the reverse.
 extern "C" __global__ void evodevo_pass_streamed(const Body* bodies, std::uint64_t index, unsigned pass) {
   const Body& body = bodies[blockIdx.y];
   const unsigned mass = blockIdx.x * blockDim.x + threadIdx.x;

@@ -1,4 +1,4 @@
-// What the kernels share that move bodies in the device's memory: the tables of lengths and the check.
+// Shared code of the kernels that move bodies in the device's memory: the tables of lengths and the check.
 #pragma once
 
 #include "cuda/device/check.cuh"
@@ -11,11 +11,12 @@ using Body = StreamedBody<Number>;
 __device__ __forceinline__ Vector triple(const Point<Number>& p) { return {p.x, p.y, p.z}; }
 __device__ __forceinline__ Point<Number> point(const Vector& p) { return {p.x, p.y, p.z, 0}; }
 
-/// L/L0; 0 of no material.
+/// L/L0; 0 for entry 0, which is no material.
 __device__ __forceinline__ Number relative_length(const Entry<Number>& entry) {
   return entry.rest_force / physics::maximum(entry.stiffness, Number(1e-30));
 }
 
+/// Calls function(index, joint) for each joint of a mass, in a fixed order.
 template <class Function>
 __device__ __forceinline__ void for_each_joint(const Body& body, unsigned mass, const Function& function) {
   const unsigned end = body.first_row[mass / lanes + 1] * lanes;
@@ -23,11 +24,11 @@ __device__ __forceinline__ void for_each_joint(const Body& body, unsigned mass, 
     function(i, body.joints[i]);
 }
 
-/// The steps of a piece from one check to the next, or from its beginning or to its end.
+/// A check span: the steps from one check, or the beginning of the piece, to the next check or the end of the piece.
 struct CheckSpan {
   std::uint64_t begin, end;
 
-  /// CheckSpan `index`; empty where the piece has fewer.
+  /// Span `index` of a piece; empty if the piece has fewer spans.
   __device__ __forceinline__ CheckSpan(const RunPiece& piece, std::uint64_t index) {
     begin = min(index == 0 ? 0 : index * guard_interval - piece.since_check, piece.steps);
     end = min((index + 1) * guard_interval - piece.since_check, piece.steps);
@@ -39,13 +40,13 @@ struct CheckSpan {
   }
 };
 
-/// How many passes a body has made before span `index`, in which it has steps.
+/// The number of passes that a body has made before span `index`, which must not be empty.
 __device__ __forceinline__ std::uint64_t passes_before(const CheckSpan& span, std::uint64_t index) {
   return index * opening_passes + span.begin * passes_per_step;
 }
 
-/// Fills in `count` rows of the tables, the first of them for the beginning of span `index`. From a body's last step on
-/// they hold the lengths of its end.
+/// Fills `count` rows of the tables; the first is for the beginning of span `index`. Rows after a body's last step get
+/// the lengths at its end.
 extern "C" __global__ void evodevo_fill_tables(const Body* bodies, std::uint64_t index, unsigned count) {
   const Body& body = bodies[blockIdx.x];
   const double interval = body.constants.exact_dt / rows_per_step;
@@ -60,8 +61,8 @@ extern "C" __global__ void evodevo_fill_tables(const Body* bodies, std::uint64_t
   }
 }
 
-/// Writes down the energies of every body that moved in span `index`, and stops the ones that have diverged. The
-/// tables' row 0 holds the lengths of now.
+/// Writes the energies of every body that moved in span `index` into its answer, and marks bodies that have diverged.
+/// Row 0 of the tables must hold the lengths of now.
 extern "C" __global__ void __launch_bounds__(EVODEVO_CHECK_THREADS)
     evodevo_check_streamed(const Body* bodies, std::uint64_t index) {
   const Body& body = bodies[blockIdx.x];

@@ -1,4 +1,4 @@
-// From what the device wrote down about a body to the task's answer.
+// Conversions between tasks and what the device reads and writes about them.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace evodevo::cuda {
 
-/// What the device is told of a task's way, whose course has begun.
+/// The piece of a run that a task is, as the device reads it. The task's course must have begun.
 inline RunPiece run_piece_of(const Task& task) {
   const Course& course = *task.course;
   return {.origin = course.origin,
@@ -22,7 +22,7 @@ inline RunPiece run_piece_of(const Task& task) {
           .left_range = course.left_range};
 }
 
-/// Fills in a task's status, reason, work and times.
+/// Fills in a task's status, reason, work, times and course from the device's answer.
 inline void read_answer(const Answer& answer, Recording recording, Task& task) {
   Course course = *task.course;
   course.steps += answer.steps;
@@ -45,19 +45,20 @@ inline void read_answer(const Answer& answer, Recording recording, Task& task) {
   apply_course(task, course);
 }
 
-/// The actuator of a material whose stiffness is given in units of `resolution` (N).
+/// The actuator of a material, its stiffness in units of `resolution` (N).
 inline Actuator actuator_of(const Material& material, double resolution) {
   constexpr double pi = 3.14159265358979323846;
   return {material.stiffness / resolution, material.amplitude, material.frequency,
           std::remainder(material.phase, 2 * pi) / pi};
 }
 
-/// The time in which a constant acceleration would add to an undamped velocity what it adds to a damped one in `time`,
-/// s.
+/// The time (s) in which a constant acceleration adds as much to an undamped velocity as it adds to a damped one in
+/// `time` seconds: (1 - exp(-rate time))/rate.
 inline double damped_time(double damping_rate, double time) {
   return damping_rate > 0 ? -std::expm1(-damping_rate * time) / damping_rate : time;
 }
 
+/// The scene and a body's step length `dt` (s) as numbers of type T.
 template <class T>
 StepConstants<T> step_constants(const Scene& scene, double dt) {
   const auto as_t = [](double value) { return static_cast<T>(value); };

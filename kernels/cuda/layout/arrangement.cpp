@@ -9,23 +9,23 @@
 namespace evodevo::cuda {
 namespace {
 
-// few, because each pair of these is a launch of its own, and bodies of like size should share one
+// few values, because each pair of them is a launch of its own, and bodies of similar size should share a launch
 constexpr unsigned unrolled_rows[] = {4, 8, 12, 15, 16, 20, 24};
 constexpr unsigned blocks[] = {1, 2, 4, 8, 16, 32};
 constexpr unsigned rows_of_a_chunk = 8;
-constexpr unsigned resident_warps = 32;  // of a multiprocessor at 64 registers a thread
+constexpr unsigned resident_warps = 32;  // of a multiprocessor, at 64 registers per thread
 
 unsigned divided(std::size_t a, std::size_t b) { return static_cast<unsigned>((a + b - 1) / b); }
 
-/// The shape for `rows` rows that wastes the least: empty rows, and a multiprocessor's room for warps, which hide each
-/// other's waiting.
+/// The shape for `rows` rows that wastes least: it weighs empty rows against warps that find no room on a
+/// multiprocessor, because warps hide each other's waiting times.
 Shape shape_for(std::size_t rows, std::uint32_t groups, unsigned largest_block) {
   Shape best;
   std::size_t best_cost = ~std::size_t{0};
   for (const unsigned unrolled : unrolled_rows) {
     const unsigned warps = std::max(1u, divided(rows, unrolled));
     if (warps > largest_block) continue;
-    // two masses for each thread where the block may be so large
+    // at most two masses per thread if the block may be that large
     const unsigned block = *std::lower_bound(std::begin(blocks), std::end(blocks),
                                              std::max(warps, std::min(divided(groups, 2), largest_block)));
     const unsigned resident = resident_warps / block * warps;
@@ -51,8 +51,8 @@ std::vector<std::uint32_t> indices_by_degree(const Body& body) {
   return index;
 }
 
-/// A index below `padded_masses` for each mass of `body`: its earlier one where the mass was there before, else one
-/// that is left.
+/// An index below `padded_masses` for each mass of `body`: its earlier one if the mass was there before, otherwise a
+/// free one.
 std::vector<std::uint32_t> indices_after(const Body& body, std::uint32_t padded_masses,
                                          std::span<const std::uint32_t> earlier_index,
                                          std::span<const Vec3> earlier_rest) {
@@ -64,7 +64,7 @@ std::vector<std::uint32_t> indices_after(const Body& body, std::uint32_t padded_
     index_of.push_back(
         found == earlier_rest.end() ? open : earlier_index[static_cast<std::size_t>(found - earlier_rest.begin())]);
     if (found != earlier_rest.end()) next = found + 1;
-    // a body that has become smaller has fewer padded_masses
+    // if the body has become smaller, the earlier index may be too large
     if (index_of.back() >= padded_masses) index_of.back() = open;
     if (index_of.back() != open) taken[index_of.back()] = true;
   }
@@ -108,7 +108,7 @@ Arrangement::Arrangement(const Body& body, unsigned largest_block, const Arrange
     const std::uint32_t a = index_of[spring.a], b = index_of[spring.b];
     const auto found = std::find_if(next, outline.ends.end(), [&](const auto& ends) {
       const std::uint32_t c = earlier.index_of[ends.first], d = earlier.index_of[ends.second];
-      // without branches, because which of them a new mass has come to is anyone's guess
+      // without branches, because the processor could not predict them
       return ((c == a) & (d == b)) | ((d == a) & (c == b));
     });
     if (found == outline.ends.end()) {
@@ -138,14 +138,14 @@ void Arrangement::arrange(const Body& body, unsigned largest_block, Settled sett
   Members members = members_of_groups(body, owner, settled);
   const std::size_t needed = std::accumulate(members.rows.begin(), members.rows.end(), std::size_t{0});
   shape = shape_for(needed, groups, largest_block);
-  // rows that are left over stay empty, with the last group that has any
+  // rows beyond those needed stay empty; they belong to the last group that has rows
   const auto last = std::find_if(members.rows.rbegin(), members.rows.rend(), [](std::size_t rows) { return rows > 0; });
   if (groups > 0) (last == members.rows.rend() ? members.rows.front() : *last) += shape.slots() / 32 - needed;
   assign_slots(members);
   fill_empty_slots();
 }
 
-/// Counts, for the magic numbers, the springs that lead to each index too.
+/// Sorts the springs by the group of their owner. Also counts the springs that lead to each mass, for magic_numbers.
 Arrangement::Members Arrangement::members_of_groups(const Body& body, const std::vector<std::uint32_t>& owner,
                                                     const Settled& settled) {
   std::vector<std::uint32_t> owned(32 * groups, 0);
@@ -172,7 +172,7 @@ Arrangement::Members Arrangement::members_of_groups(const Body& body, const std:
   return members;
 }
 
-/// Gives every spring its slot and every row its group.
+/// Gives every spring its slot and every row its group, and marks where groups end.
 void Arrangement::assign_slots(Members& members) {
   slots.resize(shape.slots());
   slot_of.resize(members.slots.size());
@@ -195,12 +195,12 @@ void Arrangement::assign_slots(Members& members) {
     const std::size_t end = row + members.rows[g];
     for (; row < end; ++row)
       if (row % rows_of_warp == 0) first_group[row / rows_of_warp] = g;
-    // no warp group_ends to another group after its last row
+    // a warp's last row is never marked, because no row of the warp follows it
     if (end % rows_of_warp != 0) group_ends[(end - 1) / shape.rows] |= 1u << (end - 1) % shape.rows;
   }
 }
 
-/// Empty slots lead to banks that their row leaves free.
+/// Gives empty slots a mass to write to, in a bank that the row does not use otherwise.
 void Arrangement::fill_empty_slots() {
   for (auto row = slots.begin(); row != slots.end(); row += 32) {
     if (std::none_of(row, row + 32, [](const Slot& slot) { return slot.spring == none; })) continue;

@@ -1,4 +1,8 @@
-// Which thread computes which spring, and when: the layout of a body on the chip.
+// The arrangement of a body on the chip: which thread computes which spring, and when.
+//
+//   body ─► choose_owners (ownership.hpp) ─► shape ─► choose_rows (row_order.hpp) ─► slots
+//
+// kernels/cuda/README.md explains the words.
 #pragma once
 
 #include <cstdint>
@@ -10,83 +14,87 @@
 
 namespace evodevo::cuda {
 
-/// A place for each mass of `body`: by falling number of springs, so that neighbouring lanes have about as many each.
+/// The device index of each mass of `body`: masses are sorted by falling degree (number of springs), so that masses in
+/// neighbouring lanes have about equally many springs.
 std::vector<std::uint32_t> indices_by_degree(const Body& body);
 
-/// The sizes that a kernel is compiled for and a body is arranged to.
+/// The sizes of a block for which a kernel is compiled and a body is arranged.
 struct Shape {
-  unsigned block = 0;   ///< warps of the block
-  unsigned warps = 0;   ///< of them that have springs
-  unsigned rows = 0;    ///< springs of a thread in one chunk; unrolled
-  unsigned chunks = 0;  ///< of a warp
+  unsigned block = 0;   ///< warps in the block
+  unsigned warps = 0;   ///< warps that have springs
+  unsigned rows = 0;    ///< rows in a chunk: springs of one thread in an unrolled loop
+  unsigned chunks = 0;  ///< chunks of rows for each warp
   unsigned masses_per_thread = 0;
 
   friend auto operator<=>(const Shape&, const Shape&) = default;
   std::size_t slots() const { return std::size_t{32} * warps * chunks * rows; }
 };
 
-/// What an arrangement depends on: how many masses there are, which of them stayed, and which are joined.
+/// What an arrangement depends on: the masses, and which of them the springs join.
 struct Outline {
   explicit Outline(const Body& body);
-  /// Whether it is that of `body`, but for the rest places.
+  /// Whether it is the outline of `body`, rest positions apart.
   bool fits(const Body& body) const;
 
-  std::vector<Vec3> rest;                                     ///< [masses] tells masses that stay from others
+  std::vector<Vec3> rest;  ///< [masses] rest positions, by which masses are recognised later
   std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;  ///< [springs]
 };
 
-/// A body's masses and springs in the block's order. Masses lie in groups of 32, one to a lane and a bank of shared
-/// memory. A spring is in a row of the group of the mass that owns it, in that mass's lane; all lanes of a row add to
-/// different banks as far as possible. The rows of all groups, one after the other, are dealt out evenly to the warps.
-/// No result depends on the arrangement but the order in which energies and work are added up.
+/// A body's masses and springs in the order of a thread block.
+///
+/// Masses are in groups of 32: each has a lane of a warp and a bank of shared memory to itself. A spring is in a row of
+/// the group of the mass that owns it, in the lane of that mass; the lanes of a row add forces to different banks as
+/// far as possible. The rows of all groups, one group after the other, are divided evenly among the warps. The
+/// arrangement influences only the order in which energies and work are summed, no other result.
 struct Arrangement {
   static constexpr std::uint32_t none = 0xffffffff;
 
-  /// What lies in one lane of one row.
+  /// One lane of one row: a spring, or empty.
   struct Slot {
     std::uint32_t spring = none;  ///< index into Body::springs, or none
-    std::uint32_t other = 0;      ///< place of the mass at the other end; in an empty slot, one beyond all groups
+    std::uint32_t other = 0;      ///< index of the mass at the other end; in an empty slot, an index beyond all groups
   };
 
   /// Arranges `body` for a block of at most `largest_block` warps.
   Arrangement(const Body& body, unsigned largest_block);
 
-  /// Arranges what has become of a body whose outline was `outline` and whose arrangement was `earlier`. Masses and
-  /// springs that stay are in the same order as before; most keep their places, owners and rows, which saves most of
-  /// the work. Any other body is arranged as well.
+  /// Arranges a body that has developed from one with the outline `outline` and the arrangement `earlier`. If masses
+  /// and springs that stay are in the same order as before, most keep their indices, owners and rows, which saves most
+  /// of the work. Any other body is arranged correctly as well.
   Arrangement(const Body& body, unsigned largest_block, const Arrangement& earlier, const Outline& outline);
 
   Shape shape;
   std::uint32_t groups = 0;
-  std::vector<std::uint32_t> index_of;   ///< [masses] the place of each mass
+  std::vector<std::uint32_t> index_of;   ///< [masses] the device index of each mass
   std::vector<Slot> slots;               ///< [warps][chunks][rows][32]
-  std::vector<std::uint32_t> slot_of;    ///< [springs]
+  std::vector<std::uint32_t> slot_of;    ///< [springs] index into `slots`
   std::vector<std::uint32_t> first_row;  ///< [groups + 1] the rows of group g are first_row[g] .. first_row[g + 1] - 1
-  std::vector<std::uint32_t> first_group;   ///< [block] the group that each warp begins with
-  std::vector<std::uint32_t> group_ends;    ///< [block][chunks] bit r: the next group begins after row r
-  std::vector<std::int32_t> magic_numbers;  ///< [places] how many a place's force sum has to begin with
+  std::vector<std::uint32_t> first_group;  ///< [block] the group that each warp begins with
+  std::vector<std::uint32_t> group_ends;   ///< [block][chunks] bit r: the next group begins after row r
+  std::vector<std::int32_t>
+      magic_numbers;  ///< [padded masses] number of magic numbers with which a mass's force sum begins
 
-  /// The rows of all warps.
+  /// The number of rows of all warps.
   std::size_t rows() const { return slots.size() / 32; }
 
-  /// How many times a warp's access to 32 masses takes, on average; 1 where no two are in one bank.
+  /// How many wavefronts an access of a warp to 32 masses takes on average: 1 if no two masses are in the same bank.
   double wavefronts_per_row() const;
 
  private:
-  /// What is settled of a body's springs.
+  /// Owners and rows of a body's springs as far as they are already chosen.
   struct Settled {
-    std::vector<std::uint32_t> owner;  ///< [springs] the owner's place, or open
-    std::vector<std::uint32_t> row;    ///< [springs] of the owner's group, or open
+    std::vector<std::uint32_t> owner;  ///< [springs] the owner's index, or open
+    std::vector<std::uint32_t> row;    ///< [springs] the row in the owner's group, or open
   };
-  /// The springs that the masses of each group own, one group behind the other.
+  /// The springs, sorted by the group whose masses own them.
   struct Members {
-    std::vector<std::size_t> rows;   ///< [groups] that the group needs
-    std::vector<std::size_t> first;  ///< [groups + 1] of its springs
+    std::vector<std::size_t> rows;   ///< [groups] number of rows that the group needs
+    std::vector<std::size_t> first;  ///< [groups + 1] index of the group's first spring
     std::vector<Link> links;         ///< [springs]
-    std::vector<Slot> slots;         ///< [springs] of each link
+    std::vector<Slot> slots;         ///< [springs] the content of each spring's slot
   };
 
-  /// [rows] the group that each row belongs to.
+  /// The group of each row.
   std::vector<std::uint32_t> groups_of_rows() const;
   void arrange(const Body& body, unsigned largest_block, Settled settled);
   Members members_of_groups(const Body& body, const std::vector<std::uint32_t>& owner, const Settled& settled);

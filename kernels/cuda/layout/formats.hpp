@@ -1,4 +1,4 @@
-// What the host and the device say to each other: plain structures that both compilers lay out alike.
+// The data that host and device exchange: plain structures that both compilers lay out in the same way.
 #pragma once
 
 #include <cstdint>
@@ -11,30 +11,31 @@ namespace evodevo::cuda {
 inline constexpr unsigned lanes = 32;            ///< threads of a warp, banks of shared memory
 inline constexpr unsigned guard_interval = 100;  ///< steps between two checks of a body
 
-/// Masses lie in shared memory in groups of 32, one to a bank: six planes of 32 numbers, the places x, y, z and the
-/// forces x, y, z. All six are then at a constant distance of each other, whatever the size of the body.
+/// Masses are in shared memory in groups of 32, one mass per bank. A group is six planes of 32 numbers: the positions
+/// x, y, z and the forces x, y, z. So the six numbers of a mass are at constant distances from each other for bodies of
+/// any size.
 template <class T>
 inline constexpr unsigned plane_bytes = lanes * sizeof(T);
 template <class T>
 inline constexpr unsigned group_bytes = 6 * plane_bytes<T>;
 
-/// A spring as its owner's thread sees it.
+/// A spring as the thread of its owner reads it.
 template <class T>
 struct alignas(2 * sizeof(T)) Record {
   T rest_length;  ///< m
   typename FixedPoint<T>::Integer
-      packed;  ///< low 16 bits: offset of the other mass; next 16 bits: of the table's entry; each in bytes or numbers;
-               ///< or MaterialCode::stiffness instead of the entry
+      packed;  ///< low 16 bits: offset of the other mass; next 16 bits: offset of the table's entry, or
+               ///< MaterialCode::stiffness; offsets count bytes or numbers (ResidentForm)
 };
 
-/// What a material does in one step; stiffness and force in units of the body's force resolution.
+/// A material at one time; stiffness and force are in units of the body's force resolution.
 template <class T>
 struct alignas(2 * sizeof(T)) Entry {
   T stiffness;   ///< k, 1/m
   T rest_force;  ///< k L(t)/L0, 1/m
 };
 
-/// A material over time.
+/// A material as a function of time.
 struct Actuator {
   double stiffness;  ///< as in Entry
   double amplitude;  ///< 1
@@ -42,57 +43,59 @@ struct Actuator {
   double phase;      ///< in half group_ends
 };
 
-/// What the numbers in the codes of a body's computed materials count (material_code.hpp).
+/// The units of the numbers in the codes of a body's computed materials (physics/material_code.hpp).
 template <class T>
 struct CodeUnits {
   T stiffness;          ///< as in Entry
-  T amplitude;          ///< 1, of the code's bits in place
+  T amplitude;          ///< 1, of the code's word with only the amplitude's bits set
   T angular_frequency;  ///< rad/s
   double frequency;     ///< Hz
 };
 
-/// The scene and a body's step in the arithmetic of the simulation. What paper-euler reads comes first, some in pairs.
+/// The constants of a step: the scene and a body's step length as numbers of type T. Those that paper-euler reads come
+/// first, ordered so that some are read in pairs.
 template <class T>
 struct StepConstants {
   T acceleration;      ///< of gravity along -z, m/s^2
   T floor_stiffness;   ///< N/m
   T friction_dt;       ///< friction coefficient times dt, s
   T drag_coefficient;  ///< kg/m
-  T decay;             ///< exp(-damping rate dt): what damping leaves of a velocity
+  T decay;             ///< exp(-damping rate dt): the fraction of a velocity that damping leaves
   T dt;                ///< s
-  T damped_dt;         ///< (1 - decay)/rate, s: what a constant acceleration adds to it meanwhile
-  T half_decay;        ///< both for half a step
+  T damped_dt;         ///< (1 - decay)/rate, s: a constant acceleration times this is what it adds to a damped velocity
+  T half_decay;        ///< decay over half a step
   T half_damped_dt;    ///< s
   T damping_rate;      ///< 1/s
   T grade;             ///< Gravity::grade()
   T roughness;         ///< m
-  T cells;             ///< of rough ground, in a metre
+  T cells;             ///< of rough ground, 1/m
   std::uint32_t seed;  ///< Floor::first_line()
   double exact_dt;     ///< s
 };
 
-/// Where a run stands that may be a piece of one: Course.
+/// The piece of a run that a task makes, and the whole run's Course so far.
 struct RunPiece {
-  double origin;             ///< State::time where the whole run began, s
-  std::uint64_t first_step;  ///< that the whole run had made before
-  std::uint64_t steps;       ///< to make
+  double origin;             ///< State::time at the beginning of the whole run, s
+  std::uint64_t first_step;  ///< steps that the whole run has made before this piece
+  std::uint64_t steps;       ///< steps of this piece
   EnergyBound bound;
-  std::uint32_t since_check;  ///< steps, where this piece begins
+  std::uint32_t since_check;  ///< steps between the last check and the beginning of this piece
   std::uint32_t is_last;      ///< whether the whole run ends with this piece
   std::uint32_t left_range;   ///< whether a force has left the range since the last check
 };
 
-/// How a body's run ended and its energies then.
+/// How a body's piece of a run ended, and its energies at the last check.
 struct Answer {
-  std::uint64_t steps;  ///< that were made
+  std::uint64_t steps;  ///< steps made
   double kinetic;       ///< J
   double elastic;       ///< J
-  double fallen;        ///< Course::fallen, from before the run on, J
+  double fallen;        ///< Course::fallen, including earlier pieces, J
   double work;          ///< J
   std::uint32_t diverged, finite, out_of_range;
 };
 
-/// A body in motion, one entry for each place; places that hold no mass weigh nothing and never move.
+/// A body in motion: one entry for each mass and each padding entry of the last group. Padding has mass 0 and never
+/// moves.
 template <class T>
 struct Motion {
   T *x, *y, *z;     ///< m
@@ -104,84 +107,87 @@ template <class T>
 struct ResidentBody {
   using Integer = typename FixedPoint<T>::Integer;
   StepConstants<T> constants;
-  CodeUnits<T> units;                ///< where materials are computed
+  CodeUnits<T> units;                ///< if materials are computed
   const Record<T>* records;          ///< [warps][chunks][rows][lanes]
-  const std::uint32_t* waves;        ///< likewise, MaterialCode::wave where materials are computed
-  const std::uint32_t* first_group;  ///< [block's warps] whose masses a warp's first row belongs to
+  const std::uint32_t* waves;        ///< likewise, MaterialCode::wave; if materials are computed
+  const std::uint32_t* first_group;  ///< [block's warps] the group of each warp's first row
   const std::uint32_t* group_ends;   ///< [block's warps][chunks] bit r: the next group begins after row r
   const Actuator* actuators;         ///< [entries]; entry 0 is no material
   const T* mass;                     ///< [padded masses] kg
-  const T* inverse_mass;             ///< [padded masses] 1/kg, 0 for what never moves
-  const Integer* start;              ///< [padded masses] what a force sum starts from, so that the magic numbers cancel
+  const T* inverse_mass;             ///< [padded masses] 1/kg; 0 for masses that never move
+  const Integer* start;              ///< [padded masses] start value of a force sum, by which its magic numbers cancel
   Motion<T> motion;                  ///< [padded masses]
   double* stress;                    ///< [slots] sum of |force|, N
-  T* recent_stress;                  ///< [slots] of it what is not yet in `stress`, units; where chunked
-  // [slots] where they are recorded, by reductions that nobody waits for; a slot has one writer
-  Integer* peak;     ///< bits of the largest |force|, units: those of numbers that are not negative rise with them
+  T* recent_stress;                  ///< [slots] the part of the sum that is not yet in `stress`, units; if chunked
+  // [slots] if recorded; written by atomic operations without a result, so that no thread waits; each slot has one
+  // writer
+  Integer* peak;     ///< bits of the largest |force|, units; as integers they have the same order as the forces
   double* powers;    ///< sum of power, units m/s
   double* tensions;  ///< sum of force, units
   Answer* answer;
   RunPiece piece;
   double resolution;                             ///< N, a power of two
-  T largest_force;                               ///< units of the resolution; a larger one leaves the range
-  std::uint32_t groups, warps, chunks, entries;  ///< warps: that have springs
-  std::uint32_t table_steps;                     ///< steps that the table in shared memory holds
-  std::uint32_t table_offset;                    ///< bytes from the beginning of shared memory
-  std::uint32_t rate_offset;                     ///< likewise, of the rates, where work is recorded
-  std::uint32_t record_offset;                   ///< likewise, of the records
-  std::uint32_t wave_offset;                     ///< likewise, of the waves
+  T largest_force;                               ///< units; a larger force leaves the range
+  std::uint32_t groups, warps, chunks, entries;  ///< warps: those that have springs
+  std::uint32_t table_steps;                     ///< steps for which the table in shared memory has rows
+  std::uint32_t table_offset;                    ///< of the table, bytes from the beginning of shared memory
+  std::uint32_t rate_offset;                     ///< of the rates, if work is recorded
+  std::uint32_t record_offset;                   ///< of the records
+  std::uint32_t wave_offset;                     ///< of the waves
 };
 
-/// A spring at one of its ends.
+/// One end of a spring.
 template <class T>
 struct alignas(4 * sizeof(T)) Joint {
   T rest_length;        ///< m
-  std::uint32_t other;  ///< the mass at the other end
+  std::uint32_t other;  ///< index of the mass at the other end
   std::uint32_t entry;  ///< of the table
-  std::uint32_t owned;  ///< whether this end counts for what is summed once per spring
+  std::uint32_t owned;  ///< whether sums over springs take the spring at this end
 };
 
-/// A spring as a method sees it that goes through the springs by colour.
+/// A spring for a method that solves springs by colour.
 template <class T>
 struct ColouredSpring {
   T rest_length;        ///< m
-  std::uint32_t a, b;   ///< the masses
+  std::uint32_t a, b;   ///< indices of the masses
   std::uint32_t entry;  ///< of the table
-  std::uint32_t joint;  ///< where its stress is summed up
+  std::uint32_t joint;  ///< the joint where its stress is summed
 };
 
+/// A position or velocity in the device's memory.
 template <class T>
 struct alignas(4 * sizeof(T)) Point {
   T x, y, z, unused;
 };
 
-/// A body that is too large for the chip (streamed.cu) or whose method has no kernel there. Its masses lie by falling
-/// number of springs, so that those of a group have about as many.
+/// A body that is too large for the chip (streamed.cu), or whose method moves bodies from the device's memory
+/// (implicit, xpbd). Its masses are sorted by falling degree (number of springs), so that those of a group have about
+/// equally many.
 template <class T>
 struct StreamedBody {
   StepConstants<T> constants;
   const std::uint32_t* first_row;        ///< [groups of 32 masses + 1]
   const Joint<T>* joints;                ///< [rows][lanes]; a mass's joints are in the rows of its group, in its lane
-  const ColouredSpring<T>* coloured;     ///< by colour (spring_colours()); where the method asks for them
-  const std::uint32_t* first_of_colour;  ///< [colours + 1] among them
+  const ColouredSpring<T>* coloured;     ///< by colour (spring_colours()); if the method asks for them
+  const std::uint32_t* first_of_colour;  ///< [colours + 1] index of each colour's first spring
   const Actuator* actuators;             ///< [entries]; stiffness in N/m
   const T* mass;                         ///< [masses] kg
-  const T* inverse_mass;                 ///< [masses] 1/kg, 0 for what never moves
+  const T* inverse_mass;                 ///< [masses] 1/kg; 0 for masses that never move
   Point<T>* positions;                   ///< [2][masses] m; a pass reads one half and writes the other
   Point<T>* velocities;                  ///< [masses] m/s
-  T* scratch;                            ///< the method's own, 16 bytes aligned
-  Entry<T>* table;                       ///< [rows][entries] from one check to the next
-  T* rates;                              ///< [rows][entries] rate of L/L0, 1/s; where work is recorded
+  T* scratch;                            ///< scratch memory of the method, aligned to 16 bytes
+  Entry<T>* table;                       ///< [rows][entries] for the steps from one check to the next
+  T* rates;                              ///< [rows][entries] rate of L/L0, 1/s; if work is recorded
   double* stress;                        ///< [rows][lanes] sum of |force|, N, at owned joints
-  double* power;                         ///< [masses] sum of power, W; where work is recorded
-  // at owned joints, where they are recorded
+  double* power;                         ///< [masses] sum of power, W; if work is recorded
+  // at owned joints, if recorded
   T* peak;           ///< [rows][lanes] largest |force|, N
   double* powers;    ///< [rows][lanes] sum of power, W
   double* tensions;  ///< [rows][lanes] sum of force, N
   Answer* answer;
   RunPiece piece;
   std::uint32_t masses, entries, colours;
-  std::uint32_t on_chip;  ///< whether MethodForm::points_on_chip lie in shared memory
+  std::uint32_t on_chip;  ///< whether MethodForm::points_on_chip are in shared memory
 };
 
 }  // namespace evodevo::cuda

@@ -6,16 +6,17 @@
 namespace evodevo::cuda {
 namespace {
 
-constexpr int sweeps = 4;    // over springs without an owner; more take longer than they gain
-constexpr int penalty = 16;  // for each spring above a mass's even share, in springs of a bank
+constexpr int sweeps = 4;    // over all springs; more of them cost more than they gain
+constexpr int penalty = 16;  // cost of each spring above a mass's even share
 
-/// How many springs each mass owns, and how many of each group's lead to each bank.
+/// How many springs each mass owns, and how many springs of each group lead to each bank.
 class Distribution {
  public:
   Distribution(std::uint32_t groups, std::size_t masses, std::size_t springs)
       : lane_(32 * groups), bank_(32 * groups), even_share_(static_cast<int>(springs / masses) + 1) {}
 
-  /// What one more spring of `owner` costs: it competes with others in the owner's lane and in the bank of `other`.
+  /// The cost of one more spring from `owner` to `other`: it shares the owner's lane and the bank of `other` with
+  /// others.
   int cost_of_adding(std::uint32_t owner, std::uint32_t other) const {
     const int lane = lane_[owner];
     return lane + penalty * std::max(0, lane + 1 - even_share_) + bank_[cell(owner, other)];
@@ -58,7 +59,7 @@ void choose_owners(const Body& body, std::span<const std::uint32_t> index_of, st
     swap_ends_where_cheaper(i);
     distribution.add(owner[i], other[i], 1);
   }
-  // a spring changes hands where that is cheaper
+  // a spring changes its owner if that is cheaper
   const int last_sweep = 2 * undecided.size() < owner.size() ? 1 : sweeps;
   bool changed = true;
   for (int sweep = 0; sweep < last_sweep && changed; ++sweep) {

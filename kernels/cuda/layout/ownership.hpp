@@ -1,4 +1,4 @@
-// Which of its two masses owns a spring.
+// Chooses which of its two masses owns each spring.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 
 namespace evodevo::cuda {
 
-/// In `owner`, for an owner or a row that is not chosen yet.
+/// Stands for an owner or a row that is not chosen yet.
 inline constexpr std::uint32_t open = 0xffffffff;
 
-/// Chooses the place of the mass that owns each spring. Spreads the springs evenly over the masses, which are a group's
-/// lanes, and over the banks that each group's springs lead to. `index_of` gives each mass's place. Where an owner is
-/// given in `owner`, it is one of the spring's two and hardly needs to change.
+/// Sets `owner` to the index of the mass that owns each spring. Springs are spread evenly over the masses (the lanes of
+/// each group) and over the banks to which each group's springs lead. `index_of` is the device index of each mass. An
+/// owner that is given (not `open`) must be one of the spring's masses; most of those stay.
 void choose_owners(const Body& body, std::span<const std::uint32_t> index_of, std::uint32_t groups,
                    std::span<std::uint32_t> owner);
 

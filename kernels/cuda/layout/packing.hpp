@@ -1,11 +1,11 @@
-// Arrays one behind the other in memory that the host fills and the device reads.
+// Layout of arrays in memory regions that host and device share.
 #pragma once
 
 #include <cstddef>
 
 namespace evodevo::cuda {
 
-/// Where an array begins, in bytes from the beginning of its region.
+/// The beginning of an array, in bytes from the beginning of its region.
 template <class T>
 struct Section {
   std::size_t offset = 0;
@@ -13,7 +13,7 @@ struct Section {
   const T* in(const std::byte* region) const { return reinterpret_cast<const T*>(region + offset); }
 };
 
-/// The size of a region while arrays are added to it.
+/// Computes the sections of arrays that are added to a region one after the other, and the size of the region.
 class Extent {
  public:
   template <class T>
@@ -29,8 +29,8 @@ class Extent {
   std::size_t size_ = 0;
 };
 
-/// The four kinds of memory of a body: what only the device reads, what goes there and comes back, what begins as zeros
-/// there and comes back, and what is nowhere but there.
+/// The sizes (bytes) of a body's four memory regions: `input` is copied to the device; `state` is copied there and
+/// back; `sums` begins as zeros on the device and is copied back; `scratch` exists on the device alone.
 struct Sizes {
   std::size_t input = 0, state = 0, sums = 0, scratch = 0;
 
@@ -45,10 +45,12 @@ struct Sizes {
   std::size_t total() const { return mirrored() + scratch; }
 };
 
+/// Where a body's regions begin, on the host or on the device.
 struct Regions {
   std::byte *input, *state, *sums;
   std::byte* scratch = nullptr;  ///< on the device alone
 
+  /// The regions of the next body, behind one of the given sizes.
   Regions behind(const Sizes& sizes) const {
     return {input + sizes.input, state + sizes.state, sums + sizes.sums, scratch ? scratch + sizes.scratch : nullptr};
   }

@@ -1,27 +1,28 @@
-// What the host and the device say to each other about nearest neighbours: plain structures that both compilers lay out
-// alike.
+// The data that host and device exchange in the search for nearest neighbours: plain structures that both compilers lay
+// out in the same way.
 #pragma once
 
 #include <cstdint>
 
 namespace evodevo::cuda {
 
-inline constexpr unsigned search_threads = 512;  ///< of a block that looks for neighbours; one warp for each point
+inline constexpr unsigned search_threads = 512;  ///< threads of a block; one warp for each point
 
-/// One body's points among those of a launch. Points of all clouds are numbered through; within a cloud from 0.
+/// The points of one body within a launch. Points have a number within the launch, and one within their cloud, from 0.
 struct DeviceCloud {
   std::uint32_t first_point;
   std::uint32_t points;
   std::uint32_t neighbours;  ///< of each point, 1 <= neighbours < points
   std::uint32_t unused;
-  double largest_square;     ///< no two points are further apart, m^2
-  std::uint64_t pairs;       ///< the device counts them
-  std::uint64_t first_pair;  ///< where they are wanted, once they are counted
+  double largest_square;     ///< upper bound of the squared distances in the cloud, m^2
+  std::uint64_t pairs;       ///< number of pairs, counted by the device
+  std::uint64_t first_pair;  ///< index at which the cloud's pairs begin; set by the host when the pairs are counted
 };
 
-/// How far the neighbours of a point reach: up to a squared distance and, at exactly that, up to an index.
+/// The farthest neighbour of a point: other points are neighbours up to this squared distance and, at exactly this
+/// distance, up to this index.
 struct alignas(16) Reach {
-  std::uint64_t square;  ///< the bits of a double, which sort like its value, m^2
+  std::uint64_t square;  ///< squared distance, m^2: the bits of a double, which have the same order as its value
   std::uint32_t index;
   std::uint32_t unused;
 };
@@ -33,10 +34,11 @@ struct alignas(8) DevicePair {
 /// All points of a launch.
 struct DeviceClouds {
   DeviceCloud* clouds;
-  const double *x, *y, *z;    ///< [points] m
-  Reach* reach;               ///< [points]
-  std::uint64_t* first_pair;  ///< [points] how many pairs (a, b) a point a has; then their place among the cloud's
-  std::uint32_t count;        ///< clouds
+  const double *x, *y, *z;  ///< [points] m
+  Reach* reach;             ///< [points]
+  std::uint64_t*
+      first_pair;       ///< [points] first the number of pairs (a, b) of point a, then the index of the first of them
+  std::uint32_t count;  ///< number of clouds
   std::uint32_t points;
 };
 

@@ -7,9 +7,9 @@
 namespace evodevo::cuda {
 namespace {
 
-constexpr std::size_t longest_table = 50;        // steps; refilling costs a little each time
-constexpr std::size_t table_bytes = 8 << 10;     // that a table should not exceed
-constexpr std::size_t reserved_bytes = 1 << 10;  // of shared memory, by the kernel and the system
+constexpr std::size_t longest_table = 50;        // steps; each refill costs a little
+constexpr std::size_t table_bytes = 8 << 10;     // intended largest size of a table
+constexpr std::size_t reserved_bytes = 1 << 10;  // of shared memory, for the kernel and the system
 constexpr std::size_t largest_offset = 0xffff;
 
 std::size_t aligned(std::size_t size) { return (size + 15) / 16 * 16; }
@@ -21,11 +21,11 @@ std::size_t offset_of_mass(std::uint32_t index) {
 
 template <class T>
 std::size_t masses_bytes(std::size_t groups) {
-  return (groups + 1) * group_bytes<T>;  // and one that empty slots lead to
+  return (groups + 1) * group_bytes<T>;  // one more group for empty slots to lead to
 }
 
-/// The force of a spring that stops two masses in motion: 2 v sqrt(k m/2) at most, of the greatest v, k and m there
-/// are.
+/// An upper bound (N) of the force of a spring that stops two masses in motion: 2 v sqrt(k m/2) with the greatest speed
+/// v, stiffness k and mass m of the body.
 double stopping_force(const Body& body, const State& state) {
   double speed = 0, mass = 0, stiffness = 0;
   for (const Vec3& v : state.velocity) speed = std::max(speed, norm(v));
@@ -70,7 +70,7 @@ ForceRange force_range(const Body& body, const State& state, const Scene& scene)
   largest = std::max(largest, driven ? 2 * doubled : doubled);
   ForceRange range;
   const std::uint32_t terms = degree.empty() ? 1 : std::max(1u, *std::max_element(degree.begin(), degree.end()));
-  // one percent for the rounding of the force itself
+  // one percent of margin for rounding of the force itself
   const double units = 0.99 * std::min(FixedPoint<T>::largest_term, FixedPoint<T>::largest_sum / terms);
   if (largest > 0 && std::isfinite(largest)) range.resolution = std::exp2(std::ceil(std::log2(largest / units)));
   range.largest = units * range.resolution;
@@ -87,7 +87,7 @@ std::size_t Resident<T>::largest_chip(std::size_t shared_bytes) {
 
 template <class T>
 std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features& features, std::size_t shared_bytes) {
-  // before the work of arranging it: whether the masses and one step's table fit
+  // a quick test before the work of arranging: whether the masses and a table of one step fit
   const std::size_t entries = has_codes(features) ? 0 : task.body->materials.size() + 1;
   const std::size_t least =
       masses_bytes<T>((task.body->masses.size() + lanes - 1) / lanes) + entries * (sizeof(Entry<T>) + sizeof(T));
@@ -108,12 +108,12 @@ Resident<T>::Resident(const Task& task, const Features& features)
       features_(features),
       arranged_(ArrangedBody::of(*task.body, largest_block(features.float64), task.preparation)) {}
 
-/// Divides up shared memory, with room for the lengths' rates where `with_rates`; springs have what is left.
+/// Divides shared memory: masses, table of lengths, rates (if `with_rates`) and, if there is room, springs.
 template <class T>
 void Resident<T>::divide_chip(bool with_rates, std::size_t shared_bytes) {
   const bool codes = has_codes(features_);
   const std::size_t entries = task_->body->materials.size() + 1;
-  // of a row: what each material does then, or what the clock shows
+  // bytes of a row: the material's entries, or one reading of the clock
   const std::size_t lengths = codes ? sizeof(std::uint32_t) : entries * sizeof(Entry<T>);
   const std::size_t rates = with_rates && !codes ? entries * sizeof(T) : 0;
   const std::size_t masses = masses_bytes<T>(arrangement().groups), slots = arrangement().shape.slots();
@@ -121,7 +121,7 @@ void Resident<T>::divide_chip(bool with_rates, std::size_t shared_bytes) {
   const MethodForm& method = form_of(features_.method);
   const std::size_t steps =
       std::clamp<std::size_t>(table_bytes / (lengths + rates) / method.rows_per_step, 1, longest_table);
-  // the clock is read a row ahead
+  // the clock is read one row ahead
   const std::size_t rows = (features_.actuation ? method.rows(static_cast<unsigned>(steps)) : 1) + (codes ? 1 : 0);
   records_on_chip_ = aligned(masses) + aligned(rows * (lengths + rates)) + 32 + records + waves <= shared_bytes;
   chip_.table_steps = static_cast<std::uint32_t>(steps);
@@ -132,7 +132,7 @@ void Resident<T>::divide_chip(bool with_rates, std::size_t shared_bytes) {
   chip_.size = chip_.record_offset + (records_on_chip_ ? records + waves : 0);
 }
 
-/// How many of `slots` springs' waves there are: springs that keep their length need none.
+/// The number of waves for `slots` slots: none if materials come from a table or nothing is actuated.
 template <class T>
 std::size_t Resident<T>::waves_in(std::size_t slots) const {
   return has_codes(features_) && features_.actuation ? slots : 0;
@@ -192,7 +192,7 @@ void Resident<T>::pack_records(Record<T>* to, const MaterialUnits& units) const 
   const std::vector<Arrangement::Slot>& slots = arrangement().slots;
   for (std::size_t slot = 0; slot < slots.size(); ++slot)
     if (slots[slot].spring == Arrangement::none) to[slot] = {T(0), offset_of(slots[slot].other)};
-  // in their own order, in which they are read in half the time
+  // in the order of the body's springs, which is twice as fast as the order of the slots
   for (std::size_t i = 0; i < task_->body->springs.size(); ++i) {
     const Spring& spring = task_->body->springs[i];
     const std::uint32_t slot = arrangement().slot_of[i];
@@ -218,7 +218,7 @@ void Resident<T>::pack_masses(const Regions& host) const {
     const std::uint32_t index = arrangement().index_of[i];
     const double mass = task_->body->masses[i].mass;
     mass_.in(host.input)[index] = static_cast<T>(mass);
-    // a mass of 0 kg stays where it is
+    // an inverse mass of 0 keeps a mass of 0 kg where it is
     inverse_mass_.in(host.input)[index] = static_cast<T>(mass > 0 ? 1 / mass : 0);
     const Vec3 x = task_->state->position[i], v = task_->state->velocity[i];
     const double numbers[] = {x.x, x.y, x.z, v.x, v.y, v.z};
@@ -292,7 +292,7 @@ void Resident<T>::unpack(const Regions& host, Recording recording, Task& task) c
   }
 }
 
-/// Reads what was recorded of the springs; the task's lists have room for it. Needs the course.
+/// Reads the records of the springs into the task's lists, which have the right size. Needs the task's course.
 template <class T>
 void Resident<T>::unpack_springs(const Regions& host, Task& task) const {
   const auto steps = static_cast<double>(task.steps);

@@ -1,4 +1,6 @@
-// A body whose state stays on the chip: its memory and what resident.cu is told about it.
+// A body whose state stays on the chip (resident.cu), on the host's side.
+//
+//   task ─► arrange ─► pack: description and regions for the device ─► resident.cu ─► unpack: the task's answer
 #pragma once
 
 #include <memory>
@@ -15,25 +17,25 @@
 
 namespace evodevo::cuda {
 
-/// Shared memory of a block.
+/// The division of a block's shared memory: offsets and size in bytes.
 struct ChipMemory {
   std::size_t table_offset = 0, rate_offset = 0, record_offset = 0, wave_offset = 0, size = 0;
   std::uint32_t table_steps = 1;
 };
 
-/// The range for a body: up to the force at which its strongest spring is twice as long as it wants to be, or three
-/// times where muscles drive the body, for resonance stretches springs by more than their length; to twice what a
-/// spring's force is now, to what it takes to stop the masses' motion, and to the body's weight; soft or short springs
-/// may have to bear more of these than of the first.
+/// The range of forces for a body. The largest force is the greatest of: the force of its strongest spring at twice its
+/// length, or at three times its length if muscles drive the body (in resonance springs stretch by more than their
+/// length); twice the largest force of a spring now; the force that stops the masses' motion; and the body's weight.
+/// The last three can be the greatest where springs are soft or short.
 template <class T>
 ForceRange force_range(const Body& body, const State& state, const Scene& scene);
 
-/// A body's arrangement, which depends on the body's outline alone.
+/// A body's arrangement, kept from one run to the next. It depends on the body's outline alone.
 class ArrangedBody final : public Preparation {
  public:
   ArrangedBody(const Body& body, Arrangement arrangement, unsigned largest_block);
 
-  /// The arrangement in `earlier` if it is one for `body`, else one that keeps as much of it as possible.
+  /// The arrangement for `body`: `earlier` if it fits, otherwise a new one that keeps as much of `earlier` as possible.
   static std::shared_ptr<const ArrangedBody> of(const Body& body, unsigned largest_block,
                                                 const std::shared_ptr<const Preparation>& earlier);
 
@@ -44,14 +46,15 @@ class ArrangedBody final : public Preparation {
   unsigned largest_block_;
 };
 
+/// How a body is laid out on the chip. It refers to its task, which must outlive it.
 template <class T>
 class Resident {
  public:
-  /// The body of `task`, whose course has begun, on a chip whose blocks have up to `shared_bytes`; nothing where it
-  /// does not fit, which does not depend on what is recorded.
+  /// Arranges the body of `task`, whose course has begun, for blocks with up to `shared_bytes` of shared memory.
+  /// Nothing if the body does not fit; whether it fits does not depend on what is recorded.
   static std::optional<Resident> arrange(const Task& task, const Features& features, std::size_t shared_bytes);
 
-  /// Bytes of `shared_bytes` that a body can have; the kernel and the system have the rest.
+  /// The part of `shared_bytes` that a body can have; the kernel and the system need the rest.
   static std::size_t largest_chip(std::size_t shared_bytes);
 
   ResidentForm form() const;
@@ -61,10 +64,11 @@ class Resident {
   std::size_t chip_bytes() const { return chip_.size; }
   Sizes sizes() const { return sizes_; }
 
-  /// Writes the body into its part of the host's regions; `device` is where these will be on the device.
+  /// Writes the body into its regions on the host, and returns its description for the kernel. `device`: the same
+  /// regions on the device.
   ResidentBody<T> pack(const Regions& host, const Regions& device, const Scene& scene) const;
 
-  /// Reads the task's answer.
+  /// Reads the answer, the motion and the records from the regions on the host into the task.
   void unpack(const Regions& host, Recording recording, Task& task) const;
 
  private:

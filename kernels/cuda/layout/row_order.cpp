@@ -8,10 +8,11 @@
 namespace evodevo::cuda {
 namespace {
 
-constexpr std::size_t most_rows = 64;  // that fit a mask
+constexpr std::size_t most_rows = 64;  // as many as a 64-bit mask has bits
 
-/// Rows are colours of the edges of a bipartite graph of lanes and banks: as long as no vertex has more edges than
-/// there are colours, every edge can get one (Koenig), if need be by swapping two colours along an alternating path.
+/// An edge colouring of the bipartite graph whose vertices are lanes and banks and whose edges are springs; the colours
+/// are the rows. If no vertex has more edges than there are colours, every edge can get a colour (Koenig), if need be
+/// by swapping two colours along an alternating path.
 class Colouring {
  public:
   Colouring(std::span<Link> links, std::size_t rows) : links_(links) {
@@ -19,7 +20,7 @@ class Colouring {
     for (auto& of_vertex : edge_) of_vertex.fill(-1);
   }
 
-  /// Leaves link `i` in its row; false if its lane or its bank has another there.
+  /// Leaves link `i` in its row; false if its lane or its bank already has a spring in that row.
   bool keep(int i) {
     const Link& link = links_[i];
     const bool fits = (free_[link.lane] & free_[32 + link.bank]) >> link.row & 1;
@@ -27,7 +28,7 @@ class Colouring {
     return fits;
   }
 
-  /// Gives link `i` a row in which neither its lane nor its bank has another; false if one of them is full.
+  /// Gives link `i` a row in which neither its lane nor its bank has a spring; false if one of them has no free row.
   bool assign(int i) {
     const int lane = links_[i].lane, bank = 32 + links_[i].bank;
     if (free_[lane] == 0 || free_[bank] == 0) return false;
@@ -41,7 +42,7 @@ class Colouring {
     return true;
   }
 
-  /// Gives link `i` the row of its lane in which sharing a bank costs least.
+  /// Gives link `i` a free row of its lane in spite of a bank conflict: the row where the conflict costs least.
   void squeeze(int i) {
     int best = 0, best_cost = 1 << 30;
     for (std::uint64_t free = free_[links_[i].lane]; free != 0; free &= free - 1) {
@@ -66,7 +67,8 @@ class Colouring {
     }
   }
 
-  /// Swaps the rows `taken` and `open` along the path that leaves `vertex` by `taken`, which frees it there.
+  /// Swaps the rows `taken` and `open` along the path that leaves `vertex` in row `taken`, so that `vertex` has that
+  /// row free.
   void swap_along_path(int vertex, int taken, int open) {
     path_.clear();
     for (int at = vertex, row = taken; edge_[at][row] >= 0; row = taken + open - row) {
@@ -82,7 +84,8 @@ class Colouring {
     for (const int edge : path_) set(edge, static_cast<std::uint32_t>(taken + open) - links_[edge].row);
   }
 
-  /// How many more passes a row takes with one more spring in `bank`, and next how full the bank is.
+  /// The cost of one more spring of `bank` in `row`: first by how many wavefronts an access becomes longer, then by how
+  /// many springs the bank has in that row already.
   int row_cost(int row, int bank) const {
     int most = 0;
     for (int other = 0; other < 32; ++other) most = std::max(most, in_bank(row, other));
@@ -91,16 +94,16 @@ class Colouring {
   int in_bank(int row, int bank) const { return (edge_[32 + bank][row] >= 0) + extra_[row][bank]; }
 
   std::span<Link> links_;
-  std::array<std::uint64_t, 64> free_;                           // rows, by lane and 32 + bank
-  std::array<std::array<std::int32_t, most_rows>, 64> edge_;     // link, by vertex and row
-  std::array<std::array<std::uint8_t, 32>, most_rows> extra_{};  // squeezed in, by row and bank
+  std::array<std::uint64_t, 64> free_;                           // free rows as bits, by lane and 32 + bank
+  std::array<std::array<std::int32_t, most_rows>, 64> edge_;     // index of the link, by vertex and row
+  std::array<std::array<std::uint8_t, 32>, most_rows> extra_{};  // springs squeezed in, by row and bank
   std::vector<int> path_;
 };
 
 }  // namespace
 
 void choose_rows(std::span<Link> links, std::size_t rows) {
-  if (rows > most_rows) {  // so many springs at one mass are rare enough to lie as they come
+  if (rows > most_rows) {  // so many springs at one mass are rare: take them as they come
     std::array<std::uint32_t, 32> next{};
     for (Link& link : links) link.row = next[link.lane]++;
     return;

@@ -1,4 +1,4 @@
-// In which row each of a group's springs lies.
+// Chooses the row of each spring of a group.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,14 @@
 
 namespace evodevo::cuda {
 
-/// A spring of a group: the lane of its owner, the bank of the other mass.
+/// A spring of a group: the lane of its owner and the bank of its other mass.
 struct Link {
   std::uint8_t lane, bank;
-  std::uint32_t row = open;  ///< the answer; one that is given stays if it can
+  std::uint32_t row = open;  ///< the chosen row; a row that is given stays if possible
 };
 
-/// Deals out the springs of a group to `rows` rows, so that no row has two springs of one lane and, as far as possible,
-/// none has two of one bank. No lane may have more than `rows` springs.
+/// Divides the springs of a group among `rows` rows, so that no row has two springs of the same lane and, as far as
+/// possible, no two springs of the same bank. No lane may have more than `rows` springs.
 void choose_rows(std::span<Link> links, std::size_t rows);
 
 }  // namespace evodevo::cuda

@@ -22,7 +22,7 @@ Streamed<T>::Streamed(const Task& task, const Features& features, std::size_t la
   const Body& body = *task.body;
   std::vector<std::uint32_t> degree(body.masses.size());
   for (const Spring& spring : body.springs) ++degree[index_of_[spring.a]], ++degree[index_of_[spring.b]];
-  // the first mass of a group has the most springs
+  // the first mass of a group has its highest degree
   for (std::size_t i = 0; i < degree.size(); i += lanes) first_row_.push_back(first_row_.back() + degree[i]);
 
   std::vector<std::uint32_t> next(body.masses.size());
@@ -65,7 +65,7 @@ void Streamed<T>::reserve() {
 template <class T>
 unsigned Streamed<T>::threads() const {
   if (is_explicit(features_.method)) return 128;
-  // a colour has at most half as many springs as there are masses, and on average about a quarter
+  // a colour has at most half as many springs as the body has masses, and on average about a quarter
   const std::uint32_t busy = form_of(features_.method).coloured ? masses() / 4 : masses();
   return std::clamp(std::bit_ceil(busy), lanes, lanes * largest_block(features_.float64));
 }
@@ -80,7 +80,7 @@ unsigned Streamed<T>::steps_of_span(std::uint64_t span) const {
 template <class T>
 void Streamed<T>::pack_joints(const Regions& host) const {
   Joint<T>* to = joints_.in(host.input);
-  // an empty joint leads to its own mass and has entry 0, no material
+  // an empty joint leads to its own mass and has entry 0, which is no material
   for (std::uint32_t index = 0; index < lanes * (first_row_.size() - 1); ++index)
     for (std::uint32_t row = 0; row < first_row_[index / lanes + 1] - first_row_[index / lanes]; ++row)
       to[joint_at(index, row)] = {T(0), std::min(index, masses() - 1), 0, 0};
@@ -93,7 +93,7 @@ void Streamed<T>::pack_joints(const Regions& host) const {
   }
 }
 
-/// Writes the springs by colour, in the body's order where it is the same.
+/// Writes the springs sorted by colour; those of a colour in the body's order.
 template <class T>
 void Streamed<T>::pack_colours(const Regions& host) const {
   std::uint32_t* first = first_of_colour_.in(host.input);
@@ -125,7 +125,7 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
     const std::uint32_t index = index_of_[i];
     const double mass = body.masses[i].mass;
     mass_.in(host.input)[index] = static_cast<T>(mass);
-    // a mass of 0 kg stays where it is
+    // an inverse mass of 0 keeps a mass of 0 kg where it is
     inverse_mass_.in(host.input)[index] = static_cast<T>(mass > 0 ? 1 / mass : 0);
     positions_.in(host.state)[index] = point(task_->state->position[i]);
     velocities_.in(host.state)[index] = point(task_->state->velocity[i]);
@@ -172,7 +172,7 @@ void Streamed<T>::unpack(const Regions& host, Recording recording, Task& task) c
   if (task.status == Status::ok) unpack_springs(host, task);
 }
 
-/// Reads what was recorded of the springs; the task's lists have room for it.
+/// Reads the records of the springs into the task's lists, which have the right size.
 template <class T>
 void Streamed<T>::unpack_springs(const Regions& host, Task& task) const {
   const auto steps = static_cast<double>(task.steps);

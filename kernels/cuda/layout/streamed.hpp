@@ -1,5 +1,7 @@
-// A body in the device's memory, too large for the chip or moved by a method that has no kernel there: what the kernels
-// are told about it.
+// A body that is kept in the device's memory (streamed.cu, implicit.cu, xpbd.cu), on the host's side: bodies too large
+// for the chip, and all bodies of the methods implicit and xpbd.
+//
+//   task ─► constructor: layout ─► pack: description and regions for the device ─► kernels ─► unpack: the task's answer
 #pragma once
 
 #include "cuda/layout/answers.hpp"
@@ -9,27 +11,29 @@
 
 namespace evodevo::cuda {
 
+/// How a body is laid out in the device's memory. It refers to its task, which must outlive it.
 template <class T>
 class Streamed {
  public:
-  /// `task`: one whose course has begun. `largest_chip`: bytes of shared memory that a body can have.
+  /// `task`: its course must have begun. `largest_chip`: bytes of shared memory that a body can have.
   Streamed(const Task& task, const Features& features, std::size_t largest_chip);
 
   Sizes sizes() const { return sizes_; }
-  /// Of the blocks that move the body. Where one block does, they depend on nothing but the body, like all that it
-  /// sums.
+  /// Threads of each block that moves the body. If one block moves the whole body, their number depends on the body
+  /// alone, and so does the order of the block's sums.
   unsigned threads() const;
-  std::size_t chip_bytes() const { return chip_bytes_; }  ///< of the shared memory of a block that moves it alone
+  std::size_t chip_bytes() const { return chip_bytes_; }  ///< shared memory of the block, if one block moves the body
   std::uint32_t masses() const { return static_cast<std::uint32_t>(task_->body->masses.size()); }
   const Features& features() const { return features_; }
-  /// From one check to the next, or from the beginning or to the end of the task's steps.
+  /// The number of check spans: a span goes from one check, or the beginning of the task, to the next check or its end.
   std::uint64_t check_spans() const { return (since_check() + task_->steps + guard_interval - 1) / guard_interval; }
   unsigned steps_of_span(std::uint64_t span) const;
 
-  /// Writes the body into its part of the host's regions; `device` is where these will be on the device.
+  /// Writes the body into its regions on the host, and returns its description for the kernels. `device`: the same
+  /// regions on the device.
   StreamedBody<T> pack(const Regions& host, const Regions& device, const Scene& scene) const;
 
-  /// Reads the task's answer.
+  /// Reads the answer, the motion and the records from the regions on the host into the task.
   void unpack(const Regions& host, Recording recording, Task& task) const;
 
  private:
@@ -38,7 +42,7 @@ class Streamed {
   void pack_joints(const Regions& host) const;
   void pack_colours(const Regions& host) const;
   void unpack_springs(const Regions& host, Task& task) const;
-  /// Where the `row`-th joint of the mass at `index` lies.
+  /// The index of the `row`-th joint of the mass of index `index`.
   std::uint32_t joint_at(std::uint32_t index, std::uint32_t row) const {
     return lanes * (first_row_[index / lanes] + row) + index % lanes;
   }
@@ -48,10 +52,10 @@ class Streamed {
   Features features_;
   Sizes sizes_;
   std::size_t chip_bytes_;
-  std::vector<std::uint32_t> index_of_;     ///< [masses] by falling number of springs
+  std::vector<std::uint32_t> index_of_;     ///< [masses] device index of each mass, by falling degree
   std::vector<std::uint32_t> first_row_;    ///< [groups of 32 masses + 1]
-  std::vector<std::uint32_t> owned_joint_;  ///< [springs] the one at end a, where the spring's stress is summed
-  std::vector<std::uint32_t> colour_;       ///< [springs] where the method asks for it
+  std::vector<std::uint32_t> owned_joint_;  ///< [springs] the joint at end a, where the spring's stress is summed
+  std::vector<std::uint32_t> colour_;       ///< [springs] if the method asks for colours
   std::uint32_t colours_ = 0;
 
   Section<std::uint32_t> rows_;

@@ -1,8 +1,9 @@
 #include "cuda/runtime/cache.hpp"
 
+#define XXH_INLINE_ALL  // from the header alone, so that no library is needed at run time
 #include <unistd.h>
+#include <xxhash.h>
 
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -14,22 +15,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The FNV-1a hash.
-std::uint64_t fnv(std::string_view text, std::uint64_t start) {
-  std::uint64_t hash = start;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
-  return hash;
-}
-
-/// The folder that a variable of the environment names. A relative one would be another wherever a command is typed,
-/// and counts as none, as the XDG Base Directory Specification says.
+/// The folder that an environment variable names. A relative path is ignored, as the XDG Base Directory Specification
+/// demands, because it would mean a different folder in each working directory.
 std::optional<fs::path> folder_of(const char* variable) {
   const char* value = std::getenv(variable);
   if (value == nullptr || !fs::path(value).is_absolute()) return std::nullopt;
   return value;
 }
 
-/// The cache's folder, where the environment names one.
+/// The cache's folder; none if the environment names none.
 std::optional<fs::path> folder() {
   if (const auto cache = folder_of("XDG_CACHE_HOME")) return *cache / "evodevo" / "kernels";
   if (const auto home = folder_of("HOME")) return *home / ".cache" / "evodevo" / "kernels";
@@ -40,8 +34,9 @@ std::optional<fs::path> folder() {
 
 std::string digest(std::string_view text) {
   char name[33];
-  std::snprintf(name, sizeof name, "%016llx%016llx", static_cast<unsigned long long>(fnv(text, 0xcbf29ce484222325ull)),
-                static_cast<unsigned long long>(fnv(text, 0x9e3779b97f4a7c15ull)));
+  const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
+  std::snprintf(name, sizeof name, "%016llx%016llx", static_cast<unsigned long long>(hash.high64),
+                static_cast<unsigned long long>(hash.low64));
   return name;
 }
 
@@ -50,7 +45,7 @@ std::optional<std::vector<char>> load(const std::string& key) {
   if (!from) return std::nullopt;
   std::ifstream file(*from / key, std::ios::binary);
   const std::string content{std::istreambuf_iterator<char>(file), {}};
-  // a file holds the digest of the code and the code
+  // a file contains the digest of the code and the code
   const std::size_t length = digest({}).size();
   if (content.size() <= length) return std::nullopt;
   const std::string_view code = std::string_view(content).substr(length);
@@ -63,7 +58,7 @@ void store(const std::string& key, const std::vector<char>& code) {
   if (!to) return;
   std::error_code ignored;
   fs::create_directories(*to, ignored);
-  // written aside and renamed, so that another process never reads half a file
+  // written to another file and renamed, so that other processes never read an incomplete file
   const fs::path aside = *to / (key + "." + std::to_string(getpid()));
   std::ofstream file(aside, std::ios::binary);
   file << digest({code.data(), code.size()}) << std::string_view(code.data(), code.size());

@@ -1,4 +1,4 @@
-// Compiled kernels on disk.
+// Compiled kernels on disk: $XDG_CACHE_HOME/evodevo/kernels, or ~/.cache/evodevo/kernels.
 #pragma once
 
 #include <optional>
@@ -8,13 +8,13 @@
 
 namespace evodevo::cuda {
 
-/// A short name for `text`; equal texts have equal names, and others practically never.
+/// A hash of `text` as 32 hexadecimal digits (XXH3, 128 bits). Different texts have different hashes, in practice.
 std::string digest(std::string_view text);
 
-/// What store() kept under `key`, from this or an earlier process; nothing where it is missing or damaged.
+/// Reads the code that this or an earlier process stored under `key`; nothing if it is missing or damaged.
 std::optional<std::vector<char>> load(const std::string& key);
 
-/// Keeps `code` under `key` for later. Where the cache cannot be written, nothing happens.
+/// Stores `code` under `key`. Does nothing if the cache cannot be written.
 void store(const std::string& key, const std::vector<char>& code);
 
 }  // namespace evodevo::cuda

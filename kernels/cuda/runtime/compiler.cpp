@@ -16,14 +16,14 @@ void check(nvrtcResult result, const char* what) {
                              " failed: " + nvrtcGetErrorString(result));
 }
 
-// what the sources include of the standard library, which the run-time compiler does not bring
+// the parts of the standard library that the sources use; the run-time compiler has no standard library
 constexpr EmbeddedSource standard_headers[] = {
     {"cmath", "namespace std { using ::floor; using ::fma; using ::sqrt; }\n"},
     {"cstdint",
      "#pragma once\n"
      "namespace std { using int32_t = int; using uint32_t = unsigned int; using uint64_t = unsigned long long; }\n"}};
 
-/// The compiler's names for what to make: machine code for a chip that it knows, else code that the driver compiles.
+/// The compiler's target: machine code if the compiler knows the GPU, otherwise PTX code, which the driver compiles.
 struct Target {
   std::string option;
   bool machine_code;
@@ -49,7 +49,8 @@ std::string compiler_version() {
   return std::to_string(major) + "." + std::to_string(minor);
 }
 
-/// The compiler's options. Contraction would make a result depend on which features are compiled in.
+/// The compiler's options. -fmad=false: contraction to fused multiply-adds would make results depend on which features
+/// are compiled in.
 std::vector<std::string> options_for(const Target& target, const std::vector<std::string>& definitions) {
   std::vector<std::string> options{target.option, "-std=c++20", "-fmad=false", "-ftz=true"};
   for (const std::string& definition : definitions) options.push_back("-D" + definition);
@@ -63,7 +64,7 @@ std::vector<EmbeddedSource> embedded_with(std::span<const EmbeddedSource> more) 
   return sources;
 }
 
-/// Everything that machine code depends on.
+/// The cache's key: a digest of everything that the machine code depends on.
 std::string key_of(std::string_view name, const std::vector<std::string>& options,
                    const std::vector<EmbeddedSource>& sources) {
   std::string text = compiler_version() + '\n' + std::string(name) + '\n';
@@ -73,6 +74,7 @@ std::string key_of(std::string_view name, const std::vector<std::string>& option
   return digest(text);
 }
 
+/// A program of the run-time compiler.
 class Program {
  public:
   Program(const std::vector<EmbeddedSource>& sources, std::string_view name) {

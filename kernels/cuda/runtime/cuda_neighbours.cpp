@@ -1,4 +1,7 @@
-// The search on a GPU: clouds in portions that its memory holds.
+// The search on a GPU, in portions that fit the GPU's memory.
+//
+//   clouds ─► pack: points on the host ─► count: number of pairs per cloud ─► write: pairs on the host ─► use(cloud,
+//   pairs)
 #include "cuda/runtime/cuda_neighbours.hpp"
 
 #include <algorithm>
@@ -21,18 +24,18 @@ static_assert(sizeof(IndexPair) == sizeof(DevicePair));
 
 constexpr const char* source = "cuda/device/neighbours.cu";
 
-/// A cloud that has neighbours to find, and its index among all.
+/// A cloud with at least one pair to find, and its index among all clouds.
 struct Job {
   std::size_t index;
   PointCloud cloud;
 
   std::size_t points() const { return cloud.positions.size(); }
   std::size_t neighbours() const { return std::min<std::size_t>(cloud.k, points() - 1); }
-  /// There are no more: every point brings as many, and each pair of points is one pair.
+  /// An upper bound of the number of pairs: every point has that many neighbours, and no pair is there twice.
   std::size_t most_pairs() const { return std::min(points() * neighbours(), points() * (points() - 1) / 2); }
 };
 
-/// The arrays of a portion: the first four come from the host, the last two belong to the device.
+/// The arrays of a portion. The first four are copied from the host; the last two exist on the device alone.
 struct Arrays {
   explicit Arrays(std::span<const Job> jobs) {
     for (const Job& job : jobs) points += job.points();
@@ -61,10 +64,10 @@ struct Kernels {
   cudaKernel_t find_reach, count_pairs, find_first_pairs, write_pairs;
 };
 
-/// Clouds that are searched together.
+/// Clouds that are searched together, in one launch of each kernel.
 class Portion {
  public:
-  /// Throws OutOfMemory, as find() may before it has called `use`.
+  /// Throws OutOfMemory. find() may throw it as well, before its first call of `use`.
   Portion(std::span<const Job> jobs, const Kernels& kernels, cuda::MemoryStore& store, Workers& workers)
       : jobs_(jobs),
         kernels_(kernels),
@@ -73,7 +76,7 @@ class Portion {
         arrays_(store, layout_.extent.size()),
         pairs_(store, most_pairs(jobs) * sizeof(DevicePair)) {}
 
-  /// Bytes of memory that a cloud takes.
+  /// The memory that a cloud needs, bytes.
   static std::size_t bytes_for(const Job& job) {
     return sizeof(DeviceCloud) + job.points() * (sizeof(Vec3) + sizeof(cuda::Reach) + sizeof(std::uint64_t)) +
            job.most_pairs() * sizeof(DevicePair);
@@ -117,13 +120,13 @@ class Portion {
                             layout_.axes[2].in(host) + clouds()[i].first_point};
       for (std::size_t p = 0; p < positions.size(); ++p)
         to[0][p] = positions[p].x, to[1][p] = positions[p].y, to[2][p] = positions[p].z;
-      // rounding keeps the order, so that no distance within the box comes out larger
+      // rounding is monotonic, so that no computed distance within the box is larger than this
       const Box box = bounding_box(positions);
       clouds()[i].largest_square = dot(box.high - box.low, box.high - box.low);
     });
   }
 
-  /// What the kernels are told.
+  /// The description of the portion for the kernels.
   cuda::DeviceClouds description() const {
     std::byte* device = arrays_->device();
     return {.clouds = layout_.clouds.in(device),
@@ -136,7 +139,7 @@ class Portion {
             .points = static_cast<std::uint32_t>(layout_.points)};
   }
 
-  /// The blocks that have a warp for each of `items`.
+  /// The number of blocks with one warp for each of `items`.
   static dim3 blocks_for(std::size_t items) {
     constexpr std::size_t warps = cuda::search_threads / 32;
     return dim3(static_cast<unsigned>((items + warps - 1) / warps));
@@ -156,7 +159,7 @@ class Portion {
                 "copying point clouds");
   }
 
-  /// Finds every point's neighbours and the number of pairs of every cloud.
+  /// Finds the reach of every point and the number of pairs of every cloud.
   void count() {
     cuda::check(cudaMemcpyAsync(arrays_->device(), arrays_->host(), layout_.input, cudaMemcpyHostToDevice, stream_),
                 "copying points to the GPU");
@@ -167,7 +170,7 @@ class Portion {
     cuda::check(cudaStreamSynchronize(stream_), "finding neighbours on the GPU");
   }
 
-  /// Brings all pairs to the host, one cloud behind the other.
+  /// Writes all pairs, one cloud after the other, and copies them to the host.
   void write() {
     std::uint64_t pairs = 0;
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
@@ -215,7 +218,7 @@ class CudaNeighbourSearch final : public NeighbourSearch {
   }
 
  private:
-  /// How many of the next jobs are done together.
+  /// How many of the next jobs make a portion; at least one.
   std::size_t portion_from(std::span<const Job> jobs) const {
     std::size_t bytes = 0;
     for (std::size_t count = 0; count < jobs.size(); ++count) {

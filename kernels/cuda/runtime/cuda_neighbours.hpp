@@ -1,16 +1,16 @@
-// Nearest neighbours on an NVIDIA GPU; only where the build option EVODEVO_CUDA is on.
+// The search for nearest neighbours on an NVIDIA GPU. Exists only with the build option EVODEVO_CUDA.
 #pragma once
 
 #include <cstddef>
 #include <memory>
 
-#include "analysis/neighbours.hpp"
+#include "core/neighbour_search.hpp"
 
 namespace evodevo {
 
-/// A search on the current CUDA device; `threads` cores (0: all) take part. Throws std::runtime_error, which says what
-/// is missing and what to do, where there is no device, and in find() where it runs out of memory or fails. Clouds that
-/// need more than `memory` bytes together are searched in portions.
+/// A search on the current CUDA device. Throws std::runtime_error, with a message that names the cause and a remedy, if
+/// there is no usable device; find() throws one if the device fails or has too little memory. Clouds that together need
+/// more than `memory` bytes are searched in portions.
 std::unique_ptr<NeighbourSearch> make_cuda_neighbour_search(std::size_t memory = std::size_t{1} << 29);
 
 }  // namespace evodevo

@@ -1,10 +1,12 @@
-// The simulator on a GPU: bodies in portions that its memory holds.
+// The simulator on a GPU.
+//
+//   tasks ─► begin: courses ─► plan: layout of each body ─► portions that fit the memory ─► Portion::simulate ─►
+//   answers
 #include "cuda/runtime/cuda_simulator.hpp"
 
 #include <algorithm>
 #include <mutex>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
 #include "analysis/guard.hpp"
@@ -18,12 +20,12 @@ namespace {
 
 static_assert(cuda::guard_interval == guard_interval);
 
-constexpr std::size_t most_streams = 12;  // of one batch
-constexpr int batches_at_once = 16;       // one moves, others are prepared, read out or on their way
-// of the free memory, which other programs want to use too
+constexpr std::size_t most_streams = 12;  // for one batch
+constexpr int batches_at_once = 16;       // while one moves, others are prepared or read
+// of the free memory; other programs may need some too
 constexpr double share_of_memory = 0.8;
 
-/// What a batch has of the device to itself.
+/// The streams that a batch uses alone.
 struct BatchResources {
   BatchResources() {
     for (std::size_t i = 0; i < most_streams; ++i) urgent.emplace_back(true), patient.emplace_back();
@@ -32,20 +34,20 @@ struct BatchResources {
   std::vector<cuda::Stream> urgent, patient;
 };
 
-/// BatchResourcePool that are made when they are needed and used again.
+/// The resources of batches that have ended, kept for later batches. They are made when there are none.
 class BatchResourcePool {
  public:
-  /// A resources until its end.
+  /// Holds the resources of one batch until it is destroyed.
   class Loan {
    public:
-    explicit Loan(BatchResourcePool& pool) : batch_resources_(pool), resources_(pool.take()) {}
+    explicit Loan(BatchResourcePool& pool) : pool_(pool), resources_(pool.take()) {}
     Loan(const Loan&) = delete;
     Loan& operator=(const Loan&) = delete;
-    ~Loan() { batch_resources_.give_back(std::move(resources_)); }
+    ~Loan() { pool_.give_back(std::move(resources_)); }
     BatchResources* operator->() const { return resources_.get(); }
 
    private:
-    BatchResourcePool& batch_resources_;
+    BatchResourcePool& pool_;
     std::unique_ptr<BatchResources> resources_;
   };
 
@@ -110,7 +112,8 @@ class DeviceSimulator final : public CudaSimulator {
   }
 
  private:
-  /// Empties the answers and gives the tasks that need the device; bodies without masses only grow older.
+  /// Clears the answers and returns the tasks that need the device. Tasks without masses or steps end here; only their
+  /// time goes on.
   std::vector<Task*> begin(std::span<Task> tasks, Recording recording) const {
     std::vector<Task*> live;
     for (Task& task : tasks) {
@@ -129,7 +132,7 @@ class DeviceSimulator final : public CudaSimulator {
     return live;
   }
 
-  /// The course that a task goes on with or begins.
+  /// The course that a task continues or begins.
   Course begun(const Task& task) const {
     Course course = course_of(task, scene_, stepping_.precision);
     if (!task.course) course.forces = cuda::force_range<T>(*task.body, *task.state, scene_);
@@ -147,23 +150,24 @@ class DeviceSimulator final : public CudaSimulator {
     return plans;
   }
 
-  /// Simulates as many of the next plans as the device's memory bears together; returns how many. `seconds` grows by
-  /// the time of the kernels.
+  /// Simulates as many of the next plans as fit the device's memory together, and returns how many. Adds the time of
+  /// the kernels to `seconds`.
   std::size_t simulate_next_portion(std::span<cuda::Plan<T>> plans, const cuda::Run& run, double& seconds) {
     const auto attempt = [&](std::size_t count) {
       const BatchResourcePool::Loan resources(batch_resources_);
-      // after a run with records of springs the host has work to do; meanwhile runs without it fill the device
+      // runs with records of springs go first: after them the host has work to do, and meanwhile other runs use the
+      // device
       const std::vector<cuda::Stream>& streams = run.recording.of_springs() ? resources->urgent : resources->patient;
       seconds += cuda::Portion<T>(plans.first(count), run, *memory_).simulate(kernels_, streams, workers_, busy_);
     };
     try {
       return memory_->with_fewer(plans_that_fit(plans), attempt);
     } catch (const cuda::OutOfMemory& error) {
-      throw std::runtime_error(why_not_even_one(plans.front(), error));
+      throw DeviceOutOfMemory(why_not_even_one(plans.front(), error));
     }
   }
 
-  /// How many of the next plans should fit the memory that is free; at least one.
+  /// How many of the next plans should fit the free memory; at least one.
   std::size_t plans_that_fit(std::span<const cuda::Plan<T>> plans) {
     const auto free = static_cast<double>(memory_->available());
     const std::size_t budget = std::min(largest_portion_, static_cast<std::size_t>(share_of_memory * free));

@@ -14,7 +14,8 @@ namespace {
 
 std::string version(int number) { return std::to_string(number / 1000) + "." + std::to_string(number % 1000 / 10); }
 
-/// The driver's own number is clearer than the runtime's error, which comes only with the first real call.
+/// Throws if the driver is missing or too old. The runtime would notice only at the first real call, with a less clear
+/// error.
 void check_driver() {
   int driver = 0, runtime = 0;
   check(cudaDriverGetVersion(&driver), "asking for the driver's version");
@@ -33,7 +34,7 @@ std::string driver_obstacle(int driver, int runtime) {
 }
 
 Device current_device() {
-  // hardware queues; with the usual 8, launches for bodies of different forms would wait for each other
+  // the number of hardware queues; with the default of 8, launches for bodies of different forms wait for each other
   setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0);
   check_driver();
   int count = 0, device = 0;
@@ -41,7 +42,7 @@ Device current_device() {
   check(cudaGetDevice(&device), "choosing a GPU");
   cudaDeviceProp properties{};
   check(cudaGetDeviceProperties(&properties, device), "asking for the GPU's properties");
-  // the first call that needs the device itself; a GPU that another program holds for itself fails here
+  // the first call that needs the device itself: it fails if another program holds the GPU exclusively
   check(cudaFree(nullptr), "starting work on the GPU");
   return {properties.name, "sm_" + std::to_string(properties.major) + std::to_string(properties.minor),
           properties.sharedMemPerBlockOptin};

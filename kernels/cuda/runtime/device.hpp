@@ -1,4 +1,4 @@
-// The GPU that bodies are simulated on.
+// The GPU on which bodies are simulated.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,14 @@ struct Device {
   std::size_t shared_bytes;  ///< shared memory that one block can have
 };
 
-/// Why a driver for the CUDA version `driver` (1000 times the major plus 10 times the minor one; 0: there is none) does
-/// not bear a program that is built with `runtime`; empty where it does.
+/// Why a driver for the CUDA version `driver` cannot run a program that was built with the version `runtime`; empty if
+/// it can. A version is 1000 times the major plus 10 times the minor number; driver 0: there is none.
 std::string driver_obstacle(int driver, int runtime);
 
-/// The current CUDA device. Throws std::runtime_error where there is none that can be used.
+/// The current CUDA device. Throws std::runtime_error if there is no usable one.
 Device current_device();
 
-/// Bytes of the device's memory that nobody uses.
+/// The free memory of the device, bytes.
 std::size_t free_memory();
 
 }  // namespace evodevo::cuda

@@ -10,8 +10,7 @@ const char* remedy(cudaError_t result) {
     case cudaErrorNoDevice:
       return "; check that nvidia-smi lists a GPU and that CUDA_VISIBLE_DEVICES does not hide it";
     case cudaErrorMemoryAllocation:
-      return "; end other programs that use that memory (nvidia-smi lists those on the GPU), or compute on the CPU "
-             "(simulation.device = \"cpu\")";
+      return "; end other programs that use that memory (nvidia-smi lists those on the GPU), or compute on the CPU";
     case cudaErrorNoKernelImageForDevice:
     case cudaErrorUnsupportedPtxVersion:
       return "; this GPU and the CUDA toolkit that the program was built with do not fit: build with a newer toolkit, "
@@ -19,7 +18,7 @@ const char* remedy(cudaError_t result) {
     case cudaErrorDevicesUnavailable:
       return "; another program holds the GPU exclusively (nvidia-smi lists it)";
     case cudaErrorSystemDriverMismatch:
-      return "; the driver was updated while it ran: restart the machine";
+      return "; the driver was updated while it was in use: restart the machine";
     case cudaErrorSystemNotReady:
       return "; the machine needs NVIDIA's fabric manager: start the service nvidia-fabricmanager";
     case cudaErrorECCUncorrectable:
@@ -40,7 +39,7 @@ const char* remedy(cudaError_t result) {
 
 void check(cudaError_t result, const std::string& what) {
   if (result == cudaSuccess) return;
-  cudaGetLastError();  // a failure that is not sticky must not be found again by the next call
+  cudaGetLastError();  // clears the failure, so that the next call does not report it again
   const std::string message = "CUDA: " + what + " failed: " + cudaGetErrorString(result) + " (" +
                               cudaGetErrorName(result) + ")" + remedy(result);
   if (result == cudaErrorMemoryAllocation) throw OutOfMemory(message);

@@ -1,21 +1,23 @@
-// Failures of the CUDA runtime in words.
+// Failures of the CUDA runtime as exceptions with clear messages.
 #pragma once
 
 #include <cuda_runtime_api.h>
 
-#include <stdexcept>
 #include <string>
+
+#include "core/simulator.hpp"
 
 namespace evodevo::cuda {
 
-/// Memory that was asked for is not there, on the device or, where it cannot be swapped out, on the host.
-class OutOfMemory : public std::runtime_error {
+/// The device has too little free memory, or the host too little memory that cannot be swapped out.
+class OutOfMemory : public DeviceOutOfMemory {
  public:
-  using std::runtime_error::runtime_error;
+  using DeviceOutOfMemory::DeviceOutOfMemory;
 };
 
-/// Throws std::runtime_error, OutOfMemory where it is that, where `result` is a failure: `what` was attempted ("copying
-/// bodies to the device"), the runtime's words, and a remedy where there is one.
+/// Throws if `result` is a failure: OutOfMemory, or std::runtime_error for any other. The message says what was
+/// attempted (`what`, such as "copying bodies to the device"), the runtime's words for the failure, and a remedy if one
+/// is known.
 void check(cudaError_t result, const std::string& what);
 
 }  // namespace evodevo::cuda

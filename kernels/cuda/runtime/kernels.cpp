@@ -32,7 +32,7 @@ cudaKernel_t KernelStore::get(const std::string& source, const std::string& func
     library = &libraries_[key];
   }
   {
-    // the first loads it, all others wait for that
+    // the first thread loads the library, others wait for it
     const std::lock_guard lock(library->loading);
     if (library->handle == nullptr) library->handle = load_library(source, definitions, architecture_, more_);
   }

@@ -1,4 +1,4 @@
-// The kernels that a simulator needs, loaded onto the device.
+// The kernels of a simulator, compiled and loaded onto the device.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -13,19 +13,19 @@
 
 namespace evodevo::cuda {
 
-/// Kernels of one device, each compiled and loaded when it is first asked for, and kept; one for which there is no
-/// memory is tried again when it is asked for again. May be used from several threads, which compile different kernels
-/// at the same time.
+/// The kernels of one device. Each is compiled and loaded when it is first asked for, and kept. If there is no memory
+/// to load it, the next call tries again. Several threads may use a store; they compile different kernels at the same
+/// time.
 class KernelStore {
  public:
-  /// `more`: sources beside the embedded ones; they must outlive the store.
+  /// `more`: source files beside the embedded ones. They must outlive the store.
   explicit KernelStore(std::string architecture, std::span<const EmbeddedSource> more = {})
       : architecture_(std::move(architecture)), more_(more) {}
   KernelStore(const KernelStore&) = delete;
   KernelStore& operator=(const KernelStore&) = delete;
   ~KernelStore();
 
-  /// The kernel `function` of the source `source`.
+  /// The kernel `function` of the source file `source`, compiled with `definitions`.
   cudaKernel_t get(const std::string& source, const std::string& function, const std::vector<std::string>& definitions);
 
  private:

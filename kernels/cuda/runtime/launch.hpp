@@ -1,4 +1,4 @@
-// Starting a kernel.
+// Launches a kernel.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -9,6 +9,8 @@
 
 namespace evodevo::cuda {
 
+/// Launches `kernel` on `stream` with `grid` blocks of `threads` threads, each block with `shared_bytes` of dynamic
+/// shared memory. Throws if the launch fails.
 template <class... Arguments>
 void launch(cudaKernel_t kernel, dim3 grid, unsigned threads, std::size_t shared_bytes, cudaStream_t stream,
             Arguments... arguments) {

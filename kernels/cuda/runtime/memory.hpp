@@ -1,4 +1,4 @@
-// Memory on the device and its image on the host.
+// Memory on the device with a copy on the host, streams and events.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -12,13 +12,13 @@
 
 namespace evodevo::cuda {
 
-/// As messages say it, rounded up.
+/// A size for messages, in MiB, rounded up.
 inline std::string in_mebibytes(std::size_t bytes) {
   return std::to_string((bytes + (std::size_t{1} << 20) - 1) >> 20) + " MiB";
 }
 
-/// Memory of the device together with as much on the host that copies go to and come from, and more that is on the
-/// device alone.
+/// Memory of the device: a mirrored part, with a copy of the same size on the host, and behind it a part that is on the
+/// device alone. The copy on the host cannot be swapped out.
 class MirroredMemory {
  public:
   MirroredMemory() = default;
@@ -26,16 +26,16 @@ class MirroredMemory {
   MirroredMemory& operator=(const MirroredMemory&) = delete;
   ~MirroredMemory() { release(); }
 
-  /// Whether there is room for `mirrored` bytes on both and, behind them, `more` on the device.
+  /// Whether there is room for `mirrored` bytes on both sides and `more` bytes on the device alone.
   bool holds(std::size_t mirrored, std::size_t more) const {
     return mirrored <= host_size_ && mirrored + more <= size_;
   }
 
-  /// Makes room for as much; what was there is lost. Throws OutOfMemory, after which there is none at all.
+  /// Makes room for as much; the old content is lost. Throws OutOfMemory, and then holds no memory.
   void resize(std::size_t mirrored, std::size_t more) {
     if (holds(mirrored, more)) return;
     try {
-      // bodies grow by little, and taking memory makes the device wait
+      // more than needed, because bodies grow little by little and allocation makes the device wait
       take(rounded(mirrored), rounded(more));
     } catch (const OutOfMemory&) {
       take(mirrored, more);
@@ -78,10 +78,10 @@ class MirroredMemory {
   std::size_t size_ = 0, host_size_ = 0;
 };
 
-/// The order in which the device works off what it is given.
+/// A CUDA stream: the device executes the operations of a stream in their order.
 class Stream {
  public:
-  /// What is in an `urgent` stream is begun before what waits in others.
+  /// Operations of an `urgent` stream begin before those that wait in other streams.
   explicit Stream(bool urgent = false) {
     int least = 0, greatest = 0;
     check(cudaDeviceGetStreamPriorityRange(&least, &greatest), "asking for the priorities of streams");
@@ -98,25 +98,25 @@ class Stream {
   cudaStream_t stream_ = nullptr;
 };
 
-/// Waits at its end until streams have done what they were given, whatever has thrown meanwhile: nobody takes back
-/// memory that the device still works on.
+/// Its destructor waits until the streams are at rest, even when an exception is thrown, so that memory is not freed
+/// while the device still uses it.
 class StreamsAtRest {
  public:
   explicit StreamsAtRest(std::span<const Stream> streams) : streams_(streams) {}
   StreamsAtRest(const StreamsAtRest&) = delete;
   StreamsAtRest& operator=(const StreamsAtRest&) = delete;
   ~StreamsAtRest() {
-    for (const Stream& stream : streams_) cudaStreamSynchronize(stream);  // a failure has been or will be reported
+    for (const Stream& stream : streams_) cudaStreamSynchronize(stream);  // its failure is reported elsewhere
   }
 
  private:
   std::span<const Stream> streams_;
 };
 
-/// A height_moment in a stream.
+/// A CUDA event: a point in the order of a stream.
 class Event {
  public:
-  /// A thread that waits for a `blocking` event sleeps; else it keeps asking.
+  /// A thread that waits for a `blocking` event sleeps; otherwise it polls.
   explicit Event(bool blocking = false) {
     check(cudaEventCreateWithFlags(&event_, blocking ? cudaEventBlockingSync : cudaEventDefault), "making an event");
   }

@@ -24,7 +24,7 @@ std::size_t MemoryStore::available() {
 
 std::unique_ptr<MirroredMemory> MemoryStore::take(std::size_t mirrored, std::size_t more) {
   const std::lock_guard lock(mutex_);
-  // the smallest that is large enough, else the largest
+  // the smallest that is large enough; if none is, the largest
   const auto later = [&](const auto& a, const auto& b) {
     const bool enough_a = a->holds(mirrored, more), enough_b = b->holds(mirrored, more);
     if (enough_a != enough_b) return enough_b;

@@ -1,4 +1,4 @@
-// The device's memory among those who work on it at the same time.
+// Shares the device's memory among batches and searches that use it at the same time.
 #pragma once
 
 #include <cstddef>
@@ -11,18 +11,18 @@
 
 namespace evodevo::cuda {
 
-/// Lends memory out and keeps what comes back for the next, because taking memory makes the device wait. May be used
-/// from several threads.
+/// Lends memory and keeps returned memory for the next loan, because allocation makes the device wait. Several threads
+/// may use a store.
 class MemoryStore {
  public:
-  /// The store of all simulators and searches of the process, so that what one keeps is there for the others; it is
-  /// there as long as any of them holds it.
+  /// The store of all simulators and searches of this process, so that memory kept from one is available to the others.
+  /// It exists as long as one of them holds it.
   static std::shared_ptr<MemoryStore> of_process();
 
-  /// Memory until its end.
+  /// Holds memory until it is destroyed.
   class Loan {
    public:
-    /// Memory for `mirrored` bytes on device and host and `more` on the device. Throws OutOfMemory.
+    /// Takes `mirrored` bytes on device and host and `more` bytes on the device alone. Throws OutOfMemory.
     Loan(MemoryStore& store, std::size_t mirrored, std::size_t more = 0)
         : store_(store), memory_(store.take(mirrored, more)) {}
     Loan(const Loan&) = delete;
@@ -36,12 +36,12 @@ class MemoryStore {
     std::unique_ptr<MirroredMemory> memory_;
   };
 
-  /// Bytes of the device's memory that a loan can have.
+  /// The memory (bytes) of the device that a loan can have: free, or kept by the store.
   std::size_t available();
 
-  /// Calls attempt(n), which works on the first n of `count` items, until it is not out of memory: with half as many
-  /// again and again; with one at last, while no other attempt is under way and nothing is kept. Returns n; what the
-  /// last attempt throws is thrown again.
+  /// Calls attempt(n), which works on the first n of `count` items, with n = count, and with half of it again and again
+  /// as long as it throws OutOfMemory. The last try with n = 1 waits until no other attempt is running and frees all
+  /// memory that the store keeps; its exception is not caught. Returns the n that succeeded.
   template <class Attempt>
   std::size_t with_fewer(std::size_t count, const Attempt& attempt) {
     for (;; count /= 2) {

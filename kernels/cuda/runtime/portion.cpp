@@ -8,7 +8,7 @@
 namespace evodevo::cuda {
 namespace {
 
-/// Room for one body's description of either kind.
+/// Room for the description of one body, resident or streamed, in bytes.
 template <class T>
 constexpr std::size_t header_bytes = (std::max(sizeof(ResidentBody<T>), sizeof(StreamedBody<T>)) + 31) / 32 * 32;
 
@@ -23,8 +23,9 @@ Sizes sizes_of(std::span<const Plan<T>> plans) {
   return sizes;
 }
 
-/// Waits until all streams have done what they were given; asleep, because other batches need the core. Not on the
-/// device, where other batches' launches could be queued behind a stream that waits. Returns the time since `begin`, s.
+/// Waits until all streams are at rest, and returns the time since `begin`, s. The thread sleeps while it waits,
+/// because other batches need the core. The host waits, not a stream on the device, because launches of other batches
+/// could be queued behind a waiting stream.
 double wait_for(std::span<const Stream> streams, const Event& begin) {
   std::deque<Event> ends;
   for (const Stream& stream : streams) check(cudaEventRecord(ends.emplace_back(true), stream), "recording an event");
@@ -82,7 +83,7 @@ Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store
       return std::get<Resident<T>>(plans[a].body).slots() > std::get<Resident<T>>(plans[b].body).slots();
     });
   const std::size_t headers = plans.size() * header_bytes<T>;
-  // descriptions, then inputs, then states, then sums, then scratch
+  // the order in memory: descriptions, inputs, states, sums, scratch
   const auto regions = [&](std::byte* base) {
     std::byte* input = base + headers;
     return Regions{input, input + sizes_.input, input + sizes_.input + sizes_.state};
@@ -99,7 +100,7 @@ Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store
 
 template <class T>
 void Portion<T>::pack(Workers& workers) {
-  // resident bodies by launch, then streamed ones; all descriptions take the same room
+  // the order of descriptions: resident bodies by launch, then streamed bodies by launch
   std::vector<std::size_t> order;
   for (const auto& [launch, bodies] : resident_) order.insert(order.end(), bodies.begin(), bodies.end());
   const std::size_t first_streamed = order.size();
@@ -133,21 +134,21 @@ std::vector<typename Portion<T>::ReadyLaunch> Portion<T>::ready_launches(KernelS
     launches.push_back({launch, nullptr, members, bodies});
     bodies += members.size();
   }
-  // those that have never run are compiled on all cores
+  // kernels that are not yet compiled are compiled on all cores
   workers.for_each(launches.size(), [&](std::size_t i) {
     const Launch& launch = launches[i].launch;
     launches[i].kernel =
         kernels.get("cuda/device/resident.cu", "evodevo_run_resident", definitions(launch.features, launch.form));
   });
-  // the largest first, so that small ones fill the gaps at the end
+  // the largest blocks first, so that small ones fill the gaps at the end
   std::sort(launches.begin(), launches.end(), [](const ReadyLaunch& a, const ReadyLaunch& b) {
     return a.launch.threads * a.launch.form.rows > b.launch.threads * b.launch.form.rows;
   });
   return launches;
 }
 
-/// Lets a kernel have as much shared memory as any body needs: always the most, because other threads may be about to
-/// start the same kernel.
+/// Allows a kernel to use as much shared memory as any body can need. It is always the same amount, because other
+/// threads may be launching the same kernel.
 template <class T>
 void Portion<T>::allow_largest_chip(cudaKernel_t kernel) const {
   check(cudaFuncSetAttribute(reinterpret_cast<const void*>(kernel), cudaFuncAttributeMaxDynamicSharedMemorySize,

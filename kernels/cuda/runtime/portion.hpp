@@ -1,4 +1,12 @@
-// As many bodies as the device holds at once, from the host's memory to the device's and back.
+// A portion: bodies of a batch that fit the device's memory together.
+//
+//   Plan       task ─► layout of the body: Resident (on the chip) or Streamed (in the device's memory)
+//   arrange    sizes of all plans ─► memory on host and device, regions of each body, launches of bodies of equal form
+//   pack       bodies ─► descriptions, inputs and states on the host
+//   upload     host ─► device; the sums are set to zero
+//   launch_resident, launch_streamed   kernels make all steps
+//   download   states and sums: device ─► host
+//   unpack     states, sums and answers on the host ─► tasks
 #pragma once
 
 #include <map>
@@ -22,10 +30,10 @@ struct Run {
   Scene scene;
   Stepping stepping;
   Recording recording;
-  std::size_t shared_bytes;  ///< of the chip that one block can have
+  std::size_t shared_bytes;  ///< shared memory that one block can have, bytes
 };
 
-/// A task, whose course has begun, and how its body is simulated.
+/// A task, whose course has begun, and the layout in which its body is simulated.
 template <class T>
 struct Plan {
   Plan(Task& task, const Run& run);
@@ -36,28 +44,29 @@ struct Plan {
   std::variant<Streamed<T>, Resident<T>> body;
 };
 
-/// Simulates bodies that fit the device together.
+/// Simulates bodies that fit the device's memory together.
 template <class T>
 class Portion {
  public:
-  /// Throws OutOfMemory, as simulate() may.
+  /// Throws OutOfMemory. simulate() may throw it as well.
   Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store);
 
-  /// Bytes of the device's memory that bodies of these sizes need.
+  /// The device's memory (bytes) that `bodies` bodies with these sizes in total need.
   static std::size_t bytes_for(const Sizes& sizes, std::size_t bodies);
 
-  /// Makes all steps and fills in the answers; returns the time of the kernels, s. `busy` runs while the device works.
-  /// After an exception no answer is filled in, and the streams are at rest.
+  /// Makes all steps, fills in the answers and returns the time of the kernels, s. `busy` runs while the device works.
+  /// If this throws, no answer is filled in and the streams are at rest.
   double simulate(KernelStore& kernels, std::span<const Stream> streams, Workers& workers, BusyClock& busy);
 
  private:
-  /// Resident bodies that one launch handles.
+  /// What resident bodies of the same launch have in common.
   struct Launch {
     Features features;
     ResidentForm form;
     unsigned threads;
     auto operator<=>(const Launch&) const = default;
   };
+  /// A launch with its kernel and its bodies.
   struct ReadyLaunch {
     Launch launch;
     cudaKernel_t kernel;
@@ -65,7 +74,7 @@ class Portion {
     const ResidentBody<T>* bodies;  ///< on the device
   };
 
-  /// Streamed bodies likewise: blocks of as many threads.
+  /// What streamed bodies of the same launches have in common.
   struct StreamedLaunch {
     Features features;
     unsigned threads;
@@ -87,8 +96,8 @@ class Portion {
   Run run_;
   Sizes sizes_;
   MemoryStore::Loan memory_;
-  std::vector<Regions> host_, device_;                   // of each plan
-  std::map<Launch, std::vector<std::size_t>> resident_;  ///< the largest bodies first
+  std::vector<Regions> host_, device_;                   // regions of each plan
+  std::map<Launch, std::vector<std::size_t>> resident_;  ///< indices of plans, the largest bodies first
   std::map<StreamedLaunch, std::vector<std::size_t>> streamed_;
 };
 

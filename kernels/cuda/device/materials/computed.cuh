@@ -1,5 +1,7 @@
-// Materials that each spring carries as a code, decoded in registers (paper, section V). All that steps have in common
-// is a clock: how far the body's unit of frequency has turned.
+// Computed materials: each spring carries its material as a code, which is decoded in registers (paper, section V). A
+// step needs only one number for all springs, the clock: the phase of an oscillation with the body's unit of frequency.
+//
+//   clock, code ─► angle ─► stiffness, length of the spring now
 #pragma once
 
 #include "cuda/device/resident.cuh"
@@ -7,7 +9,7 @@
 
 namespace evodevo::cuda {
 
-/// The springs' records and codes, from one of them on.
+/// The records and codes of the springs, beginning with one of them.
 struct Records {
   struct Read : Record<Number> {
     unsigned wave;  // MaterialCode::wave
@@ -31,7 +33,7 @@ struct Records {
   }
 };
 
-/// What a spring's material does in a pass.
+/// A spring's material in a pass.
 struct SpringMaterial {
   unsigned wave;
   Entry<Number> entry;
@@ -40,13 +42,13 @@ struct SpringMaterial {
 /// The lengths of one pass.
 struct Lengths {
   const CodeUnits<Number>& units;
-  unsigned row;    // offset of the clock's reading
-  unsigned clock;  // turns of the unit of frequency/2^32, whole ones left out
+  unsigned row;    // offset of the clock's reading in shared memory
+  unsigned clock;  // phase in units of 2^-32 turns, without whole turns
 
   __device__ __forceinline__ explicit Lengths(const Body& body)
       : units(body.units), row(body.table_offset), clock(on_chip<unsigned>(row)) {}
 
-  /// Where in its cycle a spring is, rad from -pi to pi. Overflow is whole turns.
+  /// The phase of a spring's actuation, rad, from -pi to pi. Integer overflow drops whole turns.
   __device__ __forceinline__ Number angle(unsigned wave) const {
     const unsigned turns = (wave & phase_mask) + (wave & frequency_mask) * clock;
     return static_cast<Number>(static_cast<int>(turns)) * Number(full_turn * 0x1p-32);
@@ -63,7 +65,7 @@ struct Lengths {
     return {read.wave, {stiffness, stiffness * length}};
   }
 
-  /// The rate of L/L0, 1/s.
+  /// The rate of change of L/L0, 1/s.
   __device__ __forceinline__ Number rate_of(const SpringMaterial& material) const {
     Number rate = 0;
     if constexpr (actuation)
@@ -78,8 +80,8 @@ struct Lengths {
   }
 };
 
-/// Sets the clock for `count` rows from step `step` of the piece on. It is read off in double precision, so that late
-/// times lose no digits.
+/// Sets the clock for `count` rows, beginning with step `step` of the piece. The phase is computed in double precision,
+/// so that late times lose no digits.
 __device__ __noinline__ void fill_lengths(const Body& body, std::uint64_t step, unsigned count) {
   const double interval = body.constants.exact_dt / rows_per_step;
   const std::uint64_t row = (body.piece.first_step + step) * rows_per_step;

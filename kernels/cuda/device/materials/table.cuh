@@ -1,13 +1,14 @@
-// Materials in a table in shared memory: what each of the body's does in each of the next steps.
+// Materials from a table in shared memory: stiffness and length of each of the body's materials in each of the next
+// steps.
 #pragma once
 
 #include "cuda/device/resident.cuh"
 
 namespace evodevo::cuda {
 
-constexpr unsigned entry_shift = EVODEVO_ENTRY_SHIFT;  // what offsets of the table's entries are shifted by
+constexpr unsigned entry_shift = EVODEVO_ENTRY_SHIFT;  // left shift that turns offsets of entries into bytes
 
-/// The springs' records, from one of them on.
+/// The records of the springs, beginning with one of them.
 struct Records {
   using Read = Record<Number>;
   const Record<Number>* first;
@@ -23,13 +24,13 @@ struct Records {
   }
 };
 
-/// What a spring's material does in a pass.
+/// A spring's material in a pass.
 struct SpringMaterial {
   unsigned table_entry;  // offset from the table's beginning
   Entry<Number> entry;
 };
 
-/// Where the lengths of one pass lie in the table, and the rates at which they change.
+/// Where the lengths of a pass and their rates of change are in shared memory (offsets).
 struct Lengths {
   unsigned table;
   unsigned rates = 0;
@@ -43,7 +44,7 @@ struct Lengths {
     return {offset, on_chip<Entry<Number>>(table + offset)};
   }
 
-  /// The rate of L/L0, 1/s.
+  /// The rate of change of L/L0, 1/s.
   __device__ __forceinline__ Number rate_of(const SpringMaterial& material) const {
     return on_chip<Number>(rates + material.table_entry / 2);
   }
@@ -55,7 +56,7 @@ struct Lengths {
   }
 };
 
-/// Fills in `count` rows of the table from step `step` of the piece on.
+/// Fills `count` rows of the table, beginning with step `step` of the piece.
 __device__ __noinline__ void fill_lengths(const Body& body, std::uint64_t step, unsigned count) {
   const double interval = body.constants.exact_dt / rows_per_step;
   const std::uint64_t row = (body.piece.first_step + step) * rows_per_step;

@@ -1,24 +1,31 @@
-// Backward Euler, linearised, by conjugate gradients: kernels/cpu/methods/implicit-inl.hpp says what is solved. One
-// block moves a body. Every mass gathers from its springs, and scalar products are added up, in a fixed order.
+// implicit: linearised backward Euler, solved by conjugate gradients. kernels/cpu/methods/implicit-inl.hpp states the
+// equation. One block moves a body:
+//
+//   begin   positions, velocities ─► the equation, its residual at no correction
+//   solve   equation ─► correction of the velocities
+//   move    correction ─► velocities, positions
+//
+// Every mass gathers from its springs in a fixed order, and scalar products are summed in a fixed order.
 #include "cuda/device/block.cuh"
 
 namespace evodevo::cuda {
 
-// as on the CPU
+// the same numbers as on the CPU
 constexpr double tolerance = sizeof(Number) == sizeof(float) ? 1e-4 : 1e-6;
 constexpr int most_iterations = 500;
 
-/// K+ of a spring, read and written at once.
+/// K+ of a spring, aligned so that it is read and written by single instructions.
 struct alignas(4 * sizeof(Number)) Stiffness : physics::SpringStiffness<Number> {};
 
+/// The solver's memory.
 struct Memory {
   Point<Number>*residual, *correction;
   Point<Number>* applied;           // the matrix times the direction
-  Point<Number>* inverse_diagonal;  // of the matrix: the preconditioner; 0 for masses that do not move
+  Point<Number>* inverse_diagonal;  // of the matrix's diagonal: the preconditioner; 0 for masses that do not move
   Point<Number>* resistance;        // R, kg/s
-  Point<Number>* direction;         // on the chip where there is room, because neighbours read it
+  Point<Number>* direction;         // on the chip if there is room, because neighbours read it
   Stiffness* stiffness;             // [joints]
-  std::uint32_t* other;  // [joints] the mass at the other end, alone, because what is read is what takes time
+  std::uint32_t* other;  // [joints] the mass at the other end: a copy, because reading whole joints would take longer
 
   __device__ __forceinline__ explicit Memory(const Body& body)
       : residual(reinterpret_cast<Point<Number>*>(body.scratch)),
@@ -34,7 +41,7 @@ struct Memory {
 static_assert(6 * sizeof(Point<Number>) == EVODEVO_NUMBERS_OF_MASS * sizeof(Number));
 static_assert(sizeof(Stiffness) + sizeof(Number) == EVODEVO_NUMBERS_OF_JOINT * sizeof(Number));
 
-/// Component by component.
+/// The product component by component.
 __device__ __forceinline__ Vector product(const Vector& a, const Vector& b) {
   return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
@@ -43,7 +50,7 @@ __device__ __forceinline__ Number dot(const Vector& a, const Vector& b) {
   return physics::multiply_add(a.z, b.z, physics::multiply_add(a.y, b.y, a.x * b.x));
 }
 
-/// R; adds the floor to the force.
+/// Returns R (kg/s) and adds the floor's force at the present position to the force.
 __device__ __forceinline__ Vector resistance_of(const StepConstants<Number>& constants, Moving& m) {
   Number across = 0, touching = 0;
   if constexpr (drag) across = -physics::drag_factor(constants.drag_coefficient, m.velocity);
@@ -56,12 +63,12 @@ __device__ __forceinline__ Vector resistance_of(const StepConstants<Number>& con
   return {across, across, physics::multiply_add(constants.dt, touching, across)};
 }
 
-/// R times a vector.
+/// R times the vector v.
 __device__ __forceinline__ Vector resisted(const StepConstants<Number>& constants, const Vector& position,
                                            const Vector& resistance, const Vector& v) {
   Vector all = product(resistance, v);
   if constexpr (rough) {
-    // along the ground's normal, not z
+    // rough ground pushes along its normal instead of along z
     const Number touching = resistance.z - resistance.x;
     const Number up = touching * normal_velocity(constants, position, v);
     all.z += up - touching * v.z;
@@ -70,7 +77,8 @@ __device__ __forceinline__ Vector resisted(const StepConstants<Number>& constant
   return all;
 }
 
-/// Adds F + dt K u to the force, u the damped velocity, and sets K+; returns its diagonal.
+/// Adds F - dt K u of the springs to the force, with u the damped velocity, and sets K+. Returns the diagonal of K+,
+/// N/m.
 __device__ __forceinline__ Vector add_springs(const StepConstants<Number>& constants, const Body& body,
                                               const Memory& memory, unsigned row, unsigned mass, Moving& m) {
   Vector diagonal{0, 0, 0}, rate{0, 0, 0};
@@ -95,14 +103,14 @@ __device__ __forceinline__ Vector add_springs(const StepConstants<Number>& const
   return diagonal;
 }
 
-/// 1/(mass + push resistance); 0 where nothing moves the mass.
+/// 1/(mass + damped_dt resistance), 1/kg; 0 for a mass that never moves.
 __device__ __forceinline__ Number inverse(const StepConstants<Number>& constants, const Moving& m, Number resistance) {
   return physics::zero_unless_greater(m.inverse_mass, Number(0),
                                       1 / physics::multiply_add(constants.damped_dt, resistance, m.mass));
 }
 
-/// Sets the equation up, and its residual and the first direction where nothing is corrected yet. Returns <r, P r>, r
-/// the residual and P the preconditioner, which measures what is left.
+/// Sets up the equation, the residual r at no correction and the first direction. Returns <r, P r>, which measures the
+/// residual; P is the preconditioner.
 __device__ __forceinline__ double begin(const StepConstants<Number>& constants, const Body& body, const Memory& memory,
                                         unsigned row) {
   double left = 0;
@@ -127,7 +135,7 @@ __device__ __forceinline__ double begin(const StepConstants<Number>& constants, 
   return sum_for_all(left);
 }
 
-/// Applies the matrix to the direction. Returns the scalar product of the two.
+/// Sets memory.applied to the matrix times the direction d. Returns <d, applied>.
 __device__ __forceinline__ double apply(const StepConstants<Number>& constants, const Body& body,
                                         const Memory& memory) {
   double curvature = 0;
@@ -147,7 +155,7 @@ __device__ __forceinline__ double apply(const StepConstants<Number>& constants, 
   return sum_for_all(curvature);
 }
 
-/// Corrects by `share` of the direction. Returns the new <r, P r>.
+/// Adds `share` times the direction to the correction and updates the residual. Returns the new <r, P r>.
 __device__ __forceinline__ double advance_along(const Body& body, const Memory& memory, Number share) {
   double left = 0;
   for_each_mass(body, [&](unsigned mass) {
@@ -160,7 +168,7 @@ __device__ __forceinline__ double advance_along(const Body& body, const Memory& 
   return sum_for_all(left);
 }
 
-/// The next direction: P r and `share` of the last.
+/// Sets the next direction: P r + share times the last direction.
 __device__ __forceinline__ void update_direction(const Body& body, const Memory& memory, Number share) {
   for_each_mass(body, [&](unsigned mass) {
     const Vector steepest = product(triple(memory.inverse_diagonal[mass]), triple(memory.residual[mass]));
@@ -169,13 +177,13 @@ __device__ __forceinline__ void update_direction(const Body& body, const Memory&
   __syncthreads();
 }
 
-/// Finds the correction that leaves no residual.
+/// Solves the equation for the correction. `left` is <r, P r> at the start.
 __device__ __forceinline__ void solve(const StepConstants<Number>& constants, const Body& body, const Memory& memory,
                                       double left) {
   const double enough = tolerance * tolerance * left;
   for (int i = 0; i < most_iterations && left > enough; ++i) {
     const double curvature = apply(constants, body, memory);
-    if (!(curvature > 0)) break;  // so near to nothing that it is 0
+    if (!(curvature > 0)) break;  // the direction is so small that its square is 0
     const double before = left;
     left = advance_along(body, memory, static_cast<Number>(left / curvature));
     update_direction(body, memory, static_cast<Number>(left / before));
@@ -188,7 +196,7 @@ __device__ __forceinline__ void move(const StepConstants<Number>& constants, con
     damp(constants.decay, m);
     m.velocity = sum(m.velocity, Number(1), triple(memory.correction[mass]));
     if constexpr (friction) {
-      // the floor's push at the end of the step; it does not hold on to what leaves it
+      // the floor's force at the end of the step; never negative, so the floor does not hold masses that leave it
       const Number z = next_clearance(constants, m);
       const Number touches = memory.resistance[mass].z - memory.resistance[mass].x;
       m.normal_force =
@@ -201,7 +209,7 @@ __device__ __forceinline__ void move(const StepConstants<Number>& constants, con
   __syncthreads();
 }
 
-/// Adds the springs' tensions now to what is recorded.
+/// Records the springs' tensions at the end of the step.
 __device__ __forceinline__ void record_tensions(const Body& body, unsigned row) {
   for_each_mass(body, [&](unsigned mass) {
     const Vector own = triple(body.positions[mass]);
@@ -217,7 +225,7 @@ __device__ __forceinline__ void record_tensions(const Body& body, unsigned row) 
   });
 }
 
-/// Makes the steps of span `index`, the lengths at whose beginning are in the tables' first row.
+/// Makes the steps of check span `index`. Row 0 of the tables holds the lengths at its beginning.
 extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS)
     evodevo_advance_streamed(const Body* bodies, std::uint64_t index) {
   advance_span(bodies[blockIdx.x], index, [](const Body& body, unsigned count) {

@@ -1,4 +1,4 @@
-// The method that the paper's equations read as: kernels/cpu/methods/paper_euler-inl.hpp.
+// paper-euler; kernels/cpu/methods/paper_euler-inl.hpp describes it.
 #pragma once
 
 #include "cuda/device/mass_step.cuh"

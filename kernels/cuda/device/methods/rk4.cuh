@@ -1,11 +1,11 @@
-// The classical Runge-Kutta method of fourth order: kernels/cpu/methods/rk4-inl.hpp.
+// rk4; kernels/cpu/methods/rk4-inl.hpp describes it.
 #pragma once
 
 #include "cuda/device/mass_step.cuh"
 
 namespace evodevo::cuda {
 
-/// A pass is a stage.
+/// Each pass is a stage; four make a step.
 struct Method : OnePass {
   struct Kept {
     Vector position, velocity;  ///< at the beginning of the step
@@ -13,7 +13,8 @@ struct Method : OnePass {
     Number mean_normal_force;  ///< of the floor, N
   };
 
-  /// The two stages in the middle of a step share the row there; its end is the beginning of the next.
+  /// There are two rows per step: stage 0 reads that of the beginning, stages 1 and 2 that of the middle, stage 3 that
+  /// of the end, which is the beginning of the next step.
   static __device__ __forceinline__ unsigned row(unsigned index) { return index / 4 * 2 + (index % 4 + 1) / 2; }
   static __device__ __forceinline__ bool is_recorded(unsigned index) { return index % 4 == 0; }
 
@@ -40,13 +41,14 @@ struct Method : OnePass {
       kept.mean_normal_force = physics::multiply_add(share, m.normal_force, kept.mean_normal_force);
   }
 
-  /// To where the velocity and the acceleration of this stage lead from the beginning of the step in `time` s.
+  /// Sets position and velocity for the next stage: those at the beginning of the step, advanced by `time` (s) with the
+  /// velocity and acceleration of this stage.
   static __device__ __forceinline__ void go_to_stage(Number time, const Kept& kept, Moving& m) {
     m.position = sum(kept.position, time, m.velocity);
     m.velocity = sum(kept.velocity, time * m.inverse_mass, m.force);
   }
 
-  /// The end of the step. Friction takes half as much of the mean velocity as of the last.
+  /// Ends the step. Friction takes half as much from the mean velocity as from the velocity at the end.
   static __device__ __forceinline__ void finish(const StepConstants<Number>& constants, Kept& kept, Moving& m) {
     m.velocity = sum(kept.velocity, constants.dt, kept.mean_acceleration);
     m.normal_force = kept.mean_normal_force;

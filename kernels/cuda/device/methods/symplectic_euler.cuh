@@ -1,4 +1,4 @@
-// Semi-implicit Euler that ends in the true terminal velocity: kernels/cpu/methods/symplectic_euler-inl.hpp.
+// symplectic-euler; kernels/cpu/methods/symplectic_euler-inl.hpp describes it.
 #pragma once
 
 #include "cuda/device/mass_step.cuh"

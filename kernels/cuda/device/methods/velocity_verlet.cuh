@@ -1,12 +1,12 @@
-// Velocity Verlet: kernels/cpu/methods/velocity_verlet-inl.hpp.
+// velocity-verlet; kernels/cpu/methods/velocity_verlet-inl.hpp describes it.
 #pragma once
 
 #include "cuda/device/mass_step.cuh"
 
 namespace evodevo::cuda {
 
-/// A pass ends one step and begins the next, so that its forces, which serve both, need not be kept. Before some steps
-/// there is one that only begins; the last only ends.
+/// Each pass ends one step and begins the next, because both use the same forces, which then need not be stored. The
+/// first pass after a check only begins a step, and the last pass before a check only ends one.
 struct Method : OnePass {
   static __device__ __forceinline__ bool is_recorded(unsigned index) { return index > 0; }
 
@@ -24,13 +24,13 @@ struct Method : OnePass {
   }
 
  private:
-  /// Half a step of damping and drag, exactly.
+  /// Half a step of damping and drag, solved exactly.
   static __device__ __forceinline__ void slow_down(const StepConstants<Number>& constants, Moving& m) {
     apply_drag<false>(constants, constants.half_damped_dt, m);
     damp(constants.half_decay, m);
   }
 
-  /// Half a step of the forces, and of the friction that goes with them.
+  /// Half a step of the forces and of friction under their normal forces.
   static __device__ __forceinline__ void kick(const StepConstants<Number>& constants, Moving& m) {
     advance_velocity(constants.dt / 2, m);
     apply_friction(constants.friction_dt / 2, m, m.velocity);

@@ -1,10 +1,14 @@
-// Extended position-based dynamics: kernels/cpu/methods/xpbd-inl.hpp says what is solved. One block moves a body and
-// goes through the colours of its springs one after the other; no two springs of a colour share a mass.
+// xpbd: extended position-based dynamics. kernels/cpu/methods/xpbd-inl.hpp describes it. One block moves a body and
+// solves the colours of its springs one after the other; no two springs of a colour share a mass.
+//
+//   apply_gravity   velocities ─► predicted velocities
+//   solve_springs   colour by colour: velocities ─► corrected velocities; records of the springs
+//   move            floor, friction ─► velocities, positions
 #include "cuda/device/block.cuh"
 
 namespace evodevo::cuda {
 
-/// Gravity, drag and damping, as in symplectic-euler.
+/// Predicts the velocities: applies gravity, drag and damping as symplectic-euler does.
 __device__ __forceinline__ void apply_gravity(const StepConstants<Number>& constants, const Body& body) {
   for_each_mass(body, [&](unsigned mass) {
     Moving m = moving(body, mass);
@@ -21,7 +25,7 @@ __device__ __forceinline__ void solve_spring(const StepConstants<Number>& consta
                                              const ColouredSpring<Number> spring) {
   const Entry<Number> entry = body.table[row * body.entries + spring.entry];
   const Moving a = moving(body, spring.a), b = moving(body, spring.b);
-  // not from the positions at the end of the step, in which float32 would round the motion off
+  // from x and v apart: float32 positions at the end of the step would lose the motion to rounding
   const Vector apart = difference(b.position, a.position), velocity = difference(b.velocity, a.velocity);
   const auto ends = physics::separation({0, 0, 0}, sum(apart, constants.dt, velocity));
   const Number distance = physics::length(ends);
@@ -44,7 +48,7 @@ __device__ __forceinline__ void solve_springs(const StepConstants<Number>& const
   }
 }
 
-/// Pushes up what would end below the floor, which is as steep as at the beginning of the step.
+/// Solves the floor: pushes up a mass that would end the step below it. The slope is that at the beginning of the step.
 __device__ __forceinline__ void solve_floor(const StepConstants<Number>& constants, Moving& m) {
   if constexpr (floor_on) {
     const Number z = next_clearance(constants, m);
@@ -67,7 +71,7 @@ __device__ __forceinline__ void move(const StepConstants<Number>& constants, con
   });
 }
 
-/// Makes the steps of span `index`, the lengths at whose beginning are in the tables' first row.
+/// Makes the steps of check span `index`. Row 0 of the tables holds the lengths at its beginning.
 extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS)
     evodevo_advance_streamed(const Body* bodies, std::uint64_t index) {
   advance_span(bodies[blockIdx.x], index, [](const Body& body, unsigned count) {
