@@ -49,11 +49,10 @@ struct Recording {
 
 /// What a run has recorded of a body's springs: one number for each spring. A list that was not asked for is empty.
 struct SpringRecords {
-  std::vector<double> stress;      ///< mean absolute force over the run, N
-  std::vector<double> peak_force;  ///< largest absolute force, N
-  std::vector<double>
-      muscle_work;  ///< work that the spring's muscle has put into the body, J; what it takes out is not subtracted
-  std::vector<double> tension;  ///< mean force, N: positive if the spring pulled, negative if it pushed
+  std::vector<double> stress;       ///< mean absolute force over the run, N
+  std::vector<double> peak_force;   ///< largest absolute force, N
+  std::vector<double> muscle_work;  ///< energy that the spring's muscle put into the body, J; losses not subtracted
+  std::vector<double> tension;      ///< mean force, N: positive if the spring pulled, negative if it pushed
 
   static constexpr std::array lists{&SpringRecords::stress, &SpringRecords::peak_force, &SpringRecords::muscle_work,
                                     &SpringRecords::tension};
@@ -74,9 +73,9 @@ class Preparation {
   virtual ~Preparation() = default;
 };
 
-/// One body of a batch and what to do with it: `steps` time steps of length `dt`, the i-th of them at State::time + i
-/// dt. The caller sets `body`, `state`, `dt`, `steps` and, where they apply, `later_steps`, `course` and `preparation`;
-/// the simulator sets the rest. The records are empty after a divergence.
+/// One body of a batch and what to do with it: `steps` time steps of length `dt`. The caller sets `body`, `state`,
+/// `dt`, `steps` and, where they apply, `later_steps`, `course` and `preparation`; the simulator sets the rest. The
+/// records are empty after a divergence.
 ///
 /// A run can be made in pieces with the same body and dt: each piece except the last says how many `later_steps`
 /// follow, and the caller hands its `course` to the next piece. State and status are then those of one run, to the bit.
@@ -92,15 +91,14 @@ struct Task : SpringRecords {
   /// Before: from the body's last run, or null; after: of this run. One that does not fit the body any more is ignored.
   std::shared_ptr<const Preparation> preparation;
 
-  Status status = Status::ok;  ///< afterwards ok or diverged; a task that is not ok before the run is skipped
-  double ended_at = 0;         ///< time of the divergence since birth, s; detected up to 100 steps late
-  std::string reason;          ///< why the body has diverged
-  double work = 0;             ///< work of the muscles on the body, J; 0 unless recorded
-  std::uint64_t spring_evaluations =
-      0;  ///< springs times steps, independent of how often a method evaluates each spring in a step
+  Status status = Status::ok;            ///< afterwards ok or diverged; a task that is not ok before the run is skipped
+  double ended_at = 0;                   ///< time of the divergence since birth, s; detected up to 100 steps late
+  std::string reason;                    ///< why the body has diverged
+  double work = 0;                       ///< work of the muscles on the body, J; 0 unless recorded
+  std::uint64_t spring_evaluations = 0;  ///< springs times steps, whatever the number of passes per step
 };
 
-/// A device has too little free memory for even one body.
+/// Thrown if a device has too little free memory for even one body.
 class DeviceOutOfMemory : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -21,7 +21,7 @@ template <class T>
 struct TimeSpan {
   T dt;         ///< s
   T decay;      ///< exp(-damping rate dt): the fraction of a velocity that damping leaves
-  T damped_dt;  ///< (1 - decay)/rate, s: a constant acceleration times this is what it adds to a damped velocity in dt
+  T damped_dt;  ///< (1 - decay)/rate, s: a constant acceleration a adds a damped_dt to a damped velocity in dt
 };
 
 /// The constants of a step: the scene and the step length as numbers of type T. A force that is off is not computed.

@@ -55,7 +55,7 @@ EVODEVO_HD T length(const Separation<T>& s) {
   return square_root(s.squared);
 }
 
-/// The factor k (|d| - L)/|d| (N/m) of a spring of stiffness k (N/m) and present length L (m). The force on the
+/// The factor k (|d| - L)/|d| (N/m) of a spring of stiffness k (N/m) and actuated rest length L (m). The force on the
 /// spring's end a is this factor times d (paper, section IV-C); where |d| = 0 the force is zero, never NaN.
 template <class T>
 EVODEVO_HD T spring_factor(T distance, T stiffness, T spring_length) {
@@ -87,8 +87,8 @@ EVODEVO_HD T spring_tension(const Separation<T>& s, T distance, T factor) {
   return zero_unless_greater(s.squared, vanishing_square<T>(), factor * distance);
 }
 
-/// The power (W) that a muscle puts into the body while its length L changes at `rate` (m/s). Where the muscle takes
-/// energy from the body the power counts as 0.
+/// The power (W) that a muscle puts into the body while its rest length L changes at `rate` (m/s). Where the muscle
+/// takes energy from the body the power counts as 0.
 template <class T>
 EVODEVO_HD T actuation_power(T tension, T rate) {
   return maximum(negative_multiply_add(tension, rate, constant<T>(0)), constant<T>(0));

@@ -40,7 +40,7 @@ struct Actuator {
   double stiffness;  ///< as in Entry
   double amplitude;  ///< 1
   double frequency;  ///< Hz
-  double phase;      ///< in half group_ends
+  double phase;      ///< half turns
 };
 
 /// The units of the numbers in the codes of a body's computed materials (physics/material_code.hpp).
@@ -62,7 +62,7 @@ struct StepConstants {
   T drag_coefficient;  ///< kg/m
   T decay;             ///< exp(-damping rate dt): the fraction of a velocity that damping leaves
   T dt;                ///< s
-  T damped_dt;         ///< (1 - decay)/rate, s: a constant acceleration times this is what it adds to a damped velocity
+  T damped_dt;         ///< (1 - decay)/rate, s: a constant acceleration a adds a damped_dt to a damped velocity in dt
   T half_decay;        ///< decay over half a step
   T half_damped_dt;    ///< s
   T damping_rate;      ///< 1/s
