@@ -1,8 +1,7 @@
 // Bodies that are too large for the chip. Their state is in the device's memory, and every pass over the springs is a
 // launch over the masses of all these bodies:
 //
-//   positions, velocities before ─► spring_forces (gathered by each mass) ─► Method::move ─► positions, velocities
-//   after
+//   positions, velocities ─► spring_forces (gathered by each mass) ─► Method::move ─► positions, velocities
 //
 // A mass gathers the forces of its springs in a fixed order, so each spring is computed twice.
 #include EVODEVO_METHOD

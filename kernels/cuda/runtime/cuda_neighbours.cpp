@@ -1,7 +1,6 @@
 // The search on a GPU, in portions that fit the GPU's memory.
 //
-//   clouds ─► pack: points on the host ─► count: number of pairs per cloud ─► write: pairs on the host ─► use(cloud,
-//   pairs)
+//   clouds ─► pack: points ─► count: number of pairs per cloud ─► write: pairs ─► use(cloud, pairs)
 #include "cuda/runtime/cuda_neighbours.hpp"
 
 #include <algorithm>

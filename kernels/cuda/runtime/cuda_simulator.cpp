@@ -1,7 +1,6 @@
 // The simulator on a GPU.
 //
-//   tasks ─► begin: courses ─► plan: layout of each body ─► portions that fit the memory ─► Portion::simulate ─►
-//   answers
+//   tasks ─► begin: courses ─► plan: layout of each body ─► portions that fit ─► Portion::simulate ─► answers
 #include "cuda/runtime/cuda_simulator.hpp"
 
 #include <algorithm>
