@@ -33,7 +33,7 @@ struct PaperBatch {
   const PaperSpring* springs;
   const float* mass;                ///< kg
   const float* inverse_mass;        ///< 1/kg, 0 for what never moves
-  cuda::Point<float>* places;       ///< m
+  cuda::Point<float>* positions;    ///< m
   cuda::Point<float>* velocities;   ///< m/s
   cuda::Point<float>* forces;       ///< N; in global memory's method alone
   const cuda::Entry<float>* table;  ///< [steps][entries] k in N/m

@@ -19,7 +19,7 @@ PaperLayout::PaperLayout(std::span<const Body> originals, std::uint32_t copies, 
 
 void PaperLayout::append(const Body& body, const State& birth, std::span<const std::uint32_t> order,
                          std::uint32_t first_entry) {
-  const PaperBody place{static_cast<std::uint32_t>(places.size()), static_cast<std::uint32_t>(body.masses.size()),
+  const PaperBody place{static_cast<std::uint32_t>(positions.size()), static_cast<std::uint32_t>(body.masses.size()),
                         static_cast<std::uint32_t>(springs.size()), static_cast<std::uint32_t>(body.springs.size())};
   bodies.push_back(place);
   most_masses = std::max(most_masses, place.masses);
@@ -29,7 +29,7 @@ void PaperLayout::append(const Body& body, const State& birth, std::span<const s
     mass.push_back(static_cast<float>(kilograms));
     inverse_mass.push_back(static_cast<float>(kilograms > 0 ? 1 / kilograms : 0));
     const Vec3 at = birth.position[i];
-    places.push_back({static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z), 0});
+    positions.push_back({static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z), 0});
   }
   for (const std::uint32_t i : order) {
     const Spring& spring = body.springs[i];

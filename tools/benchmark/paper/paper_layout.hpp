@@ -20,7 +20,7 @@ struct PaperLayout {
   std::vector<PaperBody> bodies;
   std::vector<PaperSpring> springs;
   std::vector<float> mass, inverse_mass;            ///< kg, 1/kg
-  std::vector<cuda::Point<float>> places;           ///< m
+  std::vector<cuda::Point<float>> positions;        ///< m
   std::vector<cuda::Actuator> actuators;            ///< of all bodies' materials
   std::uint32_t most_masses = 0, most_springs = 0;  ///< of a body
 

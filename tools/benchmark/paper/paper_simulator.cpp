@@ -39,18 +39,18 @@ PaperSimulator::PaperSimulator(std::span<const Body> bodies, std::uint32_t copie
       springs_(layout_.springs),
       mass_(layout_.mass),
       inverse_mass_(layout_.inverse_mass),
-      places_(layout_.places),
-      velocities_(layout_.places.size()),
-      forces_(layout_.places.size()),
+      positions_(layout_.positions),
+      velocities_(layout_.positions.size()),
+      forces_(layout_.positions.size()),
       actuators_(layout_.actuators),
       table_(table_steps * layout_.actuators.size()),
       stress_(layout_.springs.size()),
       least_(layout_.springs.size()),
       most_(layout_.springs.size()),
-      batch_{body_table_.data(),   springs_.data(), mass_.data(),
-             inverse_mass_.data(), places_.data(),  velocities_.data(),
-             forces_.data(),       table_.data(),   stress_.data(),
-             least_.data(),        most_.data(),    static_cast<std::uint32_t>(layout_.actuators.size())} {
+      batch_{body_table_.data(),   springs_.data(),   mass_.data(),
+             inverse_mass_.data(), positions_.data(), velocities_.data(),
+             forces_.data(),       table_.data(),     stress_.data(),
+             least_.data(),        most_.data(),      static_cast<std::uint32_t>(layout_.actuators.size())} {
   load_kernels(scene);
 }
 
@@ -82,7 +82,7 @@ void PaperSimulator::load_kernels(const Scene& scene) {
 }
 
 void PaperSimulator::restart() {
-  places_.upload(layout_.places);
+  positions_.upload(layout_.positions);
   velocities_.clear();
   forces_.clear();
   stress_.clear();
@@ -130,11 +130,11 @@ void PaperSimulator::launch_step(unsigned row) {
 
 State PaperSimulator::state(std::size_t body) const {
   const PaperBody& at = layout_.bodies[body * copies_];
-  const std::vector<cuda::Point<float>> places = places_.download(), velocities = velocities_.download();
+  const std::vector<cuda::Point<float>> positions = positions_.download(), velocities = velocities_.download();
   State state;
   state.time = static_cast<double>(steps_) * constants_.exact_dt;
   for (std::uint32_t i = at.first_mass; i < at.first_mass + at.masses; ++i) {
-    const auto &p = places[i], &v = velocities[i];
+    const auto &p = positions[i], &v = velocities[i];
     if (!std::isfinite(p.x + p.y + p.z + v.x + v.y + v.z))
       throw std::runtime_error("body " + std::to_string(body) + " has diverged in the paper's method");
     state.position.push_back({p.x, p.y, p.z});

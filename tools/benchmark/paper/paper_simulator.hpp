@@ -79,7 +79,7 @@ class PaperSimulator {
   DeviceArray<PaperBody> body_table_;
   DeviceArray<PaperSpring> springs_;
   DeviceArray<float> mass_, inverse_mass_;
-  DeviceArray<cuda::Point<float>> places_, velocities_, forces_;
+  DeviceArray<cuda::Point<float>> positions_, velocities_, forces_;
   DeviceArray<cuda::Actuator> actuators_;
   DeviceArray<cuda::Entry<float>> table_;
   DeviceArray<float> stress_;
