@@ -18,8 +18,8 @@
 namespace evodevo {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 Rng stream(std::uint32_t individual) { return Rng(philox, {5, 0, individual, 0}); }
 
