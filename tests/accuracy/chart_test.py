@@ -9,7 +9,7 @@ import unittest
 import xml.etree.ElementTree
 
 sys.dont_write_bytecode = True
-STUDY = pathlib.Path(__file__).resolve().parents[2] / "tools" / "accuracy_study"
+STUDY = pathlib.Path(__file__).resolve().parents[2] / "tools" / "parts" / "accuracy"
 sys.path.insert(0, str(STUDY))
 import chart  # noqa: E402
 
