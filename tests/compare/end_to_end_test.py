@@ -15,8 +15,7 @@ import unittest
 import xml.etree.ElementTree
 
 PROGRAM = os.environ["EVODEVO_PROGRAM"]
-CALL = "import sys; from compare import command; sys.exit(command.main(sys.argv[2:], sys.argv[1]))"
-COMPARE = [sys.executable, "-c", CALL]
+COMPARE = [sys.executable, "-P", "-m", "compare"]
 
 PLAIN = """
 [experiment]
@@ -70,7 +69,7 @@ class Comparison(unittest.TestCase):
         self.developing.write_text(DEVELOPING)
 
     def command(self, *more, out="out"):
-        return [*COMPARE, PROGRAM, self.plain, self.developing, "--seeds", "2", "--out", self.folder / out, *more]
+        return [*COMPARE, self.plain, self.developing, "--seeds", "2", "--out", self.folder / out, *more]
 
     def compare(self, *more, out="out"):
         return subprocess.run(self.command(*more, out=out), capture_output=True, text=True)
@@ -178,7 +177,7 @@ class Comparison(unittest.TestCase):
     def test_experiments_are_added_without_a_folder_named(self):
         # what is set for the second does not concern the first, whose run is there
         for more in ([], [self.developing, "--set", "development.cycles=1"]):
-            command = [*COMPARE, PROGRAM, self.plain, *more, "--seeds", "1"]
+            command = [*COMPARE, self.plain, *more, "--seeds", "1"]
             done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stderr)
         out = self.folder / "runs" / "compare-plain"
@@ -247,7 +246,7 @@ class Comparison(unittest.TestCase):
         killed = self.folder / "killed"
         killed.write_text(f'#!/bin/sh\n[ "$1" = run ] && kill -9 $$\nexec {shlex.quote(PROGRAM)} "$@"\n')
         killed.chmod(0o755)
-        refused = subprocess.run([*COMPARE, killed, *self.command()[4:]], capture_output=True, text=True)
+        refused = subprocess.run(self.command(), env=os.environ | {"EVODEVO_PROGRAM": str(killed)}, capture_output=True, text=True)
         self.assertEqual(refused.returncode, 2)
         self.assertIn("ended with -9", refused.stderr)
         self.assertIn("the same command goes on from there", refused.stderr)

@@ -1,45 +1,15 @@
 """The command: from its arguments to the report."""
 
-import argparse
 import pathlib
 import shlex
 import signal
 import sys
 
-from . import chart, report
+from common import charts
+
+from . import arguments, chart, report
 from .history import Objective, history
 from .runs import Failure, Interrupted, Runs, make_variants, parse_setting, parse_sweep
-
-DESCRIPTION = """\
-Runs experiments over seeds and reports how their best robots compare, at equal evaluations and at equal spring
-evaluations: medians and effect sizes with intervals, rank tests against one of the experiments, failures, a chart.
-A stopped comparison goes on with the same command; more seeds, experiments or values may be added."""
-
-
-def positive(text):
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text}: expected a whole number of at least 1")
-    return int(text)
-
-
-def parse(arguments):
-    parser = argparse.ArgumentParser(
-        "tools/compare",
-        description=DESCRIPTION,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
-    )
-    add = parser.add_argument
-    add("experiments", metavar="EXPERIMENT.toml", nargs="+", type=pathlib.Path)
-    add("--seeds", metavar="N", type=positive, default=10, help="runs of each; seeds 1 to N (%(default)s)")
-    add(
-        "--sweep", metavar="KEY=V,V,…", action="append", default=[], help="values in turn, where KEY's table is there"
-    )
-    add("--set", metavar="KEY=VALUE", action="append", default=[], help="a value, where KEY's table is there")
-    add("--against", metavar="NAME", help="what the others are tested against, by its name in the report (the first)")
-    add("--jobs", metavar="N", type=positive, default=1, help="runs at once, which share the cores (%(default)s)")
-    add("--out", metavar="DIR", type=pathlib.Path, help="default: runs/compare-FIRST, FIRST the first experiment")
-    return parser.parse_args(arguments)
 
 
 def first_objective(shown):
@@ -59,8 +29,8 @@ def tested_against(name, variants):
     return name or names[0]
 
 
-def compare(arguments, program):
-    given = parse(arguments)
+def compare(words, program):
+    given = arguments.parse(words)
     sweeps, settings = map(parse_sweep, given.sweep), map(parse_setting, given.set)
     variants = make_variants(given.experiments, list(sweeps), list(settings))
     against = tested_against(given.against, variants)
@@ -75,7 +45,7 @@ def compare(arguments, program):
         variant: [history(shown[run], objective) for run in runs.all if run.variant == variant] for variant in variants
     }
     setting = report.Setting(
-        command=shlex.join(["tools/compare", *map(str, arguments)]),
+        command=shlex.join(["tools/compare", *map(str, words)]),
         seeds=given.seeds,
         against=against,
         builds=report.builds(shown),
@@ -83,7 +53,7 @@ def compare(arguments, program):
     text = report.markdown(histories, objective, setting)
     (out / "report.md").write_text(text)
     report.write_csv(out / "results.csv", histories)
-    (out / "chart.svg").write_text(chart.svg(histories, objective))
+    charts.save(chart.figure(histories, objective), out / "chart.svg")
     print(f"\n{text}\nwritten to {out}")
 
 
@@ -91,11 +61,11 @@ def interrupt(_signal, _frame):
     raise Interrupted
 
 
-def main(arguments, program):
+def main(words, program):
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, interrupt)
     try:
-        compare(arguments, program)
+        compare(words, program)
     except Failure as failure:
         print(f"compare: {failure}", file=sys.stderr)
         return 2

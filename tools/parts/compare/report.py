@@ -19,8 +19,7 @@ A run's score is the best first objective of any robot so far, counted at the en
 is that of the last generation complete by then, without interpolation between generations. A run without a fitness is
 below all others. One spring evaluation is one spring in one time step, so development pays for its simulation.
 
-Intervals of medians over seeds are by the percentile bootstrap, from the exact distribution of the median over all
-resamples of the runs.
+Intervals of medians over seeds are by the percentile bootstrap, from {inference.RESAMPLES:,} resamples of the runs.
 
 The best robot of a whole run, where it was verified (`[experiment] verify`), held, or is an artefact of the time step,
 passive, or both.
@@ -31,8 +30,8 @@ A12 is the probability that a run is better than one of the experiment that is t
 is no difference; 0.56, 0.64 and 0.71 (or 0.44, 0.36 and 0.29) count as a small, medium and large one (Vargha & Delaney
 2000). Its interval is that of Newcombe (2006, method 5) and allows for this row alone.
 
-p is that of the two-sided Mann-Whitney U test, exact up to {inference.EXACT_UP_TO} runs of both together, else normal,
-always with ties. p (Holm) allows for all rows of its table. Below {inference.SIGNIFICANT} a difference counts as shown.
+p is that of the two-sided Mann-Whitney U test: exact up to {inference.EXACT_UP_TO} runs of both together, with ties up
+to {inference.EXACT_WITH_TIES_UP_TO}, and by the normal distribution beyond, corrected for ties. p (Holm) allows for all rows of its table. Below {inference.SIGNIFICANT} a difference counts as shown.
 """
 
 
