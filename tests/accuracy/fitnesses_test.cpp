@@ -8,7 +8,7 @@
 #include "life/evaluation.hpp"
 #include "support/experiments.hpp"
 
-namespace evodevo::accuracy {
+namespace evodevo::tools::accuracy {
 namespace {
 
 TEST(Fitnesses, AreThoseOfAnEvaluation) {
@@ -52,4 +52,4 @@ TEST(Fitnesses, OfWhatDivergesAreNoNumbers) {
 }
 
 }  // namespace
-}  // namespace evodevo::accuracy
+}  // namespace evodevo::tools::accuracy

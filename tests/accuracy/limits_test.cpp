@@ -10,7 +10,7 @@
 #include "analysis/stability.hpp"
 #include "simulation.hpp"
 
-namespace evodevo::accuracy {
+namespace evodevo::tools::accuracy {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -95,4 +95,4 @@ TEST(ContactGain, IsALossForMethodsThatDamp) {
 }
 
 }  // namespace
-}  // namespace evodevo::accuracy
+}  // namespace evodevo::tools::accuracy

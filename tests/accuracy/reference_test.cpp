@@ -1,12 +1,12 @@
 // The reference against solutions on paper.
-#include "reference.hpp"
+#include "accuracy/reference.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
-namespace evodevo::accuracy {
+namespace evodevo::tools::accuracy {
 namespace {
 
 Body single_mass(double mass) {
@@ -64,4 +64,4 @@ TEST(Reference, FrictionIsRefused) {
 }
 
 }  // namespace
-}  // namespace evodevo::accuracy
+}  // namespace evodevo::tools::accuracy

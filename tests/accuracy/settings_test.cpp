@@ -1,26 +1,22 @@
 // The studies' command line.
-#include "settings.hpp"
+#include "accuracy/settings.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
+#include "../common/help.hpp"
 #include "studies.hpp"
 
-namespace evodevo::accuracy {
+namespace evodevo::tools::accuracy {
 namespace {
 
 using testing::HasSubstr;
 
-std::optional<Settings> parsed(std::vector<const char*> arguments) {
-  arguments.insert(arguments.begin(), "evodevo-accuracy");
-  return parse(static_cast<int>(arguments.size()), arguments.data());
-}
-
-std::string complaint(const std::vector<const char*>& arguments) {
+std::string complaint(const CommandLine& line) {
   try {
-    parsed(arguments);
+    parse(line);
     return "";
   } catch (const std::invalid_argument& error) {
     return error.what();
@@ -28,11 +24,11 @@ std::string complaint(const std::vector<const char*>& arguments) {
 }
 
 TEST(AccuracySettings, NameTheCommandThatRepeatsThem) {
-  const auto settings = parsed({"charts", "--quick", "--study", "orders", "--study", "beam"});
-  EXPECT_EQ(settings->command, "tools/accuracy charts --quick --study orders --study beam");
-  EXPECT_EQ(settings->folder, "charts");
-  EXPECT_THAT(settings->studies, testing::ElementsAre("orders", "beam"));
-  EXPECT_EQ(parsed({"charts"})->studies.size(), studies.size());
+  const Settings settings = parse({"charts", "--quick", "--study", "orders", "--study", "beam"});
+  EXPECT_EQ(settings.command, "tools/accuracy charts --quick --study orders --study beam");
+  EXPECT_EQ(settings.folder, "charts");
+  EXPECT_THAT(settings.studies, testing::ElementsAre("orders", "beam"));
+  EXPECT_EQ(parse({"charts"}).studies.size(), studies.size());
 }
 
 TEST(AccuracySettings, RefuseWhatCannotBeStudied) {
@@ -42,5 +38,10 @@ TEST(AccuracySettings, RefuseWhatCannotBeStudied) {
   EXPECT_THAT(complaint({"charts", "--robots", "3"}), HasSubstr("at least 20"));
 }
 
+TEST(AccuracySettings, AreDescribedByTheHelp) {
+  Settings settings;
+  expect_page_of_options(program, options(settings), {"folder"});
+}
+
 }  // namespace
-}  // namespace evodevo::accuracy
+}  // namespace evodevo::tools::accuracy

@@ -7,7 +7,7 @@
 
 #include "scenes.hpp"
 
-namespace evodevo::accuracy {
+namespace evodevo::tools::accuracy {
 namespace {
 
 Settings quick() {
@@ -83,4 +83,4 @@ TEST(Energies, AreKeptByTheSymplecticMethodsAlone) {
 }
 
 }  // namespace
-}  // namespace evodevo::accuracy
+}  // namespace evodevo::tools::accuracy

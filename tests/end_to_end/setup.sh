@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What tools/evodevo and tools/test install, configure and build, and what they say where they cannot, with programs
-# that stand for apt, CMake and the rest. Nothing is installed, and no network is asked.
+# What the scripts in tools/ install, configure and build, and what they say where they cannot, with programs that stand
+# for apt, CMake and the rest. Nothing is installed, and no network is asked.
 #
 #   setup.sh SOURCE_FOLDER EVODEVO_PROGRAM CASE
 set -euo pipefail
@@ -56,12 +56,22 @@ case $1 in
     ;;
   --build)
     mkdir -p "$2/bin"
-    printf '#!/bin/sh\necho "evodevo $*"\n' >"$2/bin/evodevo"
-    chmod +x "$2/bin/evodevo"
+    for name in evodevo evodevo-bench evodevo-accuracy evodevo-stress; do
+      printf '#!/bin/sh\necho "%s $*"\n' $name >"$2/bin/$name"
+      chmod +x "$2/bin/$name"
+    done
     ;;
 esac
 END
 stand_in ninja <<<'[ ! -e "$2/bin/evodevo" ] || echo "ninja: no work to do."'
+# a Python that has the modules whose packages are installed
+stand_in python3 <<'END'
+if [ "$1" = -c ]; then
+  for module in "${@:3}"; do grep -qx "python3-$module" "$scratch/installed" || exit 1; done
+else
+  echo "python3 $*"
+fi
+END
 stand_in ctest <<<''
 
 # call COMMAND...   in the checkout; what it says is in $said (both streams) and $output (the standard output)
@@ -110,6 +120,64 @@ case_help() {
   [ "$output" = "evodevo film --help" ] && has_not chromium || fail "what is built is not asked"
 }
 
+case_tool_help() {
+  local name
+  for name in bench accuracy stress; do
+    call tools/$name --help
+    succeeded
+    [[ $output == "tools/$name "*"  tools/$name "* ]] || fail "there is no page with an example"
+  done
+  for name in compare figure; do
+    call tools/$name --help
+    succeeded
+    [ "$output" = "python3 -P -m $name --help" ] || fail "it does not show its help"
+  done
+  [ "$(times '^apt-get\|^cmake')" = 0 ] && [ ! -e "$checkout/build" ] || fail "asking for help sets something up"
+}
+
+case_charts() {
+  call tools/evodevo run some.toml
+  call tools/bench --runs 1
+  succeeded
+  [ "$output" = "evodevo-bench --runs 1" ] || fail "it does not run"
+  for package in python3 python3-matplotlib python3-scipy; do has_not $package; done
+  call tools/figure some.json out.svg
+  succeeded
+  [ "$output" = "python3 -P -m figure some.json out.svg" ] || fail "it does not draw"
+  has python3-matplotlib
+  has_not python3-scipy
+  call tools/compare some.toml
+  succeeded
+  has python3-scipy
+  : >"$called"
+  call tools/stress charts --quick
+  succeeded
+  [ "$output" = "$(printf '%s\n' "evodevo-stress charts --quick" "python3 -P -m stress.draw charts")" ] ||
+    fail "it does not draw what it measured"
+  [ "$(times ^apt-get)" = 0 ] || fail "it installs what is installed"
+}
+
+case_no_charts() {
+  local name
+  stand_in id <<<'echo 1000'
+  for name in compare figure parts/accuracy/draw parts/stress/draw; do
+    call tools/$name some other.svg
+    failed_in_a_line "needs root" "apt-get install python3 python3-matplotlib"
+  done
+  stand_in id <<<'echo 0'
+  stand_in apt-get <<<"echo \"E: Failed to fetch http://deb.debian.org/p.deb  Temporary failure resolving 'deb.debian.org'\"; exit 100"
+  call tools/compare some.toml
+  failed_in_a_line "resolving 'deb.debian.org'"
+  rm "$scratch/bin/apt-get" "$scratch/bin/dpkg-query"
+  call tools/compare some.toml
+  failed_in_a_line "there is no apt-get" "python3-matplotlib python3-scipy"
+  # what takes long to measure is written all the same
+  call tools/accuracy charts --quick
+  succeeded
+  [[ $output = "evodevo-accuracy charts --quick" && $errors == *"data without charts: "*"python3-matplotlib"* ]] ||
+    fail "it does not measure without charts"
+}
+
 case_packages() {
   call tools/evodevo run some.toml
   succeeded
@@ -136,7 +204,7 @@ case_tests() {
   [ "$(times 'EVODEVO_TESTS=OFF')" = 1 ] || fail "a command has the tests configured"
   call tools/test -R some
   succeeded
-  for package in libgtest-dev libgmock-dev python3; do has $package; done
+  for package in libgtest-dev libgmock-dev python3 python3-matplotlib python3-scipy; do has $package; done
   [ "$(times 'EVODEVO_TESTS=ON')" = 1 ] || fail "the tests are not configured"
   grep -q '^ctest .*-R some' "$called" || fail "no test is run"
   call tools/test

@@ -92,13 +92,13 @@ TEST_F(Compiler, CompilesTheSearchForNeighbours) {
 
 TEST_F(Compiler, CompilesThePapersMethods) {
   const Scene scene{Gravity{}, Floor{}, Friction{}, Damping{}, Drag{}};
-  const benchmark::PaperMethod plain{.threads = 1024};
-  const auto compiles = [&](const char* source, const benchmark::PaperMethod& method) {
-    return !compile(source, benchmark::definitions(method, scene), "sm_90", benchmark::paper_sources()).empty();
+  const tools::bench::PaperMethod plain{.threads = 1024};
+  const auto compiles = [&](const char* source, const tools::bench::PaperMethod& method) {
+    return !compile(source, tools::bench::definitions(method, scene), "sm_90", tools::bench::paper_sources()).empty();
   };
   EXPECT_TRUE(compiles("paper/global_memory.cu", plain));
   EXPECT_TRUE(compiles("paper/shared_memory.cu", plain));
-  for (const auto& [name, method] : benchmark::stress_methods(plain))
+  for (const auto& [name, method] : tools::bench::stress_methods(plain))
     EXPECT_TRUE(compiles("paper/shared_memory.cu", method)) << name;
 }
 

@@ -2,20 +2,20 @@
 #include <algorithm>
 #include <numeric>
 
-#include "agreement.hpp"
 #include "analysis/ground.hpp"
+#include "common/agreement.hpp"
 #include "gpu.hpp"
 #include "paper/paper_simulator.hpp"
 
 namespace evodevo::testing_gpu {
 namespace {
 
-using benchmark::MassMemory;
-using benchmark::PaperMethod;
-using benchmark::PaperSimulator;
-using benchmark::RecordedStress;
-using benchmark::SpringOrder;
-using benchmark::StressMethod;
+using tools::bench::MassMemory;
+using tools::bench::PaperMethod;
+using tools::bench::PaperSimulator;
+using tools::bench::RecordedStress;
+using tools::bench::SpringOrder;
+using tools::bench::StressMethod;
 
 constexpr double dt = 0.0005;  // s
 
@@ -62,7 +62,7 @@ TEST_P(PaperMotion, IsOurs) {
 
 INSTANTIATE_TEST_SUITE_P(Gpu, PaperMotion,
                          testing::Combine(testing::Values(MassMemory::global, MassMemory::shared),
-                                          testing::ValuesIn(benchmark::spring_orders)));
+                                          testing::ValuesIn(tools::bench::spring_orders)));
 
 TEST(PaperStress, AtomicSumsAreOurs) {
   EVODEVO_NEEDS_GPU();
@@ -104,7 +104,7 @@ TEST(PaperStress, SkipShiftFindsWhatIsStressed) {
   const Robot ours = simulated(body, walking_scene(), 2000, {.stress = true});
   const std::vector<double> most(stress.most.begin(), stress.most.end());
   // chance finds 0.02
-  EXPECT_GT(benchmark::share_found(ours.answer.stress, most, 125), 0.3);
+  EXPECT_GT(tools::share_found(ours.answer.stress, most, 125), 0.3);
 }
 
 }  // namespace

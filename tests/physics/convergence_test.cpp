@@ -58,7 +58,7 @@ TEST_P(Convergence, TheErrorFallsWithTheOrderOfTheMethod) {
   const int order = order_of(GetParam());
   const double time = 0.2;
   for (const Smooth& smooth : {one_spring(), lattice()}) {
-    const State start = turning(smooth), truth = accuracy::solution(smooth.body, start, smooth.scene, time);
+    const State start = turning(smooth), truth = tools::accuracy::solution(smooth.body, start, smooth.scene, time);
     ASSERT_GT(largest_difference(start, truth), 0.02);
     const auto error = [&](std::uint64_t steps) {
       const Steps stepping{GetParam(), Precision::float64, time / static_cast<double>(steps)};

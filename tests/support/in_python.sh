@@ -1,8 +1,12 @@
 #!/usr/bin/env bash
-# Runs a test that is a Python program: in_python.sh TEST.py; 77 where there is no Python 3.11 or newer.
+# Runs a test that is a Python program: in_python.sh TEST.py [MODULE]...; 77 where there is no Python 3.11 or newer with
+# these modules.
 set -euo pipefail
-if ! python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
-  echo "skipped: there is no Python 3.11 or newer"
+source "$(dirname "${BASH_SOURCE[0]}")/../../tools/setup"
+test_file=$1
+shift
+if ! evodevo_find_python "$@"; then
+  echo "skipped: there is no Python 3.11 or newer${*:+ with $*; apt-get install python3 ${*/#/python3-}}"
   exit 77
 fi
-exec python3 "$1"
+exec "$evodevo_python" "$test_file"

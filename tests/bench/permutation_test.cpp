@@ -1,0 +1,53 @@
+// The random orders of Skip-Shift.
+#include "paper/permutation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace evodevo::tools::bench {
+namespace {
+
+constexpr std::uint32_t springs = 14230, groups = 256, tallies = 100 * groups;
+
+TEST(Permutation, HoldsEachNumberOnce) {
+  for (const std::uint32_t count : {1u, 2u, 3u, 31u, 256u, 257u, 1000u, springs}) {
+    std::vector<int> seen(count);
+    const Permutation order = shifted(count, 3, 7);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      ASSERT_LT(order(i), count);
+      ++seen[order(i)];
+    }
+    EXPECT_EQ(seen, std::vector<int>(count, 1)) << count;
+  }
+}
+
+TEST(Permutation, GivesEveryPlaceEverySpring) {
+  // chi squared of 256 equally likely ranges: 255 +- 23
+  std::vector<double> seen(groups);
+  for (std::uint32_t tally = 1; tally <= tallies; ++tally)
+    ++seen[std::uint64_t{shifted(springs, 0, tally)(5)} * groups / springs];
+  const double expected = tallies / groups;
+  double chi_squared = 0;
+  for (const double count : seen) chi_squared += (count - expected) * (count - expected) / expected;
+  EXPECT_LT(chi_squared, 255 + 6 * 23);
+  EXPECT_GT(chi_squared, 255 - 6 * 23);
+}
+
+TEST(Permutation, PutsSpringsThatWereInOneGroupIntoOthers) {
+  // springs whose places in an order are alike modulo 256 share a group: two given ones every 256th time
+  int together = 0;
+  for (std::uint32_t tally = 1; tally <= 500; ++tally) {
+    const Permutation now = shifted(springs, 1, tally), next = shifted(springs, 1, tally + 1);
+    std::vector<std::uint32_t> group(springs);
+    for (std::uint32_t i = 0; i < springs; ++i) group[next(i)] = i % groups;
+    // the 55 springs that shared the first group
+    const std::uint32_t first = group[now(0)];
+    for (std::uint32_t i = groups; i < 55 * groups; i += groups) together += group[now(i)] == first;
+  }
+  const double expected = 500 * 54.0 / groups;  // 105 +- 10
+  EXPECT_NEAR(together, expected, 50);
+}
+
+}  // namespace
+}  // namespace evodevo::tools::bench

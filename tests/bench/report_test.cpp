@@ -1,0 +1,30 @@
+// Results as text.
+#include "report.hpp"
+
+#include <gtest/gtest.h>
+
+namespace evodevo::tools::bench {
+namespace {
+
+TEST(Report, IsATableWithItsConditionsAndItsCommand) {
+  const Report report = {
+      {"study", "A study"},
+      {"command", "tools/bench --study x"},
+      {"device", "a machine"},
+      {"dt", 0.0005},
+      {"note", "A note."},
+      {"rows", {{{"a_name", "first"}, {"rate", 123456789.0}}, {{"a_name", "second"}, {"rate", 0.98765}}}}};
+  EXPECT_EQ(markdown(report),
+            "## A study\n\ndevice: a machine; dt: 0.0005.\n\nA note.\n\n```sh\ntools/bench --study x\n```\n\n"
+            "| a name | rate |\n|---|---|\n| first | 1.23e+08 |\n| second | 0.9877 |\n");
+}
+
+TEST(Bodies, CubeIsThePapers) {
+  // corners; edges, face diagonals and body diagonals of 10 x 10 x 10 voxels
+  const Body cube = body_named("cube10", 0).body;
+  EXPECT_EQ(cube.masses.size(), 11u * 11 * 11);
+  EXPECT_EQ(cube.springs.size(), 3u * 10 * 11 * 11 + 2u * 3 * 10 * 10 * 11 + 4u * 10 * 10 * 10);
+}
+
+}  // namespace
+}  // namespace evodevo::tools::bench

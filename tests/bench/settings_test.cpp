@@ -1,0 +1,59 @@
+// The benchmark's command line.
+#include "bench/settings.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <vector>
+
+#include "../common/help.hpp"
+
+namespace evodevo::tools::bench {
+namespace {
+
+using testing::HasSubstr;
+
+std::string complaint(const CommandLine& line) {
+  try {
+    parse(line);
+    return "";
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+}
+
+TEST(Settings, NameTheCommandThatRepeatsThem) {
+  EXPECT_EQ(parse({"--json", "--body", "cube10", "--runs=3"}).command, "tools/bench --body cube10 --runs=3");
+}
+
+TEST(Settings, NameTheMethod) {
+  EXPECT_EQ(parse({}).stepping().method, Method::paper_euler);
+  EXPECT_EQ(parse({"--method", "implicit"}).stepping().method, Method::implicit);
+}
+
+TEST(Settings, RefuseWhatCannotBeMeasured) {
+  EXPECT_THAT(complaint({"--study", "speeed"}), HasSubstr("\"speeed\" is none of speed, features"));
+  EXPECT_THAT(complaint({"--study", "baselines"}), HasSubstr("--device cuda"));
+  EXPECT_THAT(complaint({"--study", "features", "--robots", "some.toml"}), HasSubstr("--robots"));
+  EXPECT_THAT(complaint({"--bodies", "0"}), HasSubstr("bodies from 1 to 65535"));
+  EXPECT_THAT(complaint({"--method", "rk5"}), HasSubstr("\"rk5\" is none of paper-euler, "));
+  EXPECT_THAT(complaint({"--study", "materials"}), HasSubstr("add --device cuda"));
+#ifdef EVODEVO_CUDA
+  EXPECT_THAT(complaint({"--study", "stress", "--device", "cuda", "--method", "rk4"}), HasSubstr("leave --method out"));
+  EXPECT_THAT(complaint({"--study", "materials", "--device", "cuda", "--method", "xpbd"}),
+              HasSubstr("another --method"));
+  EXPECT_EQ(complaint({"--study", "materials", "--device", "cuda", "--method", "rk4"}), "");
+#else
+  EXPECT_THAT(complaint({"--study", "stress", "--device", "cuda"}), HasSubstr("-DEVODEVO_CUDA=ON"));
+#endif
+  EXPECT_EQ(complaint({"--study", "features"}), "");
+}
+
+TEST(Settings, AreDescribedByTheHelp) {
+  Settings settings;
+  expect_page_of_options(program, options(settings));
+}
+
+}  // namespace
+}  // namespace evodevo::tools::bench

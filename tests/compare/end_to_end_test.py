@@ -1,0 +1,256 @@
+"""Whole comparisons of experiments that take moments, also stopped ones."""
+
+import contextlib
+import csv
+import os
+import pathlib
+import shlex
+import shutil
+import signal
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+PROGRAM = os.environ["EVODEVO_PROGRAM"]
+COMPARE = [sys.executable, "-P", "-m", "compare"]
+
+PLAIN = """
+[experiment]
+evaluations = 20
+population = 5
+
+[encoding]
+name = "voxel"
+size = [2, 1, 1]
+edge = 0.5
+
+[[mutation]]
+name = "reset-weight"
+
+[scene.gravity]
+[scene.floor]
+[scene.friction]
+[scene.damping]
+
+[simulation]
+device = "cpu"
+threads = 1
+
+[[fitness]]
+name = "distance"
+settle = 0.05
+window = 0.1
+
+[selection]
+name = "age-fitness-pareto"
+"""
+
+DEVELOPING = PLAIN + """
+[development]
+cycles = 2
+cycle_time = 0.05
+
+[[development.operator]]
+name = "spring-turnover"
+springs = 2
+"""
+
+
+class Comparison(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+        self.plain, self.developing = self.folder / "plain.toml", self.folder / "developing.toml"
+        self.plain.write_text(PLAIN)
+        self.developing.write_text(DEVELOPING)
+
+    def command(self, *more, out="out"):
+        return [*COMPARE, self.plain, self.developing, "--seeds", "2", "--out", self.folder / out, *more]
+
+    def compare(self, *more, out="out"):
+        return subprocess.run(self.command(*more, out=out), capture_output=True, text=True)
+
+    def results(self, out="out"):
+        """Everything but the wall time."""
+        with open(self.folder / out / "results.csv", newline="") as stream:
+            return [row[:-1] for row in csv.reader(stream)]
+
+    def test_a_comparison_with_a_sweep(self):
+        done = self.compare("--sweep", "development.cycle_time=0.05,0.1", "--jobs", "2")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        report = (self.folder / "out" / "report.md").read_text()
+        names = ["plain", "developing,development.cycle_time=0.05", "developing,development.cycle_time=0.1"]
+        for name in names:
+            self.assertEqual(report.count(f"| `{name}` |"), 3, report)
+        self.assertIn("## After 20 evaluations", report)
+        self.assertRegex(report, r"\| `plain` \| 8 \| 40 \|.* of 2 \| . of 2 \| . of 2 \|")
+        self.assertNotIn("Not all runs", report)
+        xml.etree.ElementTree.parse(self.folder / "out" / "chart.svg")
+        header, *rows = self.results()
+        self.assertEqual(len(rows), len(names) * 2 * 4)  # variants, seeds, generations
+        springs = header.index("spring_evaluations")
+        cost = {name: sum(int(row[springs]) for row in rows if (row[0], row[2]) == (name, "20")) for name in names}
+        # a life of 0.15 s without development; twice 0.05 s or 0.1 s more with it, of much the same bodies
+        self.assertLess(cost[names[0]], cost[names[1]])
+        self.assertLess(cost[names[1]], cost[names[2]])
+
+    def test_what_is_there_is_not_made_again(self):
+        self.assertEqual(self.compare().returncode, 0)
+        files = list((self.folder / "out").rglob("run.sqlite"))
+        self.assertEqual(len(files), 4)
+        before = {file: file.stat().st_mtime_ns for file in files}
+        self.assertEqual(self.compare("--seeds", "3").returncode, 0)
+        self.assertEqual({file: file.stat().st_mtime_ns for file in files}, before)
+        self.assertEqual(len(list((self.folder / "out").rglob("run.sqlite"))), 6)
+
+    def test_killed_runs_go_on(self):
+        self.assertEqual(self.compare(out="straight").returncode, 0)
+        for seed, lines in ((1, 1), (2, 3)):
+            folder = self.folder / "out" / "runs" / "plain" / f"seed-{seed}"
+            command = [PROGRAM, "run", self.plain, "--out", folder, "--seed", str(seed)]
+            with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as run:
+                for _ in range(lines):
+                    run.stdout.readline()
+                run.kill()
+        # and one that was killed before its first transaction
+        empty = self.folder / "out" / "runs" / "developing" / "seed-1"
+        empty.mkdir(parents=True)
+        (empty / "run.sqlite").touch()
+        done = self.compare()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.results(), self.results("straight"))
+
+    def test_runs_killed_before_they_were_verified_are_verified(self):
+        self.assertEqual(self.compare().returncode, 0)
+        file = self.folder / "out/runs/plain/seed-2/run.sqlite"
+        with contextlib.closing(sqlite3.connect(file)) as run, run:
+            run.execute("DELETE FROM verifications")
+        others = [other for other in (self.folder / "out").rglob("run.sqlite") if other != file]
+        before = {other: other.stat().st_mtime_ns for other in others}
+        done = self.compare()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"\| `plain` \| 8 \| 40 \|.* of 2 \| . of 2 \| . of 2 \|")
+        self.assertEqual({other: other.stat().st_mtime_ns for other in others}, before)
+
+    def test_what_is_not_to_be_verified_is_finished_without(self):
+        self.assertEqual(self.compare("--set", "experiment.verify=0").returncode, 0)
+        files = list((self.folder / "out").rglob("run.sqlite"))
+        before = {file: file.stat().st_mtime_ns for file in files}
+        again = self.compare("--set", "experiment.verify=0", "--against", "developing")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual({file: file.stat().st_mtime_ns for file in files}, before)
+        self.assertIn("the others tested against `developing`", again.stdout)
+        self.assertIn("not verified", again.stdout)
+
+    def test_a_stopped_comparison_goes_on(self):
+        self.assertEqual(self.compare(out="straight").returncode, 0)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with subprocess.Popen(self.command(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as stopped:
+                stopped.stdout.readline()
+                stopped.send_signal(number)
+                _, said = stopped.communicate()
+            self.assertEqual((stopped.returncode, said), (130, "compare: interrupted; the same command goes on\n"))
+            self.assertFalse((self.folder / "out" / "report.md").exists())
+        done = self.compare()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.results(), self.results("straight"))
+
+    def test_equal_cost(self):
+        self.assertEqual(self.compare(out="all").returncode, 0)
+        header, *rows = self.results("all")
+        column = header.index("spring_evaluations")
+        budget = min(int(row[column]) for row in rows if row[2] == "10")
+        done = self.compare("--set", f"experiment.spring_evaluations={budget}")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        _, *rows = self.results()
+        last = {(row[0], row[1]): int(row[column]) for row in rows}
+        before = {(row[0], row[1]): int(row[column]) for row in rows if int(row[column]) < budget}
+        self.assertEqual(len(last), 4)
+        self.assertGreaterEqual(min(last.values()), budget)
+        self.assertLess(max(before.values()), budget)
+        self.assertLess(len(rows), 16)
+
+    def test_experiments_are_added_without_a_folder_named(self):
+        # what is set for the second does not concern the first, whose run is there
+        for more in ([], [self.developing, "--set", "development.cycles=1"]):
+            command = [*COMPARE, self.plain, *more, "--seeds", "1"]
+            done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        out = self.folder / "runs" / "compare-plain"
+        self.assertEqual({folder.name for folder in (out / "runs").iterdir()}, {"plain", "developing"})
+        self.assertIn("| `developing` |", (out / "report.md").read_text())
+
+    def test_runs_of_another_build_are_named(self):
+        self.assertEqual(self.compare().returncode, 0)
+        with contextlib.closing(sqlite3.connect(self.folder / "out/runs/plain/seed-2/run.sqlite")) as run, run:
+            run.execute("UPDATE operators SET hash = 'another' WHERE kind = 'fitness'")
+        # begun by another build of the program, resumed by this one
+        with contextlib.closing(sqlite3.connect(self.folder / "out/runs/plain/seed-1/run.sqlite")) as run, run:
+            run.execute("INSERT INTO makers SELECT 1, device, evodevo, 'another' FROM makers")
+            run.execute("INSERT INTO operators SELECT 1, kind, name, version, file, hash FROM operators")
+            run.execute("UPDATE generations SET maker = 1 WHERE generation = 0")
+        done = self.compare()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("**Not all runs were made by the same builds", done.stdout)
+        self.assertEqual(done.stdout.count("  - 0.1.0 (another): 1 of `plain`\n"), 2)  # the program and the fitness
+        self.assertRegex(done.stdout, r"- evodevo:\n  - 0.1.0 \([0-9a-f]{16}\): 2 of `plain`, 2 of `developing`\n")
+
+    def test_runs_of_something_else_are_refused(self):
+        self.assertEqual(self.compare().returncode, 0)
+        refused = self.compare("--set", "experiment.population=4")
+        self.assertEqual(refused.returncode, 2)
+        self.assertRegex(refused.stderr, "plain: its runs were made from another plain.toml or with another --set")
+        self.plain.write_text(PLAIN.replace("population = 5", "population = 6"))
+        self.assertEqual(self.compare().returncode, 2)
+        shutil.rmtree(self.folder / "out" / "runs" / "plain")
+        self.assertEqual(self.compare().returncode, 0)
+
+    def test_faults_are_found_before_anything_runs(self):
+        refused = self.compare("--sweep", "development.cycle_times=1,2")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn('did you mean "cycle_time"?', refused.stderr)
+        self.assertFalse((self.folder / "out").exists())
+        refused = self.compare("--against", "evolving")
+        self.assertEqual(refused.returncode, 2)
+        self.assertEqual(
+            refused.stderr,
+            "compare: --against evolving: none of the experiments has that name; give one of plain, developing\n",
+        )
+        self.assertFalse((self.folder / "out").exists())
+        for seeds in ("0", "-1", "two", "1.5"):
+            refused = self.compare(f"--seeds={seeds}")
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn(f"--seeds: {seeds}: expected a whole number of at least 1", refused.stderr)
+
+    def test_different_objectives_are_not_compared(self):
+        self.developing.write_text(DEVELOPING.replace('"distance"', '"actuation-work"'))
+        refused = self.compare()
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("differ in their first objective: ", refused.stderr)
+
+    def test_a_run_that_fails_stops_the_comparison(self):
+        # nothing can be written where a file stands in the way
+        folder = self.folder / "out" / "runs" / "plain"
+        folder.mkdir(parents=True)
+        (folder / "seed-1").write_text("in the way")
+        refused = self.compare()
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("seed-1", refused.stderr)
+        self.assertIn("mend that and give the same command again", refused.stderr)
+
+    def test_a_run_that_is_killed_stops_the_comparison(self):
+        killed = self.folder / "killed"
+        killed.write_text(f'#!/bin/sh\n[ "$1" = run ] && kill -9 $$\nexec {shlex.quote(PROGRAM)} "$@"\n')
+        killed.chmod(0o755)
+        refused = subprocess.run(self.command(), env=os.environ | {"EVODEVO_PROGRAM": str(killed)}, capture_output=True, text=True)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("ended with -9", refused.stderr)
+        self.assertIn("the same command goes on from there", refused.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,152 @@
+"""Statistics against closed forms, published values and enumeration."""
+
+import itertools
+import math
+import random
+import unittest
+
+from compare import inference
+
+
+def samples_with(u, m, n):
+    """Samples of m and n different values, where `u` pairs have the first one's value above the second one's."""
+    below = [min(n, max(0, u - i * n)) for i in range(m)]
+    return [count + 0.5 + i / 1000 for i, count in enumerate(below)], list(range(1, n + 1))
+
+
+class RankSumTest(unittest.TestCase):
+    def test_published_critical_values(self):
+        # two-tailed at 0.05, as in the tables of Mann & Whitney's U of most textbooks
+        published = ((5, 5, 2), (6, 8, 8), (7, 9, 12), (8, 10, 17), (10, 10, 23), (15, 15, 64), (20, 20, 127))
+        for m, n, critical in published:
+            with self.subTest(m=m, n=n):
+                self.assertLessEqual(inference.rank_sum_test(*samples_with(critical, m, n)), 0.05)
+                self.assertGreater(inference.rank_sum_test(*samples_with(critical + 1, m, n)), 0.05)
+
+    def test_an_example_by_hand(self):
+        # of 9 values all ways to choose 4 are as likely: 7 of 126 have a sum of ranks of at most 13, and as many the other
+        males, females = [19, 22, 16, 29, 24], [20, 11, 17, 12]
+        self.assertAlmostEqual(inference.rank_sum_test(males, females), 14 / 126, places=14)
+        self.assertEqual(inference.superiority(males, females), 17 / 20)
+
+    def test_ties_by_enumeration(self):
+        a, b = [1, 2, 2, 5, 5], [0, 0, 1, 2, 2, 4]
+        pooled = a + b
+
+        def distance(chosen):
+            rest = [pooled[i] for i in range(len(pooled)) if i not in chosen]
+            u = sum((pooled[i] > y) + (pooled[i] == y) / 2 for i in chosen for y in rest)
+            return abs(u - len(a) * len(b) / 2)
+
+        ways = [distance(chosen) for chosen in itertools.combinations(range(len(pooled)), len(a))]
+        expected = sum(way >= distance(range(len(a))) for way in ways) / len(ways)
+        self.assertAlmostEqual(inference.rank_sum_test(a, b), expected, places=14)
+
+    def test_many_values_without_ties_by_the_normal_distribution(self):
+        # U of 21 and 21 values: mean 220.5, variance 21 * 21 * 43 / 12; the continuity correction takes 0.5
+        z = (220.5 - 140 - 0.5) / math.sqrt(21 * 21 * 43 / 12)
+        self.assertAlmostEqual(inference.rank_sum_test(*samples_with(140, 21, 21)), math.erfc(z / math.sqrt(2)), places=12)
+
+    def test_the_variance_with_ties_is_that_of_all_permutations(self):
+        # p of a distance of exactly z standard deviations behind the continuity correction is erfc(z / sqrt 2)
+        pooled = [1, 1, 1, 2, 3, 3, 4, 4, 5, 6, 7, 7, 8, 9, 9, 10, 10, 11]
+        ranks = [sum(other < value for other in pooled) + (pooled.count(value) + 1) / 2 for value in pooled]
+        sums = [sum(chosen) for chosen in itertools.combinations(ranks, 9)]
+        mean = sum(sums) / len(sums)
+        deviation = math.sqrt(sum((s - mean) ** 2 for s in sums) / len(sums))
+        z = (abs(sum(ranks[:9]) - mean) - 0.5) / deviation
+        self.assertAlmostEqual(inference.rank_sum_test(pooled[:9], pooled[9:]), math.erfc(z / math.sqrt(2)), places=12)
+
+    def test_equal_samples_differ_in_nothing(self):
+        for size in (1, 3, 30):
+            self.assertEqual(inference.rank_sum_test([7] * size, [7] * size), 1)
+            self.assertEqual(inference.superiority([7] * size, [7] * size), 0.5)
+
+    def test_runs_without_a_fitness_lose(self):
+        a, b = [-math.inf] * 5, [-1, 0, 1, 2, 3]
+        self.assertAlmostEqual(inference.rank_sum_test(a, b), 2 / math.comb(10, 5), places=14)
+        self.assertEqual(inference.superiority(a, b), 0)
+
+
+class Holm(unittest.TestCase):
+    def test_by_hand(self):
+        adjusted = inference.holm([0.01, 0.04, 0.03, 0.005])
+        for value, expected in zip(adjusted, [0.03, 0.06, 0.06, 0.02]):
+            self.assertAlmostEqual(value, expected, places=14)
+        self.assertEqual(inference.holm([0.9, 0.8]), [1, 1])
+
+
+class Medians(unittest.TestCase):
+    def test_of_odd_and_even_many(self):
+        self.assertEqual(inference.median([3, 1, 2]), 2)
+        self.assertEqual(inference.median([4, 1, 3, 2]), 2.5)
+        self.assertEqual(inference.median([-math.inf, -math.inf, 1]), -math.inf)
+
+    def test_resamples_have_their_medians_as_often_as_the_binomial_says(self):
+        # a resample's median is at most the k-th of 11 values where 6 or more of 11 draws are
+        medians = inference.resampled_medians(tuple(range(1, 12)))
+        for k in range(1, 12):
+            share = sum(math.comb(11, n) * k**n * (11 - k) ** (11 - n) for n in range(6, 12)) / 11**11
+            self.assertAlmostEqual((medians <= k).mean(), share, delta=4 * math.sqrt(0.25 / len(medians)))
+
+    def test_the_same_values_have_the_same_interval(self):
+        values = [0.3, 0.1, 0.9, 0.4, 0.7, 0.2]
+        first = inference.median_interval(values)
+        inference.resampled_medians.cache_clear()
+        self.assertEqual(inference.median_interval(values[::-1]), first)
+
+    def test_intervals(self):
+        # by the binomial, a resample's median is at most the 2nd of 11 values with 0.7 %, at most the 3rd with 5.1 %
+        self.assertEqual(inference.median_interval(range(11, 0, -1)), (3, 9))
+        self.assertEqual(inference.median_interval([-math.inf] * 5 + [1, 2])[0], -math.inf)
+
+    def test_too_few_values_have_no_interval(self):
+        # the median lies outside of all n values with probability 2 / 2^n: 6.3 % of 5, 3.1 % of 6
+        self.assertIsNone(inference.median_interval(range(5)))
+        low, high = inference.median_interval(range(6))
+        self.assertLess(low, high)
+
+
+class Superiority(unittest.TestCase):
+    def test_the_bounds_are_where_a_standard_deviation_of_hanley_and_mcneil_says(self):
+        for size, a12 in itertools.product((4, 10, 25), (0, 0.3, 0.5, 0.97)):
+            for bound in inference.superiority_interval(a12, size):
+                if bound in (0, 1):
+                    self.assertEqual(bound, a12)  # nothing lies beyond
+                    continue
+                q1, q2 = bound / (2 - bound), 2 * bound**2 / (1 + bound)
+                others = (size - 1) * (q1 - bound**2) + (size - 1) * (q2 - bound**2)
+                deviation = math.sqrt(bound * (1 - bound) + others) / size
+                self.assertAlmostEqual(abs(a12 - bound) / deviation, 1.959964, places=6)
+
+    def test_at_no_difference_it_agrees_with_the_rank_sum_test(self):
+        # without ties and continuity correction, that test's z is (A12 - 0.5) / sqrt((2 n + 1) / (12 n^2))
+        for size in (5, 10, 20):
+            step = 1.959964 * math.sqrt((2 * size + 1) / (12 * size**2))
+            self.assertGreater(inference.superiority_interval(0.5 + 1.001 * step, size)[0], 0.5)
+            self.assertLess(inference.superiority_interval(0.5 + 0.999 * step, size)[0], 0.5)
+
+    def test_it_holds_the_truth_as_often_as_it_says(self):
+        # of exponential samples, whose A12 is known: the second one's rate over the sum of both
+        draw = random.Random(1)
+        size, samples = 10, 2000
+        for rate in (1, 3, 10):
+            truth, held = rate / (1 + rate), 0
+            for _ in range(samples):
+                a, b = ([draw.expovariate(r) for _ in range(size)] for r in (1, rate))
+                low, high = inference.superiority_interval(inference.superiority(a, b), size)
+                held += low <= truth <= high
+            self.assertAlmostEqual(held / samples, 0.95, delta=0.02, msg=f"rate {rate}")
+
+
+class FewRuns(unittest.TestCase):
+    def test_verdicts_take_as_many_runs_as_the_most_extreme_outcome_does(self):
+        for tests in (1, 2, 5, 30):
+            size = inference.runs_for_verdict(tests)
+            for runs, possible in ((size - 1, False), (size, True)):
+                p = inference.rank_sum_test(range(runs), range(runs, 2 * runs))
+                self.assertEqual(inference.holm([p] * tests)[0] < inference.SIGNIFICANT, possible, f"{tests}, {runs}")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,119 @@
+"""Which runs sweeps ask for, and what they are called."""
+
+import pathlib
+import re
+import tempfile
+import unittest
+
+from compare.runs import Failure, make_variants, overrides, parse_setting, parse_sweep
+
+
+class Sweeps(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+
+    def file(self, name, text):
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+    def variants(self, files, sweeps=(), settings=()):
+        return make_variants(files, list(map(parse_sweep, sweeps)), list(map(parse_setting, settings)))
+
+    def names(self, files, *sweeps):
+        return [variant.name for variant in self.variants(files, sweeps)]
+
+    def test_all_combinations(self):
+        evo_devo = self.file("evo-devo.toml", "[development]\n[[fitness]]\nwindow = 1.0\n")
+        self.assertEqual(
+            self.names([evo_devo], "development.cycle_time=0.5,1", "fitness.0.window=2,3"),
+            [
+                "evo-devo,development.cycle_time=0.5,fitness.0.window=2",
+                "evo-devo,development.cycle_time=0.5,fitness.0.window=3",
+                "evo-devo,development.cycle_time=1,fitness.0.window=2",
+                "evo-devo,development.cycle_time=1,fitness.0.window=3",
+            ],
+        )
+
+    def test_only_where_the_table_is_there(self):
+        # a key set without its table would bring a force or a development into being
+        evo, evo_devo = self.file("evo.toml", "[encoding]\n"), self.file("evo-devo.toml", "[development]\n")
+        self.assertEqual(
+            self.names([evo, evo_devo], "development.cycle_time=0.5,1"),
+            ["evo", "evo-devo,development.cycle_time=0.5", "evo-devo,development.cycle_time=1"],
+        )
+        with self.assertRaisesRegex(Failure, r"--sweep fitness.1.window: no experiment has a table \[fitness.1\]; add"):
+            self.names([self.file("one.toml", "[[fitness]]\n")], "fitness.1.window=1,2")
+
+    def test_a_setting_brings_nothing_into_being_either(self):
+        evo = self.file("evo.toml", "[encoding]\n")
+        evo_devo = self.file("evo-devo.toml", "[encoding]\n[development]\n")
+        settings = ["encoding.points=64", "development.cycles=2", "simulation.threads=1"]
+        first, second = self.variants([evo, evo_devo], settings=settings)
+        # the simulation is there with its defaults whether the file names it or not
+        self.assertEqual(overrides(first), ["--set", "encoding.points=64", "--set", "simulation.threads=1"])
+        self.assertEqual(overrides(second), [word for setting in settings for word in ("--set", setting)])
+        with self.assertRaisesRegex(Failure, r"--set scene.drag.k: no experiment has a table \[scene.drag\]; add it"):
+            self.variants([evo, evo_devo], settings=["scene.drag.k=1"])
+
+    def test_values_may_be_lists_tables_and_texts(self):
+        for text, values in (
+            ("[2,2,2],[3,2,2]", ["[2,2,2]", "[3,2,2]"]),
+            ("[[1,2],[3]],[]", ["[[1,2],[3]]", "[]"]),
+            ("{a=1,b=[2,3]},{a=2}", ["{a=1,b=[2,3]}", "{a=2}"]),
+            ("\"a,]b\",'[,',c", ['"a,]b"', "'[,'", "c"]),
+        ):
+            self.assertEqual(parse_sweep(f"k={text}"), ("k", values))
+        file = self.file("a.toml", "[encoding]\n")
+        self.assertEqual(
+            self.names([file], "encoding.size=[2,2,2],[3,2,2]"),
+            ["a,encoding.size=[2,2,2]", "a,encoding.size=[3,2,2]"],
+        )
+
+    def test_a_key_is_given_once(self):
+        file = self.file("a.toml", "[encoding]\n")
+        for sweeps, settings in (
+            (["encoding.size=1,2", "encoding.size=3"], []),
+            (["encoding.size=1,2"], ["encoding.size=3"]),
+            ([], ["encoding.size=3", "encoding.size=4"]),
+        ):
+            with self.assertRaisesRegex(Failure, "encoding.size: given 2 times by --sweep and --set; give it once"):
+                self.variants([file], sweeps, settings)
+
+    def test_names_are_folders_and_differ(self):
+        file = self.file("a.toml", "[plugins]\n")
+        names = self.names([file], "plugins.paths=x/y,x%2Fy,..")
+        self.assertEqual(len(set(names)), 3)
+        for name in names:
+            self.assertNotIn("/", name)
+
+    def test_a_label_has_no_tables(self):
+        file = self.file("evo-devo.toml", "[development]\n")
+        self.assertEqual(self.variants([file], ["development.cycles=3"])[0].label, "evo-devo cycles=3")
+
+    def test_faults_are_named(self):
+        for sweep in ("a.b", "=1,2", "a.b=", "a.b=1,,2", "a.b=[1,2", "a.b=1],2", "a.b='1,2"):
+            with self.assertRaisesRegex(Failure, re.escape(f"--sweep {sweep}: expected KEY=VALUE,VALUE,…")):
+                parse_sweep(sweep)
+        for setting in ("a.b", "=1"):
+            with self.assertRaisesRegex(Failure, f"--set {setting}: expected KEY=VALUE"):
+                parse_setting(setting)
+        with self.assertRaisesRegex(Failure, "a value is there twice"):
+            parse_sweep("development.cycles=1,1")
+        with self.assertRaisesRegex(Failure, "say how many with --seeds"):
+            parse_sweep("experiment.seed=1,2")
+        with self.assertRaisesRegex(Failure, "say how many with --seeds"):
+            parse_setting("experiment.seed=1")
+        (self.folder / "other").mkdir()
+        with self.assertRaisesRegex(Failure, "has the name a already; rename one"):
+            self.variants([self.file("a.toml", ""), self.file("other/a.toml", "")])
+        with self.assertRaisesRegex(Failure, "bad.toml: cannot be read: "):
+            self.variants([self.file("bad.toml", "[")])
+        with self.assertRaisesRegex(Failure, "none.toml: cannot be read: .*No such file"):
+            self.variants([self.folder / "none.toml"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,113 @@
+"""The pictures of tools/figure, of a run and of environments."""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+from figure import bodies, environments, run
+
+PROGRAM = os.environ["EVODEVO_PROGRAM"]
+EXPERIMENTS = pathlib.Path(__file__).resolve().parents[2] / "experiments"
+BODY = {
+    "masses": [{"position": [0, 0, 0]}, {"position": [1, 0, 0]}, {"position": [0, 0, 1]}],
+    "springs": [{"a": 0, "b": 1, "material": 0}, {"a": 1, "b": 2, "material": 1}],
+    "materials": [{"amplitude": 0, "phase": 0}, {"amplitude": 0.1, "phase": 3.14}],
+}
+
+
+def effect(between, within, p):
+    return [{"between": between, "within": within, "p": p}]
+
+
+ANSWER = {
+    "individual": 7,
+    "scenes": [
+        {"name": "flat", "slope": 0, "starts": [{"reason": "", "body": BODY}]},
+        {"name": "slope", "slope": 10, "starts": [{"reason": "", "body": BODY}]},
+        {"name": "none", "slope": 0, "starts": [{"reason": "no springs"}]},
+    ],
+    "pairs": [
+        {"scenes": [0, 1], "springs": effect(0.3, 0.1, 0.002), "mass": effect(0.02, None, None)},
+        {"scenes": [0, 2], "springs": [None], "mass": [None]},
+    ],
+}
+
+
+def called(*words):
+    return subprocess.run([sys.executable, "-P", "-m", "figure", *map(str, words)], capture_output=True, text=True)
+
+
+class Scratch(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+
+
+class Bodies(unittest.TestCase):
+    def test_materials_are_told_apart(self):
+        colours = [bodies.colour({"amplitude": a, "phase": phase}) for a, phase in ((0, 0), (0.1, 0), (0.1, 3.14))]
+        self.assertEqual(colours, [bodies.GREY, bodies.RED, bodies.BLUE])
+
+    def test_springs_are_seen_from_the_side(self):
+        places = [mass["position"] for mass in BODY["masses"]]
+        segments = [segment.tolist() for segment in bodies.springs(BODY, places, 2).get_segments()]
+        self.assertEqual(segments, [[[2, 0], [3, 0]], [[3, 0], [2, 1]]])
+
+
+class Environments(Scratch):
+    def test_captions_tell_the_distance_from_the_first(self):
+        lines = environments.captions(ANSWER)
+        self.assertEqual(lines, [[], ["springs 0.300 (noise 0.100, p = 0.0020)", "mass 0.020"], []])
+
+    def test_each_scene_has_its_place_and_so_have_the_distances(self):
+        file = self.folder / "environments.json"
+        file.write_text(json.dumps([ANSWER, ANSWER | {"pairs": []}]))
+        panels = [axes for axes in environments.figure(file).axes if axes.get_visible()]
+        self.assertEqual(len(panels), 7)
+        self.assertIn("no springs", [text.get_text() for text in panels[2].texts])
+        self.assertEqual([text.get_text() for text in panels[3].texts], ["scenes 0.30", "noise 0.10"])
+
+    def test_a_file_that_is_not_json_is_refused_in_a_line(self):
+        file = self.folder / "environments.json"
+        file.write_text("[")
+        done = called(file, self.folder / "out.svg")
+        self.assertEqual((done.returncode, done.stderr.count("\n"), done.stderr[:8]), (1, 1, "figure: "))
+
+
+class Run(Scratch):
+    def test_a_run_is_drawn(self):
+        experiment = EXPERIMENTS / "quickstart.toml"
+        words = ["run", experiment, "--out", self.folder / "run", "--set", "experiment.verify=0"]
+        words += ["--set", "experiment.evaluations=8", "--set", "experiment.population=4"]
+        subprocess.run([PROGRAM, *map(str, words)], check=True, stdout=subprocess.DEVNULL)
+        done = called(self.folder / "run", experiment, self.folder / "out.svg")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        root = xml.etree.ElementTree.parse(self.folder / "out.svg")
+        texts = [element.text for element in root.iter("{http://www.w3.org/2000/svg}text")]
+        for time in run.TIMES:
+            self.assertIn(f"{time:g} s", texts)
+        self.assertIn("distance (body lengths)", texts)
+
+
+class CommandLine(Scratch):
+    def test_bad_words_are_refused(self):
+        file = self.folder / "same.svg"
+        file.touch()
+        for words, said in (
+            ([file, file], "name another file to write"),
+            (["a.json", "a.gif"], "ends in .svg or .png"),
+            (["a.svg"], "expected a run's folder"),
+        ):
+            done = called(*words)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(said, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,38 @@
+#include "fitnesses.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/ground.hpp"
+#include "perturbation.hpp"
+
+namespace evodevo::tools::accuracy {
+
+Fitnesses measure(const Experiment& experiment, std::span<const Body> bodies, const Setting& setting,
+                  const Device& device, double perturbation) {
+  const Fitness& fitness = *experiment.fitness.front();
+  const Request request = fitness.observes();
+  std::vector<Traveller> robots;
+  for (const Body& body : bodies)
+    robots.push_back({&body, perturbed(state_at_birth(body, experiment.scene), perturbation)});
+  Simulation simulation(experiment.scene, setting, device);
+  double seconds = request.settle > 0 ? simulation.advance(robots, request.settle) : 0;
+  std::vector<Observation> observations;
+  for (const Traveller& robot : robots)
+    observations.push_back({.box = bounding_box(robot.state.position),
+                            .centre_before = centre_of_mass(*robot.body, robot.state.position),
+                            .window = request.window});
+  seconds += simulation.advance(robots, request.window);
+
+  Fitnesses result{{}, seconds / (request.settle + request.window) / static_cast<double>(robots.size()), 0};
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    observations[i].centre_after = centre_of_mass(*robots[i].body, robots[i].state.position);
+    const bool alive = robots[i].alive();
+    result.values.push_back(alive ? fitness.score(observations[i]).front() : std::numeric_limits<double>::quiet_NaN());
+    result.diverged += (alive ? 0 : 1) / static_cast<double>(robots.size());
+  }
+  return result;
+}
+
+}  // namespace evodevo::tools::accuracy

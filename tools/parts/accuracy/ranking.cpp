@@ -1,0 +1,109 @@
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "common/robots.hpp"
+#include "fitnesses.hpp"
+#include "statistics.hpp"
+#include "studies.hpp"
+
+namespace evodevo::tools::accuracy {
+namespace {
+
+constexpr Setting usual{};
+constexpr Setting reference{Method::velocity_verlet, Precision::float64, usual.dt / 16};
+
+std::vector<double> time_steps(bool quick) {
+  if (quick) return {5e-4, 1e-3};
+  return {1e-4, 2e-4, 5e-4, 1e-3, 2e-3};
+}
+
+/// Bodies of the same genes with fewer masses or springs.
+struct Coarser {
+  std::string name;
+  std::vector<Override> overrides;
+};
+
+std::vector<Coarser> coarser_bodies() {
+  const Override fewer_neighbours{"encoding.neighbours", "8"}, few_neighbours{"encoding.neighbours", "6"};
+  const auto points = [](const char* number) { return Override{"encoding.points", number}; };
+  return {{"48 masses", {points("48")}},      {"32 masses", {points("32")}},
+          {"24 masses", {points("24")}},      {"8 neighbours", {fewer_neighbours}},
+          {"6 neighbours", {few_neighbours}}, {"32 masses, 8 neighbours", {points("32"), fewer_neighbours}}};
+}
+
+std::vector<Override> overrides(const Settings& settings) {
+  if (!settings.quick) return {};
+  return {{"fitness.0.settle", "1.5"}, {"fitness.0.window", "1.5"}};
+}
+
+Experiment experiment_of(const Settings& settings, const std::vector<Override>& more = {}) {
+  std::vector<Override> all = overrides(settings);
+  all.insert(all.end(), more.begin(), more.end());
+  return read_experiment({settings.experiment, all});
+}
+
+/// The same robots with coarser bodies; a robot that has none then, has no fitness.
+Fitnesses measure_coarser(const Experiment& experiment, const std::vector<Genome>& genomes, const Device& device) {
+  std::vector<Body> bodies;
+  std::vector<std::size_t> whose;
+  for (std::size_t i = 0; i < genomes.size(); ++i)
+    if (auto body = robot_of(experiment, genomes[i])) {
+      bodies.push_back(*std::move(body));
+      whose.push_back(i);
+    }
+  Fitnesses measured = measure(experiment, bodies, usual, device);
+  std::vector<double> values(genomes.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < whose.size(); ++i) values[whose[i]] = measured.values[i];
+  measured.values = std::move(values);
+  return measured;
+}
+
+/// Rows that compare with the truth.
+class Comparison {
+ public:
+  explicit Comparison(std::vector<double> truth) : truth_(std::move(truth)) {}
+
+  void add(const std::string& body, const std::string& kind, const Setting& setting, const Fitnesses& measured) {
+    const Interval interval = bootstrap_interval(truth_, measured.values, 500);
+    table_.add({body, kind, std::string(name(setting.method)), name(setting.precision), setting.dt, measured.cost,
+                rank_correlation(truth_, measured.values), interval.low, interval.high,
+                best_found(truth_, measured.values, 20, 3, 2000), measured.diverged,
+                static_cast<double>(truth_.size())});
+  }
+
+  const Table& table() const { return table_; }
+
+ private:
+  std::vector<double> truth_;
+  Table table_{"ranking",
+               {"body", "kind", "method", "precision", "dt (s)", "cost (s per simulated s)", "rank correlation (1)",
+                "low (1)", "high (1)", "best of 20 in reference's best 3 (1)", "diverged (1)", "robots"}};
+};
+
+}  // namespace
+
+std::vector<Table> ranking(const Settings& settings) {
+  const Experiment experiment = experiment_of(settings);
+  const std::vector<Genome> genomes = random_genomes(experiment, settings.robots, 1);
+  std::vector<Body> bodies;
+  for (const Genome& genome : genomes) bodies.push_back(*robot_of(experiment, genome));
+
+  const Device host{"cpu", settings.device.threads};
+  const Fitnesses truth = measure(experiment, bodies, reference, host);
+  Comparison comparison(truth.values);
+  comparison.add("as it is", "reference moved by 1e-9 m", reference,
+                 measure(experiment, bodies, reference, host, 1e-9));
+  for (const Method method : all_methods())
+    for (const Precision precision : {Precision::float32, Precision::float64})
+      for (const double dt : time_steps(settings.quick)) {
+        const Setting setting{method, precision, dt};
+        comparison.add("as it is", "setting", setting, measure(experiment, bodies, setting, settings.device));
+      }
+  for (const Coarser& coarser : coarser_bodies())
+    comparison.add(coarser.name, "coarser body", usual,
+                   measure_coarser(experiment_of(settings, coarser.overrides), genomes, settings.device));
+  return {comparison.table()};
+}
+
+}  // namespace evodevo::tools::accuracy

@@ -1,0 +1,99 @@
+#include <string>
+#include <vector>
+
+#include "batch.hpp"
+#include "studies.hpp"
+
+namespace evodevo::tools::bench {
+namespace {
+
+/// What is simulated and recorded.
+struct Variant {
+  const Body* body;
+  Scene scene;
+  Recording recording;
+};
+
+/// A feature, and two variants that differ in nothing else.
+struct Feature {
+  std::string name;
+  Variant with, without;
+};
+
+/// Each feature of the walking scene against the scene without it, and each that it lacks against the scene alone.
+std::vector<Feature> features(const Body& body, const Body& still_body) {
+  const auto walking = [&](auto... changes) {
+    Variant variant{&body, walking_scene(), {}};
+    (changes(variant), ...);
+    return variant;
+  };
+  const auto no_friction = [](Variant& v) { v.scene.friction.reset(); };
+  const auto no_floor = [](Variant& v) { v.scene.floor.reset(); };
+  return {
+      {"gravity", walking(), walking([](Variant& v) { v.scene.gravity.reset(); })},
+      // there is no friction without a floor
+      {"floor", walking(no_friction), walking(no_friction, no_floor)},
+      {"friction", walking(), walking(no_friction)},
+      {"damping", walking(), walking([](Variant& v) { v.scene.damping.reset(); })},
+      {"drag", walking([](Variant& v) { v.scene.drag = Drag{}; }), walking()},
+      {"actuation", walking(), walking([&](Variant& v) { v.body = &still_body; })},
+      {"stress", walking([](Variant& v) { v.recording.stress = true; }), walking()},
+      {"work", walking([](Variant& v) { v.recording.work = true; }), walking()},
+  };
+}
+
+/// The two rates of a feature, measured side by side.
+class Comparison {
+ public:
+  Comparison(const Settings& settings, const Feature& feature)
+      : feature_(feature),
+        with_(settings, {feature.with.body, 1}, feature.with.scene),
+        without_(settings, {feature.without.body, 1}, feature.without.scene) {
+    measure();  // warm-up
+    for (std::vector<double>* values : {&rates_with_, &rates_without_, &ratios_}) values->clear();
+  }
+
+  std::string device() const { return with_.device(); }
+
+  void measure() {
+    rates_with_.push_back(with_.rate(feature_.with.recording).device);
+    rates_without_.push_back(without_.rate(feature_.without.recording).device);
+    ratios_.push_back(rates_with_.back() / rates_without_.back());
+  }
+
+  Report row() const {
+    return {{"feature", feature_.name},
+            {"rate_with_it", median(rates_with_)},
+            {"rate_without_it", median(rates_without_)},
+            {"ratio", median(ratios_)},
+            {"cost_in_percent_of_time", 100 * (1 / median(ratios_) - 1)}};
+  }
+
+ private:
+  const Feature& feature_;
+  Batch with_, without_;
+  std::vector<double> rates_with_, rates_without_, ratios_;
+};
+
+}  // namespace
+
+Report feature_costs(const Settings& settings) {
+  const NamedBody body = body_named(settings.body, settings.masses, settings.materials);
+  const Body still_body = without_actuation(body.body);
+  Report rows = Report::array();
+  std::string device;
+  for (const Feature& feature : features(body.body, still_body)) {
+    Comparison comparison(settings, feature);
+    for (int run = 0; run < settings.runs; ++run) comparison.measure();
+    rows.push_back(comparison.row());
+    device = comparison.device();
+  }
+  Report report = conditions(settings, "What each feature costs", device, body);
+  report["note"] =
+      "Spring evaluations per second of the steps alone; medians, the ratio's of each run's two rates. All else is as "
+      "the scene says, except that the floor is compared without friction, and drag is 1 kg/m.";
+  report["rows"] = std::move(rows);
+  return report;
+}
+
+}  // namespace evodevo::tools::bench

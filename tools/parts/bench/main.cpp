@@ -1,0 +1,61 @@
+// Measures how many springs the simulator evaluates in a second, and what the paper's methods would.
+#include <hwy/targets.h>
+
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <stdexcept>
+
+#include "settings.hpp"
+#include "studies.hpp"
+
+namespace evodevo::tools::bench {
+namespace {
+
+/// Limits the simulator to older instruction sets, to compare them.
+void limit_instructions(const std::string& name) {
+  const std::map<std::string, std::int64_t> limits{
+      {"best", 0}, {"avx2", HWY_AVX2 | HWY_SSE4 | HWY_SCALAR}, {"sse4", HWY_SSE4 | HWY_SCALAR}, {"none", HWY_SCALAR}};
+  hwy::SetSupportedTargetsForTest(limits.at(name));
+}
+
+Report measure(const Settings& settings) {
+  limit_instructions(settings.instructions);
+  const std::map<std::string, std::function<Report(const Settings&)>> studies{
+      {"speed", speed},           {"features", feature_costs},
+#ifdef EVODEVO_CUDA
+      {"baselines", baselines},   {"stress", stress_costs},      {"tallies", tally_agreement},
+      {"neighbours", neighbours}, {"materials", material_costs},
+#endif
+  };
+  return studies.at(settings.study)(settings);
+}
+
+Report read_reports(const std::string& file) {
+  std::ifstream stream(file);
+  if (!stream) throw std::runtime_error(file + ": cannot be read");
+  try {
+    return Report::parse(stream);
+  } catch (const Report::exception& error) {
+    throw std::runtime_error(file + ": is not JSON of this program: " + error.what());
+  }
+}
+
+void run(const Settings& settings) {
+  const Report report = settings.tables.empty() ? measure(settings) : read_reports(settings.tables);
+  if (settings.json) {
+    std::cout << report.dump(2) << '\n';
+    return;
+  }
+  const Report list = report.is_array() ? report : Report::array({report});
+  for (const Report& one : list) std::cout << (&one == &list.front() ? "" : "\n") << markdown(one);
+}
+
+}  // namespace
+}  // namespace evodevo::tools::bench
+
+int main(int argc, char** argv) {
+  using namespace evodevo::tools;
+  return run_program(bench::program, argc, argv, [](const CommandLine& line) { bench::run(bench::parse(line)); });
+}

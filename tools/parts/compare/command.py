@@ -1,0 +1,75 @@
+"""The command: from its arguments to the report."""
+
+import pathlib
+import shlex
+import signal
+import sys
+
+from common import charts
+
+from . import arguments, chart, report
+from .history import Objective, history
+from .runs import Failure, Interrupted, Runs, make_variants, parse_setting, parse_sweep
+
+
+def first_objective(shown):
+    """The objective that is compared, which must be the same in all runs."""
+    objectives = {Objective(**run["objectives"][0]) for run in shown}
+    if len(objectives) > 1:
+        names = ", ".join(sorted(f"{o.name} ({o.unit})" for o in objectives))
+        raise Failure(f"the experiments differ in their first objective: {names}; only the same can be compared")
+    return objectives.pop()
+
+
+def tested_against(name, variants):
+    """The name of the variant that the others are tested against, by default the first."""
+    names = [variant.name for variant in variants]
+    if name is not None and name not in names:
+        raise Failure(f"--against {name}: none of the experiments has that name; give one of {', '.join(names)}")
+    return name or names[0]
+
+
+def compare(words, program):
+    given = arguments.parse(words)
+    sweeps, settings = map(parse_sweep, given.sweep), map(parse_setting, given.set)
+    variants = make_variants(given.experiments, list(sweeps), list(settings))
+    against = tested_against(given.against, variants)
+    out = given.out or pathlib.Path("runs") / f"compare-{given.experiments[0].stem}"
+    runs = Runs(program, out, variants, given.seeds)
+    runs.check()
+    runs.make(given.jobs, lambda line: print(line, flush=True))
+
+    shown = {run: runs.shown(run) for run in runs.all}
+    objective = first_objective(shown.values())
+    histories = {
+        variant: [history(shown[run], objective) for run in runs.all if run.variant == variant] for variant in variants
+    }
+    setting = report.Setting(
+        command=shlex.join(["tools/compare", *map(str, words)]),
+        seeds=given.seeds,
+        against=against,
+        builds=report.builds(shown),
+    )
+    text = report.markdown(histories, objective, setting)
+    (out / "report.md").write_text(text)
+    report.write_csv(out / "results.csv", histories)
+    charts.save(chart.figure(histories, objective), out / "chart.svg")
+    print(f"\n{text}\nwritten to {out}")
+
+
+def interrupt(_signal, _frame):
+    raise Interrupted
+
+
+def main(words, program):
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, interrupt)
+    try:
+        compare(words, program)
+    except Failure as failure:
+        print(f"compare: {failure}", file=sys.stderr)
+        return 2
+    except Interrupted:
+        print("compare: interrupted; the same command goes on", file=sys.stderr)
+        return 130
+    return 0

@@ -1,0 +1,100 @@
+"""The bodies that one genome grows in several scenes, side by side, and how far the scenes are apart."""
+
+import json
+import statistics
+
+from matplotlib.transforms import Affine2D
+
+from common import charts
+
+from .bodies import BLUE, RED, show_ground, springs
+
+COLUMNS = 4
+
+
+def captions(answer):
+    """For each scene, by springs and by mass, how far it is from the first after the last cycle."""
+    lines = [[] for _ in answer["scenes"]]
+    for pair in answer["pairs"]:
+        if pair["scenes"][0] != 0:
+            continue
+        for kind in ("springs", "mass"):
+            effect = pair[kind][-1]
+            if effect is None:
+                continue
+            line = f"{kind} {effect['between']:.3f}"
+            if effect["p"] is not None:
+                line += f" (noise {effect['within']:.3f}, p = {effect['p']:.4f})"
+            lines[pair["scenes"][1]].append(line)
+    return lines
+
+
+def extent(bodies):
+    """How far the widest body reaches to either side, and how high the highest one, m."""
+    reach, height = 0.5, 0.5
+    for body in filter(None, bodies):
+        xs = [mass["position"][0] for mass in body["masses"]]
+        reach = max(reach, max(abs(x - statistics.fmean(xs)) for x in xs))
+        height = max(height, max(mass["position"][2] for mass in body["masses"]))
+    return reach, height
+
+
+def draw_body(axes, scene, body, lines, reach, height):
+    show_ground(axes, -reach, reach, height)
+    below = "\n".join([scene["name"], *lines])
+    axes.text(0.5, -0.05, below, transform=axes.transAxes, ha="center", va="top", fontsize=7.5)
+    if body is None:
+        axes.text(0.5, 0.5, scene["starts"][0]["reason"], transform=axes.transAxes, ha="center", color=charts.SOFT)
+        return
+    places = [mass["position"] for mass in body["masses"]]
+    drawn = springs(body, places, -statistics.fmean(place[0] for place in places))
+    axes.add_collection(drawn)
+    # on a slope +x is downhill
+    for artist in (drawn, *axes.lines):
+        artist.set_transform(Affine2D().rotate_deg(-scene["slope"]) + axes.transData)
+        artist.set_clip_on(False)
+
+
+def draw_distances(axes, pairs):
+    """Springs that only one body has, over cycles: mean of all pairs of scenes, and of starts in one scene."""
+    cycles = range(len(pairs[0]["springs"]))
+    axes.set(title="springs that only one body has", xlabel="cycles")
+    labels = []
+    for key, name, colour in (("between", "scenes", RED), ("within", "noise", BLUE)):
+        points = []
+        for cycle in cycles:
+            effects = [pair["springs"][cycle] for pair in pairs]
+            values = [effect[key] for effect in effects if effect and effect[key] is not None]
+            if values:
+                points.append((cycle + 1, statistics.fmean(values)))
+        if points:
+            axes.plot(*zip(*points), color=colour, marker="o")
+            labels.append((f"{name} {points[-1][1]:.2f}", points[-1], colour))
+    axes.set_ylim(bottom=0)
+    axes.xaxis.get_major_locator().set_params(integer=True)
+    charts.label_ends(axes, labels)
+
+
+def figure(file):
+    answers = json.loads(file.read_text())
+    # each individual begins a row; a place of the grid for each scene, and one for the distances where there are any
+    rows = [-(-(len(answer["scenes"]) + bool(answer["pairs"])) // COLUMNS) for answer in answers]
+    page, panels = charts.page(COLUMNS * sum(rows), COLUMNS, (2, 1.8), left=0.4, right=0.8)
+    for axes in panels:
+        axes.set_visible(False)
+    first = 0
+    for answer, used in zip(answers, rows):
+        bodies = [scene["starts"][0].get("body") for scene in answer["scenes"]]
+        reach, height = extent(bodies)
+        places = iter(panels[first : first + COLUMNS * used])
+        panels[first].set_title(f"individual {answer['individual']}")
+        # `places` comes last, so that none is taken in vain
+        for scene, body, lines, axes in zip(answer["scenes"], bodies, captions(answer), places):
+            axes.set_visible(True)
+            draw_body(axes, scene, body, lines, reach, height)
+        if answer["pairs"]:
+            axes = next(places)
+            axes.set_visible(True)
+            draw_distances(axes, answer["pairs"])
+        first += COLUMNS * used
+    return page

@@ -1,0 +1,40 @@
+// Writes how soon it is known which springs are stressed.
+#include <iostream>
+
+#include "experiment/device.hpp"
+#include "overlap.hpp"
+#include "settings.hpp"
+
+namespace evodevo::tools::stress {
+namespace {
+
+constexpr double shares[] = {0.5, 0.7, 0.8, 0.9};  // of the springs that are sought
+
+/// The device of the first experiment, in words.
+std::string device_of(const Settings& settings) {
+  const Experiment first =
+      read_experiment({settings.experiments.front(), {{"simulation.device", settings.device, ""}}});
+  return make_simulator(first)->device();
+}
+
+void run(const Settings& settings) {
+  std::filesystem::create_directories(settings.folder);
+  Table table = overlap_table();
+  for (const Case& one : cases(settings.experiments)) {
+    std::cerr << "stress: " << settings.robots << " robots of " << one.scene << '\n';
+    add_rows(one, simulate(one, settings.robots, settings.device), table);
+  }
+  const Table shortest = shortest_cycles(table, shares);
+  write(table, settings.folder);
+  write(shortest, settings.folder);
+  write_origin(settings.folder, settings.command, device_of(settings));
+  std::cout << shortest.csv();
+}
+
+}  // namespace
+}  // namespace evodevo::tools::stress
+
+int main(int argc, char** argv) {
+  using namespace evodevo::tools;
+  return run_program(stress::program, argc, argv, [](const CommandLine& line) { stress::run(stress::parse(line)); });
+}

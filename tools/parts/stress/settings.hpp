@@ -1,0 +1,32 @@
+// What the command line of the study asks for.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/program.hpp"
+
+namespace evodevo::tools::stress {
+
+inline constexpr Program program{
+    "stress",
+#include "stress/help.inc"
+};
+
+struct Settings {
+  std::string command;  ///< the line itself
+  std::filesystem::path folder;
+  std::vector<std::string> experiments;
+  std::size_t robots = 0;
+  std::string device;
+  bool quick = false;
+};
+
+/// The options and where their values go; help.inc describes them.
+boost::program_options::options_description options(Settings& settings);
+
+/// Throws std::invalid_argument or a boost exception that says what is wrong.
+Settings parse(const CommandLine& line);
+
+}  // namespace evodevo::tools::stress
