@@ -21,8 +21,8 @@ std::vector<Verification> verify_best(const Experiment& experiment, Simulator& s
   for (const ArchivedIndividual& individual : individuals)
     champions.push_back(
         {born_again(archive, experiment, individual, simulator.device()), individual.result.objectives.front()});
-  std::vector<Verification> verifications = timed("verifying " + std::to_string(champions.size()) + " individuals",
-                                                  [&] { return verify(experiment, simulator, champions); });
+  std::vector<Verification> verifications =
+      timed("verifying the best individuals", [&] { return verify(experiment, simulator, champions); });
   archive.add_verifications(verifications);
   return verifications;
 }
