@@ -289,7 +289,7 @@ TEST(SlowSteps, AreToldToTheListenerFromBeginToEnd) {
   std::vector<std::string> told;
   set_slow_step_listener([&](std::string_view what, std::optional<double> seconds) {
     told.push_back(std::string(what) + (seconds ? " ends" : " begins"));
-    if (seconds) EXPECT_GE(*seconds, 0);
+    EXPECT_GE(seconds.value_or(0), 0);
   });
   {
     const SlowStep step("compiling");
