@@ -148,13 +148,14 @@ class Completion : public ::testing::Test {
 
   /// What bash offers for the last of these words.
   std::vector<std::string> offered(const std::vector<std::string>& words) const {
-    std::vector<std::string> line = {"bash",
-                                     "-c",
-                                     "cd \"$1\" && source script.bash && shift && COMP_WORDS=(\"$@\") && "
-                                     "COMP_CWORD=$(($# - 1)) && _evodevo \"$1\" && printf '%s\\n' \"${COMPREPLY[@]}\"",
-                                     "bash",
-                                     (scratch_ / "").string(),
-                                     EVODEVO_PROGRAM};
+    std::vector<std::string> line = {
+        "bash",
+        "-c",
+        "cd \"$1\" && source script.bash && shift && COMP_WORDS=(\"$@\") && "
+        "COMP_CWORD=$(($# - 1)) && { _evodevo \"$1\"; printf '%s\\n' \"${COMPREPLY[@]}\"; }",
+        "bash",
+        (scratch_ / "").string(),
+        EVODEVO_PROGRAM};
     line.insert(line.end(), words.begin(), words.end());
     return lines_of(testing::run(line));
   }
@@ -243,8 +244,7 @@ TEST(Manual, IsGoodRoff) {
   const testing::Scratch scratch;
   const std::string file = scratch.write("evodevo.1", evodevo({"man"}).output);
   EXPECT_THAT(lines_of(testing::run({"groff", "-man", "-ww", "-z", "-Tascii", file})), IsEmpty());
-  const std::string shown =
-      testing::run({"sh", "-c", "groff -man -Tascii \"$0\" | sed 's/\x1b\\[[0-9]*m//g'", file}).output;
+  const std::string shown = testing::run({"groff", "-man", "-Tascii", "-P-cbou", file}).output;
   EXPECT_THAT(shown, AllOf(HasSubstr("--allow-other-versions"), HasSubstr("\n       [experiment]\n")));
 }
 
