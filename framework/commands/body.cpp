@@ -1,16 +1,14 @@
 // evodevo body: a body out of a run.
 #include <iostream>
 
-#include "commands/options.hpp"
+#include "commands/commands.hpp"
+#include "commands/shell/options.hpp"
 #include "evolution/record_check.hpp"
 #include "evolution/resimulation.hpp"
-#include "experiment/device.hpp"
 #include "life/body_json.hpp"
 
 namespace evodevo {
 namespace {
-
-namespace po = boost::program_options;
 
 /// A body, or why there is none.
 struct Shown {
@@ -34,23 +32,14 @@ Shown matured(const Evaluation& evaluation, const Newborn& newborn) {
   return {{std::move(living.body), std::move(living.state)}, ""};
 }
 
-}  // namespace
-
-int body_command(const Arguments& arguments) {
-  CommandLine line{"body DIR [--individual ID] [--matured] [--plugin-path P]", {"DIR"}, {}};
-  add_plugin_option(line.options);
-  line.options.add_options()("individual", po::value<std::int64_t>(), "its id; default: the best")(
-      "matured",
-      "as it is after the development cycles of its life, in the motion that it is in then, not as it is born");
-  const auto given = parse(std::move(line), arguments);
-  if (!given) return 0;
-  const Archive archive = Archive::read((*given)["DIR"].as<std::string>());
-  const Experiment experiment = experiment_to_live_again(archive, given_plugin_path(*given));
-  const ArchivedIndividual individual = chosen_individual(archive, *given);
+int body(const Given& given) {
+  const Archive archive = Archive::read(given["DIR"].as<std::string>());
+  const Experiment experiment = experiment_of_run(archive, given);
+  const ArchivedIndividual individual = chosen_individual(archive, given);
   check_genes(archive, experiment, individual);
-  const auto simulator = make_simulator(experiment);
+  const auto simulator = opened_simulator(experiment);
   const Evaluation evaluation(experiment, *simulator);
-  const Shown shown = given->contains("matured")
+  const Shown shown = given.contains("matured")
                           ? matured(evaluation, born_again(archive, experiment, individual, simulator->device()))
                           : newborn(evaluation, individual);
   if (!shown.failure.empty()) {
@@ -59,6 +48,23 @@ int body_command(const Arguments& arguments) {
   }
   std::cout << body_to_json(shown.given, experiment.world.material_names) << '\n';
   return 0;
+}
+
+}  // namespace
+
+Command body_command() {
+  Options options;
+  add_individual_option(options);
+  options.add_options()("matured", "the body after the development cycles, in the motion that it then has");
+  add_plugin_option(options);
+  return {.name = "body",
+          .arguments = {{"DIR"}},
+          .summary = "Print a robot of a run as JSON",
+          .text = {"The JSON has the masses, springs and materials of the newborn body, or with --matured of the "
+                   "developed one, in SI units. `simulate` reads it."},
+          .examples = {"body runs/quickstart-1 > newborn.json", "body runs/quickstart-1 --matured > matured.json"},
+          .options = options,
+          .function = body};
 }
 
 }  // namespace evodevo

@@ -1,39 +1,37 @@
-// The sub-commands of `evodevo`.
+// The commands of `evodevo`.
 #pragma once
 
-#include <atomic>
-#include <string>
+#include <string_view>
 #include <vector>
 
-#include "base/input_error.hpp"
+#include "commands/shell/command.hpp"
 
 namespace evodevo {
 
-using Arguments = std::vector<std::string>;
+Command run_command();
+Command resume_command();
+Command check_command();
+Command show_command();
+Command verify_command();
+Command body_command();
+Command life_command();
+Command simulate_command();
+Command environments_command();
+Command report_command();
+Command film_command();
+Command gallery_command();
+Command operators_command();
+Command describe_command();
+Command new_command();
+Command conform_command();
+Command help_command();
+Command completion_command();
+Command man_command();
 
-/// Every command takes what follows its name and returns the exit code: 0 done, 1 the run or simulation failed, 130
-/// interrupted. Bad input is thrown as UsageError, ConfigError or ArchiveError (exit code 2). What it prints through
-/// std::cout or stdio is checked when it is done (exit code 1).
-int run_command(const Arguments& arguments);
-int resume_command(const Arguments& arguments);
-int check_command(const Arguments& arguments);
-int verify_command(const Arguments& arguments);
-int show_command(const Arguments& arguments);
-int body_command(const Arguments& arguments);
-int life_command(const Arguments& arguments);
-int simulate_command(const Arguments& arguments);
-int environments_command(const Arguments& arguments);
-int operators_command(const Arguments& arguments);
-int describe_command(const Arguments& arguments);
-int new_command(const Arguments& arguments);
-int conform_command(const Arguments& arguments);
-int report_command(const Arguments& arguments);
-int gallery_command(const Arguments& arguments);
-int film_command(const Arguments& arguments);
+/// All of them, in the order in which help lists them.
+const std::vector<Command>& commands();
 
-/// A command line that does not make sense.
-struct UsageError : InputError {
-  using InputError::InputError;
-};
+/// Throws UsageError where there is none of this name.
+const Command& command_named(std::string_view name);
 
 }  // namespace evodevo

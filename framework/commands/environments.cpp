@@ -3,132 +3,22 @@
 #include <cstdio>
 #include <iostream>
 #include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "base/json_text.hpp"
 #include "base/text.hpp"
-#include "commands/options.hpp"
-#include "environments/body_distance.hpp"
-#include "environments/scene_effect.hpp"
+#include "commands/commands.hpp"
+#include "commands/shell/notices.hpp"
+#include "commands/shell/options.hpp"
+#include "environments/experiment_difference.hpp"
+#include "environments/scene_study.hpp"
 #include "evolution/breeding.hpp"
 #include "evolution/record_check.hpp"
-#include "experiment/device.hpp"
-#include "experiment/toml_reader.hpp"
-#include "life/body_json.hpp"
-#include "life/perturbation.hpp"
 
 namespace evodevo {
 namespace {
 
 using Json = nlohmann::ordered_json;
-namespace po = boost::program_options;
-
-/// What became of the genome after one start.
-struct Grown {
-  Status status = Status::ok;
-  std::string reason;
-  std::vector<GrownBody> after;  ///< each cycle that it lived through
-  GivenBody matured = {};        ///< unless it failed
-};
-
-/// A scene and what grew in it from each start, the first without noise.
-struct Environment {
-  std::string name;
-  double slope = 0;  ///< degrees
-  std::vector<std::string> materials;
-  std::vector<Grown> grown;
-};
-
-Environment grow(const Experiment& experiment, const Individual& individual, std::uint32_t starts) {
-  const auto simulator = make_simulator(experiment);
-  const Evaluation evaluation(experiment, *simulator);
-  const std::vector<Newborn> newborns(starts, {individual.id, individual.born, &individual.genome});
-  std::vector<Life> lives = evaluation.birth(newborns);
-  std::vector<GrowthObserver> observers(starts, GrowthObserver(lives.front().living.body));
-  for (std::uint32_t start = 1; start < starts; ++start)
-    if (Life& life = lives[start]; life.alive()) {
-      disturb(life, experiment, start - 1);
-      evaluation.choose_step(life);
-    }
-  Environment environment{
-      .name = experiment.name, .materials = experiment.world.material_names, .grown = std::vector<Grown>(starts)};
-  if (experiment.scene.gravity) environment.slope = experiment.scene.gravity->slope;
-  evaluation.develop(lives, [&](double) {
-    for (std::size_t i = 0; i < lives.size(); ++i)
-      if (const Life& life = lives[i]; life.alive())
-        environment.grown[i].after.push_back(observers[i].after_cycle(life));
-  });
-  for (std::size_t i = 0; i < lives.size(); ++i) {
-    environment.grown[i].status = lives[i].result.status;
-    environment.grown[i].reason = lives[i].result.reason;
-    LivingBody& living = lives[i].living;
-    environment.grown[i].matured = {std::move(living.body), std::move(living.state)};
-  }
-  return environment;
-}
-
-using Distance = double (*)(const GrownBody&, const GrownBody&);
-
-struct Kind {
-  const char* name;
-  const char* title;
-  Distance distance;
-};
-
-constexpr Kind kinds[] = {{"springs", "springs that only one body has", spring_distance},
-                          {"mass", "how far mass lies apart, body lengths at birth", mass_distance}};
-
-/// The bodies that are left after a cycle, counted from 0.
-std::vector<const GrownBody*> bodies_after(std::size_t cycle, const Environment& environment) {
-  std::vector<const GrownBody*> bodies;
-  for (const Grown& grown : environment.grown)
-    if (cycle < grown.after.size()) bodies.push_back(&grown.after[cycle]);
-  return bodies;
-}
-
-/// None where a scene has no body left.
-std::optional<SceneEffect> compare(const Environment& a, const Environment& b, std::size_t cycle, Distance distance) {
-  std::vector<const GrownBody*> bodies = bodies_after(cycle, a);
-  const std::vector<const GrownBody*> others = bodies_after(cycle, b);
-  const std::size_t first = bodies.size();
-  if (first == 0 || others.empty()) return std::nullopt;
-  bodies.insert(bodies.end(), others.begin(), others.end());
-  std::vector<std::vector<double>> distances(bodies.size(), std::vector<double>(bodies.size()));
-  for (std::size_t i = 0; i < bodies.size(); ++i)
-    for (std::size_t j = i + 1; j < bodies.size(); ++j) distances[i][j] = distance(*bodies[i], *bodies[j]);
-  return scene_effect(distances, first);
-}
-
-/// Two scenes and how far what grew in them is apart after each cycle, by each of `kinds`.
-struct Pair {
-  std::size_t a, b;
-  std::vector<std::optional<SceneEffect>> effects[std::size(kinds)];
-};
-
-/// One genome in all scenes.
-struct Answer {
-  std::uint32_t individual;
-  std::vector<Environment> environments;
-  std::vector<Pair> pairs;
-};
-
-Answer answer_of(const std::vector<Experiment>& experiments, const Individual& individual, std::uint32_t starts,
-                 std::size_t cycles) {
-  Answer answer{individual.id, {}, {}};
-  auto& environments = answer.environments;
-  for (const Experiment& experiment : experiments) environments.push_back(grow(experiment, individual, starts));
-  for (std::size_t a = 0; a < environments.size(); ++a)
-    for (std::size_t b = a + 1; b < environments.size(); ++b) {
-      Pair& pair = answer.pairs.emplace_back(Pair{a, b, {}});
-      for (std::size_t kind = 0; kind < std::size(kinds); ++kind)
-        for (std::size_t cycle = 0; cycle < cycles; ++cycle)
-          pair.effects[kind].push_back(compare(environments[a], environments[b], cycle, kinds[kind].distance));
-    }
-  for (Environment& environment : environments)
-    for (Grown& grown : environment.grown) grown.after.clear();  // there are too many to keep them all
-  return answer;
-}
 
 void print(const std::optional<SceneEffect>& effect) {
   if (!effect)
@@ -139,27 +29,27 @@ void print(const std::optional<SceneEffect>& effect) {
     std::printf("  %6.4f/%6.4f %6.4f", effect->between, *effect->within, *effect->p);
 }
 
-void print(const Answer& answer, std::size_t kind, std::size_t cycles) {
-  std::printf("\n%s\n%-32s", kinds[kind].title, "");
+void print(const SceneStudy& study, std::size_t measure, std::size_t cycles) {
+  std::printf("\n%s\n%-32s", body_distances[measure].title, "");
   for (std::size_t cycle = 1; cycle <= cycles; ++cycle) std::printf("        after cycle %2zu", cycle);
   std::printf("\n");
-  for (const Pair& pair : answer.pairs) {
-    std::printf("%-15s %-16s", answer.environments[pair.a].name.c_str(), answer.environments[pair.b].name.c_str());
-    for (const auto& effect : pair.effects[kind]) print(effect);
+  for (const ScenePair& pair : study.pairs) {
+    std::printf("%-15s %-16s", study.environments[pair.a].name.c_str(), study.environments[pair.b].name.c_str());
+    for (const auto& effect : pair.effects[measure]) print(effect);
     std::printf("\n");
   }
 }
 
-void print(const std::vector<Answer>& answers, std::size_t cycles) {
+void print(const std::vector<SceneStudy>& studies, std::size_t cycles) {
   std::printf("between two scenes / by start noise in one of them (means), and p of a permutation test\n");
-  for (const Answer& answer : answers) {
-    std::printf("\nindividual %u\n", answer.individual);
-    for (const Environment& environment : answer.environments)
+  for (const SceneStudy& study : studies) {
+    std::printf("\nindividual %u\n", study.individual);
+    for (const Environment& environment : study.environments)
       for (std::size_t start = 0; start < environment.grown.size(); ++start)
         if (const Grown& grown = environment.grown[start]; grown.status != Status::ok)
           std::printf("%-15s %s from start %zu: %s\n", environment.name.c_str(), name(grown.status), start,
                       grown.reason.c_str());
-    for (std::size_t kind = 0; kind < std::size(kinds); ++kind) print(answer, kind, cycles);
+    for (std::size_t measure = 0; measure < body_distances.size(); ++measure) print(study, measure, cycles);
   }
 }
 
@@ -179,51 +69,15 @@ Json to_json(const std::optional<SceneEffect>& effect) {
   return {{"between", effect->between}, {"within", known(effect->within)}, {"p", known(effect->p)}};
 }
 
-Json to_json(const Answer& answer) {
+Json to_json(const SceneStudy& study) {
   Json scenes = Json::array(), pairs = Json::array();
-  for (const Environment& environment : answer.environments) scenes.push_back(to_json(environment));
-  for (const Pair& pair : answer.pairs) {
+  for (const Environment& environment : study.environments) scenes.push_back(to_json(environment));
+  for (const ScenePair& pair : study.pairs) {
     Json& written = pairs.emplace_back(Json{{"scenes", {pair.a, pair.b}}});
-    for (std::size_t kind = 0; kind < std::size(kinds); ++kind)
-      for (const auto& effect : pair.effects[kind]) written[kinds[kind].name].push_back(to_json(effect));
+    for (std::size_t measure = 0; measure < body_distances.size(); ++measure)
+      for (const auto& effect : pair.effects[measure]) written[body_distances[measure].name].push_back(to_json(effect));
   }
-  return {{"individual", answer.individual}, {"scenes", std::move(scenes)}, {"pairs", std::move(pairs)}};
-}
-
-/// Values of a resolved experiment by their full keys, as messages show them.
-using Values = std::map<std::string, std::string>;
-
-void collect(const toml::node& node, const std::string& key, Values& values) {
-  if (const toml::table* table = node.as_table())
-    for (const auto& [name, item] : *table) collect(item, key + "." + std::string(name.str()), values);
-  else if (const toml::array* array = node.as_array(); array != nullptr && array->is_array_of_tables())
-    for (std::size_t i = 0; i < array->size(); ++i) collect((*array)[i], key + "." + std::to_string(i), values);
-  else
-    values[key] = value_text(node);
-}
-
-Values values(const Experiment& experiment, std::initializer_list<const char*> tables) {
-  const toml::table resolved = parse_toml(experiment.resolved, experiment.name);
-  Values values;
-  for (const char* table : tables)
-    if (const toml::node* node = resolved.get(table)) collect(*node, table, values);
-  return values;
-}
-
-/// "simulation.dt is 0.001, in the first experiment 0.0005" of the first value that differs; empty where none does.
-std::string difference(const Experiment& experiment, const Experiment& first,
-                       std::initializer_list<const char*> tables) {
-  const Values here = values(experiment, tables), there = values(first, tables);
-  const auto value = [](const Values& values, const std::string& key) {
-    const auto found = values.find(key);
-    return found == values.end() ? "absent" : found->second;
-  };
-  Values all = here;
-  all.insert(there.begin(), there.end());
-  for (const auto& [key, _] : all)
-    if (value(here, key) != value(there, key))
-      return key + " is " + value(here, key) + ", in the first experiment " + value(there, key);
-  return {};
+  return {{"individual", study.individual}, {"scenes", std::move(scenes)}, {"pairs", std::move(pairs)}};
 }
 
 /// One genome must mean the same in all scenes.
@@ -239,12 +93,12 @@ void warn_of_other_differences(const Experiment& experiment, const std::string& 
                 << "; bodies may differ by it, whatever the scene\n";
 }
 
-std::vector<Experiment> read_experiments(const std::vector<std::string>& files, const po::variables_map& given) {
+std::vector<Experiment> read_experiments(const std::vector<std::string>& files, const Given& given) {
   std::vector<Experiment> experiments;
   for (const std::string& file : files) {
-    experiments.push_back(read_experiment(experiment_source(file, given)));
+    experiments.push_back(given_experiment(file, given));
     if (experiments.back().development.cycles == 0)
-      throw ConfigError(file + ": development.cycles: there are none, so that nothing grows; give 1 or more");
+      throw ConfigError(file + ": development.cycles: is 0, so that nothing grows; give 1 or more");
     expect_same_meaning(experiments.back(), file, experiments.front());
     warn_of_other_differences(experiments.back(), file, experiments.front());
   }
@@ -260,7 +114,7 @@ Individual random_individual(const Experiment& experiment, std::int64_t id) {
 
 /// Individuals of a run, or else random ones. The experiments get the seed that goes with them, so that development
 /// draws the same random numbers everywhere.
-std::vector<Individual> chosen_genomes(std::vector<Experiment>& experiments, const po::variables_map& given) {
+std::vector<Individual> chosen_genomes(std::vector<Experiment>& experiments, const Given& given) {
   const auto ids =
       given.contains("individual") ? given["individual"].as<std::vector<std::int64_t>>() : std::vector<std::int64_t>();
   std::vector<Individual> genomes;
@@ -280,40 +134,53 @@ std::vector<Individual> chosen_genomes(std::vector<Experiment>& experiments, con
   return genomes;
 }
 
-}  // namespace
-
-int environments_command(const Arguments& arguments) {
-  CommandLine line{"environments EXPERIMENT.toml... [options]", {}, {}};
-  line.options.add_options()("experiments", po::value<std::vector<std::string>>(),
-                             "what the genome grows in; all with the same encoding")(
-      "run", po::value<std::string>(), "folder of the run that the genome comes from; default: a random genome")(
-      "individual", po::value<std::vector<std::int64_t>>(),
-      "its id in the run; default: the best. Without a run, which of the random ones; default: 0. May be repeated")(
-      "starts", po::value<std::int64_t>()->default_value(6),
-      "starts in each scene: one as the body is born, the others with masses moved at random by up to 1e-4 of its "
-      "size")("json", "machine-readable, with all bodies");
-  add_experiment_options(line.options);
-  line.repeated = "experiments";
-  const auto given = parse(std::move(line), arguments);
-  if (!given) return 0;
-  if (!given->contains("experiments")) throw UsageError("environments: give experiments, FILE.toml");
-  const auto starts = (*given)["starts"].as<std::int64_t>();
+int environments(const Given& given) {
+  const auto starts = given["starts"].as<std::int64_t>();
   if (starts < 1 || starts > 50) throw UsageError("--starts " + std::to_string(starts) + ": expected 1 to 50");
-  auto experiments = read_experiments((*given)["experiments"].as<std::vector<std::string>>(), *given);
+  auto experiments = read_experiments(given["EXPERIMENT.toml"].as<std::vector<std::string>>(), given);
   std::size_t cycles = std::numeric_limits<std::size_t>::max();  // that all have
   for (const Experiment& experiment : experiments)
     cycles = std::min(cycles, static_cast<std::size_t>(experiment.development.cycles));
-  std::vector<Answer> answers;
-  for (const Individual& individual : chosen_genomes(experiments, *given))
-    answers.push_back(answer_of(experiments, individual, static_cast<std::uint32_t>(starts), cycles));
-  if (!given->contains("json")) {
-    print(answers, cycles);
+  std::vector<SceneStudy> studies;
+  for (const Individual& individual : chosen_genomes(experiments, given))
+    studies.push_back(timed("growing individual " + std::to_string(individual.id) + " in all scenes", [&] {
+      return study_scenes(experiments, {individual.id, individual.born, &individual.genome},
+                          static_cast<std::uint32_t>(starts), cycles);
+    }));
+  if (!given.contains("json")) {
+    print(studies, cycles);
     return 0;
   }
   Json written = Json::array();
-  for (const Answer& answer : answers) written.push_back(to_json(answer));
+  for (const SceneStudy& study : studies) written.push_back(to_json(study));
   std::cout << json_text(written) << '\n';
   return 0;
+}
+
+}  // namespace
+
+Command environments_command() {
+  Options options;
+  options.add_options()("run", value<std::string>("DIR"),
+                        "the run that the genome comes from; default: a random genome")(
+      "individual", values<std::int64_t>("ID"),
+      "the individual of the run; default: the best. Without a run, which of the random individuals; default: 0. May "
+      "be repeated")("starts", value<std::int64_t>("N")->default_value(6),
+                     "starts in each scene: one as the body is born, the others with masses moved at random by up to "
+                     "1e-4 of its size")("json", "print JSON, with all bodies");
+  add_experiment_options(options);
+  return {
+      .name = "environments",
+      .arguments = {{"EXPERIMENT.toml", Count::one_or_more}},
+      .summary = "Compare the bodies that one genome grows in several scenes",
+      .text = {"The genome develops in the scene of each experiment, several times with start noise. The table has, "
+               "for each pair of scenes and each cycle, the mean distance between the bodies of the two scenes, the "
+               "mean distance by start noise within them, and p of a permutation test. All experiments need the "
+               "same [encoding] and [materials]."},
+      .examples = {"environments experiments/environments/*.toml --individual 1 --individual 2",
+                   "environments experiments/environments/*.toml --run runs/quickstart-1 --json > environments.json"},
+      .options = options,
+      .function = environments};
 }
 
 }  // namespace evodevo

@@ -2,148 +2,20 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "base/json_text.hpp"
 #include "base/text.hpp"
-#include "commands/options.hpp"
+#include "commands/commands.hpp"
+#include "commands/shell/notices.hpp"
+#include "commands/shell/options.hpp"
 #include "evolution/resimulation.hpp"
-#include "experiment/device.hpp"
+#include "report/life_events.hpp"
 
 namespace evodevo {
 namespace {
 
 using Json = nlohmann::ordered_json;
-namespace po = boost::program_options;
-
-/// A devo operator as a life tells of it.
-struct Narrated {
-  std::string name;
-  const Experiment* experiment = nullptr;
-  std::size_t index = 0;    ///< among the experiment's devo operators
-  bool is_tallied = false;  ///< whether stress is in points of skip-shift
-  bool is_unique = true;    ///< among the names of the experiment's devo operators
-
-  Measure measure(Causes::List list) const {
-    const Measure measure = call_operator(*experiment, Devo::kind, index, {}, [&] {
-      return experiment->development.operators.at(index).op->measure(list);
-    });
-    if (is_tallied && measure.unit == "N") return {"skip-shift", "points"};
-    return {printable(measure.name), printable(measure.unit)};
-  }
-};
-
-std::vector<Narrated> narrated_operators(const Experiment& experiment) {
-  std::vector<Narrated> operators;
-  for (const OperatorUse& use : experiment.uses) {
-    if (use.kind != Devo::kind) continue;
-    const std::size_t index = operators.size();
-    const bool tallied = experiment.development.probe == Probe::skip_shift && devo_request(experiment, index).stress;
-    Narrated& narrated = operators.emplace_back(
-        Narrated{.name = use.name, .experiment = &experiment, .index = index, .is_tallied = tallied});
-    for (Narrated& other : std::span(operators).first(operators.size() - 1))
-      if (other.name == use.name) other.is_unique = narrated.is_unique = false;
-  }
-  return operators;
-}
-
-/// The number that led to an edit.
-struct Cause {
-  Causes::List list;  ///< which says in what the operator measures
-  double number;
-};
-
-/// Nothing where there is no number.
-std::optional<Cause> cause_at(const Causes& causes, Causes::List list, std::size_t index) {
-  const std::vector<double>& numbers = causes.*list;
-  return numbers.empty() || std::isnan(numbers[index]) ? std::nullopt : std::optional(Cause{list, numbers[index]});
-}
-
-/// What happened to one mass or spring, or to all springs that grow.
-struct Event {
-  std::uint32_t cycle = 0;
-  std::optional<std::uint32_t> op;    ///< place among the devo operators; none: it was torn off
-  const char* what = "";              ///< "gone", "come", "changed" or "growth"
-  std::vector<std::uint32_t> masses;  ///< the mass's number, or those of the two that the spring joins; of growth none
-  std::optional<Growth> growth;
-  std::optional<Cause> cause;         ///< only of what the operator names itself
-  std::optional<Vec3> place;          ///< of a new mass, m
-  std::optional<double> rest_length;  ///< of a spring that comes or changes, m
-  std::optional<Material> material;   ///< likewise
-
-  bool is_spring() const { return masses.size() == 2; }
-};
-
-/// What happened in a life, as its changes are added in their order.
-class EventLog {
- public:
-  explicit EventLog(Body born) : body_(std::move(born)), masses_(body_.masses.size()) {}
-
-  void add(const Change& change) {
-    const Edits& edits = change.edits;
-    if (edits.growth) add_event(change, "growth", {}).growth = edits.growth;
-    add_removals(change);
-    for (std::size_t i = 0; i < edits.changed_springs.size(); ++i) {
-      const ChangedSpring& spring = edits.changed_springs[i];
-      Event& event = add_event(change, "changed", ends(spring.spring));
-      event.cause = cause_at(edits.causes, &Causes::changed_springs, i);
-      event.rest_length = spring.rest_length;
-      event.material = spring.material;
-    }
-    for (std::size_t i = 0; i < edits.new_masses.size(); ++i) {
-      Event& event = add_event(change, "come", {masses_.add()});
-      event.cause = cause_at(edits.causes, &Causes::new_masses, i);
-      event.place = edits.new_masses[i].place;
-    }
-    for (std::size_t i = 0; i < edits.new_springs.size(); ++i) {
-      const NewSpring& spring = edits.new_springs[i];
-      Event& event = add_event(change, "come", {number(spring.a), number(spring.b)});
-      event.cause = cause_at(edits.causes, &Causes::new_springs, i);
-      event.rest_length = spring.rest_length;
-      event.material = spring.material;
-    }
-    masses_.remove(edits.removed_masses);
-    replay(body_, change);
-  }
-
-  const Body& body() const { return body_; }
-  const std::vector<Event>& events() const { return events_; }
-
- private:
-  Event& add_event(const Change& change, const char* what, std::vector<std::uint32_t> masses) {
-    return events_.emplace_back(
-        Event{.cycle = change.cycle, .op = change.op, .what = what, .masses = std::move(masses)});
-  }
-
-  void add_removals(const Change& change) {
-    const Edits& edits = change.edits;
-    std::map<std::uint32_t, std::optional<Cause>> gone;
-    const auto goes = [&](std::uint32_t mass) {
-      return std::binary_search(edits.removed_masses.begin(), edits.removed_masses.end(), mass);
-    };
-    for (std::uint32_t s = 0; s < body_.springs.size(); ++s)
-      if (goes(body_.springs[s].a) || goes(body_.springs[s].b)) gone[s] = std::nullopt;
-    for (std::size_t i = 0; i < edits.removed_springs.size(); ++i)
-      gone[edits.removed_springs[i]] = cause_at(edits.causes, &Causes::removed_springs, i);
-    for (std::size_t i = 0; i < edits.removed_masses.size(); ++i)
-      add_event(change, "gone", {number(edits.removed_masses[i])}).cause =
-          cause_at(edits.causes, &Causes::removed_masses, i);
-    for (const auto& [spring, cause] : gone) add_event(change, "gone", ends(spring)).cause = cause;
-  }
-
-  std::vector<std::uint32_t> ends(std::uint32_t index) const {
-    const Spring& spring = body_.springs.at(index);
-    return {number(spring.a), number(spring.b)};
-  }
-
-  std::uint32_t number(std::uint32_t mass) const { return masses_.numbers().at(mass); }
-
-  Body body_;
-  MassNumbers masses_;  ///< of `body_`
-  std::vector<Event> events_;
-};
 
 constexpr const char* by_none = "torn off";
 
@@ -207,24 +79,22 @@ void print(const Event& event, const std::vector<Narrated>& operators) {
   std::printf("\n");
 }
 
-/// What is told of an individual of a run: its life, lived again.
+/// What is told of an individual of a run, whose life is simulated again.
 class LifeReport {
  public:
-  LifeReport(const Archive& archive, const ArchivedIndividual& individual,
-             std::vector<std::filesystem::path> plugin_path)
+  LifeReport(const Archive& archive, const ArchivedIndividual& individual, const Given& given)
       : individual_(individual),
-        experiment_(experiment_to_live_again(archive, std::move(plugin_path))),
+        experiment_(experiment_of_run(archive, given)),
         operators_(narrated_operators(experiment_)) {
-    const auto simulator = make_simulator(experiment_);
+    const auto simulator = opened_simulator(experiment_);
     const Evaluation evaluation(experiment_, *simulator);
     const Newborn newborn = born_again(archive, experiment_, individual_, simulator->device());
     std::vector<Life> lives = evaluation.birth({&newborn, 1});
     born_ = lives.front().living.body;
-    evaluation.develop(lives, [](double) {});
-    EventLog log(born_);
-    for (const Change& change : lives.front().result.record.changes()) log.add(change);
-    matured_ = log.body();
-    events_ = log.events();
+    timed("simulating the development again", [&] { evaluation.develop(lives, [](double) {}); });
+    LifeEvents told = life_events(born_, lives.front().result.record);
+    matured_ = std::move(told.matured);
+    events_ = std::move(told.events);
   }
 
   void print() const {
@@ -269,22 +139,33 @@ class LifeReport {
   std::vector<Event> events_;
 };
 
-}  // namespace
-
-int life_command(const Arguments& arguments) {
-  CommandLine line{"life DIR [--individual ID] [--json] [--plugin-path P]", {"DIR"}, {}};
-  line.options.add_options()("individual", po::value<std::int64_t>(), "its id; default: the best")("json",
-                                                                                                   "machine-readable");
-  add_plugin_option(line.options);
-  const auto given = parse(std::move(line), arguments);
-  if (!given) return 0;
-  const Archive archive = Archive::read((*given)["DIR"].as<std::string>());
-  const LifeReport report(archive, chosen_individual(archive, *given), given_plugin_path(*given));
-  if (given->contains("json"))
+int life(const Given& given) {
+  const Archive archive = Archive::read(given["DIR"].as<std::string>());
+  const LifeReport report(archive, chosen_individual(archive, given), given);
+  if (given.contains("json"))
     std::cout << json_text(report.json()) << '\n';
   else
     report.print();
   return 0;
+}
+
+}  // namespace
+
+Command life_command() {
+  Options options;
+  add_individual_option(options);
+  options.add_options()("json", "print JSON");
+  add_plugin_option(options);
+  return {
+      .name = "life",
+      .arguments = {{"DIR"}},
+      .summary = "Tell how the body of a robot developed",
+      .text = {"It simulates the development again and prints every mass and spring that came, changed or went: after "
+               "which cycle, by which operator, and the number that caused it. Masses keep their numbers; a spring "
+               "is named by the two masses that it joins."},
+      .examples = {"life runs/quickstart-1", "life runs/quickstart-1 --individual 531 --json"},
+      .options = options,
+      .function = life};
 }
 
 }  // namespace evodevo

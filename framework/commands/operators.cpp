@@ -5,7 +5,9 @@
 
 #include "base/json_text.hpp"
 #include "base/text.hpp"
-#include "commands/options.hpp"
+#include "commands/commands.hpp"
+#include "commands/shell/notices.hpp"
+#include "commands/shell/options.hpp"
 #include "operators/describe.hpp"
 #include "operators/reference.hpp"
 
@@ -13,7 +15,6 @@ namespace evodevo {
 namespace {
 
 using Json = nlohmann::ordered_json;
-namespace po = boost::program_options;
 
 Json parameters_json(const std::vector<ParameterDescription>& parameters) {
   Json list = Json::array();
@@ -40,7 +41,7 @@ void print_description(const AvailableOperator& available) {
 }
 
 /// The kind that --kind names; empty for all.
-std::string given_kind(const po::variables_map& given) {
+std::string given_kind(const Given& given) {
   if (!given.contains("kind")) return "";
   const auto kind = given["kind"].as<std::string>();
   static const std::vector<std::string> kinds(operator_kinds.begin(), operator_kinds.end());
@@ -82,47 +83,36 @@ void print_failed(const Registry& registry, bool as_json) {
   if (as_json) std::cout << json_text(list) << '\n';
 }
 
-}  // namespace
+Registry registry_for(const Given& given) {
+  return timed("loading all operators", [&] { return Registry(plugin_search_path(given_plugin_path(given))); });
+}
 
-int operators_command(const Arguments& arguments) {
-  CommandLine line{"operators [--kind KIND] [--failed] [--json | --markdown] [--plugin-path P]", {}, {}};
-  line.options.add_options()("kind", po::value<std::string>(),
-                             "encoding, mutation, crossover, devo, fitness or selection")(
-      "failed", "the libraries that cannot be used, and why")("json", "machine-readable, with all parameters")(
-      "markdown", "the reference page of all operators and parameters");
-  add_plugin_option(line.options);
-  const auto given = parse(std::move(line), arguments);
-  if (!given) return 0;
-  const std::string kind = given_kind(*given);
-  const Registry registry(plugin_search_path(given_plugin_path(*given)));
-  if (given->contains("failed")) {
-    print_failed(registry, given->contains("json"));
+int operators(const Given& given) {
+  const std::string kind = given_kind(given);
+  const Registry registry = registry_for(given);
+  if (given.contains("failed")) {
+    print_failed(registry, given.contains("json"));
     return 0;
   }
-  if (given->contains("markdown"))
+  if (given.contains("markdown"))
     std::cout << reference_page(registry);
   else
-    print_operators(registry, kind, given->contains("json"));
+    print_operators(registry, kind, given.contains("json"));
   if (!registry.failed().empty())
-    std::cerr << "warning: " << registry.failed().size() << " not usable; see `" << program_name()
+    std::cerr << "warning: " << registry.failed().size() << " libraries cannot be used; see `" << program_name()
               << " operators --failed`\n";
   return 0;
 }
 
-int describe_command(const Arguments& arguments) {
-  CommandLine line{"describe OPERATOR [--markdown] [--plugin-path P]", {"OPERATOR"}, {}};
-  line.options.add_options()("markdown", "as a section of a Markdown page");
-  add_plugin_option(line.options);
-  const auto given = parse(std::move(line), arguments);
-  if (!given) return 0;
-  const auto wanted = (*given)["OPERATOR"].as<std::string>();
-  const Registry registry(plugin_search_path(given_plugin_path(*given)));
+int describe(const Given& given) {
+  const auto wanted = given["OPERATOR"].as<std::string>();
+  const Registry registry = registry_for(given);
   std::vector<std::string> names;
   bool found = false;
   for (const AvailableOperator& available : registry.operators()) {
     names.emplace_back(available.entry->name);
     if (wanted != available.entry->name) continue;
-    if (given->contains("markdown"))
+    if (given.contains("markdown"))
       std::cout << reference_of(available, 2);
     else
       print_description(available);
@@ -130,6 +120,37 @@ int describe_command(const Arguments& arguments) {
   }
   if (!found) throw UsageError("no operator is called \"" + printable(wanted) + "\"" + suggestion(wanted, names));
   return 0;
+}
+
+}  // namespace
+
+Command operators_command() {
+  Options options;
+  options.add_options()("kind", value<std::string>("KIND"),
+                        "only encoding, mutation, crossover, devo, fitness or selection operators")(
+      "failed", "the libraries that cannot be used, and why")("json", "print JSON, with all parameters")(
+      "markdown", "print the reference page of all operators and parameters");
+  add_plugin_option(options);
+  return {.name = "operators",
+          .arguments = {},
+          .summary = "List the operators that experiments can name",
+          .text = {"`help plugins` says where they are looked for."},
+          .examples = {"operators --kind devo", "operators --failed"},
+          .options = options,
+          .function = operators};
+}
+
+Command describe_command() {
+  Options options;
+  options.add_options()("markdown", "print a section of a Markdown page");
+  add_plugin_option(options);
+  return {.name = "describe",
+          .arguments = {{"OPERATOR"}},
+          .summary = "Explain an operator and its parameters",
+          .text = {"Each parameter stands there with its default, its range, its unit and what it does."},
+          .examples = {"describe spring-turnover"},
+          .options = options,
+          .function = describe};
 }
 
 }  // namespace evodevo

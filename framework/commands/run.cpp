@@ -5,9 +5,12 @@
 #include <iostream>
 
 #include "base/text.hpp"
-#include "commands/options.hpp"
-#include "commands/progress.hpp"
-#include "commands/verification_report.hpp"
+#include "commands/commands.hpp"
+#include "commands/shell/builds.hpp"
+#include "commands/shell/notices.hpp"
+#include "commands/shell/options.hpp"
+#include "commands/shell/progress.hpp"
+#include "commands/shell/verification_report.hpp"
 #include "evolution/evolution.hpp"
 #include "evolution/record_check.hpp"
 #include "experiment/device.hpp"
@@ -19,7 +22,6 @@ namespace evodevo {
 namespace {
 
 namespace fs = std::filesystem;
-namespace po = boost::program_options;
 
 constexpr int interrupted = 130;
 
@@ -67,14 +69,14 @@ std::string state_of(const Archive& archive) {
          resume_command_for(archive) + " goes on from there";
 }
 
-void add_journal_option(po::options_description& options) {
-  options.add_options()("journal", po::value<std::string>(),
-                        "how SQLite keeps what is being written: wal, by which nobody waits for anybody, or delete, "
-                        "which works on file systems of other machines too; default: what the file system bears");
+void add_journal_option(Options& options) {
+  options.add_options()("journal", value<std::string>("wal|delete"),
+                        "how SQLite keeps what is being written: with wal nobody waits for anybody, delete also works "
+                        "on file systems of other machines; default: what the file system can do");
 }
 
 /// Throws UsageError.
-std::optional<Journal> given_journal(const po::variables_map& given) {
+std::optional<Journal> given_journal(const Given& given) {
   if (!given.contains("journal")) return std::nullopt;
   const auto text = given["journal"].as<std::string>();
   const auto journal = journal_named(text);
@@ -94,52 +96,10 @@ void print_warnings(const Experiment& experiment) {
     std::cerr << "warning: " << printable(warning, InputError::longest_message) << '\n';
 }
 
-std::string title(const OperatorUse& use) { return use.kind + " operator \"" + use.name + "\" " + use.version; }
-
-std::string title(const Maker& maker) { return "evodevo " + maker.version + " (" + maker.program + ")"; }
-
-/// Calls `report(then, now)` for each operator whose library is not the one that the run began with.
-template <class Report>
-void for_each_changed_operator(const Experiment& experiment, const Maker& first, const Report& report) {
-  const std::vector<OperatorUse>& past = first.operators;
-  // a run uses the operators of its own record, in the same order
-  for (std::size_t i = 0; i < past.size() && i < experiment.uses.size(); ++i)
-    if (past[i].hash != experiment.uses[i].hash) report(past[i], experiment.uses[i]);
-}
-
-/// Says where the run goes on elsewhere than it began, which may change results.
-void warn_of_another_device(const Simulator& simulator, const Archive& archive) {
-  if (const std::string before = archive.makers().front().device; before != simulator.device())
-    std::cerr << "warning: the run began on " << before << " and goes on on " << simulator.device()
-              << "; results may differ, at first in the last bit\n";
-}
-
-/// Another build of the same version may do the same; another version says that it does not.
-void refuse_other_versions(const Experiment& experiment, const Archive& archive) {
-  for_each_changed_operator(experiment, archive.makers().front(), [&](const OperatorUse& then, const OperatorUse& now) {
-    if (then.version == now.version) return;
-    throw ArchiveError(archive.folder().string() + ": began with " + title(then) + ", but " + now.file.string() +
-                       " is version " + now.version + "; put back the version that it began with (it was " +
-                       then.file.string() + "), or go on with --allow-other-versions");
-  });
-}
-
 }  // namespace
 
-void warn_of_other_builds(const Experiment& experiment, const Simulator& simulator, const Archive& archive) {
-  const auto warn = [](const auto& then, const auto& now, const std::string& which) {
-    std::cerr << "warning: the run began with " << title(then) << ", now it is "
-              << (then.version == now.version ? "another build of it" : "version " + now.version) << ", " << which
-              << "; results may differ\n";
-  };
-  const Maker first = archive.makers().front(), here = this_maker(experiment, simulator.device());
-  if (first.program != here.program) warn(first, here, here.program);
-  for_each_changed_operator(
-      experiment, first, [&](const OperatorUse& then, const OperatorUse& now) { warn(then, now, now.file.string()); });
-}
-
 int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive) {
-  std::cout << experiment.name << " on " << simulator.device() << ", " << simulator.workers().count()
+  remarks() << experiment.name << " on " << simulator.device() << ", " << simulator.workers().count()
             << " threads; writing " << archive.folder().string() << std::endl;
   stop_on_interrupt();
   ProgressDisplay progress(experiment, archive.generations(), stop_requested);
@@ -157,7 +117,7 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
   if (is_finished(experiment, archive.generations())) {
     const auto count = static_cast<std::size_t>(experiment.verify);
     if (count > 0)
-      std::cout << "verifying the best " << count << "; Ctrl-C leaves that to `" << program_name() << " verify "
+      remarks() << "verifying the best " << count << "; Ctrl-C leaves that to `" << program_name() << " verify "
                 << archive.folder().string() << "`" << std::endl;
     end_on_interrupt();
     for (const Verification& verification : verify_best(experiment, simulator, archive, count))
@@ -168,51 +128,86 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
   return interrupted;
 }
 
-int run_command(const Arguments& arguments) {
-  CommandLine line{"run EXPERIMENT.toml [options]", {"EXPERIMENT.toml"}, {}};
-  line.options.add_options()("out", po::value<std::string>(), "folder for the run; default: a new one in runs/");
-  add_journal_option(line.options);
-  add_experiment_options(line.options);
-  const auto given = parse(std::move(line), arguments);
-  if (!given) return 0;
-  const Experiment experiment =
-      read_experiment(experiment_source((*given)["EXPERIMENT.toml"].as<std::string>(), *given));
-  const std::optional<Journal> journal = given_journal(*given);
+namespace {
+
+int run(const Given& given) {
+  const Experiment experiment = given_experiment(given["EXPERIMENT.toml"].as<std::string>(), given);
+  const std::optional<Journal> journal = given_journal(given);
   print_warnings(experiment);
-  const auto simulator = make_simulator(experiment);
+  const auto simulator = opened_simulator(experiment);
   remember_folders_of(experiment);
   const fs::path folder =
-      given->contains("out") ? fs::path((*given)["out"].as<std::string>()) : new_run_folder(experiment.name);
+      given.contains("out") ? fs::path(given["out"].as<std::string>()) : new_run_folder(experiment.name);
   Archive archive = Archive::create(folder, experiment, simulator->device(), journal);
   return evolve_and_report(experiment, *simulator, archive);
 }
 
-int resume_command(const Arguments& arguments) {
-  CommandLine line{"resume DIR [--allow-other-versions] [--journal J] [--plugin-path P]", {"DIR"}, {}};
-  line.options.add_options()("allow-other-versions", "go on even where an operator has another version than before");
-  add_journal_option(line.options);
-  add_plugin_option(line.options);
-  const auto given = parse(std::move(line), arguments);
-  if (!given) return 0;
-  Archive archive = Archive::resume((*given)["DIR"].as<std::string>(), given_journal(*given));
-  const Experiment experiment = recorded_experiment(archive, given_plugin_path(*given));
-  check_resumable(archive, experiment);
-  if (!given->contains("allow-other-versions")) refuse_other_versions(experiment, archive);
-  const auto simulator = make_simulator(experiment);
+int resume(const Given& given) {
+  Archive archive = Archive::resume(given["DIR"].as<std::string>(), given_journal(given));
+  const Experiment experiment = timed("reading the record of the run and loading its operators",
+                                      [&] { return recorded_experiment(archive, given_plugin_path(given)); });
+  timed("checking that the run can go on", [&] { check_resumable(archive, experiment); });
+  if (!given.contains("allow-other-versions")) refuse_other_versions(experiment, archive);
+  const auto simulator = opened_simulator(experiment);
   warn_of_another_device(*simulator, archive);
   warn_of_other_builds(experiment, *simulator, archive);
   return evolve_and_report(experiment, *simulator, archive);
 }
 
-int check_command(const Arguments& arguments) {
-  CommandLine line{"check EXPERIMENT.toml [options]", {"EXPERIMENT.toml"}, {}};
-  add_experiment_options(line.options);
-  const auto given = parse(std::move(line), arguments);
-  if (!given) return 0;
-  const auto file = (*given)["EXPERIMENT.toml"].as<std::string>();
-  print_warnings(read_experiment(experiment_source(file, *given)));
+int check(const Given& given) {
+  const auto file = given["EXPERIMENT.toml"].as<std::string>();
+  print_warnings(given_experiment(file, given));
   std::cout << file << ": ok\n";
   return 0;
+}
+
+}  // namespace
+
+Command run_command() {
+  Options options;
+  options.add_options()("out", value<std::string>("DIR"), "folder of the run; default: a new one in runs/");
+  add_journal_option(options);
+  add_experiment_options(options);
+  return {
+      .name = "run",
+      .arguments = {{"EXPERIMENT.toml"}},
+      .summary = "Evolve robots",
+      .text = {"The run writes all individuals of all generations into its folder, and verifies its best individual "
+               "at the end. Ctrl-C ends it after the current generation, a second Ctrl-C ends it at once; `resume` "
+               "goes on with it. Results do not depend on the number of threads."},
+      .examples = {"run experiments/quickstart.toml",
+                   "run experiments/quickstart.toml --seed 2 --set selection.name=elitist --out runs/elitist"},
+      .options = options,
+      .function = run};
+}
+
+Command resume_command() {
+  Options options;
+  options.add_options()("allow-other-versions",
+                        "go on even where an operator has another version than when the run began");
+  add_journal_option(options);
+  add_plugin_option(options);
+  return {.name = "resume",
+          .arguments = {{"DIR"}},
+          .summary = "Go on with a run that was interrupted",
+          .text = {"The run ends as if it had never been interrupted. A warning says where the device or a build of "
+                   "evodevo or of an operator is not the one that the run began with."},
+          .examples = {"resume runs/quickstart-1"},
+          .options = options,
+          .function = resume};
+}
+
+Command check_command() {
+  Options options;
+  add_experiment_options(options);
+  return {.name = "check",
+          .arguments = {{"EXPERIMENT.toml"}},
+          .summary = "Check an experiment without running it",
+          .text = {"It reads the experiment, loads its operators and checks all values. An error names the place, the "
+                   "value and the remedy."},
+          .examples = {"check experiments/paper.toml", "check my.toml --set experiment.population=100"},
+          .options = options,
+          .function = check};
 }
 
 }  // namespace evodevo

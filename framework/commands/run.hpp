@@ -1,4 +1,4 @@
-// What evodevo run, resume and verify have in common.
+// What `run` and `resume` do once they have a run to go on with.
 #pragma once
 
 #include "evolution/archive.hpp"
@@ -9,8 +9,5 @@ namespace evodevo {
 /// as the simulator's device, it throws std::runtime_error, whose text adds up to which generation the run is complete
 /// and how it goes on.
 int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive);
-
-/// Warns where this program or a library of an operator is not the build that the run began with.
-void warn_of_other_builds(const Experiment& experiment, const Simulator& simulator, const Archive& archive);
 
 }  // namespace evodevo

@@ -5,7 +5,8 @@
 
 #include "base/json_text.hpp"
 #include "base/text.hpp"
-#include "commands/options.hpp"
+#include "commands/commands.hpp"
+#include "commands/shell/options.hpp"
 #include "evolution/archive.hpp"
 #include "experiment/toml_reader.hpp"
 #include "report/run_json.hpp"
@@ -107,20 +108,29 @@ class Report {
   std::uint32_t last_generation_;
 };
 
-}  // namespace
-
-int show_command(const Arguments& arguments) {
-  CommandLine line{"show DIR [--json] [--plugin-path P]", {"DIR"}, {}};
-  line.options.add_options()("json", "machine-readable, with every generation");
-  add_plugin_option(line.options);
-  const auto given = parse(std::move(line), arguments);
-  if (!given) return 0;
-  const Archive archive = Archive::read((*given)["DIR"].as<std::string>());
-  if (given->contains("json"))
-    std::cout << json_text(run_json(archive, recorded_experiment(archive, given_plugin_path(*given)))) << '\n';
+int show(const Given& given) {
+  const Archive archive = Archive::read(given["DIR"].as<std::string>());
+  if (given.contains("json"))
+    std::cout << json_text(run_json(archive, recorded_experiment(archive, given_plugin_path(given)))) << '\n';
   else
     Report(archive).print();
   return 0;
+}
+
+}  // namespace
+
+Command show_command() {
+  Options options;
+  options.add_options()("json", "print JSON, with every generation");
+  add_plugin_option(options);
+  return {.name = "show",
+          .arguments = {{"DIR"}},
+          .summary = "Show the progress and the best robots of a run",
+          .text = {"It prints the best and the median fitness by generation, why individuals have no fitness, and the "
+                   "best individuals with their ancestors. The run may be going on at the same time."},
+          .examples = {"show runs/quickstart-1", "show runs/quickstart-1 --json"},
+          .options = options,
+          .function = show};
 }
 
 }  // namespace evodevo

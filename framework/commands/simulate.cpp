@@ -7,17 +7,16 @@
 
 #include "base/output_file.hpp"
 #include "base/text.hpp"
-#include "commands/options.hpp"
+#include "commands/commands.hpp"
+#include "commands/shell/notices.hpp"
+#include "commands/shell/options.hpp"
 #include "core/piecewise.hpp"
-#include "experiment/device.hpp"
 #include "experiment/toml_reader.hpp"
 #include "life/body_json.hpp"
 #include "life/evaluation.hpp"
 
 namespace evodevo {
 namespace {
-
-namespace po = boost::program_options;
 
 constexpr double frame_time = 0.01;  ///< between two frames of a trajectory, s
 
@@ -100,25 +99,16 @@ void print_end(const Life& life, Vec3 start, double length) {
   std::cout << '\n';
 }
 
-}  // namespace
-
-int simulate_command(const Arguments& arguments) {
-  CommandLine line{"simulate BODY.json EXPERIMENT.toml [options]", {"BODY.json", "EXPERIMENT.toml"}, {}};
-  line.options.add_options()("duration", po::value<double>()->default_value(10), "simulated time, s")(
-      "trajectory", po::value<std::string>(),
-      "CSV file for the motion, a frame every 0.01 s or the nearest whole number of steps");
-  add_experiment_options(line.options);
-  const auto given = parse(std::move(line), arguments);
-  if (!given) return 0;
-  const auto body_file = (*given)["BODY.json"].as<std::string>(),
-             experiment_file = (*given)["EXPERIMENT.toml"].as<std::string>();
-  ExperimentSource source = experiment_source(experiment_file, *given);
+int simulate(const Given& given) {
+  const auto body_file = given["BODY.json"].as<std::string>(),
+             experiment_file = given["EXPERIMENT.toml"].as<std::string>();
+  ExperimentSource source = experiment_source(experiment_file, given);
   source.grows_bodies = false;
-  const Experiment experiment = read_experiment(source);
-  const auto duration = (*given)["duration"].as<double>();
+  const Experiment experiment = timed("reading " + printable(experiment_file), [&] { return read_experiment(source); });
+  const auto duration = given["duration"].as<double>();
   if (!(duration > 0 && duration <= 1e6))
     throw UsageError("--duration " + to_text(duration) + ": expected more than 0 and at most 1e6 s");
-  const auto simulator = make_simulator(experiment);
+  const auto simulator = opened_simulator(experiment);
   const Evaluation evaluation(experiment, *simulator);
   Life life = life_of(body_file, evaluation);
   const Pace pace = pace_over(duration, experiment.step, life.living.longest_dt);
@@ -126,8 +116,8 @@ int simulate_command(const Arguments& arguments) {
     throw UsageError("--duration " + to_text(duration) + ": is less than half a step; expected at least " +
                      to_text(pace.dt) + " s");
   std::optional<TrajectoryFile> trajectory;
-  if (given->contains("trajectory")) {
-    const auto file = (*given)["trajectory"].as<std::string>();
+  if (given.contains("trajectory")) {
+    const auto file = given["trajectory"].as<std::string>();
     refuse_to_overwrite("--trajectory", file, {body_file, experiment_file});
     refuse_to_overwrite("--trajectory", file, libraries_of(experiment));
     trajectory.emplace(file);
@@ -136,8 +126,9 @@ int simulate_command(const Arguments& arguments) {
   const Vec3 start = centre_of_mass(life.living.body, life.living.state.position);
   const double length = bounding_box(life.living.state.position).longest_side();
   const auto steps_of_frame = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::round(frame_time / pace.dt)));
-  const Motion motion =
-      go_on(evaluation, *simulator, life, duration, steps_of_frame, trajectory ? &*trajectory : nullptr);
+  const Motion motion = timed("simulating " + to_text(duration) + " s", [&] {
+    return go_on(evaluation, *simulator, life, duration, steps_of_frame, trajectory ? &*trajectory : nullptr);
+  });
   if (trajectory) trajectory->finish();
 
   const Body& body = life.living.body;
@@ -149,9 +140,28 @@ int simulate_command(const Arguments& arguments) {
     return 1;
   }
   print_end(life, start, length);
-  std::cout << "speed: " << short_number(static_cast<double>(motion.spring_evaluations) / motion.seconds)
+  remarks() << "speed: " << short_number(static_cast<double>(motion.spring_evaluations) / motion.seconds)
             << " spring evaluations/s\n";
   return 0;
+}
+
+}  // namespace
+
+Command simulate_command() {
+  Options options;
+  options.add_options()("duration", value<double>("S")->default_value(10), "simulated time, s")(
+      "trajectory", value<std::string>("FILE"),
+      "CSV file for the motion, with a frame every 0.01 s or the nearest whole number of steps");
+  add_experiment_options(options);
+  return {
+      .name = "simulate",
+      .arguments = {{"BODY.json"}, {"EXPERIMENT.toml"}},
+      .summary = "Simulate one body in the scene of an experiment",
+      .text = {"The body comes from `body`, or is your own. One without \"time\" is born on the ground of the scene; "
+               "one with it goes on from the positions and velocities in the file."},
+      .examples = {"simulate newborn.json experiments/quickstart.toml --trajectory fall.csv"},
+      .options = options,
+      .function = simulate};
 }
 
 }  // namespace evodevo

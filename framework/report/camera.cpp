@@ -64,13 +64,19 @@ std::string content_of(const fs::path& file) {
 
 }  // namespace
 
-void shoot(const std::string& page, OutputFile& output, const fs::path& file, std::optional<double> at) {
+void shoot(const std::string& page, OutputFile& output, const fs::path& file, const Shooting& shooting) {
   const TemporaryFolder folder;
   const fs::path html = folder.path() / "page.html", film = folder.path() / ("film" + file.extension().string());
   write_file(html, page);
   std::vector<std::string> words = {"node", (viewer_folder() / "film.mjs").string(), html.string(), film.string(),
                                     file.string()};
-  if (at) words.push_back(to_text(*at));
+  const auto add = [&](const char* option, const std::optional<double>& time) {
+    if (time) words.insert(words.end(), {option, to_text(*time)});
+  };
+  add("--at", shooting.at);
+  add("--from", shooting.from);
+  add("--to", shooting.to);
+  if (shooting.quiet) words.emplace_back("--quiet");
   if (run_program(std::move(words)) != 0) throw std::runtime_error(file.string() + ": has not been made");
   output.write(content_of(film));
   output.finish();

@@ -18,6 +18,7 @@ namespace evodevo {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
 using ::testing::ContainsRegex;
 using testing::Finished;
 using ::testing::HasSubstr;
@@ -300,7 +301,7 @@ TEST_F(Command, ARunVerifiesItsBestAndMoreAreVerifiedAtWill) {
   EXPECT_THAT(text.output, HasSubstr("  quarter-step "));
   const std::string mark = of_run.at("marks").empty() ? "verified" : of_run.at("marks")[0].get<std::string>();
   EXPECT_THAT(evodevo({"show", folder_}).output, HasSubstr(", " + mark));
-  EXPECT_EQ(evodevo({"verify", folder_, "--best", "0"}).output, "evodevo: --best 0: expected 1 to 1000\n");
+  EXPECT_THAT(evodevo({"verify", folder_, "--best", "0"}).output, HasSubstr("--best 0: expected 1 to 1000"));
 }
 
 TEST_F(Command, BodyComesOutAndGoesIntoAScene) {
@@ -364,16 +365,16 @@ TEST_F(Command, BadInputEndsWithTwoAndLeavesNothing) {
   for (const char* command : {"run", "check"}) {
     const Finished finished = evodevo({command, bad});
     EXPECT_EQ(finished.exit_code, 2);
-    EXPECT_EQ(finished.output,
-              "evodevo: " + bad + ":2:8: experiment.seed = \"x\": expected a whole number, 0 to 9007199254740991\n");
+    EXPECT_THAT(finished.output, AllOf(HasSubstr("evodevo: " + bad + ":2:8: experiment.seed = \"x\": "),
+                                       HasSubstr("0 to 9007199254740991")));
   }
   EXPECT_FALSE(fs::exists("runs/bad-1"));
   const Finished out = evodevo({"run", file_, "--out", folder_, "--threads", "-1"});
   EXPECT_EQ(out.exit_code, 2);
-  EXPECT_EQ(out.output, "evodevo: --threads -1: simulation.threads = -1: expected 0 to 4096\n");
+  EXPECT_THAT(out.output, AllOf(HasSubstr("--threads -1: simulation.threads = -1: "), HasSubstr("0 to 4096")));
   EXPECT_FALSE(fs::exists(folder_));
-  EXPECT_EQ(evodevo({"run", file_, "--device", "gpu"}).output,
-            "evodevo: --device gpu: simulation.device = \"gpu\": is not an option; known: auto, cpu, cuda\n");
+  EXPECT_THAT(evodevo({"run", file_, "--device", "gpu"}).output,
+              AllOf(HasSubstr("--device gpu: simulation.device = \"gpu\": "), HasSubstr("auto, cpu, cuda")));
 }
 
 TEST_F(Command, TextsOfARecordDisturbNoTerminal) {
@@ -391,11 +392,12 @@ TEST_F(Command, TextsOfARecordDisturbNoTerminal) {
 
 TEST_F(Command, UsageErrors) {
   EXPECT_EQ(evodevo({}).exit_code, 2);
-  EXPECT_EQ(evodevo({"rum"}).output, "evodevo: there is no command \"rum\"; did you mean \"run\"?\n");
-  EXPECT_EQ(evodevo({"run"}).output,
-            "evodevo: EXPERIMENT.toml is missing; usage: evodevo run EXPERIMENT.toml [options]\n");
+  EXPECT_THAT(evodevo({"rum"}).output, AllOf(HasSubstr("\"rum\""), HasSubstr("did you mean \"run\"?")));
+  EXPECT_THAT(evodevo({"run"}).output,
+              AllOf(HasSubstr("EXPERIMENT.toml is missing"), HasSubstr("usage: evodevo run EXPERIMENT.toml")));
+  EXPECT_THAT(evodevo({"conform"}).output, HasSubstr("LIBRARY is missing"));
   EXPECT_EQ(evodevo({"run", file_, "--sead", "3"}).exit_code, 2);
-  EXPECT_EQ(evodevo({"run", file_, "--set", "seed"}).output, "evodevo: --set seed: expected --set key=value\n");
+  EXPECT_THAT(evodevo({"run", file_, "--set", "seed"}).output, AllOf(HasSubstr("--set seed"), HasSubstr("key=value")));
   EXPECT_EQ(evodevo({"check", file_}).output, file_ + ": ok\n");
   EXPECT_EQ(evodevo({"run", "--help"}).exit_code, 0);
 }
@@ -435,10 +437,10 @@ TEST_F(Command, OperatorsDescribeThemselves) {
   const Finished described = evodevo({"describe", "spring-turnover"});
   EXPECT_EQ(described.exit_code, 0);
   EXPECT_THAT(described.output, HasSubstr("springs = 125"));
-  EXPECT_EQ(evodevo({"describe", "spring-turnove"}).output,
-            "evodevo: no operator is called \"spring-turnove\"; did you mean \"spring-turnover\"?\n");
-  EXPECT_EQ(evodevo({"operators", "--kind", "devos"}).output,
-            "evodevo: --kind devos: is not a kind of operator; did you mean \"devo\"?\n");
+  EXPECT_THAT(evodevo({"describe", "spring-turnove"}).output,
+              AllOf(HasSubstr("\"spring-turnove\""), HasSubstr("did you mean \"spring-turnover\"?")));
+  EXPECT_THAT(evodevo({"operators", "--kind", "devos"}).output,
+              AllOf(HasSubstr("--kind devos: "), HasSubstr("did you mean \"devo\"?")));
 }
 
 }  // namespace

@@ -118,7 +118,8 @@ TEST(Conformance, ALibraryThatDoesNotLoadIsToldAlone) {
   EXPECT_THAT(outcomes.at("loads"), ::testing::StartsWith("failed cannot be loaded: "));
   const Finished none = testing::run({EVODEVO_PROGRAM, "conform", "/no/such"});
   EXPECT_EQ(none.exit_code, 2);
-  EXPECT_EQ(none.output, "evodevo: conform /no/such: is no file; give the libraries to check, NAME.evodevo.so\n");
+  EXPECT_THAT(none.output,
+              ::testing::AllOf(::testing::HasSubstr("conform /no/such: "), ::testing::HasSubstr("NAME.evodevo.so")));
 }
 
 TEST(Conformance, WhatLoadingChangesIsAFault) {

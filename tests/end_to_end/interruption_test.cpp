@@ -15,6 +15,7 @@ namespace evodevo {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::Process;
@@ -108,7 +109,7 @@ TEST_F(Interruption, AJournalThatThereIsNotIsRefused) {
   command.insert(command.end(), {"--journal", "off"});
   const testing::Finished finished = testing::run(command);
   EXPECT_EQ(finished.exit_code, 2);
-  EXPECT_EQ(finished.output, "evodevo: --journal off: expected wal or delete\n");
+  EXPECT_THAT(finished.output, HasSubstr("--journal off: expected wal or delete"));
 }
 
 TEST_F(Interruption, AFolderThatGoesEndsTheRun) {
@@ -234,8 +235,8 @@ TEST_F(Interruption, GoingOnElsewhereOrByAnotherBuildWarns) {
   EXPECT_THAT(resumed.output, HasSubstr("warning: the run began on cpu, an older one and goes on on "));
   const Maker now = Archive::read(scratch_ / "run").maker(0);
   EXPECT_NE(now.device, "cpu, an older one");
-  EXPECT_THAT(resumed.output, HasSubstr("warning: the run began with evodevo " EVODEVO_VERSION " (" + begun_by +
-                                        "), now it is another build of it, " + now.program + "; results may differ\n"));
+  EXPECT_THAT(resumed.output, AllOf(HasSubstr("warning: the run began with evodevo " EVODEVO_VERSION " (" + begun_by),
+                                    HasSubstr("another build of it, " + now.program + "; results may differ\n")));
 }
 
 TEST_F(Interruption, GoingOnTheSameWayWarnsOfNothing) {

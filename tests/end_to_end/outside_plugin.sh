@@ -17,6 +17,10 @@ if grep -rhE '^#include' "$scratch/package/include" | grep -vE '<[a-z_0-9]+>|"ev
   echo "the SDK includes more than the C++ standard library"
   exit 1
 fi
+for file in man/man1/evodevo.1 bash-completion/completions/evodevo zsh/site-functions/_evodevo \
+    fish/vendor_completions.d/evodevo.fish; do
+  grep -q conform "$scratch/package/share/$file" || { echo "share/$file is not what the program writes"; exit 1; }
+done
 
 cd "$scratch"
 evodevo new "$kind" my-lab.growth

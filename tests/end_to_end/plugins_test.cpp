@@ -17,6 +17,7 @@ namespace evodevo {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
 using testing::Finished;
 using ::testing::HasSubstr;
 
@@ -69,8 +70,8 @@ TEST_F(Plugins, AreFoundByOptionVariableAndExperiment) {
   setenv("EVODEVO_PLUGIN_PATH", own().c_str(), 1);
   EXPECT_EQ(evodevo({"check", file_, "--set", "mutation.0.name=nothing"}).exit_code, 0);
   unsetenv("EVODEVO_PLUGIN_PATH");
-  EXPECT_EQ(evodevo({"check", file_, "--plugin-path", "/no/such"}).output,
-            "evodevo: --plugin-path /no/such: is no folder and no library NAME.evodevo.so; build the plugin first\n");
+  EXPECT_THAT(evodevo({"check", file_, "--plugin-path", "/no/such"}).output,
+              AllOf(HasSubstr("--plugin-path /no/such: "), HasSubstr("build the plugin")));
 }
 
 TEST_F(Plugins, TheExperimentsPathsComeBeforeTheOptionsAndThoseBeforeTheVariables) {
@@ -109,14 +110,13 @@ TEST_F(Plugins, ResumeRefusesAnotherVersionUnlessTold) {
   const std::string now = library_.lexically_normal().string();
   const Finished refused = evodevo({"resume", folder_});
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_EQ(refused.output, "evodevo: " + folder_ + ": began with mutation operator \"nothing\" 1.0.0, but " + now +
-                                " is version 2.0.0; put back the version that it began with (it was " +
-                                library_.string() + "), or go on with --allow-other-versions\n");
+  EXPECT_THAT(refused.output, AllOf(HasSubstr(folder_ + ": "), HasSubstr("mutation operator \"nothing\" 1.0.0"),
+                                    HasSubstr(now + " is version 2.0.0"), HasSubstr("(it was " + library_.string()),
+                                    HasSubstr("--allow-other-versions")));
   const Finished allowed = evodevo({"resume", folder_, "--allow-other-versions"});
   EXPECT_EQ(allowed.exit_code, 0) << allowed.output;
-  EXPECT_THAT(allowed.output, HasSubstr("warning: the run began with mutation operator \"nothing\" 1.0.0, now it is "
-                                        "version 2.0.0, " +
-                                        now + "; results may differ\n"));
+  EXPECT_THAT(allowed.output, AllOf(HasSubstr("warning: the run began with mutation operator \"nothing\" 1.0.0"),
+                                    HasSubstr("version 2.0.0, " + now + "; results may differ\n")));
 }
 
 TEST_F(Plugins, AnUnusableLibraryStopsNoRunThatDoesNotUseIt) {

@@ -15,7 +15,7 @@ checkout="$scratch/a (b) & ü"
 mkdir -p "$checkout/framework" "$scratch/bin"
 cp -r "$source/tools" "$checkout"
 cp "$source/CMakeLists.txt" "$checkout"
-cp "$source/framework/help.inc" "$checkout/framework"
+cp "$source/framework/help.txt" "$checkout/framework"
 
 # the only programs are those that scripts are made of, and the stand-ins
 for name in bash env sh cat chmod dirname flock grep ln mkdir readlink rm sed awk touch tr; do
@@ -103,7 +103,8 @@ case_help() {
   for asked in --help help; do
     call tools/evodevo $asked
     succeeded
-    diff "$scratch/help" <(echo "$output") || fail "the help is another than that of the program"
+    diff "$scratch/help" <(echo "$output") || fail "framework/help.txt is not what the program prints; write it anew:
+$(EVODEVO_COMMAND=@PROGRAM@ "$program" --help | sed "1s/$("$program" --version | sed 's/.* //')/@VERSION@/")"
   done
   call "$checkout/tools/evodevo" --help
   [[ $output == *"  $(printf %q "$checkout/tools/evodevo") run "* ]] || fail "the command cannot be pasted"
@@ -111,9 +112,11 @@ case_help() {
   [ "$output" = "$("$program" --version)" ] || fail "the version is another than that of the program"
   call tools/evodevo
   [ "$status" = 2 ] && [ "$errors" = "$(cat "$scratch/help")" ] || fail "without arguments it does not show the help"
-  call tools/evodevo film --help
-  succeeded
-  [[ $output == "$(cat "$scratch/help")" && $errors == *"tools/evodevo operators"* ]] || fail "it does not say how to know more"
+  for asked in "film --help" "help film" "help experiment"; do
+    call tools/evodevo $asked
+    succeeded
+    [[ $output == "$(cat "$scratch/help")" && $errors == *"tools/evodevo operators"* ]] || fail "it does not say how to know more"
+  done
   [ ! -s "$called" ] && [ ! -e "$checkout/build" ] || fail "asking for help sets something up"
   call tools/evodevo operators
   call tools/evodevo film --help

@@ -8,7 +8,6 @@
 #include <random>
 
 #include "commands/commands.hpp"
-#include "commands/run.hpp"
 #include "evolution/archive.hpp"
 #include "evolution/evolution.hpp"
 #include "evolution/resimulation.hpp"
@@ -71,18 +70,18 @@ class ForeignRecord : public ::testing::Test {
     const std::string folder = folder_.string(), recorded = std::to_string(recorded_);
     int refused = 0;
     const auto give_to = [&](const std::function<void()>& command) { refused += !refusal(command).empty(); };
-    give_to([&] { show_command({folder}); });
-    give_to([&] { show_command({folder, "--json"}); });
-    give_to([&] { life_command({folder, "--individual", recorded}); });
-    give_to([&] { life_command({folder, "--json"}); });
-    give_to([&] { body_command({folder, "--matured", "--individual", recorded}); });
-    give_to([&] { body_command({folder}); });
+    give_to([&] { call(command_named("show"), {folder}); });
+    give_to([&] { call(command_named("show"), {folder, "--json"}); });
+    give_to([&] { call(command_named("life"), {folder, "--individual", recorded}); });
+    give_to([&] { call(command_named("life"), {folder, "--json"}); });
+    give_to([&] { call(command_named("body"), {folder, "--matured", "--individual", recorded}); });
+    give_to([&] { call(command_named("body"), {folder}); });
     give_to([&] {
       const Archive archive = Archive::read(folder_);
       const Experiment experiment = experiment_to_live_again(archive, {});
       reported_run(archive, experiment, *make_simulator(experiment), {.best = 1, .ancestors = 1}, 1'000'000);
     });
-    give_to([&] { resume_command({folder}); });
+    give_to([&] { call(command_named("resume"), {folder}); });
     return refused;
   }
 
@@ -170,7 +169,7 @@ TEST_F(ForeignRecord, WhatDoesNotFitTogetherIsNamed) {
   };
   for (const auto& [sql, named] : cases) {
     ASSERT_TRUE(change(sql)) << sql;
-    const std::string said = refusal([&] { resume_command({folder_.string()}); });
+    const std::string said = refusal([&] { call(command_named("resume"), {folder_.string()}); });
     EXPECT_THAT(said, HasSubstr(named)) << sql;
   }
 }
@@ -187,8 +186,8 @@ TEST_F(ForeignRecord, GenesThatAreNoNumbersBlameNoOperator) {
     update.bind(1, genes.data(), static_cast<int>(genes.size()));
     update.exec();
   }
-  EXPECT_THAT(refusal([&] { resume_command({folder_.string()}); }), HasSubstr("gene 0 = "));
-  EXPECT_THAT(refusal([&] { body_command({folder_.string()}); }), HasSubstr("gene 0 = "));
+  EXPECT_THAT(refusal([&] { call(command_named("resume"), {folder_.string()}); }), HasSubstr("gene 0 = "));
+  EXPECT_THAT(refusal([&] { call(command_named("body"), {folder_.string()}); }), HasSubstr("gene 0 = "));
 }
 
 TEST_F(ForeignRecord, RecordsOfLivesMayHoldAnyBytes) {
@@ -208,7 +207,7 @@ TEST_F(ForeignRecord, RecordsOfLivesMayHoldAnyBytes) {
       update.exec();
     }
     const std::string said = refusal([&] {
-      life_command({folder_.string(), "--json", "--individual", std::to_string(recorded_)});
+      call(command_named("life"), {folder_.string(), "--json", "--individual", std::to_string(recorded_)});
     });
     ++(said.empty() ? taken : refused);
   }
@@ -226,8 +225,8 @@ TEST_F(ForeignRecord, TheFileMayHoldAnyBytes) {
     if (i % 10 == 0) other.resize(random() % other.size());
     renew();
     std::ofstream(folder_ / "run.sqlite", std::ios::binary) << other;
-    refusal([&] { show_command({folder_.string()}); });
-    refusal([&] { life_command({folder_.string()}); });
+    refusal([&] { call(command_named("show"), {folder_.string()}); });
+    refusal([&] { call(command_named("life"), {folder_.string()}); });
   }
 }
 

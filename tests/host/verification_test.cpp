@@ -7,7 +7,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "commands/verification_report.hpp"
+#include "commands/shell/verification_report.hpp"
 #include "evolution/breeding.hpp"
 #include "evolution/evolution.hpp"
 #include "support/elsewhere.hpp"

@@ -27,29 +27,77 @@ function sizeOf(file) {
 
 const hasFfmpeg = (process.env.PATH ?? "").split(":").some((folder) => existsSync(`${folder}/ffmpeg`));
 
-test("a film shows the whole life at 30 frames a second", { skip: hasFfmpeg ? false : "there is no ffmpeg" }, () => {
+const withFfmpeg = { skip: hasFfmpeg ? false : "there is no ffmpeg" };
+const duration = cycles * cycleTime + 0.5 + 1.0;
+
+/** Width, height, frame rate and number of frames. */
+function probed(file) {
+  const entries = "stream=width,height,nb_read_frames,r_frame_rate";
+  const options = ["-v", "error", "-count_frames", "-show_entries", entries, "-of", "json", file];
+  const [stream] = JSON.parse(execFileSync("ffprobe", options, { encoding: "utf8" })).streams;
+  return [stream.width, stream.height, stream.r_frame_rate, Number(stream.nb_read_frames)];
+}
+
+test("a film shows the whole life at 30 frames a second", withFfmpeg, () => {
   const out = scratch.path("film.mp4");
   evodevo("film", scratch.run, "--individual", "0", "--out", out);
-  const probed = execFileSync(
-    "ffprobe",
-    [
-      "-v",
-      "error",
-      "-count_frames",
-      "-show_entries",
-      "stream=width,height,nb_read_frames,r_frame_rate",
-      "-of",
-      "json",
-      out,
-    ],
-    { encoding: "utf8" },
-  );
-  const [stream] = JSON.parse(probed).streams;
-  const duration = cycles * cycleTime + 0.5 + 1.0;
-  assert.deepEqual(
-    [stream.width, stream.height, stream.r_frame_rate, Number(stream.nb_read_frames)],
-    [1280, 720, "30/1", 30 * duration + 1],
-  );
+  assert.deepEqual(probed(out), [1280, 720, "30/1", 30 * duration + 1]);
+});
+
+test("a film can begin and end amid a life", withFfmpeg, () => {
+  const out = scratch.path("part.mp4");
+  evodevo("film", scratch.run, "--from", "1.5", "--to", "2", "--out", out);
+  assert.deepEqual(probed(out), [1280, 720, "30/1", 30 * 0.5 + 1]);
+});
+
+test("a GIF is small, has 20 frames a second and repeats", withFfmpeg, () => {
+  const out = scratch.path("film.gif");
+  evodevo("film", scratch.run, "--from", "2", "--to", "3", "--out", out);
+  assert.deepEqual(probed(out), [480, 270, "20/1", 21]);
+  assert.ok(readFileSync(out).includes("NETSCAPE2.0\x03\x01\x00\x00", "latin1"), "it does not repeat for ever");
+});
+
+/** The chunks of a WebP file: their names and where their data begins. */
+function* chunksOf(bytes) {
+  assert.equal(bytes.subarray(0, 4).toString() + bytes.subarray(8, 12).toString(), "RIFFWEBP");
+  for (let at = 12; at < bytes.length; at += 8 + 2 * Math.ceil(bytes.readUInt32LE(at + 4) / 2))
+    yield { name: bytes.subarray(at, at + 4).toString(), at: at + 8 };
+}
+
+const hasWebp = hasFfmpeg && execFileSync("ffmpeg", ["-hide_banner", "-encoders"], { encoding: "utf8" }).includes("libwebp_anim");
+
+test("a WebP is small, moves and repeats", { skip: hasWebp ? false : "there is no ffmpeg with libwebp" }, () => {
+  const out = scratch.path("film.webp");
+  evodevo("film", scratch.run, "--from", "2", "--to", "3", "--out", out);
+  const bytes = readFileSync(out);
+  const chunks = [...chunksOf(bytes)];
+  const { at } = chunks.find(({ name }) => name === "VP8X");
+  assert.deepEqual([bytes.readUIntLE(at + 4, 3) + 1, bytes.readUIntLE(at + 7, 3) + 1], [480, 270]);
+  const frames = chunks.filter(({ name }) => name === "ANMF");
+  const shown = frames.reduce((time, frame) => time + bytes.readUIntLE(frame.at + 12, 3), 0);
+  assert.ok(frames.length > 10 && Math.abs(shown - 21 * 50) <= 50, `${frames.length} frames in ${shown} ms`);
+  assert.equal(bytes.readUInt16LE(chunks.find(({ name }) => name === "ANIM").at + 4), 0, "it does not repeat for ever");
+});
+
+test("an ffmpeg without the encoder is named before anything is drawn", () => {
+  const tools = scratch.path("tools");
+  mkdirSync(tools);
+  const log = scratch.path("ffmpeg.log");
+  writeFileSync(join(tools, "ffmpeg"), `#!/bin/sh\necho "$@" >>'${log}'\necho ' V....D libx264 H.264'\n`, { mode: 0o755 });
+  const { status, stderr } = spawnSync(process.env.EVODEVO_PROGRAM, ["film", scratch.run, "--out", scratch.path("no.webp")], {
+    encoding: "utf8",
+    env: { ...process.env, PATH: `${tools}:${process.env.PATH}` },
+  });
+  assert.equal(status, 1);
+  assert.match(stderr, /no\.webp: .*libwebp_anim.*\.mp4 or \.gif/);
+  assert.equal(readFileSync(log, "utf8"), "-hide_banner -encoders\n");
+});
+
+test("quiet, a film says its name alone", withFfmpeg, () => {
+  const out = scratch.path("quiet.gif");
+  const arguments_ = ["film", scratch.run, "--to", "0.1", "--out", out, "--quiet"];
+  const { stdout, stderr } = spawnSync(process.env.EVODEVO_PROGRAM, arguments_, { encoding: "utf8" });
+  assert.deepEqual([stdout, stderr], [`${out}\n`, ""]);
 });
 
 test("pictures of two moments differ", () => {
@@ -74,18 +122,21 @@ test("nothing but the picture is written, wherever home is", () => {
 });
 
 test("what cannot be filmed is refused in one line", () => {
-  const refusal = (at, out) => {
-    const arguments_ = ["film", scratch.run, "--at", at, "--out", scratch.path(out)];
+  const refusal = (out, ...options) => {
+    const arguments_ = ["film", scratch.run, ...options, "--out", scratch.path(out)];
     const { status, stderr } = spawnSync(process.env.EVODEVO_PROGRAM, arguments_, { encoding: "utf8" });
     assert.notEqual(status, 0);
     return stderr;
   };
-  assert.match(refusal("500", "late.png"), /^evodevo: .*late\.png: --at 500: expected a moment of the life, 0 to [\d.]+ s$/m);
-  assert.doesNotMatch(refusal("500", "late.png"), /^\s+at /m);
+  assert.match(refusal("late.png", "--at", "500"), /^evodevo: .*late\.png: --at 500: .*0 to [\d.]+ s$/m);
+  assert.doesNotMatch(refusal("late.png", "--at", "500"), /^\s+at /m);
+  assert.match(refusal("late.mp4", "--to", "500"), /^evodevo: .*late\.mp4: --to 500: .*0 to [\d.]+ s$/m);
   for (const [moment, named] of [["nan", "not a number"], ["inf", "infinity"], ["-0.5", "-0.5"]])
-    assert.match(refusal(moment, "never.png"), new RegExp(`^evodevo: --at ${named}: expected a moment since birth`));
-  assert.match(refusal("1", "film.gif"), /^evodevo: --out .*film\.gif: expected a name ending in \.mp4 or \.png\n$/);
-  assert.match(refusal("1", "still.mp4"), /^evodevo: --at is the moment of a picture/);
+    assert.match(refusal("never.png", "--at", moment), new RegExp(`^evodevo: --at ${named}: .*0 s or later`));
+  assert.match(refusal("film.avi"), /^evodevo: --out .*film\.avi: .*\.mp4, \.gif, \.webp, \.png\n$/);
+  assert.match(refusal("still.mp4", "--at", "1"), /^evodevo: --at 1: .*\.png/);
+  assert.match(refusal("still.png", "--from", "1"), /^evodevo: --from .*--at/);
+  assert.match(refusal("back.mp4", "--from", "2", "--to", "1"), /^evodevo: --to 1: .*--from 2/);
 });
 
 test("a gallery shows as many robots as asked for, and how balls become bodies", async () => {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/slow_step.hpp"
 #include "cuda/runtime/cache.hpp"
 
 namespace evodevo::cuda {
@@ -135,6 +136,7 @@ std::vector<char> compile(std::string_view name, const std::vector<std::string>&
   const std::vector<EmbeddedSource> sources = embedded_with(more);
   const std::string key = key_of(name, options_for(target, definitions), sources);
   if (std::optional<std::vector<char>> code = load(key)) return *std::move(code);
+  const SlowStep step("compiling the kernel " + std::string(name) + " for " + architecture);
   std::vector<char> code = compile(sources, name, definitions, architecture);
   store(key, code);
   return code;

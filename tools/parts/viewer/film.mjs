@@ -1,45 +1,94 @@
-// Takes a film or a picture of a page of the viewer: node film.mjs PAGE.html OUT.mp4|OUT.png NAME_IN_MESSAGES [AT]
-import { spawn } from "node:child_process";
+// Takes a film or a picture of a page of the viewer:
+//   node film.mjs PAGE.html OUT.mp4|OUT.gif|OUT.webp|OUT.png NAME_IN_MESSAGES [--at S | --from S --to S] [--quiet]
+import { execFileSync, spawn } from "node:child_process";
 import { once } from "node:events";
 import { writeFile } from "node:fs/promises";
+import { extname } from "node:path";
+import { parseArgs } from "node:util";
 import { draw, ffmpegProgram, launch, opened } from "./browser.mjs";
 
-const framesPerSecond = 30;
 const viewport = { width: 1280, height: 720 };
 
-function encoder(out) {
+// What is drawn larger than it is shown has smooth edges. "area" makes smaller files than the sharper filters.
+const small = "scale=480:-1:flags=area";
+
+/** How ffmpeg makes a film, by the ending of its name. `-loop 0` repeats for ever. */
+const formats = {
+  ".mp4": {
+    encoder: "libx264",
+    framesPerSecond: 30,
+    output: ["-preset", "veryfast", "-pix_fmt", "yuv420p", "-crf", "20", "-movflags", "+faststart"],
+  },
+  ".gif": {
+    encoder: "gif",
+    framesPerSecond: 20,
+    // One palette for all frames, of colours that move, without dithering, which does not compress: 30 KB a frame. With
+    // 96 colours it would be half as much again.
+    output: [
+      "-vf",
+      `${small},split[a][b];[a]palettegen=max_colors=32:stats_mode=diff[p];[b][p]paletteuse=dither=none`,
+      "-loop",
+      "0",
+    ],
+  },
+  ".webp": {
+    encoder: "libwebp_anim",
+    framesPerSecond: 20,
+    output: ["-vf", small, "-quality", "60", "-compression_level", "6", "-loop", "0"],
+  },
+};
+
+/** Throws where this ffmpeg was built without the encoder. */
+function expectEncoder(name, ending) {
+  const listed = execFileSync(ffmpegProgram(), ["-hide_banner", "-encoders"], { encoding: "utf8" });
+  if (listed.split("\n").some((line) => line.trim().split(/\s+/)[1] === name)) return;
+  const others = Object.keys(formats).filter((other) => other !== ending).join(" or ");
+  throw new Error(`this ffmpeg was built without ${name}; install one with it, or give --out a name ending in ${others}`);
+}
+
+function encoder(out, { encoder, framesPerSecond, output }) {
   const input = ["-f", "image2pipe", "-framerate", String(framesPerSecond), "-i", "-"];
-  const output = ["-c:v", "libx264", "-preset", "veryfast", "-pix_fmt", "yuv420p", "-crf", "20", "-movflags", "+faststart", out];
-  const ffmpeg = spawn(ffmpegProgram(), ["-y", "-loglevel", "error", ...input, ...output], {
+  const ffmpeg = spawn(ffmpegProgram(), ["-y", "-loglevel", "error", ...input, "-c:v", encoder, ...output, out], {
     stdio: ["pipe", "inherit", "inherit"],
   });
   ffmpeg.stdin.on("error", () => {}); // its exit code says it
   return { ffmpeg, closed: once(ffmpeg, "close") };
 }
 
-async function film(tab, out) {
-  const { begin, end } = await tab.evaluate(async () => {
+function expectMoment(option, moment, end) {
+  if (moment < 0 || moment > end) throw new Error(`--${option} ${moment}: expected a time of the life, 0 to ${end} s`);
+}
+
+async function film(tab, out, { from, to, quiet }) {
+  const life = await tab.evaluate(async () => {
     const { viewer } = await window.evodevo;
     return { begin: viewer.begin, end: viewer.end };
   });
-  const { ffmpeg, closed } = encoder(out);
+  const begin = from ?? life.begin;
+  const end = to ?? life.end;
+  expectMoment("from", begin, life.end);
+  expectMoment("to", end, life.end);
+  const format = formats[extname(out)];
+  expectEncoder(format.encoder, extname(out));
+  const { ffmpeg, closed } = encoder(out, format);
   const camera = await tab.context().newCDPSession(tab); // Playwright's own pictures take longer
-  const frames = Math.round((end - begin) * framesPerSecond);
+  const frames = Math.round((end - begin) * format.framesPerSecond);
   const started = performance.now();
   try {
     for (let i = 0; i <= frames; ++i) {
-      await draw(tab, begin + i / framesPerSecond);
+      await draw(tab, begin + i / format.framesPerSecond);
       const picture = { format: "jpeg", quality: 95, optimizeForSpeed: true };
       const { data } = await camera.send("Page.captureScreenshot", picture);
       if (!ffmpeg.stdin.write(Buffer.from(data, "base64"))) await Promise.race([once(ffmpeg.stdin, "drain"), closed]);
-      if (process.stderr.isTTY) process.stderr.write(`\r${i + 1} of ${frames + 1} frames${i === frames ? "\n" : ""}`);
+      if (process.stderr.isTTY && !quiet)
+        process.stderr.write(`\r${i + 1} of ${frames + 1} frames${i === frames ? "\n" : ""}`);
     }
   } finally {
     ffmpeg.stdin.end(); // it would keep this process alive
   }
   if ((await closed)[0] !== 0) throw new Error("ffmpeg failed");
   const rate = (1000 * (frames + 1)) / (performance.now() - started);
-  console.error(`evodevo: ${frames + 1} frames, ${rate.toPrecision(2)} a second`);
+  if (!quiet) console.error(`evodevo: ${frames + 1} frames, ${rate.toPrecision(2)} a second`);
 }
 
 async function still(tab, out, at) {
@@ -47,19 +96,25 @@ async function still(tab, out, at) {
     const { viewer } = await window.evodevo;
     return { end: viewer.end, middle: (viewer.stages[0].life.shots.at(-1).begin + viewer.end) / 2 };
   });
-  if (at < 0 || at > end) throw new Error(`--at ${at}: expected a moment of the life, 0 to ${end} s`);
   const moment = at ?? middle;
+  expectMoment("at", moment, end);
   await draw(tab, moment);
   await writeFile(out, await ((await tab.$(".gallery")) ?? tab).screenshot());
 }
 
-const [page, out, name, at] = process.argv.slice(2);
+const text = { type: "string" };
+const { positionals, values } = parseArgs({
+  allowPositionals: true,
+  options: { at: text, from: text, to: text, quiet: { type: "boolean" } },
+});
+const [page, out, name] = positionals;
+const moment = (value) => (value === undefined ? undefined : Number(value));
 try {
   const browser = await launch();
   try {
     const tab = await opened(browser, page, { viewport }, { hash: "#film" });
-    if (out.endsWith(".png")) await still(tab, out, at === undefined ? undefined : Number(at));
-    else await film(tab, out);
+    if (out.endsWith(".png")) await still(tab, out, moment(values.at));
+    else await film(tab, out, { from: moment(values.from), to: moment(values.to), quiet: values.quiet });
   } finally {
     await browser.close();
   }

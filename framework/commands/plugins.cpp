@@ -1,21 +1,28 @@
-// evodevo new: the project of a plugin that builds, conforms and runs as it stands.
+// evodevo new and conform: the project of a plugin, and whether plugins keep to the rules.
 #include <algorithm>
 #include <boost/dll/runtime_symbol_info.hpp>
 #include <cctype>
+#include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 
+#include "base/json_text.hpp"
 #include "base/output_file.hpp"
 #include "base/text.hpp"
-#include "commands/options.hpp"
+#include "commands/commands.hpp"
+#include "commands/shell/notices.hpp"
+#include "conformance/conformance.hpp"
 #include "operators/loader.hpp"
 
 namespace evodevo {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using conformance::Verdict;
 
 /// Beside the program as it is built and as it is installed.
 fs::path template_folder() {
@@ -87,13 +94,9 @@ void write_from(const fs::path& from, const fs::path& to, const std::string& kin
   write_file(to, text);
 }
 
-}  // namespace
-
-int new_command(const Arguments& arguments) {
-  const auto given = parse({"new KIND NAME", {"KIND", "NAME"}, {}}, arguments);
-  if (!given) return 0;
-  const std::string kind = checked_kind((*given)["KIND"].as<std::string>());
-  const std::string name = checked_name((*given)["NAME"].as<std::string>());
+int create(const Given& given) {
+  const std::string kind = checked_kind(given["KIND"].as<std::string>());
+  const std::string name = checked_name(given["NAME"].as<std::string>());
   std::error_code error;
   if (!fs::create_directory(name, error))
     throw UsageError(name + ": cannot be made: " + (error ? error.message() : "it is there already") +
@@ -106,9 +109,81 @@ int new_command(const Arguments& arguments) {
     fs::remove_all(name, error);  // half a project would be in the way of the next attempt
     throw;
   }
-  std::cout << name << ": a " << kind << " operator in " << file_name(name) << ".cpp; next:\n"
+  remarks() << name << ": a " << kind << " operator in " << file_name(name) << ".cpp; next:\n"
             << "  cd " << name << " && cmake -B build && cmake --build build && ctest --test-dir build\n";
   return 0;
+}
+
+void print(const Verdict& verdict) {
+  std::printf("%-8s %-28s %s%s%s\n", verdict.outcome.c_str(), verdict.subject.c_str(), verdict.name.c_str(),
+              verdict.reason.empty() ? "" : ": ", printable(verdict.reason, 2000).c_str());
+  std::fflush(stdout);  // a child that crashes next must not say it again
+}
+
+bool is_good(const Verdict& verdict) { return verdict.outcome == "passed" || verdict.outcome == "skipped"; }
+
+int conform(const Given& given) {
+  const auto libraries = given["LIBRARY"].as<std::vector<std::string>>();
+  for (const std::string& library : libraries)
+    if (std::error_code error; !std::filesystem::is_regular_file(library, error))
+      throw UsageError("conform " + printable(library) +
+                       ": is not a file; give the libraries to check, NAME.evodevo.so");
+  if (given["seed"].as<std::int64_t>() < 0)
+    throw UsageError("--seed " + std::to_string(given["seed"].as<std::int64_t>()) + ": expected 0 or more");
+  const auto seed = static_cast<std::uint64_t>(given["seed"].as<std::int64_t>());
+  const bool as_json = given.contains("json");
+  std::size_t cases = 0, bad = 0;
+  Json list = Json::array();
+  const auto report = [&](const Verdict& verdict) {
+    ++cases;
+    bad += !is_good(verdict);
+    if (as_json)
+      list.push_back({{"subject", verdict.subject},
+                      {"case", verdict.name},
+                      {"outcome", verdict.outcome},
+                      {"reason", verdict.reason},
+                      {"seed", seed}});
+    else
+      print(verdict);
+  };
+  for (const auto& library : libraries)
+    conformance::examine(std::filesystem::absolute(library).lexically_normal(), seed, report);
+  if (as_json)
+    std::cout << json_text(list) << '\n';
+  else
+    std::cout << cases << " cases, " << bad << " not kept; --seed " << seed << " repeats them\n";
+  return bad == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+Command new_command() {
+  return {
+      .name = "new",
+      .arguments = {{"KIND"}, {"NAME"}},
+      .summary = "Write the project of a plugin",
+      .text = {"KIND is encoding, mutation, crossover, devo, fitness or selection. The project is a new folder NAME "
+               "with an operator that works, an experiment that uses it, and tests. It builds against the installed "
+               "evodevo."},
+      .examples = {"new devo my-lab.growth"},
+      .options = {},
+      .function = create};
+}
+
+Command conform_command() {
+  Options options;
+  options.add_options()("seed", value<std::int64_t>("N")->default_value(1), "seed of all inputs")("json", "print JSON");
+  return {
+      .name = "conform",
+      .arguments = {{"LIBRARY", Count::one_or_more}},
+      .summary = "Check whether plugins keep to the rules",
+      .text = {"It calls the operators of each library with many inputs and checks what the host relies on, such as "
+               "the same answer to the same question. Each case runs in a process of its own, so that a crash is one "
+               "failed case."},
+      .examples = {"conform build/lib/evodevo/growth.evodevo.so"},
+      .options = options,
+      .function = conform,
+      .watches_operators = false};  // each case has a time limit in a process of its own
 }
 
 }  // namespace evodevo

@@ -1,4 +1,4 @@
-#include "commands/progress.hpp"
+#include "commands/shell/progress.hpp"
 
 #include <unistd.h>
 
@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "base/text.hpp"
+#include "commands/shell/notices.hpp"
 
 namespace evodevo {
 namespace {
@@ -32,7 +33,7 @@ ProgressDisplay::ProgressDisplay(const Experiment& experiment, const std::vector
                                  const std::atomic<bool>& stop)
     : experiment_(experiment),
       stop_(stop),
-      live_(isatty(STDOUT_FILENO) == 1),
+      live_(isatty(STDOUT_FILENO) == 1 && verbosity() != Verbosity::quiet),
       start_(std::chrono::steady_clock::now()) {
   if (past.empty()) return;
   last_ = past.back();
@@ -85,7 +86,7 @@ void ProgressDisplay::generation_done(const Summary& summary) {
   if (live_)
     show_live(evaluations);
   else
-    std::cout << line(evaluations) << std::endl;
+    remarks() << line(evaluations) << std::endl;
 }
 
 void ProgressDisplay::generation_progress(double done) {
@@ -101,33 +102,35 @@ void ProgressDisplay::finish() {
 void print_outcome(const Experiment& experiment, const Archive& archive, const ProgressDisplay& progress) {
   if (const auto best = archive.best(1); !best.empty()) {
     const ArchivedIndividual individual = *archive.individual(best.front());
-    std::cout << "best: individual " << individual.id << " of generation " << individual.born;
+    std::cout << "best: individual " << individual.id << " of generation " << individual.born << " in "
+              << archive.folder().string();
     for (std::size_t i = 0; i < experiment.objectives.size(); ++i)
       std::cout << ", " << experiment.objectives[i].name << ' ' << short_number(individual.result.objectives[i]) << ' '
                 << experiment.objectives[i].unit;
-    std::cout << "\n      look at the run: " << program_name() << " show " << archive.folder().string()
+    std::cout << std::endl;
+    remarks() << "      look at the run: " << program_name() << " show " << archive.folder().string()
               << "\n      its body:        " << program_name() << " body " << archive.folder().string()
               << " --individual " << individual.id << '\n';
   } else {
-    std::cout << "no individual ended with a fitness; see why: " << program_name() << " show "
+    std::cout << "no individual ended with a fitness; to see why: " << program_name() << " show "
               << archive.folder().string() << '\n';
   }
   const auto springs = static_cast<double>(progress.spring_evaluations());
-  std::cout << "speed: " << short_number(springs / progress.seconds()) << " spring evaluations/s ("
+  remarks() << "speed: " << short_number(springs / progress.seconds()) << " spring evaluations/s ("
             << short_number(springs) << " in " << duration_text(progress.seconds()) << ")" << std::endl;
 }
 
 void print_time_spent(const TimeSpent& time, const Simulator& simulator) {
   if (!(time.whole > 0)) return;
   const auto share = [&](double seconds) { return formatted("%.0f %%", 100 * seconds / time.whole); };
-  std::cout << "time:  simulate " << share(time.evaluation.simulate) << ", develop " << share(time.evaluation.develop)
+  remarks() << "time:  simulate " << share(time.evaluation.simulate) << ", develop " << share(time.evaluation.develop)
             << ", decode " << share(time.evaluation.decode) << ", archive " << share(time.archive);
   if (const std::optional<DeviceUse> device = simulator.device_use()) {
-    std::cout << "; device idle " << share(time.whole - device->busy);
+    remarks() << "; device idle " << share(time.whole - device->busy);
     if (device->portions > 1)
-      std::cout << ", a batch in up to " << device->portions << " portions for lack of device memory";
+      remarks() << ", a batch in up to " << device->portions << " portions for lack of device memory";
   }
-  std::cout << std::endl;
+  remarks() << std::endl;
 }
 
 }  // namespace evodevo

@@ -1,0 +1,77 @@
+// evodevo help, completion and man: what the declarations of the commands say, in several forms.
+#include "commands/shell/help.hpp"
+
+#include <iostream>
+
+#include "base/text.hpp"
+#include "commands/commands.hpp"
+#include "commands/shell/completion.hpp"
+#include "commands/shell/manual.hpp"
+
+namespace evodevo {
+namespace {
+
+int help(const Given& given) {
+  if (!given.contains("TOPIC")) {
+    print_overview(std::cout, commands());
+    return 0;
+  }
+  const auto wanted = given["TOPIC"].as<std::string>();
+  std::vector<std::string> names;
+  for (const Topic& topic : topics()) {
+    if (topic.name == wanted) return print_topic(std::cout, topic), 0;
+    names.push_back(topic.name);
+  }
+  for (const Command& command : commands()) {
+    if (command.name == wanted) return print_help(std::cout, command), 0;
+    names.push_back(command.name);
+  }
+  throw UsageError("help " + printable(wanted) + ": is neither a topic nor a command" + suggestion(wanted, names));
+}
+
+int complete(const Given& given) {
+  std::cout << completion_script(given[shells].as<std::string>(), commands());
+  return 0;
+}
+
+int man(const Given&) {
+  std::cout << manual_page(commands());
+  return 0;
+}
+
+}  // namespace
+
+Command help_command() {
+  return {.name = "help",
+          .arguments = {{"TOPIC", Count::optional}},
+          .summary = "Explain a topic or a command",
+          .text = {"Without a topic it lists all commands and topics."},
+          .examples = {"help experiment", "help run"},
+          .options = {},
+          .function = help};
+}
+
+Command completion_command() {
+  return {.name = "completion",
+          .arguments = {{shells}},
+          .summary = "Print a script by which a shell completes commands",
+          .text = {"The script completes commands, options, their values, the names of operators, and files. "
+                   "`cmake --install` puts it where each shell looks for it. Elsewhere, load it when the shell starts, "
+                   "as in the examples, of which the first is for ~/.bashrc."},
+          .examples = {"completion bash >> ~/.bashrc", "completion zsh > ~/.zfunc/_evodevo",
+                       "completion fish > ~/.config/fish/completions/evodevo.fish"},
+          .options = {},
+          .function = complete};
+}
+
+Command man_command() {
+  return {.name = "man",
+          .arguments = {},
+          .summary = "Print the manual page",
+          .text = {"The page is in roff, as `man` reads it. `cmake --install` puts it in share/man/man1."},
+          .examples = {"man | man -l -"},
+          .options = {},
+          .function = man};
+}
+
+}  // namespace evodevo

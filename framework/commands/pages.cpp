@@ -1,0 +1,197 @@
+// evodevo report, film and gallery: robots as a page, a film or a picture.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iostream>
+
+#include "base/output_file.hpp"
+#include "base/text.hpp"
+#include "commands/commands.hpp"
+#include "commands/shell/notices.hpp"
+#include "commands/shell/options.hpp"
+#include "report/camera.hpp"
+#include "report/page.hpp"
+#include "report/report.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::array film_endings = {".mp4", ".gif", ".webp", ".png"};
+
+/// Throws UsageError unless the name ends in one of `endings`.
+void expect_ending(const std::string& file, std::span<const char* const> endings) {
+  if (std::any_of(endings.begin(), endings.end(), [&](const char* ending) { return file.ends_with(ending); })) return;
+  throw UsageError("--out " + printable(file) + ": expected a name ending in " +
+                   joined(std::vector<std::string>(endings.begin(), endings.end())));
+}
+
+void say_size(const std::string& file, std::size_t bytes, const std::string& option) {
+  if (verbosity() != Verbosity::quiet) std::cerr << size_note(file, bytes, option);
+}
+
+/// The data of a run's page, for which its cast is simulated again.
+Json filmed_run(const Archive& archive, const Experiment& experiment, const Cast& cast, std::size_t budget) {
+  const auto simulator = opened_simulator(experiment);
+  return timed("simulating robots of " + printable(archive.folder().string()) + " again",
+               [&] { return reported_run(archive, experiment, *simulator, cast, budget); });
+}
+
+Json reported(const std::string& folder, const Given& given, std::size_t budget) {
+  const Archive archive = Archive::read(folder);
+  Cast cast{.best = static_cast<std::size_t>(given["best"].as<std::int64_t>())};
+  if (given.contains("individual"))
+    for (const std::int64_t id : given["individual"].as<std::vector<std::int64_t>>())
+      cast.individuals.push_back(individual_named(archive, id).id);
+  const Experiment experiment = experiment_of_run(archive, given);
+  refuse_to_overwrite("--out", given["out"].as<std::string>(), libraries_of(experiment));
+  return filmed_run(archive, experiment, cast, budget);
+}
+
+int report(const Given& given) {
+  const auto folders = given["DIR"].as<std::vector<std::string>>();
+  const auto best = given["best"].as<std::int64_t>();
+  if (best < 0 || best > 100) throw UsageError("--best " + std::to_string(best) + ": expected 0 to 100");
+  const auto file = given["out"].as<std::string>();
+  for (const std::string& folder : folders) refuse_to_overwrite("--out", file, files_of_run(folder));
+  const std::string page = page_template();
+  OutputFile output(file, file);
+  std::vector<Json> runs;
+  for (const std::string& folder : folders) runs.push_back(reported(folder, given, page_budget / folders.size()));
+  const std::string filled = filled_page(page, report_data(std::move(runs)));
+  output.write(filled);
+  output.finish();
+  std::cout << file << '\n';
+  say_size(file, filled.size(), "--best");
+  return 0;
+}
+
+/// A time since birth, s. Throws UsageError.
+std::optional<double> given_moment(const Given& given, const char* option) {
+  if (!given.contains(option)) return std::nullopt;
+  const double moment = given[option].as<double>();
+  if (moment >= 0 && std::isfinite(moment)) return moment;
+  throw UsageError(std::string("--") + option + " " + to_text(moment) + ": expected a time since birth, 0 s or later");
+}
+
+/// What of a life is filmed. Throws UsageError where the options do not go together.
+Shooting given_shooting(const Given& given, bool is_picture) {
+  const Shooting shooting{given_moment(given, "at"), given_moment(given, "from"), given_moment(given, "to"),
+                          verbosity() == Verbosity::quiet};
+  if (!is_picture && shooting.at)
+    throw UsageError("--at " + to_text(*shooting.at) +
+                     ": is the time of a picture; give --out a name ending in .png, or leave --at out");
+  if (is_picture && (shooting.from || shooting.to))
+    throw UsageError("--from and --to are the times of a film; for a picture, give --at instead");
+  if (shooting.from && shooting.to && !(*shooting.from < *shooting.to))
+    throw UsageError("--to " + to_text(*shooting.to) + ": expected a time after --from " + to_text(*shooting.from));
+  return shooting;
+}
+
+int film(const Given& given) {
+  const auto file = given["out"].as<std::string>(), folder = given["DIR"].as<std::string>();
+  expect_ending(file, film_endings);
+  const Shooting shooting = given_shooting(given, file.ends_with(".png"));
+  refuse_to_overwrite("--out", file, files_of_run(folder));
+  const std::string page = page_template();
+  const Archive archive = Archive::read(folder);
+  const ArchivedIndividual shown = chosen_individual(archive, given);
+  const Cast cast =
+      given.contains("individual") ? Cast{.best = 0, .individuals = {shown.id}} : Cast{.best = 1, .ancestors = 0};
+  const Experiment experiment = experiment_of_run(archive, given);
+  refuse_to_overwrite("--out", file, libraries_of(experiment));
+  OutputFile output(file, file);
+  const Json data = report_data({filmed_run(archive, experiment, cast, page_budget)});
+  timed("drawing " + printable(file), [&] { shoot(filled_page(page, data), output, file, shooting); });
+  std::cout << file << '\n';
+  return 0;
+}
+
+int gallery(const Given& given) {
+  const auto count = given["count"].as<std::int64_t>();
+  if (count < 1 || count > 1000) throw UsageError("--count " + std::to_string(count) + ": expected 1 to 1000");
+  const auto file = given["out"].as<std::string>();
+  expect_ending(file, std::array{".html", ".png"});
+  const auto experiment_file = given["EXPERIMENT.toml"].as<std::string>();
+  refuse_to_overwrite("--out", file, {experiment_file});
+  const std::string page = page_template();
+  const Experiment experiment = given_experiment(experiment_file, given);
+  refuse_to_overwrite("--out", file, libraries_of(experiment));
+  OutputFile output(file, file);
+  const std::string filled = filled_page(page, gallery_data(experiment, static_cast<std::size_t>(count)));
+  if (file.ends_with(".png")) {
+    timed("drawing " + printable(file),
+          [&] { shoot(filled, output, file, {.quiet = verbosity() == Verbosity::quiet}); });
+  } else {
+    output.write(filled);
+    output.finish();
+    say_size(file, filled.size(), "--count");
+  }
+  std::cout << file << '\n';
+  return 0;
+}
+
+}  // namespace
+
+Command report_command() {
+  Options options;
+  options.add_options()("best", value<std::int64_t>("N")->default_value(3),
+                        "how many of the best to show, of each run")(
+      "individual", values<std::int64_t>("ID"), "one more individual to show, of each run; may be repeated")(
+      "out", value<std::string>("FILE")->default_value("report.html"), "the page to write");
+  add_plugin_option(options);
+  return {
+      .name = "report",
+      .arguments = {{"DIR", Count::one_or_more}},
+      .summary = "Write a page that shows runs and their robots",
+      .text = {"The page is one HTML file that needs neither network nor server. It shows fitness, the Pareto front, "
+               "the experiment, and the best robots, some ancestors and the named individuals in 3D. Several runs "
+               "give one page that compares them."},
+      .examples = {"report runs/quickstart-1 --out report.html"},
+      .options = options,
+      .function = report};
+}
+
+Command film_command() {
+  Options options;
+  add_individual_option(options);
+  options.add_options()("out", value<std::string>("FILE")->default_value("film.mp4"),
+                        "the file to write; its name ends in .mp4, .gif, .webp or .png")(
+      "from", value<double>("S"), "where a film begins, s since birth; default: at birth")(
+      "to", value<double>("S"), "where a film ends, s since birth; default: at the end of the life")(
+      "at", value<double>("S"), "the time of a picture, s since birth; default: midway in the last measurement");
+  add_plugin_option(options);
+  return {
+      .name = "film",
+      .arguments = {{"DIR"}},
+      .summary = "Write a film or a picture of a robot of a run",
+      .text = {"A name ending in .mp4 is a film of 1280 by 720 pixels and 30 frames a second. One ending in .webp or "
+               ".gif is an animated picture of 480 by 270 pixels and 20 frames a second for web pages; as WebP it "
+               "takes some 0.1 MB a second, as GIF 0.6 MB. "
+               "One ending in .png is a single picture.",
+               "Chromium draws and ffmpeg encodes; without a GPU a frame takes 0.2 to 0.5 s of processor time."},
+      .examples = {"film runs/quickstart-1 --out champion.mp4",
+                   "film runs/quickstart-1 --from 14 --to 20 --out walk.webp",
+                   "film runs/quickstart-1 --individual 531 --at 14 --out another.png"},
+      .options = options,
+      .function = film};
+}
+
+Command gallery_command() {
+  Options options;
+  options.add_options()("count", value<std::int64_t>("N")->default_value(24), "how many robots")(
+      "out", value<std::string>("FILE")->default_value("gallery.html"),
+      "the page to write, or with a name ending in .png a picture");
+  add_experiment_options(options);
+  return {.name = "gallery",
+          .arguments = {{"EXPERIMENT.toml"}},
+          .summary = "Write a page of random robots of an experiment",
+          .text = {"The page shows how the encoding makes each body."},
+          .examples = {"gallery experiments/paper.toml --count 24 --out gallery.html"},
+          .options = options,
+          .function = gallery};
+}
+
+}  // namespace evodevo

@@ -1,0 +1,136 @@
+#include "commands/shell/options.hpp"
+
+#include <limits>
+
+#include "base/text.hpp"
+#include "commands/shell/notices.hpp"
+#include "evolution/resimulation.hpp"
+#include "experiment/device.hpp"
+#include "experiment/toml_reader.hpp"
+
+namespace evodevo {
+
+namespace fs = std::filesystem;
+
+void refuse_to_overwrite(const std::string& option, const fs::path& file, const std::vector<fs::path>& inputs) {
+  for (const fs::path& input : inputs)
+    if (std::error_code error; fs::equivalent(file, input, error))
+      throw UsageError(option + " " + file.string() + ": is " + input.string() +
+                       ", which the command reads; name another file to write");
+}
+
+std::vector<fs::path> libraries_of(const Experiment& experiment) {
+  std::vector<fs::path> libraries;
+  for (const OperatorUse& use : experiment.uses) libraries.push_back(use.file);
+  return libraries;
+}
+
+std::vector<fs::path> files_of_run(const fs::path& folder) {
+  const fs::path database = folder / database_name;
+  return {database, database.string() + "-wal", database.string() + "-shm"};
+}
+
+namespace {
+
+struct Shorthand {
+  const char* option;
+  const char* key;
+  const char* value;  ///< its placeholder
+  const char* text;
+};
+
+constexpr Shorthand shorthands[] = {
+    {"seed", "experiment.seed", "N", "seed of all random numbers"},
+    {"device", "simulation.device", "auto|cpu|cuda", "where to simulate; auto: on a GPU where there is one"},
+    {"threads", "simulation.threads", "N", "threads on the CPU; 0: one for each core"},
+};
+
+/// An option and its value, as a message shows them.
+std::string option_text(const std::string& option, const std::string& value) {
+  return "--" + option + " " + printable(value);
+}
+
+}  // namespace
+
+void add_plugin_option(Options& options) {
+  options.add_options()("plugin-path", values<std::string>("PATH"),
+                        "folder with operators, or one library; searched after the experiment's own paths and before "
+                        "EVODEVO_PLUGIN_PATH; may be repeated");
+}
+
+std::vector<std::filesystem::path> given_plugin_path(const Given& given) {
+  std::vector<std::filesystem::path> path;
+  if (!given.contains("plugin-path")) return path;
+  for (const std::string& item : given["plugin-path"].as<std::vector<std::string>>()) {
+    if (!is_plugin_path(item))
+      throw UsageError(option_text("plugin-path", item) +
+                       ": is neither a folder nor a library NAME.evodevo.so; build the plugin first");
+    path.emplace_back(item);
+  }
+  return path;
+}
+
+void add_individual_option(Options& options) {
+  options.add_options()("individual", value<std::int64_t>("ID"), "the individual; default: the best");
+}
+
+void add_experiment_options(Options& options) {
+  add_plugin_option(options);
+  for (const Shorthand& shorthand : shorthands)
+    options.add_options()(shorthand.option, value<std::string>(shorthand.value), shorthand.text);
+  options.add_options()("set", values<std::string>("KEY=VALUE"),
+                        "set any key of the file, as in experiment.population=20 or fitness.0.window=5; may be "
+                        "repeated");
+}
+
+ExperimentSource experiment_source(const std::string& file, const Given& given) {
+  ExperimentSource source{file, {}, given_plugin_path(given)};
+  if (given.contains("set")) {
+    for (const std::string& text : given["set"].as<std::vector<std::string>>()) {
+      const auto equals = text.find('=');
+      if (equals == std::string::npos || equals == 0)
+        throw UsageError(option_text("set", text) + ": expected --set key=value");
+      source.overrides.push_back({text.substr(0, equals), text.substr(equals + 1), option_text("set", text)});
+    }
+  }
+  for (const Shorthand& shorthand : shorthands) {
+    if (!given.contains(shorthand.option)) continue;
+    const auto value = given[shorthand.option].as<std::string>();
+    source.overrides.push_back({shorthand.key, value, option_text(shorthand.option, value)});
+  }
+  return source;
+}
+
+Experiment given_experiment(const std::string& file, const Given& given) {
+  return timed("reading " + printable(file) + " and loading its operators",
+               [&] { return read_experiment(experiment_source(file, given)); });
+}
+
+std::unique_ptr<Simulator> opened_simulator(const Experiment& experiment) {
+  return timed("opening the simulator", [&] { return make_simulator(experiment); });
+}
+
+Experiment experiment_of_run(const Archive& archive, const Given& given) {
+  return timed("reading the experiment of " + printable(archive.folder().string()) + " and loading its operators",
+               [&] { return experiment_to_live_again(archive, given_plugin_path(given)); });
+}
+
+ArchivedIndividual individual_named(const Archive& archive, std::int64_t id) {
+  const std::string folder = archive.folder().string();
+  const bool is_id = id >= 0 && id <= std::numeric_limits<std::uint32_t>::max();
+  auto individual = is_id ? archive.individual(static_cast<std::uint32_t>(id)) : std::nullopt;
+  if (!individual)
+    throw ArchiveError(folder + ": there is no individual " + std::to_string(id) + "; see `" + program_name() +
+                       " show " + folder + "`");
+  return *individual;
+}
+
+ArchivedIndividual chosen_individual(const Archive& archive, const Given& given) {
+  if (given.contains("individual")) return individual_named(archive, given["individual"].as<std::int64_t>());
+  const auto best = archive.best(1);
+  if (best.empty())
+    throw ArchiveError(archive.folder().string() + ": no individual has a fitness; name one with --individual");
+  return archive.known_individual(best.front());
+}
+
+}  // namespace evodevo

@@ -1,0 +1,191 @@
+#include "commands/shell/topics.hpp"
+
+namespace evodevo {
+namespace {
+
+Topic experiment() {
+  return {
+      .name = "experiment",
+      .summary = "The tables and keys of an experiment",
+      .text = {"An experiment is one TOML file. A force that has no table is not computed. A key that is left out has "
+               "its default. A key that does not exist is an error that names the file, the line, the column and the "
+               "nearest key that exists.",
+               "Every key can also be set on the command line: --set experiment.population=100. The items of lists "
+               "have numbers from 0: --set fitness.0.window=5. The number behind the last item adds an item.",
+               "`evodevo check FILE` says whether an experiment can be run, `evodevo operators` lists the operators "
+               "that it can name, and `evodevo describe OPERATOR` explains the keys of one operator."},
+      .definitions = {{"[experiment]",
+                       "How long the run takes: seed, evaluations, spring_evaluations, population, and verify, the "
+                       "number of best individuals that are verified at the end."},
+                      {"[encoding]",
+                       "The operator that grows a body from a genome: name, and the parameters of that operator. The "
+                       "neural encoding has points, neighbours and mass (kg), among others."},
+                      {"[[mutation]], [[crossover]]",
+                       "The operators that make children: name, probability, and parameters. A "
+                       "child goes through each with its probability, crossovers first."},
+                      {"[scene.gravity]", "acceleration (m/s^2, downwards) and slope (degrees)."},
+                      {"[scene.floor]", "stiffness (N/m); roughness (m), wavelength (m) and seed of rough ground."},
+                      {"[scene.friction]", "coefficient of Coulomb friction with the floor."},
+                      {"[scene.damping]", "rate (1/s) at which all velocities decay."},
+                      {"[scene.drag]", "coefficient (kg/m) of quadratic drag on each mass."},
+                      {"[scene.load]",
+                       "A payload: its share of the body's mass, and the top part of the body that carries it."},
+                      {"[simulation]",
+                       "accuracy (paper, fast, balanced or reference), or each of method, precision, dt (s, or "
+                       "auto) and refine; materials (table or computed); unstable (invalid or run); device "
+                       "(auto, cpu or cuda) and threads (0: all cores)."},
+                      {"[development]",
+                       "cycles, and cycle_time (s) of each; reset; control, for control experiments; probe and "
+                       "skip, which say how stress is measured."},
+                      {"[[development.operator]]",
+                       "The operators that change a body after a cycle: name, parameters, and the "
+                       "schedule from, to and every, counted in cycles."},
+                      {"[[fitness]]",
+                       "The operators that score a life: name, and parameters such as settle and window (s). Several "
+                       "make a Pareto front."},
+                      {"[selection]", "The operator that chooses who survives: name, and parameters."},
+                      {"[materials.NAME]",
+                       "A material: stiffness (N/m), amplitude, frequency (Hz) and phase (rad). The names "
+                       "muscle, muscle2, tissue, bone and air exist already and can be changed."},
+                      {"[plugins]", "paths: folders with operators, relative to the file."}},
+      .example = R"([experiment]
+evaluations = 600
+population = 30
+[encoding]
+name = "neural"
+[[mutation]]
+name = "reset-weight"
+[scene.gravity]
+[scene.floor]
+[scene.friction]
+[scene.damping]
+[development]
+cycles = 4
+cycle_time = 1.0
+[[development.operator]]
+name = "spring-turnover"
+springs = 8
+[[fitness]]
+name = "distance"
+settle = 10.0
+window = 10.0
+[selection]
+name = "age-fitness-pareto"
+)"};
+}
+
+Topic plugins() {
+  return {
+      .name = "plugins",
+      .summary = "How to write, check and use operators of your own",
+      .text = {"Every encoding, mutation, crossover, devo operator, fitness and selection is a plugin: a shared "
+               "library NAME.evodevo.so with one operator or more. To use another operator, change a name in the "
+               "experiment; evodevo is not built again.",
+               "evodevo looks for operators in the folders that [plugins] paths of the experiment names, then in "
+               "those of --plugin-path, then in those of EVODEVO_PLUGIN_PATH, and then in its own folder. A run "
+               "records the folders, and `run` remembers them for `resume` and the other commands.",
+               "The host checks a library before it calls it and says why it refuses one: see "
+               "`evodevo operators --failed`. It names an operator that crashes, throws or takes too long.",
+               "share/doc/evodevo/plugins.md, which is framework/sdk/README.md in the sources, teaches how to write "
+               "an operator."},
+      .definitions = {},
+      .example = R"(evodevo new devo my-lab.growth && cd my-lab.growth
+cmake -B build && cmake --build build
+evodevo conform build/lib/evodevo/*.evodevo.so
+evodevo run experiment.toml
+)"};
+}
+
+Topic archive() {
+  return {
+      .name = "archive",
+      .summary = "What a run writes, and how to read it",
+      .text = {"The folder of a run holds one SQLite file, run.sqlite, with every individual of every generation and "
+               "the experiment with all defaults written out. While the run goes on, its newest generations can "
+               "lie in run.sqlite-wal beside it: copy and move these files together.",
+               "A generation is one transaction. Ctrl-C ends a run after the current generation, a second Ctrl-C "
+               "ends it at once; `evodevo resume` goes on in both cases, and ends with the same genes and scores as "
+               "a run that was never interrupted. One process at a time writes a run, and any number may read it."},
+      .definitions = {{"record", "Texts about the whole run by their key, such as experiment, name and seed."},
+                      {"individuals",
+                       "Id, generation of birth and of death, parents, operators that made it, genes, "
+                       "status and reason."},
+                      {"scores", "The value of each objective of each individual with a fitness."},
+                      {"objectives", "Name, unit and direction of each objective."},
+                      {"generations", "Best, median and counts of each generation."},
+                      {"members", "Who was in the population after each generation, and how old its genes were."},
+                      {"lives", "What development did to the individuals of the front."},
+                      {"verifications", "The trials of verified individuals (see `evodevo help verification`)."}},
+      .example = "sqlite3 runs/quickstart-1/run.sqlite \"SELECT generation, best FROM generations\"\n"};
+}
+
+Topic verification() {
+  return {
+      .name = "verification",
+      .summary = "How the best individuals of a run are verified",
+      .text = {"A simulation can reward what is not there, such as energy that a time step adds. At its end a run "
+               "therefore simulates its best again ([experiment] verify, 1 by default), and `evodevo verify` does it "
+               "for more of them. The body develops as in the run; then its final evaluation is repeated in eight "
+               "trials.",
+               "A trial has held where the first objective keeps at least half of its value. An individual is an "
+               "artefact where quarter-step or other-method did not hold. It is passive where it keeps over half of "
+               "its fitness without muscles, or has lost over half of it after ten more seconds. Otherwise it is "
+               "verified."},
+      .definitions = {{"again", "Nothing is changed."},
+                      {"quarter-step", "A quarter of the time step, in double precision."},
+                      {"other-method",
+                       "Another integration method, in double precision, with a quarter of the "
+                       "longest stable step of the body."},
+                      {"disturbed-1, disturbed-2, disturbed-3",
+                       "A perturbation: each mass is moved at random by up "
+                       "to 1e-4 of the longest side of the body."},
+                      {"no-muscles", "All springs keep their length."},
+                      {"settled", "The measurement begins ten seconds later."}},
+      .example = "evodevo verify runs/quickstart-1 --best 10\n"};
+}
+
+Topic environment() {
+  return {.name = "environment",
+          .summary = "The environment variables and files that evodevo reads",
+          .text = {},
+          .definitions = {{"EVODEVO_PLUGIN_PATH", "Folders with operators, separated by colons."},
+                          {"EVODEVO_PATIENCE",
+                           "After how many seconds a call of an operator is named as slow; 10 by default."},
+                          {"EVODEVO_CHROMIUM",
+                           "The browser that draws films and pictures; by default chromium, chromium-browser or "
+                           "google-chrome of the search path."},
+                          {"EVODEVO_COMMAND", "How messages call the program; tools/evodevo sets it."},
+                          {"EVODEVO_PRESET",
+                           "What tools/evodevo builds: cpu or cuda; by default cuda where a CUDA toolkit is "
+                           "found. tools/test also takes asan and tsan."},
+                          {"XDG_CACHE_HOME",
+                           "Compiled kernels are kept in evodevo/kernels in this folder; ~/.cache by default."},
+                          {"XDG_STATE_HOME",
+                           "The folders whose operators you have run are listed in evodevo/plugin-folders in this "
+                           "folder, one on each line; ~/.local/state by default."}},
+          .example = ""};
+}
+
+Topic exit_codes() {
+  return {
+      .name = "exit-codes",
+      .summary = "What the exit codes mean",
+      .text = {"Messages go to standard error, so that results can be piped. A reader that ends early, as in "
+               "`evodevo operators | head -1`, ends the command without a message."},
+      .definitions =
+          {{"0", "The command has done what it was asked for."},
+           {"1", "It failed: a simulation or a run failed, output could not be written, or plugins do not conform."},
+           {"2", "The command line, an experiment, a body or a run is not valid. Nothing was written."},
+           {"130", "The run was interrupted, and `evodevo resume` can go on with it."}},
+      .example = ""};
+}
+
+}  // namespace
+
+const std::vector<Topic>& topics() {
+  static const std::vector<Topic> all = {experiment(),   plugins(),     archive(),
+                                         verification(), environment(), exit_codes()};
+  return all;
+}
+
+}  // namespace evodevo

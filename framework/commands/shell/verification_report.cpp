@@ -1,0 +1,43 @@
+#include "commands/shell/verification_report.hpp"
+
+#include <cstdio>
+
+#include "base/text.hpp"
+#include "commands/shell/notices.hpp"
+#include "evolution/resimulation.hpp"
+
+namespace evodevo {
+namespace {
+
+std::string number(const std::optional<double>& value) { return value ? short_number(*value) : "-"; }
+
+}  // namespace
+
+std::vector<Verification> verify_best(const Experiment& experiment, Simulator& simulator, Archive& archive,
+                                      std::size_t count) {
+  std::vector<ArchivedIndividual> individuals;
+  for (const std::uint32_t id : archive.best(count)) individuals.push_back(archive.known_individual(id));
+  std::vector<Champion> champions;
+  for (const ArchivedIndividual& individual : individuals)
+    champions.push_back(
+        {born_again(archive, experiment, individual, simulator.device()), individual.result.objectives.front()});
+  std::vector<Verification> verifications =
+      timed("verifying the best individuals", [&] { return verify(experiment, simulator, champions); });
+  archive.add_verifications(verifications);
+  return verifications;
+}
+
+void print(const Verification& verification, const Objective& objective) {
+  std::printf("individual %u: %s %s %s: %s\n", verification.individual, objective.name.c_str(),
+              number(verification.fitness).c_str(), objective.unit.c_str(),
+              marks_text(verification, objective.maximise).c_str());
+  for (const Trial& trial : verification.trials) {
+    const bool has_held = held(verification, trial, objective.maximise);
+    const char* outcome = has_held ? "held" : trial.name == "no-muscles" ? "not held, as it should be" : "not held";
+    std::printf("  %-14s %10s  %s%s\n", trial.name.c_str(), number(trial.value).c_str(), outcome,
+                trial.reason.empty() ? "" : (", " + std::string(name(trial.status)) + ": " + trial.reason).c_str());
+  }
+  std::fflush(stdout);
+}
+
+}  // namespace evodevo
