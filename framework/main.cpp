@@ -8,8 +8,8 @@
 #include "base/standard_streams.hpp"
 #include "base/text.hpp"
 #include "commands/commands.hpp"
-#include "experiment/device.hpp"
 #include "commands/shell/help.hpp"
+#include "experiment/device.hpp"
 #include "operators/call_watch.hpp"
 #include "operators/crash.hpp"
 

@@ -44,7 +44,7 @@ class ParserWatch {
       case Json::parse_event_t::object_start:
       case Json::parse_event_t::array_start:
         if (levels_.size() == most_levels)
-          input_.fail(place(), "lies more than " + std::to_string(most_levels) + " levels deep");
+          input_.fail(location(), "lies more than " + std::to_string(most_levels) + " levels deep");
         levels_.push_back({.is_list = event == Json::parse_event_t::array_start});
         break;
       case Json::parse_event_t::object_end:
@@ -73,7 +73,7 @@ class ParserWatch {
 
   void add_key(const std::string& key) {
     if (!levels_.back().keys.insert(key).second)
-      input_.fail(member_of(place_of_level(), unquoted(key)), "stands twice");
+      input_.fail(member_of(location_of_level(), unquoted(key)), "stands twice");
     levels_.back().key = key;
   }
 
@@ -82,14 +82,14 @@ class ParserWatch {
   }
 
   /// Of the level itself.
-  std::string place_of_level() const {
+  std::string location_of_level() const {
     std::string at;
     for (std::size_t i = 0; i + 1 < levels_.size(); ++i) at = step(at, levels_[i]);
     return at;
   }
 
   /// Of what comes next.
-  std::string place() const { return levels_.empty() ? "" : step(place_of_level(), levels_.back()); }
+  std::string location() const { return levels_.empty() ? "" : step(location_of_level(), levels_.back()); }
 
   static std::string step(const std::string& at, const Level& level) {
     if (level.is_list) return at + "[" + std::to_string(level.items) + "]";

@@ -14,7 +14,8 @@ class JsonInput {
 
   explicit JsonInput(std::string file) : file_(std::move(file)) {}
 
-  /// The whole file. Refuses what is no JSON, keys that stand twice in one object, more than 16 levels, and more than 1 GiB.
+  /// The whole file. Refuses what is no JSON, keys that stand twice in one object, more than 16 levels, and more than 1
+  /// GiB.
   Json read() const;
 
   /// Refuses what is no object, and any key but `keys`.

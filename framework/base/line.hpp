@@ -7,7 +7,6 @@
 #include <array>
 #include <charconv>
 #include <cstdint>
-#include <cstring>
 #include <string_view>
 
 namespace evodevo {
@@ -17,7 +16,7 @@ class Line {
  public:
   Line& operator<<(std::string_view text) {
     const std::size_t fits = std::min(text.size(), text_.size() - size_);
-    std::memcpy(text_.data() + size_, text.data(), fits);
+    std::copy_n(text.data(), fits, text_.data() + size_);
     size_ += fits;
     return *this;
   }

@@ -18,14 +18,14 @@ struct Shown {
 
 Shown newborn(const Evaluation& evaluation, const Individual& individual) {
   const Newborn newborn{individual.id, individual.born, &individual.genome};
-  BuiltBody built = std::move(evaluation.build({&newborn, 1}).front());
+  BuiltBody built = std::move(evaluation.birth.build({&newborn, 1}).front());
   if (!built.failure.empty()) return {{}, "invalid, " + built.failure};
   return {{std::move(built.body), std::nullopt}, ""};
 }
 
 Shown matured(const Evaluation& evaluation, const Newborn& newborn) {
-  std::vector<Life> lives = evaluation.birth({&newborn, 1});
-  evaluation.develop(lives, [](double) {});
+  std::vector<Life> lives = evaluation.birth.of({&newborn, 1});
+  evaluation.development.run(lives, [](double) {});
   const Result& result = lives.front().result;
   if (!lives.front().alive()) return {{}, std::string(name(result.status)) + ", " + result.reason};
   LivingBody& living = lives.front().living;
@@ -40,13 +40,13 @@ int body(const Given& given) {
   const auto simulator = opened_simulator(experiment);
   const Evaluation evaluation(experiment, *simulator);
   const Shown shown = given.contains("matured")
-                          ? matured(evaluation, born_again(archive, experiment, individual, simulator->device()))
+                          ? matured(evaluation, for_resimulation(archive, experiment, individual, simulator->device()))
                           : newborn(evaluation, individual);
   if (!shown.failure.empty()) {
     std::cerr << "individual " << individual.id << " has no body to show: " << shown.failure << '\n';
     return 1;
   }
-  std::cout << body_to_json(shown.given, experiment.world.material_names) << '\n';
+  std::cout << body_to_json(shown.given, experiment.context.material_names) << '\n';
   return 0;
 }
 

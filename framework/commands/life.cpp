@@ -38,7 +38,7 @@ Json to_json(const Event& event, const std::vector<Narrated>& operators) {
     json["measure"] = measure.name;
     json["unit"] = measure.unit;
   }
-  if (event.place) json["position"] = {event.place->x, event.place->y, event.place->z};
+  if (event.position) json["position"] = {event.position->x, event.position->y, event.position->z};
   if (event.rest_length) json["rest_length"] = *event.rest_length;
   if (event.material)
     json["material"] = {{"stiffness", event.material->stiffness},
@@ -71,7 +71,7 @@ void print(const Event& event, const std::vector<Narrated>& operators) {
   else
     std::printf("%s %s", who(event).c_str(), event.what);
   if (event.cause) print(*event.cause, op->measure(event.cause->list));
-  if (event.place) std::printf(" at (%.4g, %.4g, %.4g) m", event.place->x, event.place->y, event.place->z);
+  if (event.position) std::printf(" at (%.4g, %.4g, %.4g) m", event.position->x, event.position->y, event.position->z);
   if (event.rest_length) std::printf(", rest length %.4g m", *event.rest_length);
   if (event.material)
     std::printf(", %.4g N/m, amplitude %.4g, %.4g Hz, phase %.4g", event.material->stiffness, event.material->amplitude,
@@ -88,10 +88,10 @@ class LifeReport {
         operators_(narrated_operators(experiment_)) {
     const auto simulator = opened_simulator(experiment_);
     const Evaluation evaluation(experiment_, *simulator);
-    const Newborn newborn = born_again(archive, experiment_, individual_, simulator->device());
-    std::vector<Life> lives = evaluation.birth({&newborn, 1});
+    const Newborn newborn = for_resimulation(archive, experiment_, individual_, simulator->device());
+    std::vector<Life> lives = evaluation.birth.of({&newborn, 1});
     born_ = lives.front().living.body;
-    timed("simulating the development again", [&] { evaluation.develop(lives, [](double) {}); });
+    timed("simulating the development again", [&] { evaluation.development.run(lives, [](double) {}); });
     LifeEvents told = life_events(born_, lives.front().result.record);
     matured_ = std::move(told.matured);
     events_ = std::move(told.events);
@@ -120,7 +120,7 @@ class LifeReport {
     for (const Narrated& op : operators_) operators.push_back({{"name", op.name}});
     for (const Event& event : events_) edits.push_back(to_json(event, operators_));
     return {{"individual", individual_.id},
-            {"control", name(experiment_.development.control)},
+            {"control", name_of(experiment_.development.control)},
             {"status", name(individual_.result.status)},
             {"reason", individual_.result.reason},
             {"born", counts(born_)},

@@ -1,7 +1,7 @@
 // What `run` and `resume` do once they have a run to go on with.
 #pragma once
 
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 
 namespace evodevo {
 

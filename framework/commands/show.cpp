@@ -7,7 +7,7 @@
 #include "base/text.hpp"
 #include "commands/commands.hpp"
 #include "commands/shell/options.hpp"
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 #include "experiment/toml_reader.hpp"
 #include "report/run_json.hpp"
 
@@ -16,12 +16,6 @@ namespace {
 
 constexpr std::size_t best_shown = 5;
 constexpr std::size_t generations_shown = 20;
-
-/// What the run does to development instead of the operators' own work; "off" where it does nothing.
-std::string control_of(const Archive& archive) {
-  const std::string place = (archive.folder() / "record of the run").string();
-  return parse_toml(archive.record("experiment"), place)["development"]["control"].value_or(std::string("off"));
-}
 
 class Report {
  public:
@@ -36,8 +30,8 @@ class Report {
     std::cout << recorded("name") << ", seed " << recorded("seed") << ", " << devices() << ", evodevo "
               << recorded("evodevo") << ", begun " << recorded("created") << '\n';
     const auto statuses = archive_.statuses();
-    if (const std::string control = control_of(archive_); control != "off")
-      std::cout << "development under the control \"" << printable(control) << "\"\n";
+    if (const Control control = recorded_settings(archive_).development.control; control != Control::off)
+      std::cout << "development under the control \"" << name_of(control) << "\"\n";
     std::cout << done() << " evaluations: " << statuses.at("ok") << " ok, " << statuses.at("invalid") << " invalid, "
               << statuses.at("diverged") << " diverged; " << clones(generations_) << " of them clones\n\n";
     print_generations();
@@ -51,8 +45,9 @@ class Report {
   /// In the order in which they came.
   std::string devices() const {
     std::vector<std::string> devices;
-    for (const Maker& maker : archive_.makers())
-      if (std::find(devices.begin(), devices.end(), maker.device) == devices.end()) devices.push_back(maker.device);
+    for (const Provenance& provenance : archive_.provenances())
+      if (std::find(devices.begin(), devices.end(), provenance.device) == devices.end())
+        devices.push_back(provenance.device);
     return joined(devices, ", then ");
   }
 
@@ -111,7 +106,7 @@ class Report {
 int show(const Given& given) {
   const Archive archive = Archive::read(given["DIR"].as<std::string>());
   if (given.contains("json"))
-    std::cout << json_text(run_json(archive, recorded_experiment(archive, given_plugin_path(given)))) << '\n';
+    std::cout << json_text(run_json(archive, recorded_settings(archive))) << '\n';
   else
     Report(archive).print();
   return 0;
@@ -122,7 +117,6 @@ int show(const Given& given) {
 Command show_command() {
   Options options;
   options.add_options()("json", "print JSON, with every generation");
-  add_plugin_option(options);
   return {.name = "show",
           .arguments = {{"DIR"}},
           .summary = "Show the progress and the best robots of a run",

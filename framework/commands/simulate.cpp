@@ -64,7 +64,7 @@ Motion go_on(const Evaluation& evaluation, Simulator& simulator, Life& life, dou
   const auto look = [&](std::size_t, const Task& piece) {
     if (piece.status == Status::ok) trajectory->add(*piece.state);
   };
-  evaluation.simulate({&life, 1}, duration, [&](std::span<Task> tasks, std::span<Life* const>) {
+  evaluation.simulation.run({&life, 1}, duration, [&](std::span<Task> tasks, std::span<Life* const>) {
     if (trajectory == nullptr) return simulator.run(tasks, {});
     trajectory->add(*tasks.front().state);
     run_in_pieces(simulator, tasks, {}, next_steps, look);
@@ -80,8 +80,8 @@ std::string vector_text(Vec3 v) {
 /// The life of the body in a file; throws ConfigError where the scene or its steps are not for it.
 Life life_of(const std::string& file, const Evaluation& evaluation) {
   GivenBody given = read_body(file);
-  Life life = given.state ? evaluation.amid_life(std::move(given.body), std::move(*given.state))
-                          : evaluation.birth(std::move(given.body));
+  Life life = given.state ? evaluation.birth.amid_life(std::move(given.body), std::move(*given.state))
+                          : evaluation.birth.of(std::move(given.body));
   if (life.alive()) return life;
   const bool is_step = life.result.reason.starts_with("unstable dt");
   throw ConfigError(

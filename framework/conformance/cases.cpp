@@ -6,7 +6,7 @@
 
 #include "base/text.hpp"
 #include "conformance/trials.hpp"
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 #include "evolution/evolution.hpp"
 #include "experiment/toml_reader.hpp"
 #include "operators/declarations.hpp"

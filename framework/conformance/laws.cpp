@@ -17,10 +17,10 @@ std::string numbered(const char* what, std::uint32_t input) { return std::string
 // ---- encodings ----
 
 /// In a run the host drops a body that is not finite.
-void require_sound(const Blueprint& blueprint, const World& world) {
-  check_blueprint(blueprint, world);
+void require_sound(const Blueprint& blueprint, const EncodingContext& context) {
+  check_blueprint(blueprint, context);
   for (const Mass& mass : blueprint.body.masses)
-    if (!std::isfinite(norm(mass.rest))) throw Violation("a mass has a place that is not finite");
+    if (!std::isfinite(norm(mass.rest))) throw Violation("a mass has a position that is not finite");
 }
 
 bool springs_grow(const Blueprint& blueprint) {
@@ -32,8 +32,8 @@ bool springs_grow(const Blueprint& blueprint) {
 /// Every genome gives a sound body, or a reason.
 void decodes(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Encoding>(subject);
-  const World world = sample_world();
-  const Layout layout = op->layout(world);
+  const EncodingContext context = sample_world();
+  const Layout layout = op->layout(context);
   std::string reason;
   std::uint32_t bodies = 0;
   for (std::uint32_t input = 0; input < 12; ++input) {
@@ -45,11 +45,11 @@ void decodes(const AvailableOperator& subject, std::uint64_t seed) {
       const std::uint32_t gene = rng.below(genes);
       genome[gene] = layout.genes[gene].draw(rng);
     }
-    const Blueprint blueprint = op->decode(genome, world);
+    const Blueprint blueprint = op->decode(genome, context);
     reason = blueprint.failure;
     if (!reason.empty()) continue;
     if (blueprint.body.masses.empty()) throw Violation("there is neither a body nor a reason why there is none");
-    require_sound(blueprint, world);
+    require_sound(blueprint, context);
     if (springs_grow(blueprint) && !op->sets_growth()) throw Violation("springs may grow, but sets_growth() denies it");
     ++bodies;
   }
@@ -160,18 +160,18 @@ void bodies_stay_sound(const AvailableOperator& subject, std::uint64_t seed) {
     for (life.cycle = 1; life.cycle <= 10; ++life.cycle) {
       Edits edits;
       Rng rng = stream(seed, input, static_cast<std::uint32_t>(life.cycle));
-      const Moment now = life.now(op->observes());
-      op->develop(now, edits, rng);
+      const DevoContext context = life.context(op->observes());
+      op->develop(context, edits, rng);
       edited = edited || !numbers_of(edits).empty();
       if (edits.growth && !op->uses_growth()) throw Violation("it lets springs grow, but uses_growth() denies it");
       for (const NewMass& mass : edits.new_masses) {
-        const Vec3 p = mass.place, low = life.bounds.low, high = life.bounds.high;
+        const Vec3 p = mass.position, low = life.bounds.low, high = life.bounds.high;
         // written so that NaN fails
         if (!(p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z))
           throw Violation(numbered("body", input) + ": a new mass lies beyond the bounds");
       }
       try {
-        apply_edits(life.living, edits, now);
+        apply(resolved(edits, context), life.living);
       } catch (const std::invalid_argument& error) {
         throw Violation(numbered("body", input) + ", " + numbered("cycle", std::uint32_t(life.cycle)) + ": it " +
                         error.what());
@@ -190,8 +190,8 @@ void unmoved_by_translation(const AvailableOperator& subject, std::uint64_t seed
     const Observation here = sample_observation(seed, input);
     Observation there = here;
     const Vec3 by{8, -4, 0};
-    for (Vec3* place : {&there.box.low, &there.box.high, &there.centre_before, &there.centre_after})
-      *place = *place + by;
+    for (Vec3* position : {&there.box.low, &there.box.high, &there.centre_before, &there.centre_after})
+      *position = *position + by;
     const auto a = op->score(here), b = op->score(there);
     for (std::size_t i = 0; i < a.size(); ++i)
       if (!(std::abs(a[i] - b[i]) <= 1e-9 * (1 + std::abs(a[i]))) && (std::isfinite(a[i]) || std::isfinite(b[i])))
@@ -229,14 +229,14 @@ void scores_every_objective(const AvailableOperator& subject, std::uint64_t seed
 
 /// The table in another order of birth; `order[i]` is the old row of the new row i.
 SampleTable reordered(const SampleTable& table, const std::vector<std::uint32_t>& order) {
-  std::vector<std::uint32_t> place(order.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
+  std::vector<std::uint32_t> position(order.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) position[order[i]] = i;
   SampleTable other;
   for (const std::uint32_t row : order) other.scores.push_back(table.scores[row]);
   for (std::uint32_t i = 0; i < order.size(); ++i) {
     Candidate row = table.rows[order[i]];
     row.scores = other.scores[i];
-    if (row.challenges) row.challenges = place[*row.challenges];
+    if (row.challenges) row.challenges = position[*row.challenges];
     other.rows.push_back(row);
   }
   return other;

@@ -13,7 +13,7 @@ namespace {
 
 std::string bytes_of(const Numbers& numbers) {
   std::string bytes(numbers.size() * sizeof(double), '\0');
-  std::memcpy(bytes.data(), numbers.data(), bytes.size());
+  if (!numbers.empty()) std::memcpy(bytes.data(), numbers.data(), bytes.size());  // which takes no nullptr
   return bytes;
 }
 

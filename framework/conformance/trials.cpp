@@ -36,9 +36,9 @@ Numbers numbers_of(const Layout& layout) {
   return numbers;
 }
 
-Numbers numbers_of(const World& world) {
-  Numbers numbers{world.mass};
-  for (const Material& material : world.materials) append(numbers, material);
+Numbers numbers_of(const EncodingContext& context) {
+  Numbers numbers{context.mass};
+  for (const Material& material : context.materials) append(numbers, material);
   return numbers;
 }
 
@@ -47,7 +47,7 @@ Numbers numbers_of(const SampleLife& life) {
   for (const auto list : SpringRecords::lists)
     numbers.insert(numbers.end(), (life.living.*list).begin(), (life.living.*list).end());
   append(numbers, life.living.body);
-  for (const Vec3& place : life.living.state.position) append(numbers, place);
+  for (const Vec3& position : life.living.state.position) append(numbers, position);
   for (const Vec3& velocity : life.living.state.velocity) append(numbers, velocity);
   const Numbers genome = numbers_of(life.genome), layout = numbers_of(life.layout);
   numbers.insert(numbers.end(), genome.begin(), genome.end());
@@ -60,21 +60,21 @@ void require_untouched(const char* what, const Numbers& before, const Numbers& a
 }
 
 Numbers try_encoding(const Encoding& op, std::uint64_t seed, std::uint32_t input) {
-  const World world = sample_world();
-  const Layout layout = op.layout(world);
+  const EncodingContext context = sample_world();
+  const Layout layout = op.layout(context);
   const Numbers layout_before = numbers_of(layout);
   Rng rng = stream(seed, input);
   const Genome genome = op.random(layout, rng);
   const Numbers genome_before = numbers_of(genome);
-  const Blueprint blueprint = op.decode(genome, world);
-  require_untouched("the world", numbers_of(sample_world()), numbers_of(world));
+  const Blueprint blueprint = op.decode(genome, context);
+  require_untouched("the context", numbers_of(sample_world()), numbers_of(context));
   require_untouched("the layout", layout_before, numbers_of(layout));
   require_untouched("the genome that it decodes", genome_before, numbers_of(genome));
   Numbers result = genome_before;
   append(result, blueprint.body);
-  for (const Vec3& place : blueprint.paired_at) append(result, place);
+  for (const Vec3& position : blueprint.paired_at) append(result, position);
   for (const Size& size : blueprint.sizes) append(result, {size.start, size.end});
-  for (const Vec3& place : blueprint.origins) append(result, place);
+  for (const Vec3& position : blueprint.origins) append(result, position);
   append(result, {double(blueprint.neighbours), double(blueprint.failure.size())});
   return result;
 }
@@ -102,7 +102,7 @@ Numbers try_devo(const Devo& op, std::uint64_t seed, std::uint32_t input) {
   const SampleLife life = sample_life(seed, input);
   Edits edits;
   Rng rng = stream(seed, input, 1);
-  op.develop(life.now(op.observes()), edits, rng);
+  op.develop(life.context(op.observes()), edits, rng);
   require_untouched("the body, its state or its genes", numbers_of(sample_life(seed, input)), numbers_of(life));
   return numbers_of(edits);
 }
@@ -143,14 +143,14 @@ bool same(const Numbers& a, const Numbers& b) {
 
 Rng stream(std::uint64_t seed, std::uint32_t input, std::uint32_t part) { return Rng(philox, {seed, input, part, 0}); }
 
-World sample_world() {
-  World world;
+EncodingContext sample_world() {
+  EncodingContext context;
   for (const auto& [name, material] : base_materials()) {
-    world.material_names.push_back(name);
-    world.materials.push_back(material);
+    context.material_names.push_back(name);
+    context.materials.push_back(material);
   }
-  world.philox = philox;
-  return world;
+  context.philox = philox;
+  return context;
 }
 
 Layout sample_layout() {
@@ -186,7 +186,7 @@ Numbers numbers_of(const Edits& edits) {
     append(numbers, s.material.value_or(Material{}));
   }
   for (const NewMass& m : edits.new_masses) {
-    append(numbers, m.place);
+    append(numbers, m.position);
     append(numbers, {m.mass, double(m.material)});
   }
   for (const NewSpring& s : edits.new_springs) {
@@ -198,22 +198,22 @@ Numbers numbers_of(const Edits& edits) {
   return numbers;
 }
 
-Moment SampleLife::now(const SpringRequest& request) const {
-  Moment now{.body = living.body,
-             .state = living.state,
-             .stress = {},
-             .cycle = cycle,
-             .cycles = 20,
-             .turn = cycle,
-             .turns = 20,
-             .time = 0.5 * cycle,
-             .bounds = bounds,
-             .mass = 0.2,
-             .resets = resets,
-             .genome = genome,
-             .layout = layout};
-  show_records(living, request, now);
-  return now;
+DevoContext SampleLife::context(const SpringRequest& request) const {
+  DevoContext context{.body = living.body,
+                      .state = living.state,
+                      .stress = {},
+                      .cycle = cycle,
+                      .cycles = 20,
+                      .application = cycle,
+                      .applications = 20,
+                      .time = 0.5 * cycle,
+                      .bounds = bounds,
+                      .mass = 0.2,
+                      .resets = resets,
+                      .genome = genome,
+                      .layout = layout};
+  show_records(living, request, context);
+  return context;
 }
 
 SampleLife sample_life(std::uint64_t seed, std::uint32_t input) {
@@ -230,9 +230,9 @@ SampleLife sample_life(std::uint64_t seed, std::uint32_t input) {
   const std::uint32_t masses = input % 8 == 7 ? 2 : 12 + rng.below(24);
   const bool masses_have_materials = input % 2 == 0;
   for (std::uint32_t i = 0; i < masses; ++i) {
-    const Vec3 place{rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0, 1)};
-    body.masses.push_back({place, 0.2, masses_have_materials ? std::int32_t(rng.below(materials)) : no_material, 0});
-    life.living.state.position.push_back(life.resets ? place : 1.25 * place);
+    const Vec3 position{rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0, 1)};
+    body.masses.push_back({position, 0.2, masses_have_materials ? std::int32_t(rng.below(materials)) : no_material, 0});
+    life.living.state.position.push_back(life.resets ? position : 1.25 * position);
     life.living.state.velocity.push_back({rng.uniform(-1, 1), 0, 0});
   }
   std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
@@ -255,9 +255,9 @@ SampleLife sample_life(std::uint64_t seed, std::uint32_t input) {
 
 Observation sample_observation(std::uint64_t seed, std::uint32_t input) {
   Rng rng = stream(seed, input);
-  const auto place = [&] { return Vec3{rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0, 1)}; };
-  const Vec3 low = place(), size = place() + Vec3{2, 2, 1};
-  return {{low, low + size}, low + 0.5 * size, place(), 2.0, rng.uniform(0, 50)};
+  const auto position = [&] { return Vec3{rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0, 1)}; };
+  const Vec3 low = position(), size = position() + Vec3{2, 2, 1};
+  return {{low, low + size}, low + 0.5 * size, position(), 2.0, rng.uniform(0, 50)};
 }
 
 SampleTable sample_table(std::uint64_t seed, std::uint32_t input, std::size_t rows, std::size_t failed) {

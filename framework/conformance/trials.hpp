@@ -21,7 +21,7 @@ bool same(const Numbers& a, const Numbers& b);
 Rng stream(std::uint64_t seed, std::uint32_t input, std::uint32_t part = 0);
 
 /// The base materials.
-World sample_world();
+EncodingContext sample_world();
 /// Real genes and choices, in groups of several sizes.
 Layout sample_layout();
 /// Throws Violation where the genome is not one of the layout.
@@ -39,7 +39,7 @@ struct SampleLife {
   bool resets = false;
 
   /// `request`: what the operator asks for; it sees nothing else of the springs.
-  Moment now(const SpringRequest& request) const;
+  DevoContext context(const SpringRequest& request) const;
 };
 /// Some are of masses with materials, some of springs with theirs; some are as good as empty.
 SampleLife sample_life(std::uint64_t seed, std::uint32_t input);

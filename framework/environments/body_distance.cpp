@@ -29,7 +29,8 @@ Names shared_names(const GrownBody& a, const GrownBody& b) {
   std::vector<std::tuple<double, std::size_t, std::size_t>> near;  // distance, and the masses of a and b
   for (std::size_t i = 0; i < a.numbers.size(); ++i)
     for (std::size_t j = 0; a.came_later(i) && j < b.numbers.size(); ++j)
-      if (const double distance = norm(a.rest_places[i] - b.rest_places[j]); b.came_later(j) && distance < same_place)
+      if (const double distance = norm(a.rest_positions[i] - b.rest_positions[j]);
+          b.came_later(j) && distance < same_position)
         near.emplace_back(distance, i, j);
   std::sort(near.begin(), near.end());
   std::vector<char> taken_of_a(a.numbers.size()), taken_of_b(b.numbers.size());
@@ -49,22 +50,23 @@ Pairs joined_masses(const Body& body, const std::vector<std::uint32_t>& names) {
 
 /// Where mass lies along one axis.
 struct Portion {
-  double place;  ///< body lengths
-  double mass;   ///< part of all
+  double position;  ///< body lengths
+  double mass;      ///< part of all
 };
 
 /// In ascending order.
 std::vector<Portion> portions_along(double Vec3::*axis, const GrownBody& grown) {
   std::vector<Portion> portions;
   double all = 0;
-  for (std::size_t i = 0; i < grown.rest_places.size(); ++i) {
+  for (std::size_t i = 0; i < grown.rest_positions.size(); ++i) {
     const Mass& mass = grown.body.masses[i];
-    portions.push_back({grown.rest_places[i].*axis, mass.mass - mass.load});
+    portions.push_back({grown.rest_positions[i].*axis, mass.mass - mass.payload});
     all += portions.back().mass;
   }
   for (Portion& portion : portions) portion.mass /= all;
-  std::sort(portions.begin(), portions.end(),
-            [](const Portion& a, const Portion& b) { return std::pair(a.place, a.mass) < std::pair(b.place, b.mass); });
+  std::sort(portions.begin(), portions.end(), [](const Portion& a, const Portion& b) {
+    return std::pair(a.position, a.mass) < std::pair(b.position, b.mass);
+  });
   return portions;
 }
 
@@ -73,11 +75,11 @@ double wasserstein_distance(const std::vector<Portion>& a, const std::vector<Por
   double below_a = 0, below_b = 0;  // mass so far
   double distance = 0, last = 0;
   for (auto i = a.begin(), j = b.begin(); i != a.end() || j != b.end();) {
-    const double place = j == b.end() || (i != a.end() && i->place < j->place) ? i->place : j->place;
-    distance += std::abs(below_a - below_b) * (place - last);
-    last = place;
-    for (; i != a.end() && i->place == place; ++i) below_a += i->mass;
-    for (; j != b.end() && j->place == place; ++j) below_b += j->mass;
+    const double position = j == b.end() || (i != a.end() && i->position < j->position) ? i->position : j->position;
+    distance += std::abs(below_a - below_b) * (position - last);
+    last = position;
+    for (; i != a.end() && i->position == position; ++i) below_a += i->mass;
+    for (; j != b.end() && j->position == position; ++j) below_b += j->mass;
   }
   return distance;
 }

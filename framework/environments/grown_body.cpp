@@ -22,29 +22,30 @@ Eigen::Matrix3d best_rotation(const Eigen::Matrix3d& covariance) {
 
 }  // namespace
 
-Vec3 undeformed(Vec3 place, std::span<const Vec3> places, std::span<const Vec3> rest_places) {
-  if (places.empty()) return place;
+Vec3 undeformed(Vec3 position, std::span<const Vec3> positions, std::span<const Vec3> rest_positions) {
+  if (positions.empty()) return position;
   constexpr double closest = 1e-9;  // m; a mass at the very place would have all weight there is
   std::vector<double> weights;
   double sum = 0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero(), rest_centre = centre;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const double distance = std::max(norm(places[i] - place), closest);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const double distance = std::max(norm(positions[i] - position), closest);
     weights.push_back(std::pow(distance, -4));
     sum += weights[i];
-    centre += weights[i] * vector(places[i]);
-    rest_centre += weights[i] * vector(rest_places[i]);
+    centre += weights[i] * vector(positions[i]);
+    rest_centre += weights[i] * vector(rest_positions[i]);
   }
   centre /= sum, rest_centre /= sum;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 0; i < places.size(); ++i)
-    covariance += weights[i] / sum * (vector(rest_places[i]) - rest_centre) * (vector(places[i]) - centre).transpose();
-  const Eigen::Vector3d rest = rest_centre + best_rotation(covariance) * (vector(place) - centre);
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    covariance +=
+        weights[i] / sum * (vector(rest_positions[i]) - rest_centre) * (vector(positions[i]) - centre).transpose();
+  const Eigen::Vector3d rest = rest_centre + best_rotation(covariance) * (vector(position) - centre);
   return {rest.x(), rest.y(), rest.z()};
 }
 
 GrowthObserver::GrowthObserver(const Body& born) : born_(born.masses.size()) {
-  const Box box = bounding_box(rest_places(born));
+  const Box box = bounding_box(rest_positions(born));
   corner_ = box.low;
   if (box.longest_side() > 0) length_ = box.longest_side();
   for (const Mass& mass : born.masses) rest_.emplace(rest_.size(), mass.rest);
@@ -52,16 +53,16 @@ GrowthObserver::GrowthObserver(const Body& born) : born_(born.masses.size()) {
 
 GrownBody GrowthObserver::after_cycle(const Life& life) {
   GrownBody grown{life.living.body, life.living.state.position, {}, mass_numbers(born_, life.result.record), born_};
-  std::vector<Vec3> places, rest_places;  // of the masses that were there before
+  std::vector<Vec3> positions, rest_positions;  // of the masses that were there before
   for (std::size_t i = 0; i < grown.numbers.size(); ++i)
     if (const auto known = rest_.find(grown.numbers[i]); known != rest_.end()) {
-      places.push_back(grown.places[i]);
-      rest_places.push_back(known->second);
+      positions.push_back(grown.positions[i]);
+      rest_positions.push_back(known->second);
     }
   for (std::size_t i = 0; i < grown.numbers.size(); ++i) {
     const std::uint32_t number = grown.numbers[i];
-    if (!rest_.contains(number)) rest_.emplace(number, undeformed(grown.places[i], places, rest_places));
-    grown.rest_places.push_back(1 / length_ * (rest_.at(number) - corner_));
+    if (!rest_.contains(number)) rest_.emplace(number, undeformed(grown.positions[i], positions, rest_positions));
+    grown.rest_positions.push_back(1 / length_ * (rest_.at(number) - corner_));
   }
   return grown;
 }

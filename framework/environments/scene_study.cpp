@@ -2,7 +2,7 @@
 
 #include "environments/body_distance.hpp"
 #include "experiment/device.hpp"
-#include "life/perturbation.hpp"
+#include "life/birth.hpp"
 
 namespace evodevo {
 namespace {
@@ -11,17 +11,17 @@ Environment grow(const Experiment& experiment, const Newborn& newborn, std::uint
   const auto simulator = make_simulator(experiment);
   const Evaluation evaluation(experiment, *simulator);
   const std::vector<Newborn> newborns(starts, newborn);
-  std::vector<Life> lives = evaluation.birth(newborns);
+  std::vector<Life> lives = evaluation.birth.of(newborns);
   std::vector<GrowthObserver> observers(starts, GrowthObserver(lives.front().living.body));
   for (std::uint32_t start = 1; start < starts; ++start)
     if (Life& life = lives[start]; life.alive()) {
-      disturb(life, experiment, start - 1);
-      evaluation.choose_step(life);
+      perturb(life, experiment, start - 1);
+      evaluation.simulation.choose_step(life);
     }
   Environment environment{
-      .name = experiment.name, .materials = experiment.world.material_names, .grown = std::vector<Grown>(starts)};
+      .name = experiment.name, .materials = experiment.context.material_names, .grown = std::vector<Grown>(starts)};
   if (experiment.scene.gravity) environment.slope = experiment.scene.gravity->slope;
-  evaluation.develop(lives, [&](double) {
+  evaluation.development.run(lives, [&](double) {
     for (std::size_t i = 0; i < lives.size(); ++i)
       if (const Life& life = lives[i]; life.alive())
         environment.grown[i].after.push_back(observers[i].after_cycle(life));

@@ -25,13 +25,14 @@ void check_genome(const Genome& genome, const Layout& layout) {
     throw std::runtime_error("made a genome with " + fault);
 }
 
-Individual newcomer(const Experiment& experiment, std::uint32_t generation, std::uint32_t id, std::uint32_t repeat) {
-  Rng rng = stream(experiment, generation, id, place::again(place::newborn, repeat));
+Individual random_individual(const Experiment& experiment, std::uint32_t generation, std::uint32_t id,
+                             std::uint32_t repeat) {
+  Rng rng = stream(experiment, generation, id, rng_stream::again(rng_stream::newborn, repeat));
   Individual individual;
   individual.id = id;
   individual.born = individual.origin = generation;
   individual.made_by = "random";
-  call_operator(experiment, Encoding::kind, 0, {.individual = id}, [&] {
+  call_operator(experiment.call_of(Encoding::kind, 0, {.individual = id}), [&] {
     individual.genome = experiment.encoding->random(experiment.layout, rng);
     check_genome(individual.genome, experiment.layout);
   });
@@ -63,17 +64,17 @@ Individual child(const Experiment& experiment, const Individual& parent, const I
   individual.origin = parent.origin;
   individual.parents = {parent.id};
   individual.genome = parent.genome;
-  const auto draws = [&](std::uint32_t place) {
-    return stream(experiment, generation, id, place::again(place, repeat));
+  const auto draws = [&](std::uint32_t position) {
+    return stream(experiment, generation, id, rng_stream::again(position, repeat));
   };
-  Rng choice = draws(place::variation);
+  Rng choice = draws(rng_stream::variation);
   std::vector<std::string> names;
   for (const std::size_t i : draw_variation(experiment, choice)) {
     if (i < experiment.crossovers.size()) {
       const auto& crossover = experiment.crossovers[i];
-      Rng rng = draws(place::crossover + static_cast<std::uint32_t>(i));
+      Rng rng = draws(rng_stream::crossover + static_cast<std::uint32_t>(i));
       Genome other = mate.genome;
-      call_operator(experiment, Crossover::kind, i, {.individual = id}, [&] {
+      call_operator(experiment.call_of(Crossover::kind, i, {.individual = id}), [&] {
         crossover.op->cross(individual.genome, other, experiment.layout, rng);
         check_genome(individual.genome, experiment.layout);
       });
@@ -83,8 +84,8 @@ Individual child(const Experiment& experiment, const Individual& parent, const I
     } else {
       const std::size_t k = i - experiment.crossovers.size();
       const auto& mutation = experiment.mutations[k];
-      Rng rng = draws(place::mutation + static_cast<std::uint32_t>(k));
-      call_operator(experiment, Mutation::kind, k, {.individual = id}, [&] {
+      Rng rng = draws(rng_stream::mutation + static_cast<std::uint32_t>(k));
+      call_operator(experiment.call_of(Mutation::kind, k, {.individual = id}), [&] {
         mutation.op->mutate(individual.genome, experiment.layout, rng);
         check_genome(individual.genome, experiment.layout);
       });
@@ -158,16 +159,16 @@ SelectionTable::SelectionTable(const std::vector<Individual>& individuals, const
 
 std::vector<Individual> breed(const Experiment& experiment, const std::vector<Individual>& population,
                               std::uint32_t generation, std::uint32_t first_id, std::size_t count) {
-  const std::size_t newcomers =
-      population.empty() ? count : std::min(count, static_cast<std::size_t>(experiment.newcomers));
+  const std::size_t random_individuals =
+      population.empty() ? count : std::min(count, static_cast<std::size_t>(experiment.random_individuals));
   std::vector<Individual> newborns;
   GenomeSet known(population);
   std::uint32_t id = first_id;
-  if (newcomers < count) {
+  if (random_individuals < count) {
     const SelectionTable table(population, experiment.objectives, generation);
-    Rng rng = stream(experiment, generation, 0, place::parents);
-    const auto asked = static_cast<std::uint32_t>(count - newcomers);
-    const auto pairs = call_operator(experiment, Selection::kind, 0, {},
+    Rng rng = stream(experiment, generation, 0, rng_stream::parents);
+    const auto asked = static_cast<std::uint32_t>(count - random_individuals);
+    const auto pairs = call_operator(experiment.call_of(Selection::kind, 0),
                                      [&] { return chosen_parents(experiment, table, asked, rng); });
     for (const auto& pair : pairs) {
       const Individual &parent = population.at(pair.first), &mate = population.at(pair.second);
@@ -178,7 +179,7 @@ std::vector<Individual> breed(const Experiment& experiment, const std::vector<In
   }
   for (; newborns.size() < count; ++id)
     newborns.push_back(
-        distinct(known, [&](std::uint32_t repeat) { return newcomer(experiment, generation, id, repeat); }));
+        distinct(known, [&](std::uint32_t repeat) { return random_individual(experiment, generation, id, repeat); }));
   return newborns;
 }
 

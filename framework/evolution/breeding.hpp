@@ -26,10 +26,10 @@ class SelectionTable {
 /// What the layout does not allow in a genome; empty where it is one of its.
 std::string genome_fault(const Genome& genome, const Layout& layout);
 
-/// The `count` newborns of a generation, ids from `first_id`: as many newcomers as the experiment asks for, all of them
-/// where there is no population, and children. A newborn that is genetically equal to a member of the population or to
-/// an earlier newborn is made anew, at most 16 times; only where that does not help is it a clone. Nothing but the
-/// arguments and the experiment's seed decides.
+/// The `count` newborns of a generation, ids from `first_id`: as many random_individuals as the experiment asks for,
+/// all of them where there is no population, and children. A newborn that is genetically equal to a member of the
+/// population or to an earlier newborn is made anew, at most 16 times; only where that does not help is it a clone.
+/// Nothing but the arguments and the experiment's seed decides.
 std::vector<Individual> breed(const Experiment& experiment, const std::vector<Individual>& population,
                               std::uint32_t generation, std::uint32_t first_id, std::size_t count);
 

@@ -46,8 +46,9 @@ std::vector<const Individual*> front(const std::vector<Individual>& everyone, co
 /// Chooses the lives of which a run keeps the records: of all who are ever on the front.
 class FrontLives {
  public:
-  FrontLives(const Experiment& experiment, const Evaluation& evaluation, const Archive& archive, const Maker& maker)
-      : experiment_(experiment), evaluation_(evaluation), archive_(archive), maker_(maker) {
+  FrontLives(const Experiment& experiment, const Evaluation& evaluation, const Archive& archive,
+             const Provenance& provenance)
+      : experiment_(experiment), evaluation_(evaluation), archive_(archive), provenance_(provenance) {
     for (const Individual& individual : archive.population())
       if (archive.life(individual.id)) kept_.insert(individual.id);
   }
@@ -58,20 +59,21 @@ class FrontLives {
       newborn_[individual.id] = std::exchange(individual.result.record, LifeRecord());
   }
 
-  /// Keeps the records of those on the front. Elders whom selection has let come there, which are few, live again; but
-  /// not elders of other makers, since that might be another life than the one that was scored.
+  /// Keeps the records of those on the front. The few elders who come there only now, because selection has removed
+  /// those before them, are simulated again for their records; but not elders of another provenance, since theirs might
+  /// be another life than the one that was scored.
   void keep_front(const std::vector<Individual>& everyone, std::uint32_t generation) {
     std::vector<Newborn> elders;
     for (const Individual* individual : front(everyone, experiment_, generation)) {
       if (!kept_.insert(individual->id).second) continue;
       if (const auto newborn = newborn_.extract(individual->id))
         to_commit_[individual->id] = std::move(newborn.mapped());
-      else if (are_same(archive_.maker(individual->born), maker_))
+      else if (are_same(archive_.provenance(individual->born), provenance_))
         elders.push_back({individual->id, individual->born, &individual->genome});
     }
     if (elders.empty()) return;
-    std::vector<Life> lives = evaluation_.birth(elders);
-    evaluation_.develop(lives, [](double) {});
+    std::vector<Life> lives = evaluation_.birth.of(elders);
+    evaluation_.development.run(lives, [](double) {});
     for (Life& life : lives) to_commit_[life.newborn.id] = std::move(life.result.record);
   }
 
@@ -85,7 +87,7 @@ class FrontLives {
   const Experiment& experiment_;
   const Evaluation& evaluation_;
   const Archive& archive_;
-  const Maker& maker_;
+  const Provenance& provenance_;
   std::map<std::uint32_t, LifeRecord> newborn_, to_commit_;
   std::set<std::uint32_t> kept_;
 };
@@ -95,8 +97,8 @@ void select(std::vector<Individual>& everyone, const Experiment& experiment, std
             std::vector<std::uint32_t>& dropped) {
   const auto population = static_cast<std::uint32_t>(experiment.population);
   const SelectionTable table(everyone, experiment.objectives, generation);
-  Rng rng(philox, {static_cast<std::uint64_t>(experiment.seed), generation, 0, place::survivors});
-  const auto rows = call_operator(experiment, Selection::kind, 0, {},
+  Rng rng(philox, {static_cast<std::uint64_t>(experiment.seed), generation, 0, rng_stream::survivors});
+  const auto rows = call_operator(experiment.call_of(Selection::kind, 0),
                                   [&] { return chosen_survivors(experiment, table, population, rng); });
   std::vector<Individual> survivors;
   for (std::uint32_t i = 0; i < everyone.size(); ++i) {
@@ -134,12 +136,12 @@ Summary summarise(const std::vector<Individual>& population, const std::vector<I
 
 }  // namespace
 
-bool is_finished(const Experiment& experiment, const std::vector<Summary>& generations) {
+bool is_finished(const Settings& settings, const std::vector<Summary>& generations) {
   if (generations.empty()) return false;
   double spring_evaluations = 0;
   for (const Summary& summary : generations) spring_evaluations += static_cast<double>(summary.spring_evaluations);
-  return generations.back().evaluations >= experiment.evaluations ||
-         (experiment.spring_evaluations > 0 && spring_evaluations >= experiment.spring_evaluations);
+  return generations.back().evaluations >= settings.evaluations ||
+         (settings.spring_evaluations > 0 && spring_evaluations >= settings.spring_evaluations);
 }
 
 namespace {
@@ -185,9 +187,9 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
   auto generation = static_cast<std::uint32_t>(summaries.size());
   std::int64_t evaluations = summaries.empty() ? 0 : summaries.back().evaluations;
   std::vector<Individual> population = archive.population();
-  const Maker maker = this_maker(experiment, simulator.device());
-  const std::uint32_t maker_place = archive.add_maker(maker);
-  FrontLives lives(experiment, evaluation, archive, maker);
+  const Provenance provenance = this_provenance(experiment, simulator.device());
+  const std::uint32_t provenance_index = archive.add_provenance(provenance);
+  FrontLives lives(experiment, evaluation, archive, provenance);
 
   for (; !is_finished(experiment, summaries) && !stop; ++generation) {
     const auto start = Clock::now();
@@ -207,7 +209,7 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
     add_best_and_median(summary, population, experiment.objectives.front().maximise);
     summary.evaluations = evaluations;
     summary.wall_time = seconds_since(start);
-    summary.maker = maker_place;
+    summary.provenance = provenance_index;
     const auto commit = Clock::now();
     archive.commit(newborns, dropped, lives.committed(), summary);
     time.archive += seconds_since(commit);

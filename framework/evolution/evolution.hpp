@@ -4,7 +4,7 @@
 #include <atomic>
 #include <functional>
 
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 #include "life/evaluation.hpp"
 
 namespace evodevo {
@@ -28,7 +28,7 @@ void record_time_spent(Archive& archive, const TimeSpent& time);
 std::optional<TimeSpent> recorded_time_spent(const Archive& archive);
 
 /// Whether a run that has come to these generations has spent the experiment's evaluations or spring evaluations.
-bool is_finished(const Experiment& experiment, const std::vector<Summary>& generations);
+bool is_finished(const Settings& settings, const std::vector<Summary>& generations);
 
 /// Evolves from where the archive stands until the run is finished, or `stop` is set and the generation under way is
 /// committed. An archive continued gives the same as one never interrupted.

@@ -30,7 +30,7 @@ struct Summary {
   std::int64_t clones = 0;  ///< likewise, genetically equal to one that lived then or to an earlier newborn
   std::uint64_t spring_evaluations = 0;  ///< of this generation
   double wall_time = 0;                  ///< of this generation, s
-  std::uint32_t maker = 0;               ///< its place among the run's makers
+  std::uint32_t provenance = 0;          ///< index among the run's provenances
 };
 
 }  // namespace evodevo

@@ -6,13 +6,13 @@
 
 namespace evodevo {
 
-Maker this_maker(const Experiment& experiment, const std::string& device) {
+Provenance this_provenance(const Experiment& experiment, const std::string& device) {
   // the file that runs, even where a later build has taken its place
   static const std::string program = file_hash("/proc/self/exe");
   return {device, EVODEVO_VERSION, program, experiment.uses};
 }
 
-bool are_same_builds(const Maker& a, const Maker& b) {
+bool are_same_builds(const Provenance& a, const Provenance& b) {
   const auto same_build = [](const OperatorUse& x, const OperatorUse& y) {
     return x.kind == y.kind && x.name == y.name && x.hash == y.hash;
   };
@@ -20,6 +20,6 @@ bool are_same_builds(const Maker& a, const Maker& b) {
          std::equal(a.operators.begin(), a.operators.end(), b.operators.begin(), b.operators.end(), same_build);
 }
 
-bool are_same(const Maker& a, const Maker& b) { return a.device == b.device && are_same_builds(a, b); }
+bool are_same(const Provenance& a, const Provenance& b) { return a.device == b.device && are_same_builds(a, b); }
 
 }  // namespace evodevo

@@ -8,7 +8,7 @@
 
 namespace evodevo {
 
-struct Maker {
+struct Provenance {
   std::string device;
   std::string version;  ///< of evodevo
   std::string program;  ///< hash of its file
@@ -16,12 +16,12 @@ struct Maker {
 };
 
 /// This program with the operators that it has loaded for the experiment.
-Maker this_maker(const Experiment& experiment, const std::string& device);
+Provenance this_provenance(const Experiment& experiment, const std::string& device);
 
 /// Whether the program and all operators are the same builds, wherever their files lie.
-bool are_same_builds(const Maker& a, const Maker& b);
+bool are_same_builds(const Provenance& a, const Provenance& b);
 
 /// Whether what both make is the same to the last bit: on the same device by the same builds.
-bool are_same(const Maker& a, const Maker& b);
+bool are_same(const Provenance& a, const Provenance& b);
 
 }  // namespace evodevo

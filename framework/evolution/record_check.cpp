@@ -17,13 +17,13 @@ std::string title(const Objective& objective) {
 }
 
 /// What is wrong with a change that follows one of cycle `before`; empty where nothing is.
-std::string fault_of(const Change& change, std::uint32_t before, const Development& development) {
-  const auto cycles = static_cast<std::uint32_t>(development.cycles);
+std::string fault_of(const Change& change, std::uint32_t before, const Experiment& experiment) {
+  const auto cycles = static_cast<std::uint32_t>(experiment.development.cycles);
   if (change.cycle < std::max(before, 1u) || change.cycle > cycles)
     return "cycle " + std::to_string(change.cycle) + ", expected " + std::to_string(std::max(before, 1u)) + " to " +
            std::to_string(cycles);
-  if (change.op && *change.op >= development.operators.size())
-    return "operator " + std::to_string(*change.op) + " of " + std::to_string(development.operators.size());
+  if (change.op && *change.op >= experiment.devo.size())
+    return "operator " + std::to_string(*change.op) + " of " + std::to_string(experiment.devo.size());
   if (!change.op && has_causes(change.edits.causes)) return "causes, but no operator that had them";
   return "";
 }
@@ -58,9 +58,9 @@ void check_resumable(const Archive& archive, const Experiment& experiment) {
   for (const Individual& individual : population) {
     check_genes(archive, experiment, individual);
     archive.life(individual.id);
-    archive.maker(individual.born);
+    archive.provenance(individual.born);
   }
-  archive.makers();
+  archive.provenances();
   recorded_time_spent(archive);
 }
 
@@ -68,7 +68,7 @@ void check_life(const Archive& archive, const Experiment& experiment, std::uint3
                 const LifeRecord& record) {
   std::uint32_t before = 0;
   for (const Change& change : record.changes()) {
-    if (const std::string fault = fault_of(change, before, experiment.development); !fault.empty())
+    if (const std::string fault = fault_of(change, before, experiment); !fault.empty())
       archive.refuse("the record of the life of individual " + std::to_string(individual) + " names " + fault);
     before = change.cycle;
   }

@@ -2,7 +2,7 @@
 // come from anywhere, and no operator is to blame for what it holds.
 #pragma once
 
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 
 namespace evodevo {
 

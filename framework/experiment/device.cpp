@@ -8,7 +8,7 @@
 namespace evodevo {
 
 std::unique_ptr<Simulator> make_simulator(const Experiment& experiment) {
-  if (experiment.device != "cpu") {
+  if (experiment.device != Device::cpu) {
 #ifdef EVODEVO_CUDA
     const std::string obstacle = why_cuda_is_unusable();
     if (obstacle.empty())
@@ -16,8 +16,8 @@ std::unique_ptr<Simulator> make_simulator(const Experiment& experiment) {
 #else
     const std::string obstacle = "this evodevo was built without CUDA; build it where the CUDA toolkit is";
 #endif
-    if (experiment.device == "cuda")
-      throw ConfigError(experiment.device_place + ": simulation.device = \"cuda\": " + obstacle +
+    if (experiment.device == Device::cuda)
+      throw ConfigError(experiment.device_location + ": simulation.device = \"cuda\": " + obstacle +
                         ", or set simulation.device to \"cpu\"");
   }
   return make_cpu_simulator(experiment.scene, experiment.stepping, static_cast<int>(experiment.threads));

@@ -18,6 +18,8 @@ struct StepRule {
 
   /// The dt of all bodies, s; none where each has its own.
   std::optional<double> fixed() const;
+
+  bool operator==(const StepRule&) const = default;
 };
 
 /// Some steps, one after the other.
@@ -26,12 +28,12 @@ struct Pace {
   std::uint64_t steps = 0;
 };
 
-/// The longest step (s, before it is refined) of a body whose masses are at `places`, or why it cannot be simulated.
+/// The longest step (s, before it is refined) of a body whose masses are at `positions`, or why it cannot be simulated.
 struct LongestStep {
   double dt = 0;
   std::string failure;  ///< "unstable dt: ..."; empty where there is none
 };
-LongestStep longest_step(const StepRule& rule, const Body& body, std::span<const Vec3> places, const Scene& scene,
+LongestStep longest_step(const StepRule& rule, const Body& body, std::span<const Vec3> positions, const Scene& scene,
                          Method method);
 
 /// The steps that a duration (s) takes: with a fixed dt the nearest whole number, else the fewest equal ones that are

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
 
 #include "base/input_file.hpp"
@@ -13,6 +14,10 @@ namespace {
 
 constexpr std::size_t most_texts = 1000;  ///< of one list
 
+/// Keys that had another name, and the one that they have now.
+const std::map<std::string, std::string> renamed_keys{{"experiment.newcomers", "experiment.random_individuals"},
+                                                      {"scene.load", "scene.payload"}};
+
 }  // namespace
 
 toml::table parse_toml(std::string_view text, const std::string& origin) {
@@ -20,7 +25,7 @@ toml::table parse_toml(std::string_view text, const std::string& origin) {
   try {
     return toml::parse(text, std::string_view(origin));
   } catch (const toml::parse_error& error) {
-    throw ConfigError(place_of(error.source()) + ": " + printable(error.description()));
+    throw ConfigError(location_of(error.source()) + ": " + printable(error.description()));
   }
 }
 
@@ -28,7 +33,7 @@ toml::table parse_toml_file(const std::string& file) {
   return parse_toml(read_input_file(file, most_toml_file_bytes), file);
 }
 
-std::string place_of(const toml::source_region& source) {
+std::string location_of(const toml::source_region& source) {
   const std::string file = source.path ? printable(*source.path, longest_shown_path) : "";
   if (!source.begin || file.starts_with("--")) return file;  // a command-line option has no lines
   return file + ":" + std::to_string(source.begin.line) + ":" + std::to_string(source.begin.column);
@@ -64,18 +69,18 @@ std::string TomlReader::full_name(std::string_view name) const {
 }
 
 void TomlReader::fail_at(const toml::node& node, std::string_view name, const std::string& message) const {
-  throw ConfigError(place_of(node.source()) + ": " + full_name(name) + " = " + printable(value_text(node)) + ": " +
+  throw ConfigError(location_of(node.source()) + ": " + full_name(name) + " = " + printable(value_text(node)) + ": " +
                     message);
 }
 
-std::string TomlReader::place(std::string_view name) const {
+std::string TomlReader::location(std::string_view name) const {
   const toml::node* node = table_.get(name);
-  return place_of(node != nullptr ? node->source() : table_.source());
+  return location_of(node != nullptr ? node->source() : table_.source());
 }
 
 void TomlReader::fail(std::string_view name, const std::string& message) const {
   if (const toml::node* node = table_.get(name)) fail_at(*node, name, message);
-  throw ConfigError(place(name) + ": " + full_name(name) + ": " + message);
+  throw ConfigError(location(name) + ": " + full_name(name) + ": " + message);
 }
 
 void TomlReader::know(std::string_view name) {
@@ -126,12 +131,10 @@ const toml::array& TomlReader::three(const toml::node& node, std::string_view na
 
 void TomlReader::real(double& value, std::string_view name, Range range, std::string_view) {
   if (const toml::node* node = look_up(name)) value = number(*node, name, range);
-  resolve(name, value);
 }
 
 void TomlReader::integer(std::int64_t& value, std::string_view name, Range range, std::string_view) {
   if (const toml::node* node = look_up(name)) value = whole_number(*node, name, range);
-  resolve(name, value);
 }
 
 void TomlReader::flag(bool& value, std::string_view name, std::string_view) {
@@ -139,7 +142,6 @@ void TomlReader::flag(bool& value, std::string_view name, std::string_view) {
     if (!node->is_boolean()) fail_at(*node, name, "expected true or false");
     value = node->value<bool>().value();
   }
-  resolve(name, value);
 }
 
 void TomlReader::choice(std::string& value, std::string_view name, std::initializer_list<std::string_view> options,
@@ -151,7 +153,6 @@ void TomlReader::choice(std::string& value, std::string_view name, std::initiali
     if (std::find(names.begin(), names.end(), value) == names.end())
       fail_at(*node, name, "is not an option" + suggestion(value, names));
   }
-  resolve(name, value);
 }
 
 void TomlReader::vector(Vec3& value, std::string_view name, Range range, std::string_view) {
@@ -159,7 +160,6 @@ void TomlReader::vector(Vec3& value, std::string_view name, Range range, std::st
     const toml::array& array = three(*node, name);
     value = {number(array[0], name, range), number(array[1], name, range), number(array[2], name, range)};
   }
-  resolve(name, toml::array{value.x, value.y, value.z});
 }
 
 void TomlReader::counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view) {
@@ -167,19 +167,15 @@ void TomlReader::counts(std::array<std::int64_t, 3>& value, std::string_view nam
     const toml::array& array = three(*node, name);
     for (std::size_t i = 0; i < 3; ++i) value[i] = whole_number(array[i], name, range);
   }
-  resolve(name, toml::array{value[0], value[1], value[2]});
 }
 
 void TomlReader::materials(std::vector<std::string>& value, std::string_view name, std::string_view) {
   if (const auto named = texts(name); !named.empty()) value = named;
-  toml::array resolved;
   for (const std::string& material : value) {
     if (std::find(materials_->begin(), materials_->end(), material) == materials_->end())
       fail(name, "\"" + material + "\" is not a material" + suggestion(material, *materials_));
     if (std::count(value.begin(), value.end(), material) > 1) fail(name, "names \"" + material + "\" twice");
-    resolved.push_back(material);
   }
-  resolve(name, std::move(resolved));
 }
 
 void TomlReader::require(bool holds, std::string_view name, std::string_view text) {
@@ -195,19 +191,13 @@ void TomlReader::real_or_auto(std::optional<double>& value, std::string_view nam
     else
       fail_at(*node, name, "expected a number or \"auto\"");
   }
-  if (value)
-    resolve(name, *value);
-  else
-    resolve(name, "auto");
 }
 
 std::string TomlReader::text(std::string_view name, const char* fallback) {
   const toml::node* node = look_up(name);
   if (node == nullptr && fallback == nullptr) fail(name, "is missing");
   if (node != nullptr && !node->is_string()) fail_at(*node, name, "expected a text in quotes");
-  const std::string value = node != nullptr ? node->value<std::string>().value() : fallback;
-  resolve(name, value);
-  return value;
+  return node != nullptr ? node->value<std::string>().value() : fallback;
 }
 
 std::vector<std::string> TomlReader::texts(std::string_view name) {
@@ -222,6 +212,17 @@ std::vector<std::string> TomlReader::texts(std::string_view name) {
     values.push_back(item.value<std::string>().value());
   }
   return values;
+}
+
+std::vector<std::string> TomlReader::keys() const {
+  std::vector<std::string> keys;
+  for (auto&& [key, node] : table_) keys.emplace_back(key.str());
+  return keys;
+}
+
+toml::table TomlReader::empty_table() const {
+  const toml::source_path_ptr& file = table_.source().path;
+  return parse_toml("", file ? *file : "");
 }
 
 const toml::table* TomlReader::table(std::string_view name) {
@@ -247,15 +248,15 @@ void TomlReader::refuse_unknown_keys() const {
   for (auto&& [key, node] : table_) {
     const std::string name(key.str());
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+    const auto renamed = renamed_keys.find(full_name(name));
+    if (renamed != renamed_keys.end())
+      throw ConfigError(location_of(key.source()) + ": " + full_name(name) + ": is called " + renamed->second + " now");
     const std::string where = path_.empty() ? "an experiment" : "[" + printable(path_) + "]";
-    throw ConfigError(place_of(key.source()) + ": " + full_name(name) + ": is not a key of " + where +
+    throw ConfigError(location_of(key.source()) + ": " + full_name(name) + ": is not a key of " + where +
                       suggestion(name, known_));
   }
 }
 
-toml::table TomlReader::finish() {
-  refuse_unknown_keys();
-  return std::move(resolved_);
-}
+void TomlReader::finish() const { refuse_unknown_keys(); }
 
 }  // namespace evodevo

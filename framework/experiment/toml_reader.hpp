@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/input_error.hpp"
-#include "evodevo/parameters.hpp"
+#include "experiment/settings_visitor.hpp"
 
 namespace evodevo {
 
@@ -22,14 +22,13 @@ toml::table parse_toml(std::string_view text, const std::string& origin);
 toml::table parse_toml_file(const std::string& file);
 
 /// "file:line:column" of a node or key; of what an option has set, the option.
-std::string place_of(const toml::source_region& source);
+std::string location_of(const toml::source_region& source);
 
 /// A node's value as a message shows it: `"text"`, `3`, `[1, 2]`, `a table`.
 std::string value_text(const toml::node& node);
 
-/// The Parameters visitor that fills variables from a table. Keys that are absent leave the default. Every value that
-/// was read or defaulted is written to the resolved table, so that a run's record holds what the run used.
-class TomlReader final : public Parameters {
+/// The visitor that fills variables from a table. Keys that are absent leave the default.
+class TomlReader final : public SettingsVisitor {
  public:
   /// `path` is the table's name in messages, such as "scene.floor"; empty for the top level. `materials` are the
   /// material names that may be referred to; nullptr where none may.
@@ -45,12 +44,14 @@ class TomlReader final : public Parameters {
   void counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view text) override;
   void materials(std::vector<std::string>& value, std::string_view name, std::string_view text) override;
   void require(bool holds, std::string_view name, std::string_view text) override;
+  void real_or_auto(std::optional<double>& value, std::string_view name, Range range, std::string_view text) override;
 
-  /// A number, or the word "auto", which stands for none.
-  void real_or_auto(std::optional<double>& value, std::string_view name, Range range, std::string_view text);
   /// A text; where `fallback` is null the key must be there.
   std::string text(std::string_view name, const char* fallback = nullptr);
   std::vector<std::string> texts(std::string_view name);
+  std::vector<std::string> keys() const;
+  /// An empty table that is where this one is, for messages.
+  toml::table empty_table() const;
   /// The sub-table `name`, or nullptr.
   const toml::table* table(std::string_view name);
   /// The tables of the array `name`; none where it is absent.
@@ -62,17 +63,11 @@ class TomlReader final : public Parameters {
   /// Throws std::logic_error if a key other than these has been read so far.
   void require_read_among(std::span<const std::string_view> names) const;
 
-  /// Writes a resolved part into this table's resolved form.
-  template <class Node>
-  void resolve(std::string_view name, Node&& node) {
-    resolved_.insert_or_assign(name, std::forward<Node>(node));
-  }
-
-  /// Throws ConfigError if the table holds a key that nothing asked for; returns the resolved table.
-  toml::table finish();
+  /// Throws ConfigError if the table holds a key that nothing asked for.
+  void finish() const;
 
   /// Where key `name` is, or the table where the key is absent.
-  std::string place(std::string_view name) const;
+  std::string location(std::string_view name) const;
   /// Throws ConfigError that points at key `name`, or at the table where the key is absent.
   [[noreturn]] void fail(std::string_view name, const std::string& message) const;
   /// "scene.floor.stiffness".
@@ -92,7 +87,6 @@ class TomlReader final : public Parameters {
   std::string path_;
   const std::vector<std::string>* materials_;
   std::vector<std::string> known_;
-  toml::table resolved_;
 };
 
 }  // namespace evodevo

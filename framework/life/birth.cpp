@@ -1,11 +1,12 @@
-// From genomes and files to bodies that live: the one way in which a life begins.
+#include "life/birth.hpp"
+
 #include <algorithm>
 #include <cstdio>
 
 #include "analysis/energy.hpp"
 #include "analysis/ground.hpp"
 #include "base/materials.hpp"
-#include "life/evaluation.hpp"
+#include "base/philox.hpp"
 
 namespace evodevo {
 namespace {
@@ -14,12 +15,12 @@ namespace {
 /// brought there, all the energy that it has and a fall by its own size. Empty where it may go on.
 std::string throw_by_ground(const LivingBody& living, const Scene& scene) {
   if (!scene.floor) return {};
-  const std::vector<Vec3>& places = living.state.position;
-  const double size = bounding_box(places).longest_side(), rounding = 1e-6 * size;
+  const std::vector<Vec3>& positions = living.state.position;
+  const double size = bounding_box(positions).longest_side(), rounding = 1e-6 * size;
   double weight = 0, held = 0, deepest = 0;  // N, J, m
-  for (std::size_t i = 0; i < places.size(); ++i) {
+  for (std::size_t i = 0; i < positions.size(); ++i) {
     if (scene.gravity) weight += living.body.masses[i].mass * scene.gravity->downwards();
-    const double depth = ground_height(scene, places[i]) - places[i].z;
+    const double depth = ground_height(scene, positions[i]) - positions[i].z;
     if (!(depth > rounding)) continue;
     deepest = std::max(deepest, depth);
     held += scene.floor->stiffness * depth * depth / 2;
@@ -37,32 +38,32 @@ std::string throw_by_ground(const LivingBody& living, const Scene& scene) {
 
 }  // namespace
 
-Blueprint decoded(const Experiment& experiment, const Genome& genome, CallPlace place) {
-  return call_operator(experiment, Encoding::kind, 0, place, [&] {
-    Blueprint blueprint = experiment.encoding->decode(genome, experiment.world);
-    if (blueprint.failure.empty()) check_blueprint(blueprint, experiment.world);
+Blueprint decoded(const Experiment& experiment, const Genome& genome, CallSubject subject) {
+  return call_operator(experiment.call_of(Encoding::kind, 0, subject), [&] {
+    Blueprint blueprint = experiment.encoding->decode(genome, experiment.context);
+    if (blueprint.failure.empty()) check_blueprint(blueprint, experiment.context);
     return blueprint;
   });
 }
 
-std::vector<BuiltBody> Evaluation::build(std::span<const Newborn> newborns) const {
+std::vector<BuiltBody> Birth::build(std::span<const Newborn> newborns) const {
   std::vector<Blueprint> blueprints(newborns.size());
-  simulator_.workers().for_each(newborns.size(), [&](std::size_t i) {
+  simulation_.simulator().workers().for_each(newborns.size(), [&](std::size_t i) {
     blueprints[i] = decoded(experiment_, *newborns[i].genome, {.individual = newborns[i].id});
   });
-  return build_bodies(std::move(blueprints), simulator_.neighbours(), simulator_.workers());
+  return build_bodies(std::move(blueprints), simulation_.simulator().neighbours(), simulation_.simulator().workers());
 }
 
-std::vector<Life> Evaluation::birth(std::span<const Newborn> newborns) const {
-  const BusyClock::Span span(decode_);
+std::vector<Life> Birth::of(std::span<const Newborn> newborns) const {
+  const BusyClock::Span span(clock_);
   std::vector<BuiltBody> built = build(newborns);
   std::vector<Life> lives(newborns.size());
-  simulator_.workers().for_each(lives.size(), [&](std::size_t i) {
+  simulation_.simulator().workers().for_each(lives.size(), [&](std::size_t i) {
     Body& body = built[i].body;
     if (built[i].failure.empty()) {
-      body.base_materials = static_cast<std::uint32_t>(experiment_.world.materials.size());
+      body.base_materials = static_cast<std::uint32_t>(experiment_.context.materials.size());
       drop_unused_materials(body);
-      lives[i] = birth(std::move(body));
+      lives[i] = of(std::move(body));
     } else {
       lives[i].end(Status::invalid, std::move(built[i].failure));
     }
@@ -71,16 +72,16 @@ std::vector<Life> Evaluation::birth(std::span<const Newborn> newborns) const {
   return lives;
 }
 
-Life Evaluation::birth(Body body) const {
-  if (const auto& load = experiment_.load) put_load(body, load->share, load->top);
+Life Birth::of(Body body) const {
+  if (const auto& load = experiment_.payload) add_payload(body, load->share, load->top);
   Life life;
   life.living.state = state_at_birth(body, experiment_.scene);
   life.living.body = std::move(body);
-  choose_step(life);
+  simulation_.choose_step(life);
   return life;
 }
 
-Life Evaluation::amid_life(Body body, State state) const {
+Life Birth::amid_life(Body body, State state) const {
   // another scene than before may have brought energy
   state.start_energy = std::max(state.start_energy, total_energy(body, state, experiment_.scene));
   Life life;
@@ -89,16 +90,21 @@ Life Evaluation::amid_life(Body body, State state) const {
   if (std::string reason = throw_by_ground(life.living, experiment_.scene); !reason.empty())
     life.end(Status::invalid, std::move(reason));
   else
-    choose_step(life);
+    simulation_.choose_step(life);
   return life;
 }
 
-void Evaluation::choose_step(Life& life) const {
-  LivingBody& living = life.living;
-  LongestStep longest =
-      longest_step(conditions_.step, living.body, living.state.position, experiment_.scene, conditions_.method);
-  if (!longest.failure.empty()) return life.end(Status::invalid, std::move(longest.failure));
-  living.longest_dt = longest.dt;
+void perturb(Life& life, const Experiment& experiment, std::uint32_t start) {
+  constexpr double part = 1e-4;  // of the longest side
+  State& state = life.living.state;
+  const double most = part * bounding_box(state.position).longest_side();
+  Rng rng(philox, {static_cast<std::uint64_t>(experiment.seed), life.newborn.generation, life.newborn.id,
+                   rng_stream::perturbation + start});
+  const auto offset = [&] { return most * (2 * rng.uniform() - 1); };
+  for (Vec3& position : state.position) {
+    const double x = offset(), y = offset(), z = offset();
+    position = position + Vec3{x, y, z};
+  }
 }
 
 }  // namespace evodevo

@@ -105,9 +105,9 @@ std::vector<std::uint32_t> keep_largest_piece(Body& body) {
 }
 
 void place_on_origin(Body& body) {
-  const std::vector<Vec3> places = rest_places(body);
-  const Vec3 centre = centre_of_mass(body, places);
-  const Vec3 shift{centre.x, centre.y, bounding_box(places).low.z};
+  const std::vector<Vec3> positions = rest_positions(body);
+  const Vec3 centre = centre_of_mass(body, positions);
+  const Vec3 shift{centre.x, centre.y, bounding_box(positions).low.z};
   for (Mass& mass : body.masses) mass.rest = mass.rest - shift;
 }
 
@@ -123,17 +123,17 @@ std::string blueprint_failure(const Blueprint& blueprint) {
   if (!blueprint.failure.empty()) return "no body: " + printable(blueprint.failure);
   if (masses.empty()) return "no body: no masses";
   if (!std::all_of(masses.begin(), masses.end(), [](const Mass& mass) { return is_finite(mass.rest); }))
-    return "no body: a place that is not finite";
+    return "no body: a position that is not finite";
   if (!std::all_of(blueprint.paired_at.begin(), blueprint.paired_at.end(), is_finite))
-    return "no body: a place to pair masses at that is not finite";
+    return "no body: a position to pair masses at that is not finite";
   if (!std::all_of(blueprint.sizes.begin(), blueprint.sizes.end(), is_sound))
     return "no body: a size that is not finite or not above 0";
   return "";
 }
 
 /// Where the masses' neighbours are searched for.
-std::vector<Vec3> pairing_places(const Blueprint& blueprint) {
-  return blueprint.paired_at.empty() ? rest_places(blueprint.body) : blueprint.paired_at;
+std::vector<Vec3> pairing_positions(const Blueprint& blueprint) {
+  return blueprint.paired_at.empty() ? rest_positions(blueprint.body) : blueprint.paired_at;
 }
 
 /// What is left to do once neighbours are joined.
@@ -141,7 +141,7 @@ BuiltBody finish(Body body) {
   leave_out_air(body);
   if (body.springs.empty()) return {{}, "no springs", {}};
   std::vector<std::uint32_t> kept = keep_largest_piece(body);
-  if (!has_extent(rest_places(body))) return {{}, "no extent", {}};
+  if (!has_extent(rest_positions(body))) return {{}, "no extent", {}};
   for (Spring& spring : body.springs) spring.first_length = spring.rest_length;
   place_on_origin(body);
   return {std::move(body), "", std::move(kept)};
@@ -168,26 +168,27 @@ std::optional<std::size_t> doubled_spring(const Body& body) {
 
 }  // namespace
 
-std::vector<Vec3> rest_places(const Body& body) {
-  std::vector<Vec3> places;
-  places.reserve(body.masses.size());
-  for (const Mass& mass : body.masses) places.push_back(mass.rest);
-  return places;
+std::vector<Vec3> rest_positions(const Body& body) {
+  std::vector<Vec3> positions;
+  positions.reserve(body.masses.size());
+  for (const Mass& mass : body.masses) positions.push_back(mass.rest);
+  return positions;
 }
 
-bool has_extent(std::span<const Vec3> places) {
+bool has_extent(std::span<const Vec3> positions) {
   constexpr double rounding = 1e-6;  // m; in what is smaller no body length can be measured
-  return !(bounding_box(places).longest_side() < rounding);
+  return !(bounding_box(positions).longest_side() < rounding);
 }
 
-void check_blueprint(const Blueprint& blueprint, const World& world) {
+void check_blueprint(const Blueprint& blueprint, const EncodingContext& context) {
   const auto require = [](bool holds, const char* what, std::size_t index, const char* fault) {
     if (!holds) throw std::invalid_argument(std::string(what) + " " + std::to_string(index) + " " + fault);
   };
   const Body& body = blueprint.body;
   const auto materials = static_cast<std::int64_t>(body.materials.size());
-  for (std::size_t i = 0; i < world.materials.size(); ++i)
-    require(i < body.materials.size() && body.materials[i] == world.materials[i], "material", i, "is not the world's");
+  for (std::size_t i = 0; i < context.materials.size(); ++i)
+    require(i < body.materials.size() && body.materials[i] == context.materials[i], "material", i,
+            "is not the context's");
   for (std::size_t i = 0; i < body.masses.size(); ++i) {
     const Mass& mass = body.masses[i];
     require(mass.mass > 0 && std::isfinite(mass.mass), "mass", i, "weighs nothing, or has no finite mass");
@@ -211,26 +212,26 @@ void check_blueprint(const Blueprint& blueprint, const World& world) {
       throw std::invalid_argument(std::to_string(list.size()) + " " + what + " for " +
                                   std::to_string(body.masses.size()) + " masses");
   };
-  require_one_for_each_mass(blueprint.paired_at, "places to pair at");
+  require_one_for_each_mass(blueprint.paired_at, "positions to pair at");
   require_one_for_each_mass(blueprint.sizes, "sizes");
   require_one_for_each_mass(blueprint.origins, "origins");
 }
 
 BuiltBody build_body(Blueprint blueprint) {
   if (std::string failure = blueprint_failure(blueprint); !failure.empty()) return {{}, std::move(failure), {}};
-  join(blueprint, nearest_pairs(pairing_places(blueprint), blueprint.neighbours));
+  join(blueprint, nearest_pairs(pairing_positions(blueprint), blueprint.neighbours));
   return finish(std::move(blueprint.body));
 }
 
 std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, Workers& workers) {
   std::vector<BuiltBody> built(blueprints.size());
-  std::vector<std::vector<Vec3>> places(blueprints.size());
+  std::vector<std::vector<Vec3>> positions(blueprints.size());
   workers.for_each(blueprints.size(), [&](std::size_t i) {
     built[i].failure = blueprint_failure(blueprints[i]);
-    if (built[i].failure.empty()) places[i] = pairing_places(blueprints[i]);
+    if (built[i].failure.empty()) positions[i] = pairing_positions(blueprints[i]);
   });
   std::vector<PointCloud> clouds;
-  for (std::size_t i = 0; i < blueprints.size(); ++i) clouds.push_back({places[i], blueprints[i].neighbours});
+  for (std::size_t i = 0; i < blueprints.size(); ++i) clouds.push_back({positions[i], blueprints[i].neighbours});
   search.find(clouds, workers, [&](std::size_t i, std::span<const IndexPair> pairs) {
     if (!built[i].failure.empty()) return;
     join(blueprints[i], pairs);
@@ -239,8 +240,8 @@ std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, Neighbour
   return built;
 }
 
-void put_load(Body& body, double share, double top) {
-  const Box box = bounding_box(rest_places(body));
+void add_payload(Body& body, double share, double top) {
+  const Box box = bounding_box(rest_positions(body));
   const double lowest = box.high.z - top * (box.high.z - box.low.z);
   double own = 0;
   std::vector<Mass*> carriers;
@@ -249,8 +250,8 @@ void put_load(Body& body, double share, double top) {
     if (mass.rest.z >= lowest) carriers.push_back(&mass);
   }
   for (Mass* mass : carriers) {
-    mass->load = share * own / static_cast<double>(carriers.size());
-    mass->mass += mass->load;
+    mass->payload = share * own / static_cast<double>(carriers.size());
+    mass->mass += mass->payload;
   }
   place_on_origin(body);
 }

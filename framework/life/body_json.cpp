@@ -27,7 +27,7 @@ class BodyReader {
     read_springs(root);
     if (!is_alive_ && root.contains("start_energy")) refuse_of_newborn("start_energy");
     if (!is_alive_) return {std::move(body_), std::nullopt};
-    state_.position = rest_places(body_);
+    state_.position = rest_positions(body_);
     state_.time = input_.number(root, "", "time", 0);
     if (root.contains("start_energy")) state_.start_energy = input_.number(root, "", "start_energy", lowest);
     return {std::move(body_), std::move(state_)};

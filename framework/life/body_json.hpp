@@ -25,8 +25,8 @@ struct GivenBody {
 ///
 /// With "time" the body is in the middle of its life: its masses are where they are, as fast as they are, and bear
 /// their load. Without, it is yet to be born, where and with what load the scene says: its positions are its rest
-/// places, and it has neither velocities nor start energy. "name", the masses' "material" and what is left of a state
-/// (0, and the energy that the state has in its scene) may be left out.
+/// positions, and it has neither velocities nor start energy. "name", the masses' "material" and what is left of a
+/// state (0, and the energy that the state has in its scene) may be left out.
 std::string body_to_json(const GivenBody& given, const std::vector<std::string>& material_names);
 
 /// Reads such a file. Throws ConfigError that names file, place and remedy for a file that cannot be read or is no such

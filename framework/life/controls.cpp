@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/materials.hpp"
+#include "life/edits.hpp"
 
 namespace evodevo {
 namespace {
@@ -76,10 +77,10 @@ class Partners {
 /// One amount of change on its way into a body.
 class RandomPlacement {
  public:
-  RandomPlacement(const Amount& amount, const Moment& now, std::size_t& surplus, Rng& rng)
+  RandomPlacement(const Amount& amount, const DevoContext& context, std::size_t& surplus, Rng& rng)
       : amount_(amount),
-        now_(now),
-        body_(now.body),
+        context_(context),
+        body_(context.body),
         numbers_(numbered(body_.materials)),
         surplus_(surplus),
         rng_(rng),
@@ -148,12 +149,12 @@ class RandomPlacement {
   }
 
   void add_masses() {
-    const auto& [low, high] = now_.bounds;
+    const auto& [low, high] = context_.bounds;
     for (const Amount::MassCome& mass : amount_.masses_come) {
-      const Vec3 place{rng_.uniform(low.x, high.x), rng_.uniform(low.y, high.y), rng_.uniform(low.z, high.z)};
+      const Vec3 position{rng_.uniform(low.x, high.x), rng_.uniform(low.y, high.y), rng_.uniform(low.z, high.z)};
       const std::int32_t material = index_in_body(mass.material);
       const bool is_known = material < static_cast<std::int32_t>(body_.materials.size());
-      out_.new_masses.push_back({place, mass.mass, is_known ? material : no_material});
+      out_.new_masses.push_back({position, mass.mass, is_known ? material : no_material});
     }
   }
 
@@ -173,7 +174,7 @@ class RandomPlacement {
       for (std::size_t attempt = 0; attempt < attempts_per_spring; ++attempt) {
         const std::uint32_t first = end(spring.a), second = end(spring.b);
         const auto [a, b] = std::minmax(first, second);
-        if (a == b || !(norm(place(b) - place(a)) > 0) || partners.joined(a, b)) continue;
+        if (a == b || !(norm(position(b) - position(a)) > 0) || partners.joined(a, b)) continue;
         partners.join(a, b);
         out_.new_springs.push_back({a, b, spring.material, {}});
         break;
@@ -181,9 +182,9 @@ class RandomPlacement {
   }
 
   /// Where a mass, old or new, is when life goes on.
-  Vec3 place(std::uint32_t mass) const {
+  Vec3 position(std::uint32_t mass) const {
     const std::size_t old = body_.masses.size();
-    return mass < old ? now_.place(mass) : out_.new_masses.at(mass - old).place;
+    return mass < old ? context_.position(mass) : out_.new_masses.at(mass - old).position;
   }
 
   /// One past the last where the body has no such material.
@@ -194,7 +195,7 @@ class RandomPlacement {
   }
 
   const Amount& amount_;
-  const Moment& now_;
+  const DevoContext& context_;
   const Body& body_;
   MaterialNumbers numbers_;  ///< of the body's materials
   std::size_t& surplus_;
@@ -234,8 +235,8 @@ Amount amount_of(const Edits& edits, const Body& body, std::uint32_t op) {
   return amount;
 }
 
-Edits at_random_places(const Amount& amount, const Moment& now, std::size_t& surplus, Rng& rng) {
-  return RandomPlacement(amount, now, surplus, rng).edits();
+Edits at_random_places(const Amount& amount, const DevoContext& context, std::size_t& surplus, Rng& rng) {
+  return RandomPlacement(amount, context, surplus, rng).edits();
 }
 
 std::vector<Amount> Yoke::amounts_after(int cycle) {
@@ -243,7 +244,7 @@ std::vector<Amount> Yoke::amounts_after(int cycle) {
   for (; next_ < changes_.size() && changes_[next_].cycle == static_cast<std::uint32_t>(cycle); ++next_) {
     const Change& change = changes_[next_];
     if (change.op) amounts.push_back(amount_of(change.edits, body_, *change.op));
-    replay(body_, change);
+    apply(change.edits, body_);
   }
   std::stable_partition(amounts.begin(), amounts.end(),
                         [](const Amount& amount) { return !amount.masses_gone.empty(); });

@@ -5,7 +5,7 @@
 
 namespace evodevo {
 
-/// What an operator changed at one turn, but for where. All indices are gone, so that it holds for any body.
+/// What an operator changed at one application, but for where. All indices are gone, so that it holds for any body.
 struct Amount {
   struct SpringChange {
     Material before;
@@ -37,12 +37,12 @@ Amount amount_of(const Edits& edits, const Body& body, std::uint32_t op);
 /// of the material of those that did, or of any where none is left. New springs join random masses that stay and are
 /// not yet joined, and are born without force; a new mass comes anywhere in the bounds and gets as many springs. The
 /// springs of a mass that goes count among those that go. `surplus` is how many more have gone so than should have,
-/// now and in earlier turns; as many fewer go as soon as that is possible. A new mass of a material that the body does
-/// not know has none. Fewer come where the body has no room for more. Growth has no place and happens as it is. Bounds
-/// that an operator keeps do not hold here.
-Edits at_random_places(const Amount& amount, const Moment& now, std::size_t& surplus, Rng& rng);
+/// now and at earlier applications; as many fewer go as soon as that is possible. A new mass of a material that the
+/// body does not know has none. Fewer come where the body has no room for more. Growth has no place and happens as it
+/// is. Bounds that an operator keeps do not hold here.
+Edits at_random_places(const Amount& amount, const DevoContext& context, std::size_t& surplus, Rng& rng);
 
-/// What happened in a life, for another one of the same start that is to change as much at each turn.
+/// What happened in a life, for another one of the same start that is to change as much at each application.
 class Yoke {
  public:
   Yoke(Body born, const LifeRecord& record) : body_(std::move(born)), changes_(record.changes()) {}

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -34,37 +36,59 @@ std::string pair_text(const NewSpring& spring) {
   return "joins masses " + std::to_string(spring.a) + " and " + std::to_string(spring.b);
 }
 
+/// Puts indices in ascending order and keeps each once, with its cause.
+void put_in_order(std::vector<std::uint32_t>& indices, std::vector<double>& causes) {
+  const bool have_causes = !causes.empty();
+  if (have_causes && causes.size() != indices.size()) return;
+  std::map<std::uint32_t, double> ordered;
+  for (std::size_t i = 0; i < indices.size(); ++i) ordered.emplace(indices[i], have_causes ? causes[i] : 0);
+  indices.clear();
+  if (have_causes) causes.clear();
+  for (const auto& [index, cause] : ordered) {
+    indices.push_back(index);
+    if (have_causes) causes.push_back(cause);
+  }
+}
+
+/// The rest length (m) with which a new spring is born without force; none where one of its masses is not there.
+std::optional<double> forceless_length(const NewSpring& spring, const Edits& edits, const DevoContext& context) {
+  const std::size_t old_masses = context.body.masses.size();
+  if (std::max(spring.a, spring.b) >= old_masses + edits.new_masses.size()) return std::nullopt;
+  const auto position = [&](std::uint32_t mass) {
+    return mass < old_masses ? context.position(mass) : edits.new_masses[mass - old_masses].position;
+  };
+  const double distance = norm(position(spring.a) - position(spring.b));
+  return context.resets ? distance : distance / spring.material.relative_length(context.time);
+}
+
 /// One application of edits: the old body on one side, the new one growing on the other.
 class Editor {
  public:
-  Editor(LivingBody& living, const Edits& edits, const Moment& now)
-      : living_(living),
-        edits_(edits),
-        now_(now),
-        old_materials_(living.body.materials.size()),
-        materials_(living.body.materials),
-        spring_gone_(marked(edits.removed_springs, living.body.springs.size(), "spring")),
-        mass_gone_(marked(edits.removed_masses, living.body.masses.size(), "mass")) {}
+  /// `state` and `records` are those of the body, or nullptr where they are of no interest.
+  Editor(const Edits& edits, Body& body, State* state, SpringRecords* records)
+      : edits_(edits),
+        body_(body),
+        state_(state),
+        records_(records),
+        old_materials_(body.materials.size()),
+        materials_(body.materials),
+        spring_gone_(marked(edits.removed_springs, body.springs.size(), "spring")),
+        mass_gone_(marked(edits.removed_masses, body.masses.size(), "mass")) {}
 
   void apply() {
     check_causes();
     if (edits_.growth) grow_springs(*edits_.growth);
     change_springs();
-    const std::vector<NewSpring> arrivals = finished_springs();  // while the old indices hold
+    check_new_springs();  // while the old indices hold
     move_masses();
     move_springs();
-    refuse_joined_pairs(arrivals);
-    for (const NewSpring& spring : arrivals) add_spring(spring);
-    drop_unused_materials(living_.body);
+    refuse_joined_pairs();
+    for (const NewSpring& spring : edits_.new_springs) add_spring(spring);
+    drop_unused_materials(body_);
   }
 
  private:
   std::size_t old_masses() const { return mass_gone_.size(); }
-
-  /// Where a mass, old or new, is when life goes on.
-  Vec3 place(std::uint32_t mass) const {
-    return mass < old_masses() ? now_.place(mass) : edits_.new_masses[mass - old_masses()].place;
-  }
 
   bool goes(const Spring& spring) const { return mass_gone_[spring.a] || mass_gone_[spring.b]; }
 
@@ -111,7 +135,7 @@ class Editor {
     const auto relative_length = [&](const Spring& spring, double gone) {
       return 1 + (static_cast<double>(spring.growth) - 1) * gone / growth.whole;
     };
-    for (Spring& spring : living_.body.springs) {
+    for (Spring& spring : body_.springs) {
       spring.rest_length *= relative_length(spring, growth.to) / relative_length(spring, growth.from);
       if (!is_rest_length(spring.rest_length))
         refuse("grows a spring whose rest length then is " + to_text(spring.rest_length) +
@@ -120,7 +144,7 @@ class Editor {
   }
 
   void change_springs() {
-    Body& body = living_.body;
+    Body& body = body_;
     std::vector<std::uint8_t> changed(body.springs.size(), 0);
     for (const ChangedSpring& change : edits_.changed_springs) {
       const std::string what = "replaces spring " + std::to_string(change.spring);
@@ -143,81 +167,79 @@ class Editor {
       refuse(pair_text(spring) + ", but mass " + std::to_string(end) + " goes");
   }
 
-  /// The new springs, checked, each with its rest length.
-  std::vector<NewSpring> finished_springs() const {
-    std::vector<NewSpring> springs = edits_.new_springs;
-    for (NewSpring& spring : springs) {
+  void check_new_springs() const {
+    for (const NewSpring& spring : edits_.new_springs) {
       check_end(spring, spring.a);
       check_end(spring, spring.b);
       if (spring.a == spring.b) refuse(pair_text(spring) + ", which are one");
       check_material(pair_text(spring), spring.material);
-      if (!spring.rest_length) spring.rest_length = forceless_length(spring);
-      check_rest_length(pair_text(spring), *spring.rest_length);
+      check_rest_length(pair_text(spring), spring.rest_length.value());
     }
-    return springs;
-  }
-
-  double forceless_length(const NewSpring& spring) const {
-    const double distance = norm(place(spring.a) - place(spring.b));
-    return now_.resets ? distance : distance / spring.material.relative_length(now_.time);
   }
 
   void move_masses() {
     std::vector<Mass> masses;
-    State state = living_.state;
-    state.position.clear();
-    state.velocity.clear();
+    std::vector<Vec3> positions, velocities;
     const auto add = [&](const Mass& mass, Vec3 position, Vec3 velocity) {
       new_index_.push_back(static_cast<std::uint32_t>(masses.size()));
       masses.push_back(mass);
-      state.position.push_back(position);
-      state.velocity.push_back(velocity);
+      positions.push_back(position);
+      velocities.push_back(velocity);
     };
     for (std::size_t i = 0; i < old_masses(); ++i) {
       if (mass_gone_[i])
         new_index_.push_back(0);  // never looked up: springs to it go, and check_end refuses new ones
+      else if (state_ != nullptr)
+        add(body_.masses[i], state_->position[i], state_->velocity[i]);
       else
-        add(living_.body.masses[i], living_.state.position[i], living_.state.velocity[i]);
+        add(body_.masses[i], {}, {});
     }
     for (const NewMass& mass : edits_.new_masses) {
-      if (!std::isfinite(norm(mass.place))) refuse("adds a mass at a place that is not finite");
-      if (!(mass.mass > 0) || !std::isfinite(mass.mass))
-        refuse("adds a mass whose weight is " + to_text(mass.mass) + "; expected a finite one above 0 kg");
-      if (mass.material < no_material || mass.material >= static_cast<std::int64_t>(old_materials_))
-        refuse("adds a mass of material " + std::to_string(mass.material) + " to a body that has " +
-               std::to_string(old_materials_) + " materials");
-      add({mass.place, mass.mass, mass.material, 0}, mass.place, {});
+      check_new_mass(mass);
+      add({mass.position, mass.mass, mass.material, 0}, mass.position, {});
     }
-    pass_load_on(masses);
-    living_.body.masses = std::move(masses);
-    living_.state = std::move(state);
+    pass_payload_on(masses);
+    body_.masses = std::move(masses);
+    if (state_ == nullptr) return;
+    state_->position = std::move(positions);
+    state_->velocity = std::move(velocities);
   }
 
-  /// Spreads the load of what goes evenly over those that carry one, or over all where nobody is left who does.
-  void pass_load_on(std::vector<Mass>& masses) const {
-    double load = 0;
+  void check_new_mass(const NewMass& mass) const {
+    if (!std::isfinite(norm(mass.position))) refuse("adds a mass at a position that is not finite");
+    if (!(mass.mass > 0) || !std::isfinite(mass.mass))
+      refuse("adds a mass whose weight is " + to_text(mass.mass) + "; expected a finite one above 0 kg");
+    if (mass.material < no_material || mass.material >= static_cast<std::int64_t>(old_materials_))
+      refuse("adds a mass of material " + std::to_string(mass.material) + " to a body that has " +
+             std::to_string(old_materials_) + " materials");
+  }
+
+  /// Spreads the payload of what goes evenly over those that carry one, or over all where nobody is left who does.
+  void pass_payload_on(std::vector<Mass>& masses) const {
+    double payload = 0;
     for (std::size_t i = 0; i < old_masses(); ++i)
-      if (mass_gone_[i]) load += living_.body.masses[i].load;
-    if (!(load > 0)) return;
-    const auto carries = [](const Mass& mass) { return mass.load > 0; };
+      if (mass_gone_[i]) payload += body_.masses[i].payload;
+    if (!(payload > 0)) return;
+    const auto carries = [](const Mass& mass) { return mass.payload > 0; };
     const auto carriers = std::count_if(masses.begin(), masses.end(), carries);
     const double part =
-        load / static_cast<double>(carriers > 0 ? carriers : static_cast<std::ptrdiff_t>(masses.size()));
+        payload / static_cast<double>(carriers > 0 ? carriers : static_cast<std::ptrdiff_t>(masses.size()));
     for (Mass& mass : masses) {
       if (carriers > 0 && !carries(mass)) continue;
-      mass.load += part;
+      mass.payload += part;
       mass.mass += part;
     }
   }
 
   void move_springs() {
-    std::vector<Spring>& springs = living_.body.springs;
+    std::vector<Spring>& springs = body_.springs;
     std::vector<std::uint32_t> staying;
     staying.reserve(springs.size());
     for (std::uint32_t i = 0; i < springs.size(); ++i)
       if (!spring_gone_[i] && !goes(springs[i])) staying.push_back(i);
-    for (const auto list : SpringRecords::lists)
-      if ((living_.*list).size() == springs.size()) move_record(living_.*list, staying);
+    if (records_ != nullptr)
+      for (const auto list : SpringRecords::lists)
+        if ((records_->*list).size() == springs.size()) move_record(records_->*list, staying);
     for (std::size_t i = 0; i < staying.size(); ++i) {
       springs[i] = springs[staying[i]];
       springs[i].a = new_index_[springs[i].a];
@@ -238,7 +260,8 @@ class Editor {
   std::uint64_t new_key(const NewSpring& spring) const { return pair_key(new_index_[spring.a], new_index_[spring.b]); }
 
   /// Few springs come and many are there: the few are sorted and the many looked up among them.
-  void refuse_joined_pairs(const std::vector<NewSpring>& arrivals) const {
+  void refuse_joined_pairs() const {
+    const std::vector<NewSpring>& arrivals = edits_.new_springs;
     std::vector<std::uint64_t> keys;
     for (const NewSpring& spring : arrivals) keys.push_back(new_key(spring));
     std::sort(keys.begin(), keys.end());
@@ -248,9 +271,9 @@ class Editor {
     };
     if (const auto twin = std::adjacent_find(keys.begin(), keys.end()); twin != keys.end()) refuse_pair(*twin);
     // most springs are told apart from all arrivals by one of their ends
-    std::vector<std::uint8_t> is_lower(living_.body.masses.size(), 0), is_upper = is_lower;
+    std::vector<std::uint8_t> is_lower(body_.masses.size(), 0), is_upper = is_lower;
     for (const std::uint64_t key : keys) is_lower[key >> 32] = is_upper[key & 0xffffffff] = 1;
-    for (const Spring& spring : living_.body.springs) {
+    for (const Spring& spring : body_.springs) {
       if (!is_lower[std::min(spring.a, spring.b)] || !is_upper[std::max(spring.a, spring.b)]) continue;
       if (const auto key = pair_key(spring.a, spring.b); std::binary_search(keys.begin(), keys.end(), key))
         refuse_pair(key);
@@ -258,13 +281,14 @@ class Editor {
   }
 
   void add_spring(const NewSpring& spring) {
-    living_.body.springs.push_back({new_index_[spring.a], new_index_[spring.b], *spring.rest_length,
-                                    materials_.index(spring.material), 1, *spring.rest_length});
+    body_.springs.push_back({new_index_[spring.a], new_index_[spring.b], *spring.rest_length,
+                             materials_.index(spring.material), 1, *spring.rest_length});
   }
 
-  LivingBody& living_;
   const Edits& edits_;
-  const Moment& now_;
+  Body& body_;
+  State* state_;
+  SpringRecords* records_;
   std::size_t old_materials_;  ///< how many there were before the edits
   MaterialList materials_;
   std::vector<std::uint8_t> spring_gone_, mass_gone_;
@@ -273,16 +297,29 @@ class Editor {
 
 }  // namespace
 
-void apply_edits(LivingBody& living, const Edits& edits, const Moment& now) {
-  if (!edits.empty()) Editor(living, edits, now).apply();
+Edits resolved(const Edits& edits, const DevoContext& context) {
+  Edits result = edits;
+  put_in_order(result.removed_masses, result.causes.removed_masses);
+  put_in_order(result.removed_springs, result.causes.removed_springs);
+  for (NewSpring& spring : result.new_springs)
+    if (!spring.rest_length) spring.rest_length = forceless_length(spring, edits, context);
+  return result;
 }
 
-void show_records(const SpringRecords& records, const SpringRequest& request, Moment& now) {
+void apply(const Edits& resolved, LivingBody& living) {
+  if (!resolved.empty()) Editor(resolved, living.body, &living.state, &living).apply();
+}
+
+void apply(const Edits& resolved, Body& body) {
+  if (!resolved.empty()) Editor(resolved, body, nullptr, nullptr).apply();
+}
+
+void show_records(const SpringRecords& records, const SpringRequest& request, DevoContext& context) {
   using Shown = std::span<const double>;
-  now.stress = request.stress ? Shown(records.stress) : Shown();
-  now.peak_force = request.peak_force ? Shown(records.peak_force) : Shown();
-  now.muscle_work = request.muscle_work ? Shown(records.muscle_work) : Shown();
-  now.tension = request.tension ? Shown(records.tension) : Shown();
+  context.stress = request.stress ? Shown(records.stress) : Shown();
+  context.peak_force = request.peak_force ? Shown(records.peak_force) : Shown();
+  context.muscle_work = request.muscle_work ? Shown(records.muscle_work) : Shown();
+  context.tension = request.tension ? Shown(records.tension) : Shown();
 }
 
 }  // namespace evodevo

@@ -1,4 +1,4 @@
-// Applies what devo operators want changed.
+// What devo operators want changed: resolved once, then applied, recorded and applied again.
 #pragma once
 
 #include <memory>
@@ -16,14 +16,20 @@ struct LivingBody : SpringRecords {
   std::shared_ptr<const Preparation> preparation = nullptr;  ///< what the simulator keeps from cycle to cycle
 };
 
-/// Applies one operator's edits, all of them together. `now` is the moment that the operator saw; it refers to
-/// `living`. New springs carry the mean records of the old ones, and materials that nothing is made of any more go.
-/// Throws std::invalid_argument, naming the edit, for growth beyond its way, an index out of range, a mass joined to
-/// itself or to one that goes, a pair joined twice, a spring changed twice or one that goes, air, a number that is not
-/// finite, or more or fewer causes than edits.
-void apply_edits(LivingBody& living, const Edits& edits, const Moment& now);
+/// What an operator's edits come down to: the form that is applied, recorded and applied again. What goes stands in
+/// ascending order and once, with its cause, and every new spring between masses that there are has its rest length.
+/// Causes that are not as many as their edits stay as they are, to be refused by apply().
+Edits resolved(const Edits& edits, const DevoContext& context);
 
-/// Lets a moment show what was asked for of the springs, and no more.
-void show_records(const SpringRecords& records, const SpringRequest& request, Moment& now);
+/// Applies resolved edits, all of them together. New springs carry the mean records of the old ones, and materials that
+/// nothing is made of any more go. Throws std::invalid_argument, naming the edit, for growth beyond its way, an index
+/// out of range, a mass joined to itself or to one that goes, a pair joined twice, a spring changed twice or one that
+/// goes, air, a number that is not finite, or more or fewer causes than edits.
+void apply(const Edits& resolved, LivingBody& living);
+/// The same to a body alone, whose motion is of no interest.
+void apply(const Edits& resolved, Body& body);
+
+/// Lets an operator's context show what the operator asked for of the springs, and no more.
+void show_records(const SpringRecords& records, const SpringRequest& request, DevoContext& context);
 
 }  // namespace evodevo

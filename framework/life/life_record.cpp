@@ -5,7 +5,6 @@
 #include <bit>
 #include <cstring>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <stdexcept>
 
@@ -18,20 +17,6 @@ static_assert(std::endian::native == std::endian::little, "numbers are written a
 
 /// Behind the bits that say which lists of causes a change has: whether springs grow, and Change::lengths_given.
 constexpr std::uint32_t growth_bit = 1u << Causes::lists.size(), lengths_given_bit = growth_bit << 1;
-
-/// Puts indices in ascending order and keeps each once, with its cause.
-void put_in_order(std::vector<std::uint32_t>& indices, std::vector<double>& causes) {
-  const bool have_causes = !causes.empty();
-  if (have_causes && causes.size() != indices.size()) return;
-  std::map<std::uint32_t, double> ordered;
-  for (std::size_t i = 0; i < indices.size(); ++i) ordered.emplace(indices[i], have_causes ? causes[i] : 0);
-  indices.clear();
-  if (have_causes) causes.clear();
-  for (const auto& [index, cause] : ordered) {
-    indices.push_back(index);
-    if (have_causes) causes.push_back(cause);
-  }
-}
 
 /// Appends changes to bytes. Whole numbers take seven bits to a byte, the highest bit says that more follow.
 class Writer {
@@ -48,7 +33,7 @@ class Writer {
     for (const ChangedSpring& spring : edits.changed_springs) changed(spring);
     whole(edits.new_masses.size());
     for (const NewMass& mass : edits.new_masses) {
-      raw(mass.place), raw(mass.mass);
+      raw(mass.position), raw(mass.mass);
       whole(static_cast<std::uint64_t>(mass.material - no_material));
     }
     whole(edits.new_springs.size());
@@ -127,7 +112,7 @@ class Reader {
     for (std::uint32_t left = index(); left > 0; --left) edits.changed_springs.push_back(changed());
     for (std::uint32_t left = index(); left > 0; --left) {
       NewMass& mass = edits.new_masses.emplace_back();
-      mass.place = raw<Vec3>();
+      mass.position = raw<Vec3>();
       mass.mass = raw<double>();
       const std::uint32_t material = index();
       if (material > std::numeric_limits<std::int32_t>::max()) fail();
@@ -209,19 +194,12 @@ class Reader {
 
 }  // namespace
 
-Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const Moment& now) {
-  Change change{static_cast<std::uint32_t>(now.cycle), op, edits};
-  put_in_order(change.edits.removed_masses, change.edits.causes.removed_masses);
-  put_in_order(change.edits.removed_springs, change.edits.causes.removed_springs);
-  change.lengths_given = std::any_of(edits.new_springs.begin(), edits.new_springs.end(),
-                                     [](const NewSpring& spring) { return spring.rest_length.has_value(); });
-  return change;
-}
-
-void set_rest_lengths(Change& change, const Body& after) {
-  std::vector<NewSpring>& springs = change.edits.new_springs;
-  const std::size_t first = after.springs.size() - springs.size();
-  for (std::size_t i = 0; i < springs.size(); ++i) springs[i].rest_length = after.springs[first + i].rest_length;
+Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const DevoContext& context) {
+  const auto has_length = [](const NewSpring& spring) { return spring.rest_length.has_value(); };
+  return {.cycle = static_cast<std::uint32_t>(context.cycle),
+          .op = op,
+          .edits = resolved(edits, context),
+          .lengths_given = std::any_of(edits.new_springs.begin(), edits.new_springs.end(), has_length)};
 }
 
 LifeRecord::LifeRecord(std::string bytes) : bytes_(std::move(bytes)) {
@@ -236,31 +214,6 @@ std::vector<Change> LifeRecord::changes() const {
   std::vector<Change> changes;
   for (Reader reader(bytes_); !reader.at_end();) changes.push_back(reader.read());
   return changes;
-}
-
-void replay(Body& body, const Change& change) {
-  const Genome genome;
-  const Layout layout;
-  LivingBody living{.body = std::move(body)};
-  living.state.position.resize(living.body.masses.size());
-  living.state.velocity.resize(living.body.masses.size());
-  living.stress.resize(living.body.springs.size());
-  // rest lengths are given, so nothing depends on where masses are and when
-  apply_edits(living, change.edits,
-              {.body = living.body,
-               .state = living.state,
-               .stress = living.stress,
-               .cycle = static_cast<int>(change.cycle),
-               .cycles = 0,
-               .turn = 0,
-               .turns = 0,
-               .time = 0,
-               .bounds = {},
-               .mass = 0,
-               .resets = false,
-               .genome = genome,
-               .layout = layout});
-  body = std::move(living.body);
 }
 
 MassNumbers::MassNumbers(std::size_t born) : numbers_(born), next_(static_cast<std::uint32_t>(born)) {

@@ -13,21 +13,16 @@ namespace evodevo {
 /// Edits that were made together after a cycle. All indices are those of the body before them.
 struct Change {
   std::uint32_t cycle = 0;          ///< from 1
-  std::optional<std::uint32_t> op;  ///< place in Development::operators; none: of what was torn off
-  Edits edits;                      ///< what goes in ascending order and once; every new spring has its rest length
+  std::optional<std::uint32_t> op;  ///< index into the experiment's devo operators; none: of what was torn off
+  Edits edits;                      ///< resolved()
   bool lengths_given = false;       ///< whether the operator itself gave a new spring its rest length
 };
 
-/// The change that `edits`, wanted by operator `op`, are about to make. Rest lengths are still as the operator left
-/// them; see set_rest_lengths(). Causes that are not as many as their edits stay, with these, as they are, to be
-/// refused where the edits are applied.
-Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const Moment& now);
+/// The change that `edits`, wanted by operator `op`, are about to make.
+Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const DevoContext& context);
 
-/// Takes the rest lengths of a change's new springs from the body that it was made to.
-void set_rest_lengths(Change& change, const Body& after);
-
-/// All changes of a life, in their order: about 20 bytes for a spring that goes and one that comes, some 30 for a turn
-/// at which all springs grow. Causes are kept in single precision.
+/// All changes of a life, in their order: about 20 bytes for a spring that goes and one that comes, some 30 for an
+/// application at which all springs grow. Causes are kept in single precision.
 class LifeRecord {
  public:
   LifeRecord() = default;
@@ -46,9 +41,6 @@ class LifeRecord {
   std::string bytes_;
   MaterialNumbers materials_;  ///< those written so far, to which others refer by their numbers
 };
-
-/// Makes a change to a body again; its motion is none of it.
-void replay(Body& body, const Change& change);
 
 /// The numbers that masses keep through a life: those at birth their index, later ones the next numbers.
 class MassNumbers {

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "life/perturbation.hpp"
+#include "life/birth.hpp"
 
 namespace evodevo {
 namespace {
 
 constexpr double enough = 0.5;  ///< of the fitness
-constexpr int disturbed_starts = 3;
+constexpr int perturbed_starts = 3;
 constexpr double more_settling = 10;  ///< s
 constexpr std::int64_t step_parts = 4;
 
@@ -18,8 +18,8 @@ const Progress unwatched = [](double) {};
 std::vector<Life> matured(const Evaluation& evaluation, std::span<const Champion> champions) {
   std::vector<Newborn> newborns;
   for (const Champion& champion : champions) newborns.push_back(champion.newborn);
-  std::vector<Life> lives = evaluation.birth(newborns);
-  evaluation.develop(lives, unwatched);
+  std::vector<Life> lives = evaluation.birth.of(newborns);
+  evaluation.development.run(lives, unwatched);
   return lives;
 }
 
@@ -43,9 +43,9 @@ class Trials {
     for (Life& life : lives) {
       if (!life.alive()) continue;
       change(life);
-      evaluation.choose_step(life);
+      evaluation.simulation.choose_step(life);
     }
-    evaluation.measure(lives, unwatched);
+    evaluation.measurement.run(lives, unwatched);
     for (std::size_t i = 0; i < lives.size(); ++i) {
       const Result& result = lives[i].result;
       Trial trial{name, result.status, result.reason, std::nullopt};
@@ -92,9 +92,9 @@ std::vector<Verification> verify(const Experiment& experiment, Simulator& simula
   other.step = {.dt = std::nullopt, .refine = step_parts};
   trials.add_exact("other-method", other);
 
-  for (std::uint32_t i = 0; i < disturbed_starts; ++i)
-    trials.add("disturbed-" + std::to_string(i + 1), simulator, as_in_the_run,
-               [&](Life& life) { disturb(life, experiment, i); });
+  for (std::uint32_t i = 0; i < perturbed_starts; ++i)
+    trials.add("perturbed-" + std::to_string(i + 1), simulator, as_in_the_run,
+               [&](Life& life) { perturb(life, experiment, i); });
   trials.add("no-muscles", simulator, as_in_the_run, still_muscles);
   Conditions later = as_in_the_run;
   later.later = more_settling;

@@ -12,7 +12,7 @@
 
 namespace evodevo {
 
-/// The final evaluation of a matured body, lived again with one thing changed.
+/// The final evaluation of a matured body, repeated with one thing changed.
 struct Trial {
   std::string name;  ///< one of those that verify() makes
   Status status = Status::ok;
@@ -20,7 +20,7 @@ struct Trial {
   std::optional<double> value;  ///< the first objective; none unless ok
 };
 
-/// An individual to verify: how it lives again, and its first objective, as the run recorded it.
+/// An individual to verify: how it is simulated again, and its first objective, as the run recorded it.
 struct Champion {
   Newborn newborn;
   double fitness = 0;
@@ -38,7 +38,7 @@ struct Verification {
 ///   quarter-step  with a quarter of the time step in double precision;
 ///   other-method  with a quarter of each body's own step in double precision by velocity-verlet (symplectic-euler
 ///                 where the run has that);
-///   disturbed-1   to -3: each mass moved along each axis at random by up to 1e-4 of the body's longest side;
+///   perturbed-1   to -3: each mass moved along each axis at random by up to 1e-4 of the body's longest side;
 ///   no-muscles    with springs that keep their length;
 ///   settled       with windows that open 10 s later.
 /// The second and third run on the CPU. The same on the same device, every time.

@@ -23,7 +23,7 @@ constexpr std::size_t handler_stack_size = 1 << 16;
 struct Slot {
   std::atomic<std::uint64_t> version = 0;  ///< odd while the rest is being written
   std::atomic<const OperatorTitle*> title = nullptr;
-  std::atomic<std::int64_t> individual = CallPlace::none, cycle = CallPlace::none, seed = CallPlace::none;
+  std::atomic<std::int64_t> individual = CallSubject::none, cycle = CallSubject::none, seed = CallSubject::none;
 
   std::atomic<bool> taken = true;
   Slot* next = nullptr;
@@ -34,8 +34,8 @@ struct Slot {
     const std::uint64_t before = version.load(std::memory_order_relaxed);
     version.store(before + 1, std::memory_order_relaxed);
     title.store(call.title, std::memory_order_release);
-    individual.store(call.place.individual, std::memory_order_release);
-    cycle.store(call.place.cycle, std::memory_order_release);
+    individual.store(call.subject.individual, std::memory_order_release);
+    cycle.store(call.subject.cycle, std::memory_order_release);
     seed.store(call.seed, std::memory_order_release);
     version.store(before + 2, std::memory_order_release);
   }
@@ -127,9 +127,9 @@ const OperatorTitle* lasting_title(std::string_view kind, std::string_view name,
 
 Line& operator<<(Line& line, const OperatorCall& call) {
   line << (call.title != nullptr ? std::string_view(call.title->whole) : "operator");
-  if (call.place.individual != CallPlace::none) line << ", individual " << call.place.individual;
-  if (call.place.cycle != CallPlace::none) line << ", cycle " << call.place.cycle;
-  if (call.seed != CallPlace::none) line << ", seed " << call.seed;
+  if (call.subject.individual != CallSubject::none) line << ", individual " << call.subject.individual;
+  if (call.subject.cycle != CallSubject::none) line << ", cycle " << call.subject.cycle;
+  if (call.seed != CallSubject::none) line << ", seed " << call.seed;
   return line;
 }
 

@@ -21,7 +21,7 @@ struct OperatorTitle {
 const OperatorTitle* lasting_title(std::string_view kind, std::string_view name, const std::string& file);
 
 /// For whom an operator is called.
-struct CallPlace {
+struct CallSubject {
   static constexpr std::int64_t none = -1;
   std::int64_t individual = none, cycle = none;
 };
@@ -29,8 +29,9 @@ struct CallPlace {
 /// A call of an operator's own code.
 struct OperatorCall {
   const OperatorTitle* title = nullptr;  ///< nullptr: the operator is no library's
-  CallPlace place = {};
-  std::int64_t seed = CallPlace::none;  ///< of the experiment
+  CallSubject subject = {};
+  std::int64_t seed = CallSubject::none;  ///< of the experiment
+  std::string_view kind = {};             ///< of an operator without a title; not known to those who look on
 };
 
 /// "devo operator "erosion" of FILE, individual 5, cycle 3, seed 7", as far as it is known.

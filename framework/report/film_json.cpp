@@ -19,7 +19,7 @@ constexpr std::size_t measured_finer = 4;  ///< so many times as many frames are
 
 /// How fine numbers are, and how far frames are thinned before coarser numbers do less harm.
 struct Detail {
-  double parts_of_length;     ///< places are whole multiples of so small a part of the body's longest side
+  double parts_of_length;     ///< positions are whole multiples of so small a part of the body's longest side
   int stress_levels;          ///< of the root of stress, since few springs bear much and many little
   std::size_t most_thinning;  ///< of the frames that were filmed, every so many-th is kept
 };
@@ -93,12 +93,12 @@ class ErrorSum {
 
  private:
   void add(const Frame& frame, const Frame& before, const Frame& after, double part, double step) {
-    for (std::size_t i = 0; i < frame.places.size(); ++i) {
+    for (std::size_t i = 0; i < frame.positions.size(); ++i) {
       double square = 0;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double shown =
-            (1 - part) * on_grid(before.places[i][axis], step) + part * on_grid(after.places[i][axis], step);
-        square += (shown - frame.places[i][axis]) * (shown - frame.places[i][axis]);
+            (1 - part) * on_grid(before.positions[i][axis], step) + part * on_grid(after.positions[i][axis], step);
+        square += (shown - frame.positions[i][axis]) * (shown - frame.positions[i][axis]);
       }
       distances_.push_back(static_cast<float>(std::sqrt(square)));
     }
@@ -109,9 +109,9 @@ class ErrorSum {
 
 /// The longest side of the body at birth, m; 1 where it has none.
 double body_size(const Film& film) {
-  std::vector<Vec3> places;
-  for (const SeenPlace& p : film.front().frames.front().places) places.push_back({p[0], p[1], p[2]});
-  const double side = bounding_box(places).longest_side();
+  std::vector<Vec3> positions;
+  for (const SeenPlace& p : film.front().frames.front().positions) positions.push_back({p[0], p[1], p[2]});
+  const double side = bounding_box(positions).longest_side();
   return side > 0 ? side : 1;
 }
 
@@ -135,12 +135,13 @@ class FilmMaterials {
   explicit FilmMaterials(const Film& film) : materials_(base_materials(film.front().body)) {
     MaterialList list(materials_);
     for (const Shot& shot : film)
-      for (std::vector<std::int64_t>& places = places_.emplace_back(); const Material& material : shot.body.materials)
-        places.push_back(list.index(material));
+      for (std::vector<std::int64_t>& positions = positions_.emplace_back();
+           const Material& material : shot.body.materials)
+        positions.push_back(list.index(material));
   }
 
   /// What a material of a shot's body is in the film.
-  std::int64_t place(std::size_t shot, std::size_t material) const { return places_[shot][material]; }
+  std::int64_t position(std::size_t shot, std::size_t material) const { return positions_[shot][material]; }
 
   Json json() const {
     Json materials = Json::array();
@@ -156,7 +157,7 @@ class FilmMaterials {
   }
 
   std::vector<Material> materials_;
-  std::vector<std::vector<std::int64_t>> places_;  ///< by shot and by material of its body
+  std::vector<std::vector<std::int64_t>> positions_;  ///< by shot and by material of its body
 };
 
 /// The masses' materials by their numbers; -1 where a mass has none.
@@ -165,7 +166,7 @@ std::string packed_mass_materials(const Film& film, const FilmMaterials& materia
   for (std::size_t s = 0; s < film.size(); ++s)
     for (std::size_t i = 0; i < film[s].numbers.size(); ++i)
       if (const std::int32_t material = film[s].body.masses[i].material; material != no_material)
-        of_masses[film[s].numbers[i]] = materials.place(s, static_cast<std::size_t>(material));
+        of_masses[film[s].numbers[i]] = materials.position(s, static_cast<std::size_t>(material));
   return packed(of_masses);
 }
 
@@ -177,8 +178,8 @@ std::vector<double> times(const std::vector<const Frame*>& frames) {
 
 /// The moving part of a film.
 struct Motion {
-  Json shots;             ///< times and places
-  double step = 0;        ///< unit of places, m
+  Json shots;             ///< times and positions
+  double step = 0;        ///< unit of positions, m
   std::size_t every = 0;  ///< of the frames that were filmed, every so many-th is kept
   bool fits = false;
 };
@@ -256,7 +257,7 @@ class FilmWriter {
   std::vector<std::int64_t> materials_of(std::size_t shot, std::span<const std::size_t> springs) const {
     std::vector<std::int64_t> materials;
     for (const std::size_t s : springs)
-      materials.push_back(materials_.place(shot, film_[shot].body.springs[s].material));
+      materials.push_back(materials_.position(shot, film_[shot].body.springs[s].material));
     return materials;
   }
 
@@ -269,11 +270,11 @@ class FilmWriter {
   }
 
   Json motion_json(const Motion& motion) const {
-    PlacePacking places(mass_count(film_), motion.step);
+    PlacePacking positions(mass_count(film_), motion.step);
     Json shots = Json::array();
     for (std::size_t i = 0; i < film_.size(); ++i) {
       const std::vector<const Frame*> kept = kept_frames(i, motion.every);
-      shots.push_back({{"times", times(kept)}, {"places", places.next(kept, film_[i].numbers)}});
+      shots.push_back({{"times", times(kept)}, {"places", positions.next(kept, film_[i].numbers)}});
     }
     return shots;
   }

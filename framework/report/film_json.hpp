@@ -21,10 +21,10 @@ struct Title {
 };
 
 /// A film as JSON: its springs and masses numbered through the whole life, the shots with who is there, the springs'
-/// materials and stress, and the places, in such detail that all takes at most `budget` bytes: frames are left out,
-/// fewer of measured shots than of others, and places and stress get coarser. Who is there, and the first and the last
-/// frame of each shot, are never left out, whatever they take. `titles` are those of the shots. A film without shots
-/// gives none.
+/// materials and stress, and the positions, in such detail that all takes at most `budget` bytes: frames are left out,
+/// fewer of measured shots than of others, and positions and stress get coarser. Who is there, and the first and the
+/// last frame of each shot, are never left out, whatever they take. `titles` are those of the shots. A film without
+/// shots gives none.
 ///
 ///   masses          how many there ever are
 ///   mass_materials  of each; packed like all that follows in numbers
@@ -32,10 +32,10 @@ struct Title {
 ///   materials       what they do, those of the experiment first
 ///   most_stress     N
 ///   stress_levels   into which the root of stress up to the most is divided
-///   step            unit of places, m
+///   step            unit of positions, m
 ///   error           ViewError of straight lines between the frames kept
 ///   shots           name, times (s), masses and springs (numbers of those that came or went), materials and stress
-///                   of the springs present, in the order of their numbers, places of the masses present
+///                   of the springs present, in the order of their numbers, positions of the masses present
 nlohmann::ordered_json film_json(const Film& film, const std::vector<Title>& titles, std::size_t budget);
 
 }  // namespace evodevo

@@ -15,8 +15,8 @@ bool is_finite(const SeenPlace& p) { return std::isfinite(p[0]) && std::isfinite
 /// the end of one gives way to that of the next.
 void add_frame(std::vector<Frame>& frames, const State& state, double rate) {
   Frame frame{state.time, {}};
-  for (const Vec3& place : state.position) frame.places.push_back(seen(place));
-  if (!std::all_of(frame.places.begin(), frame.places.end(), is_finite)) return;
+  for (const Vec3& position : state.position) frame.positions.push_back(seen(position));
+  if (!std::all_of(frame.positions.begin(), frame.positions.end(), is_finite)) return;
   const std::size_t count = frames.size();
   if (count > 1 && frames[count - 1].time - frames[count - 2].time < 0.5 / rate) frames.pop_back();
   frames.push_back(std::move(frame));
@@ -119,10 +119,10 @@ std::vector<FilmedLife> film_lives(const Experiment& experiment, Simulator& simu
                                    std::span<const Newborn> newborns) {
   FilmingSimulator camera(simulator, filmed_frames_per_second);
   const Evaluation evaluation(experiment, camera);
-  std::vector<Life> lives = evaluation.birth(newborns);
+  std::vector<Life> lives = evaluation.birth.of(newborns);
   const auto cut = [&](double) { camera.cut(); };
-  evaluation.develop(lives, cut);
-  evaluation.measure(lives, cut);
+  evaluation.development.run(lives, cut);
+  evaluation.measurement.run(lives, cut);
   std::vector<FilmedLife> filmed;
   for (Life& life : lives) {
     Film film = camera.take(life.living.body);

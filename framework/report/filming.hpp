@@ -1,4 +1,4 @@
-// Lives lived again with a camera: where every mass was, and how hard every spring worked.
+// Lives simulated again with a camera: where every mass was, and how hard every spring worked.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ inline SeenPlace seen(Vec3 p) { return {static_cast<float>(p.x), static_cast<flo
 /// All masses of a body at one moment.
 struct Frame {
   double time = 0;  ///< since birth, s
-  std::vector<SeenPlace> places;
+  std::vector<SeenPlace> positions;
 };
 
 /// A stretch of a life in which the body stays the same.
@@ -70,7 +70,7 @@ struct FilmedLife {
 
 inline constexpr double filmed_frames_per_second = 60;
 
-/// Lets newborns live again as in their run. A diverged life ends early.
+/// Simulates newborns again as in their run. A diverged life ends early.
 std::vector<FilmedLife> film_lives(const Experiment& experiment, Simulator& simulator,
                                    std::span<const Newborn> newborns);
 

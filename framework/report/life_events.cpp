@@ -35,7 +35,7 @@ class EventLog {
     for (std::size_t i = 0; i < edits.new_masses.size(); ++i) {
       Event& event = add_event(change, "come", {masses_.add()});
       event.cause = cause_at(edits.causes, &Causes::new_masses, i);
-      event.place = edits.new_masses[i].place;
+      event.position = edits.new_masses[i].position;
     }
     for (std::size_t i = 0; i < edits.new_springs.size(); ++i) {
       const NewSpring& spring = edits.new_springs[i];
@@ -45,7 +45,7 @@ class EventLog {
       event.material = spring.material;
     }
     masses_.remove(edits.removed_masses);
-    replay(body_, change);
+    apply(change.edits, body_);
   }
 
   const Body& body() const { return body_; }
@@ -88,8 +88,8 @@ class EventLog {
 }  // namespace
 
 Measure Narrated::measure(Causes::List list) const {
-  const Measure measure = call_operator(*experiment, Devo::kind, index, {},
-                                        [&] { return experiment->development.operators.at(index).op->measure(list); });
+  const Measure measure = call_operator(experiment->call_of(Devo::kind, index),
+                                        [&] { return experiment->devo.at(index).op->measure(list); });
   if (is_tallied && measure.unit == "N") return {"skip-shift", "points"};
   return {printable(measure.name), printable(measure.unit)};
 }

@@ -38,7 +38,7 @@ struct Event {
   std::vector<std::uint32_t> masses;  ///< the mass's number, or those of the two that the spring joins; of growth none
   std::optional<Growth> growth;
   std::optional<Cause> cause;         ///< only of what the operator names itself
-  std::optional<Vec3> place;          ///< of a new mass, m
+  std::optional<Vec3> position;       ///< of a new mass, m
   std::optional<double> rest_length;  ///< of a spring that comes or changes, m
   std::optional<Material> material;   ///< likewise
 

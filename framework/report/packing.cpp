@@ -75,7 +75,7 @@ std::string ValuePacking::next(std::span<const std::uint32_t> numbers, std::span
 std::string PlacePacking::next(std::span<const Frame* const> frames, std::span<const std::uint32_t> numbers) {
   std::vector<std::int64_t> differences, last, before_last;
   for (const Frame* frame : frames) {
-    std::vector<std::int64_t> now = places(*frame);
+    std::vector<std::int64_t> now = positions(*frame);
     const bool first = last.empty();
     if (first) before_last = last = first_guess(now, numbers);
     for (std::size_t i = 0; i < now.size(); ++i)
@@ -87,11 +87,11 @@ std::string PlacePacking::next(std::span<const Frame* const> frames, std::span<c
   return packed(differences);
 }
 
-std::vector<std::int64_t> PlacePacking::places(const Frame& frame) const {
-  std::vector<std::int64_t> places;
+std::vector<std::int64_t> PlacePacking::positions(const Frame& frame) const {
+  std::vector<std::int64_t> positions;
   for (std::size_t axis = 0; axis < 3; ++axis)
-    for (const SeenPlace& place : frame.places) places.push_back(std::llround(place[axis] / step_));
-  return places;
+    for (const SeenPlace& position : frame.positions) positions.push_back(std::llround(position[axis] / step_));
+  return positions;
 }
 
 std::vector<std::int64_t> PlacePacking::first_guess(std::span<const std::int64_t> now,

@@ -46,7 +46,7 @@ class PlacePacking {
 
  private:
   /// Where masses are at a moment, in steps: all x, all y, all z.
-  std::vector<std::int64_t> places(const Frame& frame) const;
+  std::vector<std::int64_t> positions(const Frame& frame) const;
   /// Where they are thought to be, before the first frame of a shot is known, given where they are.
   std::vector<std::int64_t> first_guess(std::span<const std::int64_t> now,
                                         std::span<const std::uint32_t> numbers) const;

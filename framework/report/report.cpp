@@ -93,7 +93,7 @@ Json time_json(const Archive& archive) {
           {"develop", time->evaluation.develop}};
 }
 
-/// A film of how points become places and then a body. A body whose encoding maps no points is just there.
+/// A film of how points become positions and then a body. A body whose encoding maps no points is just there.
 Film mapping_film(const Blueprint& blueprint, BuiltBody built) {
   constexpr int frames = 60;
   constexpr double duration = 2;  // s
@@ -109,7 +109,7 @@ Film mapping_film(const Blueprint& blueprint, BuiltBody built) {
       const double t = static_cast<double>(f) / frames, part = t * t * (3 - 2 * t);  // slow at both ends
       Frame& frame = mapping.frames.emplace_back(Frame{duration * t, {}});
       for (std::size_t i = 0; i < masses.size(); ++i)
-        frame.places.push_back(seen((1 - part) * blueprint.origins[i] + part * masses[i].rest));
+        frame.positions.push_back(seen((1 - part) * blueprint.origins[i] + part * masses[i].rest));
     }
   }
   const double end = film.empty() ? 0 : duration;
@@ -118,7 +118,7 @@ Film mapping_film(const Blueprint& blueprint, BuiltBody built) {
   body.stress.resize(body.body.springs.size());
   for (const double time : {end, end + 1}) {
     Frame& frame = body.frames.emplace_back(Frame{time, {}});
-    for (const Mass& mass : body.body.masses) frame.places.push_back(seen(mass.rest));
+    for (const Mass& mass : body.body.masses) frame.positions.push_back(seen(mass.rest));
   }
   return film;
 }
@@ -153,13 +153,13 @@ Json reported_run(const Archive& archive, const Experiment& experiment, Simulato
   const std::vector<Role> roles = Casting(archive).choose(cast);
   std::vector<Newborn> newborns;
   for (const Role& role : roles)
-    newborns.push_back(born_again(archive, experiment, role.individual, simulator.device()));
+    newborns.push_back(for_resimulation(archive, experiment, role.individual, simulator.device()));
   const std::vector<FilmedLife> lives = film_lives(experiment, simulator, newborns);
 
   Json run = run_json(archive, experiment);
   run["resolved"] = archive.record("experiment");
   run["scene"] = scene_json(experiment.scene, lives);
-  run["material_names"] = experiment.world.material_names;
+  run["material_names"] = experiment.context.material_names;
   run["population"] = population_json(
       archive, run["generations"].empty() ? 0 : run["generations"].back()["generation"].get<std::uint32_t>());
   run["time"] = time_json(archive);
@@ -185,7 +185,7 @@ Json gallery_data(const Experiment& experiment, std::size_t count) {
               {"seed", experiment.seed},
               {"resolved", experiment.resolved},
               {"scene", scene_json({}, {})},
-              {"material_names", experiment.world.material_names},
+              {"material_names", experiment.context.material_names},
               {"robots", std::move(robots)}};
   return {{"kind", "gallery"}, {"evodevo", EVODEVO_VERSION}, {"runs", Json::array({std::move(run)})}};
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 
 namespace evodevo {
 
@@ -19,7 +19,7 @@ struct Cast {
   std::vector<std::uint32_t> individuals;  ///< these as well; all are in the archive
 };
 
-/// A run as a report shows it: its numbers, its population, and its cast lived again on `simulator`; see
+/// A run as a report shows it: its numbers, its population, and its cast simulated again on `simulator`; see
 /// living_again.hpp. `budget` is for its robots' films.
 nlohmann::ordered_json reported_run(const Archive& archive, const Experiment& experiment, Simulator& simulator,
                                     const Cast& cast, std::size_t budget);
@@ -27,7 +27,7 @@ nlohmann::ordered_json reported_run(const Archive& archive, const Experiment& ex
 /// A page of runs.
 nlohmann::ordered_json report_data(std::vector<nlohmann::ordered_json> runs);
 
-/// A page of `count` random robots of an experiment: how each one's points become places, and its body.
+/// A page of `count` random robots of an experiment: how each one's points become positions, and its body.
 nlohmann::ordered_json gallery_data(const Experiment& experiment, std::size_t count);
 
 }  // namespace evodevo

@@ -28,19 +28,19 @@ Json operators_json(const std::vector<OperatorUse>& uses) {
   return list;
 }
 
-Json makers_json(const std::vector<Maker>& makers) {
+Json provenances_json(const std::vector<Provenance>& provenances) {
   Json list = Json::array();
-  for (const Maker& maker : makers)
-    list.push_back({{"device", maker.device},
-                    {"evodevo", maker.version},
-                    {"program", maker.program},
-                    {"operators", operators_json(maker.operators)}});
+  for (const Provenance& provenance : provenances)
+    list.push_back({{"device", provenance.device},
+                    {"evodevo", provenance.version},
+                    {"program", provenance.program},
+                    {"operators", operators_json(provenance.operators)}});
   return list;
 }
 
 /// Whether those whom the experiment asks to verify when the run ends are verified.
-bool is_verified(const Archive& archive, const Experiment& experiment) {
-  const auto best = archive.best(static_cast<std::size_t>(experiment.verify));
+bool is_verified(const Archive& archive, const Settings& settings) {
+  const auto best = archive.best(static_cast<std::size_t>(settings.verify));
   return std::all_of(best.begin(), best.end(), [&](std::uint32_t id) { return archive.verification(id).has_value(); });
 }
 
@@ -56,7 +56,7 @@ Json generations_json(const std::vector<Summary>& generations) {
                     {"clones", s.clones},
                     {"spring_evaluations", s.spring_evaluations},
                     {"wall_time", s.wall_time},
-                    {"maker", s.maker}});
+                    {"provenance", s.provenance}});
   return list;
 }
 
@@ -122,21 +122,21 @@ Json verification_json(const Verification& verification, const Objective& object
           {"trials", std::move(trials)}};
 }
 
-Json run_json(const Archive& archive, const Experiment& experiment) {
+Json run_json(const Archive& archive, const Settings& settings) {
   const std::vector<Summary> generations = archive.generations();
   Json root = {{"folder", archive.folder().string()},
                {"experiment", archive.record("name")},
-               {"seed", experiment.seed},
+               {"seed", settings.seed},
                {"created", archive.record("created")},
                {"evaluations", generations.empty() ? 0 : generations.back().evaluations},
-               {"evaluations_asked", experiment.evaluations},
-               {"finished", is_finished(experiment, generations)},
-               {"verified", is_verified(archive, experiment)},
+               {"evaluations_asked", settings.evaluations},
+               {"finished", is_finished(settings, generations)},
+               {"verified", is_verified(archive, settings)},
                {"statuses", archive.statuses()},
                {"clones", clones(generations)},
                {"failures", failures_json(archive.failures())},
                {"objectives", objectives_json(archive.objectives())},
-               {"makers", makers_json(archive.makers())},
+               {"provenances", provenances_json(archive.provenances())},
                {"generations", generations_json(generations)}};
   const auto best = archive.best(1);
   root["best"] = best.empty() ? Json(nullptr) : individual_json(archive, archive.known_individual(best.front()));

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 
 namespace evodevo {
 
@@ -23,6 +23,6 @@ nlohmann::ordered_json individual_json(const Archive& archive, const ArchivedInd
 nlohmann::ordered_json verification_json(const Verification& verification, const Objective& objective);
 
 /// The whole run: where from, how far, every generation, and the best individual.
-nlohmann::ordered_json run_json(const Archive& archive, const Experiment& experiment);
+nlohmann::ordered_json run_json(const Archive& archive, const Settings& settings);
 
 }  // namespace evodevo

@@ -15,7 +15,7 @@ constexpr double margin = 3;                  ///< of ground around the films, i
 constexpr double samples_in_wavelength = 12;  ///< straight lines between them are off by at most 1/25 of the roughness
 constexpr double most_samples = 256;          ///< along each side
 
-Vec3 place(const SeenPlace& p) { return {p[0], p[1], p[2]}; }
+Vec3 position(const SeenPlace& p) { return {p[0], p[1], p[2]}; }
 
 /// Everywhere that masses are seen, m, and as much around it as is looked at. What diverges goes anywhere: of such a
 /// life only the beginning counts.
@@ -27,9 +27,9 @@ Box seen_box(const std::vector<FilmedLife>& lives) {
       for (const Frame& frame : shot.frames) {
         const bool first = &shot == &life.film.front() && &frame == &shot.frames.front();
         if (!first && life.result.status != Status::ok) continue;
-        std::vector<Vec3> places;
-        std::transform(frame.places.begin(), frame.places.end(), std::back_inserter(places), place);
-        const Box box = bounding_box(places);
+        std::vector<Vec3> positions;
+        std::transform(frame.positions.begin(), frame.positions.end(), std::back_inserter(positions), position);
+        const Box box = bounding_box(positions);
         if (first) side = std::max(side, box.longest_side());
         corners.insert(corners.end(), {box.low, box.high});
       }

@@ -16,22 +16,22 @@ class @CLASS@ final : public evodevo::Encoding {
     p.real(side_, "side", {0.01, 100, "m"}, "Side of the cube in which the masses lie.");
   }
 
-  evodevo::Layout layout(const evodevo::World& world) const override {
+  evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
     evodevo::Layout layout;
     for (std::int64_t i = 0; i < masses_; ++i) {
       layout.add_group(3, {-1, 1});
-      layout.add_group(1, {0, 0, static_cast<std::uint32_t>(world.materials.size())});
+      layout.add_group(1, {0, 0, static_cast<std::uint32_t>(context.materials.size())});
     }
     return layout;
   }
 
-  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::World& world) const override {
+  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::EncodingContext& context) const override {
     evodevo::Blueprint blueprint;
-    blueprint.body.materials = world.materials;
+    blueprint.body.materials = context.materials;
     blueprint.neighbours = 8;
     for (std::size_t i = 0; i + 3 < genome.size(); i += 4) {
-      const evodevo::Vec3 place = (side_ / 2) * evodevo::Vec3{genome[i], genome[i + 1], genome[i + 2]};
-      blueprint.body.masses.push_back({place, world.mass, static_cast<std::int32_t>(genome[i + 3])});
+      const evodevo::Vec3 position = (side_ / 2) * evodevo::Vec3{genome[i], genome[i + 1], genome[i + 2]};
+      blueprint.body.masses.push_back({position, context.mass, static_cast<std::int32_t>(genome[i + 3])});
     }
     return blueprint;
   }
@@ -81,8 +81,8 @@ class @CLASS@ final : public evodevo::Devo {
     p.integer(springs_, "springs", {0, 1000, "1"}, "Springs that go in each cycle.");
   }
 
-  void develop(const evodevo::Moment& now, evodevo::Edits& edits, evodevo::Rng& rng) const override {
-    const auto count = static_cast<std::uint32_t>(now.body.springs.size());
+  void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, evodevo::Rng& rng) const override {
+    const auto count = static_cast<std::uint32_t>(context.body.springs.size());
     for (std::int64_t i = 0; i < springs_ && count > 0; ++i) edits.removed_springs.push_back(rng.below(count));
   }
 

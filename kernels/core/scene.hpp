@@ -17,6 +17,8 @@ struct Gravity {
   /// How much the ground falls along x, m per m.
   double grade() const { return std::tan(radians()); }
 
+  bool operator==(const Gravity&) const = default;
+
  private:
   double radians() const { return slope * (3.14159265358979323846 / 180); }
 };
@@ -35,18 +37,26 @@ struct Floor {
   std::uint32_t first_line() const { return static_cast<std::uint32_t>(seed) * 2654435769u; }  // 2^32/golden ratio
   /// The largest slope of the ground, m per m: that between a hollow and a hill half a wavelength apart.
   double steepest() const { return 7.5 * roughness / wavelength; }
+
+  bool operator==(const Floor&) const = default;
 };
 /// Coulomb friction on the floor.
 struct Friction {
   double coefficient = 0.5;  ///< 1
+
+  bool operator==(const Friction&) const = default;
 };
 /// Uniform damping v' = -rate v. The default is the paper's factor of 0.99 per 0.5 ms: a rate of -ln(0.99)/0.5 ms.
 struct Damping {
   double rate = 20.100671707002873;  ///< 1/s
+
+  bool operator==(const Damping&) const = default;
 };
 /// Quadratic drag on every mass: the force is -coefficient |v| v.
 struct Drag {
   double coefficient = 1.0;  ///< kg/m
+
+  bool operator==(const Drag&) const = default;
 };
 
 struct Scene {
@@ -55,6 +65,8 @@ struct Scene {
   std::optional<Friction> friction;  ///< acts only in a scene with a floor
   std::optional<Damping> damping;
   std::optional<Drag> drag;
+
+  bool operator==(const Scene&) const = default;
 };
 
 }  // namespace evodevo

@@ -34,6 +34,8 @@ struct Stepping {
   Method method = Method::paper_euler;
   Precision precision = Precision::float32;
   Materials materials = Materials::table;
+
+  bool operator==(const Stepping&) const = default;
 };
 
 /// What a run records beside the motion. What is not asked for costs no time.

@@ -12,19 +12,19 @@ class Adaptation : public evodevo::Devo {
   evodevo::SpringRequest observes() const final { return measure_.request(); }
   evodevo::Measure measure(evodevo::Causes::List) const final { return measure_.measure(); }
 
-  void develop(const evodevo::Moment& now, evodevo::Edits& edits, evodevo::Rng& rng) const final {
-    const std::vector<double> stress_of = measure_.of(now);
+  void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, evodevo::Rng& rng) const final {
+    const std::vector<double> stress_of = measure_.of(context);
     std::vector<std::uint32_t> springs;
     std::vector<double> stress;
-    for (std::uint32_t s = 0; s < now.body.springs.size(); ++s) {
-      if (!(value(now.body, s) > 0)) continue;
+    for (std::uint32_t s = 0; s < context.body.springs.size(); ++s) {
+      if (!(value(context.body, s) > 0)) continue;
       springs.push_back(s);
       stress.push_back(stress_of[s]);
     }
     for (const std::uint32_t i : most_stressed(stress, static_cast<std::size_t>(springs_), rng)) {
-      const double before = value(now.body, springs[i]), after = adapted(before);
+      const double before = value(context.body, springs[i]), after = adapted(before);
       if (after == before) continue;
-      change(now.body, springs[i], after, edits);
+      change(context.body, springs[i], after, edits);
       edits.causes.changed_springs.push_back(stress[i]);
     }
   }
@@ -33,7 +33,7 @@ class Adaptation : public evodevo::Devo {
   Adaptation(double factor, double low, double high) : factor_(factor), low_(low), high_(high) {}
 
   void declare(evodevo::Parameters& p, evodevo::Range range, std::string_view low_text, std::string_view high_text) {
-    p.integer(springs_, "springs", {1, 1'000'000, "1"}, "Most stressed springs that change at each turn.");
+    p.integer(springs_, "springs", {1, 1'000'000, "1"}, "Most stressed springs that change at each application.");
     p.real(factor_, "factor", {0.5, 2, "1"}, "By what the property is multiplied, above or below 1.");
     p.real(low_, "low", range, low_text);
     p.real(high_, "high", range, high_text);

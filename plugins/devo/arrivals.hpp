@@ -28,10 +28,10 @@ struct ArrivalRule {
 /// is not air; where masses have no material, its springs have those of random springs of the body.
 class Arrivals {
  public:
-  Arrivals(const ArrivalRule& rule, const evodevo::Moment& now)
-      : rule_(rule), now_(now), stays_(now.body.masses.size(), true) {
+  Arrivals(const ArrivalRule& rule, const evodevo::DevoContext& context)
+      : rule_(rule), context_(context), stays_(context.body.masses.size(), true) {
     if (rule.where != "by-stress") return;
-    stress_ = rule.measure.of(now);
+    stress_ = rule.measure.of(context);
     lottery_ = StressLottery(stress_);
   }
 
@@ -39,12 +39,12 @@ class Arrivals {
   void set_staying(std::uint32_t mass, bool stays) { stays_[mass] = stays; }
 
   /// Finds a place for one more mass; false where many tries fail.
-  bool find_place(evodevo::Rng& rng) {
-    for (int attempt = 0; attempt < attempts_per_place; ++attempt) {
+  bool find_position(evodevo::Rng& rng) {
+    for (int attempt = 0; attempt < attempts_per_position; ++attempt) {
       const std::optional<std::uint32_t> spring = lottery_.empty() ? std::nullopt : std::optional(lottery_.draw(rng));
-      const evodevo::Vec3 place = spring ? place_on_spring(*spring, rng) : place_in_bounds(rng);
-      if (!is_free(place)) continue;
-      places_.push_back(place);
+      const evodevo::Vec3 position = spring ? position_on_spring(*spring, rng) : position_in_bounds(rng);
+      if (!is_free(position)) continue;
+      positions_.push_back(position);
       if (spring) causes_.push_back(stress_[*spring]);
       return true;
     }
@@ -56,9 +56,9 @@ class Arrivals {
     auto partners = masses_where([&](std::uint32_t i) { return stays_[i]; });
     const auto models = masses_where([&](std::uint32_t i) { return stays_[i] && !is_of_air(i); });
     if (models.empty()) return false;
-    for (const evodevo::Vec3& place : places_) {
+    for (const evodevo::Vec3& position : positions_) {
       const auto model = models[rng.below(static_cast<std::uint32_t>(models.size()))];
-      edits.new_masses.push_back({place, now_.mass, now_.body.masses[model].material});
+      edits.new_masses.push_back({position, context_.mass, context_.body.masses[model].material});
       join(partners, edits, rng);
     }
     edits.causes.new_masses = causes_;
@@ -66,38 +66,38 @@ class Arrivals {
   }
 
  private:
-  static constexpr int attempts_per_place = 100;
+  static constexpr int attempts_per_position = 100;
 
-  evodevo::Vec3 place_in_bounds(evodevo::Rng& rng) const {
-    const auto& [low, high] = now_.bounds;
+  evodevo::Vec3 position_in_bounds(evodevo::Rng& rng) const {
+    const auto& [low, high] = context_.bounds;
     return {rng.uniform(low.x, high.x), rng.uniform(low.y, high.y), rng.uniform(low.z, high.z)};
   }
 
   /// Anywhere between the spring's ends; not below the floor, into which masses may have sunk.
-  evodevo::Vec3 place_on_spring(std::uint32_t index, evodevo::Rng& rng) const {
-    const evodevo::Spring& spring = now_.body.springs[index];
-    const evodevo::Vec3 a = now_.place(spring.a), b = now_.place(spring.b);
-    evodevo::Vec3 place = a + rng.uniform() * (b - a);
-    place.z = std::max(place.z, now_.bounds.low.z);
-    return place;
+  evodevo::Vec3 position_on_spring(std::uint32_t index, evodevo::Rng& rng) const {
+    const evodevo::Spring& spring = context_.body.springs[index];
+    const evodevo::Vec3 a = context_.position(spring.a), b = context_.position(spring.b);
+    evodevo::Vec3 position = a + rng.uniform() * (b - a);
+    position.z = std::max(position.z, context_.bounds.low.z);
+    return position;
   }
 
   /// Far enough from all masses that stay and from the new ones.
-  bool is_free(const evodevo::Vec3& place) const {
-    const auto is_near = [&](const evodevo::Vec3& other) { return !(norm(place - other) >= rule_.min_distance); };
-    if (std::any_of(places_.begin(), places_.end(), is_near)) return false;
+  bool is_free(const evodevo::Vec3& position) const {
+    const auto is_near = [&](const evodevo::Vec3& other) { return !(norm(position - other) >= rule_.min_distance); };
+    if (std::any_of(positions_.begin(), positions_.end(), is_near)) return false;
     for (std::uint32_t i = 0; i < stays_.size(); ++i)
-      if (stays_[i] && is_near(now_.place(i))) return false;
+      if (stays_[i] && is_near(context_.position(i))) return false;
     return true;
   }
 
   /// Springs from the newest mass to different ones of `partners`, whose order changes.
   void join(std::vector<std::uint32_t>& partners, evodevo::Edits& edits, evodevo::Rng& rng) const {
-    const evodevo::Body& body = now_.body;
+    const evodevo::Body& body = context_.body;
     const auto newest = static_cast<std::uint32_t>(body.masses.size() + edits.new_masses.size() - 1);
     const std::int32_t own = edits.new_masses.back().material;
     const auto count = static_cast<std::uint32_t>(partners.size());
-    if (rule_.join == "nearest") sort_by_distance(partners, edits.new_masses.back().place);
+    if (rule_.join == "nearest") sort_by_distance(partners, edits.new_masses.back().position);
     for (std::uint32_t i = 0; i < std::min<std::int64_t>(count, rule_.springs); ++i) {
       if (rule_.join == "random") std::swap(partners[i], partners[i + rng.below(count - i)]);
       const std::int32_t others = body.masses[partners[i]].material;
@@ -109,22 +109,22 @@ class Arrivals {
   }
 
   /// Nearest first, as far as they are needed; equally distant ones by their index.
-  void sort_by_distance(std::vector<std::uint32_t>& partners, const evodevo::Vec3& place) const {
+  void sort_by_distance(std::vector<std::uint32_t>& partners, const evodevo::Vec3& position) const {
     std::vector<std::pair<double, std::uint32_t>> order;
-    for (const std::uint32_t i : partners) order.emplace_back(norm(now_.place(i) - place), i);
+    for (const std::uint32_t i : partners) order.emplace_back(norm(context_.position(i) - position), i);
     const auto needed = std::min(order.size(), static_cast<std::size_t>(rule_.springs));
     std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(needed), order.end());
     std::transform(order.begin(), order.end(), partners.begin(), [](const auto& item) { return item.second; });
   }
 
   evodevo::Material random_spring_material(evodevo::Rng& rng) const {
-    const auto& springs = now_.body.springs;
-    return now_.body.materials[springs[rng.below(static_cast<std::uint32_t>(springs.size()))].material];
+    const auto& springs = context_.body.springs;
+    return context_.body.materials[springs[rng.below(static_cast<std::uint32_t>(springs.size()))].material];
   }
 
   bool is_of_air(std::uint32_t mass) const {
-    const std::int32_t material = now_.body.masses[mass].material;
-    return material != evodevo::no_material && is_air(now_.body.materials[material]);
+    const std::int32_t material = context_.body.masses[mass].material;
+    return material != evodevo::no_material && is_air(context_.body.materials[material]);
   }
 
   template <class Predicate>
@@ -136,10 +136,10 @@ class Arrivals {
   }
 
   const ArrivalRule& rule_;
-  const evodevo::Moment& now_;
+  const evodevo::DevoContext& context_;
   std::vector<double> stress_;  ///< of every spring, where it decides
   StressLottery lottery_;
   std::vector<bool> stays_;
-  std::vector<evodevo::Vec3> places_;
+  std::vector<evodevo::Vec3> positions_;
   std::vector<double> causes_;  ///< the stress of the spring that each place lies on, where it decides
 };

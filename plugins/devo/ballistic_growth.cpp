@@ -5,17 +5,18 @@
 
 namespace {
 
-/// The way from a spring's rest length at birth to Spring::growth times it is gone in equal parts, one at each turn.
-/// Encodings set `growth`, by their `size_range`; springs that come later have none.
+/// The way from a spring's rest length at birth to Spring::growth times it is gone in equal parts, one at each
+/// application. Encodings set `growth`, by their `size_range`; springs that come later have none.
 class BallisticGrowth final : public evodevo::Devo {
  public:
   evodevo::SpringRequest observes() const override { return {}; }
   bool uses_growth() const override { return true; }
 
-  void develop(const evodevo::Moment& now, evodevo::Edits& edits, evodevo::Rng&) const override {
-    const auto& springs = now.body.springs;
+  void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, evodevo::Rng&) const override {
+    const auto& springs = context.body.springs;
     if (std::all_of(springs.begin(), springs.end(), [](const auto& spring) { return spring.growth == 1; })) return;
-    edits.growth = {now.turn - 1.0, static_cast<double>(now.turn), static_cast<double>(now.turns)};
+    edits.growth = {context.application - 1.0, static_cast<double>(context.application),
+                    static_cast<double>(context.applications)};
   }
 };
 

@@ -9,7 +9,7 @@ namespace {
 class MassGrowth final : public evodevo::Devo {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.integer(masses_, "masses", {0, 100'000, "1"}, "Masses that come at each turn.");
+    p.integer(masses_, "masses", {0, 100'000, "1"}, "Masses that come at each application.");
     p.integer(limit_, "limit", {0, 10'000'000, "1"}, "Masses beyond which a body does not grow.");
     arrival_.declare(p);
   }
@@ -17,12 +17,12 @@ class MassGrowth final : public evodevo::Devo {
   evodevo::SpringRequest observes() const override { return arrival_.request(); }
   evodevo::Measure measure(evodevo::Causes::List) const override { return arrival_.measure.measure(); }
 
-  void develop(const evodevo::Moment& now, evodevo::Edits& edits, evodevo::Rng& rng) const override {
-    if (now.body.springs.empty()) return;
-    const std::int64_t room = limit_ - static_cast<std::int64_t>(now.body.masses.size());
-    Arrivals arrivals(arrival_, now);
+  void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, evodevo::Rng& rng) const override {
+    if (context.body.springs.empty()) return;
+    const std::int64_t room = limit_ - static_cast<std::int64_t>(context.body.masses.size());
+    Arrivals arrivals(arrival_, context);
     for (std::int64_t i = 0; i < std::min(masses_, room); ++i)
-      if (!arrivals.find_place(rng)) break;
+      if (!arrivals.find_position(rng)) break;
     arrivals.come(edits, rng);
   }
 

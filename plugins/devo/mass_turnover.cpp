@@ -6,8 +6,8 @@
 namespace {
 
 using evodevo::Body;
+using evodevo::DevoContext;
 using evodevo::Edits;
-using evodevo::Moment;
 using evodevo::Rng;
 
 /// The paper's operation, "currently partially implemented" there, with the choices that it leaves open. Masses are
@@ -23,49 +23,49 @@ class MassTurnover final : public evodevo::Devo {
 
   evodevo::SpringRequest observes() const override { return arrival_.request(); }
   evodevo::Measure measure(evodevo::Causes::List list) const override {
-    if (list == &evodevo::Causes::removed_masses) return {"valence", "springs"};
+    if (list == &evodevo::Causes::removed_masses) return {"degree", "springs"};
     return arrival_.measure.measure();
   }
 
-  void develop(const Moment& now, Edits& edits, Rng& rng) const override {
-    const std::vector<std::int64_t> valence = valences(now.body);
-    const auto leaving = poorest(valence, rng);
-    if (leaving.empty() || now.body.springs.empty()) return;
+  void develop(const DevoContext& context, Edits& edits, Rng& rng) const override {
+    const std::vector<std::int64_t> degree = degrees(context.body);
+    const auto leaving = poorest(degree, rng);
+    if (leaving.empty() || context.body.springs.empty()) return;
 
-    Arrivals arrivals(arrival_, now);
+    Arrivals arrivals(arrival_, context);
     std::vector<std::uint32_t> removed;
     for (const std::uint32_t mass : leaving) {
       arrivals.set_staying(mass, false);
-      if (arrivals.find_place(rng))
+      if (arrivals.find_position(rng))
         removed.push_back(mass);
       else
         arrivals.set_staying(mass, true);
     }
     if (!arrivals.come(edits, rng)) return;
     edits.removed_masses = removed;
-    for (const std::uint32_t mass : removed) edits.causes.removed_masses.push_back(static_cast<double>(valence[mass]));
+    for (const std::uint32_t mass : removed) edits.causes.removed_masses.push_back(static_cast<double>(degree[mass]));
   }
 
  private:
   /// How many springs each mass has, those of air included.
-  static std::vector<std::int64_t> valences(const Body& body) {
-    std::vector<std::int64_t> valence;
-    for (const auto& mass : body.masses) valence.push_back(mass.air_contacts);
+  static std::vector<std::int64_t> degrees(const Body& body) {
+    std::vector<std::int64_t> degree;
+    for (const auto& mass : body.masses) degree.push_back(mass.air_contacts);
     for (const auto& spring : body.springs) {
-      ++valence[spring.a];
-      ++valence[spring.b];
+      ++degree[spring.a];
+      ++degree[spring.b];
     }
-    return valence;
+    return degree;
   }
 
   /// The masses below the threshold that may go, fewest springs first, ties in random order.
-  std::vector<std::uint32_t> poorest(const std::vector<std::int64_t>& valence, Rng& rng) const {
+  std::vector<std::uint32_t> poorest(const std::vector<std::int64_t>& degree, Rng& rng) const {
     std::vector<std::uint32_t> poor;
-    for (std::uint32_t i = 0; i < valence.size(); ++i)
-      if (valence[i] < threshold_) poor.push_back(i);
+    for (std::uint32_t i = 0; i < degree.size(); ++i)
+      if (degree[i] < threshold_) poor.push_back(i);
     rng.shuffle(poor);
-    std::stable_sort(poor.begin(), poor.end(), [&](auto a, auto b) { return valence[a] < valence[b]; });
-    poor.resize(std::min({poor.size(), static_cast<std::size_t>(limit_), valence.size() / 2}));
+    std::stable_sort(poor.begin(), poor.end(), [&](auto a, auto b) { return degree[a] < degree[b]; });
+    poor.resize(std::min({poor.size(), static_cast<std::size_t>(limit_), degree.size() / 2}));
     return poor;
   }
 

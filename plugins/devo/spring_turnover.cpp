@@ -8,9 +8,9 @@
 namespace {
 
 using evodevo::Body;
+using evodevo::DevoContext;
 using evodevo::Edits;
 using evodevo::Material;
-using evodevo::Moment;
 using evodevo::no_material;
 using evodevo::Rng;
 
@@ -52,12 +52,12 @@ struct Candidate {
   std::optional<std::uint32_t> beside = {};
 };
 
-/// Suggests places for new springs, again and again.
+/// Suggests positions for new springs, again and again.
 class Candidates {
  public:
-  Candidates(const std::string& where, const Moment& now, std::span<const double> stress, const Partners& partners,
-             std::size_t count, Rng& rng)
-      : now_(now), partners_(partners) {
+  Candidates(const std::string& where, const DevoContext& context, std::span<const double> stress,
+             const Partners& partners, std::size_t count, Rng& rng)
+      : context_(context), partners_(partners) {
     if (where == "most-stressed") most_stressed_ = most_stressed(stress, count, rng);
     if (where == "by-stress") lottery_ = StressLottery(stress);
   }
@@ -65,7 +65,7 @@ class Candidates {
   Candidate next(Rng& rng) {
     if (!lottery_.empty()) return beside(lottery_.draw(rng), rng);
     if (!most_stressed_.empty()) return beside(most_stressed_[turn_++ % most_stressed_.size()], rng);
-    const auto masses = static_cast<std::uint32_t>(now_.body.masses.size());
+    const auto masses = static_cast<std::uint32_t>(context_.body.masses.size());
     const std::uint32_t a = rng.below(masses);
     std::uint32_t b = rng.below(masses - 1);
     if (b >= a) ++b;
@@ -75,14 +75,14 @@ class Candidates {
  private:
   /// From one end of a spring past the other end to a mass that is joined to it. May be that spring itself.
   Candidate beside(std::uint32_t index, Rng& rng) const {
-    std::uint32_t from = now_.body.springs[index].a, past = now_.body.springs[index].b;
+    std::uint32_t from = context_.body.springs[index].a, past = context_.body.springs[index].b;
     if (rng.chance(0.5)) std::swap(from, past);
     const auto partners = partners_.of(past);
     const std::uint32_t to = partners[rng.below(static_cast<std::uint32_t>(partners.size()))];
     return {to == from ? std::minmax(from, past) : std::minmax(from, to), index};
   }
 
-  const Moment& now_;
+  const DevoContext& context_;
   const Partners& partners_;
   std::vector<std::uint32_t> most_stressed_;
   StressLottery lottery_;
@@ -106,21 +106,22 @@ class SpringTurnover final : public evodevo::Devo {
   evodevo::SpringRequest observes() const override { return measure_.request(); }
   evodevo::Measure measure(evodevo::Causes::List) const override { return measure_.measure(); }
 
-  void develop(const Moment& now, Edits& edits, Rng& rng) const override {
-    const Body& body = now.body;
+  void develop(const DevoContext& context, Edits& edits, Rng& rng) const override {
+    const Body& body = context.body;
     const std::size_t count = std::min(body.springs.size(), static_cast<std::size_t>(springs_));
     if (count == 0 || body.masses.size() < 2) return;
-    const std::vector<double> stress = measure_.of(now);
+    const std::vector<double> stress = measure_.of(context);
     const auto leaving = least_stressed(stress, count, rng);
     const Partners partners(body);
-    Candidates candidates(where_, now, stress, partners, count, rng);
+    Candidates candidates(where_, context, stress, partners, count, rng);
     std::set<Pair> taken;
     // enough to fill a body that is nearly complete; a complete one ends here
     for (std::size_t attempts = evodevo::attempts_per_spring * count; attempts > 0 && taken.size() < count;
          --attempts) {
       const auto [pair, beside] = candidates.next(rng);
       const auto [a, b] = pair;
-      if (partners.joined(a, b) || taken.contains(pair) || !(norm(now.place(b) - now.place(a)) > 0)) continue;
+      if (partners.joined(a, b) || taken.contains(pair) || !(norm(context.position(b) - context.position(a)) > 0))
+        continue;
       const std::uint32_t leaves = leaving[taken.size()];
       const Material material = material_between(body, a, b, leaves);
       if (is_air(material)) continue;

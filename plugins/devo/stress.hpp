@@ -56,11 +56,11 @@ class StressMeasure {
   evodevo::Measure measure() const { return {by_, by_ == "work" ? "J" : "N"}; }
 
   /// Of every spring, N or J.
-  std::vector<double> of(const evodevo::Moment& now) const {
-    const std::span<const double> record = by_ == "mean-force" ? now.stress
-                                           : by_ == "peak"     ? now.peak_force
-                                           : by_ == "work"     ? now.muscle_work
-                                                               : now.tension;
+  std::vector<double> of(const evodevo::DevoContext& context) const {
+    const std::span<const double> record = by_ == "mean-force" ? context.stress
+                                           : by_ == "peak"     ? context.peak_force
+                                           : by_ == "work"     ? context.muscle_work
+                                                               : context.tension;
     std::vector<double> stress(record.begin(), record.end());
     if (by_ == "compression")
       for (double& value : stress) value = -value;

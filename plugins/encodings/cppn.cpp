@@ -15,16 +15,16 @@ constexpr std::array<double (*)(double), 5> functions = {
     [](double x) { return std::abs(x); },
 };
 
-/// A network 4 - hidden - hidden - outputs_in(world); its inputs are a point's coordinates and its distance from the
+/// A network 4 - hidden - hidden - outputs_in(context); its inputs are a point's coordinates and its distance from the
 /// centre. One gene group for each neuron: its function (that of an output neuron is the identity and no gene), its
 /// bias, then the weights that come in, up to 3 as usual with such networks, so that a sine repeats itself.
 class Cppn final : public NetworkEncoding {
  public:
-  evodevo::Layout layout(const evodevo::World& world) const override {
+  evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
     evodevo::Layout layout;
     add_hidden_layer(layout, 4);
     add_hidden_layer(layout, hidden());
-    for (std::int64_t n = 0; n < outputs_in(world); ++n)
+    for (std::int64_t n = 0; n < outputs_in(context); ++n)
       layout.add_group(static_cast<std::uint32_t>(1 + hidden()), weight);
     return layout;
   }

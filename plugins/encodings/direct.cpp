@@ -7,23 +7,23 @@ namespace {
 /// One gene for each spring of a lattice, in groups by the spring's first mass.
 class Direct final : public LatticeEncoding {
  public:
-  evodevo::Layout layout(const evodevo::World& world) const override {
+  evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
     const evodevo::Lattice lattice = this->lattice();
     evodevo::Layout layout;
     for (std::size_t first = 0, last = 0; first < lattice.springs.size(); first = last) {
       while (last < lattice.springs.size() && lattice.springs[last].a == lattice.springs[first].a) ++last;
-      layout.add_group(static_cast<std::uint32_t>(last - first), choice(world));
+      layout.add_group(static_cast<std::uint32_t>(last - first), choice(context));
     }
     return layout;
   }
 
-  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::World& world) const override {
-    const auto materials = chosen(world);
-    if (auto reason = why_no_body(world, materials); !reason.empty()) return {{}, 0, reason};
+  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::EncodingContext& context) const override {
+    const auto materials = chosen(context);
+    if (auto reason = why_no_body(context, materials); !reason.empty()) return {{}, 0, reason};
     const evodevo::Lattice lattice = this->lattice();
-    evodevo::Blueprint blueprint{masses(lattice, world), 0, {}};
+    evodevo::Blueprint blueprint{masses(lattice, context), 0, {}};
     for (std::size_t s = 0; s < lattice.springs.size(); ++s)
-      join(blueprint.body, lattice.springs[s], world.materials[materials[static_cast<std::size_t>(genome[s])]]);
+      join(blueprint.body, lattice.springs[s], context.materials[materials[static_cast<std::size_t>(genome[s])]]);
     return blueprint;
   }
 };

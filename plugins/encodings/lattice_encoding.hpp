@@ -21,19 +21,21 @@ class LatticeEncoding : public evodevo::Encoding {
                                  edge_);
   }
 
-  std::vector<std::int32_t> chosen(const evodevo::World& world) const { return world.material_indices(materials_); }
+  std::vector<std::int32_t> chosen(const evodevo::EncodingContext& context) const {
+    return context.material_indices(materials_);
+  }
 
   /// A gene that chooses a material. At least one option, since a gene of none would be a real one.
-  evodevo::GeneSpec choice(const evodevo::World& world) const {
-    return {0, 0, std::max(1u, static_cast<std::uint32_t>(chosen(world).size()))};
+  evodevo::GeneSpec choice(const evodevo::EncodingContext& context) const {
+    return {0, 0, std::max(1u, static_cast<std::uint32_t>(chosen(context).size()))};
   }
 
   /// The lattice's masses around the origin, not joined yet.
-  evodevo::Body masses(const evodevo::Lattice& lattice, const evodevo::World& world) const {
+  evodevo::Body masses(const evodevo::Lattice& lattice, const evodevo::EncodingContext& context) const {
     evodevo::Body body;
-    body.materials = world.materials;
+    body.materials = context.materials;
     const evodevo::Vec3 centre = 0.5 * lattice.corners.back();
-    for (const evodevo::Vec3& corner : lattice.corners) body.masses.push_back({corner - centre, world.mass});
+    for (const evodevo::Vec3& corner : lattice.corners) body.masses.push_back({corner - centre, context.mass});
     return body;
   }
 

@@ -7,9 +7,9 @@
 #include "chosen.hpp"
 #include "evodevo/encoding.hpp"
 
-/// A network from the points of a ball to places in a cube and materials; neighbours are joined. Where the paper is
-/// silent: the points are uniform in the ball, and places lie in [-side/2, side/2]^3. Neighbours are those of the
-/// places, or, as the paper proposes in section VII, those of the points. Where sizes develop, each mass has one at
+/// A network from the points of a ball to positions in a cube and materials; neighbours are joined. Where the paper is
+/// silent: the points are uniform in the ball, and positions lie in [-side/2, side/2]^3. Neighbours are those of the
+/// positions, or, as the paper proposes in section VII, those of the points. Where sizes develop, each mass has one at
 /// birth and one at the end of development (Kriegman et al. 2017).
 class NetworkEncoding : public evodevo::Encoding {
  public:
@@ -27,24 +27,25 @@ class NetworkEncoding : public evodevo::Encoding {
            "ballistic-growth, at the end of development; 0: no genes for that.");
   }
 
-  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::World& world) const final {
-    const auto chosen = world.material_indices(materials_);
-    if (auto reason = why_no_body(world, chosen); !reason.empty()) return {{}, 0, reason};
+  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::EncodingContext& context) const final {
+    const auto chosen = context.material_indices(materials_);
+    if (auto reason = why_no_body(context, chosen); !reason.empty()) return {{}, 0, reason};
     if (!std::all_of(genome.begin(), genome.end(), [](float gene) { return std::isfinite(gene); }))
       return {{}, 0, "a gene is not finite"};
 
-    const Matrix points = ball(world);
-    const Matrix outputs = map(genome.data(), points, outputs_in(world));
+    const Matrix points = ball(context);
+    const Matrix outputs = map(genome.data(), points, outputs_in(context));
     const auto materials = static_cast<Eigen::Index>(chosen.size());
     evodevo::Blueprint blueprint;
-    blueprint.body.materials = world.materials;
+    blueprint.body.materials = context.materials;
     blueprint.neighbours = static_cast<std::uint32_t>(neighbours_);
     for (const auto& output : outputs.colwise()) {
       // softmax, which the paper puts before the maximum, does not change where the maximum is
       Eigen::Index material = 0;
       output.segment(3, materials).maxCoeff(&material);
-      blueprint.body.masses.push_back(
-          {{place(output[0]), place(output[1]), place(output[2])}, world.mass, chosen[static_cast<size_t>(material)]});
+      blueprint.body.masses.push_back({{position(output[0]), position(output[1]), position(output[2])},
+                                       context.mass,
+                                       chosen[static_cast<size_t>(material)]});
       if (size_range_ > 0) blueprint.sizes.push_back({size(output[3 + materials]), size(output[4 + materials])});
     }
     for (const auto& point : points.colwise()) blueprint.origins.push_back({point[0], point[1], point[2]});
@@ -61,8 +62,8 @@ class NetworkEncoding : public evodevo::Encoding {
   std::int64_t hidden() const { return hidden_; }
   /// x, y and z, one value for each material to choose from, of which the greatest wins, and the sizes where they
   /// develop.
-  std::int64_t outputs_in(const evodevo::World& world) const {
-    return 3 + static_cast<std::int64_t>(world.material_indices(materials_).size()) + (size_range_ > 0 ? 2 : 0);
+  std::int64_t outputs_in(const evodevo::EncodingContext& context) const {
+    return 3 + static_cast<std::int64_t>(context.material_indices(materials_).size()) + (size_range_ > 0 ? 2 : 0);
   }
 
   /// What a layer of neurons sums up, one column for each point: `rows` holds each neuron's bias, then its weights.
@@ -84,8 +85,8 @@ class NetworkEncoding : public evodevo::Encoding {
   virtual Matrix map(const float* genes, const Matrix& points, Eigen::Index outputs) const = 0;
 
   /// The run's points, uniform in the unit ball, as columns.
-  Matrix ball(const evodevo::World& world) const {
-    evodevo::Rng rng = world.rng(static_cast<std::uint64_t>(points_seed_));
+  Matrix ball(const evodevo::EncodingContext& context) const {
+    evodevo::Rng rng = context.rng(static_cast<std::uint64_t>(points_seed_));
     Matrix points(3, points_);
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
       do {
@@ -95,7 +96,7 @@ class NetworkEncoding : public evodevo::Encoding {
     return points;
   }
 
-  double place(double output) const { return side_ / 2 * std::tanh(output); }
+  double position(double output) const { return side_ / 2 * std::tanh(output); }
   double size(double output) const { return 1 + size_range_ * std::tanh(output); }
 
   std::int64_t points_ = 1000;

@@ -1,19 +1,19 @@
-// The paper's encoding (section IV-A1, Fig. 1): a small neural network maps the points of a ball to places in a cube
+// The paper's encoding (section IV-A1, Fig. 1): a small neural network maps the points of a ball to positions in a cube
 // and gives each a material; every place becomes a mass that is joined to its nearest neighbours.
 #include "evodevo/plugin.hpp"
 #include "network_encoding.hpp"
 
 namespace {
 
-/// A network 3 - hidden - hidden - outputs_in(world), ReLU within, one gene group for each neuron: its bias, then the
+/// A network 3 - hidden - hidden - outputs_in(context), ReLU within, one gene group for each neuron: its bias, then the
 /// weights that come in. Where the paper is silent: biases are genes like the weights.
 class Neural final : public NetworkEncoding {
  public:
-  evodevo::Layout layout(const evodevo::World& world) const override {
+  evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
     evodevo::Layout layout;
     add_layer(layout, hidden(), 3);
     add_layer(layout, hidden(), hidden());
-    add_layer(layout, outputs_in(world), hidden());
+    add_layer(layout, outputs_in(context), hidden());
     return layout;
   }
 

@@ -8,8 +8,8 @@ using evodevo::Material;
 
 /// One gene group for each voxel: its material and, where sizes develop, its size at birth and at the end of
 /// development (Kriegman et al. 2017: "a start and end volume", as the paper has it). Voxels of air are absent. A
-/// spring between several voxels has the mean of their materials and sizes. Masses are born in the places of a lattice
-/// of equal voxels.
+/// spring between several voxels has the mean of their materials and sizes. Masses are born in the positions of a
+/// lattice of equal voxels.
 class Voxel final : public LatticeEncoding {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -19,8 +19,8 @@ class Voxel final : public LatticeEncoding {
            "of development; 0: no genes for that.");
   }
 
-  evodevo::Layout layout(const evodevo::World& world) const override {
-    std::vector<evodevo::GeneSpec> voxel = {choice(world)};
+  evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
+    std::vector<evodevo::GeneSpec> voxel = {choice(context)};
     if (size_range_ > 0) {
       const auto range = static_cast<float>(size_range_);
       voxel.insert(voxel.end(), 2, {1 - range, 1 + range});
@@ -30,21 +30,21 @@ class Voxel final : public LatticeEncoding {
     return layout;
   }
 
-  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::World& world) const override {
-    const auto materials = chosen(world);
-    if (auto reason = why_no_body(world, materials); !reason.empty()) return {{}, 0, reason};
+  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::EncodingContext& context) const override {
+    const auto materials = chosen(context);
+    if (auto reason = why_no_body(context, materials); !reason.empty()) return {{}, 0, reason};
     const evodevo::Lattice lattice = this->lattice();
     const std::size_t genes = size_range_ > 0 ? 3 : 1;
-    evodevo::Blueprint blueprint{masses(lattice, world), 0, {}};
+    evodevo::Blueprint blueprint{masses(lattice, context), 0, {}};
     for (const evodevo::LatticeSpring& spring : lattice.springs) {
       std::vector<std::int32_t> around;
       Sizes sizes;
       for (const std::uint32_t v : spring.voxels) {
         const float* voxel = &genome[genes * v];
         around.push_back(materials[static_cast<std::size_t>(voxel[0])]);
-        if (size_range_ > 0 && !is_air(world.materials[around.back()])) sizes.add(voxel[1], voxel[2]);
+        if (size_range_ > 0 && !is_air(context.materials[around.back()])) sizes.add(voxel[1], voxel[2]);
       }
-      if (join(blueprint.body, spring, mean_of_solid(world.materials, std::move(around))) && size_range_ > 0)
+      if (join(blueprint.body, spring, mean_of_solid(context.materials, std::move(around))) && size_range_ > 0)
         sizes.apply(blueprint.body.springs.back());
     }
     return blueprint;

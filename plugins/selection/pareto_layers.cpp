@@ -11,8 +11,8 @@ using evodevo::Point;
 
 /// The paper's replacement, with the choices that it leaves open. A child challenges its parent, of several children
 /// the best one; a row without a parent challenges the worst; fitness is the first objective. The front lives on, its
-/// most crowded rows excepted where it would exceed the population. Losers live on only where places are free, failed
-/// rows only after all others.
+/// most crowded rows excepted where it would exceed the population. Losers live on only where positions are free,
+/// failed rows only after all others.
 class ParetoLayers final : public evodevo::Selection {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -35,7 +35,7 @@ class ParetoLayers final : public evodevo::Selection {
     std::vector<std::uint32_t> ranked(rows.size());
     std::iota(ranked.begin(), ranked.end(), 0u);
     std::stable_sort(ranked.begin(), ranked.end(), [&](auto a, auto b) { return layer[a] < layer[b]; });
-    const auto lost = losers(sorted, parent_places(rows, order), layer, ranked);
+    const auto lost = losers(sorted, parent_positions(rows, order), layer, ranked);
 
     std::vector<std::uint32_t> front, winners, others, failed;
     for (const std::uint32_t i : ranked)
@@ -55,12 +55,12 @@ class ParetoLayers final : public evodevo::Selection {
   }
 
   /// For every row of the sorted table where its parent is in that table; rows.size() for none.
-  static std::vector<std::size_t> parent_places(std::span<const Candidate> rows,
-                                                const std::vector<std::uint32_t>& order) {
-    std::vector<std::size_t> place_of(rows.size()), parents;
-    for (std::size_t i = 0; i < order.size(); ++i) place_of[order[i]] = i;
+  static std::vector<std::size_t> parent_positions(std::span<const Candidate> rows,
+                                                   const std::vector<std::uint32_t>& order) {
+    std::vector<std::size_t> location_of(rows.size()), parents;
+    for (std::size_t i = 0; i < order.size(); ++i) location_of[order[i]] = i;
     for (const std::uint32_t row : order)
-      parents.push_back(rows[row].challenges ? place_of[*rows[row].challenges] : rows.size());
+      parents.push_back(rows[row].challenges ? location_of[*rows[row].challenges] : rows.size());
     return parents;
   }
 

@@ -3,7 +3,7 @@
 
 namespace {
 
-/// Cuts both genomes before, after or between two genes, at two different places, and swaps what lies between.
+/// Cuts both genomes before, after or between two genes, at two different positions, and swaps what lies between.
 class TwoPoint final : public evodevo::Crossover {
  public:
   void cross(evodevo::Genome& one, evodevo::Genome& other, const evodevo::Layout&, evodevo::Rng& rng) const override {

@@ -21,12 +21,12 @@ TEST(Fitnesses, AreThoseOfAnEvaluation) {
   std::vector<Body> bodies;
   std::vector<double> expected;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    Rng rng = experiment.world.rng(seed);
+    Rng rng = experiment.context.rng(seed);
     genomes.push_back(experiment.encoding->random(experiment.layout, rng));
   }
   for (const Genome& genome : genomes) newborns.push_back({0, 0, &genome});
   const std::vector<Result> results = evaluation.evaluate(newborns, [](double) {});
-  const std::vector<Life> lives = evaluation.birth(newborns);
+  const std::vector<Life> lives = evaluation.birth.of(newborns);
   for (std::size_t i = 0; i < lives.size(); ++i)
     if (results[i].status == Status::ok) {
       bodies.push_back(lives[i].living.body);

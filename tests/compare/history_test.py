@@ -174,7 +174,7 @@ class Reports(unittest.TestCase):
         def made(*makers, by=None):
             """What `show --json` says of a run whose generations were made by those makers."""
             places = range(len(makers)) if by is None else by
-            return {"makers": list(makers), "generations": [{"maker": place} for place in places]}
+            return {"provenances": list(makers), "generations": [{"provenance": place} for place in places]}
 
         evo, devo = Variant(pathlib.Path("evo")), Variant(pathlib.Path("devo"))
         runs = [Run(variant, seed, pathlib.Path()) for seed in (1, 2) for variant in (evo, devo)]

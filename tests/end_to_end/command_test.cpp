@@ -114,7 +114,7 @@ TEST_F(Command, FailedBodiesLoseToAnyFiniteOne) {
   for (const std::string selection : {"age-fitness-pareto", "pareto-layers", "elitist"}) {
     const std::string folder = folder_ + selection;
     const Finished finished = evodevo({"run", file_, "--out", folder, "--set", "materials.bone.stiffness=1e6", "--set",
-                                       "experiment.evaluations=90", "--set", "experiment.newcomers=3", "--set",
+                                       "experiment.evaluations=90", "--set", "experiment.random_individuals=3", "--set",
                                        "selection.name=" + selection});
     ASSERT_EQ(finished.exit_code, 0) << finished.output;
     const Archive archive = Archive::read(folder);
@@ -216,7 +216,7 @@ TEST_F(Command, LifeTellsWhyMassesGoAndHowFarSpringsGrow) {
                "--set", "development.probe=skip-shift", "--set", "development.skip=10"});
   ASSERT_EQ(run.exit_code, 0) << run.output;
   const std::string life = evodevo({"life", folder_}).output;
-  EXPECT_THAT(life, ContainsRegex("cycle 1  mass-turnover: mass [0-9]+ gone, valence [0-9]+ springs\n"));
+  EXPECT_THAT(life, ContainsRegex("cycle 1  mass-turnover: mass [0-9]+ gone, degree [0-9]+ springs\n"));
   EXPECT_THAT(life, ContainsRegex("cycle 1  mass-turnover: mass 12 come, skip-shift -?[0-9]+ points at "));
   EXPECT_THAT(life, HasSubstr("cycle 1  ballistic-growth: springs grow from 0 to 0.5 of their way\n"));
   EXPECT_THAT(life, HasSubstr("cycle 2  ballistic-growth: springs grow from 0.5 to 1 of their way\n"));
@@ -229,7 +229,7 @@ TEST_F(Command, LifeTellsWhyMassesGoAndHowFarSpringsGrow) {
       EXPECT_FALSE(edit.contains("mass") || edit.contains("spring"));
     } else if (edit.contains("mass") && edit.at("event") == "gone") {
       ++masses_gone;
-      EXPECT_EQ(edit.at("measure"), "valence");
+      EXPECT_EQ(edit.at("measure"), "degree");
       EXPECT_EQ(edit.at("unit"), "springs");
       EXPECT_GE(edit.at("cause").get<double>(), 1);
     }
@@ -246,10 +246,10 @@ TEST_F(Command, LifeSaysWhereItCannotBeSure) {
   for (std::uint32_t id = 0; id < 24; ++id) {
     const Finished finished = evodevo({"life", folder_, "--individual", std::to_string(id)});
     EXPECT_EQ(finished.exit_code, 0);
-    const bool warns = finished.output.find(" lived again on cpu") != std::string::npos;
+    const bool warns = finished.output.find(" was simulated again on cpu") != std::string::npos;
     EXPECT_EQ(warns, !archive.life(id).has_value()) << finished.output;
     const Finished body = evodevo({"body", folder_, "--matured", "--individual", std::to_string(id)});
-    EXPECT_EQ(body.output.find(" lived again on cpu") != std::string::npos, warns) << body.output;
+    EXPECT_EQ(body.output.find(" was simulated again on cpu") != std::string::npos, warns) << body.output;
   }
 }
 

@@ -5,7 +5,7 @@
 #include <set>
 #include <tuple>
 
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"
 
@@ -90,7 +90,7 @@ TEST(Experiments, EvoAndEvoDevoDifferInDevelopmentAlone) {
 
 /// What an experiment is compared at: the same for all of a study.
 std::tuple<std::string, std::int64_t, std::int64_t, double, std::int64_t> terms(const Experiment& experiment) {
-  return {rest_of(experiment), experiment.population, experiment.newcomers, experiment.spring_evaluations,
+  return {rest_of(experiment), experiment.population, experiment.random_individuals, experiment.spring_evaluations,
           experiment.evaluations};
 }
 

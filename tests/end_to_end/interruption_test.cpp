@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 #include "report/report.hpp"
 #include "support/experiments.hpp"
 #include "support/process.hpp"
@@ -229,11 +229,11 @@ TEST_F(Interruption, AFinishedRunHasNothingToResume) {
 TEST_F(Interruption, GoingOnElsewhereOrByAnotherBuildWarns) {
   // begun by the program of this test
   { Archive::create(scratch_ / "run", testing::read(testing::small_experiment), "cpu, an older one"); }
-  const std::string begun_by = Archive::read(scratch_ / "run").makers().front().program;
+  const std::string begun_by = Archive::read(scratch_ / "run").provenances().front().program;
   const testing::Finished resumed = testing::run(resume_command("run"));
   EXPECT_EQ(resumed.exit_code, 0);
   EXPECT_THAT(resumed.output, HasSubstr("warning: the run began on cpu, an older one and goes on on "));
-  const Maker now = Archive::read(scratch_ / "run").maker(0);
+  const Provenance now = Archive::read(scratch_ / "run").provenance(0);
   EXPECT_NE(now.device, "cpu, an older one");
   EXPECT_THAT(resumed.output, AllOf(HasSubstr("warning: the run began with evodevo " EVODEVO_VERSION " (" + begun_by),
                                     HasSubstr("another build of it, " + now.program + "; results may differ\n")));
@@ -244,7 +244,7 @@ TEST_F(Interruption, GoingOnTheSameWayWarnsOfNothing) {
   const testing::Finished resumed = testing::run(resume_command("run"));
   EXPECT_EQ(resumed.exit_code, 0);
   EXPECT_THAT(resumed.output, Not(HasSubstr("warning")));
-  EXPECT_EQ(Archive::read(scratch_ / "run").makers().size(), 1u);
+  EXPECT_EQ(Archive::read(scratch_ / "run").provenances().size(), 1u);
 }
 
 TEST_F(Interruption, ThreadsDoNotChangeARun) {

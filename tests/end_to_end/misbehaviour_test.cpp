@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 #include "support/experiments.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"

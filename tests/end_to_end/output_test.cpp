@@ -9,7 +9,7 @@
 #include <csignal>
 #include <iterator>
 
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 #include "support/experiments.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/ground.hpp"
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 #include "life/evaluation.hpp"
 #include "support/experiments.hpp"
 #include "support/process.hpp"
@@ -35,7 +35,7 @@ std::string awkward_experiment() {
       text.replace(at, from.size(), to);
   };
   replace("[scene.floor]",
-          "[scene.load]\nshare = 0.37\n[scene.floor]\nstiffness = 1e4\nroughness = 0.11\nwavelength = 0.7");
+          "[scene.payload]\nshare = 0.37\n[scene.floor]\nstiffness = 1e4\nroughness = 0.11\nwavelength = 0.7");
   replace("[simulation]", "[simulation]\ndevice = \"cpu\"\ndt = 0.0007");
   replace("cycle_time = 0.05", "cycle_time = 0.049");
   replace("settle = 0.05", "settle = 0.049");
@@ -109,10 +109,10 @@ class Simulate : public ::testing::Test {
     std::unique_ptr<Simulator> simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
     Evaluation evaluation{experiment, *simulator};
     Newborn newborn{individual.id, individual.born, &individual.genome};
-    std::vector<Life> lives = evaluation.birth({&newborn, 1});
+    std::vector<Life> lives = evaluation.birth.of({&newborn, 1});
 
     Life& go_on() {
-      evaluation.simulate(lives, 0.0098, [&](std::span<Task> tasks, auto) { simulator->run(tasks, {}); });
+      evaluation.simulation.run(lives, 0.0098, [&](std::span<Task> tasks, auto) { simulator->run(tasks, {}); });
       return lives.front();
     }
   };
@@ -139,7 +139,7 @@ TEST_F(Simulate, ANewbornLivesAsInItsRunUnderItsLoadAndOnItsGround) {
 TEST_F(Simulate, AMaturedBodyGoesOnAsInItsRun) {
   run();
   const auto life = again();
-  life->evaluation.develop(life->lives, [](double) {});
+  life->evaluation.development.run(life->lives, [](double) {});
   const LivingBody& matured = life->lives.front().living;
   const std::string body = printed({"body", folder_, "--matured"});
   const Json json = Json::parse(std::ifstream(body));
@@ -170,11 +170,11 @@ TEST_F(Simulate, ABodyThatGrewInAnotherSceneGoesOnToo) {
 std::string tetrahedron(const std::string& mass, double stiffness, const std::string& more = "",
                         const std::string& rest = "", double z = 0) {
   std::string masses, springs;
-  const double places[][3] = {{0, 0, 0}, {1, 0, 0}, {0.5, 0.8, 0}, {0.5, 0.3, 0.8}};
+  const double positions[][3] = {{0, 0, 0}, {1, 0, 0}, {0.5, 0.8, 0}, {0.5, 0.3, 0.8}};
   for (int i = 0; i < 4; ++i) {
-    masses += std::string(i > 0 ? "," : "") + R"({"position": [)" + std::to_string(places[i][0]) + "," +
-              std::to_string(places[i][1]) + "," + std::to_string(places[i][2] + z) + R"(], "mass": )" + mass + more +
-              "}";
+    masses += std::string(i > 0 ? "," : "") + R"({"position": [)" + std::to_string(positions[i][0]) + "," +
+              std::to_string(positions[i][1]) + "," + std::to_string(positions[i][2] + z) + R"(], "mass": )" + mass +
+              more + "}";
     for (int j = 0; j < i; ++j)
       springs += std::string(springs.empty() ? "" : ",") + R"({"a": )" + std::to_string(i) + R"(, "b": )" +
                  std::to_string(j) + R"(, "rest_length": 0.95, "material": 0})";
@@ -194,7 +194,8 @@ TEST_F(Simulate, ABodyIsBornOnTheGroundHoweverHighItLies) {
     scene.floor->roughness = 0.5, scene.floor->wavelength = 0.7;
     const std::vector<Seen> frames = trajectory_in(csv_);
     double lowest = 1e300, fastest = 0;
-    for (const Vec3& place : frames.front().position) lowest = std::min(lowest, place.z - ground_height(scene, place));
+    for (const Vec3& position : frames.front().position)
+      lowest = std::min(lowest, position.z - ground_height(scene, position));
     for (const Vec3& velocity : frames.back().velocity) fastest = std::max(fastest, norm(velocity));
     EXPECT_NEAR(lowest, 0, 1e-12) << z;
     EXPECT_LT(fastest, 3) << z;

@@ -142,7 +142,7 @@ TEST_P(AgreementOfLargeSteps, After100Steps) {
 INSTANTIATE_TEST_SUITE_P(Gpu, AgreementOfLargeSteps, testing::Values(Method::implicit, Method::xpbd),
                          [](const auto& test) { return std::string(evodevo::name(test.param)); });
 
-/// A ball that is thrown, whatever else: places are those that each method's sum of steps gives.
+/// A ball that is thrown, whatever else: positions are those that each method's sum of steps gives.
 class FreeFall : public testing::TestWithParam<Way> {};
 
 TEST_P(FreeFall, IsThatOfTheMethod) {

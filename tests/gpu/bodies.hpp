@@ -82,7 +82,7 @@ inline void simulate(Simulator& simulator, std::vector<Robot*> runs, std::uint64
   for (std::size_t i = 0; i < runs.size(); ++i) runs[i]->answer = tasks[i];
 }
 
-/// The largest distance between the places of a mass in two runs, m.
+/// The largest distance between the positions of a mass in two runs, m.
 inline double distance(const State& a, const State& b) {
   double largest = 0;
   for (std::size_t i = 0; i < a.position.size(); ++i) {

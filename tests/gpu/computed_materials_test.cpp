@@ -31,7 +31,7 @@ Body varied_body(std::uint32_t masses, std::uint32_t neighbours) {
 
 class ComputedMaterials : public testing::TestWithParam<Way> {
  protected:
-  /// Moves a body for 0.055 s on both devices and compares places and all that is recorded.
+  /// Moves a body for 0.055 s on both devices and compares positions and all that is recorded.
   static void compare(const Body& body, const Scene& scene) {
     const Way way = GetParam();
     const bool single = std::get<Precision>(way) == Precision::float32;
@@ -118,7 +118,7 @@ TEST_P(ComputedForces, AreThoseOfTheCodes) {
   // the clock is off by 2^-33 turns, of which the largest frequency makes 1,020; the angle is rounded twice, and the
   // sine is good to 2^-20.5
   const double sine = 2 * pi * (1020 * 0x1p-33 + 0x1p-25) + pi * 0x1p-24 + 0x1p-20;
-  const double rounding = 8 * 0x1p-24;  // of places and of the products and sums of a force
+  const double rounding = 8 * 0x1p-24;  // of positions and of the products and sums of a force
   for (std::size_t i = 0; i < body.springs.size(); ++i) {
     const Spring& spring = body.springs[i];
     const Material& m = materials[spring.material];

@@ -7,7 +7,7 @@ namespace {
 
 class Forms : public testing::TestWithParam<Way> {
  protected:
-  /// Moves a body for 0.05 s on both devices and compares places and all that is recorded.
+  /// Moves a body for 0.05 s on both devices and compares positions and all that is recorded.
   void compare(const Body& body, const State& start) {
     const Scene scene = walking_scene();
     const Recording all{.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};

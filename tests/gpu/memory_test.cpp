@@ -141,13 +141,13 @@ TEST_F(ScarceMemory, DividesASearchForNeighbours) {
   for (const std::size_t i : {0, 200, 399}) EXPECT_EQ(pairs[i], nearest_pairs(clouds[i].positions, 25).size()) << i;
 }
 
-TEST(Quiet, WaitsForStreamsWhateverIsThrown) {
+TEST(StreamsAtRest, WaitsForStreamsWhateverIsThrown) {
   EVODEVO_NEEDS_GPU();
   const std::vector<cuda::Stream> streams(3);
   cuda::MirroredMemory memory;
   memory.resize(mebibyte, 1024 * mebibyte);
   const auto fail = [&] {
-    const cuda::Quiet quiet(streams);
+    const cuda::StreamsAtRest at_rest(streams);
     for (int i = 0; i < 50; ++i)
       for (const cuda::Stream& stream : streams)
         cuda::check(cudaMemsetAsync(memory.device(), i, memory.size(), stream), "clearing");

@@ -11,8 +11,8 @@
 #include <functional>
 #include <thread>
 
-#include "evolution/archive.hpp"
-#include "evolution/archive_database.hpp"
+#include "evolution/archive/archive.hpp"
+#include "evolution/archive/database.hpp"
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"
 
@@ -128,24 +128,24 @@ TEST_F(ArchiveStorage, AReaderKeepsNobodyFromGoingOn) {
 }
 
 TEST_F(ArchiveStorage, WritersTakeTurns) {
-  constexpr std::uint32_t turns = 200;
+  constexpr std::uint32_t applications = 200;
   Archive run = created();
   commit(run, 0);
   std::string failure = "none";
   std::thread verifier([&] {
     try {
       Archive archive = Archive::annotate(folder_);
-      for (std::uint32_t i = 0; i < turns; ++i)
+      for (std::uint32_t i = 0; i < applications; ++i)
         archive.add_verifications({{0, 0.3, {{"trial " + std::to_string(i), Status::ok, "", 0.3}}}});
     } catch (const std::exception& error) {
       failure = error.what();
     }
   });
-  for (std::uint32_t generation = 1; generation < turns; ++generation) commit(run, generation);
+  for (std::uint32_t generation = 1; generation < applications; ++generation) commit(run, generation);
   verifier.join();
   EXPECT_EQ(failure, "none");
-  EXPECT_EQ(generations(), turns);
-  EXPECT_EQ(Archive::read(folder_).verification(0)->trials.size(), turns);
+  EXPECT_EQ(generations(), applications);
+  EXPECT_EQ(Archive::read(folder_).verification(0)->trials.size(), applications);
 }
 
 TEST_F(ArchiveStorage, AnInterruptedCommitIsUndoneByWhoReads) {
@@ -270,7 +270,7 @@ TEST_F(ArchiveStorage, WhatStandsInTheTablesPlaceIsNotRun) {
   const std::string endless = "CREATE VIEW individuals AS WITH RECURSIVE n(i) AS (SELECT 0 UNION ALL SELECT i FROM n) ";
   for (const std::string& change : {"DROP TABLE individuals; " + endless + "SELECT i AS id FROM n",
                                     std::string("ALTER TABLE scores ADD COLUMN more GENERATED ALWAYS AS (value)"),
-                                    std::string("ALTER TABLE generations RENAME COLUMN maker TO other")}) {
+                                    std::string("ALTER TABLE generations RENAME COLUMN provenance TO other")}) {
     { created(); }
     SQLite::Database(file_.string(), SQLite::OPEN_READWRITE).exec("DROP VIEW members; " + change);
     EXPECT_THAT(refusal<ArchiveError>([&] { Archive::read(folder_); }),

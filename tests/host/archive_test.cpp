@@ -1,5 +1,5 @@
 // The archive: what goes in comes out, and nobody writes over anybody.
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -66,7 +66,7 @@ TEST_F(ArchiveTest, GivesBackWhatWasCommitted) {
   }
   const Archive archive = Archive::read(folder_);
   EXPECT_EQ(archive.record("seed"), "7");
-  EXPECT_EQ(archive.makers().front().device, "a device");
+  EXPECT_EQ(archive.provenances().front().device, "a device");
   EXPECT_EQ(recorded_experiment(archive).resolved, experiment_.resolved);
   ASSERT_EQ(archive.population().size(), 1u);
   const Individual back = archive.population().front();
@@ -94,11 +94,11 @@ TEST_F(ArchiveTest, GivesBackWhatWasCommitted) {
 }
 
 TEST_F(ArchiveTest, TellsWhoMadeAGeneration) {
-  const auto commit = [](Archive& archive, const Maker& maker, std::uint32_t generation) {
-    archive.commit({}, {}, {}, {.generation = generation, .maker = archive.add_maker(maker)});
+  const auto commit = [](Archive& archive, const Provenance& provenance, std::uint32_t generation) {
+    archive.commit({}, {}, {}, {.generation = generation, .provenance = archive.add_provenance(provenance)});
   };
-  const Maker first = this_maker(experiment_, "a device");
-  Maker elsewhere = first, rebuilt = first, other_operator = first, moved = first;
+  const Provenance first = this_provenance(experiment_, "a device");
+  Provenance elsewhere = first, rebuilt = first, other_operator = first, moved = first;
   elsewhere.device = "another";
   rebuilt.program = "another";
   other_operator.operators.back().hash = "another";
@@ -116,15 +116,15 @@ TEST_F(ArchiveTest, TellsWhoMadeAGeneration) {
     commit(archive, elsewhere, 5);
   }
   const Archive archive = Archive::read(folder_);
-  ASSERT_EQ(archive.makers().size(), 4u) << "who comes again, and operators from another place, are nobody new";
-  const std::vector<Maker> expected{first, elsewhere, rebuilt, other_operator, first, elsewhere};
+  ASSERT_EQ(archive.provenances().size(), 4u) << "who comes again, and operators from another place, are nobody new";
+  const std::vector<Provenance> expected{first, elsewhere, rebuilt, other_operator, first, elsewhere};
   for (std::uint32_t generation = 0; generation < 6; ++generation) {
-    const Maker maker = archive.maker(generation);
-    EXPECT_TRUE(are_same(maker, expected[generation])) << generation;
-    ASSERT_EQ(maker.operators.size(), experiment_.uses.size()) << generation;
-    EXPECT_EQ(maker.operators.back().version, experiment_.uses.back().version);
+    const Provenance provenance = archive.provenance(generation);
+    EXPECT_TRUE(are_same(provenance, expected[generation])) << generation;
+    ASSERT_EQ(provenance.operators.size(), experiment_.uses.size()) << generation;
+    EXPECT_EQ(provenance.operators.back().version, experiment_.uses.back().version);
   }
-  EXPECT_THAT(refusal([&] { archive.maker(6); }),
+  EXPECT_THAT(refusal([&] { archive.provenance(6); }),
               AllOf(StartsWith(folder_.string()), HasSubstr("there is no generation 6")));
 }
 
@@ -183,7 +183,7 @@ TEST_F(ArchiveTest, ARunThatEndedBeforeItBeganIsTold) {
 TEST_F(ArchiveTest, AnotherFormatIsRefused) {
   { Archive::create(folder_, experiment_, "cpu").set_record("format", "99"); }
   EXPECT_EQ(refusal([&] { Archive::read(folder_); }),
-            folder_.string() + ": has format 99, this evodevo reads format 5; use the evodevo that wrote it, 0.1.0");
+            folder_.string() + ": has format 99, this evodevo reads format 6; use the evodevo that wrote it, 0.1.0");
 }
 
 TEST_F(ArchiveTest, ReadsOfOneMomentWhileAnotherWrites) {

@@ -14,7 +14,7 @@
 namespace evodevo {
 namespace {
 
-/// Masses of the world's material 0 (bone) or 1 (air) at the given places along x.
+/// Masses of the world's material 0 (bone) or 1 (air) at the given positions along x.
 Blueprint row(const std::vector<std::pair<double, std::int32_t>>& masses, std::uint32_t neighbours) {
   Blueprint blueprint;
   blueprint.body.materials = {{10000, 0, 0, 0}, {}};
@@ -56,13 +56,13 @@ TEST(BodyBuilding, KeepsTheLargestPieceAndDropsLooseMasses) {
 TEST(BodyBuilding, ABlueprintThatGrowsToNothingIsRefused) {
   Blueprint blueprint = row({{0, 0}, {1, 0}}, 0);
   blueprint.body.springs = {{0, 1, 0.8, 0}};
-  const World world{{"bone", "air"}, blueprint.body.materials, 0.2, nullptr};
-  EXPECT_NO_THROW(check_blueprint(blueprint, world));
+  const EncodingContext context{{"bone", "air"}, blueprint.body.materials, 0.2, nullptr};
+  EXPECT_NO_THROW(check_blueprint(blueprint, context));
   EXPECT_EQ(build_body(blueprint).body.springs.at(0).first_length, 0.8) << "of springs by the encoding too";
   for (const float growth :
        {0.0f, -1.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     blueprint.body.springs[0].growth = growth;
-    EXPECT_THROW(check_blueprint(blueprint, world), std::invalid_argument) << growth;
+    EXPECT_THROW(check_blueprint(blueprint, context), std::invalid_argument) << growth;
   }
 }
 
@@ -89,7 +89,7 @@ TEST(BodyBuilding, NeighboursAreThoseOfThePlacesToPairAt) {
   EXPECT_EQ(pairs, (std::set<std::pair<std::uint32_t, std::uint32_t>>{{0, 1}, {0, 3}, {1, 2}, {0, 2}, {1, 3}}));
 
   blueprint.paired_at.back() = {std::numeric_limits<double>::infinity(), 0, 0};
-  EXPECT_EQ(build_body(blueprint).failure, "no body: a place to pair masses at that is not finite");
+  EXPECT_EQ(build_body(blueprint).failure, "no body: a position to pair masses at that is not finite");
 }
 
 TEST(BodyBuilding, SpringsToNeighboursHaveTheMeanSizeOfTheirMasses) {
@@ -117,30 +117,30 @@ TEST(BodyBuilding, SpringsToNeighboursHaveTheMeanSizeOfTheirMasses) {
 
 TEST(BodyBuilding, ListsHoldAnEntryForEachMass) {
   const Blueprint sound = row({{0, 0}, {1, 0}, {3, 0}}, 1);
-  const World world{.materials = sound.body.materials};
+  const EncodingContext context{.materials = sound.body.materials};
   const auto fault = [&](auto Blueprint::*list, std::size_t entries) -> std::string {
     Blueprint blueprint = sound;
     (blueprint.*list).resize(entries);
     try {
-      check_blueprint(blueprint, world);
+      check_blueprint(blueprint, context);
     } catch (const std::invalid_argument& error) {
       return error.what();
     }
     return "";
   };
   EXPECT_EQ(fault(&Blueprint::sizes, 2), "2 sizes for 3 masses");
-  EXPECT_EQ(fault(&Blueprint::paired_at, 4), "4 places to pair at for 3 masses");
+  EXPECT_EQ(fault(&Blueprint::paired_at, 4), "4 positions to pair at for 3 masses");
   EXPECT_EQ(fault(&Blueprint::origins, 1), "1 origins for 3 masses");
   for (const std::size_t entries : {0u, 3u}) EXPECT_EQ(fault(&Blueprint::sizes, entries), "");
 }
 
 TEST(BodyBuilding, NoTwoSpringsJoinOnePair) {
   Blueprint blueprint = row({{0, 0}, {1, 0}, {3, 0}, {7, 0}}, 0);
-  const World world{.materials = blueprint.body.materials};
+  const EncodingContext context{.materials = blueprint.body.materials};
   const auto fault = [&](std::vector<Spring> springs) -> std::string {
     blueprint.body.springs = std::move(springs);
     try {
-      check_blueprint(blueprint, world);
+      check_blueprint(blueprint, context);
     } catch (const std::invalid_argument& error) {
       return error.what();
     }
@@ -179,17 +179,17 @@ TEST(BodyBuilding, StandsOnTheFloorOverTheOrigin) {
 
 TEST(BodyBuilding, ALoadLiesOnTheTop) {
   Body body;
-  for (const Vec3 place : {Vec3{0, 0, 0}, Vec3{2, 0, 0.79}, Vec3{0, 0, 0.81}, Vec3{3, 0, 1}})
-    body.masses.push_back({place, 0.2});
-  put_load(body, 1.5, 0.2);
+  for (const Vec3 position : {Vec3{0, 0, 0}, Vec3{2, 0, 0.79}, Vec3{0, 0, 0.81}, Vec3{3, 0, 1}})
+    body.masses.push_back({position, 0.2});
+  add_payload(body, 1.5, 0.2);
   const double carried[] = {0, 0, 0.6, 0.6};
   for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_DOUBLE_EQ(body.masses[i].load, carried[i]);
+    EXPECT_DOUBLE_EQ(body.masses[i].payload, carried[i]);
     EXPECT_DOUBLE_EQ(body.masses[i].mass, 0.2 + carried[i]);
   }
-  std::vector<Vec3> places;
-  for (const Mass& mass : body.masses) places.push_back(mass.rest);
-  EXPECT_NEAR(centre_of_mass(body, places).x, 0, 1e-15) << "over the origin with its load";
+  std::vector<Vec3> positions;
+  for (const Mass& mass : body.masses) positions.push_back(mass.rest);
+  EXPECT_NEAR(centre_of_mass(body, positions).x, 0, 1e-15) << "over the origin with its load";
 }
 
 TEST(BodyBuilding, SaysWhyThereIsNoBody) {
@@ -197,7 +197,7 @@ TEST(BodyBuilding, SaysWhyThereIsNoBody) {
   EXPECT_EQ(build_body(row({{0, 0}}, 3)).failure, "no springs");
   EXPECT_EQ(build_body(row({{0, 1}, {1, 1}, {2, 1}}, 2)).failure, "no springs") << "all air";
   EXPECT_EQ(build_body(row({{0, 0}, {std::numeric_limits<double>::quiet_NaN(), 0}}, 1)).failure,
-            "no body: a place that is not finite");
+            "no body: a position that is not finite");
   Blueprint failed;
   failed.failure = "nothing but air";
   EXPECT_EQ(build_body(failed).failure, "no body: nothing but air");

@@ -9,33 +9,33 @@
 
 #include "base/philox.hpp"
 #include "evolution/breeding.hpp"
-#include "life/perturbation.hpp"
+#include "life/birth.hpp"
 #include "support/experiments.hpp"
 
 namespace evodevo {
 namespace {
 
-/// Masses of 1 kg at rest places, each joined to the next. Those with numbers from `born` on came later.
-GrownBody chain(const std::vector<Vec3>& places, std::vector<std::uint32_t> numbers, std::size_t born = 100) {
-  GrownBody grown{{}, places, places, std::move(numbers), born};
-  for (std::uint32_t i = 0; i < places.size(); ++i) {
-    grown.body.masses.push_back({places[i], 1});
+/// Masses of 1 kg at rest positions, each joined to the next. Those with numbers from `born` on came later.
+GrownBody chain(const std::vector<Vec3>& positions, std::vector<std::uint32_t> numbers, std::size_t born = 100) {
+  GrownBody grown{{}, positions, positions, std::move(numbers), born};
+  for (std::uint32_t i = 0; i < positions.size(); ++i) {
+    grown.body.masses.push_back({positions[i], 1});
     if (i > 0) grown.body.springs.push_back({i - 1, i, 1, 0});
   }
   return grown;
 }
 
 /// Of masses of birth.
-GrownBody cloud(const std::vector<Vec3>& places) {
-  std::vector<std::uint32_t> numbers(places.size());
+GrownBody cloud(const std::vector<Vec3>& positions) {
+  std::vector<std::uint32_t> numbers(positions.size());
   std::iota(numbers.begin(), numbers.end(), 0u);
-  return chain(places, numbers);
+  return chain(positions, numbers);
 }
 
 std::vector<Vec3> random_places(std::size_t count, Rng& rng) {
-  std::vector<Vec3> places(count);
-  for (Vec3& place : places) place = {rng.uniform(), rng.uniform(), rng.uniform()};
-  return places;
+  std::vector<Vec3> positions(count);
+  for (Vec3& position : positions) position = {rng.uniform(), rng.uniform(), rng.uniform()};
+  return positions;
 }
 
 const std::vector<Vec3> line{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
@@ -54,10 +54,10 @@ TEST(BodyDistance, OfSpringsIsThePartThatOnlyOneBodyHas) {
 TEST(BodyDistance, OfSpringsToMassesThatCameLaterGoesByWhereTheyCame) {
   const GrownBody body = chain(line, {0, 1, 2, 3}, 3);
   std::vector<Vec3> elsewhere = line;
-  elsewhere[3] = {3, 1.1 * same_place, 0};
+  elsewhere[3] = {3, 1.1 * same_position, 0};
   EXPECT_EQ(spring_distance(body, chain(elsewhere, {0, 1, 2, 3}, 3)), 0.5) << "another mass of the same number";
   EXPECT_EQ(spring_distance(body, chain(line, {0, 1, 2, 9}, 3)), 0) << "the same mass by another number";
-  elsewhere[3] = {3, 0.9 * same_place, 0};
+  elsewhere[3] = {3, 0.9 * same_position, 0};
   EXPECT_EQ(spring_distance(body, chain(elsewhere, {0, 1, 2, 3}, 3)), 0) << "where noise has moved it";
   EXPECT_EQ(spring_distance(body, chain(line, {0, 1, 2, 3}, 4)), 0.5) << "a mass of birth is no later one";
 }
@@ -70,17 +70,17 @@ TEST(BodyDistance, OfTwoMassesThatCameNearOneTheNearerIsTheSame) {
     grown.body.springs.clear();
     for (std::uint32_t i = 0; i < later.size(); ++i) {
       grown.body.masses.push_back({{}, 1});
-      grown.rest_places.push_back({1, later[i], 0});
+      grown.rest_positions.push_back({1, later[i], 0});
       grown.numbers.push_back(3 + i);
       grown.body.springs.push_back({i, 3 + i, 1, 0});
     }
     return grown;
   };
-  const GrownBody one = body({0}), two = body({0.8 * same_place, 0.1 * same_place});
+  const GrownBody one = body({0}), two = body({0.8 * same_position, 0.1 * same_position});
   EXPECT_EQ(spring_distance(one, two), 1) << "the nearer one is joined to another mass of birth";
   EXPECT_EQ(spring_distance(two, one), 1);
   EXPECT_EQ(spring_distance(two, two), 0);
-  EXPECT_EQ(spring_distance(one, body({0.1 * same_place, 0.8 * same_place})), 0.5);
+  EXPECT_EQ(spring_distance(one, body({0.1 * same_position, 0.8 * same_position})), 0.5);
 }
 
 TEST(BodyDistance, OfMassIsHowFarItHasToBeMoved) {
@@ -89,7 +89,7 @@ TEST(BodyDistance, OfMassIsHowFarItHasToBeMoved) {
   moved[0].x = 1.25;
   EXPECT_DOUBLE_EQ(mass_distance(body, cloud(moved)), 1.25 / (3 * 4)) << "one of four, past another one";
   moved = line;
-  for (Vec3& place : moved) place = place + Vec3{0.5, -0.25, 0.125};
+  for (Vec3& position : moved) position = position + Vec3{0.5, -0.25, 0.125};
   EXPECT_DOUBLE_EQ(mass_distance(body, cloud(moved)), (0.5 + 0.25 + 0.125) / 3) << "all of them";
   EXPECT_DOUBLE_EQ(mass_distance(cloud({{0, 0, 0}}), cloud({{0, 0, 0}, {0, 0, 1}})), 0.5 / 3);
   std::vector<Vec3> twice = line;
@@ -102,15 +102,15 @@ TEST(BodyDistance, OfMassGoesByMassAndNotByLoad) {
   GrownBody heavy = body;
   heavy.body.masses[1].mass = 3;
   EXPECT_DOUBLE_EQ(mass_distance(body, heavy), 0.25 / 3) << "a quarter of all comes from the first place";
-  heavy.body.masses[1].load = 2;
+  heavy.body.masses[1].payload = 2;
   EXPECT_EQ(mass_distance(body, heavy), 0);
 }
 
 TEST(BodyDistance, OfMassHeedsNeitherOrderNorNumberNorPose) {
-  const std::vector<Vec3> places{{0, 3, 1}, {2, 0, 5}, {1, 1, 0}, {7, 0, 0}};
-  GrownBody other = chain({places[2], places[0], places[3], places[1]}, {8, 1, 9, 4}, 2);
-  for (Vec3& place : other.places) place = place + Vec3{5, 5, 5};
-  EXPECT_EQ(mass_distance(cloud(places), other), 0);
+  const std::vector<Vec3> positions{{0, 3, 1}, {2, 0, 5}, {1, 1, 0}, {7, 0, 0}};
+  GrownBody other = chain({positions[2], positions[0], positions[3], positions[1]}, {8, 1, 9, 4}, 2);
+  for (Vec3& position : other.positions) position = position + Vec3{5, 5, 5};
+  EXPECT_EQ(mass_distance(cloud(positions), other), 0);
 }
 
 TEST(BodyDistance, OfMassIsTheCheapestWayToCarryItAlongEachAxis) {
@@ -149,11 +149,11 @@ std::vector<GrownBody> grown_from_starts(const Experiment& experiment, std::uint
   const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
   const Individual individual = breed(experiment, {}, 0, 4, 1).front();
   const Evaluation evaluation(experiment, *simulator);
-  std::vector<Life> lives = evaluation.birth(std::vector<Newborn>(starts, {individual.id, 0, &individual.genome}));
+  std::vector<Life> lives = evaluation.birth.of(std::vector<Newborn>(starts, {individual.id, 0, &individual.genome}));
   std::vector<GrowthObserver> observers(starts, GrowthObserver(lives.front().living.body));
-  for (std::uint32_t i = 0; noise && i < starts; ++i) disturb(lives[i], experiment, i);
+  for (std::uint32_t i = 0; noise && i < starts; ++i) perturb(lives[i], experiment, i);
   std::vector<GrownBody> bodies(starts);
-  evaluation.develop(lives, [&](double) {
+  evaluation.development.run(lives, [&](double) {
     for (std::size_t i = 0; i < starts; ++i) bodies[i] = observers[i].after_cycle(lives[i]);
   });
   return bodies;
@@ -197,11 +197,11 @@ TEST(BodyDistance, OfBodiesThatDidNotDevelopIsZeroWhateverTheScene) {
   const std::string none = "name = \"mass-growth\"";
   std::vector<Override> slope = still, load = still;
   slope.push_back({"scene.gravity.slope", "30", ""});
-  load.push_back({"scene.load.share", "0.3", ""});
+  load.push_back({"scene.payload.share", "0.3", ""});
   const GrownBody flat = grown_from_starts(experiment_with(none, still), 1, false).front(),
                   on_slope = grown_from_starts(experiment_with(none, slope), 1, false).front(),
                   loaded = grown_from_starts(experiment_with(none, load), 1, false).front();
-  EXPECT_NE(flat.places, on_slope.places);
+  EXPECT_NE(flat.positions, on_slope.positions);
   EXPECT_EQ(mass_distance(flat, on_slope), 0);
   EXPECT_EQ(spring_distance(flat, on_slope), 0);
   // the load shifts the body, and adds to masses from which it is then taken, with a rounding

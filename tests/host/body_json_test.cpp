@@ -20,7 +20,7 @@ class Awkward {
     return (rng_.uniform() - 0.5) * size / 3;
   }
   double positive() { return std::abs(any()) + std::numeric_limits<double>::min(); }
-  Vec3 place() {
+  Vec3 position() {
     const double x = any(), y = any(), z = any();
     return {x, y, z};
   }
@@ -34,14 +34,14 @@ GivenBody awkward_body(bool lives) {
   GivenBody given;
   for (int i = 0; i < 3; ++i)
     given.body.materials.push_back({number.positive(), number.positive(), number.positive(), number.any()});
-  for (int i = 0; i < 50; ++i) given.body.masses.push_back({number.place(), number.positive(), i % 4 - 1});
+  for (int i = 0; i < 50; ++i) given.body.masses.push_back({number.position(), number.positive(), i % 4 - 1});
   for (std::uint32_t i = 1; i < 50; ++i) given.body.springs.push_back({i - 1, i, number.positive(), i % 3});
   given.body.masses[0].rest = {-0.0, 5e-324, std::numeric_limits<double>::max()};
   if (!lives) return given;
   State& state = given.state.emplace();
   for (const Mass& mass : given.body.masses) {
     state.position.push_back(mass.rest);
-    state.velocity.push_back(number.place());
+    state.velocity.push_back(number.position());
   }
   state.time = number.positive();
   state.start_energy = number.any();

@@ -82,7 +82,8 @@ struct NoMutation final : Mutation {
 };
 
 TEST(Clones, ThatCannotBeAvoidedAreBorn) {
-  Experiment experiment = few_genomes({{"crossover.0.probability", "0", ""}, {"experiment.newcomers", "0", ""}});
+  Experiment experiment =
+      few_genomes({{"crossover.0.probability", "0", ""}, {"experiment.random_individuals", "0", ""}});
   experiment.mutations[0].op = std::make_unique<NoMutation>();
   std::vector<Individual> population = breed(experiment, {}, 0, 0, 6);
   for (Individual& one : population) one.result.objectives = {1, 1};

@@ -50,7 +50,7 @@ TEST(Configuration, TheSmallExperimentIsRead) {
 TEST(Configuration, DevelopmentHasSchedulesAndAControl) {
   const Experiment plain = testing::read(small_experiment);
   EXPECT_EQ(plain.development.control, Control::off);
-  const Schedule& always = plain.development.operators.at(0).schedule;
+  const Schedule& always = plain.devo.at(0).schedule;
   EXPECT_EQ(std::tuple(always.from, always.to, always.every), std::tuple(1, 2, 1));
   for (const auto& [name, control] : {std::pair{"off", Control::off},
                                       {"no-change", Control::no_change},
@@ -65,8 +65,7 @@ TEST(Configuration, DevelopmentHasSchedulesAndAControl) {
             "test.toml:35:9: development.operator.0.every = 0: expected 1 to 16777215");
   const Experiment never = testing::read(small_experiment, {{"development.operator.0.from", "3", ""}});
   ASSERT_EQ(never.warnings.size(), 1u);
-  EXPECT_EQ(never.warnings[0],
-            "development.operator.0.from = 3 to 2: the operator never comes to its turn in 2 cycles");
+  EXPECT_EQ(never.warnings[0], "development.operator.0.from = 3 to 2: the operator is never applied in 2 cycles");
 }
 
 TEST(Configuration, GrowthWithoutSizesWarns) {
@@ -128,7 +127,7 @@ TEST(Configuration, ResolvedTextReadsBackAsItself) {
   EXPECT_EQ(again.resolved, experiment.resolved);
   EXPECT_EQ(again.step.dt, 0.00025);
   EXPECT_EQ(again.seed, experiment.seed);
-  EXPECT_EQ(again.world.materials, experiment.world.materials);
+  EXPECT_EQ(again.context.materials, experiment.context.materials);
 }
 
 TEST(Configuration, ResolvedTextHoldsEveryDefault) {
@@ -275,8 +274,8 @@ TEST(Configuration, OutOfRange) {
             "test.toml:15:15: mutation.0.probability = nan: expected 0 to 1");
   EXPECT_EQ(complaint(with("[simulation]", "[simulation]\ndt = 0.2")),
             "test.toml:27:6: simulation.dt = 0.2: expected 1e-07 to 0.1 s");
-  EXPECT_EQ(complaint(with("newcomers = 1", "newcomers = 7")),
-            "test.toml:6:13: experiment.newcomers = 7: expected at most the population, 6");
+  EXPECT_EQ(complaint(with("random_individuals = 1", "random_individuals = 7")),
+            "test.toml:6:22: experiment.random_individuals = 7: expected at most the population, 6");
   EXPECT_EQ(complaint(with("[simulation]", "[simulation]\ndevice = \"tpu\"")),
             "test.toml:27:10: simulation.device = \"tpu\": is not an option; known: auto, cpu, cuda");
 }
@@ -287,7 +286,7 @@ TEST(Configuration, WholeNumbersMayHaveAPointOrAnExponent) {
   };
   EXPECT_EQ(read("experiment.population", "7.0").population, 7);
   EXPECT_EQ(read("experiment.evaluations", "1e3").evaluations, 1000);
-  EXPECT_EQ(read("experiment.newcomers", "-0.0").newcomers, 0);
+  EXPECT_EQ(read("experiment.random_individuals", "-0.0").random_individuals, 0);
   EXPECT_EQ(read("experiment.seed", "9007199254740991.0").seed, 9007199254740991);
   EXPECT_EQ(read("experiment.population", "7.0").resolved, read("experiment.population", "7").resolved);
   EXPECT_EQ(read("encoding.size", "[3.0, 2, 1e0]").layout.genes.size(), 6u);
@@ -379,10 +378,10 @@ TEST(Configuration, MaterialsOfOnesOwn) {
   const std::string own =
       small_experiment + "\n[materials.rubber]\nstiffness = 800\n[materials.muscle]\namplitude = 0\n";
   const Experiment experiment = testing::read(own);
-  const auto index = experiment.world.material_indices({"rubber", "muscle"});
+  const auto index = experiment.context.material_indices({"rubber", "muscle"});
   ASSERT_EQ(index.size(), 2u);
-  EXPECT_EQ(experiment.world.materials[static_cast<std::size_t>(index[0])], (Material{5000, 0, 1, 0}));
-  EXPECT_EQ(experiment.world.materials[static_cast<std::size_t>(index[1])], (Material{800, 0, 0, 0}));
+  EXPECT_EQ(experiment.context.materials[static_cast<std::size_t>(index[0])], (Material{5000, 0, 1, 0}));
+  EXPECT_EQ(experiment.context.materials[static_cast<std::size_t>(index[1])], (Material{800, 0, 0, 0}));
   EXPECT_EQ(complaint(small_experiment + "\n[materials.rubber]\nstifness = 800\n"),
             "test.toml:51:1: materials.rubber.stifness: is not a key of [materials.rubber]; did you mean "
             "\"stiffness\"?");
@@ -467,7 +466,7 @@ TEST(Configuration, Overrides) {
             "--set experiment.population=-1: experiment.population = -1: expected 1 to 1000000");
   EXPECT_EQ(complaint(small_experiment, {{"experiment.size", "3", "--set experiment.size=3"}}),
             "--set experiment.size=3: experiment.size: is not a key of [experiment]; known: seed, evaluations, "
-            "spring_evaluations, population, newcomers, verify");
+            "spring_evaluations, population, random_individuals, verify");
   EXPECT_EQ(complaint(small_experiment, {{"fitness.7.window", "3", "--set fitness.7.window=3"}}),
             "--set fitness.7.window=3: fitness.7.window: there is no item 7");
   EXPECT_EQ(complaint(small_experiment, {{"fitness.0", "3", "--set fitness.0=3"}}),

@@ -31,26 +31,26 @@ struct Ring {
     Rng rng(philox, {5, 0, 0, 0});
     living.body.materials = {bone, muscle};
     for (int i = 0; i < 40; ++i) {
-      const Vec3 place{rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0, 1)};
-      living.body.masses.push_back({place, 0.2, 0, 0});
-      living.state.position.push_back(place);
+      const Vec3 position{rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0, 1)};
+      living.body.masses.push_back({position, 0.2, 0, 0});
+      living.state.position.push_back(position);
       living.state.velocity.push_back({});
     }
     for (std::uint32_t i = 0; i < 80; ++i) {
       const std::uint32_t a = i / 2, b = (a + 1 + i % 2) % 40;
-      living.body.springs.push_back({a, b, norm(place(a) - place(b)), i % 4 < 2 ? 0u : 1u});
+      living.body.springs.push_back({a, b, norm(position(a) - position(b)), i % 4 < 2 ? 0u : 1u});
       living.stress.push_back(i);
     }
   }
 
-  Vec3 place(std::uint32_t mass) const { return living.state.position[mass]; }
-  Moment now() const {
+  Vec3 position(std::uint32_t mass) const { return living.state.position[mass]; }
+  DevoContext context() const {
     return {living.body, living.state, living.stress, 1,     2, 1, 2, 0.25, {{-1, -1, 0}, {1, 1, 1}},
             0.2,         false,        genome,        layout};
   }
   Edits moved(const Amount& amount, std::uint64_t seed, std::size_t& surplus) const {
     Rng rng(philox, {seed, 1, 2, 3});
-    return at_random_places(amount, now(), surplus, rng);
+    return at_random_places(amount, context(), surplus, rng);
   }
   Edits moved(const Edits& edits, std::uint64_t seed) const {
     std::size_t surplus = 0;
@@ -58,7 +58,7 @@ struct Ring {
   }
   Body after(const Edits& edits) const {
     Ring changed = *this;
-    apply_edits(changed.living, edits, changed.now());
+    apply(resolved(edits, changed.context()), changed.living);
     return changed.living.body;
   }
 };
@@ -142,7 +142,7 @@ TEST(RandomPlaces, AllPlacesAreReachedAlike) {
     for (const std::uint32_t s : springs.removed_springs) ++gone_springs[s];
     const Edits masses = ring.moved({.removed_masses = {0, 1}, .new_masses = {{{}, 0.2, 0}}}, seed);
     for (const std::uint32_t m : masses.removed_masses) ++gone_masses[m];
-    height += masses.new_masses[0].place.z / rounds;
+    height += masses.new_masses[0].position.z / rounds;
     for (const NewSpring& spring : ring.moved({.new_springs = {{0, 20, bone, {}}}}, seed).new_springs) {
       ++joined[spring.a];
       ++joined[spring.b];
@@ -198,7 +198,7 @@ TEST(RandomPlaces, FewerComeWhereThereIsNoRoom) {
 /// What an operator saw in a life.
 struct Seen {
   std::vector<std::vector<double>> stress, peak_force;
-  std::vector<std::pair<int, int>> turns;
+  std::vector<std::pair<int, int>> applications;
   std::vector<int> cycles;
 };
 
@@ -207,11 +207,11 @@ class Watcher final : public Devo {
  public:
   explicit Watcher(Seen& seen, SpringRequest request = {.stress = true}) : seen_(seen), request_(request) {}
   SpringRequest observes() const override { return request_; }
-  void develop(const Moment& now, Edits&, Rng&) const override {
-    seen_.stress.emplace_back(now.stress.begin(), now.stress.end());
-    seen_.peak_force.emplace_back(now.peak_force.begin(), now.peak_force.end());
-    seen_.turns.emplace_back(now.turn, now.turns);
-    seen_.cycles.push_back(now.cycle);
+  void develop(const DevoContext& context, Edits&, Rng&) const override {
+    seen_.stress.emplace_back(context.stress.begin(), context.stress.end());
+    seen_.peak_force.emplace_back(context.peak_force.begin(), context.peak_force.end());
+    seen_.applications.emplace_back(context.application, context.applications);
+    seen_.cycles.push_back(context.cycle);
   }
 
  private:
@@ -223,7 +223,7 @@ class Watcher final : public Devo {
 class Fixed final : public Devo {
  public:
   explicit Fixed(Edits edits) : edits_(std::move(edits)) {}
-  void develop(const Moment&, Edits& edits, Rng&) const override { edits = edits_; }
+  void develop(const DevoContext&, Edits& edits, Rng&) const override { edits = edits_; }
 
  private:
   Edits edits_;
@@ -233,8 +233,8 @@ Life matured(const Experiment& experiment, Simulator& simulator, std::uint32_t i
   static const Genome genome = {1, 2};
   const Newborn newborn{id, 0, &genome};
   const Evaluation evaluation(experiment, simulator);
-  std::vector<Life> lives = evaluation.birth({&newborn, 1});
-  evaluation.develop(lives, [](double) {});
+  std::vector<Life> lives = evaluation.birth.of({&newborn, 1});
+  evaluation.development.run(lives, [](double) {});
   return std::move(lives.front());
 }
 
@@ -248,7 +248,7 @@ Experiment with_control(const char* control) {
 
 Seen watch(Experiment experiment, std::uint32_t id = 0) {
   Seen seen;
-  for (Scheduled& scheduled : experiment.development.operators) scheduled.op = std::make_unique<Watcher>(seen);
+  for (Scheduled& scheduled : experiment.devo) scheduled.op = std::make_unique<Watcher>(seen);
   EXPECT_EQ(matured(experiment, id).result.status, Status::ok);
   return seen;
 }
@@ -256,7 +256,7 @@ Seen watch(Experiment experiment, std::uint32_t id = 0) {
 TEST(Control, NoChangeTakesTheSameTimeAndSprings) {
   Seen seen;
   Experiment experiment = with_control("no-change");
-  experiment.development.operators[0].op = std::make_unique<Watcher>(seen);
+  experiment.devo[0].op = std::make_unique<Watcher>(seen);
   const Life still = matured(experiment), developed = matured(with_control("off"));
   EXPECT_TRUE(seen.stress.empty());
   EXPECT_EQ(still.living.state.time, developed.living.state.time);
@@ -284,7 +284,7 @@ TEST(Control, ShufflesAllThatIsKnownOfASpringTogether) {
   const auto pairs_of = [](const char* control) {
     Seen seen;
     Experiment experiment = with_control(control);
-    for (Scheduled& scheduled : experiment.development.operators)
+    for (Scheduled& scheduled : experiment.devo)
       scheduled.op = std::make_unique<Watcher>(seen, SpringRequest{.stress = true, .peak_force = true});
     matured(experiment);
     std::vector<std::pair<double, double>> pairs;
@@ -301,7 +301,7 @@ TEST(Control, ShufflesAllThatIsKnownOfASpringTogether) {
 TEST(Development, OperatorsSeeWhatTheyAskForAlone) {
   Seen nothing, peak;
   Experiment experiment = with_control("off");
-  auto& operators = experiment.development.operators;
+  auto& operators = experiment.devo;
   operators.clear();
   operators.push_back({std::make_unique<Watcher>(nothing, SpringRequest{}), {}});
   operators.push_back({std::make_unique<Watcher>(peak, SpringRequest{.peak_force = true}), {.from = 2}});
@@ -319,7 +319,7 @@ TEST(Development, OperatorsSeeWhatTheyAskForAlone) {
 TEST(Control, RandomPlacesMoveWhatOperatorsWant) {
   Experiment experiment = with_control("random-places");
   const Edits edits{.removed_springs = {4}};
-  experiment.development.operators[0].op = std::make_unique<Fixed>(edits);
+  experiment.devo[0].op = std::make_unique<Fixed>(edits);
   experiment.development.cycles = 1;
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> gone;
   const auto pairs_of = [](const Body& body) {
@@ -342,7 +342,7 @@ TEST(Control, RandomPlacesMoveWhatOperatorsWant) {
 TEST(Control, OperatorsSeeTheLifeBeforeAloneAndItsCostDoesNotCount) {
   Seen seen;
   Experiment experiment = with_control("random-places");
-  experiment.development.operators[0].op = std::make_unique<Watcher>(seen);
+  experiment.devo[0].op = std::make_unique<Watcher>(seen);
   const Life life = matured(experiment);
   EXPECT_THAT(seen.cycles, ::testing::ElementsAre(1, 2));
   EXPECT_EQ(seen.stress, watch(with_control("off")).stress);
@@ -364,7 +364,7 @@ std::map<std::uint32_t, Total> totals(Body body, const LifeRecord& record) {
   std::map<std::uint32_t, Total> totals;
   for (const Change& change : record.changes()) {
     const std::size_t springs = body.springs.size();
-    replay(body, change);
+    apply(change.edits, body);
     if (!change.op) continue;
     Total& total = totals[change.cycle];
     total.springs_gone += springs + change.edits.new_springs.size() - body.springs.size();
@@ -406,9 +406,9 @@ struct Population {
   std::vector<Life> matured() {
     const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
     const Evaluation evaluation(experiment, *simulator);
-    std::vector<Life> lives = evaluation.birth(newborns);
+    std::vector<Life> lives = evaluation.birth.of(newborns);
     for (const Life& life : lives) born.push_back(life.living.body);
-    evaluation.develop(lives, [](double) {});
+    evaluation.development.run(lives, [](double) {});
     return lives;
   }
 };
@@ -466,7 +466,7 @@ TEST(Control, NothingMoreChangesAfterTheYokesEnd) {
     int runs_ = 0;
   };
   Experiment experiment = with_control("random-places");
-  experiment.development.operators[0].op = std::make_unique<Fixed>(Edits{.removed_springs = {4}});
+  experiment.devo[0].op = std::make_unique<Fixed>(Edits{.removed_springs = {4}});
   experiment.development.cycles = 3;
   Breaking simulator(make_cpu_simulator(experiment.scene, experiment.stepping, 1));
   const Life life = matured(experiment, simulator);
@@ -499,8 +499,8 @@ TEST(Schedule, EarlyLateOnceAndNowAndThen) {
 TEST(Schedule, OperatorsKnowTheirTurns) {
   const std::string key = "development.operator.0.";
   using Turns = std::vector<std::pair<int, int>>;
-  EXPECT_EQ(scheduled({{key + "every", "3", ""}}).turns, (Turns{{1, 3}, {2, 3}, {3, 3}}));
-  EXPECT_EQ(scheduled({{key + "from", "7", ""}, {key + "to", "100", ""}}).turns, (Turns{{1, 2}, {2, 2}}));
+  EXPECT_EQ(scheduled({{key + "every", "3", ""}}).applications, (Turns{{1, 3}, {2, 3}, {3, 3}}));
+  EXPECT_EQ(scheduled({{key + "from", "7", ""}, {key + "to", "100", ""}}).applications, (Turns{{1, 2}, {2, 2}}));
 }
 
 // torn bodies --------------------------------------------------------------------------------------------------------
@@ -513,7 +513,7 @@ TEST(Development, TheLargestPieceGoesOn) {
   for (std::uint32_t s = 0; s < newborn.springs.size(); ++s)
     if (newborn.springs[s].a == 0 || newborn.springs[s].b == 0) edits.removed_springs.push_back(s);
   ASSERT_EQ(edits.removed_springs.size(), 7u);
-  experiment.development.operators[0].op = std::make_unique<Fixed>(edits);
+  experiment.devo[0].op = std::make_unique<Fixed>(edits);
   experiment.development.cycles = 1;
   const Life life = matured(experiment);
   EXPECT_EQ(life.result.status, Status::ok);

@@ -32,11 +32,11 @@ struct Line {
     }
   }
 
-  Moment moment(bool resets = false) const {
+  DevoContext context(bool resets = false) const {
     return {living.body, living.state, living.stress, 1, 2, 1, 2, 0.25, {}, 0.2, resets, genome, layout};
   }
 
-  void apply(const Edits& edits, bool resets = false) { apply_edits(living, edits, moment(resets)); }
+  void apply(const Edits& edits, bool resets = false) { evodevo::apply(resolved(edits, context(resets)), living); }
 
   std::string refusal(const Edits& edits) {
     try {
@@ -51,17 +51,17 @@ struct Line {
 TEST(Development, ALoadComesOnOthersWhenItsCarrierGoes) {
   Line line;
   for (const std::size_t carrier : {2u, 3u})
-    line.living.body.masses[carrier].load = 1, line.living.body.masses[carrier].mass += 1;
+    line.living.body.masses[carrier].payload = 1, line.living.body.masses[carrier].mass += 1;
   line.apply({.removed_masses = {3}, .new_masses = {{{0, 0, 7}, 0.5, 0}}});
   const std::vector<Mass>& masses = line.living.body.masses;
   ASSERT_EQ(masses.size(), 4u);
-  EXPECT_EQ(masses[2].load, 2);
+  EXPECT_EQ(masses[2].payload, 2);
   EXPECT_DOUBLE_EQ(masses[2].mass, 2.2);
   EXPECT_EQ(masses[0].mass, 0.2);
   EXPECT_EQ(masses[3].mass, 0.5);
   line.apply({.removed_masses = {2}});
   ASSERT_EQ(masses.size(), 3u);
-  for (const Mass& mass : masses) EXPECT_DOUBLE_EQ(mass.load, 2.0 / 3) << "nobody is left who carries one";
+  for (const Mass& mass : masses) EXPECT_DOUBLE_EQ(mass.payload, 2.0 / 3) << "nobody is left who carries one";
   EXPECT_DOUBLE_EQ(masses[2].mass, 0.5 + 2.0 / 3);
 }
 
@@ -77,7 +77,7 @@ TEST(Development, ASpringGoesAndOneComes) {
   EXPECT_EQ(body.materials.at(body.springs[2].material), muscle);
   // born without force: L(t) = 3 m at t = 0.25 s, when a muscle of 1 Hz is longest
   EXPECT_NEAR(body.springs[2].rest_length, 3 / 1.14, 1e-12);
-  EXPECT_EQ(line.living.stress, (std::vector<double>{10, 30, 20})) << "a newcomer carries the mean";
+  EXPECT_EQ(line.living.stress, (std::vector<double>{10, 30, 20})) << "a random_individual carries the mean";
 }
 
 TEST(Development, WithResetANewSpringIsAsLongAsTheRestPlacesAreApart) {
@@ -106,7 +106,7 @@ TEST(Development, AMassGoesWithItsSpringsAndOneComes) {
   EXPECT_EQ(living.state.velocity[3], (Vec3{0, 0, 0})) << "it starts at rest";
   EXPECT_EQ(living.state.velocity[1], (Vec3{0, 0, 2})) << "the others keep their motion";
   ASSERT_EQ(living.body.springs.size(), 3u);
-  EXPECT_EQ(living.body.springs[0].a, 1u) << "old mass 2 is mass 1 now";
+  EXPECT_EQ(living.body.springs[0].a, 1u) << "old mass 2 is mass 1 context";
   EXPECT_EQ(living.body.springs[0].b, 2u);
   EXPECT_EQ(living.body.springs[1].a, 3u);
   EXPECT_EQ(living.body.springs[1].b, 2u);
@@ -183,7 +183,7 @@ TEST(Development, FaultyEditsAreRefused) {
             "joins masses 0 and 2 by a spring whose rest length is not a number; expected a finite one, at least 0");
   EXPECT_EQ(Line().refusal({.new_springs = {{0, 2, {-1e-9, 0, 0, 0}, std::nullopt}}}),
             "joins masses 0 and 2 by a spring whose stiffness is -1e-09; expected a finite one above 0");
-  EXPECT_EQ(Line().refusal({.new_masses = {{{nan, 0, 0}, 0.2, 0}}}), "adds a mass at a place that is not finite");
+  EXPECT_EQ(Line().refusal({.new_masses = {{{nan, 0, 0}, 0.2, 0}}}), "adds a mass at a position that is not finite");
   EXPECT_EQ(Line().refusal({.new_masses = {{{}, -nan, 0}}}),
             "adds a mass whose weight is not a number; expected a finite one above 0 kg");
   EXPECT_EQ(Line().refusal({.new_masses = {{{}, 0.2, 1}}}), "adds a mass of material 1 to a body that has 1 materials");

@@ -202,13 +202,13 @@ TEST(Evaluation, AnUnstableBodyIsInvalidOrRunsAsTheFileAsks) {
 struct Stiffener final : Devo {
   explicit Stiffener(bool by_exchange) : exchanges(by_exchange) {}
 
-  void develop(const Moment& now, Edits& edits, Rng&) const override {
-    for (std::uint32_t i = 0; i < now.body.springs.size(); ++i) {
-      Material material = now.body.materials[now.body.springs[i].material];
+  void develop(const DevoContext& context, Edits& edits, Rng&) const override {
+    for (std::uint32_t i = 0; i < context.body.springs.size(); ++i) {
+      Material material = context.body.materials[context.body.springs[i].material];
       material.stiffness *= 1000;
       if (exchanges) {
         edits.removed_springs.push_back(i);
-        edits.new_springs.push_back({now.body.springs[i].a, now.body.springs[i].b, material, {}});
+        edits.new_springs.push_back({context.body.springs[i].a, context.body.springs[i].b, material, {}});
       } else {
         edits.changed_springs.push_back({.spring = i, .material = material});
       }
@@ -222,13 +222,13 @@ TEST(Evaluation, DevelopmentChangesTheStep) {
   Experiment experiment = testing::read(testing::small_experiment, {{"simulation.dt", "auto", ""}});
   experiment.development.cycles = 1;
   const auto result_with = [&](bool by_exchange) {
-    experiment.development.operators[0].op = std::make_unique<Stiffener>(by_exchange);
+    experiment.devo[0].op = std::make_unique<Stiffener>(by_exchange);
     return evaluate(experiment, {{.genome = {1, 1}}}).front();
   };
   const Result exchanged = result_with(true), changed = result_with(false);
   EXPECT_EQ(exchanged.status, Status::ok) << exchanged.reason;
   EXPECT_EQ(changed.status, Status::ok) << changed.reason;
-  experiment.development.operators.clear();
+  experiment.devo.clear();
   const Result soft = evaluate(experiment, {{.genome = {1, 1}}}).front();
   EXPECT_EQ(soft.status, Status::ok) << soft.reason;
   EXPECT_GT(exchanged.spring_evaluations, 4 * soft.spring_evaluations) << "the steps that follow are shorter";
@@ -237,7 +237,7 @@ TEST(Evaluation, DevelopmentChangesTheStep) {
 
 TEST(Evaluation, DevelopmentThatAFixedStepCannotBearIsInvalid) {
   Experiment experiment = testing::read(testing::small_experiment);
-  experiment.development.operators[0].op = std::make_unique<Stiffener>(false);
+  experiment.devo[0].op = std::make_unique<Stiffener>(false);
   const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
   EXPECT_EQ(result.status, Status::invalid);
   EXPECT_EQ(result.reason, "unstable dt: 0.0005 s is too long for the body's springs");
@@ -247,7 +247,7 @@ TEST(Evaluation, ALoadSinksTheFasterInWater) {
   // where weight and drag are equal: M g = 12 c v^2
   Experiment experiment = testing::read(
       testing::small_experiment,
-      {{"scene.load.share", "3", ""}, {"scene.load.top", "1", ""}, {"scene.drag.coefficient", "0.5", ""}});
+      {{"scene.payload.share", "3", ""}, {"scene.payload.top", "1", ""}, {"scene.drag.coefficient", "0.5", ""}});
   experiment.development = {};
   experiment.scene.floor.reset();
   experiment.scene.friction.reset();
@@ -262,21 +262,21 @@ TEST(Evaluation, ALoadSinksTheFasterInWater) {
   };
   const double unloaded = std::sqrt(12 * 0.2 * 9.81 / (12 * 0.5));
   EXPECT_NEAR(speed(), 2 * unloaded, 0.01 * unloaded);
-  experiment.load.reset();
+  experiment.payload.reset();
   EXPECT_NEAR(speed(), unloaded, 0.01 * unloaded);
 }
 
 /// Makes every spring three times as long.
 struct Stretcher final : Devo {
-  void develop(const Moment& now, Edits& edits, Rng&) const override {
-    for (std::uint32_t i = 0; i < now.body.springs.size(); ++i)
-      edits.changed_springs.push_back({.spring = i, .rest_length = 3 * now.body.springs[i].rest_length});
+  void develop(const DevoContext& context, Edits& edits, Rng&) const override {
+    for (std::uint32_t i = 0; i < context.body.springs.size(); ++i)
+      edits.changed_springs.push_back({.spring = i, .rest_length = 3 * context.body.springs[i].rest_length});
   }
 };
 
 /// Lets every spring grow to three times its length.
 struct Grower final : Devo {
-  void develop(const Moment&, Edits& edits, Rng&) const override { edits.growth = {0, 1}; }
+  void develop(const DevoContext&, Edits& edits, Rng&) const override { edits.growth = {0, 1}; }
 };
 
 TEST(Evaluation, TheEnergyThatGrowthBringsIsAllowed) {
@@ -285,11 +285,11 @@ TEST(Evaluation, TheEnergyThatGrowthBringsIsAllowed) {
   const Genome genome = {1, 1};
   const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
   const auto start_energy = [&](std::unique_ptr<Devo> op) {
-    experiment.development.operators[0].op = std::move(op);
+    experiment.devo[0].op = std::move(op);
     const Evaluation evaluation(experiment, *simulator);
-    std::vector<Life> lives = evaluation.birth(std::vector<Newborn>{{0, 0, &genome}});
+    std::vector<Life> lives = evaluation.birth.of(std::vector<Newborn>{{0, 0, &genome}});
     for (Spring& spring : lives[0].living.body.springs) spring.growth = 3;
-    evaluation.develop(lives, unwatched);
+    evaluation.development.run(lives, unwatched);
     return lives[0].living.state.start_energy;
   };
   EXPECT_EQ(start_energy(std::make_unique<Grower>()), start_energy(std::make_unique<Stretcher>()));
@@ -299,7 +299,7 @@ TEST(Evaluation, ABodysLengthIsThatOfTheStartOfTheWindow) {
   Experiment experiment = testing::read(testing::small_experiment);
   experiment.scene.gravity.reset();
   experiment.scene.damping->rate = 100;  // so that it has its new length soon
-  experiment.development.operators[0].op = std::make_unique<Stretcher>();
+  experiment.devo[0].op = std::make_unique<Stretcher>();
   experiment.development.cycles = 1;
   Observation born, grown;
   experiment.fitness.clear();
@@ -347,7 +347,7 @@ TEST(Evaluation, BallisticSpringsHaveTheLengthsThatANetworkGivesThem) {
         const Experiment experiment = ballistic(network + pairing, schedule);
         const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
         const Individual individual = breed(experiment, {}, 0, 0, 1).front();
-        const Blueprint blueprint = experiment.encoding->decode(individual.genome, experiment.world);
+        const Blueprint blueprint = experiment.encoding->decode(individual.genome, experiment.context);
         const std::vector<std::uint32_t> kept = build_body(blueprint).kept;
         const auto expect_lengths = [&](const Body& body, double Size::*size, double tolerance) {
           ASSERT_GT(body.springs.size(), 100u);
@@ -359,9 +359,9 @@ TEST(Evaluation, BallisticSpringsHaveTheLengthsThatANetworkGivesThem) {
           }
         };
         const Evaluation evaluation(experiment, *simulator);
-        std::vector<Life> lives = evaluation.birth(std::vector<Newborn>{{0, 0, &individual.genome}});
+        std::vector<Life> lives = evaluation.birth.of(std::vector<Newborn>{{0, 0, &individual.genome}});
         expect_lengths(lives[0].living.body, &Size::start, 1e-12);
-        evaluation.develop(lives, unwatched);
+        evaluation.development.run(lives, unwatched);
         ASSERT_TRUE(lives[0].alive()) << lives[0].result.reason;
         expect_lengths(lives[0].living.body, &Size::end, 1e-6);
         EXPECT_EQ(cycles_of_change(lives[0]), cycles);
@@ -370,21 +370,21 @@ TEST(Evaluation, BallisticSpringsHaveTheLengthsThatANetworkGivesThem) {
 
 /// Removes every spring.
 struct Destroyer final : Devo {
-  void develop(const Moment& now, Edits& edits, Rng&) const override {
-    for (std::uint32_t i = 0; i < now.body.springs.size(); ++i) edits.removed_springs.push_back(i);
+  void develop(const DevoContext& context, Edits& edits, Rng&) const override {
+    for (std::uint32_t i = 0; i < context.body.springs.size(); ++i) edits.removed_springs.push_back(i);
   }
 };
 
 /// Joins a mass to itself.
 struct Faulty final : Devo {
-  void develop(const Moment&, Edits& edits, Rng&) const override {
+  void develop(const DevoContext&, Edits& edits, Rng&) const override {
     edits.new_springs.push_back({0, 0, {1, 0, 0, 0}, {}});
   }
 };
 
 TEST(Evaluation, ABodyThatDevelopmentEmptiesIsInvalid) {
   Experiment experiment = testing::read(testing::small_experiment);
-  experiment.development.operators[0].op = std::make_unique<Destroyer>();
+  experiment.devo[0].op = std::make_unique<Destroyer>();
   const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
   EXPECT_EQ(result.status, Status::invalid);
   EXPECT_EQ(result.reason, "no springs");
@@ -397,7 +397,7 @@ std::string file_of(const Experiment& experiment, std::string_view kind) {
 
 TEST(Evaluation, AFaultyOperatorIsNamed) {
   Experiment experiment = testing::read(testing::small_experiment);
-  experiment.development.operators[0].op = std::make_unique<Faulty>();
+  experiment.devo[0].op = std::make_unique<Faulty>();
   try {
     evaluate(experiment, {{.id = 5, .genome = {1, 1}}});
     FAIL() << "the fault went unnoticed";
@@ -411,9 +411,10 @@ TEST(Evaluation, AFaultyOperatorIsNamed) {
 
 /// Gives a spring to a mass that is not there.
 struct Dangling final : Encoding {
-  Layout layout(const World&) const override { return {}; }
-  Blueprint decode(const Genome&, const World& world) const override {
-    return {.body = {.masses = {{{0, 0, 0}, 1}, {{1, 0, 0}, 1}}, .springs = {{0, 2, 1}}, .materials = world.materials}};
+  Layout layout(const EncodingContext&) const override { return {}; }
+  Blueprint decode(const Genome&, const EncodingContext& context) const override {
+    return {
+        .body = {.masses = {{{0, 0, 0}, 1}, {{1, 0, 0}, 1}}, .springs = {{0, 2, 1}}, .materials = context.materials}};
   }
 };
 
@@ -430,17 +431,18 @@ TEST(Evaluation, AFaultyEncodingIsNamed) {
   }
 }
 
-/// Masses at given places, all joined by springs of one rest length.
+/// Masses at given positions, all joined by springs of one rest length.
 struct Placed final : Encoding {
-  std::vector<Vec3> places;
+  std::vector<Vec3> positions;
   double rest_length;
-  Placed(std::vector<Vec3> places_, double rest_length_) : places(std::move(places_)), rest_length(rest_length_) {}
+  Placed(std::vector<Vec3> positions_, double rest_length_)
+      : positions(std::move(positions_)), rest_length(rest_length_) {}
 
-  Layout layout(const World&) const override { return {}; }
-  Blueprint decode(const Genome&, const World& world) const override {
-    Blueprint blueprint{.body = {.masses = {}, .springs = {}, .materials = world.materials}};
-    for (const Vec3& place : places) blueprint.body.masses.push_back({place, world.mass});
-    for (std::uint32_t a = 0; a < places.size(); ++a)
+  Layout layout(const EncodingContext&) const override { return {}; }
+  Blueprint decode(const Genome&, const EncodingContext& context) const override {
+    Blueprint blueprint{.body = {.masses = {}, .springs = {}, .materials = context.materials}};
+    for (const Vec3& position : positions) blueprint.body.masses.push_back({position, context.mass});
+    for (std::uint32_t a = 0; a < positions.size(); ++a)
       for (std::uint32_t b = 0; b < a; ++b) blueprint.body.springs.push_back({a, b, rest_length, 1});
     return blueprint;
   }
@@ -455,9 +457,9 @@ TEST(Evaluation, OnlyABodyInOnePointHasNoExtent) {
                                                                       {"fitness.0.window", "0.7", ""},
                                                                       {"fitness.1.settle", "0.7", ""},
                                                                       {"fitness.1.window", "0.07", ""}});
-    experiment.development.operators.clear();
-    const auto result = [&](std::vector<Vec3> places, double rest_length) {
-      experiment.encoding = std::make_unique<Placed>(std::move(places), rest_length);
+    experiment.devo.clear();
+    const auto result = [&](std::vector<Vec3> positions, double rest_length) {
+      experiment.encoding = std::make_unique<Placed>(std::move(positions), rest_length);
       return evaluate(experiment, {{}}).front();
     };
     const Vec3 here{0.1, -0.3, 7};
@@ -483,7 +485,9 @@ TEST(Evaluation, OnlyABodyInOnePointHasNoExtent) {
 class Place final : public Devo {
  public:
   explicit Place(std::vector<double>& heights) : heights_(heights) {}
-  void develop(const Moment& now, Edits&, Rng&) const override { heights_.push_back(now.state.position[0].z); }
+  void develop(const DevoContext& context, Edits&, Rng&) const override {
+    heights_.push_back(context.state.position[0].z);
+  }
 
  private:
   std::vector<double>& heights_;
@@ -496,7 +500,7 @@ TEST(Evaluation, ResetPutsTheBodyBackAfterEveryCycle) {
     experiment.scene.gravity = Gravity{};
     experiment.development.reset = reset;
     std::vector<double> seen;
-    experiment.development.operators[0].op = std::make_unique<Place>(seen);
+    experiment.devo[0].op = std::make_unique<Place>(seen);
     EXPECT_EQ(evaluate(experiment, {{.genome = {1, 1}}}).front().status, Status::ok);
     return seen;
   };
@@ -515,9 +519,9 @@ TEST(Evaluation, ResetPutsTheBodyOnRoughGroundAsAtBirth) {
     const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
     const Individual bone{.genome = {1, 1}};
     const Evaluation evaluation(experiment, *simulator);
-    std::vector<Life> lives = evaluation.birth(std::vector<Newborn>{{0, 0, &bone.genome}});
+    std::vector<Life> lives = evaluation.birth.of(std::vector<Newborn>{{0, 0, &bone.genome}});
     const std::vector<Vec3> born = lives[0].living.state.position;
-    evaluation.develop(lives, unwatched);
+    evaluation.development.run(lives, unwatched);
     ASSERT_TRUE(lives[0].alive()) << lives[0].result.reason;
     for (std::size_t i = 0; i < born.size(); ++i)
       EXPECT_NEAR(norm(lives[0].living.state.position[i] - born[i]), 0, 1e-12) << "seed " << seed;

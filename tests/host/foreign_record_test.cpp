@@ -8,7 +8,7 @@
 #include <random>
 
 #include "commands/commands.hpp"
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 #include "evolution/evolution.hpp"
 #include "evolution/resimulation.hpp"
 #include "experiment/device.hpp"
@@ -50,9 +50,7 @@ class ForeignRecord : public ::testing::Test {
     std::string said;
     try {
       command();
-    } catch (const ArchiveError& error) {
-      said = error.what();
-    } catch (const ConfigError& error) {
+    } catch (const InputError& error) {
       said = error.what();
     } catch (const std::exception& error) {
       ADD_FAILURE() << "neither taken nor refused: " << error.what();
@@ -78,7 +76,7 @@ class ForeignRecord : public ::testing::Test {
     give_to([&] { call(command_named("body"), {folder}); });
     give_to([&] {
       const Archive archive = Archive::read(folder_);
-      const Experiment experiment = experiment_to_live_again(archive, {});
+      const Experiment experiment = experiment_for_resimulation(archive, {});
       reported_run(archive, experiment, *make_simulator(experiment), {.best = 1, .ancestors = 1}, 1'000'000);
     });
     give_to([&] { call(command_named("resume"), {folder}); });
@@ -145,7 +143,7 @@ TEST_P(ForeignTable, MayHoldAnything) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Tables, ForeignTable,
-                         ::testing::Values("record", "makers", "operators", "objectives", "individuals", "scores",
+                         ::testing::Values("record", "provenances", "operators", "objectives", "individuals", "scores",
                                            "lives", "generations", "verifications"),
                          [](const auto& instance) { return std::string(instance.param); });
 
@@ -160,11 +158,11 @@ TEST_F(ForeignRecord, WhatDoesNotFitTogetherIsNamed) {
        "individuals.genes"},
       {"DELETE FROM individuals", "0 individuals live"},
       {"DELETE FROM scores", "scores"},
-      {"DELETE FROM makers", "nobody made the run"},
+      {"DELETE FROM provenances", "it has no provenance"},
       {"DELETE FROM objectives", "there are no objectives"},
       {"UPDATE objectives SET maximise = 1 - maximise", "objective 0"},
       {"UPDATE generations SET evaluations = 3 WHERE generation = 1", "generations.evaluations"},
-      {"UPDATE generations SET maker = 7", "generations.maker"},
+      {"UPDATE generations SET provenance = 7", "generations.provenance"},
       {"UPDATE individuals SET origin = born + 1", "individuals.origin"},
   };
   for (const auto& [sql, named] : cases) {

@@ -9,15 +9,15 @@ namespace evodevo {
 namespace {
 
 /// Turned about the z axis, then the x axis, and shifted.
-Vec3 moved(Vec3 p, double turn, Vec3 shift) {
-  const double c = std::cos(turn), s = std::sin(turn);
+Vec3 moved(Vec3 p, double application, Vec3 shift) {
+  const double c = std::cos(application), s = std::sin(application);
   p = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
   return Vec3{p.x, c * p.y - s * p.z, s * p.y + c * p.z} + shift;
 }
 
-std::vector<Vec3> all_moved(std::vector<Vec3> places, double turn, Vec3 shift) {
-  for (Vec3& place : places) place = moved(place, turn, shift);
-  return places;
+std::vector<Vec3> all_moved(std::vector<Vec3> positions, double application, Vec3 shift) {
+  for (Vec3& position : positions) position = moved(position, application, shift);
+  return positions;
 }
 
 void expect_near(Vec3 a, Vec3 b, double tolerance = 1e-12) {
@@ -30,46 +30,46 @@ const std::vector<Vec3> tetrahedron{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 1}};
 constexpr Vec3 far_away{3, -2, 5};
 
 TEST(Undeformed, UndoesARigidMotion) {
-  const std::vector<Vec3> places = all_moved(tetrahedron, 2, far_away);
+  const std::vector<Vec3> positions = all_moved(tetrahedron, 2, far_away);
   for (const Vec3 rest : {Vec3{0.1, 0.2, 0.3}, Vec3{-2, 1, 4}, tetrahedron[2]})
-    expect_near(undeformed(moved(rest, 2, far_away), places, tetrahedron), rest);
+    expect_near(undeformed(moved(rest, 2, far_away), positions, tetrahedron), rest);
 }
 
 TEST(Undeformed, MirrorsNothing) {
   const std::vector<Vec3> flat{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
   const Vec3 above{0.3, 0.4, 0.5};
-  for (const double turn : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0})
-    expect_near(undeformed(moved(above, turn, far_away), all_moved(flat, turn, far_away), flat), above);
+  for (const double application : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0})
+    expect_near(undeformed(moved(above, application, far_away), all_moved(flat, application, far_away), flat), above);
 }
 
 TEST(Undeformed, GoesAlongWithTheMassesAroundIt) {
   // two pieces ten body lengths apart, each turned by itself
   std::vector<Vec3> rest = tetrahedron;
-  for (const Vec3& place : tetrahedron) rest.push_back(place + Vec3{10, 0, 0});
-  std::vector<Vec3> places = all_moved(tetrahedron, 1, {0, 0, 0});
-  for (const Vec3& place : tetrahedron) places.push_back(moved(place, -0.5, {10, 0, 0}));
+  for (const Vec3& position : tetrahedron) rest.push_back(position + Vec3{10, 0, 0});
+  std::vector<Vec3> positions = all_moved(tetrahedron, 1, {0, 0, 0});
+  for (const Vec3& position : tetrahedron) positions.push_back(moved(position, -0.5, {10, 0, 0}));
   const Vec3 inside{0.2, 0.3, 0.2};
-  expect_near(undeformed(moved(inside, 1, {0, 0, 0}), places, rest), inside, 0.01);
-  expect_near(undeformed(moved(inside, -0.5, {10, 0, 0}), places, rest), inside + Vec3{10, 0, 0}, 0.01);
+  expect_near(undeformed(moved(inside, 1, {0, 0, 0}), positions, rest), inside, 0.01);
+  expect_near(undeformed(moved(inside, -0.5, {10, 0, 0}), positions, rest), inside + Vec3{10, 0, 0}, 0.01);
   // at a mass it is that mass, whatever the others do
-  expect_near(undeformed(places[1], places, rest), rest[1], 1e-9);
+  expect_near(undeformed(positions[1], positions, rest), rest[1], 1e-9);
 }
 
 Life newborn(const std::vector<Vec3>& rest) {
   Life life;
-  for (const Vec3& place : rest) life.living.body.masses.push_back({place, 1});
+  for (const Vec3& position : rest) life.living.body.masses.push_back({position, 1});
   life.living.state.position = rest;
   return life;
 }
 
 /// Lets a mass come at a place and one go, as devo operators do.
-void replace_mass(Life& life, Vec3 place, std::uint32_t goes) {
+void replace_mass(Life& life, Vec3 position, std::uint32_t goes) {
   LivingBody& living = life.living;
-  living.body.masses.push_back({place, 1});
+  living.body.masses.push_back({position, 1});
   living.body.masses.erase(living.body.masses.begin() + goes);
-  living.state.position.push_back(place);
+  living.state.position.push_back(position);
   living.state.position.erase(living.state.position.begin() + goes);
-  life.result.record.add({.cycle = 1, .op = 0, .edits = {.removed_masses = {goes}, .new_masses = {{place, 1}}}});
+  life.result.record.add({.cycle = 1, .op = 0, .edits = {.removed_masses = {goes}, .new_masses = {{position, 1}}}});
 }
 
 TEST(GrowthObserver, MassesOfBirthKeepTheirRestPlacesInBodyLengthsFromTheCorner) {
@@ -77,10 +77,10 @@ TEST(GrowthObserver, MassesOfBirthKeepTheirRestPlacesInBodyLengthsFromTheCorner)
   GrowthObserver growth(life.living.body);
   life.living.state.position = {{1, 2, 3}, {9, 8, 7}, {0, 1, 0}, {4, 4, 1}};
   const GrownBody grown = growth.after_cycle(life);
-  EXPECT_EQ(grown.places, life.living.state.position);
+  EXPECT_EQ(grown.positions, life.living.state.position);
   EXPECT_EQ(grown.born, 4u);
   EXPECT_EQ(grown.numbers, (std::vector<std::uint32_t>{0, 1, 2, 3}));
-  EXPECT_EQ(grown.rest_places, (std::vector<Vec3>{{0, 0, 0}, {0.5, 0, 0}, {0, 1, 0}, {0, 0, 0.5}}));
+  EXPECT_EQ(grown.rest_positions, (std::vector<Vec3>{{0, 0, 0}, {0.5, 0, 0}, {0, 1, 0}, {0, 0, 0.5}}));
 }
 
 TEST(GrowthObserver, AMassThatComesKeepsTheRestPlaceThatItCameTo) {
@@ -91,23 +91,24 @@ TEST(GrowthObserver, AMassThatComesKeepsTheRestPlaceThatItCameTo) {
   replace_mass(life, moved(rest, 1, far_away), 0);
   const GrownBody first = growth.after_cycle(life);
   EXPECT_EQ(first.numbers, (std::vector<std::uint32_t>{1, 2, 3, 4}));
-  expect_near(first.rest_places[3], 0.5 * rest);
+  expect_near(first.rest_positions[3], 0.5 * rest);
 
-  for (Vec3& place : life.living.state.position) place = {place.z, 2 * place.x, 0};
+  for (Vec3& position : life.living.state.position) position = {position.z, 2 * position.x, 0};
   const GrownBody second = growth.after_cycle(life);
-  EXPECT_EQ(second.rest_places, first.rest_places);
+  EXPECT_EQ(second.rest_positions, first.rest_positions);
 }
 
 TEST(GrowthObserver, WhereNoMassOfBeforeIsLeftThoseThatComeBelongWhereTheyAre) {
   Life life = newborn({{0, 0, 0}});
   GrowthObserver growth(life.living.body);
   replace_mass(life, {1, 2, 3}, 0);
-  EXPECT_EQ(growth.after_cycle(life).rest_places, (std::vector<Vec3>{{1, 2, 3}}));
+  EXPECT_EQ(growth.after_cycle(life).rest_positions, (std::vector<Vec3>{{1, 2, 3}}));
 }
 
 TEST(GrowthObserver, ABodyWithoutExtentHasPlacesAllTheSame) {
   Life life = newborn({{1, 1, 1}, {1, 1, 1}});
-  EXPECT_EQ(GrowthObserver(life.living.body).after_cycle(life).rest_places, (std::vector<Vec3>{{0, 0, 0}, {0, 0, 0}}));
+  EXPECT_EQ(GrowthObserver(life.living.body).after_cycle(life).rest_positions,
+            (std::vector<Vec3>{{0, 0, 0}, {0, 0, 0}}));
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ name = "ballistic-growth"
 )";
   text.insert(text.find("[[fitness]]"), operators);
   return testing::read(text, {{"encoding.size", "[3, 2, 2]", ""},
-                              {"scene.load.share", "0.5", ""},
+                              {"scene.payload.share", "0.5", ""},
                               {"encoding.size_range", "0.2", ""},
                               {"development.cycles", "4", ""},
                               {"development.reset", reset ? "true" : "false", ""}});
@@ -65,10 +65,10 @@ std::vector<Lived> matured(const Experiment& experiment, std::size_t count) {
   std::vector<Newborn> newborns;
   for (const Individual& individual : individuals) newborns.push_back({individual.id, 0, &individual.genome});
   const Evaluation evaluation(experiment, *simulator);
-  std::vector<Life> lives = evaluation.birth(newborns);
+  std::vector<Life> lives = evaluation.birth.of(newborns);
   std::vector<Lived> lived;
   for (const Life& life : lives) lived.push_back({life.living.body, {}});
-  evaluation.develop(lives, [](double) {});
+  evaluation.development.run(lives, [](double) {});
   for (std::size_t i = 0; i < count; ++i) lived[i].life = std::move(lives[i]);
   return lived;
 }
@@ -78,8 +78,8 @@ void expect_same(const Body& a, const Body& b) {
   ASSERT_EQ(a.masses.size(), b.masses.size());
   for (std::size_t i = 0; i < a.masses.size(); ++i) {
     const Mass &m = a.masses[i], &n = b.masses[i];
-    ASSERT_EQ(std::tie(m.rest, m.mass, m.material, m.air_contacts, m.load),
-              std::tie(n.rest, n.mass, n.material, n.air_contacts, n.load))
+    ASSERT_EQ(std::tie(m.rest, m.mass, m.material, m.air_contacts, m.payload),
+              std::tie(n.rest, n.mass, n.material, n.air_contacts, n.payload))
         << "mass " << i;
   }
   ASSERT_EQ(a.springs.size(), b.springs.size());
@@ -100,7 +100,7 @@ TEST(LifeRecord, ReplayedFromTheBodyAtBirthGivesTheMaturedOneToTheBit) {
       ++alive;
       Body body = lived.born;
       for (const Change& change : LifeRecord(lived.life.result.record.bytes()).changes()) {
-        replay(body, change);
+        apply(change.edits, body);
         removed_masses += change.edits.removed_masses.size();
         new_masses += change.edits.new_masses.size();
         changed += change.edits.changed_springs.size();
@@ -156,7 +156,7 @@ void expect_same(const Change& a, const Change& b) {
   ASSERT_EQ(a.edits.new_masses.size(), b.edits.new_masses.size());
   for (std::size_t i = 0; i < a.edits.new_masses.size(); ++i) {
     const NewMass &m = a.edits.new_masses[i], &n = b.edits.new_masses[i];
-    EXPECT_EQ(std::tie(m.place, m.mass, m.material), std::tie(n.place, n.mass, n.material));
+    EXPECT_EQ(std::tie(m.position, m.mass, m.material), std::tie(n.position, n.mass, n.material));
   }
   ASSERT_EQ(a.edits.new_springs.size(), b.edits.new_springs.size());
   for (std::size_t i = 0; i < a.edits.new_springs.size(); ++i) {
@@ -226,7 +226,7 @@ TEST(LifeRecord, ATurnOfGrowthTakesSome30BytesHoweverManySpringsGrow) {
     EXPECT_EQ(record.changes().size(), 100u);
     EXPECT_LE(record.bytes().size(), 100 * 34u);
     Body body = lived.born;
-    for (const Change& change : record.changes()) replay(body, change);
+    for (const Change& change : record.changes()) apply(change.edits, body);
     expect_same(body, lived.life.living.body);
   }
 }
@@ -240,8 +240,8 @@ TEST(LifeRecord, CausesStayWithTheirEdits) {
   const LivingBody& living = lived.life.living;
   const Genome genome;
   const Layout layout;
-  const Moment now{living.body, living.state, {}, 4, 9, 1, 1, 0, {}, 0.2, false, genome, layout};
-  const Change change = change_by(edits, 1, now);
+  const DevoContext context{living.body, living.state, {}, 4, 9, 1, 1, 0, {}, 0.2, false, genome, layout};
+  const Change change = change_by(edits, 1, context);
   EXPECT_EQ(change.cycle, 4u);
   EXPECT_EQ(change.edits.removed_springs, (std::vector<std::uint32_t>{2, 5, 7}));
   EXPECT_EQ(change.edits.causes.removed_springs, (std::vector<double>{20, 50, 70}));
@@ -292,8 +292,8 @@ void expect_that_a_life_follows_its_record(Control control) {
   const Experiment first = all_operators(true);
   const Individual individual = breed(first, {}, 0, 0, 3).back();
   const Newborn newborn{individual.id, 0, &individual.genome, lived.life.result.record};
-  std::vector<Life> lives = evaluation.birth({&newborn, 1});
-  evaluation.develop(lives, [](double) {});
+  std::vector<Life> lives = evaluation.birth.of({&newborn, 1});
+  evaluation.development.run(lives, [](double) {});
   expect_same_life(lives.front(), lived.life);
 }
 
@@ -309,10 +309,10 @@ TEST(LifeRecord, ALifeAtRandomPlacesFollowsItsRecordWhicheverOperatorComesFirst)
 class Exchange final : public Devo {
  public:
   explicit Exchange(std::optional<double> stretch) : stretch_(stretch) {}
-  void develop(const Moment& now, Edits& edits, Rng&) const override {
-    const Spring& spring = now.body.springs.front();
+  void develop(const DevoContext& context, Edits& edits, Rng&) const override {
+    const Spring& spring = context.body.springs.front();
     NewSpring& other = edits.new_springs.emplace_back(
-        NewSpring{spring.a, spring.b, now.body.materials[spring.material], std::nullopt});
+        NewSpring{spring.a, spring.b, context.body.materials[spring.material], std::nullopt});
     if (stretch_) other.rest_length = *stretch_ * spring.rest_length;
     edits.removed_springs = {0};
   }
@@ -328,13 +328,13 @@ TEST(LifeRecord, ALifeLivedAgainIsAllowedTheEnergyThatItHadThen) {
   const Evaluation evaluation(experiment, *simulator);
   const auto lived = [&](std::optional<LifeRecord> record) {
     const Newborn newborn{individual.id, 0, &individual.genome, std::move(record)};
-    std::vector<Life> lives = evaluation.birth({&newborn, 1});
-    evaluation.develop(lives, [](double) {});
+    std::vector<Life> lives = evaluation.birth.of({&newborn, 1});
+    evaluation.development.run(lives, [](double) {});
     return std::move(lives.front());
   };
   std::vector<double> energies;
   for (const std::optional<double> stretch : {std::optional<double>(), std::optional(1.5)}) {
-    experiment.development.operators[0].op = std::make_unique<Exchange>(stretch);
+    experiment.devo[0].op = std::make_unique<Exchange>(stretch);
     const Life life = lived(std::nullopt);
     ASSERT_TRUE(life.alive());
     expect_same_life(lived(LifeRecord(life.result.record.bytes())), life);
@@ -358,8 +358,8 @@ void expect_that_each_life_goes_its_own_way(Control control) {
       Newborn& newborn = newborns.emplace_back(Newborn{individual.id, 0, &individual.genome});
       if (with_records && individual.id % 2 == 1) newborn.record = recorded[individual.id].life.result.record;
     }
-    std::vector<Life> lives = evaluation.birth(newborns);
-    evaluation.develop(lives, [](double) {});
+    std::vector<Life> lives = evaluation.birth.of(newborns);
+    evaluation.development.run(lives, [](double) {});
     return lives;
   };
   const std::vector<Life> mixed = lived(true), free = lived(false);
@@ -468,8 +468,8 @@ TEST(LifeRecord, ARunKeepsThoseWhoReachTheFrontLaterToo) {
     if (!record) continue;
     late += !at_birth;
     const Newborn newborn{one.id, one.born, &one.genome};
-    std::vector<Life> lives = evaluation.birth({&newborn, 1});
-    evaluation.develop(lives, [](double) {});
+    std::vector<Life> lives = evaluation.birth.of({&newborn, 1});
+    evaluation.development.run(lives, [](double) {});
     EXPECT_EQ(*record, lives.front().result.record) << "individual " << one.id;
   }
   EXPECT_GT(late, 3);
@@ -514,7 +514,7 @@ class GoneOn : public ::testing::Test {
       late += recorded && !on_front(one, all, one.born, false);
     }
     EXPECT_GT(without_record, 0);
-    EXPECT_GT(late, 0) << "those who reach the front late by the same maker have a record all the same";
+    EXPECT_GT(late, 0) << "those who reach the front late by the same provenance have a record all the same";
   }
 
   testing::Scratch scratch_;
@@ -530,7 +530,7 @@ TEST_F(GoneOn, OnAnotherDeviceWarnsByTheGenerationOfBirth) {
   for (const ArchivedIndividual& one : all) {
     const auto warning = [&](const std::string& device) {
       ::testing::internal::CaptureStderr();
-      born_again(archive, experiment_, one, device);
+      for_resimulation(archive, experiment_, one, device);
       return ::testing::internal::GetCapturedStderr();
     };
     const bool of_first = one.born < first_half, recorded = archive.life(one.id).has_value();
@@ -539,10 +539,11 @@ TEST_F(GoneOn, OnAnotherDeviceWarnsByTheGenerationOfBirth) {
     warned_here += !warning("here").empty();
     warned_there += !warning("there").empty();
     if (of_first && !recorded) {
-      EXPECT_EQ(warning("there"),
-                "warning: individual " + std::to_string(one.id) +
-                    " lived again on there, not on here as in the run, which has no record of its edits; it may have "
-                    "developed otherwise\n");
+      EXPECT_EQ(
+          warning("there"),
+          "warning: individual " + std::to_string(one.id) +
+              " was simulated again on there, not on here as in the run, which has no record of its edits; it may have "
+              "developed otherwise\n");
     }
   }
   EXPECT_GT(warned_here, 0);
@@ -560,12 +561,13 @@ TEST_F(GoneOn, WithAnotherOperatorWarnsToo) {
   ASSERT_NE(unrecorded, all.end());
   ASSERT_LT(unrecorded->born, first_half);
   ::testing::internal::CaptureStderr();
-  born_again(archive, experiment_, *unrecorded, "here");
+  for_resimulation(archive, experiment_, *unrecorded, "here");
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << "by those that made it";
   ::testing::internal::CaptureStderr();
-  born_again(archive, second, *unrecorded, "here");
-  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
-              ::testing::HasSubstr(" lived again by another build of evodevo or of an operator than in the run, "));
+  for_resimulation(archive, second, *unrecorded, "here");
+  EXPECT_THAT(
+      ::testing::internal::GetCapturedStderr(),
+      ::testing::HasSubstr(" was simulated again by another build of evodevo or of an operator than in the run, "));
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ TEST(Materials, AreNoMoreThanTheSpringsAreHoweverOftenTheseChange) {
   LifeRecord record;
   Rng rng(philox, {7, 0, 0, 0});
   for (int cycle = 1; cycle <= 16; ++cycle) {
-    const Moment now{living.body, living.state, {}, cycle, 16, cycle, 16, 0, {}, 0.2, false, genome, layout};
+    const DevoContext context{living.body, living.state, {}, cycle, 16, cycle, 16, 0, {}, 0.2, false, genome, layout};
     Edits edits;
     std::vector<Material> wanted;
     for (std::uint32_t s = 0; s < living.body.springs.size(); ++s) {
@@ -94,14 +94,14 @@ TEST(Materials, AreNoMoreThanTheSpringsAreHoweverOftenTheseChange) {
       edits.changed_springs.push_back({.spring = s, .material = material});
       wanted.push_back(material);
     }
-    const Change change = change_by(edits, 0, now);
-    apply_edits(living, edits, now);
+    const Change change = change_by(edits, 0, context);
+    apply(resolved(edits, context), living);
     record.add(change);
     for (std::size_t s = 0; s < wanted.size(); ++s)
       ASSERT_EQ(living.body.materials.at(living.body.springs[s].material), wanted[s]) << s;
     EXPECT_LE(living.body.materials.size(), 2 + living.body.springs.size()) << "after cycle " << cycle;
   }
-  for (const Change& change : LifeRecord(record.bytes()).changes()) replay(replayed.body, change);
+  for (const Change& change : LifeRecord(record.bytes()).changes()) apply(change.edits, replayed.body);
   EXPECT_EQ(replayed.body.materials, living.body.materials);
   EXPECT_EQ(made_of(replayed.body), made_of(living.body));
 }
@@ -127,11 +127,11 @@ factor = 0.93
   const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 4);
   std::vector<Newborn> newborns;
   for (const Individual& individual : individuals) newborns.push_back({individual.id, 0, &individual.genome});
-  std::vector<Life> lives = evaluation.birth(newborns);
+  std::vector<Life> lives = evaluation.birth.of(newborns);
   const auto expect_no_others = [&](const Body& body) {
-    const std::size_t base = experiment.world.materials.size();
+    const std::size_t base = experiment.context.materials.size();
     ASSERT_EQ(body.base_materials, base);
-    for (std::size_t i = 0; i < base; ++i) EXPECT_EQ(body.materials.at(i), experiment.world.materials[i]);
+    for (std::size_t i = 0; i < base; ++i) EXPECT_EQ(body.materials.at(i), experiment.context.materials[i]);
     std::set<std::uint32_t> used;
     for (const Spring& spring : body.springs)
       if (spring.material >= base) used.insert(spring.material);
@@ -141,7 +141,7 @@ factor = 0.93
   };
   std::vector<Body> born;
   for (const Life& life : lives) born.push_back(life.living.body);
-  evaluation.develop(lives, [](double) {});
+  evaluation.development.run(lives, [](double) {});
   std::size_t alive = 0;
   for (std::size_t i = 0; i < lives.size(); ++i) {
     if (!lives[i].alive()) continue;
@@ -149,7 +149,7 @@ factor = 0.93
     expect_no_others(born[i]);
     expect_no_others(lives[i].living.body);
     EXPECT_GT(lives[i].living.body.materials.size(), born[i].materials.size());
-    for (const Change& change : lives[i].result.record.changes()) replay(born[i], change);
+    for (const Change& change : lives[i].result.record.changes()) apply(change.edits, born[i]);
     EXPECT_EQ(born[i].materials, lives[i].living.body.materials);
     EXPECT_EQ(made_of(born[i]), made_of(lives[i].living.body));
   }

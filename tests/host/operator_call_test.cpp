@@ -33,7 +33,7 @@ TEST(OperatorCall, IsKnownWhileItLasts) {
   in_operator({title("outer"), {.individual = 1}}, [&] {
     in_operator({title("inner")}, [&] { EXPECT_EQ(current_call().title, title("inner")); });
     EXPECT_EQ(current_call().title, title("outer"));
-    EXPECT_EQ(current_call().place.individual, 1);
+    EXPECT_EQ(current_call().subject.individual, 1);
   });
   EXPECT_EQ(current_call().title, nullptr);
   EXPECT_THROW(in_operator({title("throws")}, [] { throw 7; }), std::runtime_error);
@@ -106,11 +106,11 @@ TEST(OperatorCall, WhatItChangesForAllIsPutBackAndNamedOnce) {
 TEST(OperatorCall, KnowsWhoseLifeItIs) {
   const Experiment experiment = testing::read(testing::small_experiment);
   const auto asked =
-      call_operator(experiment, Devo::kind, 0, {.individual = 3, .cycle = 2}, [] { return current_call(); });
+      call_operator(experiment.call_of(Devo::kind, 0, {.individual = 3, .cycle = 2}), [] { return current_call(); });
   EXPECT_THAT(text_of(asked),
               ::testing::MatchesRegex("devo operator \"spring-turnover\" of .*, individual 3, cycle 2, seed 7"));
   try {
-    call_operator(experiment, Fitness::kind, 1, {.individual = 3}, [] { throw 7; });
+    call_operator(experiment.call_of(Fitness::kind, 1, {.individual = 3}), [] { throw 7; });
     FAIL() << "nothing was thrown";
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), HasSubstr("individual 3, seed 7: it threw something that is no std::exception; correct"));

@@ -38,7 +38,7 @@ std::size_t behind_braces(const std::string& text, std::size_t open) {
 
 /// The declarations of a header, one a line, in their order: types, names, defaults and signatures; neither comments,
 /// nor preprocessor lines, nor bodies of functions. Types of members and their order make their offsets, the order of
-/// virtual functions their places.
+/// virtual functions their positions.
 std::string declarations(std::string text) {
   text = std::regex_replace(text, std::regex("//[^\n]*"), "");
   text = std::regex_replace(text, std::regex("\n#([^\n]*\\\\\n)*[^\n]*"), "\n");

@@ -117,7 +117,7 @@ TEST(Filming, ReachesFromBirthToTheEndWithoutAGap) {
     double time = 0;
     for (const Shot& shot : life.film) {
       EXPECT_NEAR(shot.frames.front().time, time, 1e-9);
-      for (const Frame& frame : shot.frames) EXPECT_EQ(frame.places.size(), shot.body.masses.size());
+      for (const Frame& frame : shot.frames) EXPECT_EQ(frame.positions.size(), shot.body.masses.size());
       EXPECT_EQ(shot.stress.size(), shot.body.springs.size());
       time = shot.frames.back().time;
     }
@@ -187,7 +187,7 @@ TEST(Filming, RecordsWhatARunInOneGoRecords) {
   const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 1);
   const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
   FilmingSimulator camera(*simulator, filmed_frames_per_second);
-  Life life = Evaluation(experiment, *simulator).birth(newborns_of(individuals)).front();
+  Life life = Evaluation(experiment, *simulator).birth.of(newborns_of(individuals)).front();
   ASSERT_TRUE(life.alive());
   const auto answer = [&](Simulator& by, const Recording& recording) {
     State state = life.living.state;
@@ -231,23 +231,23 @@ TEST(Packing, TellsPlacesByHowMassesMoved) {
   const Frame a{0, {{1, 2, 3}, {2, 2, 3}}}, b{1, {{2, 2, 3}, {3, 2, 3}}}, c{2, {{4, 2, 3}, {5, 2, 7}}};
   const Frame after{2, {{5, 2, 7}, {6, 2, 7}}};
   const std::vector<const Frame*> frames = {&a, &b, &c}, again = {&after};
-  PlacePacking places(3, 0.5);
-  EXPECT_THAT(unpacked(places.next(frames, std::vector<std::uint32_t>{0, 1})),
+  PlacePacking positions(3, 0.5);
+  EXPECT_THAT(unpacked(positions.next(frames, std::vector<std::uint32_t>{0, 1})),
               ElementsAre(2, 2, 4, 0, 6, 0, 2, 2, 0, 0, 0, 0, 3, 3, 0, 0, 0, 8));
   // the second mass stays where it was, and a new one comes
-  EXPECT_THAT(unpacked(places.next(again, std::vector<std::uint32_t>{1, 2})), ElementsAre(0, 2, 0, 0, 0, 0));
+  EXPECT_THAT(unpacked(positions.next(again, std::vector<std::uint32_t>{1, 2})), ElementsAre(0, 2, 0, 0, 0, 0));
 }
 
 /// A body with masses at these x, of these numbers, joined by these pairs.
-Shot shot_of(const std::vector<double>& places, std::vector<std::uint32_t> numbers,
+Shot shot_of(const std::vector<double>& positions, std::vector<std::uint32_t> numbers,
              const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {
   Shot shot;
   shot.body.materials = {{.stiffness = 1}};
   shot.numbers = std::move(numbers);
   Frame& frame = shot.frames.emplace_back();
-  for (const double x : places) {
+  for (const double x : positions) {
     shot.body.masses.push_back({.rest = {x, 0, 0}, .mass = 1, .material = 0});
-    frame.places.push_back(seen({x, 0, 0}));
+    frame.positions.push_back(seen({x, 0, 0}));
   }
   for (const auto& [a, b] : pairs) shot.body.springs.push_back({a, b, 1, 0});
   shot.stress.assign(pairs.size(), 1.0);
@@ -291,15 +291,15 @@ TEST(FilmJson, KnowsMaterialsAgainThatABodyHasLost) {
 
 /// Masses in a row that swing, each at a rate of its own, for so many frames.
 Shot swinging(std::size_t masses, std::size_t frames) {
-  std::vector<double> places(masses);
+  std::vector<double> positions(masses);
   std::vector<std::uint32_t> numbers(masses);
-  std::iota(places.begin(), places.end(), 0.0);
+  std::iota(positions.begin(), positions.end(), 0.0);
   std::iota(numbers.begin(), numbers.end(), 0u);
-  Shot shot = shot_of(places, numbers, {{0, 1}});
+  Shot shot = shot_of(positions, numbers, {{0, 1}});
   shot.frames.clear();
   for (std::size_t f = 0; f < frames; ++f) {
     Frame& frame = shot.frames.emplace_back(Frame{static_cast<double>(f) / filmed_frames_per_second, {}});
-    for (const double x : places) frame.places.push_back(seen({x, std::sin((1 + x) * frame.time), std::cos(x)}));
+    for (const double x : positions) frame.positions.push_back(seen({x, std::sin((1 + x) * frame.time), std::cos(x)}));
   }
   return shot;
 }
@@ -331,7 +331,7 @@ TEST(FilmJson, StatesTheErrorOfWhatItLeavesOut) {
     shot.frames.push_back(shot.frames.front());
     shot.frames.back().time = i;
   }
-  shot.frames[1].places[0] = {0, 1, 0};
+  shot.frames[1].positions[0] = {0, 1, 0};
   const auto json = film_json({shot}, {{"jump"}}, 1'000'000);
   EXPECT_EQ(json["shots"][0]["times"], (std::vector<double>{0, 2, 4}));
   EXPECT_NEAR(json["error"]["largest"].get<double>(), 1, 1e-3);
@@ -377,7 +377,7 @@ Film long_life(int cycles) {
       Frame& frame = shot.frames.emplace_back(Frame{time + t, {}});
       for (const Mass& mass : shot.body.masses) {
         const double pulse = 0.1 * mass.rest.y * std::sin(2 * std::numbers::pi * (frame.time + mass.rest.x));
-        frame.places.push_back(seen(mass.rest + Vec3{0.02 * frame.time, 0.003 * any(random), pulse}));
+        frame.positions.push_back(seen(mass.rest + Vec3{0.02 * frame.time, 0.003 * any(random), pulse}));
       }
     }
     time += duration;
@@ -411,13 +411,13 @@ TEST(FilmJson, ThirteenLivesOfAHundredCyclesFitIntoAPage) {
 }
 
 TEST(FilmJson, StatesTheErrorOfStress) {
-  std::vector<double> places(300);
+  std::vector<double> positions(300);
   std::vector<std::uint32_t> numbers(300);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  std::iota(places.begin(), places.end(), 0.0);
+  std::iota(positions.begin(), positions.end(), 0.0);
   std::iota(numbers.begin(), numbers.end(), 0u);
   for (std::uint32_t i = 0; i + 1 < 300; ++i) pairs.emplace_back(i, i + 1);
-  Shot shot = shot_of(places, numbers, pairs);
+  Shot shot = shot_of(positions, numbers, pairs);
   for (std::size_t s = 0; s < shot.stress.size(); ++s) shot.stress[s] = static_cast<double>(s);
   for (const std::size_t budget : {1'000'000u, 0u}) {
     const auto json = film_json({shot}, {{"one"}}, budget);
@@ -433,11 +433,11 @@ TEST(FilmJson, StatesTheErrorOfStress) {
   }
 }
 
-/// A life in which one body was seen at these places.
-FilmedLife life_at(const std::vector<SeenPlace>& places, Status status = Status::ok) {
+/// A life in which one body was seen at these positions.
+FilmedLife life_at(const std::vector<SeenPlace>& positions, Status status = Status::ok) {
   FilmedLife life;
   life.result.status = status;
-  life.film.push_back({{}, {{0, places}}, {}});
+  life.film.push_back({{}, {{0, positions}}, {}});
   return life;
 }
 

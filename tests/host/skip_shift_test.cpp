@@ -219,8 +219,8 @@ TEST(SkipShift, DrivesDevelopment) {
     const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 6);
     std::vector<Newborn> newborns;
     for (const Individual& individual : individuals) newborns.push_back({individual.id, 0, &individual.genome});
-    std::vector<Life> lives = evaluation.birth(newborns);
-    evaluation.develop(lives, [](double) {});
+    std::vector<Life> lives = evaluation.birth.of(newborns);
+    evaluation.development.run(lives, [](double) {});
     std::vector<Ends> matured;
     for (const Life& life : lives) {
       if (!life.alive()) continue;

@@ -56,7 +56,7 @@ TEST(Printable, SaysWhyATextCanBeNoName) {
 }
 
 TEST(Suggestion, IsQuickForWordsOfAnyLength) {
-  const std::vector<std::string> known{"seed", "population", "newcomers", "evaluations"};
+  const std::vector<std::string> known{"seed", "population", "random_individuals", "evaluations"};
   EXPECT_EQ(nearest(std::string(10'000'000, 's'), known), "");
   EXPECT_EQ(nearest("populatoin", known), "population");
 }

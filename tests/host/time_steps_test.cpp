@@ -57,23 +57,23 @@ TEST(TimeSteps, MaterialsThatNoSpringHasShortenNone) {
   with_others.materials.push_back({1, 0.1, 70'001, 0});  // a muscle too fast for any step
   with_others.materials.push_back({1e15, 0, 0, 0});
   with_others.masses.back().material = 2;
-  const std::vector<Vec3> places = state_at_birth(body, {}).position;
+  const std::vector<Vec3> positions = state_at_birth(body, {}).position;
   for (const Method method : {Method::paper_euler, Method::rk4, Method::implicit}) {
-    EXPECT_EQ(longest_step({.dt = std::nullopt}, with_others, places, {}, method).dt,
-              longest_step({.dt = std::nullopt}, body, places, {}, method).dt);
-    EXPECT_EQ(longest_step({.dt = 0.0002}, with_others, places, {}, method).failure, "");
+    EXPECT_EQ(longest_step({.dt = std::nullopt}, with_others, positions, {}, method).dt,
+              longest_step({.dt = std::nullopt}, body, positions, {}, method).dt);
+    EXPECT_EQ(longest_step({.dt = 0.0002}, with_others, positions, {}, method).failure, "");
   }
   with_others.springs.front().material = 1;
-  EXPECT_DOUBLE_EQ(longest_step({.dt = std::nullopt}, with_others, places, {}, Method::implicit).dt, 0.05 / 70'001);
+  EXPECT_DOUBLE_EQ(longest_step({.dt = std::nullopt}, with_others, positions, {}, Method::implicit).dt, 0.05 / 70'001);
 }
 
 TEST(TimeSteps, AStepThatCannotBeComputedIsNotTold) {
   const Body body = star();
-  std::vector<Vec3> places = state_at_birth(body, {}).position;
-  places[7].y = 1e200;  // its square is infinite
-  const std::string far = longest_step({.dt = std::nullopt}, body, places, {}, Method::paper_euler).failure;
-  places[7].y = std::nan("");
-  const std::string nowhere = longest_step({.dt = std::nullopt}, body, places, {}, Method::rk4).failure;
+  std::vector<Vec3> positions = state_at_birth(body, {}).position;
+  positions[7].y = 1e200;  // its square is infinite
+  const std::string far = longest_step({.dt = std::nullopt}, body, positions, {}, Method::paper_euler).failure;
+  positions[7].y = std::nan("");
+  const std::string nowhere = longest_step({.dt = std::nullopt}, body, positions, {}, Method::rk4).failure;
   EXPECT_EQ(nowhere.substr(0, 13), "unstable dt: ");
   for (const std::string& failure : {far, nowhere}) {
     EXPECT_EQ(failure.find("nan"), std::string::npos) << failure;

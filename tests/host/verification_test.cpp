@@ -107,10 +107,10 @@ constexpr double mass = 0.2, strain = 0.1;
 class StrainedPair final : public Encoding {
  public:
   explicit StrainedPair(double stiffness) : stiffness_(stiffness) {}
-  Layout layout(const World&) const override { return {}; }
-  Blueprint decode(const Genome&, const World& world) const override {
+  Layout layout(const EncodingContext&) const override { return {}; }
+  Blueprint decode(const Genome&, const EncodingContext& context) const override {
     Blueprint blueprint;
-    blueprint.body.materials = world.materials;
+    blueprint.body.materials = context.materials;
     const std::uint32_t own = blueprint.body.material_index({stiffness_, strain, 0, 3.14159265358979323846 / 2});
     blueprint.body.masses = {{{0, 0, 0}, mass}, {{1, 0, 0}, mass}};
     blueprint.body.springs = {{0, 1, 1, own}};
@@ -175,7 +175,7 @@ TEST(Verify, TheSameEveryTimeWhateverElseIsVerified) {
     for (std::size_t t = 0; t < alone[0].trials.size(); ++t)
       EXPECT_EQ(alone[0].trials[t].value, together[i].trials[t].value) << alone[0].trials[t].name;
     EXPECT_EQ(value(together[i], "again"), individuals[i].result.objectives[0]) << "developed as in the run";
-    EXPECT_NE(value(together[i], "disturbed-1"), value(together[i], "disturbed-2"));
+    EXPECT_NE(value(together[i], "perturbed-1"), value(together[i], "perturbed-2"));
   }
 }
 
@@ -233,7 +233,7 @@ TEST(Verify, WarnsOfLivesThatMayHaveDevelopedOtherwise) {
   std::size_t unsure = 0, sure = 0;
   for (const std::uint32_t id : run.archive.best(24)) {
     const bool warns =
-        warned.find("individual " + std::to_string(id) + " lived again on another device") != std::string::npos;
+        warned.find("individual " + std::to_string(id) + " was simulated again on another device") != std::string::npos;
     EXPECT_EQ(warns, !run.archive.life(id).has_value()) << warned;
     ++(warns ? unsure : sure);
   }
@@ -250,7 +250,7 @@ TEST(Verify, ThresholdsAreAtHalf) {
   EXPECT_EQ(found(2, "quarter-step", 0.99), Marks{"artefact"});
   EXPECT_EQ(found(2, "other-method", std::nullopt), Marks{"artefact"});
   EXPECT_EQ(found(2, "other-method", std::nan("")), Marks{"artefact"});
-  EXPECT_EQ(found(2, "disturbed-1", 0), Marks{}) << "chance, not the step";
+  EXPECT_EQ(found(2, "perturbed-1", 0), Marks{}) << "chance, not the step";
   EXPECT_EQ(found(2, "no-muscles", 1), Marks{});
   EXPECT_EQ(found(2, "no-muscles", 1.01), Marks{"passive"});
   EXPECT_EQ(found(2, "no-muscles", std::nullopt), Marks{});

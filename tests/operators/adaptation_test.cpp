@@ -143,13 +143,14 @@ INSTANTIATE_TEST_SUITE_P(Properties, Adaptation,
                          });
 
 /// The life after `turns` turns of an operator.
-Life lived_on(Life life, const Devo& devo, std::uint64_t turns) {
-  for (std::uint64_t turn = 0; turn < turns; ++turn) life.living = after(life, develop(devo, life, turn));
+Life lived_on(Life life, const Devo& devo, std::uint64_t applications) {
+  for (std::uint64_t application = 0; application < applications; ++application)
+    life.living = after(life, develop(devo, life, application));
   return life;
 }
 
 Life toppled(Life life) {
-  for (Vec3& place : life.living.state.position) place = {-place.z, place.y, place.x + 2};
+  for (Vec3& position : life.living.state.position) position = {-position.z, position.y, position.x + 2};
   return life;
 }
 

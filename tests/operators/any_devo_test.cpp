@@ -33,7 +33,7 @@ Life busy_life() {
     life.add_spring(a, b, static_cast<std::uint32_t>(bone + pairs.size() % 4), rng.uniform(0, 100));
     life.living.body.springs.back().growth = static_cast<float>(rng.uniform(0.8, 1.2));
   }
-  life.turns = 5;
+  life.applications = 5;
   return life;
 }
 
@@ -57,7 +57,7 @@ TEST(AnyDevo, DependsOnItsKeyAlone) {
 /// The host applies all edits without an objection, and what comes of them is a body.
 void expect_a_life(const std::vector<std::size_t>& order, std::uint64_t seed) {
   Life life = busy_life();
-  for (life.turn = 1; life.turn <= life.turns; ++life.turn)
+  for (life.application = 1; life.application <= life.applications; ++life.application)
     for (const std::size_t use : order) {
       const Edits edits = develop(*make<Devo>(uses[use].first, uses[use].second), life, seed++);
       ASSERT_NO_THROW(life.living = after(life, edits)) << uses[use].first;

@@ -1,6 +1,7 @@
 // What every built-in operator has to say about itself.
 #include <set>
 
+#include "experiment/toml_writer.hpp"
 #include "support.hpp"
 
 namespace evodevo::test {
@@ -79,10 +80,9 @@ TEST(BuiltIn, DefaultsAreInRangeAndDescribed) {
 TEST(BuiltIn, PapersValuesAreTheDefaults) {
   const auto values = [](std::string_view kind, std::string_view name) {
     const std::unique_ptr<Operator> op(registry().find(kind, name)->entry->create());
-    const toml::table nothing;
-    TomlReader reader(nothing, "");
-    op->parameters(reader);
-    return reader.finish();
+    TomlWriter writer;
+    op->parameters(writer);
+    return writer.take();
   };
   EXPECT_EQ(values("devo", "spring-turnover")["springs"].value<int>(), 125);
   EXPECT_EQ(values("devo", "mass-turnover")["threshold"].value<int>(), 20);

@@ -34,25 +34,25 @@ class AnyEncoding : public testing::TestWithParam<const char*> {};
 
 TEST_P(AnyEncoding, SameGenomeSameBodyOnAnyThread) {
   const auto encoding = make<Encoding>(GetParam());
-  const Layout layout = encoding->layout(world());
+  const Layout layout = encoding->layout(context());
   Rng rng = stream(1);
   const Genome one = encoding->random(layout, rng), other = encoding->random(layout, rng);
-  const auto body = from_eight_threads([&] { return digest(encoding->decode(one, world())); });
-  EXPECT_NE(body, digest(encoding->decode(other, world())));
+  const auto body = from_eight_threads([&] { return digest(encoding->decode(one, context())); });
+  EXPECT_NE(body, digest(encoding->decode(other, context())));
 }
 
 TEST_P(AnyEncoding, RandomGenomesGiveBodiesThatBeginWithTheWorldsMaterials) {
   const auto encoding = make<Encoding>(GetParam());
-  const Layout layout = encoding->layout(world());
+  const Layout layout = encoding->layout(context());
   expect_groups_cover_genes_once(layout);
   Rng rng = stream(2);
   for (int i = 0; i < 5; ++i) {
     const Genome genome = encoding->random(layout, rng);
     ASSERT_EQ(genome.size(), layout.genes.size());
-    const Blueprint blueprint = encoding->decode(genome, world());
+    const Blueprint blueprint = encoding->decode(genome, context());
     EXPECT_EQ(blueprint.failure, "");
     ASSERT_GE(blueprint.body.materials.size(), 5u);
-    for (std::size_t m = 0; m < 5; ++m) EXPECT_EQ(blueprint.body.materials[m], world().materials[m]);
+    for (std::size_t m = 0; m < 5; ++m) EXPECT_EQ(blueprint.body.materials[m], context().materials[m]);
     for (const Mass& mass : blueprint.body.masses) EXPECT_EQ(mass.mass, 0.2);
   }
 }
@@ -60,8 +60,8 @@ TEST_P(AnyEncoding, RandomGenomesGiveBodiesThatBeginWithTheWorldsMaterials) {
 TEST_P(AnyEncoding, AirAloneIsNoBody) {
   const auto encoding = make<Encoding>(GetParam(), "materials = ['air']");
   Rng rng = stream(3);
-  const Genome genome = encoding->random(encoding->layout(world()), rng);
-  EXPECT_EQ(encoding->decode(genome, world()).failure, "all materials to choose from are air");
+  const Genome genome = encoding->random(encoding->layout(context()), rng);
+  EXPECT_EQ(encoding->decode(genome, context()).failure, "all materials to choose from are air");
 }
 
 INSTANTIATE_TEST_SUITE_P(Encodings, AnyEncoding, testing::Values("neural", "cppn", "voxel", "direct"));
@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(Encodings, AnyEncoding, testing::Values("neural", "cppn
 // neural -------------------------------------------------------------------------------------------------------------
 
 TEST(Neural, HasThePapersGenes) {
-  const Layout layout = make<Encoding>("neural")->layout(world());
+  const Layout layout = make<Encoding>("neural")->layout(context());
   // 25 neurons of 1 + 3, 25 of 1 + 25, 3 + 5 of 1 + 25
   ASSERT_EQ(layout.genes.size(), 958u);
   ASSERT_EQ(layout.groups.size(), 58u);
@@ -83,24 +83,25 @@ TEST(Neural, HasThePapersGenes) {
 
 TEST(Neural, OneOutputForEachMaterialToChooseFrom) {
   const auto encoding = make<Encoding>("neural", "materials = ['tissue', 'bone']");
-  const Layout layout = encoding->layout(world());
+  const Layout layout = encoding->layout(context());
   EXPECT_EQ(layout.genes.size(), 958u - 3 * 26);
   std::map<std::int32_t, int> seen;
   Rng rng = stream(1);
   for (int i = 0; i < 20; ++i)
-    for (const Mass& mass : encoding->decode(encoding->random(layout, rng), world()).body.masses) ++seen[mass.material];
+    for (const Mass& mass : encoding->decode(encoding->random(layout, rng), context()).body.masses)
+      ++seen[mass.material];
   EXPECT_THAT(seen, testing::ElementsAre(testing::Key(bone), testing::Key(tissue)));
 }
 
 TEST(Neural, BiasesOfTheOutputsAloneSetPlaceAndMaterial) {
   const auto encoding = make<Encoding>("neural", "side = 3.0\nneighbours = 7\npoints = 10");
-  const Layout layout = encoding->layout(world());
+  const Layout layout = encoding->layout(context());
   Genome genome(layout.genes.size(), 0);
   const auto bias = [&](std::size_t output) -> float& { return genome[layout.groups[50 + output].first]; };
   bias(0) = 0.5f;
   bias(1) = -1;
   bias(3 + muscle) = 0.25f;
-  const Blueprint blueprint = encoding->decode(genome, world());
+  const Blueprint blueprint = encoding->decode(genome, context());
   EXPECT_EQ(blueprint.neighbours, 7u);
   ASSERT_EQ(blueprint.body.masses.size(), 10u);
   for (const Mass& mass : blueprint.body.masses) {
@@ -114,7 +115,7 @@ TEST(Neural, BiasesOfTheOutputsAloneSetPlaceAndMaterial) {
 /// A network of six hidden neurons that lets the points through: x = relu(x) - relu(-x).
 std::vector<Vec3> points_of(const std::string& toml) {
   const auto encoding = make<Encoding>("neural", "hidden = 6\n" + toml);
-  const Layout layout = encoding->layout(world());
+  const Layout layout = encoding->layout(context());
   Genome genome(layout.genes.size(), 0);
   const auto weight = [&](std::size_t neuron, std::size_t input) -> float& {
     return genome[layout.groups[neuron].first + 1 + input];
@@ -127,7 +128,7 @@ std::vector<Vec3> points_of(const std::string& toml) {
     weight(12 + axis, 2 * axis + 1) = -1;
   }
   std::vector<Vec3> points;
-  for (const Mass& mass : encoding->decode(genome, world()).body.masses)
+  for (const Mass& mass : encoding->decode(genome, context()).body.masses)
     points.push_back({std::atanh(mass.rest.x), std::atanh(mass.rest.y), std::atanh(mass.rest.z)});
   return points;
 }
@@ -173,12 +174,12 @@ std::vector<double> network(const Genome& genome, const Layout& layout, Vec3 poi
 
 TEST(Neural, IsThePapersNetwork) {
   const auto encoding = make<Encoding>("neural");
-  const Layout layout = encoding->layout(world());
+  const Layout layout = encoding->layout(context());
   const auto points = points_of("");
   Rng rng = stream(4);
   for (int trial = 0; trial < 3; ++trial) {
     const Genome genome = encoding->random(layout, rng);
-    const Body body = encoding->decode(genome, world()).body;
+    const Body body = encoding->decode(genome, context()).body;
     ASSERT_EQ(body.masses.size(), points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       const auto outputs = network(genome, layout, points[i]);
@@ -193,11 +194,11 @@ TEST(Neural, IsThePapersNetwork) {
 
 TEST(Neural, SizesAreTheLastTwoOutputs) {
   const auto encoding = make<Encoding>("neural", "size_range = 0.25");
-  const Layout layout = encoding->layout(world());
+  const Layout layout = encoding->layout(context());
   const auto points = points_of("");
   Rng rng = stream(9);
   const Genome genome = encoding->random(layout, rng);
-  const Blueprint blueprint = encoding->decode(genome, world());
+  const Blueprint blueprint = encoding->decode(genome, context());
   ASSERT_EQ(blueprint.sizes.size(), points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto outputs = network(genome, layout, points[i]);
@@ -210,9 +211,9 @@ TEST(Neural, SizesAreTheLastTwoOutputs) {
 TEST(Neural, PlacesStayInTheCubeWhateverTheGenes) {
   const auto encoding = make<Encoding>("neural");
   for (const float value : {-1.0f, 1.0f, 1e30f}) {
-    const Blueprint blueprint = encoding->decode(Genome(958, value), world());
+    const Blueprint blueprint = encoding->decode(Genome(958, value), context());
     for (const Mass& mass : blueprint.body.masses)
-      for (const double place : {mass.rest.x, mass.rest.y, mass.rest.z}) EXPECT_LE(std::abs(place), 1);
+      for (const double position : {mass.rest.x, mass.rest.y, mass.rest.z}) EXPECT_LE(std::abs(position), 1);
   }
 }
 
@@ -221,7 +222,7 @@ TEST(Neural, GenesThatAreNoNumbersAreNoBody) {
   for (const float value : {std::nanf(""), std::numeric_limits<float>::infinity()}) {
     Genome genome(958, 0.5f);
     genome[500] = value;
-    EXPECT_EQ(encoding->decode(genome, world()).failure, "a gene is not finite");
+    EXPECT_EQ(encoding->decode(genome, context()).failure, "a gene is not finite");
   }
 }
 
@@ -229,14 +230,14 @@ class AnyNetwork : public testing::TestWithParam<const char*> {};
 
 TEST_P(AnyNetwork, PairsBeforeTheMappingAreThoseOfThePoints) {
   const auto after = make<Encoding>(GetParam()), before = make<Encoding>(GetParam(), "pairing = 'before-mapping'");
-  const Layout layout = after->layout(world());
+  const Layout layout = after->layout(context());
   Rng rng = stream(8);
   const Genome genome = after->random(layout, rng), other = after->random(layout, rng);
-  Blueprint mapped = after->decode(genome, world()), paired = before->decode(genome, world());
+  Blueprint mapped = after->decode(genome, context()), paired = before->decode(genome, context());
   EXPECT_TRUE(mapped.paired_at.empty());
   ASSERT_EQ(paired.paired_at.size(), 1000u);
   for (std::size_t i = 0; i < 1000; ++i) EXPECT_NEAR(norm(paired.paired_at[i] - points_of("")[i]), 0, 1e-9);
-  EXPECT_EQ(paired.paired_at, before->decode(other, world()).paired_at) << "the points are those of the run";
+  EXPECT_EQ(paired.paired_at, before->decode(other, context()).paired_at) << "the points are those of the run";
   EXPECT_EQ(mapped.origins, paired.paired_at);
   paired.paired_at.clear();
   EXPECT_EQ(digest(paired), digest(mapped)) << "all else is the same";
@@ -246,14 +247,14 @@ TEST_P(AnyNetwork, SizesAreTwoMoreNeuronsThatChangeNothingElse) {
   for (const std::string pairing : {"pairing = 'after-mapping'", "pairing = 'before-mapping'"}) {
     const auto fixed = make<Encoding>(GetParam(), pairing);
     const auto sized = make<Encoding>(GetParam(), pairing + "\nsize_range = 0.9");
-    const Layout less = fixed->layout(world()), more = sized->layout(world());
+    const Layout less = fixed->layout(context()), more = sized->layout(context());
     ASSERT_EQ(more.groups.size(), less.groups.size() + 2);
     EXPECT_EQ(more.genes.size(), less.genes.size() + 2 * less.groups.back().count);
     expect_groups_cover_genes_once(more);
 
     Rng rng = stream(10);
     const Genome genome = sized->random(more, rng);
-    Blueprint blueprint = sized->decode(genome, world());
+    Blueprint blueprint = sized->decode(genome, context());
     ASSERT_EQ(blueprint.sizes.size(), 1000u);
     for (const Size& size : blueprint.sizes) {
       EXPECT_NEAR(size.start, 1, 0.9 + 1e-12);
@@ -261,18 +262,18 @@ TEST_P(AnyNetwork, SizesAreTwoMoreNeuronsThatChangeNothingElse) {
     }
     blueprint.sizes.clear();
     const Genome without(genome.begin(), genome.begin() + static_cast<std::ptrdiff_t>(less.genes.size()));
-    EXPECT_EQ(digest(blueprint), digest(fixed->decode(without, world())));
+    EXPECT_EQ(digest(blueprint), digest(fixed->decode(without, context())));
   }
 }
 
 TEST_P(AnyNetwork, SizesStayInTheirRangeWhateverTheGenes) {
   const auto encoding = make<Encoding>(GetParam(), "size_range = 0.5\npoints = 20");
-  const Layout layout = encoding->layout(world());
+  const Layout layout = encoding->layout(context());
   for (const float value : {0.0f, 1.0f, 1e30f}) {
     Genome genome(layout.genes.size(), value);
     for (std::size_t i = 0; i < genome.size(); ++i)
       if (layout.genes[i].is_choice()) genome[i] = 0;
-    for (const Size& size : encoding->decode(genome, world()).sizes) {
+    for (const Size& size : encoding->decode(genome, context()).sizes) {
       EXPECT_TRUE(size.start >= 0.5 && size.start <= 1.5) << size.start;
       EXPECT_TRUE(size.end >= 0.5 && size.end <= 1.5) << size.end;
     }
@@ -284,7 +285,7 @@ INSTANTIATE_TEST_SUITE_P(Networks, AnyNetwork, testing::Values("neural", "cppn")
 // cppn ---------------------------------------------------------------------------------------------------------------
 
 TEST(Cppn, EveryHiddenNeuronHasAFunctionOfItsOwn) {
-  const Layout layout = make<Encoding>("cppn", "hidden = 6")->layout(world());
+  const Layout layout = make<Encoding>("cppn", "hidden = 6")->layout(context());
   ASSERT_EQ(layout.groups.size(), 6u + 6 + 8);
   for (std::size_t n = 0; n < 20; ++n) {
     EXPECT_EQ(layout.groups[n].count, n < 6 ? 6u : n < 12 ? 8u : 7u);
@@ -296,7 +297,7 @@ TEST(Cppn, EveryHiddenNeuronHasAFunctionOfItsOwn) {
 TEST(Cppn, FunctionsAreStanleys) {
   // the first neuron of each hidden layer and the first output pass on its value: what comes is the function of x
   const auto encoding = make<Encoding>("cppn", "hidden = 2\npoints = 50");
-  const Layout layout = encoding->layout(world());
+  const Layout layout = encoding->layout(context());
   const std::vector<Vec3> points = points_of("points = 50");
   const std::vector<double (*)(double)> functions = {
       [](double x) { return x; }, [](double x) { return std::tanh(x); }, [](double x) { return std::sin(x); },
@@ -312,7 +313,7 @@ TEST(Cppn, FunctionsAreStanleys) {
     gene(0, 5) = -1;    // weight of the distance from the centre
     gene(2, 2) = 1;
     gene(4, 1) = 1;
-    const Body body = encoding->decode(genome, world()).body;
+    const Body body = encoding->decode(genome, context()).body;
     for (std::size_t i = 0; i < 50; ++i)
       EXPECT_NEAR(body.masses[i].rest.x, std::tanh(functions[f](0.5 + 2 * points[i].x - norm(points[i]))), 1e-9);
   }
@@ -331,13 +332,13 @@ std::map<double, int> stiffnesses(const Body& body) {
 
 TEST(Voxel, OneVoxelIsACubeOfTwentyEightSprings) {
   const auto encoding = make<Encoding>("voxel", "size = [1, 1, 1]\nedge = 0.5");
-  const Layout layout = encoding->layout(world());
+  const Layout layout = encoding->layout(context());
   ASSERT_EQ(layout.genes.size(), 1u);
   EXPECT_EQ(layout.genes[0].choices, 5u);
-  const Body body = encoding->decode(choices({muscle}), world()).body;
+  const Body body = encoding->decode(choices({muscle}), context()).body;
   ASSERT_EQ(body.masses.size(), 8u);
   for (const Mass& mass : body.masses) {
-    for (const double place : {mass.rest.x, mass.rest.y, mass.rest.z}) EXPECT_DOUBLE_EQ(std::abs(place), 0.25);
+    for (const double position : {mass.rest.x, mass.rest.y, mass.rest.z}) EXPECT_DOUBLE_EQ(std::abs(position), 0.25);
     EXPECT_EQ(mass.material, no_material);
     EXPECT_EQ(mass.air_contacts, 0u);
   }
@@ -352,14 +353,14 @@ TEST(Voxel, OneVoxelIsACubeOfTwentyEightSprings) {
 
 TEST(Voxel, SharedSpringsTakeTheMean) {
   const auto encoding = make<Encoding>("voxel", "size = [2, 1, 1]");
-  const Body body = encoding->decode(choices({muscle2, bone}), world()).body;
+  const Body body = encoding->decode(choices({muscle2, bone}), context()).body;
   EXPECT_EQ(body.masses.size(), 12u);
   // the six springs of the face between them belong to both
   EXPECT_EQ(stiffnesses(body), (std::map<double, int>{{5000, 22}, {7500, 6}, {10000, 22}}));
   for (const Spring& spring : body.springs) {
     const Material& material = body.materials[spring.material];
     if (material.stiffness != 7500) continue;
-    EXPECT_EQ(material, mean(world().materials[muscle2], world().materials[bone]));
+    EXPECT_EQ(material, mean(context().materials[muscle2], context().materials[bone]));
     EXPECT_EQ(body.masses[spring.a].rest.x, 0);
     EXPECT_EQ(body.masses[spring.b].rest.x, 0);
   }
@@ -367,33 +368,33 @@ TEST(Voxel, SharedSpringsTakeTheMean) {
 
 TEST(Voxel, VoxelsOfAirAreAbsent) {
   const auto encoding = make<Encoding>("voxel", "size = [2, 1, 1]");
-  const Body body = encoding->decode(choices({muscle, air}), world()).body;
+  const Body body = encoding->decode(choices({muscle, air}), context()).body;
   EXPECT_EQ(stiffnesses(body), (std::map<double, int>{{5000, 28}}));
   for (const Mass& mass : body.masses) {
     // a corner of air alone has 7 contacts; one of the shared face those with the 4 far corners
     const unsigned expected = mass.rest.x < -0.05 ? 0 : mass.rest.x < 0.05 ? 4 : 7;
     EXPECT_EQ(mass.air_contacts, expected);
   }
-  EXPECT_TRUE(encoding->decode(choices({air, air}), world()).body.springs.empty());
+  EXPECT_TRUE(encoding->decode(choices({air, air}), context()).body.springs.empty());
 }
 
 TEST(Voxel, UniformBodiesNeedNoNewMaterial) {
   const auto encoding = make<Encoding>("voxel", "size = [3, 3, 3]");
   for (const std::int32_t material : {bone, muscle, muscle2, tissue})
-    EXPECT_EQ(encoding->decode(Genome(27, static_cast<float>(material)), world()).body.materials.size(), 5u);
+    EXPECT_EQ(encoding->decode(Genome(27, static_cast<float>(material)), context()).body.materials.size(), 5u);
 }
 
 TEST(Voxel, OptionsAreTheChosenMaterials) {
   const auto encoding = make<Encoding>("voxel", "size = [2, 1, 1]\nmaterials = ['air', 'tissue', 'bone']");
-  EXPECT_EQ(encoding->layout(world()).genes[1].choices, 3u);
+  EXPECT_EQ(encoding->layout(context()).genes[1].choices, 3u);
   // in the order of the world: air, bone, tissue
-  EXPECT_EQ(stiffnesses(encoding->decode(choices({1, 2}), world()).body),
+  EXPECT_EQ(stiffnesses(encoding->decode(choices({1, 2}), context()).body),
             (std::map<double, int>{{4000, 22}, {7000, 6}, {10000, 22}}));
 }
 
 TEST(Voxel, SizesAreGenesOnlyWhereTheyDevelop) {
-  EXPECT_EQ(make<Encoding>("voxel", "size = [2, 1, 1]")->layout(world()).genes.size(), 2u);
-  const Layout layout = make<Encoding>("voxel", "size = [2, 1, 1]\nsize_range = 0.25")->layout(world());
+  EXPECT_EQ(make<Encoding>("voxel", "size = [2, 1, 1]")->layout(context()).genes.size(), 2u);
+  const Layout layout = make<Encoding>("voxel", "size = [2, 1, 1]\nsize_range = 0.25")->layout(context());
   ASSERT_EQ(layout.genes.size(), 6u);
   ASSERT_EQ(layout.groups.size(), 2u);
   EXPECT_EQ(layout.genes[3].choices, 5u);
@@ -407,7 +408,7 @@ TEST(Voxel, SpringsTakeTheSizesOfTheirVoxels) {
   const auto encoding = make<Encoding>("voxel", "size = [3, 1, 1]\nedge = 0.5\nsize_range = 0.5");
   // the last voxel is air, whose sizes count for nothing
   const Genome genome{bone, 0.5f, 1.5f, muscle, 1.0f, 0.75f, air, 1.5f, 1.5f};
-  const Body body = encoding->decode(genome, world()).body;
+  const Body body = encoding->decode(genome, context()).body;
   ASSERT_EQ(body.springs.size(), 50u);
   for (const Spring& spring : body.springs) {
     const Vec3 a = body.masses[spring.a].rest, b = body.masses[spring.b].rest;
@@ -419,14 +420,14 @@ TEST(Voxel, SpringsTakeTheSizesOfTheirVoxels) {
 }
 
 TEST(Direct, EverySpringHasAGene) {
-  const Layout one = make<Encoding>("direct", "size = [1, 1, 1]")->layout(world());
+  const Layout one = make<Encoding>("direct", "size = [1, 1, 1]")->layout(context());
   EXPECT_EQ(one.genes.size(), 28u);
   std::vector<std::uint32_t> counts;
   for (const GeneGroup& group : one.groups) counts.push_back(group.count);
   EXPECT_THAT(counts, testing::ElementsAre(7, 6, 5, 4, 3, 2, 1));
-  EXPECT_EQ(make<Encoding>("direct", "size = [2, 1, 1]")->layout(world()).genes.size(), 50u);
+  EXPECT_EQ(make<Encoding>("direct", "size = [2, 1, 1]")->layout(context()).genes.size(), 50u);
   // the paper's benchmark body, section V-A
-  EXPECT_EQ(make<Encoding>("direct", "size = [10, 10, 10]")->layout(world()).genes.size(), 14230u);
+  EXPECT_EQ(make<Encoding>("direct", "size = [10, 10, 10]")->layout(context()).genes.size(), 14230u);
 }
 
 TEST(Direct, GenesStandInTheOrderOfTheSprings) {
@@ -436,7 +437,7 @@ TEST(Direct, GenesStandInTheOrderOfTheSprings) {
   genome[6] = muscle;    // masses 0 and 7
   genome[27] = muscle2;  // masses 6 and 7
   genome[7] = air;       // masses 1 and 2
-  const Body body = encoding->decode(genome, world()).body;
+  const Body body = encoding->decode(genome, context()).body;
   ASSERT_EQ(body.springs.size(), 27u);
   for (const Spring& spring : body.springs) {
     const std::pair<std::uint32_t, std::uint32_t> ends = std::minmax(spring.a, spring.b);

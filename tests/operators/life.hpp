@@ -18,14 +18,15 @@ struct Life {
   Box bounds = {{-2, -2, 0}, {2, 2, 2}};
   double mass = 0.35;  // other than that of the body's masses
   bool resets = false;
-  int turn = 3, turns = 100;
+  int application = 3, applications = 100;
   Genome genome;
   Layout layout;
 
-  Moment now() const {
-    Moment now{living.body, living.state, {}, 3, 100, turn, turns, time, bounds, mass, resets, genome, layout};
-    show_records(living, {.stress = true, .peak_force = true, .muscle_work = true, .tension = true}, now);
-    return now;
+  DevoContext context() const {
+    DevoContext context{living.body, living.state, {},   3,      100,    application, applications,
+                        time,        bounds,       mass, resets, genome, layout};
+    show_records(living, {.stress = true, .peak_force = true, .muscle_work = true, .tension = true}, context);
+    return context;
   }
 
   void add_mass(Vec3 rest, std::int32_t material) {
@@ -44,7 +45,7 @@ struct Life {
 /// `masses` masses at random places, with the world's materials in turn.
 inline Life life_of_masses(std::uint32_t masses, bool with_materials = true) {
   Life life;
-  life.living.body.materials = world().materials;
+  life.living.body.materials = context().materials;
   Rng rng = stream(99);
   for (std::uint32_t i = 0; i < masses; ++i)
     life.add_mass({rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0, 1)},
@@ -75,7 +76,7 @@ inline std::set<Pair> joined(const Body& body) {
 inline Edits develop(const Devo& devo, const Life& life, std::uint64_t seed) {
   Edits edits;
   Rng rng = stream(seed);
-  devo.develop(life.now(), edits, rng);
+  devo.develop(life.context(), edits, rng);
   return edits;
 }
 
@@ -85,7 +86,7 @@ inline std::vector<double> digest(const Edits& edits) {
   if (edits.growth) digest.insert(digest.end(), {edits.growth->from, edits.growth->to, edits.growth->whole});
   digest.insert(digest.end(), edits.removed_masses.begin(), edits.removed_masses.end());
   for (const NewMass& m : edits.new_masses)
-    digest.insert(digest.end(), {m.place.x, m.place.y, m.place.z, m.mass, static_cast<double>(m.material)});
+    digest.insert(digest.end(), {m.position.x, m.position.y, m.position.z, m.mass, static_cast<double>(m.material)});
   for (const NewSpring& s : edits.new_springs)
     digest.insert(digest.end(), {double(s.a), double(s.b), s.material.stiffness, s.material.phase});
   for (const ChangedSpring& c : edits.changed_springs)
@@ -97,7 +98,7 @@ inline std::vector<double> digest(const Edits& edits) {
 /// The life after the edits, which the host checks as it applies them.
 inline LivingBody after(const Life& life, const Edits& edits) {
   Life changed = life;
-  apply_edits(changed.living, edits, changed.now());
+  apply(resolved(edits, changed.context()), changed.living);
   return changed.living;
 }
 

@@ -21,8 +21,8 @@ TEST(MassGrowth, EndsAtTheLimit) {
   Life life = two_chains();
   const auto devo = make<Devo>("mass-growth", "masses = 5\nlimit = 13\nsprings = 2");
   std::vector<std::size_t> sizes;
-  for (std::uint64_t turn = 0; turn < 4; ++turn) {
-    life.living = after(life, develop(*devo, life, turn));
+  for (std::uint64_t application = 0; application < 4; ++application) {
+    life.living = after(life, develop(*devo, life, application));
     sizes.push_back(life.living.body.masses.size());
   }
   EXPECT_THAT(sizes, testing::ElementsAre(11, 13, 13, 13));
@@ -32,21 +32,21 @@ TEST(MassGrowth, EndsAtTheLimit) {
 TEST(MassGrowth, MassesComeOnSpringsByTheirStress) {
   const auto devo = make<Devo>("mass-growth", "masses = 1\nsprings = 1\nwhere = 'by-stress'\nmin_distance = 0.0");
   const Life life = two_chains();
-  const auto& places = life.living.state.position;
+  const auto& positions = life.living.state.position;
   int first_chain = 0;
   std::vector<int> along(4, 0);
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     const Edits edits = develop(*devo, life, seed);
     ASSERT_EQ(edits.new_masses.size(), 1u);
-    const Vec3 place = edits.new_masses[0].place;
+    const Vec3 position = edits.new_masses[0].position;
     bool on_spring = false;
     for (const Spring& spring : life.living.body.springs) {
-      const Vec3 a = places[spring.a], b = places[spring.b];
-      on_spring |= norm(place - a) + norm(place - b) < norm(b - a) + 1e-12;
+      const Vec3 a = positions[spring.a], b = positions[spring.b];
+      on_spring |= norm(position - a) + norm(position - b) < norm(b - a) + 1e-12;
     }
     EXPECT_TRUE(on_spring);
-    first_chain += place.x < 50;
-    ++along.at(static_cast<std::size_t>(4 * (place.y - std::floor(place.y))));
+    first_chain += position.x < 50;
+    ++along.at(static_cast<std::size_t>(4 * (position.y - std::floor(position.y))));
   }
   EXPECT_NEAR(first_chain, 750, 70);                              // five standard deviations
   for (const int quarter : along) EXPECT_NEAR(quarter, 250, 70);  // everywhere between the ends
@@ -55,15 +55,15 @@ TEST(MassGrowth, MassesComeOnSpringsByTheirStress) {
 TEST(MassGrowth, NoMassComesBelowTheFloorOrTooNear) {
   const auto devo = make<Devo>("mass-growth", "masses = 1000\nsprings = 1\nwhere = 'by-stress'\nmin_distance = 0.3");
   Life life = two_chains();
-  for (Vec3& place : life.living.state.position) place.z = -0.001;  // sunk into the floor
+  for (Vec3& position : life.living.state.position) position.z = -0.001;  // sunk into the floor
   const Edits edits = develop(*devo, life, 1);
   ASSERT_FALSE(edits.new_masses.empty());
   EXPECT_LT(edits.new_masses.size(), 20u) << "four springs of 1 m have no more room";
-  std::vector<Vec3> places = life.living.state.position;
+  std::vector<Vec3> positions = life.living.state.position;
   for (const NewMass& mass : edits.new_masses) {
-    EXPECT_GE(mass.place.z, 0);
-    for (const Vec3& other : places) EXPECT_GE(norm(mass.place - other), 0.3);
-    places.push_back(mass.place);
+    EXPECT_GE(mass.position.z, 0);
+    for (const Vec3& other : positions) EXPECT_GE(norm(mass.position - other), 0.3);
+    positions.push_back(mass.position);
   }
 }
 

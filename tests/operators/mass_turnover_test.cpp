@@ -15,9 +15,9 @@ Life ring(bool with_materials = true) {
   return life;
 }
 
-bool within(const Vec3& place, const Box& box) {
-  return place.x >= box.low.x && place.y >= box.low.y && place.z >= box.low.z && place.x <= box.high.x &&
-         place.y <= box.high.y && place.z <= box.high.z;
+bool within(const Vec3& position, const Box& box) {
+  return position.x >= box.low.x && position.y >= box.low.y && position.z >= box.low.z && position.x <= box.high.x &&
+         position.y <= box.high.y && position.z <= box.high.z;
 }
 
 TEST(MassTurnover, MassesOfFewSpringsGo) {
@@ -40,7 +40,7 @@ TEST(MassTurnover, TheNumberOfItsSpringsIsWhyAMassGoes) {
   ASSERT_EQ(edits.removed_masses.size(), 4u);
   EXPECT_THAT(edits.causes.removed_masses, testing::ElementsAre(18, 19, 19, 19)) << "with contacts through air";
   const Measure measure = devo->measure(&Causes::removed_masses);
-  EXPECT_EQ(measure.name, "valence");
+  EXPECT_EQ(measure.name, "degree");
   EXPECT_EQ(measure.unit, "springs");
 }
 
@@ -77,19 +77,19 @@ TEST(MassTurnover, NewMassesLieInBoundsAndApart) {
   for (const bool resets : {false, true}) {
     Life life = ring();
     life.resets = resets;
-    const Moment now = life.now();
+    const DevoContext context = life.context();
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
       const Edits edits = develop(*devo, life, seed);
       ASSERT_FALSE(edits.new_masses.empty());
-      std::vector<Vec3> places;
+      std::vector<Vec3> positions;
       const std::set<std::uint32_t> gone(edits.removed_masses.begin(), edits.removed_masses.end());
       for (std::uint32_t i = 0; i < masses; ++i)
-        if (!gone.contains(i)) places.push_back(now.place(i));
+        if (!gone.contains(i)) positions.push_back(context.position(i));
       for (const NewMass& mass : edits.new_masses) {
-        EXPECT_TRUE(within(mass.place, life.bounds));
+        EXPECT_TRUE(within(mass.position, life.bounds));
         EXPECT_EQ(mass.mass, 0.35);
-        for (const Vec3& other : places) EXPECT_GE(norm(mass.place - other), 0.25);
-        places.push_back(mass.place);
+        for (const Vec3& other : positions) EXPECT_GE(norm(mass.position - other), 0.25);
+        positions.push_back(mass.position);
       }
     }
   }
@@ -102,8 +102,8 @@ TEST(MassTurnover, PlacesFillTheBounds) {
   Vec3 low = life.bounds.high, high = life.bounds.low;
   for (std::uint64_t seed = 0; seed < 100; ++seed)
     for (const NewMass& mass : develop(*devo, life, seed).new_masses) {
-      low = {std::min(low.x, mass.place.x), std::min(low.y, mass.place.y), std::min(low.z, mass.place.z)};
-      high = {std::max(high.x, mass.place.x), std::max(high.y, mass.place.y), std::max(high.z, mass.place.z)};
+      low = {std::min(low.x, mass.position.x), std::min(low.y, mass.position.y), std::min(low.z, mass.position.z)};
+      high = {std::max(high.x, mass.position.x), std::max(high.y, mass.position.y), std::max(high.z, mass.position.z)};
     }
   EXPECT_LT(norm(low - life.bounds.low), 0.15);
   EXPECT_LT(norm(high - life.bounds.high), 0.15);
@@ -159,13 +159,14 @@ TEST(MassTurnover, NewMassesAreJoinedToTheNearestThatStay) {
   for (const bool resets : {false, true}) {
     Life life = ring();
     life.resets = resets;
-    const Moment now = life.now();
+    const DevoContext context = life.context();
     const Edits edits = develop(*devo, life, 1);
     ASSERT_EQ(edits.new_masses.size(), 4u);
     ASSERT_EQ(edits.new_springs.size(), 4u * 7);
     for (std::uint32_t m = 0; m < 4; ++m) {
       std::vector<std::pair<double, std::uint32_t>> order;
-      for (std::uint32_t i = 4; i < masses; ++i) order.emplace_back(norm(now.place(i) - edits.new_masses[m].place), i);
+      for (std::uint32_t i = 4; i < masses; ++i)
+        order.emplace_back(norm(context.position(i) - edits.new_masses[m].position), i);
       std::sort(order.begin(), order.end());
       for (std::size_t s = 0; s < 7; ++s)
         EXPECT_EQ(ordered(edits.new_springs[7 * m + s].a, edits.new_springs[7 * m + s].b),
@@ -189,7 +190,7 @@ TEST(MassTurnover, NewSpringsAreBornWithoutForce) {
 TEST(MassTurnover, MaterialsAreThoseOfTheBodyButNotAir) {
   const auto devo = make<Devo>("mass-turnover");
   const Life life = ring();
-  const auto materials = world().materials;
+  const auto materials = context().materials;
   std::set<std::int32_t> seen;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     const Edits edits = develop(*devo, life, seed);

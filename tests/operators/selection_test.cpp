@@ -67,15 +67,15 @@ std::vector<Row> rows_without_ties(std::uint64_t seed) {
 
 /// The same rows in another order of birth.
 std::vector<Row> permuted(const std::vector<Row>& rows, std::uint64_t seed) {
-  std::vector<std::uint32_t> order(rows.size()), place(rows.size());
+  std::vector<std::uint32_t> order(rows.size()), position(rows.size());
   for (std::uint32_t i = 0; i < rows.size(); ++i) order[i] = i;
   Rng rng = stream(seed);
   rng.shuffle(order);
-  for (std::uint32_t i = 0; i < rows.size(); ++i) place[order[i]] = i;
+  for (std::uint32_t i = 0; i < rows.size(); ++i) position[order[i]] = i;
   std::vector<Row> result;
   for (const std::uint32_t i : order) {
     result.push_back(rows[i]);
-    if (rows[i].parent) result.back().parent = place[*rows[i].parent];
+    if (rows[i].parent) result.back().parent = position[*rows[i].parent];
   }
   return result;
 }
@@ -239,7 +239,7 @@ TEST(AgeFitnessPareto, KeepsWholeLayersFirst) {
 
 TEST(AgeFitnessPareto, SparesTheYoung) {
   const auto selection = make<Selection>("age-fitness-pareto");
-  // the weak newcomer is on the front; the older copy of row 1 is not
+  // the weak random_individual is on the front; the older copy of row 1 is not
   EXPECT_THAT(survivors(*selection, {{{9}, 40}, {{5}, 10}, {{5}, 11}, {{0.1}, 0}}, 3),
               testing::UnorderedElementsAre(0, 1, 3));
 }
@@ -297,7 +297,7 @@ TEST(ParetoLayers, TheMostCrowdedOfTooLargeAFrontGo) {
 
 TEST(ParetoLayers, NewcomersChallengeTheWorst) {
   const auto selection = make<Selection>("pareto-layers");
-  // the newcomer 3, of the champion's age, beats the worst; 4 is the worst itself
+  // the random_individual 3, of the champion's age, beats the worst; 4 is the worst itself
   EXPECT_THAT(survivors(*selection, {champion, {{50}, 3}, {{10}, 3}, {{20}, 0}}, 3),
               testing::UnorderedElementsAre(0, 1, 3));
   EXPECT_THAT(survivors(*selection, {champion, {{50}, 3}, {{10}, 3}, {{5}, 4}}, 3),

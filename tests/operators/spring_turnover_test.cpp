@@ -63,7 +63,7 @@ TEST(SpringTurnover, AllFreePairsAreReachedAlike) {
 TEST(SpringTurnover, MaterialsAreTheMeanOfTheMassesAndNeverAir) {
   const auto devo = make<Devo>("spring-turnover");
   const Life life = busy_life();
-  const auto materials = world().materials;
+  const auto materials = context().materials;
   bool with_air = false;
   for (std::uint64_t seed = 0; seed < 10; ++seed)
     for (const NewSpring& spring : develop(*devo, life, seed).new_springs) {

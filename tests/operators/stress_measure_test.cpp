@@ -92,7 +92,7 @@ TEST_P(StressMeasure, DecidesWhereMassesCome) {
   for (std::uint64_t seed = 0; seed < draws; ++seed) {
     const auto edits = develop(*devo, life, seed);
     ASSERT_EQ(edits.new_masses.size(), 1u);
-    const auto spring = static_cast<std::size_t>(edits.new_masses[0].place.x / 10);
+    const auto spring = static_cast<std::size_t>(edits.new_masses[0].position.x / 10);
     ++masses_on.at(spring);
     EXPECT_EQ(edits.causes.new_masses, std::vector{stress[spring]});
   }

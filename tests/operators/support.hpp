@@ -21,7 +21,7 @@ inline const Registry& registry() {
 }
 
 /// The paper's materials, in the order of the alphabet.
-inline World world() {
+inline EncodingContext context() {
   const double pi = 3.14159265358979323846;
   return {{"air", "bone", "muscle", "muscle2", "tissue"},
           {{0, 0, 0, 0}, {10000, 0, 0, 0}, {5000, 0.14, 1, 0}, {5000, 0.14, 1, pi}, {4000, 0, 0, 0}},
@@ -37,7 +37,7 @@ std::unique_ptr<T> make(const std::string& name, const std::string& toml = "") {
   if (available == nullptr) throw std::runtime_error("no " + std::string(T::kind) + " named " + name);
   auto op = create<T>(*available);
   const toml::table table = parse_toml(toml, "test.toml");
-  const std::vector<std::string> materials = world().material_names;
+  const std::vector<std::string> materials = context().material_names;
   TomlReader reader(table, "test", &materials);
   op->parameters(reader);
   reader.finish();

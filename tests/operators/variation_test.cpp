@@ -31,10 +31,10 @@ void expect_within(const Genome& genome, const Layout& layout) {
 }
 
 std::vector<std::size_t> differences(const Genome& a, const Genome& b) {
-  std::vector<std::size_t> places;
+  std::vector<std::size_t> positions;
   for (std::size_t i = 0; i < a.size(); ++i)
-    if (a[i] != b[i]) places.push_back(i);
-  return places;
+    if (a[i] != b[i]) positions.push_back(i);
+  return positions;
 }
 
 // reset-weight -------------------------------------------------------------------------------------------------------
@@ -208,7 +208,7 @@ TEST(TwoPoint, SwapsEverySegmentAlikeOften) {
   Layout layout;
   layout.add_group(4, {0, 1});
   const auto seen = exchanges(*make<Crossover>("two-point"), layout, 10000);
-  ASSERT_EQ(seen.size(), 10u);  // pairs among the five places to cut
+  ASSERT_EQ(seen.size(), 10u);  // pairs among the five positions to cut
   for (const auto& [genes, count] : seen) {
     EXPECT_EQ(genes.back() - genes.front() + 1, genes.size()) << "not one segment";
     EXPECT_NEAR(count, 1000, 150);

@@ -13,13 +13,13 @@
 namespace evodevo::test {
 namespace {
 
-std::vector<Vec3> rest_places(const Body& body) {
+std::vector<Vec3> rest_positions(const Body& body) {
   std::vector<Vec3> places;
   for (const Mass& mass : body.masses) places.push_back(mass.rest);
   return places;
 }
 
-/// `body` at its rest places with scattered velocities of at most `speed` m/s along each axis.
+/// `body` at its rest positions with scattered velocities of at most `speed` m/s along each axis.
 State shaken(const Body& body, double speed) {
   State state = resting(body, {});
   for (std::size_t i = 0; i < state.velocity.size(); ++i) {
@@ -75,7 +75,7 @@ TEST_P(Energy, OfOneSpringIsWhatTheoryLeaves) {
 
 TEST_P(Energy, NeverRisesWithoutMuscles) {
   const Body body = passive_body();
-  const double limit = largest_dt(body, rest_places(body), Method::paper_euler);
+  const double limit = largest_dt(body, rest_positions(body), Method::paper_euler);
   const double factors[] = {0.25, 20};
   for (const Precision precision : {Precision::float32, Precision::float64})
     for (const double factor : factors) {
@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, LimitedEnergy, testing::ValuesIn(explicit_meth
 
 TEST_P(LimitedEnergy, IsBoundedBelowTheLimitOfTheStepAndNotAbove) {
   for (const Body& body : {passive_body(), block(2, {5000, 0, 0, 0})}) {
-    const double limit = largest_dt(body, rest_places(body), GetParam());
+    const double limit = largest_dt(body, rest_positions(body), GetParam());
     State start = shaken(body, 1e-3);
     start.start_energy *= 100;  // near the limit the true energy swings far around a conserved one
     const auto status = [&](double dt) {
@@ -120,7 +120,7 @@ TEST_P(UnlimitedStep, CarriesAWalkerWhereExplicitMethodsFail) {
   const Body body = random_body(60, 10, 5, 4);
   // one pass of xpbd carries a body's weight only so far up
   const double factor = GetParam() == Method::implicit ? 20 : 3;
-  const double dt = factor * largest_dt(body, rest_places(body), Method::paper_euler);
+  const double dt = factor * largest_dt(body, rest_positions(body), Method::paper_euler);
   for (const Precision precision : {Precision::float32, Precision::float64})
     for (const Scene& scene : {walking_scene(), full_scene()}) {
       const State start = state_at_birth(body, scene);

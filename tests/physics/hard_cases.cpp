@@ -14,7 +14,7 @@ namespace {
 
 constexpr double g = 9.81;  // m/s^2
 
-std::vector<Vec3> rest_places(const Body& body) {
+std::vector<Vec3> rest_positions(const Body& body) {
   std::vector<Vec3> places;
   for (const Mass& mass : body.masses) places.push_back(mass.rest);
   return places;
@@ -22,7 +22,7 @@ std::vector<Vec3> rest_places(const Body& body) {
 
 /// The limit of the method's dt, or of paper-euler's where it has none, s.
 double limit_of(const Body& body, Method method) {
-  return largest_dt(body, rest_places(body), is_explicit(method) ? method : Method::paper_euler);
+  return largest_dt(body, rest_positions(body), is_explicit(method) ? method : Method::paper_euler);
 }
 
 HardCase from(std::string name, Body body, State start, const Scene& scene, double dt, std::uint64_t steps,
@@ -46,7 +46,7 @@ Body passive(Body body) {
 
 Body passive_body() { return passive(random_body(60, 10, 5, 4)); }
 
-/// `body` at its rest places with scattered velocities of at most `speed` m/s along each axis.
+/// `body` at its rest positions with scattered velocities of at most `speed` m/s along each axis.
 State shaken(const Body& body, double speed) {
   State state = resting(body, {});
   for (std::size_t i = 0; i < state.velocity.size(); ++i) {
@@ -56,7 +56,7 @@ State shaken(const Body& body, double speed) {
   return state;
 }
 
-/// Rest lengths that fit the rest places.
+/// Rest lengths that fit the rest positions.
 void relax(Body& body) {
   for (Spring& s : body.springs) s.rest_length = norm(body.masses[s.b].rest - body.masses[s.a].rest);
 }
@@ -91,7 +91,7 @@ Body with_masses(double a, double b) {
   return body;
 }
 
-/// Two places with two masses each, joined in all ways.
+/// Two positions with two masses each, joined in all ways.
 Body coincident_springs() {
   Body body;
   body.materials = {{5000, 0.14, 1, 0}};
@@ -271,7 +271,7 @@ void expect_outcome(const HardCase& c, Simulator& simulator, double rounding) {
   for (std::size_t i = 0; i < 2; ++i) {
     Task task = alone[i].task();
     simulator.run({&task, 1}, all);
-    EXPECT_TRUE(same_bits(alone[i].state, beside[i].state)) << "a neighbour was disturbed";
+    EXPECT_TRUE(same_bits(alone[i].state, beside[i].state)) << "a neighbour was perturbed";
     EXPECT_EQ(task.status, batch[2 * i].status);
     EXPECT_EQ(task.stress, batch[2 * i].stress);
   }

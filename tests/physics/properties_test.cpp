@@ -92,7 +92,7 @@ TEST_P(Property, NoPlaceIsSpecial) {
       life.start.start_energy = 1 + std::max(0.0, total_energy(life.body, life.start, scene));
     }
     const std::vector<Answer> here = simulate(*simulator(scene), lives), there = simulate(*simulator(scene), elsewhere);
-    // places of a few m are rounded otherwise, which a stiff contact and a direction without a length multiply
+    // positions of a few m are rounded otherwise, which a stiff contact and a direction without a length multiply
     const double error = precision() == Precision::float32 ? 1e-3 : 1e-10;
     for (std::size_t i = 0; i < lives.size(); ++i) {
       State back = there[i].state;
@@ -170,7 +170,7 @@ TEST_P(ExplicitProperty, AngularMomentumIsKept) {
     for (std::size_t i = 0; i < lives.size(); ++i) {
       const Momentum before = momentum(lives[i].body, lives[i].start),
                      after = momentum(lives[i].body, answers[i].state);
-      // rk4 takes forces from places that it has not reached, to fourth order
+      // rk4 takes forces from positions that it has not reached, to fourth order
       const double error = (GetParam() == Method::rk4 ? 1e-6 : 1e-11) * (before.scale + after.scale);
       EXPECT_LE(norm(after.angular - before.angular), error) << trace(lives[i]);
     }

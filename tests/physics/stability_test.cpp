@@ -14,7 +14,7 @@
 namespace evodevo::test {
 namespace {
 
-/// The highest angular frequency of a body at its rest places, 1/s.
+/// The highest angular frequency of a body at its rest positions, 1/s.
 double highest_frequency(const Body& body) {
   const auto n = static_cast<Eigen::Index>(3 * body.masses.size());
   Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n, n);
@@ -34,15 +34,15 @@ double highest_frequency(const Body& body) {
 
 Steps at(double dt) { return {Method::paper_euler, Precision::float64, dt}; }
 
-std::vector<Vec3> rest_places(const Body& body) {
+std::vector<Vec3> rest_positions(const Body& body) {
   std::vector<Vec3> places;
   for (const Mass& mass : body.masses) places.push_back(mass.rest);
   return places;
 }
 
-/// At its rest places.
+/// At its rest positions.
 bool is_stable_at_rest(const Body& body, const Steps& stepping) {
-  return is_stable(body, rest_places(body), stepping.method, stepping.dt);
+  return is_stable(body, rest_positions(body), stepping.method, stepping.dt);
 }
 
 TEST(Stability, TheLargestStepIsThatOfTheHighestFrequency) {
@@ -53,7 +53,7 @@ TEST(Stability, TheLargestStepIsThatOfTheHighestFrequency) {
     for (const auto& [method, phase] :
          {std::pair{Method::paper_euler, 2.0}, std::pair{Method::symplectic_euler, 2.0},
           std::pair{Method::velocity_verlet, 2.0}, std::pair{Method::rk4, std::sqrt(8)}}) {
-      const double largest = largest_dt(body, rest_places(body), method);
+      const double largest = largest_dt(body, rest_positions(body), method);
       EXPECT_LE(largest, phase / frequency) << seed << ", " << name(method);
       EXPECT_GT(largest, 0.98 * phase / frequency) << seed << ", " << name(method);
     }
@@ -65,10 +65,10 @@ TEST(Stability, OnlyExplicitMethodsHaveALargestStep) {
   const Material material{5000, 0, 0, 0};
   const Body body = block(2, material);
   for (const Method method : {Method::implicit, Method::xpbd}) {
-    EXPECT_EQ(largest_dt(body, rest_places(body), method), infinity);
+    EXPECT_EQ(largest_dt(body, rest_positions(body), method), infinity);
     EXPECT_EQ(largest_spring_dt(material, 0.2, method), infinity);
     EXPECT_EQ(largest_contact_dt(walking_scene(), 0.2, method), infinity);
-    EXPECT_TRUE(is_stable(body, rest_places(body), method, 0.1));
+    EXPECT_TRUE(is_stable(body, rest_positions(body), method, 0.1));
   }
   EXPECT_EQ(largest_dt(single_mass(0.2), {{Vec3{}}}, Method::rk4), infinity);
   EXPECT_EQ(largest_dt({}, {}, Method::rk4), infinity);
@@ -113,15 +113,17 @@ TEST(Stability, WhatIsWantedIsGivenWhereTheBodyBearsIt) {
   const Body body = random_body(80, 12, 5, 3);
   const double limit = 2 / highest_frequency(body);
   for (const double wanted : {1e-4 * limit, 0.5 * limit, 0.9 * limit})
-    EXPECT_EQ(largest_dt(body, rest_places(body), Method::paper_euler, wanted), wanted);
-  const double largest = largest_dt(body, rest_places(body), Method::paper_euler, 1.5 * limit);
+    EXPECT_EQ(largest_dt(body, rest_positions(body), Method::paper_euler, wanted), wanted);
+  const double largest = largest_dt(body, rest_positions(body), Method::paper_euler, 1.5 * limit);
   EXPECT_LE(largest, limit);
   EXPECT_GT(largest, 0.98 * limit);
 }
 
 TEST(Stability, ASafeStepHasAMarginForWhateverLimitsIt) {
   const Body body = random_body(80, 12, 5, 3);
-  const auto safe = [&](const Scene& scene, Method method) { return safe_dt(body, rest_places(body), scene, method); };
+  const auto safe = [&](const Scene& scene, Method method) {
+    return safe_dt(body, rest_positions(body), scene, method);
+  };
   const double springs = 2 / highest_frequency(body);
   EXPECT_LE(safe({}, Method::velocity_verlet), spring_margin * springs);
   EXPECT_GT(safe({}, Method::velocity_verlet), 0.98 * spring_margin * springs);
@@ -137,14 +139,14 @@ TEST(Stability, ASafeStepHasAMarginForWhateverLimitsIt) {
 TEST(Stability, ASafeStepSeesTheMusclesAndEndsInTime) {
   const auto safe = [](double frequency) {
     const Body body = pair_of_masses(1, {0.01, 0.1, frequency, 0});
-    return safe_dt(body, rest_places(body), {}, Method::paper_euler);
+    return safe_dt(body, rest_positions(body), {}, Method::paper_euler);
   };
   EXPECT_EQ(safe(100), 0.0005);
   EXPECT_EQ(safe(0), 0.01);
   const Body still = single_mass(1);
-  EXPECT_EQ(safe_dt(still, rest_places(still), {}, Method::paper_euler), 0.01);
+  EXPECT_EQ(safe_dt(still, rest_positions(still), {}, Method::paper_euler), 0.01);
   const Body lost = pair_of_masses(1, {0.01, 0, 0, 0}, std::numeric_limits<double>::quiet_NaN());
-  EXPECT_FALSE(safe_dt(lost, rest_places(lost), {}, Method::paper_euler) > 0);
+  EXPECT_FALSE(safe_dt(lost, rest_positions(lost), {}, Method::paper_euler) > 0);
 }
 
 TEST(Stability, RandomBodiesInMotionBearTheirSafeStep) {

@@ -59,7 +59,7 @@ Scene full_scene();
 /// Gravity, floor, friction and damping.
 Scene walking_scene();
 
-/// A body in a state of its own: at its rest places, at rest, its energy set.
+/// A body in a state of its own: at its rest positions, at rest, its energy set.
 State resting(const Body& body, const Scene& scene);
 
 struct Answer {
@@ -80,7 +80,7 @@ struct Reference {
 };
 Reference reference(const Body& body, State state, const Scene& scene, double dt, std::uint64_t steps);
 
-/// The largest distance between the places of two states, m.
+/// The largest distance between the positions of two states, m.
 double largest_difference(const State& a, const State& b);
 
 /// Whether two states are equal to the bit.

@@ -62,7 +62,8 @@ struct Mutation final : evodevo::Mutation {
     if (how == "flush") _mm_setcsr(_mm_getcsr() | 0x8040);
 #endif
     if (how == "locale") std::setlocale(LC_ALL, "C.UTF-8");
-    if (how == "thread-locale") uselocale(newlocale(LC_ALL_MASK, "C.UTF-8", nullptr));
+    static const locale_t other = newlocale(LC_ALL_MASK, "C.UTF-8", nullptr);
+    if (how == "thread-locale") uselocale(other);
     if (how == "global-locale") std::locale::global(std::locale("C.UTF-8"));
   }
 };
@@ -74,17 +75,17 @@ struct Encoding final : evodevo::Encoding {
     p.choice(how, "how", {"well", "crash-in-layout", "throw-in-layout", "twin", "turned-twin", "loop", "crash"},
              "What it does.");
   }
-  evodevo::Layout layout(const evodevo::World&) const override {
+  evodevo::Layout layout(const evodevo::EncodingContext&) const override {
     if (how == "crash-in-layout") std::raise(SIGSEGV);
     if (how == "throw-in-layout") throw 7;
     evodevo::Layout layout;
     layout.add_group(2, {0, 1});
     return layout;
   }
-  evodevo::Blueprint decode(const evodevo::Genome&, const evodevo::World& world) const override {
+  evodevo::Blueprint decode(const evodevo::Genome&, const evodevo::EncodingContext& context) const override {
     if (how == "crash") std::raise(SIGSEGV);
     evodevo::Blueprint blueprint;
-    blueprint.body.materials = world.materials;
+    blueprint.body.materials = context.materials;
     blueprint.body.masses = {{{0, 0, 0}, 0.2}, {{0.7, 0, 0}, 0.2}, {{0, 0.7, 0}, 0.2}};
     blueprint.body.springs = {{0, 1, 0.7, 1}, {1, 2, 0.99, 1}, {2, 0, 0.7, 1}};
     if (how == "twin") blueprint.body.springs.push_back({1, 2, 0.99, 1});
@@ -105,9 +106,9 @@ struct Devo final : evodevo::Devo {
     if (how == "throw-when-asked") throw 7;
     return {};
   }
-  void develop(const evodevo::Moment& now, evodevo::Edits&, evodevo::Rng&) const override {
-    if (how == "crash" && now.cycle == 2) std::raise(SIGSEGV);
-    if (how == "overflow" && now.cycle == 2) deeper(0);
+  void develop(const evodevo::DevoContext& context, evodevo::Edits&, evodevo::Rng&) const override {
+    if (how == "crash" && context.cycle == 2) std::raise(SIGSEGV);
+    if (how == "overflow" && context.cycle == 2) deeper(0);
   }
 };
 

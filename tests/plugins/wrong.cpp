@@ -39,14 +39,14 @@ struct Wrong final : evodevo::Mutation {
 #elif defined(WRONG_DECODING) || defined(WRONG_DECODING_GROWTH)
 
 struct Wrong final : evodevo::Encoding {
-  Layout layout(const evodevo::World&) const override {
+  Layout layout(const evodevo::EncodingContext&) const override {
     Layout layout;
     layout.add_group(2, {0, 1});
     return layout;
   }
-  evodevo::Blueprint decode(const Genome&, const evodevo::World& world) const override {
+  evodevo::Blueprint decode(const Genome&, const evodevo::EncodingContext& context) const override {
     evodevo::Blueprint blueprint;
-    blueprint.body.materials = world.materials;
+    blueprint.body.materials = context.materials;
     blueprint.body.masses = {{{0, 0, 0}, 1}, {{1, 0, 0}, 1}};
 #if defined(WRONG_DECODING)
     blueprint.body.springs = {{ 0, 2, 1, 1 }};  // there is no mass 2
@@ -61,20 +61,20 @@ struct Wrong final : evodevo::Encoding {
     defined(WRONG_BODIES_BEYOND) || defined(WRONG_BODIES_GROWTH)
 
 struct Wrong final : evodevo::Devo {
-  void develop([[maybe_unused]] const evodevo::Moment& now, evodevo::Edits& edits, Rng&) const override {
+  void develop([[maybe_unused]] const evodevo::DevoContext& context, evodevo::Edits& edits, Rng&) const override {
 #if defined(WRONG_BODIES)
-    if (now.body.springs.empty()) return;
-    const evodevo::Spring& twin = now.body.springs[0];
-    edits.new_springs.push_back({twin.a, twin.b, now.body.materials[twin.material], {}});
+    if (context.body.springs.empty()) return;
+    const evodevo::Spring& twin = context.body.springs[0];
+    edits.new_springs.push_back({twin.a, twin.b, context.body.materials[twin.material], {}});
 #elif defined(WRONG_BODIES_DANGLING)
-    const auto beyond = static_cast<std::uint32_t>(now.body.masses.size());
+    const auto beyond = static_cast<std::uint32_t>(context.body.masses.size());
     edits.new_springs.push_back({0, beyond, {1000, 0, 0, 0}, {}});
 #elif defined(WRONG_BODIES_NAN)
     edits.new_springs.push_back({0, 1, {std::nan(""), 0, 0, 0}, {}});
 #elif defined(WRONG_BODIES_GROWTH)
     edits.growth = {0, 1};
 #else
-    edits.new_masses.push_back({now.bounds.high + evodevo::Vec3{0, 0, 1}, now.mass});
+    edits.new_masses.push_back({context.bounds.high + evodevo::Vec3{0, 0, 1}, context.mass});
 #endif
   }
 };

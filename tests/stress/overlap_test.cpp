@@ -22,7 +22,7 @@ TEST(Overlap, CountsTheLeastAndTheMostThatBothRankingsHave) {
   const std::vector<double> truth = rising(1000);
   EXPECT_EQ(found(truth, truth).least, 1);
   EXPECT_EQ(found(truth, truth).most, 1);
-  // 25 of the 125 least change places with springs in the middle, and 40 of the 100 most
+  // 25 of the 125 least change positions with springs in the middle, and 40 of the 100 most
   std::vector<double> estimate = truth;
   for (std::size_t i = 0; i < 25; ++i) std::swap(estimate[i], estimate[500 + i]);
   for (std::size_t i = 0; i < 40; ++i) std::swap(estimate[999 - i], estimate[600 + i]);

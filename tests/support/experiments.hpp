@@ -13,7 +13,7 @@ inline const std::string small_experiment = R"(
 seed = 7
 evaluations = 24
 population = 6
-newcomers = 1
+random_individuals = 1
 
 [encoding]
 name = "voxel"

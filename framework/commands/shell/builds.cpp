@@ -9,11 +9,13 @@ namespace {
 
 std::string title(const OperatorUse& use) { return use.kind + " operator \"" + use.name + "\" " + use.version; }
 
-std::string title(const Maker& maker) { return "evodevo " + maker.version + " (" + maker.program + ")"; }
+std::string title(const Provenance& provenance) {
+  return "evodevo " + provenance.version + " (" + provenance.program + ")";
+}
 
 /// Calls `report(then, now)` for each operator whose library is not the one that the run began with.
 template <class Report>
-void for_each_changed_operator(const Experiment& experiment, const Maker& first, const Report& report) {
+void for_each_changed_operator(const Experiment& experiment, const Provenance& first, const Report& report) {
   const std::vector<OperatorUse>& past = first.operators;
   // a run uses the operators of its own record, in the same order
   for (std::size_t i = 0; i < past.size() && i < experiment.uses.size(); ++i)
@@ -28,26 +30,27 @@ void warn_of_other_builds(const Experiment& experiment, const Simulator& simulat
               << (then.version == now.version ? "another build of it" : "version " + now.version) << ", " << which
               << "; results may differ\n";
   };
-  const Maker first = archive.makers().front(), here = this_maker(experiment, simulator.device());
+  const Provenance first = archive.provenances().front(), here = this_provenance(experiment, simulator.device());
   if (first.program != here.program) warn(first, here, here.program);
   for_each_changed_operator(
       experiment, first, [&](const OperatorUse& then, const OperatorUse& now) { warn(then, now, now.file.string()); });
 }
 
 void warn_of_another_device(const Simulator& simulator, const Archive& archive) {
-  if (const std::string before = archive.makers().front().device; before != simulator.device())
+  if (const std::string before = archive.provenances().front().device; before != simulator.device())
     std::cerr << "warning: the run began on " << before << " and goes on on " << simulator.device()
               << "; results may differ, at first in the last bit\n";
 }
 
 void refuse_other_versions(const Experiment& experiment, const Archive& archive) {
-  for_each_changed_operator(experiment, archive.makers().front(), [&](const OperatorUse& then, const OperatorUse& now) {
-    if (then.version == now.version) return;
-    throw ArchiveError(archive.folder().string() + ": the run began with " + title(then) + ", but " +
-                       now.file.string() + " is version " + now.version +
-                       "; put back the version that it began with (it was " + then.file.string() +
-                       "), or go on with --allow-other-versions");
-  });
+  for_each_changed_operator(experiment, archive.provenances().front(),
+                            [&](const OperatorUse& then, const OperatorUse& now) {
+                              if (then.version == now.version) return;
+                              throw ArchiveError(archive.folder().string() + ": the run began with " + title(then) +
+                                                 ", but " + now.file.string() + " is version " + now.version +
+                                                 "; put back the version that it began with (it was " +
+                                                 then.file.string() + "), or go on with --allow-other-versions");
+                            });
 }
 
 }  // namespace evodevo

@@ -1,7 +1,7 @@
 // Whether a run goes on with the device and the builds that it began with.
 #pragma once
 
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 
 namespace evodevo {
 

@@ -9,7 +9,7 @@
 #include "base/text.hpp"
 #include "commands/shell/help.hpp"
 #include "commands/shell/notices.hpp"
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 
 namespace evodevo {
 

@@ -7,6 +7,7 @@
 #include "evolution/resimulation.hpp"
 #include "experiment/device.hpp"
 #include "experiment/toml_reader.hpp"
+#include "operators/loader.hpp"
 
 namespace evodevo {
 
@@ -112,7 +113,7 @@ std::unique_ptr<Simulator> opened_simulator(const Experiment& experiment) {
 
 Experiment experiment_of_run(const Archive& archive, const Given& given) {
   return timed("reading the experiment of " + printable(archive.folder().string()) + " and loading its operators",
-               [&] { return experiment_to_live_again(archive, given_plugin_path(given)); });
+               [&] { return experiment_for_resimulation(archive, given_plugin_path(given)); });
 }
 
 ArchivedIndividual individual_named(const Archive& archive, std::int64_t id) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "commands/shell/command.hpp"
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 #include "experiment/experiment.hpp"
 
 namespace evodevo {

@@ -28,7 +28,7 @@ Topic experiment() {
                       {"[scene.friction]", "coefficient of Coulomb friction with the floor."},
                       {"[scene.damping]", "rate (1/s) at which all velocities decay."},
                       {"[scene.drag]", "coefficient (kg/m) of quadratic drag on each mass."},
-                      {"[scene.load]",
+                      {"[scene.payload]",
                        "A payload: its share of the body's mass, and the top part of the body that carries it."},
                       {"[simulation]",
                        "accuracy (paper, fast, balanced or reference), or each of method, precision, dt (s, or "
@@ -136,7 +136,7 @@ Topic verification() {
                       {"other-method",
                        "Another integration method, in double precision, with a quarter of the "
                        "longest stable step of the body."},
-                      {"disturbed-1, disturbed-2, disturbed-3",
+                      {"perturbed-1, perturbed-2, perturbed-3",
                        "A perturbation: each mass is moved at random by up "
                        "to 1e-4 of the longest side of the body."},
                       {"no-muscles", "All springs keep their length."},

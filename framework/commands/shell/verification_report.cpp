@@ -20,7 +20,7 @@ std::vector<Verification> verify_best(const Experiment& experiment, Simulator& s
   std::vector<Champion> champions;
   for (const ArchivedIndividual& individual : individuals)
     champions.push_back(
-        {born_again(archive, experiment, individual, simulator.device()), individual.result.objectives.front()});
+        {for_resimulation(archive, experiment, individual, simulator.device()), individual.result.objectives.front()});
   std::vector<Verification> verifications =
       timed("verifying the best individuals", [&] { return verify(experiment, simulator, champions); });
   archive.add_verifications(verifications);

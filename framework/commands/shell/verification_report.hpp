@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 
 namespace evodevo {
 

@@ -15,14 +15,14 @@ namespace evodevo {
 
 /// What a devo operator has to know about every spring's last cycle; nothing else is recorded.
 struct SpringRequest {
-  bool stress = false;       ///< Moment::stress
-  bool peak_force = false;   ///< Moment::peak_force
-  bool muscle_work = false;  ///< Moment::muscle_work
-  bool tension = false;      ///< Moment::tension
+  bool stress = false;       ///< DevoContext::stress
+  bool peak_force = false;   ///< DevoContext::peak_force
+  bool muscle_work = false;  ///< DevoContext::muscle_work
+  bool tension = false;      ///< DevoContext::tension
 };
 
-/// A moment in a life: what a devo operator may look at.
-struct Moment {
+/// The context of a devo operator: what it may look at after a cycle.
+struct DevoContext {
   const Body& body;
   const State& state;
   std::span<const double> stress;  ///< mean absolute force of every spring over the last cycle, N; where the
@@ -30,12 +30,12 @@ struct Moment {
                                    ///< stressed less how often its least
   int cycle;                       ///< cycles lived so far, from 1
   int cycles;                      ///< cycles in the whole development
-  int turn;                        ///< how often this operator has come to its turn, now included
-  int turns;                       ///< how often it does so in the whole development
+  int application;                 ///< how often this operator has been applied, this time included
+  int applications;                ///< how often it is applied in the whole development
   double time;                     ///< since birth, s
   Box bounds;                      ///< of the body now, cut off at the floor where there is one, m
   double mass;                     ///< of a new mass, kg
-  bool resets;                     ///< whether the body goes back to its rest places before it moves on
+  bool resets;                     ///< whether the body goes back to its rest positions before it moves on
   const Genome& genome;
   const Layout& layout;
   // like stress, empty where Devo::observes() does not ask for them; springs that came since the cycle ended carry the
@@ -45,13 +45,13 @@ struct Moment {
   std::span<const double> tension = {};      ///< the mean force, N: positive where it pulled, negative where it pushed
 
   /// Where a mass is when life goes on, m.
-  Vec3 place(std::uint32_t mass_index) const {
+  Vec3 position(std::uint32_t mass_index) const {
     return resets ? body.masses[mass_index].rest : state.position[mass_index];
   }
 };
 
 struct NewMass {
-  Vec3 place;       ///< m; it starts at rest
+  Vec3 position;    ///< m; it starts at rest
   double mass = 0;  ///< kg
   std::int32_t material = no_material;
 };
@@ -73,7 +73,7 @@ struct ChangedSpring {
 /// line. By a factor, so that whatever else has changed a rest length stays.
 struct Growth {
   double from = 0, to = 0;  ///< how much of the way is gone before and after, 0 to `whole`
-  double whole = 1;         ///< such as the number of the operator's turns
+  double whole = 1;         ///< such as the number of the operator's applications
 };
 
 /// For the record of a life: the number that led to each edit, such as the stress of the spring that goes, in the order
@@ -86,9 +86,9 @@ struct Causes {
                                     &Causes::new_masses, &Causes::new_springs};
 };
 
-/// What a devo operator wants changed. All indices are those of the Moment; the masses in `new_masses` follow on from
-/// them. The host applies an operator's edits together after the call and refuses dangling, doubled and air springs and
-/// numbers that are not finite.
+/// What a devo operator wants changed. All indices are those of the DevoContext; the masses in `new_masses` follow on
+/// from them. The host applies an operator's edits together after the call and refuses dangling, doubled and air
+/// springs and numbers that are not finite.
 struct Edits {
   std::optional<Growth> growth;  ///< of all springs at once; a rest length among `changed_springs` takes its place
   std::vector<std::uint32_t> removed_springs;
@@ -122,7 +122,7 @@ class Devo : public Operator {
   virtual Measure measure([[maybe_unused]] Causes::List list) const { return {"stress", "N"}; }
   /// Whether it lets springs grow, which changes nothing unless Encoding::sets_growth().
   virtual bool uses_growth() const { return false; }
-  virtual void develop(const Moment& now, Edits& edits, Rng& rng) const = 0;
+  virtual void develop(const DevoContext& context, Edits& edits, Rng& rng) const = 0;
 };
 
 }  // namespace evodevo

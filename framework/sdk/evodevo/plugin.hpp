@@ -17,16 +17,16 @@ namespace evodevo {
 
 inline constexpr std::uint64_t plugin_magic = 0x6f7665646f7665ull;  // "evodevo", little-endian
 /// Raised whenever anything that crosses the border changes its meaning; tests/host/plugin_border_test.cpp sees to it.
-inline constexpr std::uint32_t plugin_epoch = 5;
+inline constexpr std::uint32_t plugin_epoch = 6;
 
 /// A digest of the sizes of everything that crosses the border.
 inline constexpr std::uint32_t plugin_struct_digest = [] {
   std::uint32_t digest = 2166136261u;  // FNV-1a
   for (const std::size_t size :
-       {sizeof(Body),          sizeof(Mass),     sizeof(Spring),  sizeof(Material),    sizeof(State),
-        sizeof(Rng),           sizeof(GeneSpec), sizeof(Layout),  sizeof(World),       sizeof(Blueprint),
-        sizeof(Moment),        sizeof(Edits),    sizeof(NewMass), sizeof(NewSpring),   sizeof(ChangedSpring),
-        sizeof(SpringRequest), sizeof(Measure),  sizeof(Request), sizeof(Observation), sizeof(Objective),
+       {sizeof(Body),          sizeof(Mass),     sizeof(Spring),  sizeof(Material),        sizeof(State),
+        sizeof(Rng),           sizeof(GeneSpec), sizeof(Layout),  sizeof(EncodingContext), sizeof(Blueprint),
+        sizeof(DevoContext),   sizeof(Edits),    sizeof(NewMass), sizeof(NewSpring),       sizeof(ChangedSpring),
+        sizeof(SpringRequest), sizeof(Measure),  sizeof(Request), sizeof(Observation),     sizeof(Objective),
         sizeof(Candidate),     sizeof(Size),     sizeof(Growth)})
     digest = (digest ^ static_cast<std::uint32_t>(size)) * 16777619u;
   return digest;

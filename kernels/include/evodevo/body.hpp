@@ -67,7 +67,7 @@ struct Mass {
   double mass = 0;                      ///< kg
   std::int32_t material = no_material;  ///< index into Body::materials, or no_material
   std::uint32_t air_contacts = 0;       ///< neighbours to which a spring of air was left out
-  double load = 0;                      ///< how much of `mass` it carries for the scene, kg
+  double payload = 0;                   ///< how much of `mass` it carries for the scene, kg
 };
 
 struct Spring {
@@ -105,11 +105,11 @@ struct State {
                                ///< birth, what development has added and what muscles can have added since, J
 };
 
-/// The smallest box around `places`; all zero for none.
-inline Box bounding_box(std::span<const Vec3> places) {
-  if (places.empty()) return {};
-  Box box{places[0], places[0]};
-  for (const Vec3& p : places) {
+/// The smallest box around `positions`; all zero for none.
+inline Box bounding_box(std::span<const Vec3> positions) {
+  if (positions.empty()) return {};
+  Box box{positions[0], positions[0]};
+  for (const Vec3& p : positions) {
     box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
     box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
   }
@@ -117,11 +117,11 @@ inline Box bounding_box(std::span<const Vec3> places) {
 }
 
 /// The centre of mass, m; zero for a body without masses.
-inline Vec3 centre_of_mass(const Body& body, std::span<const Vec3> places) {
+inline Vec3 centre_of_mass(const Body& body, std::span<const Vec3> positions) {
   Vec3 sum;
   double total = 0;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    sum = sum + body.masses[i].mass * places[i];
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    sum = sum + body.masses[i].mass * positions[i];
     total += body.masses[i].mass;
   }
   return total > 0 ? (1 / total) * sum : Vec3{};

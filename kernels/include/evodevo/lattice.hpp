@@ -19,7 +19,7 @@ struct LatticeSpring {
 
 struct Lattice {
   std::array<std::uint32_t, 3> size;   ///< voxels along x, y, z
-  std::vector<Vec3> corners;           ///< (x+1)(y+1)(z+1) places, x fastest, from the origin, m
+  std::vector<Vec3> corners;           ///< (x+1)(y+1)(z+1) positions, x fastest, from the origin, m
   std::vector<LatticeSpring> springs;  ///< ascending by (a, b)
 
   std::uint32_t voxels() const { return size[0] * size[1] * size[2]; }

@@ -13,7 +13,7 @@ struct StreamKey {
   std::uint64_t seed = 0;        ///< of the run
   std::uint32_t generation = 0;  ///< in which the numbers are drawn
   std::uint32_t individual = 0;  ///< for which they are drawn
-  std::uint32_t place = 0;       ///< the operator's place in the pipeline
+  std::uint32_t position = 0;    ///< the operator's place in the pipeline
 };
 
 /// A counter-based stream (Philox 4x32-10, Salmon et al. 2011, computed by the host). A
@@ -28,7 +28,7 @@ class Rng {
   Rng(Philox philox, const StreamKey& key)
       : philox_(philox),
         key_{static_cast<std::uint32_t>(key.seed), static_cast<std::uint32_t>(key.seed >> 32)},
-        counter_{0, key.generation, key.individual, key.place} {}
+        counter_{0, key.generation, key.individual, key.position} {}
 
   static constexpr result_type min() { return 0; }
   static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }

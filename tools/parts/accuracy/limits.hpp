@@ -32,7 +32,7 @@ bool stays_bounded(const Oscillator& oscillator, Method method, double dt);
 /// Where that ends, s; infinite if not below a hundred times 1/frequency.
 double measured_limit(const Oscillator& oscillator, Method method);
 
-/// The same for a body that trembles at its rest places, between `low` and `high` s.
+/// The same for a body that trembles at its rest positions, between `low` and `high` s.
 double measured_limit(const Body& body, Method method, double low, double high);
 
 /// The largest ratio of the energies after and before a mass hits the floor, of all phases of the step at the impact:

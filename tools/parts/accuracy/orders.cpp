@@ -62,9 +62,9 @@ void run(Sweep& sweep, int halvings) {
 
 std::vector<Table> orders(const Settings& settings) {
   Workers workers(settings.device.threads);
-  const std::vector<std::function<Trial()>> makers = {spring_trial, lattice_trial, drop_trial, slide_trial};
-  std::vector<Trial> trials(makers.size());
-  workers.for_each(makers.size(), [&](std::size_t i) { trials[i] = makers[i](); });
+  const std::vector<std::function<Trial()>> provenances = {spring_trial, lattice_trial, drop_trial, slide_trial};
+  std::vector<Trial> trials(provenances.size());
+  workers.for_each(provenances.size(), [&](std::size_t i) { trials[i] = provenances[i](); });
   std::vector<Sweep> sweeps;
   for (const Trial& trial : trials)
     for (const Method method : all_methods()) sweeps.push_back({&trial, method, {}, {}});

@@ -7,7 +7,7 @@
 
 namespace evodevo::tools::accuracy {
 
-/// A state whose places are moved by up to `distance` m along each axis, the same way every time.
+/// A state whose positions are moved by up to `distance` m along each axis, the same way every time.
 inline State perturbed(State state, double distance) {
   for (std::size_t i = 0; i < state.position.size(); ++i) {
     const double angle = 1 + 12.9898 * static_cast<double>(i);

@@ -10,7 +10,7 @@
 namespace evodevo::tools::accuracy {
 namespace {
 
-/// The right-hand side for places and velocities, one after the other, three numbers a mass.
+/// The right-hand side for positions and velocities, one after the other, three numbers a mass.
 class EquationOfMotion {
  public:
   EquationOfMotion(const Body& body, const Scene& scene) : body_(body), scene_(scene) {}
@@ -32,12 +32,12 @@ class EquationOfMotion {
 
  private:
   void add_spring(const Spring& spring, const std::vector<double>& y, std::vector<double>& rate, double t) const {
-    constexpr double turn = 2 * 3.14159265358979323846;
+    constexpr double application = 2 * 3.14159265358979323846;
     const Material& m = body_.materials[spring.material];
     const std::size_t a = std::size_t{3} * spring.a, b = std::size_t{3} * spring.b, half = y.size() / 2;
     const double d[] = {y[b] - y[a], y[b + 1] - y[a + 1], y[b + 2] - y[a + 2]};
     const double distance = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    const double length = spring.rest_length * (1 + m.amplitude * std::sin(turn * m.frequency * t + m.phase));
+    const double length = spring.rest_length * (1 + m.amplitude * std::sin(application * m.frequency * t + m.phase));
     for (std::size_t c = 0; c < 3; ++c) {
       const double force = m.stiffness * (distance - length) * d[c] / distance;
       rate[half + a + c] += force / body_.masses[spring.a].mass;

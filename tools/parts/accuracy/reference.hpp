@@ -11,7 +11,7 @@ namespace evodevo::tools::accuracy {
 /// std::invalid_argument.
 State solution(const Body& body, const State& start, const Scene& scene, double time);
 
-/// The largest distance between the places of two states, m.
+/// The largest distance between the positions of two states, m.
 double largest_distance(const State& a, const State& b);
 
 }  // namespace evodevo::tools::accuracy

@@ -100,7 +100,7 @@ Trial drop_trial() {
   const Body body = block(2, {5000, 0, 0, 0});
   const Scene scene{Gravity{}, Floor{}, {}, Damping{}, {}};
   State start = state_at_birth(body, scene);
-  for (Vec3& place : start.position) place.z += 0.05;
+  for (Vec3& position : start.position) position.z += 0.05;
   return integrated({"lattice dropped on the floor", {}, false, body, scene, with_energy(body, start, scene), 0.4, {}});
 }
 
@@ -112,7 +112,7 @@ Trial slide_trial() {
   for (Vec3& v : start.velocity) v = {speed, 0, 0};
   start = with_energy(body, std::move(start), scene);
   State truth = resting(body, scene);
-  for (Vec3& place : truth.position) place.x += speed * speed / (2 * scene.friction->coefficient * g);
+  for (Vec3& position : truth.position) position.x += speed * speed / (2 * scene.friction->coefficient * g);
   return {"slab sliding to rest", "closed form", false, body, scene, start, 0.4, truth};
 }
 

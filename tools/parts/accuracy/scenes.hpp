@@ -10,8 +10,8 @@
 
 namespace evodevo::tools::accuracy {
 
-/// A scene whose true outcome is known. Errors are those of places: the largest of any mass after `duration`, relative
-/// to the farthest way of any mass.
+/// A scene whose true outcome is known. Errors are those of positions: the largest of any mass after `duration`,
+/// relative to the farthest way of any mass.
 struct Trial {
   std::string name;
   std::string truth_by;  ///< where the truth is from, in words

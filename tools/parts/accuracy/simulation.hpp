@@ -60,7 +60,7 @@ class Simulation {
 /// One body alone on one core of this processor.
 Traveller simulate(const Body& body, const State& start, const Scene& scene, const Setting& setting, double duration);
 
-/// A body at its rest places, at rest, its energy set.
+/// A body at its rest positions, at rest, its energy set.
 State resting(const Body& body, const Scene& scene);
 
 /// `state` with its energy set anew, after its velocities have been given.

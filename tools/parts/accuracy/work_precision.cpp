@@ -16,10 +16,10 @@ std::vector<double> time_steps(bool quick) {
 
 std::vector<Trial> trials(bool quick, Workers& workers) {
   const double finest = time_steps(quick).back() / 16;
-  const std::vector<std::function<Trial()>> makers = {
+  const std::vector<std::function<Trial()>> provenances = {
       spring_trial, beam_trial, drop_trial, slide_trial, [&] { return walker_trial(finest); }, swimmer_trial};
-  std::vector<Trial> made(makers.size());
-  workers.for_each(makers.size(), [&](std::size_t i) { made[i] = makers[i](); });
+  std::vector<Trial> made(provenances.size());
+  workers.for_each(provenances.size(), [&](std::size_t i) { made[i] = provenances[i](); });
   return made;
 }
 

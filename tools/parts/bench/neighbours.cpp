@@ -39,7 +39,7 @@ Report neighbours(const Settings& settings) {
   Workers workers(settings.threads);
   workers.for_each(population.size(), [&](std::size_t i) { population[i] = points_in_ball(settings.masses, i); });
   Clouds clouds;
-  for (const std::vector<Vec3>& places : population) clouds.push_back({places, neighbours_of_each});
+  for (const std::vector<Vec3>& positions : population) clouds.push_back({positions, neighbours_of_each});
   const auto cpu = make_cpu_neighbour_search(), cuda = make_cuda_neighbour_search();
   if (all_pairs(*cpu, clouds, workers) != all_pairs(*cuda, clouds, workers))
     throw std::runtime_error("CPU and GPU do not find the same neighbours");

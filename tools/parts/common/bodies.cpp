@@ -20,13 +20,13 @@ std::vector<Material> paper_materials() {
   return {{5000, 0.14, 1, 0}, {4000, 0, 0, 0}, {5000, 0.14, 1, half_turn}, {10000, 0, 0, 0}};
 }
 
-Body body_of(const std::vector<Vec3>& places, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {
+Body body_of(const std::vector<Vec3>& positions, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {
   Body body;
   body.materials = paper_materials();
-  for (const Vec3& place : places) body.masses.push_back({place, mass_of_each});
+  for (const Vec3& position : positions) body.masses.push_back({position, mass_of_each});
   for (const auto& [a, b] : pairs) {
     const auto material = static_cast<std::uint32_t>(body.springs.size() % body.materials.size());
-    body.springs.push_back({a, b, norm(places[b] - places[a]), material});
+    body.springs.push_back({a, b, norm(positions[b] - positions[a]), material});
   }
   return body;
 }
@@ -54,17 +54,17 @@ Body cube10() {
 std::vector<Vec3> points_in_ball(std::uint32_t count, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto coordinate = [&] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
-  std::vector<Vec3> places;
-  while (places.size() < count) {
+  std::vector<Vec3> positions;
+  while (positions.size() < count) {
     const double x = coordinate(), y = coordinate(), z = coordinate();
-    if (dot({x, y, z}, {x, y, z}) <= 1) places.push_back({x, y, z});
+    if (dot({x, y, z}, {x, y, z}) <= 1) positions.push_back({x, y, z});
   }
-  return places;
+  return positions;
 }
 
 Body random_ball(std::uint32_t masses) {
-  const std::vector<Vec3> places = points_in_ball(masses, 1);
-  return body_of(places, nearest_pairs(places, 25));
+  const std::vector<Vec3> positions = points_in_ball(masses, 1);
+  return body_of(positions, nearest_pairs(positions, 25));
 }
 
 NamedBody body_named(const std::string& name, std::uint32_t masses, std::uint32_t materials) {

@@ -22,7 +22,7 @@ bool has_muscle(const Body& body) {
 std::optional<Body> robot_of(const Experiment& experiment, const Genome& genome) {
   BuiltBody built = build_body(decoded(experiment, genome));
   if (!built.failure.empty()) return std::nullopt;
-  if (const auto& load = experiment.load) put_load(built.body, load->share, load->top);
+  if (const auto& load = experiment.payload) add_payload(built.body, load->share, load->top);
   const State birth = state_at_birth(built.body, experiment.scene);
   const LongestStep step =
       longest_step({.dt = time_step}, built.body, birth.position, experiment.scene, Method::paper_euler);
@@ -36,8 +36,8 @@ std::vector<Genome> random_genomes(const Experiment& experiment, std::size_t cou
     if (seed > 100 * count)
       throw std::runtime_error("too few random robots of " + experiment.name + " have a muscle and " +
                                std::to_string(springs) + " springs; name an experiment with larger ones");
-    Rng rng = experiment.world.rng(seed);
-    Genome genome = call_operator(experiment, Encoding::kind, 0, {},
+    Rng rng = experiment.context.rng(seed);
+    Genome genome = call_operator(experiment.call_of(Encoding::kind, 0),
                                   [&] { return experiment.encoding->random(experiment.layout, rng); });
     const auto robot = robot_of(experiment, genome);
     if (robot && has_muscle(*robot) && robot->springs.size() >= springs) genomes.push_back(std::move(genome));

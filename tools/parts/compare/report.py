@@ -56,7 +56,7 @@ def builds(shown):
 
 def makers_of(said):
     """Those by whom any generation of a run was made."""
-    return [said["makers"][place] for place in sorted({generation["maker"] for generation in said["generations"]})]
+    return [said["provenances"][place] for place in sorted({generation["provenance"] for generation in said["generations"]})]
 
 
 def made_by(maker):

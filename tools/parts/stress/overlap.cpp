@@ -126,7 +126,7 @@ std::vector<StressOverTime> simulate(const Case& one, std::size_t robots, const 
   std::vector<Newborn> newborns;
   for (const Genome& genome : genomes) newborns.push_back({static_cast<std::uint32_t>(newborns.size()), 0, &genome});
   const auto simulator = make_simulator(experiment);
-  std::vector<Life> born = Evaluation(experiment, *simulator).birth(newborns);
+  std::vector<Life> born = Evaluation(experiment, *simulator).birth.of(newborns);
   if (one.muscles_still)
     for (Life& life : born)
       for (Material& material : life.living.body.materials) material.amplitude = 0;

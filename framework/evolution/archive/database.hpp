@@ -13,8 +13,8 @@
 #include <string>
 #include <string_view>
 
-#include "evolution/archive_error.hpp"
-#include "evolution/archive_journal.hpp"
+#include "evolution/archive/error.hpp"
+#include "evolution/archive/journal.hpp"
 
 namespace evodevo {
 
@@ -96,14 +96,14 @@ class Statement {
   /// `table` names what is read in messages.
   Statement(const RunDatabase& run, std::string table, const std::string& sql);
 
-  /// Starts anew with values for all places, in their order.
+  /// Starts anew with values for all positions, in their order.
   template <class... Values>
   void bind(const Values&... values) {
-    int place = 0;
+    int position = 0;
     run_.guarded([&] {
       statement_.reset();
       statement_.clearBindings();
-      (bind_one(++place, values), ...);
+      (bind_one(++position, values), ...);
     });
   }
   /// Does the statement with these values.
@@ -132,16 +132,17 @@ class Statement {
 
  private:
   template <class T>
-  void bind_one(int place, const T& value) {
-    statement_.bind(place, value);
+  void bind_one(int position, const T& value) {
+    statement_.bind(position, value);
   }
   template <class T>
-  void bind_one(int place, const std::optional<T>& value) {
-    if (value) bind_one(place, *value);
+  void bind_one(int position, const std::optional<T>& value) {
+    if (value) bind_one(position, *value);
   }
   /// Bytes; without any, SQLite would take a null pointer for NULL.
-  void bind_one(int place, std::string_view bytes) {
-    statement_.bind(place, bytes.empty() ? "" : static_cast<const void*>(bytes.data()), static_cast<int>(bytes.size()));
+  void bind_one(int position, std::string_view bytes) {
+    statement_.bind(position, bytes.empty() ? "" : static_cast<const void*>(bytes.data()),
+                    static_cast<int>(bytes.size()));
   }
 
   const RunDatabase& run_;

@@ -1,4 +1,4 @@
-#include "evolution/archive_schema.hpp"
+#include "evolution/archive/schema.hpp"
 
 #include <map>
 
@@ -10,8 +10,8 @@ namespace {
 constexpr const char* schema = R"sql(
 CREATE TABLE record(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 -- whom a run was begun and resumed by; numbered from 0
-CREATE TABLE makers(maker INTEGER PRIMARY KEY, device TEXT NOT NULL, evodevo TEXT NOT NULL, program TEXT NOT NULL);
-CREATE TABLE operators(maker INTEGER NOT NULL, kind TEXT NOT NULL, name TEXT NOT NULL, version TEXT NOT NULL,
+CREATE TABLE provenances(provenance INTEGER PRIMARY KEY, device TEXT NOT NULL, evodevo TEXT NOT NULL, program TEXT NOT NULL);
+CREATE TABLE operators(provenance INTEGER NOT NULL, kind TEXT NOT NULL, name TEXT NOT NULL, version TEXT NOT NULL,
   file TEXT NOT NULL, hash TEXT NOT NULL);
 CREATE TABLE objectives(position INTEGER PRIMARY KEY, name TEXT NOT NULL, unit TEXT NOT NULL, maximise INTEGER NOT NULL);
 CREATE TABLE individuals(
@@ -34,7 +34,7 @@ CREATE TABLE generations(
   generation INTEGER PRIMARY KEY, evaluations INTEGER NOT NULL, best REAL, median REAL,
   diverged INTEGER NOT NULL, invalid INTEGER NOT NULL, clones INTEGER NOT NULL,
   spring_evaluations INTEGER NOT NULL, wall_time REAL NOT NULL,
-  maker INTEGER NOT NULL);
+  provenance INTEGER NOT NULL);
 CREATE TABLE verifications(
   individual INTEGER NOT NULL, trial TEXT NOT NULL, position INTEGER NOT NULL,
   status TEXT NOT NULL, reason TEXT, value REAL,  -- of the first objective

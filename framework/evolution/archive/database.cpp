@@ -1,4 +1,4 @@
-#include "evolution/archive_database.hpp"
+#include "evolution/archive/database.hpp"
 
 #include <SQLiteCpp/Backup.h>
 #include <sqlite3.h>

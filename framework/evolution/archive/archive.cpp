@@ -1,11 +1,11 @@
-#include "evolution/archive.hpp"
+#include "evolution/archive/archive.hpp"
 
 #include <chrono>
 #include <ctime>
 #include <fstream>
 
 #include "base/text.hpp"
-#include "evolution/archive_schema.hpp"
+#include "evolution/archive/schema.hpp"
 #include "evolution/record_check.hpp"
 
 namespace evodevo {
@@ -85,7 +85,7 @@ Archive Archive::create(const fs::path& folder, const Experiment& experiment, co
     Statement(run, "objectives", "INSERT INTO objectives VALUES(?, ?, ?, ?)")
         .execute(static_cast<std::uint32_t>(i), objective.name, objective.unit, objective.maximise ? 1 : 0);
   }
-  archive.insert_maker(0, this_maker(experiment, device));
+  archive.insert_provenance(0, this_provenance(experiment, device));
   archive.insert_record("format", archive_format);
   archive.insert_record("evodevo", EVODEVO_VERSION);
   archive.insert_record("created", utc_now());
@@ -139,6 +139,12 @@ bool Archive::is_in_place() const {
 }
 
 void Archive::refuse(const std::string& what) const { run_->refuse(what); }
+
+Settings recorded_settings(const Archive& archive) {
+  Settings settings = read_settings(archive.record("experiment"), (archive.folder() / "record of the run").string());
+  settings.name = printable(archive.record("name"));
+  return settings;
+}
 
 Experiment recorded_experiment(const Archive& archive, std::vector<fs::path> plugin_path) {
   Experiment experiment =

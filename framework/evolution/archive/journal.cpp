@@ -1,4 +1,4 @@
-#include "evolution/archive_journal.hpp"
+#include "evolution/archive/journal.hpp"
 
 #include <sys/vfs.h>
 

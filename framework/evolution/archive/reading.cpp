@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "base/text.hpp"
-#include "evolution/archive.hpp"
-#include "evolution/archive_database.hpp"
+#include "evolution/archive/archive.hpp"
+#include "evolution/archive/database.hpp"
 
 namespace evodevo {
 namespace {
@@ -121,8 +121,8 @@ class Individuals {
     std::vector<double>& objectives = individual.result.objectives;
     scores_.bind(individual.id);
     while (scores_.step()) {
-      const auto place = static_cast<std::int64_t>(objectives.size());
-      scores_.integer(0, place, place);
+      const auto position = static_cast<std::int64_t>(objectives.size());
+      scores_.integer(0, position, position);
       objectives.push_back(scores_.number(1));
     }
     const std::int64_t expected = individual.result.status == Status::ok ? objectives_ : 0;
@@ -176,24 +176,25 @@ std::optional<double> Archive::find_seconds(const std::string& key) const {
   return seconds;
 }
 
-std::vector<Maker> Archive::makers() const {
-  std::vector<Maker> makers;
-  Statement row(*run_, "makers", "SELECT maker, device, evodevo, program FROM makers ORDER BY maker");
-  for (std::uint32_t place = 0; row.step(); ++place) {
-    row.integer(0, place, place);
-    makers.push_back({line(row, 1), line(row, 2), line(row, 3), {}});
+std::vector<Provenance> Archive::provenances() const {
+  std::vector<Provenance> provenances;
+  Statement row(*run_, "provenances",
+                "SELECT provenance, device, evodevo, program FROM provenances ORDER BY provenance");
+  for (std::uint32_t position = 0; row.step(); ++position) {
+    row.integer(0, position, position);
+    provenances.push_back({line(row, 1), line(row, 2), line(row, 3), {}});
   }
-  if (makers.empty()) refuse("nobody made the run");
-  Statement use(*run_, "operators", "SELECT maker, kind, name, version, file, hash FROM operators ORDER BY rowid");
+  if (provenances.empty()) refuse("it has no provenance");
+  Statement use(*run_, "operators", "SELECT provenance, kind, name, version, file, hash FROM operators ORDER BY rowid");
   while (use.step())
-    makers[use.index(0, static_cast<std::uint32_t>(makers.size() - 1))].operators.push_back(
+    provenances[use.index(0, static_cast<std::uint32_t>(provenances.size() - 1))].operators.push_back(
         {line(use, 1), line(use, 2), line(use, 3), line(use, 4), line(use, 5)});
-  return makers;
+  return provenances;
 }
 
-Maker Archive::maker(std::uint32_t generation) const {
-  const std::vector<Maker> all = makers();
-  Statement row(*run_, "generations", "SELECT maker FROM generations WHERE generation = ?");
+Provenance Archive::provenance(std::uint32_t generation) const {
+  const std::vector<Provenance> all = provenances();
+  Statement row(*run_, "generations", "SELECT provenance FROM generations WHERE generation = ?");
   row.bind(generation);
   if (!row.step()) refuse("there is no generation " + std::to_string(generation));
   return all[row.index(0, static_cast<std::uint32_t>(all.size() - 1))];
@@ -202,8 +203,8 @@ Maker Archive::maker(std::uint32_t generation) const {
 std::vector<Objective> Archive::objectives() const {
   std::vector<Objective> objectives;
   Statement row(*run_, "objectives", "SELECT position, name, unit, maximise FROM objectives ORDER BY position");
-  for (std::uint32_t place = 0; row.step(); ++place) {
-    row.integer(0, place, place);
+  for (std::uint32_t position = 0; row.step(); ++position) {
+    row.integer(0, position, position);
     objectives.push_back({line(row, 1), line(row, 2), row.integer(3, 0, 1) != 0});
   }
   if (objectives.empty()) refuse("there are no objectives");
@@ -211,16 +212,16 @@ std::vector<Objective> Archive::objectives() const {
 }
 
 std::vector<Summary> Archive::generations() const {
-  const auto last_maker = static_cast<std::uint32_t>(makers().size() - 1);
+  const auto last_provenance = static_cast<std::uint32_t>(provenances().size() - 1);
   std::vector<Summary> summaries;
   Statement row(*run_, "generations",
                 "SELECT generation, evaluations, best, median, diverged, invalid, clones, spring_evaluations, "
-                "wall_time, maker FROM generations ORDER BY generation");
+                "wall_time, provenance FROM generations ORDER BY generation");
   while (row.step()) {
-    const auto place = static_cast<std::int64_t>(summaries.size());
+    const auto position = static_cast<std::int64_t>(summaries.size());
     Summary& summary = summaries.emplace_back();
-    summary.generation = static_cast<std::uint32_t>(row.integer(0, place, place));
-    summary.evaluations = row.integer(1, place > 0 ? summaries[summaries.size() - 2].evaluations : 0, most_ids);
+    summary.generation = static_cast<std::uint32_t>(row.integer(0, position, position));
+    summary.evaluations = row.integer(1, position > 0 ? summaries[summaries.size() - 2].evaluations : 0, most_ids);
     summary.best = row.optional_number(2);
     summary.median = row.optional_number(3);
     summary.diverged = row.integer(4, 0, summary.evaluations);
@@ -228,7 +229,7 @@ std::vector<Summary> Archive::generations() const {
     summary.clones = row.integer(6, 0, summary.evaluations);
     summary.spring_evaluations = static_cast<std::uint64_t>(row.integer(7, 0, most));
     summary.wall_time = row.number(8);
-    summary.maker = row.index(9, last_maker);
+    summary.provenance = row.index(9, last_provenance);
   }
   return summaries;
 }

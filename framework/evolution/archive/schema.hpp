@@ -1,12 +1,12 @@
 // The tables of a run's SQLite file.
 #pragma once
 
-#include "evolution/archive_database.hpp"
+#include "evolution/archive/database.hpp"
 
 namespace evodevo {
 
 /// Raised when a change of the tables keeps older programs from reading them, or this one from reading theirs.
-inline constexpr const char* archive_format = "5";
+inline constexpr const char* archive_format = "6";
 
 void create_tables(RunDatabase& run);
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "evolution/archive_error.hpp"
-#include "evolution/archive_journal.hpp"
+#include "evolution/archive/error.hpp"
+#include "evolution/archive/journal.hpp"
 #include "evolution/population.hpp"
 #include "evolution/provenance.hpp"
 #include "life/verification.hpp"
@@ -34,8 +34,8 @@ struct Failure {
 /// What it is asked for it checks as input: whatever cannot be is thrown as ArchiveError.
 class Archive {
  public:
-  /// Starts the record of a run in a new folder; this program on `device` is its first maker. Throws ArchiveError if
-  /// the folder is there and not empty. A wish for a journal holds for the whole run; without one, the folder's file
+  /// Starts the record of a run in a new folder; this program on `device` is its first provenance. Throws ArchiveError
+  /// if the folder is there and not empty. A wish for a journal holds for the whole run; without one, the folder's file
   /// system decides.
   static Archive create(const std::filesystem::path& folder, const Experiment& experiment, const std::string& device,
                         std::optional<Journal> journal = std::nullopt);
@@ -43,7 +43,7 @@ class Archive {
   static Archive resume(const std::filesystem::path& folder, std::optional<Journal> journal = std::nullopt);
   /// Opens a record to add what is found out about its individuals. Does not disturb a process that writes it.
   static Archive annotate(const std::filesystem::path& folder);
-  /// Opens a record to read: all that it says is of the moment at which it is first asked. Does not disturb a process
+  /// Opens a record to read: all that it says is as of the first question. Does not disturb a process
   /// that writes it.
   static Archive read(const std::filesystem::path& folder);
 
@@ -72,12 +72,12 @@ class Archive {
   void set_record(const std::string& key, const std::string& value);
   /// The same for several entries, all of them or none.
   void set_records(const std::map<std::string, std::string>& entries);
-  /// The place among the makers of the one given, which is added if it is none of them yet.
-  std::uint32_t add_maker(const Maker& maker);
-  /// All who made generations or were about to, in the order in which they came.
-  std::vector<Maker> makers() const;
-  /// Who made a generation.
-  Maker maker(std::uint32_t generation) const;
+  /// The index of a provenance among those of the run, to which it is added if it is not among them yet.
+  std::uint32_t add_provenance(const Provenance& provenance);
+  /// The provenances of all generations, and of those that were about to be made, in the order in which they came.
+  std::vector<Provenance> provenances() const;
+  /// The provenance of a generation.
+  Provenance provenance(std::uint32_t generation) const;
   std::vector<Objective> objectives() const;
   std::vector<Summary> generations() const;
   /// What individuals failed of, the most frequent first; reasons that differ from the first number on are one.
@@ -98,11 +98,14 @@ class Archive {
 
  private:
   explicit Archive(std::unique_ptr<RunDatabase> run);
-  void insert_maker(std::uint32_t place, const Maker& maker);
+  void insert_provenance(std::uint32_t position, const Provenance& provenance);
   void insert_record(const std::string& key, const std::string& value);
 
   std::unique_ptr<RunDatabase> run_;
 };
+
+/// The settings that a run used, read from its record; no operator is looked for.
+Settings recorded_settings(const Archive& archive);
 
 /// The experiment that a run used, read from its record. Operators are looked for on `plugin_path` too.
 Experiment recorded_experiment(const Archive& archive, std::vector<std::filesystem::path> plugin_path = {});

@@ -1,8 +1,8 @@
 // What is added to the record of a run.
 #include <algorithm>
 
-#include "evolution/archive.hpp"
-#include "evolution/archive_database.hpp"
+#include "evolution/archive/archive.hpp"
+#include "evolution/archive/database.hpp"
 
 namespace evodevo {
 namespace {
@@ -43,7 +43,8 @@ void Archive::commit(const std::vector<Individual>& newborns, const std::vector<
   for (const std::uint32_t id : dropped) drop.execute(summary.generation, id);
   Statement(*run_, "generations", "INSERT INTO generations VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       .execute(summary.generation, summary.evaluations, summary.best, summary.median, summary.diverged, summary.invalid,
-               summary.clones, static_cast<std::int64_t>(summary.spring_evaluations), summary.wall_time, summary.maker);
+               summary.clones, static_cast<std::int64_t>(summary.spring_evaluations), summary.wall_time,
+               summary.provenance);
   transaction.commit();
 }
 
@@ -71,23 +72,24 @@ void Archive::set_records(const std::map<std::string, std::string>& entries) {
   transaction.commit();
 }
 
-void Archive::insert_maker(std::uint32_t place, const Maker& maker) {
-  Statement(*run_, "makers", "INSERT INTO makers VALUES(?, ?, ?, ?)")
-      .execute(place, maker.device, maker.version, maker.program);
+void Archive::insert_provenance(std::uint32_t position, const Provenance& provenance) {
+  Statement(*run_, "provenances", "INSERT INTO provenances VALUES(?, ?, ?, ?)")
+      .execute(position, provenance.device, provenance.version, provenance.program);
   Statement insert(*run_, "operators", "INSERT INTO operators VALUES(?, ?, ?, ?, ?, ?)");
-  for (const OperatorUse& use : maker.operators)
-    insert.execute(place, use.kind, use.name, use.version, use.file.string(), use.hash);
+  for (const OperatorUse& use : provenance.operators)
+    insert.execute(position, use.kind, use.name, use.version, use.file.string(), use.hash);
 }
 
-std::uint32_t Archive::add_maker(const Maker& maker) {
-  const std::vector<Maker> there = makers();
-  const auto same = std::find_if(there.begin(), there.end(), [&](const Maker& one) { return are_same(one, maker); });
-  const auto place = static_cast<std::uint32_t>(same - there.begin());
-  if (same != there.end()) return place;
+std::uint32_t Archive::add_provenance(const Provenance& provenance) {
+  const std::vector<Provenance> there = provenances();
+  const auto same =
+      std::find_if(there.begin(), there.end(), [&](const Provenance& one) { return are_same(one, provenance); });
+  const auto position = static_cast<std::uint32_t>(same - there.begin());
+  if (same != there.end()) return position;
   WriteTransaction transaction(*run_);
-  insert_maker(place, maker);
+  insert_provenance(position, provenance);
   transaction.commit();
-  return place;
+  return position;
 }
 
 }  // namespace evodevo

@@ -1,0 +1,77 @@
+#include "experiment/settings.hpp"
+
+#include <ostream>
+
+#include "experiment/tables/declarations.hpp"
+#include "experiment/tables/tables.hpp"
+#include "experiment/toml_writer.hpp"
+
+namespace evodevo {
+namespace {
+
+/// A table that `declare` declares.
+template <class Declare>
+toml::table written(const Declare& declare) {
+  TomlWriter writer;
+  declare(writer);
+  return writer.take();
+}
+
+}  // namespace
+
+std::map<std::string, Material> base_materials() {
+  constexpr double pi = 3.14159265358979323846;
+  return {{"muscle", {5000, 0.14, 1, 0}},
+          {"tissue", {4000, 0, 0, 0}},
+          {"muscle2", {5000, 0.14, 1, pi}},
+          {"bone", {10000, 0, 0, 0}},
+          {"air", {0, 0, 0, 0}}};
+}
+
+toml::table to_toml(Settings settings) {
+  toml::table scene, materials;
+  for_each_force(settings, [&](std::string_view name, auto& force) {
+    if (force) scene.insert(name, written([&](TomlWriter& writer) { declare(writer, *force); }));
+  });
+  for (auto& [name, material] : settings.materials)
+    materials.insert(name, written([&, &one = material](TomlWriter& writer) { declare(writer, one); }));
+  toml::table root;
+  root.insert("experiment", written([&](TomlWriter& writer) { declare_run(writer, settings); }));
+  root.insert("encoding", written([&](TomlWriter& writer) { declare_mass(writer, settings); }));
+  root.insert("materials", std::move(materials));
+  root.insert("scene", std::move(scene));
+  root.insert("simulation", written([&](TomlWriter& writer) {
+                declare_accuracy(writer, settings);
+                declare_simulation(writer, settings);
+              }));
+  root.insert("development", written([&](TomlWriter& writer) { declare_development(writer, settings); }));
+  return root;
+}
+
+std::ostream& operator<<(std::ostream& stream, const Settings& settings) { return stream << to_toml(settings); }
+
+Settings read_settings(TomlReader& top, Bodies bodies, Warnings& warnings) {
+  Settings settings;
+  read_table(top, "experiment", true, [&](TomlReader& t) { declare_run(t, settings); });
+  read_materials(top, settings, warnings);
+  if (const toml::table* encoding = top.table("encoding")) {
+    TomlReader t(*encoding, "encoding");
+    declare_mass(t, settings);
+  }
+  read_scene(top, settings);
+  read_simulation(top, settings, bodies);
+  if (const toml::table* development = top.table("development")) {
+    TomlReader t(*development, "development");
+    read_development(t, settings);
+  }
+  return settings;
+}
+
+Settings read_settings(std::string_view text, const std::string& origin) {
+  const toml::table root = parse_toml(text, origin);
+  TomlReader top(root, "");
+  Warnings warnings;
+  return read_settings(top, Bodies::given, warnings);
+}
+
+}  // namespace evodevo

@@ -1,0 +1,28 @@
+#include <cmath>
+
+#include "base/text.hpp"
+#include "experiment/tables/declarations.hpp"
+#include "experiment/tables/tables.hpp"
+
+namespace evodevo {
+namespace {
+
+/// Refuses cycles that are too short for a tally.
+void check_skip(const TomlReader& t, const Settings& settings) {
+  const DevelopmentSettings& development = settings.development;
+  if (development.probe != Probe::skip_shift || !settings.step.fixed()) return;
+  const double steps = std::round(development.cycle_time / *settings.step.fixed());
+  if (static_cast<double>(development.skip) > steps)
+    t.fail("skip", "a cycle of " + to_text(steps) + " steps has no tally; expected at most as many");
+}
+
+}  // namespace
+
+void read_development(TomlReader& t, Settings& settings) {
+  settings.development.cycles = 100;
+  declare_development(t, settings);
+  check_duration(t, "cycle_time", settings.development.cycle_time, settings.step);
+  check_skip(t, settings);
+}
+
+}  // namespace evodevo

@@ -1,0 +1,215 @@
+#include "experiment/tables/operators.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.hpp"
+#include "experiment/tables/declarations.hpp"
+#include "operators/host_keys.hpp"
+
+namespace evodevo {
+
+const AvailableOperator& OperatorMaker::named_in(TomlReader& table, std::string_view kind) const {
+  const std::string name = table.text(host_key::name);
+  const AvailableOperator* available = registry_.find(kind, name);
+  if (available == nullptr) {
+    const std::vector<std::string> known = registry_.names(kind);
+    std::string message = "no " + std::string(kind) + " operator has this name" + suggestion(name, known);
+    if (nearest(name, known).empty()) message += "; [plugins] paths and --plugin-path name folders with more";
+    if (!registry_faults_.empty()) message += "; " + registry_faults_.front();
+    if (registry_faults_.size() > 1)
+      message += " (and " + std::to_string(registry_faults_.size() - 1) + " more such warnings)";
+    table.fail("name", message);
+  }
+  experiment_.uses.push_back({available->entry->kind, name, available->manifest->version, available->file,
+                              file_hash(available->file), available->title});
+  return *available;
+}
+
+void OperatorMaker::write(const TomlReader& table, Operator& op, TomlWriter& writer) const {
+  writer.add(host_key::name, experiment_.uses.back().name);
+  ask(table, [&] {
+    op.parameters(writer);
+    return 0;
+  });
+}
+
+namespace {
+
+/// Reads the tables of the operators one after the other.
+class OperatorTables {
+ public:
+  OperatorTables(TomlReader& top, const OperatorMaker& maker, Experiment& experiment, toml::table& record)
+      : top_(top), maker_(maker), out_(experiment), record_(record) {}
+
+  void read() {
+    read_encoding();
+    read_variation("mutation", out_.mutations);
+    read_variation("crossover", out_.crossovers);
+    check_variation();
+    read_table(
+        top_, "development", false, [&](TomlReader& t) { read_development_operators(t); }, materials());
+    read_array(top_, "fitness", record_, [&](TomlReader& t, TomlWriter& writer) { read_fitness(t, writer); });
+    if (out_.fitness.empty()) top_.fail("fitness", "is missing; add a table [[fitness]]");
+    read_one("selection", [&](TomlReader& t, TomlWriter& writer) {
+      out_.selection = maker_.make<Selection>(t);
+      maker_.write(t, *out_.selection, writer);
+    });
+  }
+
+ private:
+  const std::vector<std::string>* materials() const { return &out_.context.material_names; }
+
+  /// The table [name], and what is recorded of it.
+  template <class Read>
+  void read_one(std::string_view name, const Read& read) {
+    TomlWriter writer;
+    read_table(
+        top_, name, true, [&](TomlReader& t) { read(t, writer); }, materials());
+    record_.insert_or_assign(name, writer.take());
+  }
+
+  /// Each table of the array [[name]] of `parent`, and what is recorded of them.
+  template <class Read>
+  void read_array(TomlReader& parent, std::string_view name, toml::table& record, const Read& read) {
+    toml::array written;
+    const auto tables = parent.tables(name);
+    if (tables.size() > rng_stream::most_operators)
+      parent.fail(name, "expected at most " + std::to_string(rng_stream::most_operators) + " of them");
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+      TomlReader reader(*tables[i], parent.full_name(name) + "." + std::to_string(i), materials());
+      TomlWriter writer;
+      read(reader, writer);
+      reader.finish();
+      written.push_back(writer.take());
+    }
+    if (!tables.empty()) record.insert_or_assign(name, std::move(written));
+  }
+
+  void read_encoding() {
+    read_one("encoding", [&](TomlReader& t, TomlWriter& writer) {
+      declare_mass(t, out_);
+      declare_mass(writer, out_);
+      out_.encoding = maker_.make<Encoding>(t);
+      maker_.write(t, *out_.encoding, writer);
+      out_.layout = maker_.ask(t, [&] { return out_.encoding->layout(out_.context); });
+    });
+  }
+
+  template <class T>
+  void read_variation(std::string_view name, std::vector<Varied<T>>& list) {
+    read_array(top_, name, record_, [&](TomlReader& t, TomlWriter& writer) {
+      Varied<T> varied;
+      declare_probability(t, varied.probability);
+      declare_probability(writer, varied.probability);
+      varied.op = maker_.make<T>(t);
+      varied.name = out_.uses.back().name;
+      maker_.write(t, *varied.op, writer);
+      list.push_back(std::move(varied));
+    });
+  }
+
+  void check_variation() const {
+    if (out_.mutations.empty() && out_.crossovers.empty())
+      top_.fail("mutation", "is missing; add a table [[mutation]] or [[crossover]]");
+    double sum = 0;
+    for (const auto& mutation : out_.mutations) sum += mutation.probability;
+    for (const auto& crossover : out_.crossovers) sum += crossover.probability;
+    if (sum == 0) top_.fail("mutation", "no operator has a probability above 0, so that no child would differ");
+  }
+
+  void read_development_operators(TomlReader& t) {
+    declare_development(t, out_);
+    toml::table& record = *record_["development"].as_table();
+    read_array(t, "operator", record, [&](TomlReader& entry, TomlWriter& writer) { read_devo(entry, writer); });
+    if (!out_.devo.empty()) return;
+    const std::string remedy = "no operator develops anything; add a table [[development.operator]]";
+    if (out_.development.control != Control::off) t.fail("control", remedy + ", or set control = \"off\"");
+    if (out_.development.cycles > 0)
+      out_.warnings.push_back("development.cycles = " + std::to_string(out_.development.cycles) + ": " + remedy +
+                              ", or leave [development] out");
+  }
+
+  void read_devo(TomlReader& t, TomlWriter& writer) {
+    Schedule schedule = read_schedule(t);
+    declare_schedule(writer, schedule);
+    out_.devo.push_back({maker_.make<Devo>(t), schedule});
+    Devo& op = *out_.devo.back().op;
+    maker_.write(t, op, writer);
+    check_request(t, maker_.ask(t, [&] { return op.observes(); }));
+    if (maker_.ask(t, [&] { return op.uses_growth() && !out_.encoding->sets_growth(); }))
+      out_.warnings.push_back(t.full_name("name") + " = \"" + out_.uses.back().name +
+                              "\": the encoding lets no spring grow, so that nothing changes; set encoding.size_range, "
+                              "or take an encoding that has it");
+  }
+
+  /// When a devo operator is applied; by default after every cycle.
+  Schedule read_schedule(TomlReader& t) {
+    const std::int64_t cycles = out_.development.cycles;
+    Schedule schedule;
+    schedule.to = std::max<std::int64_t>(1, cycles);
+    declare_schedule(t, schedule);
+    if (schedule.applications(cycles) == 0 && cycles > 0)
+      out_.warnings.push_back(t.full_name("from") + " = " + std::to_string(schedule.from) + " to " +
+                              std::to_string(schedule.to) + ": the operator is never applied in " +
+                              std::to_string(cycles) + " cycles");
+    return schedule;
+  }
+
+  /// Refuses what tallies do not tell.
+  void check_request(const TomlReader& t, const SpringRequest& request) const {
+    if (out_.development.probe == Probe::skip_shift && (request.peak_force || request.muscle_work || request.tension))
+      t.fail("name",
+             "this operator asks for more of the springs than the tallies of development.probe = \"skip-shift\" "
+             "tell; set development.probe = \"exact\", or let it go by the mean force");
+  }
+
+  void read_fitness(TomlReader& t, TomlWriter& writer) {
+    std::unique_ptr<Fitness> fitness = maker_.make<Fitness>(t);
+    maker_.write(t, *fitness, writer);
+    const Request request = maker_.ask(t, [&] { return fitness->observes(); });
+    check_request(t, request);
+    check_duration(t, "settle", request.settle, out_.step);
+    check_duration(t, "window", request.window, out_.step);
+    std::vector<Objective> objectives = maker_.ask(t, [&] { return fitness->objectives(); });
+    if (objectives.empty()) t.fail("name", "this operator has no objectives; expected one or more from objectives()");
+    for (Objective& objective : objectives) add_objective(t, std::move(objective));
+    out_.fitness.push_back(std::move(fitness));
+  }
+
+  /// Refuses windows that no body can live through.
+  static void check_request(const TomlReader& t, const Request& request) {
+    constexpr double longest = 1e6;  // s, as of a cycle
+    const auto text = [](double time) { return std::isfinite(time) ? to_text(time) + " s" : "no finite number"; };
+    // written so that NaN fails
+    if (!(request.settle >= 0 && request.settle <= longest) || !(request.window > 0 && request.window <= longest))
+      t.fail("name", "this operator observes settle = " + text(request.settle) +
+                         " and window = " + text(request.window) + "; expected 0 to " + text(longest) +
+                         ", and above 0 to " + text(longest));
+  }
+
+  void add_objective(const TomlReader& t, Objective objective) {
+    if (objective.name.empty())
+      t.fail("name", "this operator has an objective without a name; name it in objectives()");
+    for (const std::string& text : {objective.name, objective.unit})
+      if (const std::string fault = text_fault(text); !fault.empty())
+        t.fail("name", "its objective's name or unit " + fault);
+    const auto same = [&](const Objective& other) { return other.name == objective.name; };
+    if (std::any_of(out_.objectives.begin(), out_.objectives.end(), same))
+      t.fail("name", "there is an objective \"" + objective.name + "\" already");
+    out_.objectives.push_back(std::move(objective));
+  }
+
+  TomlReader& top_;
+  const OperatorMaker& maker_;
+  Experiment& out_;
+  toml::table& record_;
+};
+
+}  // namespace
+
+void read_operators(TomlReader& top, const OperatorMaker& maker, Experiment& experiment, toml::table& record) {
+  OperatorTables(top, maker, experiment, record).read();
+}
+
+}  // namespace evodevo

@@ -1,0 +1,39 @@
+#include "experiment/toml_writer.hpp"
+
+namespace evodevo {
+
+void TomlWriter::real(double& value, std::string_view name, Range, std::string_view) { add(name, value); }
+
+void TomlWriter::integer(std::int64_t& value, std::string_view name, Range, std::string_view) { add(name, value); }
+
+void TomlWriter::flag(bool& value, std::string_view name, std::string_view) { add(name, value); }
+
+void TomlWriter::choice(std::string& value, std::string_view name, std::initializer_list<std::string_view>,
+                        std::string_view) {
+  add(name, value);
+}
+
+void TomlWriter::vector(Vec3& value, std::string_view name, Range, std::string_view) {
+  add(name, toml::array{value.x, value.y, value.z});
+}
+
+void TomlWriter::counts(std::array<std::int64_t, 3>& value, std::string_view name, Range, std::string_view) {
+  add(name, toml::array{value[0], value[1], value[2]});
+}
+
+void TomlWriter::materials(std::vector<std::string>& value, std::string_view name, std::string_view) {
+  toml::array names;
+  for (const std::string& material : value) names.push_back(material);
+  add(name, std::move(names));
+}
+
+void TomlWriter::require(bool, std::string_view, std::string_view) {}
+
+void TomlWriter::real_or_auto(std::optional<double>& value, std::string_view name, Range, std::string_view) {
+  if (value)
+    add(name, *value);
+  else
+    add(name, "auto");
+}
+
+}  // namespace evodevo

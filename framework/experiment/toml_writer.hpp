@@ -1,0 +1,36 @@
+// Writes settings and parameters as TOML, every default included.
+#pragma once
+
+#include <toml++/toml.h>
+
+#include "experiment/settings_visitor.hpp"
+
+namespace evodevo {
+
+/// The counterpart of TomlReader: the same declarations, handed to it, make the table that reads back as the same.
+class TomlWriter final : public SettingsVisitor {
+ public:
+  void real(double& value, std::string_view name, Range range, std::string_view text) override;
+  void integer(std::int64_t& value, std::string_view name, Range range, std::string_view text) override;
+  void flag(bool& value, std::string_view name, std::string_view text) override;
+  void choice(std::string& value, std::string_view name, std::initializer_list<std::string_view> options,
+              std::string_view text) override;
+  void vector(Vec3& value, std::string_view name, Range range, std::string_view text) override;
+  void counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view text) override;
+  void materials(std::vector<std::string>& value, std::string_view name, std::string_view text) override;
+  void require(bool holds, std::string_view name, std::string_view text) override;
+  void real_or_auto(std::optional<double>& value, std::string_view name, Range range, std::string_view text) override;
+
+  /// Adds a text, a list or a table that is no parameter.
+  template <class Value>
+  void add(std::string_view name, Value&& value) {
+    table_.insert_or_assign(name, std::forward<Value>(value));
+  }
+
+  toml::table take() { return std::move(table_); }
+
+ private:
+  toml::table table_;
+};
+
+}  // namespace evodevo

@@ -1,0 +1,227 @@
+#include "life/development.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "analysis/energy.hpp"
+#include "analysis/ground.hpp"
+#include "base/input_error.hpp"
+#include "base/philox.hpp"
+#include "core/skip_shift.hpp"
+#include "life/body_building.hpp"
+#include "threads/parallel.hpp"
+
+namespace evodevo {
+namespace {
+
+/// Whether a change may strain or lift a body. Turnover by springs without force does neither by much.
+bool adds_energy(const Change& change) {
+  const Edits& edits = change.edits;
+  return edits.growth || !edits.changed_springs.empty() || edits.new_masses.size() > edits.removed_masses.size() ||
+         change.lengths_given;
+}
+
+}  // namespace
+
+double DevelopmentLoop::duration() const {
+  const DevelopmentSettings& development = experiment_.development;
+  const int times_lived = development.control == Control::random_places ? 2 : 1;
+  return times_lived * static_cast<double>(development.cycles) * development.cycle_time;
+}
+
+void DevelopmentLoop::run(std::span<Life> lives, const Progress& progress) const {
+  std::vector<std::vector<Change>> recorded(lives.size());
+  for (std::size_t i = 0; i < lives.size(); ++i)
+    if (const auto& record = lives[i].newborn.record) recorded[i] = record->changes();
+  const bool yoked = experiment_.development.control == Control::random_places;
+  std::vector<std::optional<Yoke>> yokes(lives.size());
+  if (yoked) yokes = yokes_of(lives);
+  const auto change = [&](std::size_t i, int cycle) {
+    if (lives[i].newborn.record)
+      apply_recorded(recorded[i], lives[i], cycle);
+    else if (yoked)
+      change_as_in(*yokes[i], lives[i], cycle);
+    else
+      apply_operators(lives[i], cycle);
+  };
+  // what was observed then is again, so that a life with a record is the same to the bit
+  run_cycles(lives, !yoked, change, progress);
+}
+
+std::vector<std::optional<Yoke>> DevelopmentLoop::yokes_of(std::span<const Life> lives) const {
+  std::vector<std::size_t> yoked;
+  std::vector<Life> before;
+  for (std::size_t i = 0; i < lives.size(); ++i) {
+    if (lives[i].newborn.record) continue;
+    yoked.push_back(i);
+    before.push_back(lives[i]);
+  }
+  const auto change = [&](std::size_t i, int cycle) { apply_operators(before[i], cycle); };
+  run_cycles(before, true, change, [](double) {});
+  std::vector<std::optional<Yoke>> yokes(lives.size());
+  for (std::size_t i = 0; i < before.size(); ++i)
+    yokes[yoked[i]].emplace(lives[yoked[i]].living.body, before[i].result.record);
+  return yokes;
+}
+
+template <class Action>
+void DevelopmentLoop::run_cycles(std::span<Life> lives, bool observed, const Action& change,
+                                 const Progress& progress) const {
+  const DevelopmentSettings& development = experiment_.development;
+  for (int cycle = 1; cycle <= development.cycles; ++cycle) {
+    simulate_cycle(lives, cycle, observed ? recording(experiment_, cycle) : Recording{});
+    const BusyClock::Span span(clock_);
+    simulation_.simulator().workers().for_each(lives.size(), [&](std::size_t i) {
+      if (!lives[i].alive()) return;
+      change(i, cycle);
+      if (development.reset) allow_energy(lives[i], [&] { return_to_rest(lives[i]); });
+      if (lives[i].living.body.springs.empty())
+        lives[i].end(Status::invalid, "no springs");
+      else
+        simulation_.choose_step(lives[i]);
+    });
+    progress(static_cast<double>(cycle) / static_cast<double>(development.cycles));
+  }
+}
+
+void DevelopmentLoop::simulate_cycle(std::span<Life> lives, int cycle, Recording recording) const {
+  const DevelopmentSettings& development = experiment_.development;
+  const auto tally = [&](std::span<Task> tasks, std::span<Life* const> alive) {
+    std::vector<Rng> random;
+    for (const Life* life : alive) random.push_back(stream(*life, rng_stream::stress_tallies(cycle)));
+    run_with_tallies(simulation_.simulator(), tasks, static_cast<std::uint64_t>(development.skip), random);
+  };
+  const auto record = [&](std::span<Task> tasks, std::span<Life* const>) {
+    simulation_.simulator().run(tasks, recording);
+  };
+  if (recording.stress && development.probe == Probe::skip_shift)
+    simulation_.run(lives, development.cycle_time, tally);
+  else
+    simulation_.run(lives, development.cycle_time, record);
+}
+
+template <class Action>
+void DevelopmentLoop::allow_energy(Life& life, const Action& action) const {
+  const auto energy = [&] { return total_energy(life.living.body, life.living.state, experiment_.scene); };
+  const double before = energy();
+  action();
+  life.living.state.start_energy += std::max(0.0, energy() - before);
+}
+
+Box DevelopmentLoop::bounds(const LivingBody& living) const {
+  Box box =
+      experiment_.development.reset ? bounding_box(rest_positions(living.body)) : bounding_box(living.state.position);
+  if (const auto& floor = experiment_.scene.floor) box.low.z = std::max(box.low.z, floor->roughness);
+  box.high.z = std::max(box.high.z, box.low.z);
+  return box;
+}
+
+void DevelopmentLoop::apply_operators(Life& life, int cycle) const {
+  const DevelopmentSettings& development = experiment_.development;
+  if (development.control == Control::no_change) return;
+  if (development.control == Control::shuffled_stress) shuffle_records(life, cycle);
+  for (std::size_t i = 0; i < experiment_.devo.size(); ++i)
+    if (experiment_.devo[i].schedule.contains(cycle)) apply_operator(life, cycle, i);
+  shed_loose_pieces(life, cycle);
+}
+
+void DevelopmentLoop::shuffle_records(Life& life, int cycle) const {
+  std::vector<std::size_t> order(life.living.body.springs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  stream(life, rng_stream::stress_shuffle(cycle)).shuffle(order);
+  for (const auto list : SpringRecords::lists) {
+    std::vector<double>& record = life.living.*list;
+    if (record.empty()) continue;
+    std::vector<double> shuffled;
+    for (const std::size_t i : order) shuffled.push_back(record[i]);
+    record = std::move(shuffled);
+  }
+}
+
+void DevelopmentLoop::apply_operator(Life& life, int cycle, std::size_t index) const {
+  const auto& [op, schedule] = experiment_.devo[index];
+  const DevoContext context = context_of(life, cycle, schedule, devo_request(experiment_, index));
+  Rng rng = stream(life, rng_stream::devo(index, cycle));
+  const auto develop = [&] {
+    Edits edits;
+    op->develop(context, edits, rng);
+    make(change_by(edits, static_cast<std::uint32_t>(index), context), life);
+  };
+  call_operator(experiment_.call_of(Devo::kind, index, {.individual = life.newborn.id, .cycle = cycle}), develop);
+}
+
+void DevelopmentLoop::change_as_in(Yoke& yoke, Life& life, int cycle) const {
+  Rng rng = stream(life, rng_stream::random_places(cycle));
+  for (const Amount& amount : yoke.amounts_after(cycle)) {
+    const DevoContext context = context_of(life, cycle, {}, {});
+    make(change_by(at_random_places(amount, context, yoke.surplus, rng), amount.op, context), life);
+  }
+  shed_loose_pieces(life, cycle);
+}
+
+Rng DevelopmentLoop::stream(const Life& life, std::uint32_t id) const {
+  return Rng(philox, {static_cast<std::uint64_t>(experiment_.seed), life.newborn.generation, life.newborn.id, id});
+}
+
+DevoContext DevelopmentLoop::context_of(const Life& life, int cycle, const Schedule& schedule,
+                                        const SpringRequest& request) const {
+  const DevelopmentSettings& development = experiment_.development;
+  const LivingBody& living = life.living;
+  DevoContext context{.body = living.body,
+                      .state = living.state,
+                      .stress = {},
+                      .cycle = cycle,
+                      .cycles = static_cast<int>(development.cycles),
+                      .application = static_cast<int>(schedule.applications(cycle)),
+                      .applications = static_cast<int>(schedule.applications(development.cycles)),
+                      .time = living.state.time,
+                      .bounds = bounds(living),
+                      .mass = experiment_.context.mass,
+                      .resets = development.reset,
+                      .genome = *life.newborn.genome,
+                      .layout = experiment_.layout};
+  show_records(living, request, context);
+  return context;
+}
+
+void DevelopmentLoop::make(Change change, Life& life) const {
+  if (change.edits.empty()) return;
+  const auto apply_it = [&] { apply(change.edits, life.living); };
+  if (adds_energy(change))
+    allow_energy(life, apply_it);
+  else
+    apply_it();
+  life.result.record.add(change);
+}
+
+void DevelopmentLoop::apply_recorded(const std::vector<Change>& changes, Life& life, int cycle) const {
+  for (const Change& change : changes) {
+    if (change.cycle != static_cast<std::uint32_t>(cycle)) continue;
+    try {
+      make(change, life);
+    } catch (const std::invalid_argument& error) {
+      throw InputError(life.newborn.recorded_in + ": the record of its life does not fit its body: after cycle " +
+                       std::to_string(cycle) + " it " + error.what() + "; put back an undamaged copy of it");
+    }
+  }
+}
+
+void DevelopmentLoop::shed_loose_pieces(Life& life, int cycle) const {
+  const Edits edits{.removed_masses = loose_masses(life.living.body)};
+  if (edits.empty()) return;
+  const DevoContext context = context_of(life, cycle, {}, {});
+  make(change_by(edits, std::nullopt, context), life);
+}
+
+void DevelopmentLoop::return_to_rest(Life& life) const {
+  State& state = life.living.state;
+  for (std::size_t i = 0; i < state.position.size(); ++i) {
+    state.position[i] = life.living.body.masses[i].rest;
+    state.velocity[i] = {};
+  }
+  // rest positions are those on level ground
+  if (const auto& floor = experiment_.scene.floor; floor && floor->rough())
+    put_on_ground(state.position, experiment_.scene);
+}
+
+}  // namespace evodevo

@@ -1,0 +1,125 @@
+// Which folder may include which, and how large folders and files may be: see framework/README.md, kernels/README.md.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path source = EVODEVO_SOURCE_FOLDER;
+
+/// Floors from below: a folder may include those of lower floors and itself, and none beside it.
+using Floors = std::vector<std::set<std::string>>;
+const Floors floors{{"kernels/include"},
+                    {"kernels/threads", "kernels/physics"},
+                    {"kernels/core"},
+                    {"kernels/analysis"},
+                    {"kernels/cpu", "kernels/cuda"},
+                    {"framework/sdk"},
+                    {"framework/base"},
+                    {"framework/operators"},
+                    {"framework/experiment"},
+                    {"framework/life"},
+                    {"framework/evolution"},
+                    {"framework/environments", "framework/report", "framework/conformance"},
+                    {"framework/commands"},
+                    {"framework/main.cpp", "framework/help.inc"}};
+
+/// "framework/life" of framework/life/birth.cpp.
+std::string room_of(const fs::path& file) {
+  const fs::path relative = fs::relative(file, source);
+  auto part = relative.begin();
+  const fs::path first = *part++;
+  return (first / *part).string();
+}
+
+std::size_t floor_of(const std::string& room) {
+  const auto found =
+      std::find_if(floors.begin(), floors.end(), [&](const auto& rooms) { return rooms.contains(room); });
+  EXPECT_NE(found, floors.end()) << room << " stands on no floor: add it to the list above";
+  return static_cast<std::size_t>(found - floors.begin());
+}
+
+bool is_source(const fs::path& file) {
+  static const std::set<std::string> endings{".cpp", ".hpp", ".cu", ".cuh"};
+  return endings.contains(file.extension().string());
+}
+
+std::vector<fs::path> sources_in(const std::string& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(source / folder))
+    if (entry.is_regular_file() && is_source(entry.path()) && room_of(entry.path()) != "framework/template")
+      files.push_back(entry.path());
+  return files;
+}
+
+std::vector<std::string> lines_of(const fs::path& file) {
+  std::ifstream stream(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+/// The file of the project that an #include "..." names; nothing where it is another's.
+std::optional<fs::path> included(const std::string& name) {
+  for (const char* root : {"framework", "kernels", "kernels/include", "framework/sdk"})
+    if (fs::exists(source / root / name)) return source / root / name;
+  return std::nullopt;
+}
+
+template <class Use>
+void for_each_include(const Use& use) {
+  static const std::regex include("#include \"([^\"]+)\"");
+  for (const char* part : {"kernels", "framework"})
+    for (const fs::path& file : sources_in(part))
+      for (const std::string& line : lines_of(file)) {
+        std::smatch name;
+        if (!std::regex_search(line, name, include)) continue;
+        if (const auto other = included(name[1])) use(file, *other);
+      }
+}
+
+TEST(Rooms, IncludeOnlyWhatLiesBelow) {
+  int includes = 0;
+  for_each_include([&](const fs::path& file, const fs::path& other) {
+    ++includes;
+    const std::string from = room_of(file), to = room_of(other);
+    if (from == to || to == "framework/help.inc") return;
+    EXPECT_LT(floor_of(to), floor_of(from)) << fs::relative(file, source) << " includes " << other;
+  });
+  EXPECT_GT(includes, 300) << "or the includes are not found";
+}
+
+TEST(Rooms, OfTheCoreOpenOnlyTheOnesForCallers) {
+  static const std::set<std::string> open{"kernels/include", "kernels/core", "kernels/analysis", "kernels/threads"};
+  for_each_include([&](const fs::path& file, const fs::path& other) {
+    const bool is_choice_of_device = file.filename() == "device.cpp" && other.filename() == "cuda_simulator.hpp";
+    const bool enters = room_of(file).starts_with("framework/") && room_of(other).starts_with("kernels/");
+    if (!enters || is_choice_of_device) return;
+    EXPECT_THAT(open, testing::Contains(room_of(other))) << fs::relative(file, source) << " includes " << other;
+  });
+}
+
+TEST(Rooms, HoldADozenModulesAtMost) {
+  std::map<fs::path, std::set<std::string>> modules;
+  for (const fs::path& file : sources_in("framework")) modules[file.parent_path()].insert(file.stem().string());
+  for (const auto& [folder, names] : modules) EXPECT_LE(names.size(), 12u) << folder;
+}
+
+TEST(Rooms, HaveNoLongFiles) {
+  for (const fs::path& file : sources_in("framework")) EXPECT_LT(lines_of(file).size(), 400u) << file;
+}
+
+}  // namespace
+}  // namespace evodevo
