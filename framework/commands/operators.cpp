@@ -8,6 +8,7 @@
 #include "commands/commands.hpp"
 #include "commands/shell/notices.hpp"
 #include "commands/shell/options.hpp"
+#include "experiment/tables/reference.hpp"
 #include "operators/describe.hpp"
 #include "operators/reference.hpp"
 
@@ -106,6 +107,10 @@ int operators(const Given& given) {
 
 int describe(const Given& given) {
   const auto wanted = given["OPERATOR"].as<std::string>();
+  if (wanted == "experiment") {
+    std::cout << experiment_reference();
+    return 0;
+  }
   const Registry registry = registry_for(given);
   std::vector<std::string> names;
   bool found = false;
@@ -147,8 +152,9 @@ Command describe_command() {
   return {.name = "describe",
           .arguments = {{"OPERATOR"}},
           .summary = "Explain an operator and its parameters",
-          .text = {"Each parameter stands there with its default, its range, its unit and what it does."},
-          .examples = {"describe spring-turnover"},
+          .text = {"Each parameter stands there with its default, its range, its unit and what it does. "
+                   "`describe experiment` prints a page of the tables and keys of an experiment."},
+          .examples = {"describe spring-turnover", "describe experiment"},
           .options = options,
           .function = describe};
 }

@@ -1,60 +1,16 @@
 #include "operators/describe.hpp"
 
-#include "base/text.hpp"
 #include "operators/loader.hpp"
 
 namespace evodevo {
 namespace {
 
-std::string in_quotes(std::string_view text) { return '"' + std::string(text) + '"'; }
-
-class Describer final : public Parameters {
- public:
-  std::vector<ParameterDescription> found;
-
-  void real(double& value, std::string_view name, Range range, std::string_view text) override {
-    add(name, "number", to_text(value), range, text);
-  }
-  void integer(std::int64_t& value, std::string_view name, Range range, std::string_view text) override {
-    add(name, "whole number", std::to_string(value), range, text);
-  }
-  void flag(bool& value, std::string_view name, std::string_view text) override {
-    add(name, "true or false", value ? "true" : "false", {}, text);
-  }
-  void choice(std::string& value, std::string_view name, std::initializer_list<std::string_view> options,
-              std::string_view text) override {
-    add(name, "option", in_quotes(value), {}, text);
-    std::vector<std::string> names;
-    for (const std::string_view option : options) names.push_back(in_quotes(option));
-    found.back().allowed = printable(joined(names), 2000);
-  }
-  void vector(Vec3& value, std::string_view name, Range range, std::string_view text) override {
-    add(name, "three numbers", "[" + to_text(value.x) + ", " + to_text(value.y) + ", " + to_text(value.z) + "]", range,
-        text);
-  }
-  void counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view text) override {
-    add(name, "three whole numbers",
-        "[" + std::to_string(value[0]) + ", " + std::to_string(value[1]) + ", " + std::to_string(value[2]) + "]", range,
-        text);
-  }
-  void materials(std::vector<std::string>& value, std::string_view name, std::string_view text) override {
-    std::vector<std::string> names;
-    for (const std::string& material : value) names.push_back(in_quotes(material));
-    add(name, "names of materials", "[" + joined(names) + "]", {}, text);
-  }
-  void require(bool, std::string_view, std::string_view) override {}
-
- private:
-  void add(std::string_view name, std::string type, std::string fallback, Range range, std::string_view text) {
-    found.push_back({printable(name), std::move(type), printable(fallback), to_text(range), printable(range.unit),
-                     printable(text, 2000)});
-  }
-};
+class ParameterDescriber final : public Describer<Parameters> {};
 
 }  // namespace
 
 std::vector<ParameterDescription> describe_parameters(Operator& op) {
-  Describer describer;
+  ParameterDescriber describer;
   op.parameters(describer);
   return std::move(describer.found);
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/text.hpp"
 #include "evodevo/operator.hpp"
 
 namespace evodevo {
@@ -18,6 +19,56 @@ struct ParameterDescription {
   std::string allowed;   ///< range or options; empty where anything of the type goes
   std::string unit;
   std::string text;
+};
+
+/// A visitor that writes down what is declared: `Visitor` is Parameters, or an interface with more kinds of values.
+template <class Visitor>
+class Describer : public Visitor {
+ public:
+  std::vector<ParameterDescription> found;
+
+  void real(double& value, std::string_view name, Range range, std::string_view text) override {
+    add(name, "number", to_text(value), range, text);
+  }
+  void integer(std::int64_t& value, std::string_view name, Range range, std::string_view text) override {
+    add(name, "whole number", std::to_string(value), range, text);
+  }
+  void flag(bool& value, std::string_view name, std::string_view text) override {
+    add(name, "true or false", value ? "true" : "false", {}, text);
+  }
+  void choice(std::string& value, std::string_view name, std::initializer_list<std::string_view> options,
+              std::string_view text) override {
+    add(name, "option", in_quotes(value), {}, text);
+    std::vector<std::string> names;
+    for (const std::string_view option : options) names.push_back(in_quotes(option));
+    found.back().allowed = printable(joined(names), 2000);
+  }
+  void vector(Vec3& value, std::string_view name, Range range, std::string_view text) override {
+    add(name, "three numbers", "[" + to_text(value.x) + ", " + to_text(value.y) + ", " + to_text(value.z) + "]", range,
+        text);
+  }
+  void counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view text) override {
+    add(name, "three whole numbers",
+        "[" + std::to_string(value[0]) + ", " + std::to_string(value[1]) + ", " + std::to_string(value[2]) + "]", range,
+        text);
+  }
+  void materials(std::vector<std::string>& value, std::string_view name, std::string_view text) override {
+    std::vector<std::string> names;
+    for (const std::string& material : value) names.push_back(in_quotes(material));
+    add(name, "names of materials", "[" + joined(names) + "]", {}, text);
+  }
+  void require(bool, std::string_view, std::string_view) override {}
+
+ protected:
+  ~Describer() = default;
+
+  void add(std::string_view name, std::string type, std::string fallback, Range range, std::string_view text) {
+    found.push_back({printable(name), std::move(type), printable(fallback), to_text(range), printable(range.unit),
+                     printable(text, 2000)});
+  }
+
+ private:
+  static std::string in_quotes(std::string_view text) { return '"' + std::string(text) + '"'; }
 };
 
 /// The parameters of an operator that still has its defaults, in the order of their declaration.

@@ -1,13 +1,7 @@
 #include "operators/reference.hpp"
 
-#include "operators/describe.hpp"
-
 namespace evodevo {
 namespace {
-
-std::string heading_text(int level, const std::string& text) {
-  return std::string(static_cast<std::size_t>(level), '#') + " " + text + "\n\n";
-}
 
 /// One line of a table; a bar within a cell would end it.
 std::string row(std::initializer_list<std::string> cells) {
@@ -29,13 +23,21 @@ std::string parameter_row(const ParameterDescription& p) {
 
 }  // namespace
 
+std::string heading_text(int level, const std::string& text) {
+  return std::string(static_cast<std::size_t>(level), '#') + " " + text + "\n\n";
+}
+
+std::string parameter_table(const std::vector<ParameterDescription>& parameters, const std::string& what) {
+  std::string text = row({what, "default", "allowed", "unit", "what it is"}) + "|---|---|---|---|---|\n";
+  for (const ParameterDescription& parameter : parameters) text += parameter_row(parameter);
+  return text + "\n";
+}
+
 std::string reference_of(const AvailableOperator& available, int heading) {
   std::string text = heading_text(heading, code(available.entry->name)) + available.entry->summary + "\n\n";
   const auto parameters = describe_parameters(available);
   if (parameters.empty()) return text + "It has no parameters.\n\n";
-  text += row({"parameter", "default", "allowed", "unit", "what it is"}) + "|---|---|---|---|---|\n";
-  for (const ParameterDescription& parameter : parameters) text += parameter_row(parameter);
-  return text + "\n";
+  return text + parameter_table(parameters, "parameter");
 }
 
 std::string reference_page(const Registry& registry) {

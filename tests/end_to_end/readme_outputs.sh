@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What the examples of README.md write beside it leaves `git status` as it was: readme_outputs.sh SOURCE_FOLDER
+# What the examples of all pages write beside README.md leaves `git status` as it was: readme_outputs.sh SOURCE_FOLDER
 set -euo pipefail
 source=$1
 if ! command -v git >/dev/null; then
@@ -9,19 +9,22 @@ fi
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-# in commands: what follows --out or >, a tool's first or last word that names a file or a folder, a new plugin
-commands=$(sed -n '/^```sh$/,/^```$/p' "$source/README.md" | sed 's/ *#.*//')
-outputs=$(sed -nE -e 's/.*(--out|>) ([^ ]+).*/\2/p' -e 's/^tools\/figure .* ([^ ]+)$/\1/p' \
-  -e 's/^tools\/stress ([^ ]+).*/\1\/data.csv/p' -e 's/.*evodevo new [a-z]+ ([^ ]+).*/\1\/CMakeLists.txt/p' \
+# in commands: what follows --out, --trajectory or >, a tool's first or last word that names a file or a folder, a new
+# plugin, in whose folder walk.toml lies
+pages=$(find "$source" -name '*.md' -not -path "$source/build/*" -not -path '*/template/*' -not -path '*/node_modules/*')
+commands=$(while IFS= read -r page; do sed -n '/^```sh$/,/^```$/p' "$page"; done <<<"$pages" | sed 's/ *#.*//')
+outputs=$(sed -nE -e 's/.*(--out|--trajectory|>) ([^ ]+).*/\2/p' -e 's/^tools\/figure .* ([^ ]+)$/\1/p' \
+  -e 's/^tools\/(stress|accuracy) ([^ -][^ ]*).*/\2\/data.csv/p' -e 's/.*evodevo new [a-z]+ ([^ ]+).*/\1\/CMakeLists.txt/p' \
   -e 's/^tools\/evodevo run .*/runs\/some-1\/run.sqlite/p' -e 's/^tools\/compare .*/runs\/compare-some\/report.md/p' \
-  <<<"$commands")
-[ "$(wc -l <<<"$outputs")" -ge 10 ] || { echo "README.md has fewer outputs than it had: $outputs"; exit 1; }
+  <<<"$commands" | sed 's/^walk\./my-lab.growth\/&/' | sort -u)
+[ "$(wc -l <<<"$outputs")" -ge 12 ] || { echo "pages have fewer outputs than they had: $outputs"; exit 1; }
 
 git init -q "$scratch"
 cp "$source/.gitignore" "$scratch"
 cd "$scratch"
 while IFS= read -r output; do
   [[ $output != /* && $output != *..* ]] || { echo "$output lies elsewhere"; exit 1; }
+  [[ $output == *.* ]] || output=$output/run.sqlite  # the folder of a run
   mkdir -p "$(dirname "$output")"
   touch "$output"
 done <<<"$outputs"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the plugin of "Writing an operator" with the compiler line given there, and runs the README's experiment with
-# it.
+# Builds the plugin of "Writing an operator" with the compiler line given there, and runs it in the experiment that
+# experiments/README.md shows first.
 #
 #   readme_plugin.sh SOURCE_FOLDER EVODEVO_PROGRAM
 set -euo pipefail
@@ -10,10 +10,11 @@ trap 'rm -rf "$scratch"' EXIT
 export XDG_STATE_HOME=$scratch/state
 
 page=$source/framework/sdk/README.md
-block() { sed -n "/^\`\`\`$1\$/,/^\`\`\`\$/p" "$2" | sed '1d;$d'; }
+# the first block of a language
+block() { awk -v opens="\`\`\`$1" '$0 == "```" && inside { exit } inside; $0 == opens { inside = 1 }' "$2"; }
 mkdir "$scratch/my-plugins"
 block cpp "$page" >"$scratch/erosion.cpp"
-block toml "$source/README.md" >"$scratch/experiment.toml"
+block toml "$source/experiments/README.md" >"$scratch/experiment.toml"
 compile=$(grep '^g++ .*erosion' "$page")
 printf -v includes -- '-I%q -I%q' "$source/framework/sdk" "$source/kernels/include"
 compile=${compile//-I ~\/evodevo\/include/"$includes"}

@@ -13,7 +13,8 @@ Topic experiment() {
                "Every key can also be set on the command line: --set experiment.population=100. The items of lists "
                "have numbers from 0: --set fitness.0.window=5. The number behind the last item adds an item.",
                "`evodevo check FILE` says whether an experiment can be run, `evodevo operators` lists the operators "
-               "that it can name, and `evodevo describe OPERATOR` explains the keys of one operator."},
+               "that it can name, and `evodevo describe OPERATOR` explains the keys of one operator. `evodevo describe "
+               "experiment` prints the keys of all tables with their ranges."},
       .definitions = {{"[experiment]",
                        "How long the run takes: seed, evaluations, spring_evaluations, population, and verify, the "
                        "number of best individuals that are verified at the end."},

@@ -1,0 +1,72 @@
+#include "experiment/tables/reference.hpp"
+
+#include "experiment/experiment.hpp"
+#include "experiment/tables/declarations.hpp"
+#include "operators/reference.hpp"
+
+namespace evodevo {
+namespace {
+
+class SettingsDescriber final : public Describer<SettingsVisitor> {
+ public:
+  void real_or_auto(std::optional<double>& value, std::string_view name, Range range, std::string_view text) override {
+    add(name, "\"auto\" or a number", value ? to_text(*value) : "\"auto\"", range, text);
+  }
+};
+
+/// One table: its name as a page writes it, one sentence, and the keys that `declare_keys` declares.
+template <class DeclareKeys>
+std::string section(const std::string& name, const std::string& sentence, const DeclareKeys& declare_keys) {
+  SettingsDescriber describer;
+  declare_keys(describer);
+  return heading_text(3, name) + sentence + "\n\n" + parameter_table(describer.found, "key");
+}
+
+/// A table whose keys are the members of one object, which has its defaults.
+template <class Object>
+std::string section_of(const std::string& name, const std::string& sentence) {
+  return section(name, sentence, [](SettingsVisitor& v) {
+    Object object;
+    declare(v, object);
+  });
+}
+
+std::string section_of_scene() {
+  return section_of<Gravity>("`[scene.gravity]`", "Gravity. On a slope the floor stays level and gravity is tilted.") +
+         section_of<Floor>("`[scene.floor]`", "A floor at height 0, which pushes masses up; level, or rough ground.") +
+         section_of<Friction>("`[scene.friction]`", "Friction between masses and the floor.") +
+         section_of<Damping>("`[scene.damping]`", "Damping that acts on all velocities alike.") +
+         section_of<Drag>("`[scene.drag]`", "The drag of a fluid on each mass.") +
+         section_of<Payload>("`[scene.payload]`", "A payload that every body carries from birth on.");
+}
+
+}  // namespace
+
+std::string experiment_reference() {
+  Settings s;
+  s.development.cycles = 100;  // which a table [development] without this key stands for
+  Schedule schedule;
+  double probability = Varied<Mutation>().probability;
+  std::string text;
+  text += section("`[experiment]`", "How long the run takes, and how many individuals live at once.",
+                  [&](SettingsVisitor& v) { declare_run(v, s); });
+  text += section("`[encoding]`", "The key that every encoding has beside `name` and its own parameters.",
+                  [&](SettingsVisitor& v) { declare_mass(v, s); });
+  text += section("`[[mutation]]` and `[[crossover]]`",
+                  "The key that every variation operator has beside `name` and its own parameters.",
+                  [&](SettingsVisitor& v) { declare_probability(v, probability); });
+  text += section_of_scene();
+  text += section("`[simulation]`", "How motion is computed, and on which device.", [&](SettingsVisitor& v) {
+    declare_accuracy(v, s);
+    declare_simulation(v, s);
+  });
+  text += section("`[development]`", "How long a body develops. Without this table bodies do not develop.",
+                  [&](SettingsVisitor& v) { declare_development(v, s); });
+  text += section("`[[development.operator]]`",
+                  "The keys that every devo operator has beside `name` and its own parameters.",
+                  [&](SettingsVisitor& v) { declare_schedule(v, schedule); });
+  text += section_of<Material>("`[materials.NAME]`", "A material; the defaults are those of a new one.");
+  return text;
+}
+
+}  // namespace evodevo

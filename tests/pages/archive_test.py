@@ -1,0 +1,76 @@
+"""The page of the archive: its tables and columns are those of a run, and its queries and program answer."""
+
+import re
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+from pages import ROOT, blocks, make_small_run
+
+PAGE = ROOT / "framework/evolution/archive/README.md"
+MAY_BE_EMPTY = "status <> 'ok'"  # the query for failures, of which a run may have none
+
+
+def tables_on_page():
+    """The columns of each table that has a heading of its own."""
+    tables = {}
+    for section in re.split(r"^### ", PAGE.read_text(encoding="utf-8"), flags=re.M)[1:]:
+        columns = re.search(r"\| column \|.*\n\|[-|]+\n((?:\|.*\n)+)", section)[1]
+        tables[section.split("`")[1]] = [name for row in columns.splitlines()
+                                         for name in re.findall(r"`(\w+)`", row.split("|")[1])]
+    return tables
+
+
+class Archive(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.scratch.name, "run")
+        make_small_run(cls.folder)
+        cls.run_file = sqlite3.connect(f"file:{cls.folder}/run.sqlite?mode=ro", uri=True)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.run_file.close()
+        cls.scratch.cleanup()
+
+    def rows(self, query):
+        return self.run_file.execute(query).fetchall()
+
+    def test_has_the_tables_and_columns_of_a_run(self):
+        there = {name: [row[1] for row in self.rows(f"PRAGMA table_info({name})")]
+                 for (name,) in self.rows("SELECT name FROM sqlite_master WHERE type IN ('table', 'view')")}
+        self.assertEqual(tables_on_page(), there)
+
+    def test_names_the_format_and_the_entries_of_the_record(self):
+        page = PAGE.read_text(encoding="utf-8")
+        entries = dict(self.rows("SELECT key, value FROM record"))
+        self.assertIn(f"format {entries['format']},", page)
+        for key in entries:
+            self.assertIn(f"`{key}`", page)
+
+    def test_queries_answer(self):
+        queries = [block.text for block in blocks(PAGE, "sql")]
+        self.assertGreater(len(queries), 5)
+        for query in queries:
+            rows = self.rows(query)
+            self.assertTrue(rows or MAY_BE_EMPTY in query, query)
+
+    def test_the_lineage_ends_with_a_random_individual(self):
+        query, = (block.text for block in blocks(PAGE, "sql") if "generations_back" in block.text)
+        lineage = self.rows(query)
+        self.assertEqual(lineage[-1][3], "random")
+        self.assertEqual([row[0] for row in lineage], list(range(len(lineage))))
+
+    def test_the_program_names_every_gene(self):
+        program, = blocks(PAGE, "python")
+        answer = subprocess.run([sys.executable, "-c", program.text, self.folder], check=True, capture_output=True,
+                                text=True).stdout
+        self.assertRegex(answer, r"(?m)^output x: bias = -?\d\.\d{3}$")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,78 @@
+"""Every relative link of every page leads to a file, every anchor to a heading, and every path in backticks exists."""
+
+import re
+import tempfile
+import unittest
+from pathlib import Path
+
+from pages import ROOT, PageTest, all_pages, name, prose
+
+LINK = re.compile(r"!?\[[^\]]*\]\(<?([^)>\s]+)>?(?: \"[^\"]*\")?\)")
+IMAGE = re.compile(r"<(?:img|source|a)\b[^>]*\b(?:src|srcset|href)=\"([^\"]+)\"")
+SPAN = re.compile(r"`([^`]+)`")
+# such as `kernels/physics/physics.hpp`
+SOURCE = re.compile(r"[\w.-]+(?:/[\w.-]+)+\.(?:cpp|hpp|cu|cuh|inc|md|toml|py|mjs|sh|cmake|txt|csv|svg|png|webp|gif)")
+# what commands and builds write
+WRITTEN = ("build/", "runs/", "my-plugins/", "my-lab.growth/", "share/", "include/", "lib/", "charts/")
+
+
+def anchor(heading):
+    """As GitHub makes it of a heading."""
+    text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading).strip().lower()
+    return re.sub(r"[^\w\- ]", "", text).replace(" ", "-")
+
+
+def anchors(page):
+    found = {}
+    for _, line in prose(page):
+        if heading := re.match(r"#{1,6} +(.*)", line):
+            base = anchor(heading[1])
+            found[base] = found.get(base, -1) + 1
+            yield base if found[base] == 0 else f"{base}-{found[base]}"
+
+
+def fault_of_link(page, target):
+    if re.match(r"[a-z]+:", target):
+        return None  # elsewhere; tests have no network
+    path, _, fragment = target.partition("#")
+    file = (page.parent / path).resolve() if path else page
+    if not file.exists():
+        return "there is no such file"
+    if fragment and (file.suffix != ".md" or fragment not in anchors(file)):
+        return f"{name(file)} has no heading for #{fragment}"
+    return None
+
+
+def exists_near(page, path):
+    folders = [page.parent, *page.parent.parents]
+    return any((folder / path).exists() for folder in folders if folder.is_relative_to(ROOT) or folder == page.parent)
+
+
+def faults(page):
+    for number, line in prose(page):
+        without_code = SPAN.sub("", line)
+        for target in LINK.findall(line if "](" in line else "") + IMAGE.findall(without_code):
+            if fault := fault_of_link(page, target):
+                yield f"{name(page)}:{number}: {target}: {fault}"
+        for span in SPAN.findall(line):
+            if SOURCE.fullmatch(span) and not span.startswith(WRITTEN) and not exists_near(page, span):
+                yield f"{name(page)}:{number}: `{span}`: there is no such file"
+
+
+class Links(PageTest):
+    def test_of_all_pages_lead_somewhere(self):
+        self.assertGreater(len(all_pages()), 12)
+        self.assert_none([fault for page in all_pages() for fault in faults(page)])
+
+    def test_that_lead_nowhere_are_found(self):
+        with tempfile.TemporaryDirectory() as folder:
+            page = Path(folder, "page.md")
+            page.write_text("# A `heading`, twice\n# A heading, twice\n[good](#a-heading-twice-1) [good](page.md)\n"
+                            "```sh\n# no heading\n[no link](in-a-block.md)\n```\n"
+                            "[bad](nowhere.md)\n![bad](page.png)\n[bad](page.md#no-heading)\n`nowhere/page.cpp`\n")
+            found = list(faults(page))
+            self.assertEqual([fault.split(":")[1] for fault in found], ["8", "9", "10", "11"], found)
+
+
+if __name__ == "__main__":
+    unittest.main()
