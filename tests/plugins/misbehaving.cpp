@@ -37,6 +37,16 @@ int deeper(int depth) {
   for (;;) std::this_thread::sleep_for(std::chrono::milliseconds(5));
 }
 
+/// A locale that goes when the library does.
+struct OtherLocale {
+  OtherLocale() = default;
+  OtherLocale(const OtherLocale&) = delete;
+  OtherLocale& operator=(const OtherLocale&) = delete;
+  ~OtherLocale() { freelocale(handle); }
+
+  const locale_t handle = newlocale(LC_ALL_MASK, "C.UTF-8", nullptr);
+};
+
 struct Mutation final : evodevo::Mutation {
   std::string how = "well";
   mutable bool called = false;
@@ -62,8 +72,8 @@ struct Mutation final : evodevo::Mutation {
     if (how == "flush") _mm_setcsr(_mm_getcsr() | 0x8040);
 #endif
     if (how == "locale") std::setlocale(LC_ALL, "C.UTF-8");
-    static const locale_t other = newlocale(LC_ALL_MASK, "C.UTF-8", nullptr);
-    if (how == "thread-locale") uselocale(other);
+    static const OtherLocale other;
+    if (how == "thread-locale") uselocale(other.handle);
     if (how == "global-locale") std::locale::global(std::locale("C.UTF-8"));
   }
 };
