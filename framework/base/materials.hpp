@@ -32,7 +32,7 @@ class MaterialList {
   MaterialNumbers numbers_;
 };
 
-/// Takes the materials out of a body that neither a spring nor a mass has, and all but the first of equal ones. The
+/// Removes from a body every material that no spring and no mass uses, and every duplicate of an earlier material. The
 /// body's base materials stay.
 void drop_unused_materials(Body& body);
 

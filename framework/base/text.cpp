@@ -37,7 +37,8 @@ struct Character {
 Character first_character(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x80) return {1, byte(0)};
-  // by the number of bytes: what marks the first one, and the least code that needs as many
+  // for each length in bytes, from two: the mask and mark of the leading byte, and the smallest code point that needs
+  // this length
   constexpr struct {
     unsigned mask, mark;
     char32_t least;
@@ -108,7 +109,7 @@ std::string to_text(double value) {
   std::array<char, 32> buffer;
   const bool whole = value == std::floor(value) && std::abs(value) < 1e15;
   if (whole) return std::to_string(static_cast<long long>(value));
-  // six digits do for what people write; more only where the number has more
+  // six digits are enough for most numbers that people write; add digits until the text reads back as the same value
   for (int digits = 6;; ++digits) {
     char* const end =
         std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits).ptr;

@@ -55,7 +55,8 @@ int body(const Given& given) {
 Command body_command() {
   Options options;
   add_individual_option(options);
-  options.add_options()("matured", "the body after the development cycles, in the motion that it then has");
+  options.add_options()(
+      "matured", "print the body after the development cycles, with the positions and velocities that it has then");
   add_plugin_option(options);
   return {.name = "body",
           .arguments = {{"DIR"}},

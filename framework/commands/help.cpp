@@ -57,7 +57,7 @@ Command completion_command() {
           .summary = "Print a script by which a shell completes commands",
           .text = {"The script completes commands, options, their values, the names of operators, and files. "
                    "`cmake --install` puts it where each shell looks for it. Elsewhere, load it when the shell starts, "
-                   "as in the examples, of which the first is for ~/.bashrc."},
+                   "as in the examples below; the first one is for ~/.bashrc."},
           .examples = {"completion bash >> ~/.bashrc", "completion zsh > ~/.zfunc/_evodevo",
                        "completion fish > ~/.config/fish/completions/evodevo.fish"},
           .options = {},

@@ -152,7 +152,7 @@ Command describe_command() {
   return {.name = "describe",
           .arguments = {{"OPERATOR"}},
           .summary = "Explain an operator and its parameters",
-          .text = {"Each parameter stands there with its default, its range, its unit and what it does. "
+          .text = {"For each parameter it prints the default, the range, the unit and a description. "
                    "`describe experiment` prints a page of the tables and keys of an experiment."},
           .examples = {"describe spring-turnover", "describe experiment"},
           .options = options,

@@ -32,7 +32,7 @@ void say_size(const std::string& file, std::size_t bytes, const std::string& opt
   if (verbosity() != Verbosity::quiet) std::cerr << size_note(file, bytes, option);
 }
 
-/// The data of a run's page, for which its cast is simulated again.
+/// Simulates the cast of a run again and returns the data for the run's page.
 Json filmed_run(const Archive& archive, const Experiment& experiment, const Cast& cast, std::size_t budget) {
   const auto simulator = opened_simulator(experiment);
   return timed("simulating robots of " + printable(archive.folder().string()) + " again",
@@ -183,7 +183,7 @@ Command gallery_command() {
   Options options;
   options.add_options()("count", value<std::int64_t>("N")->default_value(24), "how many robots")(
       "out", value<std::string>("FILE")->default_value("gallery.html"),
-      "the page to write, or with a name ending in .png a picture");
+      "the page to write, or a picture if the name ends in .png");
   add_experiment_options(options);
   return {.name = "gallery",
           .arguments = {{"EXPERIMENT.toml"}},

@@ -47,7 +47,7 @@ std::string checked_name(const std::string& name) {
   return name;
 }
 
-/// What stands behind the name's last dot, as words.
+/// The part of an operator's name after the last dot; its words are joined by hyphens.
 std::string last_part(const std::string& name) { return name.substr(name.rfind('.') + 1); }
 
 /// "mass_turnover" for "my-lab.mass-turnover".

@@ -190,8 +190,8 @@ Command resume_command() {
   return {.name = "resume",
           .arguments = {{"DIR"}},
           .summary = "Go on with a run that was interrupted",
-          .text = {"The run ends as if it had never been interrupted. A warning says where the device or a build of "
-                   "evodevo or of an operator is not the one that the run began with."},
+          .text = {"The run ends as if it had never been interrupted. It warns if the device, or the build of "
+                   "evodevo or of an operator, differs from the one that the run began with."},
           .examples = {"resume runs/quickstart-1"},
           .options = options,
           .function = resume};

@@ -43,8 +43,8 @@ int verify(const Given& given) {
 
 Command verify_command() {
   Options options;
-  options.add_options()("best", value<std::int64_t>("N")->default_value(3), "how many of the best individuals")(
-      "json", "print JSON");
+  options.add_options()("best", value<std::int64_t>("N")->default_value(3),
+                        "how many of the best individuals to verify")("json", "print JSON");
   add_plugin_option(options);
   return {.name = "verify",
           .arguments = {{"DIR"}},

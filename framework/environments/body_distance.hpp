@@ -1,13 +1,14 @@
-// How far bodies that come of one genome are from each other.
+// Distances between bodies that grow from the same genome.
 #pragma once
 
 #include "environments/grown_body.hpp"
 
 namespace evodevo {
 
-/// Masses that came later are the same in two lives where their rest positions are nearer than this, body lengths at
-/// birth: as near as operators let masses come to each other by default, 0.02 m, in a body that fills the cube of the
-/// neural encoding. Which and how many masses came before them says nothing of what they are.
+/// Masses that were added after birth in two lives count as the same mass if their rest positions are closer than this,
+/// in body lengths at birth. The value is the smallest distance that operators keep between masses by default, 0.02 m,
+/// in a body that fills the cube of the neural encoding. The number and identity of the masses added before a mass do
+/// not help to identify it.
 inline constexpr double same_position = 0.01;
 
 /// The part of all springs of two bodies that only one of them has (Jaccard's distance); a spring is named by its two

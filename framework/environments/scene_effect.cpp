@@ -7,7 +7,7 @@
 namespace evodevo {
 namespace {
 
-/// Which bodies are those of the other scene.
+/// One flag for each body: whether it is assigned to the second scene.
 using Deal = std::vector<char>;
 
 struct Means {

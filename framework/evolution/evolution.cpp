@@ -146,7 +146,7 @@ bool is_finished(const Settings& settings, const std::vector<Summary>& generatio
 
 namespace {
 
-/// The entries of the record that hold a run's times.
+/// Calls `use(key, time)` for each entry of the record that holds one of a run's times.
 template <class Time, class Use>
 void for_each_time(Time& time, const Use& use) {
   use("seconds", time.whole);

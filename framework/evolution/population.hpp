@@ -1,4 +1,4 @@
-// Individuals, and what a generation of them amounts to.
+// Individuals, and the summary of a generation.
 #pragma once
 
 #include <optional>

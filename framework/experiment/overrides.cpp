@@ -36,8 +36,8 @@ bool is_whole_number(std::string_view value) {
   throw ConfigError(change.origin + ": " + printable(change.key) + ": " + message);
 }
 
-/// The value of "key=value", as TOML where it is TOML and as a text where it is not. It remembers the option it came
-/// from as its place.
+/// Parses the value of "key=value" as TOML if it is valid TOML, and otherwise takes it as a string. The option that the
+/// value came from is recorded as its source location.
 toml::table parse_override_value(const Override& change) {
   const std::string line = "value = " + change.value;
   expect_within_toml_limits(line, change.origin);

@@ -14,8 +14,8 @@ struct Override {
   std::string origin;  ///< stands for file, line and column in messages, such as "--seed 7"
 };
 
-/// Sets one key. Tables on the way come into being; items of lists have to be there. Throws ConfigError, for what goes
-/// beyond the limits of toml_limits.hpp too.
+/// Sets one key. Creates missing tables on the way, and the item after the last one of a list; any other item of a list
+/// must exist. Throws ConfigError, for what goes beyond the limits of toml_limits.hpp too.
 void apply_override(const Override& change, toml::table& root);
 
 }  // namespace evodevo

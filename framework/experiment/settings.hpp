@@ -33,7 +33,7 @@ template <>
 inline constexpr std::array<std::string_view, 4> names_of<Control>{"off", "no-change", "random-places",
                                                                    "shuffled-stress"};
 
-/// How stress is known: by every spring's exact mean force, or by the paper's tallies (skip_shift.hpp).
+/// How stress is measured: as every spring's exact mean force, or by the paper's tallies (skip_shift.hpp).
 enum class Probe { exact, skip_shift };
 template <>
 inline constexpr std::array<std::string_view, 2> names_of<Probe>{"exact", "skip-shift"};

@@ -55,7 +55,7 @@ std::string value_text(const toml::node& node) {
 
 namespace {
 
-/// "expected a number, 0 to 1 s", without what is empty or says nothing.
+/// A message such as "expected a number, 0 to 1 s", without the parts that are empty or carry no information.
 std::string expected(const std::string& what, const Range& range) {
   const std::string ends = to_text(range), separator = what.empty() || ends.empty() ? "" : ", ";
   const std::string unit = range.unit == "1" || ends.empty() ? "" : " " + std::string(range.unit);

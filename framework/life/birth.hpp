@@ -39,7 +39,7 @@ class Birth {
 };
 
 /// Moves each mass along each axis at random by up to 1e-4 of the body's longest side, so that starts differ by noise.
-/// `start` (below 240) says which noise.
+/// `start` (below 240) selects the stream of random numbers.
 void perturb(Life& life, const Experiment& experiment, std::uint32_t start);
 
 }  // namespace evodevo

@@ -60,7 +60,8 @@ void join(Blueprint& blueprint, std::span<const IndexPair> pairs) {
   }
 }
 
-/// For every mass the lowest index among the masses that springs tie it to.
+/// For every mass, the lowest index among the masses that springs connect it to, directly or indirectly, including its
+/// own index.
 std::vector<std::uint32_t> pieces(const Body& body) {
   std::vector<std::uint32_t> leader(body.masses.size());
   std::iota(leader.begin(), leader.end(), 0u);

@@ -45,7 +45,7 @@ class Pools {
  private:
   static std::size_t index(std::int32_t material) { return static_cast<std::size_t>(material - no_material); }
 
-  /// The pool of a random item.
+  /// The pool of an item drawn at random from all pools, each item being equally likely.
   std::vector<std::uint32_t>& any(Rng& rng) {
     std::uint32_t item = rng.below(static_cast<std::uint32_t>(left_));
     auto pool = pools_.begin();

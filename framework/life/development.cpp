@@ -14,7 +14,8 @@
 namespace evodevo {
 namespace {
 
-/// Whether a change may strain or lift a body. Turnover by springs without force does neither by much.
+/// Whether a change may strain or lift a body. Exchanging springs for new ones that are born without force does little
+/// of either.
 bool adds_energy(const Change& change) {
   const Edits& edits = change.edits;
   return edits.growth || !edits.changed_springs.empty() || edits.new_masses.size() > edits.removed_masses.size() ||

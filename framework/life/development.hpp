@@ -38,7 +38,8 @@ class DevelopmentLoop {
   void run_cycles(std::span<Life> lives, bool observed, const Action& change, const Progress& progress) const;
   /// The simulation of a cycle, recorded as the probe does it.
   void simulate_cycle(std::span<Life> lives, int cycle, Recording recording) const;
-  /// The control of random places: a life without a record is yoked to one that is lived before, with the operators.
+  /// For the control of random places: first simulates, with the operators, each life that has no record; then yokes
+  /// that life to the changes made there.
   std::vector<std::optional<Yoke>> yokes_of(std::span<const Life> lives) const;
 
   // ---- the ways to change a life after a cycle ----
@@ -54,9 +55,9 @@ class DevelopmentLoop {
   DevoContext context_of(const Life& life, int cycle, const Schedule& schedule, const SpringRequest& request) const;
   /// Applies a change and records it.
   void make(Change change, Life& life) const;
-  /// What development has torn off is no longer part of the body.
+  /// Removes from the body the pieces that development has torn off.
   void shed_loose_pieces(Life& life, int cycle) const;
-  /// Deals out what is known of the springs anew, all of one spring together.
+  /// Shuffles the recorded values among the springs; all values of one spring stay together.
   void shuffle_records(Life& life, int cycle) const;
   /// Does what changes a body; the energy that it brings is no fault of the simulation, so the guard is to allow it.
   template <class Action>

@@ -36,7 +36,7 @@ std::string pair_text(const NewSpring& spring) {
   return "joins masses " + std::to_string(spring.a) + " and " + std::to_string(spring.b);
 }
 
-/// Puts indices in ascending order and keeps each once, with its cause.
+/// Sorts indices in ascending order and removes duplicates; each index keeps its cause.
 void put_in_order(std::vector<std::uint32_t>& indices, std::vector<double>& causes) {
   const bool have_causes = !causes.empty();
   if (have_causes && causes.size() != indices.size()) return;

@@ -10,7 +10,7 @@
 
 namespace evodevo {
 
-/// Edits that were made together after a cycle. All indices are those of the body before them.
+/// Edits that were made together after a cycle. All indices refer to the body as it was before these edits.
 struct Change {
   std::uint32_t cycle = 0;          ///< from 1
   std::optional<std::uint32_t> op;  ///< index into the experiment's devo operators; none: of what was torn off
@@ -26,7 +26,7 @@ Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const Devo
 class LifeRecord {
  public:
   LifeRecord() = default;
-  /// A record that bytes() gave. Throws std::invalid_argument where it is none.
+  /// Restores a record from what bytes() returned. Throws std::invalid_argument if `bytes` is not such a record.
   explicit LifeRecord(std::string bytes);
 
   void add(const Change& change);

@@ -1,4 +1,4 @@
-// How bodies move: the step that each one bears, and runs of the simulator.
+// How bodies move: choosing a stable time step for each body, and running the simulator.
 #pragma once
 
 #include <functional>

@@ -9,10 +9,10 @@
 
 namespace evodevo {
 
-/// Matured lives go in; the same lives with their objectives, or with the reason why they have none, come out. They are
-/// moved from mark to mark, which are the times at which the window of some fitness opens or closes; at each mark a
-/// snapshot is taken; the snapshots at both ends of a window are what its fitness operator scores. Experiment and
-/// simulation must outlive it.
+/// Evaluates matured lives: gives each its objectives, or the reason why it has none. Lives are simulated from mark to
+/// mark; a mark is a time at which the window of some fitness operator opens or closes. A snapshot is taken at each
+/// mark, and each fitness operator scores the two snapshots at the ends of its window. The experiment and the
+/// simulation must outlive this object.
 class Measurement {
  public:
   Measurement(const Experiment& experiment, const LifeSimulation& simulation, const Conditions& conditions);
@@ -29,7 +29,7 @@ class Measurement {
     Request request;
     std::size_t opens, closes;
   };
-  /// What a body shows at a mark.
+  /// What is recorded of a body at a mark.
   struct Snapshot {
     Box box;
     Vec3 centre;

@@ -27,7 +27,7 @@ void still_muscles(Life& life) {
   for (Material& material : life.living.body.materials) material.amplitude = 0;
 }
 
-/// The matured bodies of the champions, and what comes of them.
+/// The matured bodies of the champions, and the results of their trials.
 class Trials {
  public:
   Trials(const Experiment& experiment, std::span<const Champion> champions, std::vector<Life> lives)

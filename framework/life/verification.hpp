@@ -26,7 +26,7 @@ struct Champion {
   double fitness = 0;
 };
 
-/// An individual's trials beside what its evaluation found.
+/// An individual's trials, and the fitness that its original evaluation found.
 struct Verification {
   std::uint32_t individual = 0;
   double fitness = 0;  ///< the first objective, as the run recorded it

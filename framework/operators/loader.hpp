@@ -33,10 +33,10 @@ struct FailedLibrary {
 /// All operators of the libraries in some folders.
 class Registry {
  public:
-  /// Loads every *.evodevo.so of the folders, in their order; files by name. A path may also be that of one library.
-  /// Of two libraries with one operator name the first stays. A library that does not fit, or that crashes while it is
-  /// loaded, is kept in failed() and disturbs no other. Libraries stay loaded until the process ends: an object must
-  /// not outlive its code.
+  /// Loads every *.evodevo.so in the folders: the folders in the given order, the files of each folder in the order of
+  /// their names. A path may also be that of one library. If two libraries provide an operator of the same name, the
+  /// first one is used. A library that does not fit, or that crashes while it is loaded, is kept in failed() and
+  /// disturbs no other. Libraries stay loaded until the process ends: an object must not outlive its code.
   explicit Registry(const std::vector<std::filesystem::path>& path);
 
   /// Sorted by kind and name.

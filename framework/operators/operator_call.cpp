@@ -18,8 +18,8 @@ namespace {
 /// A stack for handlers of signals, for when the thread's own has no room left.
 constexpr std::size_t handler_stack_size = 1 << 16;
 
-/// What a thread is calling, for whoever looks on from elsewhere: no lock, since a process may fork at any time and a
-/// handler of signals may interrupt it anywhere.
+/// What a thread is calling, readable from other threads and from signal handlers. There is no lock, since the process
+/// may fork at any time and a signal handler may interrupt the thread anywhere.
 struct Slot {
   std::atomic<std::uint64_t> version = 0;  ///< odd while the rest is being written
   std::atomic<const OperatorTitle*> title = nullptr;

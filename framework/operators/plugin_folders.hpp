@@ -1,4 +1,5 @@
-// From where the record of a run may load code: a file from elsewhere is no reason to run what lies beside it.
+// The folders from which the record of a run may load code. A record that comes from elsewhere must not make the
+// program run the code that lies beside it.
 #pragma once
 
 #include <filesystem>

@@ -71,7 +71,7 @@ class SpringNumbers {
 
 double on_grid(double value, double step) { return step * static_cast<double>(std::llround(value / step)); }
 
-/// Adds up how far straight lines between the frames kept are from all frames.
+/// Collects how far linear interpolation between the kept frames deviates from each of the frames.
 class ErrorSum {
  public:
   void add(const Shot& shot, const std::vector<const Frame*>& kept, double step) {

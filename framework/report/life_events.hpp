@@ -9,7 +9,7 @@
 
 namespace evodevo {
 
-/// A devo operator as a life tells of it.
+/// A devo operator, as the events of a life describe it.
 struct Narrated {
   std::string name;
   const Experiment* experiment = nullptr;

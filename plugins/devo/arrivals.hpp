@@ -1,4 +1,4 @@
-// What the operators that add masses share: where a new mass comes, and what it is joined to.
+// Shared by the operators that add masses: where a new mass is placed, and which masses it is joined to.
 #pragma once
 
 #include "evodevo/devo.hpp"

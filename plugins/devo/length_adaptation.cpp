@@ -4,8 +4,9 @@
 
 namespace {
 
-/// The bounds are relative to the rest length with which the spring came, so that they hold for a whole life, wherever
-/// the spring's masses come from and go; springs that came without length stay as they are.
+/// The bounds are relative to the rest length that the spring had when it was created, so that they hold for a whole
+/// life, no matter where the spring's masses come from and go. Springs that were created with no length stay as they
+/// are.
 class LengthAdaptation final : public Adaptation {
  public:
   LengthAdaptation() : Adaptation(0.98, 0.7, 1.3) {}

@@ -89,10 +89,10 @@ class Candidates {
   std::size_t turn_ = 0;
 };
 
-/// The number of springs stays: a spring goes only where another can come, so a body in which all masses are joined
-/// stays as it is, and one of fewer springs than `springs` exchanges what it has. New springs come between two masses
-/// that were not joined when the cycle ended, that are not in one place, and whose spring is not air. They are born
-/// without force.
+/// The number of springs stays the same: a spring is removed only if another can be added. A body in which all masses
+/// are joined therefore stays as it is, and a body with fewer springs than `springs` exchanges the springs that it has.
+/// A new spring joins two masses that were not joined when the cycle ended and that are not at the same position; its
+/// material is not air. New springs are born without force.
 class SpringTurnover final : public evodevo::Devo {
  public:
   void parameters(evodevo::Parameters& p) override {

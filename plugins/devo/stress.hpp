@@ -5,7 +5,8 @@
 
 #include "evodevo/devo.hpp"
 
-/// The `count` springs of least `key`, or all, least first, ties in random order. No key may be NaN.
+/// The `count` springs with the smallest `key`, or all springs if there are fewer, smallest first, ties in random
+/// order. No key may be NaN.
 inline std::vector<std::uint32_t> springs_of_least(const std::vector<double>& key, std::size_t count,
                                                    evodevo::Rng& rng) {
   count = std::min(count, key.size());

@@ -411,8 +411,8 @@ TEST(Configuration, ContradictoryParts) {
             "operators");
   EXPECT_EQ(
       complaint(small_experiment, {{"mutation.0.probability", "0", ""}, {"crossover.0.probability", "0", ""}}),
-      "test.toml:13:1: mutation = a list with tables: no operator has a probability above 0, so that no child would "
-      "differ");
+      "test.toml:13:1: mutation = a list with tables: no operator has a probability above 0, so no child would differ "
+      "from its parent");
   EXPECT_EQ(complaint(with("[scene.floor]", "")),
             "test.toml:23:1: scene.friction = a table: there is nothing to rub on; add [scene.floor] or remove "
             "[scene.friction]");

@@ -51,7 +51,7 @@ const Options& common_options() {
   static const Options options = [] {
     Options common;
     common.add_options()("quiet", "print nothing but results, warnings and errors")(
-        "verbose", "say what slow steps do, and how long they took")("help", "show this text");
+        "verbose", "say what slow steps do and how long they take")("help", "show this text");
     return common;
   }();
   return options;

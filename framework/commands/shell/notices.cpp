@@ -27,7 +27,8 @@ void say_step(std::string_view what, std::optional<double> seconds) {
   say(std::string(what) + (seconds ? " took " + short_number(*seconds) + " s" : " ..."));
 }
 
-/// Kernels are compiled at the first use on a machine, several at the same time: one line says why nothing else moves.
+/// Kernels are compiled at their first use on a machine, several of them at the same time; a single line explains the
+/// wait.
 void say_first_step(std::string_view what, std::optional<double> seconds) {
   static std::atomic<bool> said{false};
   if (seconds || said.exchange(true)) return;

@@ -30,7 +30,7 @@ class TimedStep {
   std::chrono::steady_clock::time_point start_;
 };
 
-/// What `work` returns; TimedStep says `what` it does.
+/// Runs `work` and returns its result; a TimedStep reports how long `what` takes.
 template <class Work>
 auto timed(std::string what, const Work& work) {
   const TimedStep step(std::move(what));

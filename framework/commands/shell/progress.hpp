@@ -25,7 +25,7 @@ class ProgressDisplay {
  private:
   void generation_done(const Summary& summary);
   void generation_progress(double done);
-  /// Until the run has spent what the experiment allows, s.
+  /// Estimates the time until the run has used up the evaluations that the experiment allows, s.
   double seconds_left(double evaluations) const;
   std::string line(double evaluations) const;
   void show_live(double evaluations);

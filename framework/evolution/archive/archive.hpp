@@ -59,7 +59,7 @@ class Archive {
   void add_verifications(const std::vector<Verification>& verifications);
 
   const std::filesystem::path& folder() const;
-  /// Whether the file is still the one that was opened, so that what is written is kept.
+  /// Whether the run's file is still the one that was opened; if it is not, what is written is lost.
   bool is_in_place() const;
   /// Throws ArchiveError: `what` cannot be in the record of a run.
   [[noreturn]] void refuse(const std::string& what) const;

@@ -8,7 +8,8 @@
 namespace evodevo {
 namespace {
 
-/// As in linux/magic.h, and from the file systems that are not part of Linux.
+/// The type numbers of these file systems, from linux/magic.h or, for file systems outside the Linux kernel, from their
+/// own sources.
 constexpr std::array<std::uint32_t, 17> remote_types = {
     0x00006969,  // NFS
     0x0000517b,  // SMB

@@ -18,7 +18,7 @@ enum class Journal {
 
 /// "wal" or "delete", as SQLite calls them.
 const char* name(Journal journal);
-/// The journal of this name; nothing where there is none.
+/// The journal with this name, or nullopt if there is none.
 std::optional<Journal> journal_named(std::string_view name);
 
 /// Whether a file system of this type (statfs.f_type) may lie on another machine, or in a program, so that processes do

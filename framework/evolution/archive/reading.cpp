@@ -48,7 +48,7 @@ constexpr const char* individual_columns =
     "SELECT id, born, origin, parent, mate, made_by, genes, status, reason, ended_at, spring_evaluations, died "
     "FROM individuals ";
 
-/// Reads individuals, and checks them against the generations and objectives that there are.
+/// Reads individuals and checks them against the run's generations and objectives.
 class Individuals {
  public:
   Individuals(const RunDatabase& run, const std::string& which)

@@ -45,7 +45,7 @@ CREATE VIEW members AS
   FROM generations JOIN individuals ON born <= generation AND (died IS NULL OR died > generation);
 )sql";
 
-/// What a database consists of: how each thing in it was made, by its name.
+/// The objects of a database, such as tables and views: the SQL statement that created each one, by its name.
 using Things = std::map<std::string, std::string>;
 
 Things things_in(SQLite::Database& database) {

@@ -69,7 +69,8 @@ class OperatorTables {
     record_.insert_or_assign(name, writer.take());
   }
 
-  /// Each table of the array [[name]] of `parent`, and what is recorded of them.
+  /// Calls `read` for each table of the array [[name]] in `parent`, and adds what is recorded of these tables to
+  /// `record`.
   template <class Read>
   void read_array(TomlReader& parent, std::string_view name, toml::table& record, const Read& read) {
     toml::array written;
@@ -115,7 +116,8 @@ class OperatorTables {
     double sum = 0;
     for (const auto& mutation : out_.mutations) sum += mutation.probability;
     for (const auto& crossover : out_.crossovers) sum += crossover.probability;
-    if (sum == 0) top_.fail("mutation", "no operator has a probability above 0, so that no child would differ");
+    if (sum == 0)
+      top_.fail("mutation", "no operator has a probability above 0, so no child would differ from its parent");
   }
 
   void read_development_operators(TomlReader& t) {

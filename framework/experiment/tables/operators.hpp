@@ -15,7 +15,7 @@ namespace evodevo {
 /// outlive it. All that it makes it adds to the experiment's uses.
 class OperatorMaker {
  public:
-  /// `registry_faults` says what libraries cannot be used.
+  /// `registry_faults` describes the libraries that cannot be used.
   OperatorMaker(const Registry& registry, const Warnings& registry_faults, Experiment& experiment)
       : registry_(registry), registry_faults_(registry_faults), experiment_(experiment) {}
 

@@ -22,8 +22,8 @@ class PluginsTable {
   /// Where operators are looked for: in the paths of the table, then in those of the command line and of the
   /// environment, then in the program's own folder.
   const std::vector<std::filesystem::path>& search_path() const { return search_path_; }
-  /// What of it a record names, so that the run can be resumed without the options and the environment that it was
-  /// begun with: all but the program's own folder.
+  /// The part of the search path that a record stores, so that the run can be resumed without the options and the
+  /// environment that it was started with: everything except the program's own folder.
   std::vector<std::filesystem::path> recorded_path(const TomlReader& top) const;
   /// Refuses paths that are not looked at; of those of a record, warns.
   void check(TomlReader& top, Warnings& warnings) const;

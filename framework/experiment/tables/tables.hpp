@@ -28,8 +28,8 @@ void read_table(TomlReader& parent, std::string_view name, bool required, const 
 void read_materials(TomlReader& top, Settings& settings, Warnings& warnings);
 void read_scene(TomlReader& top, Settings& settings);
 
-/// Of the bodies in an experiment, whether they are grown by its own encoding, so that dt must suit its own masses and
-/// materials. A body from elsewhere is judged by itself.
+/// Whether the bodies of an experiment are grown by its own encoding, in which case dt must suit the experiment's
+/// masses and materials. A body that is given from elsewhere is judged by itself.
 enum class Bodies { grown, given };
 /// To be read after masses and materials.
 void read_simulation(TomlReader& top, Settings& settings, Bodies bodies);

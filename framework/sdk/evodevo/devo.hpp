@@ -86,9 +86,9 @@ struct Causes {
                                     &Causes::new_masses, &Causes::new_springs};
 };
 
-/// What a devo operator wants changed. All indices are those of the DevoContext; the masses in `new_masses` follow on
-/// from them. The host applies an operator's edits together after the call and refuses dangling, doubled and air
-/// springs and numbers that are not finite.
+/// The changes that a devo operator requests. All indices are those of the DevoContext; the masses in `new_masses` are
+/// numbered after its masses. The host applies an operator's edits together after the call. It refuses dangling
+/// springs, duplicate springs, springs of air, and numbers that are not finite.
 struct Edits {
   std::optional<Growth> growth;  ///< of all springs at once; a rest length among `changed_springs` takes its place
   std::vector<std::uint32_t> removed_springs;

@@ -90,7 +90,7 @@ class Crowd {
  private:
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-  /// The members along one objective.
+  /// The members in the order of one objective, as a doubly linked list.
   struct Line {
     std::vector<double> value;  ///< in units of the range
     std::vector<std::uint32_t> before, after;

@@ -13,8 +13,8 @@
 
 namespace evodevo {
 
-/// One row of the table that selection works on. Scores are turned so that greater is better, are finite, and exist
-/// only where the evaluation ended `ok`.
+/// One row of the table that selection works on. The scores are finite and oriented so that greater is better; they
+/// exist only where the evaluation ended `ok`.
 struct Candidate {
   std::span<const double> scores;           ///< one per objective; empty unless `ok`
   std::uint32_t age = 0;                    ///< of its oldest genes, generations
