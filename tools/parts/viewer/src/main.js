@@ -68,7 +68,7 @@ function facts(run) {
 function header() {
   const run = runs[0];
   const title = runs.length > 1 ? `${runs.length} runs` : run.experiment;
-  const devices = (r) => [...new Set(r.makers.map((m) => m.device))].join(", then ");
+  const devices = (r) => [...new Set(r.provenances.map((m) => m.device))].join(", then ");
   const subtitle = isGallery
     ? `${robots.length} random robots of its encoding, seed ${run.seed}`
     : runs.length > 1
