@@ -1,6 +1,7 @@
 #include "base/json_text.hpp"
 
-#include <cstdio>
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 namespace evodevo {
@@ -17,9 +18,7 @@ std::string json_text(const nlohmann::ordered_json& json) {
       continue;
     }
     if (two_bytes) ++i;
-    char escape[8];
-    std::snprintf(escape, sizeof escape, "\\u%04x", byte(i));
-    text += escape;
+    text += fmt::format("\\u{:04x}", byte(i));
   }
   return text;
 }

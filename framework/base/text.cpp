@@ -1,10 +1,9 @@
 #include "base/text.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <numeric>
 #include <optional>
@@ -64,17 +63,14 @@ bool disturbs(char32_t code) {
   return code < 0x20 || within(0x7f, 0x9f) || within(0x2028, 0x202e) || within(0x2066, 0x2069);
 }
 
-std::string escape(const char* format, unsigned code) {
-  char text[8];
-  std::snprintf(text, sizeof text, format, code);
-  return text;
-}
+std::string escaped_byte(unsigned code) { return fmt::format("\\x{:02x}", code); }
 
 std::string escape(char32_t code) {
   if (code == '\n') return "\\n";
   if (code == '\r') return "\\r";
   if (code == '\t') return "\\t";
-  return escape(code < 0x80 ? "\\x%02x" : "\\u%04x", code);
+  const auto number = static_cast<unsigned>(code);
+  return number < 0x80 ? escaped_byte(number) : fmt::format("\\u{:04x}", number);
 }
 
 }  // namespace
@@ -86,7 +82,7 @@ std::string printable(std::string_view text, std::size_t most) {
   while (!text.empty()) {
     const Character next = first_character(text);
     if (!next.code)
-      clean += escape("\\x%02x", static_cast<unsigned char>(text[0]));
+      clean += escaped_byte(static_cast<unsigned char>(text[0]));
     else if (disturbs(*next.code))
       clean += escape(*next.code);
     else
@@ -105,25 +101,11 @@ std::string text_fault(std::string_view text, std::size_t most) {
 }
 
 std::string to_text(double value) {
-  if (!std::isfinite(value)) return word_for(value);
-  std::array<char, 32> buffer;
-  const bool whole = value == std::floor(value) && std::abs(value) < 1e15;
-  if (whole) return std::to_string(static_cast<long long>(value));
-  // six digits are enough for most numbers that people write; add digits until the text reads back as the same value
-  for (int digits = 6;; ++digits) {
-    char* const end =
-        std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits).ptr;
-    double back = 0;
-    std::from_chars(buffer.data(), end, back);
-    if (back == value || digits == 17) return {buffer.data(), end};
-  }
+  return std::isfinite(value) ? fmt::format("{}", value + 0.0) : word_for(value);  // adding 0 makes 0 of -0
 }
 
 std::string short_number(double value) {
-  if (!std::isfinite(value)) return word_for(value);
-  std::array<char, 32> buffer;
-  std::snprintf(buffer.data(), buffer.size(), "%.4g", value + 0.0);  // of -0 comes 0
-  return buffer.data();
+  return std::isfinite(value) ? fmt::format("{:.4g}", value + 0.0) : word_for(value);
 }
 
 std::string to_text(const Range& range) {

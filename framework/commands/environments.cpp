@@ -1,6 +1,7 @@
 // evodevo environments: the bodies that one genome grows in several scenes, and how far they are from each other.
+#include <fmt/ostream.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <iostream>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -22,33 +23,33 @@ using Json = nlohmann::ordered_json;
 
 void print(const std::optional<SceneEffect>& effect) {
   if (!effect)
-    std::printf("  %20s", "-");
+    fmt::print(std::cout, "  {:>20}", "-");
   else if (!effect->p)
-    std::printf("  %13.4f/%6s", effect->between, "-");
+    fmt::print(std::cout, "  {:13.4f}/{:>6}", effect->between, "-");
   else
-    std::printf("  %6.4f/%6.4f %6.4f", effect->between, *effect->within, *effect->p);
+    fmt::print(std::cout, "  {:6.4f}/{:6.4f} {:6.4f}", effect->between, *effect->within, *effect->p);
 }
 
 void print(const SceneStudy& study, std::size_t measure, std::size_t cycles) {
-  std::printf("\n%s\n%-32s", body_distances[measure].title, "");
-  for (std::size_t cycle = 1; cycle <= cycles; ++cycle) std::printf("        after cycle %2zu", cycle);
-  std::printf("\n");
+  fmt::print(std::cout, "\n{}\n{:<32}", body_distances[measure].title, "");
+  for (std::size_t cycle = 1; cycle <= cycles; ++cycle) fmt::print(std::cout, "        after cycle {:2}", cycle);
+  std::cout << '\n';
   for (const ScenePair& pair : study.pairs) {
-    std::printf("%-15s %-16s", study.environments[pair.a].name.c_str(), study.environments[pair.b].name.c_str());
+    fmt::print(std::cout, "{:<15} {:<16}", study.environments[pair.a].name, study.environments[pair.b].name);
     for (const auto& effect : pair.effects[measure]) print(effect);
-    std::printf("\n");
+    std::cout << '\n';
   }
 }
 
 void print(const std::vector<SceneStudy>& studies, std::size_t cycles) {
-  std::printf("between two scenes / by start noise in one of them (means), and p of a permutation test\n");
+  std::cout << "between two scenes / by start noise in one of them (means), and p of a permutation test\n";
   for (const SceneStudy& study : studies) {
-    std::printf("\nindividual %u\n", study.individual);
+    std::cout << "\nindividual " << study.individual << '\n';
     for (const Environment& environment : study.environments)
       for (std::size_t start = 0; start < environment.grown.size(); ++start)
         if (const Grown& grown = environment.grown[start]; grown.status != Status::ok)
-          std::printf("%-15s %s from start %zu: %s\n", environment.name.c_str(), name(grown.status), start,
-                      grown.reason.c_str());
+          fmt::print(std::cout, "{:<15} {} from start {}: {}\n", environment.name, name(grown.status), start,
+                     grown.reason);
     for (std::size_t measure = 0; measure < body_distances.size(); ++measure) print(study, measure, cycles);
   }
 }

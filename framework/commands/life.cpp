@@ -1,6 +1,7 @@
 // evodevo life: what development did to a robot, edit by edit.
+#include <fmt/ostream.h>
+
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -56,27 +57,27 @@ std::string who(const Event& event) {
 
 void print(const Cause& cause, const Measure& measure) {
   const bool has_unit = measure.unit != "1" && std::isfinite(cause.number);
-  std::printf(", %s %s%s", measure.name.c_str(), short_number(cause.number).c_str(),
-              has_unit ? (" " + measure.unit).c_str() : "");
+  std::cout << ", " << measure.name << ' ' << short_number(cause.number);
+  if (has_unit) std::cout << ' ' << measure.unit;
 }
 
 void print(const Event& event, const std::vector<Narrated>& operators) {
   const Narrated* op = event.op ? &operators.at(*event.op) : nullptr;
   const std::string title =
       op == nullptr ? by_none : op->name + (op->is_unique ? "" : " (operator " + std::to_string(*event.op) + ")");
-  std::printf("cycle %u  %s: ", event.cycle, title.c_str());
+  fmt::print(std::cout, "cycle {}  {}: ", event.cycle, title);
   if (const auto& growth = event.growth)
-    std::printf("springs grow from %.4g to %.4g of their way", growth->from / growth->whole,
-                growth->to / growth->whole);
+    fmt::print(std::cout, "springs grow from {:.4g} to {:.4g} of their way", growth->from / growth->whole,
+               growth->to / growth->whole);
   else
-    std::printf("%s %s", who(event).c_str(), event.what);
+    fmt::print(std::cout, "{} {}", who(event), event.what);
   if (event.cause) print(*event.cause, op->measure(event.cause->list));
-  if (event.position) std::printf(" at (%.4g, %.4g, %.4g) m", event.position->x, event.position->y, event.position->z);
-  if (event.rest_length) std::printf(", rest length %.4g m", *event.rest_length);
-  if (event.material)
-    std::printf(", %.4g N/m, amplitude %.4g, %.4g Hz, phase %.4g", event.material->stiffness, event.material->amplitude,
-                event.material->frequency, event.material->phase);
-  std::printf("\n");
+  if (const auto& at = event.position) fmt::print(std::cout, " at ({:.4g}, {:.4g}, {:.4g}) m", at->x, at->y, at->z);
+  if (event.rest_length) fmt::print(std::cout, ", rest length {:.4g} m", *event.rest_length);
+  if (const auto& material = event.material)
+    fmt::print(std::cout, ", {:.4g} N/m, amplitude {:.4g}, {:.4g} Hz, phase {:.4g}", material->stiffness,
+               material->amplitude, material->frequency, material->phase);
+  std::cout << '\n';
 }
 
 /// What is told of an individual of a run, whose life is simulated again.
@@ -100,15 +101,15 @@ class LifeReport {
   void print() const {
     for (const Event& event : events_) evodevo::print(event, operators_);
     const Result& result = individual_.result;
-    std::printf("individual %u: born with %zu masses and %zu springs, matured with %zu and %zu; %s%s\n", individual_.id,
-                born_.masses.size(), born_.springs.size(), matured_.masses.size(), matured_.springs.size(),
-                name(result.status), result.reason.empty() ? "" : (": " + result.reason).c_str());
+    fmt::print(std::cout, "individual {}: born with {} masses and {} springs, matured with {} and {}; {}{}\n",
+               individual_.id, born_.masses.size(), born_.springs.size(), matured_.masses.size(),
+               matured_.springs.size(), name(result.status), result.reason.empty() ? "" : ": " + result.reason);
     switch (experiment_.development.control) {
       case Control::random_places:
-        std::printf("under the control \"random-places\": each operator's changes, but anywhere\n");
+        std::cout << "under the control \"random-places\": each operator's changes, but anywhere\n";
         break;
       case Control::shuffled_stress:
-        std::printf("under the control \"shuffled-stress\": what caused an edit was measured at another spring\n");
+        std::cout << "under the control \"shuffled-stress\": what caused an edit was measured at another spring\n";
         break;
       default:
         break;

@@ -1,5 +1,6 @@
 // evodevo operators and describe: what the operators say of themselves.
-#include <cstdio>
+#include <fmt/ostream.h>
+
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -30,15 +31,15 @@ Json parameters_json(const std::vector<ParameterDescription>& parameters) {
 }
 
 void print_description(const AvailableOperator& available) {
-  std::printf("%s (%s operator, version %s, %s)\n%s\n", available.entry->name, available.entry->kind,
-              available.manifest->version, available.manifest->license, available.entry->summary);
+  fmt::print(std::cout, "{} ({} operator, version {}, {})\n{}\n", available.entry->name, available.entry->kind,
+             available.manifest->version, available.manifest->license, available.entry->summary);
   for (const ParameterDescription& p : describe_parameters(available)) {
-    std::printf("\n  %s = %s\n      %s", p.name.c_str(), p.fallback.c_str(), p.type.c_str());
-    if (!p.allowed.empty()) std::printf(", %s", p.allowed.c_str());
-    if (!p.unit.empty() && p.unit != "1") std::printf(" %s", p.unit.c_str());
-    std::printf("\n      %s\n", p.text.c_str());
+    std::cout << "\n  " << p.name << " = " << p.fallback << "\n      " << p.type;
+    if (!p.allowed.empty()) std::cout << ", " << p.allowed;
+    if (!p.unit.empty() && p.unit != "1") std::cout << ' ' << p.unit;
+    std::cout << "\n      " << p.text << '\n';
   }
-  std::printf("\nfrom %s\n", printable(available.file.string()).c_str());
+  std::cout << "\nfrom " << printable(available.file.string()) << '\n';
 }
 
 /// The kind that --kind names; empty for all.
@@ -68,7 +69,8 @@ void print_operators(const Registry& registry, const std::string& kind, bool as_
     if (as_json)
       list.push_back(operator_json(available));
     else
-      std::printf("%-10s %-20s %s\n", available.entry->kind, available.entry->name, available.entry->summary);
+      fmt::print(std::cout, "{:<10} {:<20} {}\n", available.entry->kind, available.entry->name,
+                 available.entry->summary);
   }
   if (as_json) std::cout << json_text(list) << '\n';
 }

@@ -1,8 +1,9 @@
 // evodevo new and conform: the project of a plugin, and whether plugins keep to the rules.
+#include <fmt/ostream.h>
+
 #include <algorithm>
 #include <boost/dll/runtime_symbol_info.hpp>
 #include <cctype>
-#include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -115,9 +116,9 @@ int create(const Given& given) {
 }
 
 void print(const Verdict& verdict) {
-  std::printf("%-8s %-28s %s%s%s\n", verdict.outcome.c_str(), verdict.subject.c_str(), verdict.name.c_str(),
-              verdict.reason.empty() ? "" : ": ", printable(verdict.reason, 2000).c_str());
-  std::fflush(stdout);  // a child that crashes next must not say it again
+  fmt::print(std::cout, "{:<8} {:<28} {}{}{}\n", verdict.outcome, verdict.subject, verdict.name,
+             verdict.reason.empty() ? "" : ": ", printable(verdict.reason, 2000));
+  std::cout << std::flush;  // a child that crashes next must not say it again
 }
 
 bool is_good(const Verdict& verdict) { return verdict.outcome == "passed" || verdict.outcome == "skipped"; }

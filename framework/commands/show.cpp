@@ -1,6 +1,7 @@
 // evodevo show: what a run has come to.
+#include <fmt/ostream.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <iostream>
 
 #include "base/json_text.hpp"
@@ -52,46 +53,45 @@ class Report {
   }
 
   void print_generations() const {
-    std::printf("%10s %12s %10s %10s %9s %8s %7s\n", "generation", "evaluations", "best", "median", "diverged",
-                "invalid", "clones");
+    constexpr const char* row = "{:>10} {:>12} {:>10} {:>10} {:>9} {:>8} {:>7}\n";
+    fmt::print(std::cout, row, "generation", "evaluations", "best", "median", "diverged", "invalid", "clones");
     const std::size_t stride = (generations_.size() + generations_shown - 1) / generations_shown;
     for (std::size_t i = 0; i < generations_.size(); ++i) {
       if (i % stride != 0 && i + 1 != generations_.size()) continue;
       const Summary& s = generations_[i];
-      std::printf("%10u %12lld %10s %10s %9lld %8lld %7lld\n", s.generation, static_cast<long long>(s.evaluations),
-                  number(s.best).c_str(), number(s.median).c_str(), static_cast<long long>(s.diverged),
-                  static_cast<long long>(s.invalid), static_cast<long long>(s.clones));
+      fmt::print(std::cout, row, s.generation, s.evaluations, number(s.best), number(s.median), s.diverged, s.invalid,
+                 s.clones);
     }
   }
 
   void print_failures() const {
     const std::vector<Failure> failures = archive_.failures();
-    if (!failures.empty()) std::printf("\nwithout a fitness\n");
+    if (!failures.empty()) std::cout << "\nwithout a fitness\n";
     for (const Failure& failure : failures)
-      std::printf("  %lld %s: %s%s\n", static_cast<long long>(failure.count), failure.status.c_str(),
-                  failure.reason.c_str(), failure.varies ? ", or the like" : "");
+      fmt::print(std::cout, "  {} {}: {}{}\n", failure.count, failure.status, failure.reason,
+                 failure.varies ? ", or the like" : "");
   }
 
   void print_best() const {
     if (archive_.best(1).empty()) return;
-    std::printf("\nbest individuals\n");
+    std::cout << "\nbest individuals\n";
     for (const std::uint32_t id : archive_.best(best_shown)) {
       const auto line = ancestry(archive_, id);
       const ArchivedIndividual& individual = line.front();
-      std::printf("  %u: ", individual.id);
+      fmt::print(std::cout, "  {}: ", individual.id);
       for (std::size_t i = 0; i < objectives_.size(); ++i)
-        std::printf("%s %s %s, ", objectives_[i].name.c_str(), number(individual.result.objectives[i]).c_str(),
-                    objectives_[i].unit.c_str());
-      std::printf("born in generation %u, age %u", individual.born, last_age(individual, last_generation_));
+        fmt::print(std::cout, "{} {} {}, ", objectives_[i].name, number(individual.result.objectives[i]),
+                   objectives_[i].unit);
+      fmt::print(std::cout, "born in generation {}, age {}", individual.born, last_age(individual, last_generation_));
       if (const auto verification = archive_.verification(id))
-        std::printf(", %s", marks_text(*verification, objectives_.front().maximise).c_str());
-      std::printf("\n");
+        std::cout << ", " << marks_text(*verification, objectives_.front().maximise);
+      std::cout << '\n';
       std::string text;
       for (const ArchivedIndividual& ancestor : line) {
         if (!text.empty()) text += " < ";
         text += std::to_string(ancestor.id) + " (" + ancestor.made_by + ")";
       }
-      std::printf("    %s\n", text.c_str());
+      std::cout << "    " << text << '\n';
     }
   }
 

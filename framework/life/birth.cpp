@@ -1,7 +1,8 @@
 #include "life/birth.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 
 #include "analysis/energy.hpp"
 #include "analysis/ground.hpp"
@@ -27,13 +28,10 @@ std::string throw_by_ground(const LivingBody& living, const Scene& scene) {
   }
   const double brought = std::max(0.0, total_energy(living.body, living.state, scene)) + weight * size;
   if (held <= brought) return {};
-  char text[160];
-  std::snprintf(
-      text, sizeof text,
-      "inside the ground, up to %.3g m deep: the floor would throw it out with %.3g J, and it can have brought "
-      "%.3g J there",
+  return fmt::format(
+      "inside the ground, up to {:.3g} m deep: the floor would throw it out with {:.3g} J, and it can have brought "
+      "{:.3g} J there",
       deepest, held, brought);
-  return text;
 }
 
 }  // namespace
@@ -73,7 +71,7 @@ std::vector<Life> Birth::of(std::span<const Newborn> newborns) const {
 }
 
 Life Birth::of(Body body) const {
-  if (const auto& load = experiment_.payload) add_payload(body, load->share, load->top);
+  if (const auto& payload = experiment_.payload) add_payload(body, payload->share, payload->top);
   Life life;
   life.living.state = state_at_birth(body, experiment_.scene);
   life.living.body = std::move(body);

@@ -1,12 +1,12 @@
 #include "operators/loader.hpp"
 
 #define XXH_INLINE_ALL  // from the header alone, so that no library is needed at run time
+#include <fmt/format.h>
 #include <xxhash.h>
 
 #include <algorithm>
 #include <boost/dll/runtime_symbol_info.hpp>
 #include <boost/dll/shared_library.hpp>
-#include <cstdio>
 #include <cstdlib>
 #include <deque>
 #include <fstream>
@@ -310,10 +310,7 @@ bool is_plugin_path(const fs::path& path) {
 std::string file_hash(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   const std::string content{std::istreambuf_iterator<char>(stream), {}};
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx",
-                static_cast<unsigned long long>(XXH3_64bits(content.data(), content.size())));
-  return text;
+  return fmt::format("{:016x}", XXH3_64bits(content.data(), content.size()));
 }
 
 }  // namespace evodevo

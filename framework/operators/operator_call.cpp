@@ -4,7 +4,7 @@
 
 #include <atomic>
 #include <csignal>
-#include <cstdio>
+#include <iostream>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -111,8 +111,9 @@ void name_change(const OperatorCall& call, const std::string& what) {
   const std::lock_guard lock(mutex);
   if (call.title == nullptr || !named.emplace(call.title, what).second) return;
   const bool flushes = what.find("flush-to-zero") != std::string::npos;
-  std::fprintf(stderr, "warning: %s: it changed %s, which has been put back; remove what changes it%s\n",
-               call.title->whole.c_str(), what.c_str(), flushes ? ", such as the compiler's option -ffast-math" : "");
+  std::cerr << "warning: " << call.title->whole << ": it changed " << what
+            << ", which has been put back; remove what changes it"
+            << (flushes ? ", such as the compiler's option -ffast-math" : "") << '\n';
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
 #include "analysis/guard.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "physics/physics.hpp"
@@ -74,12 +75,6 @@ double height_moment_of(const Body& body, const State& state, const Scene& scene
   return sum;
 }
 
-std::string with_numbers(const char* format, double a, double b) {
-  char text[128];
-  std::snprintf(text, sizeof text, format, a, b);
-  return text;
-}
-
 }  // namespace
 
 Course course_of(const Task& task, const Scene& scene, Precision precision) {
@@ -106,8 +101,12 @@ std::string divergence_reason(const Course& course, double dt, double kinetic, d
   const double energy = kinetic + elastic;
   if (!finite || !std::isfinite(energy)) return "non-finite position, velocity or energy";
   const double limit = course.bound.limit(course.elapsed(dt), course.fallen);
-  if (!(energy <= limit)) return with_numbers("energy of %.3g J above the bound of %.3g J", energy, limit);
+  if (!(energy <= limit)) return fmt::format("energy of {:.3g} J above the bound of {:.3g} J", energy, limit);
   return {};
+}
+
+std::string force_range_reason(const Course& course) {
+  return fmt::format("force range: the force of a spring grew beyond {:.3g} N", course.forces.largest);
 }
 
 void apply_course(Task& task, const Course& course) {

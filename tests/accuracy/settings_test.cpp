@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <stdexcept>
 
 #include "../common/help.hpp"
 #include "studies.hpp"
@@ -14,14 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string complaint(const CommandLine& line) {
-  try {
-    parse(line);
-    return "";
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-}
+std::string complaint(const CommandLine& line) { return complaint_about(parse, line); }
 
 TEST(AccuracySettings, NameTheCommandThatRepeatsThem) {
   const Settings settings = parse({"charts", "--quick", "--study", "orders", "--study", "beam"});

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <stdexcept>
 #include <vector>
 
 #include "../common/help.hpp"
@@ -14,14 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string complaint(const CommandLine& line) {
-  try {
-    parse(line);
-    return "";
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-}
+std::string complaint(const CommandLine& line) { return complaint_about(parse, line); }
 
 TEST(Settings, NameTheCommandThatRepeatsThem) {
   EXPECT_EQ(parse({"--json", "--body", "cube10", "--runs=3"}).command, "tools/bench --body cube10 --runs=3");

@@ -1,4 +1,4 @@
-// Whether a page of help is that of the options that a program takes.
+// What the tests of several tools' command lines share: the check of a page of help, and the message of a refusal.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -6,6 +6,7 @@
 #include <boost/program_options.hpp>
 #include <regex>
 #include <set>
+#include <stdexcept>
 #include <string>
 
 #include "common/program.hpp"
@@ -42,6 +43,17 @@ inline void expect_page_of_options(const Program& program, const boost::program_
   EXPECT_EQ(std::distance(std::sregex_iterator(help.begin(), help.end(), any), std::sregex_iterator()), entries)
       << "the help of tools/" << name << " describes an option that is not there";
   EXPECT_NE(help.find("\n  tools/" + name + " "), help.npos) << "there is no example";
+}
+
+/// Returns the message with which `parse` refuses a command line, or an empty string if it accepts the line.
+template <class Parse>
+std::string complaint_about(const Parse& parse, const CommandLine& line) {
+  try {
+    parse(line);
+    return "";
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
 }
 
 }  // namespace evodevo::tools

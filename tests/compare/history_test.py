@@ -167,14 +167,14 @@ class Reports(unittest.TestCase):
         self.assertEqual(none, ["not verified", "-", "- |"])
 
     def test_other_builds_are_named(self):
-        def maker(run_hash, program="p", device="cpu"):
+        def provenance(run_hash, program="p", device="cpu"):
             operator = {"kind": "fitness", "name": "distance", "version": "0.1.0", "hash": run_hash}
             return {"device": device, "evodevo": "0.1.0", "program": program, "operators": [operator]}
 
-        def made(*makers, by=None):
-            """What `show --json` says of a run whose generations were made by those makers."""
-            places = range(len(makers)) if by is None else by
-            return {"provenances": list(makers), "generations": [{"provenance": place} for place in places]}
+        def made(*provenances, by=None):
+            """What `show --json` says of a run whose generations have those provenances."""
+            places = range(len(provenances)) if by is None else by
+            return {"provenances": list(provenances), "generations": [{"provenance": place} for place in places]}
 
         evo, devo = Variant(pathlib.Path("evo")), Variant(pathlib.Path("devo"))
         runs = [Run(variant, seed, pathlib.Path()) for seed in (1, 2) for variant in (evo, devo)]
@@ -182,21 +182,21 @@ class Reports(unittest.TestCase):
         def differences(*said):
             return report.differences(report.builds(dict(zip(runs, said))))
 
-        a, b = maker("aa"), maker("bb")
+        a, b = provenance("aa"), provenance("bb")
         self.assertEqual(differences(*[made(a)] * 4), "")
         text = differences(made(a), made(b), made(b), made(b))
         self.assertIn("- fitness `distance`:\n  - 0.1.0 (aa): 1 of `evo`\n", text)
         self.assertIn("  - 0.1.0 (bb): 2 of `devo`, 1 of `evo`\n", text)
         self.assertNotIn("device:", text)
-        text = differences(made(a), made(maker("aa", program="q")), made(maker("aa", device="cuda")), made(a))
+        text = differences(made(a), made(provenance("aa", program="q")), made(provenance("aa", device="cuda")), made(a))
         self.assertIn("- device:\n  - cpu: 1 of `evo`, 2 of `devo`\n  - cuda: 1 of `evo`\n", text)
         self.assertIn("- evodevo:\n  - 0.1.0 (p): 2 of `evo`, 1 of `devo`\n  - 0.1.0 (q): 1 of `devo`\n", text)
         self.assertNotIn("distance", text)
         # resumed elsewhere, each of them in the same way; and by somebody who made no generation
-        resumed = made(a, maker("aa", device="cuda"))
+        resumed = made(a, provenance("aa", device="cuda"))
         text = differences(*[resumed] * 4)
         self.assertIn("- device:\n  - cpu: 2 of `evo`, 2 of `devo`\n  - cuda: 2 of `evo`, 2 of `devo`\n", text)
-        self.assertEqual(differences(*[made(a, maker("aa", device="cuda"), by=[0, 0])] * 4), "")
+        self.assertEqual(differences(*[made(a, provenance("aa", device="cuda"), by=[0, 0])] * 4), "")
 
     def test_costs_differ_between_the_axes(self):
         # the second spends three times as much on each generation, so it has a third of them at equal cost

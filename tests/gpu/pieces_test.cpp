@@ -10,7 +10,7 @@ namespace {
 class GpuRuns : public testing::TestWithParam<Way> {
  protected:
   static Method method() { return std::get<Method>(GetParam()); }
-  static test::SimulatorMaker maker() {
+  static test::SimulatorFactory factory() {
     return [](const Scene& scene) { return make_cuda_simulator(scene, stepping(GetParam())); };
   }
 };
@@ -23,37 +23,37 @@ TEST_P(GpuRuns, InPiecesEndInTheBitsOfTheWhole) {
   std::vector<Body> bodies{test::random_body(107, 9, 5, 6), test::random_body(41, 6, 23, 7), test::single_mass(0.2),
                            test::random_body(1701, 14, 5, 8)};
   if (is_explicit(method())) bodies.push_back(test::random_body(12001, 6, 5, 9));
-  test::expect_pieces_to_be_the_whole(maker(), bodies);
+  test::expect_pieces_to_be_the_whole(factory(), bodies);
 }
 
 TEST_P(GpuRuns, InPiecesBetweenTalliesToo) {
   EVODEVO_NEEDS_GPU();
-  test::expect_tallies_to_leave_the_motion_alone(maker(), test::random_body(41, 6, 5, 7));
+  test::expect_tallies_to_leave_the_motion_alone(factory(), test::random_body(41, 6, 5, 7));
 }
 
 TEST_P(GpuRuns, InPiecesAreNotCheckedWhereTheyMeet) {
   EVODEVO_NEEDS_GPU();
-  test::expect_no_check_between_pieces(maker());
+  test::expect_no_check_between_pieces(factory());
 }
 
 TEST_P(GpuRuns, InPiecesDivergeWhereTheWholeDoes) {
   EVODEVO_NEEDS_GPU();
-  if (is_explicit(method())) test::expect_one_verdict(maker(), method());
+  if (is_explicit(method())) test::expect_one_verdict(factory(), method());
 }
 
 TEST_P(GpuRuns, LetResonanceLive) {
   EVODEVO_NEEDS_GPU();
-  test::expect_resonance_to_live(maker(), method());
+  test::expect_resonance_to_live(factory(), method());
 }
 
 TEST_P(GpuRuns, HaveOneBoundForOneRunAndForSeveral) {
   EVODEVO_NEEDS_GPU();
-  test::expect_one_bound(maker());
+  test::expect_one_bound(factory());
 }
 
 TEST_P(GpuRuns, EndWhatTheFloorPumpsUp) {
   EVODEVO_NEEDS_GPU();
-  if (is_explicit(method()) && method() != Method::rk4) test::expect_pumped_bodies_to_end(maker());
+  if (is_explicit(method()) && method() != Method::rk4) test::expect_pumped_bodies_to_end(factory());
 }
 
 TEST(GpuRunsOfComputedMaterials, InPiecesEndInTheBitsOfTheWhole) {

@@ -475,7 +475,7 @@ TEST(LifeRecord, ARunKeepsThoseWhoReachTheFrontLaterToo) {
   EXPECT_GT(late, 3);
 }
 
-/// A run of ten generations that is stopped after five and goes on by another maker.
+/// A run of ten generations that is stopped after five and continues under another provenance.
 class GoneOn : public ::testing::Test {
  protected:
   static constexpr std::uint32_t first_half = 5;

@@ -42,7 +42,7 @@ double energy_at_resonance(double length, double amplitude, double t) {
 
 }  // namespace
 
-void expect_resonance_to_live(const SimulatorMaker& simulator_for, Method method) {
+void expect_resonance_to_live(const SimulatorFactory& simulator_for, Method method) {
   const auto simulator = simulator_for({});
   const double truth = energy_at_resonance(1, 0.05, 0.1), strain = 0.5 * 5000 * 0.1 * 0.1;
   ASSERT_GT(truth, 10 * strain);
@@ -60,7 +60,7 @@ void expect_resonance_to_live(const SimulatorMaker& simulator_for, Method method
   }
 }
 
-void expect_pumped_bodies_to_end(const SimulatorMaker& simulator_for) {
+void expect_pumped_bodies_to_end(const SimulatorFactory& simulator_for) {
   const auto simulator = simulator_for(walking_scene());
   int ended = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
@@ -74,7 +74,7 @@ void expect_pumped_bodies_to_end(const SimulatorMaker& simulator_for) {
   EXPECT_GE(ended, 1);
 }
 
-void expect_one_bound(const SimulatorMaker& simulator_for) {
+void expect_one_bound(const SimulatorFactory& simulator_for) {
   const auto simulator = simulator_for({});
   const Body body = random_body(30, 6, 5, 4);
   const State start = resting(body, {});

@@ -9,7 +9,7 @@ namespace {
 class GuardOfEachMethod : public testing::TestWithParam<Arithmetic> {
  protected:
   static Method method() { return std::get<Method>(GetParam()); }
-  static SimulatorMaker maker() {
+  static SimulatorFactory factory() {
     return [](const Scene& scene) { return make_cpu_simulator(scene, {method(), std::get<Precision>(GetParam())}, 1); };
   }
 };
@@ -19,13 +19,13 @@ INSTANTIATE_TEST_SUITE_P(Ways, GuardOfEachMethod,
                                           testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
-TEST_P(GuardOfEachMethod, LetsResonanceLive) { expect_resonance_to_live(maker(), method()); }
+TEST_P(GuardOfEachMethod, LetsResonanceLive) { expect_resonance_to_live(factory(), method()); }
 
-TEST_P(GuardOfEachMethod, HasOneBoundForOneRunAndForSeveral) { expect_one_bound(maker()); }
+TEST_P(GuardOfEachMethod, HasOneBoundForOneRunAndForSeveral) { expect_one_bound(factory()); }
 
 TEST_P(GuardOfEachMethod, EndsWhatTheFloorPumpsUp) {
   // the others bear this step
-  if (is_explicit(method()) && method() != Method::rk4) expect_pumped_bodies_to_end(maker());
+  if (is_explicit(method()) && method() != Method::rk4) expect_pumped_bodies_to_end(factory());
 }
 
 }  // namespace

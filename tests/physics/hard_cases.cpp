@@ -327,7 +327,7 @@ std::vector<HardCase> hard_cases(Method method) {
   };
 }
 
-void expect_outcomes(const std::vector<HardCase>& cases, const SimulatorMaker& simulator_for, double rounding) {
+void expect_outcomes(const std::vector<HardCase>& cases, const SimulatorFactory& simulator_for, double rounding) {
   for (const HardCase& c : cases) {
     SCOPED_TRACE(c.name);
     expect_outcome(c, *simulator_for(c.scene), rounding);

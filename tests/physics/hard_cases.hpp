@@ -29,10 +29,10 @@ struct HardCase {
 /// The cases for one method: some of their steps and outcomes are those of its limits.
 std::vector<HardCase> hard_cases(Method method);
 
-using SimulatorMaker = std::function<std::unique_ptr<Simulator>(const Scene&)>;
+using SimulatorFactory = std::function<std::unique_ptr<Simulator>(const Scene&)>;
 
 /// Simulates every case between two other bodies, and expects the case's outcome and of the others the bits that they
 /// have alone. `rounding`: the energy that it may bring to a body at rest, J.
-void expect_outcomes(const std::vector<HardCase>& cases, const SimulatorMaker& simulator_for, double rounding = 1e-6);
+void expect_outcomes(const std::vector<HardCase>& cases, const SimulatorFactory& simulator_for, double rounding = 1e-6);
 
 }  // namespace evodevo::test

@@ -58,7 +58,7 @@ void expect_same(const Run& whole, const Run& pieces) {
   EXPECT_FALSE(pieces.task.course) << "nothing follows";
 }
 
-void expect_one_verdict_on(const Body& body, const State& start, double step, const SimulatorMaker& simulator_for,
+void expect_one_verdict_on(const Body& body, const State& start, double step, const SimulatorFactory& simulator_for,
                            const Scene& scene) {
   const auto simulator = simulator_for(scene);
   Run whole{&body, start, step}, pieces = whole, recorded = whole;
@@ -72,7 +72,7 @@ void expect_one_verdict_on(const Body& body, const State& start, double step, co
 
 }  // namespace
 
-void expect_pieces_to_be_the_whole(const SimulatorMaker& simulator_for, const std::vector<Body>& bodies) {
+void expect_pieces_to_be_the_whole(const SimulatorFactory& simulator_for, const std::vector<Body>& bodies) {
   const Scene scene = rough_slope();
   const auto simulator = simulator_for(scene);
   for (const Body& body : bodies) {
@@ -88,7 +88,7 @@ void expect_pieces_to_be_the_whole(const SimulatorMaker& simulator_for, const st
   }
 }
 
-void expect_tallies_to_leave_the_motion_alone(const SimulatorMaker& simulator_for, const Body& body) {
+void expect_tallies_to_leave_the_motion_alone(const SimulatorFactory& simulator_for, const Body& body) {
   const Scene scene = rough_slope();
   const auto simulator = simulator_for(scene);
   Run whole{&body, late(body, scene)}, tallied = whole;
@@ -102,7 +102,7 @@ void expect_tallies_to_leave_the_motion_alone(const SimulatorMaker& simulator_fo
   expect_same(whole, tallied);
 }
 
-void expect_one_verdict(const SimulatorMaker& simulator_for, Method method) {
+void expect_one_verdict(const SimulatorFactory& simulator_for, Method method) {
   const Body stiff = random_body(40, 8, 5, 3), sound = random_body(50, 10, 5, 2);
   Body unstable = stiff;
   for (Material& material : unstable.materials) material.stiffness *= 4000;
@@ -115,7 +115,7 @@ void expect_one_verdict(const SimulatorMaker& simulator_for, Method method) {
   expect_one_verdict_on(sound, start, 1.3 * largest_dt(sound, start.position, method), simulator_for, {});
 }
 
-void expect_no_check_between_pieces(const SimulatorMaker& simulator_for) {
+void expect_no_check_between_pieces(const SimulatorFactory& simulator_for) {
   // its energy falls from 1 J below the bound of 0.2 J between step 37, where it has 0.35 J, and step 100
   const Scene scene{{}, {}, {}, Damping{20}, {}};
   const Body body = single_mass(0.2);

@@ -9,7 +9,7 @@ namespace {
 class Pieces : public testing::TestWithParam<Arithmetic> {
  protected:
   static Method method() { return std::get<Method>(GetParam()); }
-  static SimulatorMaker maker() {
+  static SimulatorFactory factory() {
     return [](const Scene& scene) { return make_cpu_simulator(scene, {method(), std::get<Precision>(GetParam())}, 1); };
   }
 };
@@ -20,15 +20,15 @@ INSTANTIATE_TEST_SUITE_P(Ways, Pieces,
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(Pieces, EndInTheBitsOfTheWhole) {
-  expect_pieces_to_be_the_whole(maker(), {random_body(107, 9, 5, 6), random_body(41, 6, 23, 7), single_mass(0.2)});
+  expect_pieces_to_be_the_whole(factory(), {random_body(107, 9, 5, 6), random_body(41, 6, 23, 7), single_mass(0.2)});
 }
 
-TEST_P(Pieces, BetweenTalliesToo) { expect_tallies_to_leave_the_motion_alone(maker(), random_body(41, 6, 5, 7)); }
+TEST_P(Pieces, BetweenTalliesToo) { expect_tallies_to_leave_the_motion_alone(factory(), random_body(41, 6, 5, 7)); }
 
-TEST_P(Pieces, AreNotCheckedWhereTheyMeet) { expect_no_check_between_pieces(maker()); }
+TEST_P(Pieces, AreNotCheckedWhereTheyMeet) { expect_no_check_between_pieces(factory()); }
 
 TEST_P(Pieces, DivergeWhereTheWholeDoes) {
-  if (is_explicit(method())) expect_one_verdict(maker(), method());
+  if (is_explicit(method())) expect_one_verdict(factory(), method());
 }
 
 }  // namespace

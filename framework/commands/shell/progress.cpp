@@ -1,9 +1,9 @@
 #include "commands/shell/progress.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <iostream>
 
 #include "base/text.hpp"
@@ -12,19 +12,13 @@
 namespace evodevo {
 namespace {
 
-std::string formatted(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
 std::string optional_text(const std::optional<double>& value) { return value ? short_number(*value) : "none"; }
 
 std::string duration_text(double seconds) {
   const auto whole = static_cast<long>(seconds + 0.5);
-  if (whole < 60) return std::to_string(whole) + " s";
-  if (whole < 3600) return std::to_string(whole / 60) + " min " + std::to_string(whole % 60) + " s";
-  return std::to_string(whole / 3600) + " h " + std::to_string(whole % 3600 / 60) + " min";
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
 }
 
 }  // namespace
@@ -64,14 +58,12 @@ double ProgressDisplay::seconds_left(double evaluations) const {
 
 std::string ProgressDisplay::line(double evaluations) const {
   const double rate = (evaluations - static_cast<double>(evaluations_before_)) / seconds();
-  std::string text = "generation " + std::to_string(last_.generation) + "  evaluations " +
-                     formatted("%.0f", evaluations) + "/" + std::to_string(experiment_.evaluations) + "  best " +
-                     optional_text(last_.best) + "  median " + optional_text(last_.median) + "  diverged " +
-                     formatted("%.1f %%", last_.evaluations > 0 ? 100.0 * static_cast<double>(diverged_) /
-                                                                      static_cast<double>(last_.evaluations)
-                                                                : 0.0);
-  if (rate > 0)
-    text += "  " + formatted("%.3g", rate) + " evaluations/s  " + duration_text(seconds_left(evaluations)) + " left";
+  const double diverged =
+      last_.evaluations > 0 ? 100.0 * static_cast<double>(diverged_) / static_cast<double>(last_.evaluations) : 0.0;
+  std::string text = fmt::format("generation {}  evaluations {:.0f}/{}  best {}  median {}  diverged {:.1f} %",
+                                 last_.generation, evaluations, experiment_.evaluations, optional_text(last_.best),
+                                 optional_text(last_.median), diverged);
+  if (rate > 0) text += fmt::format("  {:.3g} evaluations/s  {} left", rate, duration_text(seconds_left(evaluations)));
   if (stop_) text += "  (stopping after this generation; Ctrl-C again stops now)";
   return text;
 }
@@ -122,7 +114,7 @@ void print_outcome(const Experiment& experiment, const Archive& archive, const P
 
 void print_time_spent(const TimeSpent& time, const Simulator& simulator) {
   if (!(time.whole > 0)) return;
-  const auto share = [&](double seconds) { return formatted("%.0f %%", 100 * seconds / time.whole); };
+  const auto share = [&](double seconds) { return fmt::format("{:.0f} %", 100 * seconds / time.whole); };
   remarks() << "time:  simulate " << share(time.evaluation.simulate) << ", develop " << share(time.evaluation.develop)
             << ", decode " << share(time.evaluation.decode) << ", archive " << share(time.archive);
   if (const std::optional<DeviceUse> device = simulator.device_use()) {

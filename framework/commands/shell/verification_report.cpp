@@ -1,6 +1,8 @@
 #include "commands/shell/verification_report.hpp"
 
-#include <cstdio>
+#include <fmt/ostream.h>
+
+#include <iostream>
 
 #include "base/text.hpp"
 #include "commands/shell/notices.hpp"
@@ -28,16 +30,16 @@ std::vector<Verification> verify_best(const Experiment& experiment, Simulator& s
 }
 
 void print(const Verification& verification, const Objective& objective) {
-  std::printf("individual %u: %s %s %s: %s\n", verification.individual, objective.name.c_str(),
-              number(verification.fitness).c_str(), objective.unit.c_str(),
-              marks_text(verification, objective.maximise).c_str());
+  fmt::print(std::cout, "individual {}: {} {} {}: {}\n", verification.individual, objective.name,
+             number(verification.fitness), objective.unit, marks_text(verification, objective.maximise));
   for (const Trial& trial : verification.trials) {
     const bool has_held = held(verification, trial, objective.maximise);
     const char* outcome = has_held ? "held" : trial.name == "no-muscles" ? "not held, as it should be" : "not held";
-    std::printf("  %-14s %10s  %s%s\n", trial.name.c_str(), number(trial.value).c_str(), outcome,
-                trial.reason.empty() ? "" : (", " + std::string(name(trial.status)) + ": " + trial.reason).c_str());
+    fmt::print(std::cout, "  {:<14} {:>10}  {}", trial.name, number(trial.value), outcome);
+    if (!trial.reason.empty()) std::cout << ", " << name(trial.status) << ": " << trial.reason;
+    std::cout << '\n';
   }
-  std::fflush(stdout);
+  std::cout << std::flush;
 }
 
 }  // namespace evodevo

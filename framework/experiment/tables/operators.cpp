@@ -9,7 +9,7 @@
 
 namespace evodevo {
 
-const AvailableOperator& OperatorMaker::named_in(TomlReader& table, std::string_view kind) const {
+const AvailableOperator& OperatorFactory::named_in(TomlReader& table, std::string_view kind) const {
   const std::string name = table.text(host_key::name);
   const AvailableOperator* available = registry_.find(kind, name);
   if (available == nullptr) {
@@ -26,7 +26,7 @@ const AvailableOperator& OperatorMaker::named_in(TomlReader& table, std::string_
   return *available;
 }
 
-void OperatorMaker::write(const TomlReader& table, Operator& op, TomlWriter& writer) const {
+void OperatorFactory::write(const TomlReader& table, Operator& op, TomlWriter& writer) const {
   writer.add(host_key::name, experiment_.uses.back().name);
   ask(table, [&] {
     op.parameters(writer);
@@ -39,8 +39,8 @@ namespace {
 /// Reads the tables of the operators one after the other.
 class OperatorTables {
  public:
-  OperatorTables(TomlReader& top, const OperatorMaker& maker, Experiment& experiment, toml::table& record)
-      : top_(top), maker_(maker), out_(experiment), record_(record) {}
+  OperatorTables(TomlReader& top, const OperatorFactory& factory, Experiment& experiment, toml::table& record)
+      : top_(top), factory_(factory), out_(experiment), record_(record) {}
 
   void read() {
     read_encoding();
@@ -52,8 +52,8 @@ class OperatorTables {
     read_array(top_, "fitness", record_, [&](TomlReader& t, TomlWriter& writer) { read_fitness(t, writer); });
     if (out_.fitness.empty()) top_.fail("fitness", "is missing; add a table [[fitness]]");
     read_one("selection", [&](TomlReader& t, TomlWriter& writer) {
-      out_.selection = maker_.make<Selection>(t);
-      maker_.write(t, *out_.selection, writer);
+      out_.selection = factory_.make<Selection>(t);
+      factory_.write(t, *out_.selection, writer);
     });
   }
 
@@ -91,9 +91,9 @@ class OperatorTables {
     read_one("encoding", [&](TomlReader& t, TomlWriter& writer) {
       declare_mass(t, out_);
       declare_mass(writer, out_);
-      out_.encoding = maker_.make<Encoding>(t);
-      maker_.write(t, *out_.encoding, writer);
-      out_.layout = maker_.ask(t, [&] { return out_.encoding->layout(out_.context); });
+      out_.encoding = factory_.make<Encoding>(t);
+      factory_.write(t, *out_.encoding, writer);
+      out_.layout = factory_.ask(t, [&] { return out_.encoding->layout(out_.context); });
     });
   }
 
@@ -103,9 +103,9 @@ class OperatorTables {
       Varied<T> varied;
       declare_probability(t, varied.probability);
       declare_probability(writer, varied.probability);
-      varied.op = maker_.make<T>(t);
+      varied.op = factory_.make<T>(t);
       varied.name = out_.uses.back().name;
-      maker_.write(t, *varied.op, writer);
+      factory_.write(t, *varied.op, writer);
       list.push_back(std::move(varied));
     });
   }
@@ -135,11 +135,11 @@ class OperatorTables {
   void read_devo(TomlReader& t, TomlWriter& writer) {
     Schedule schedule = read_schedule(t);
     declare_schedule(writer, schedule);
-    out_.devo.push_back({maker_.make<Devo>(t), schedule});
+    out_.devo.push_back({factory_.make<Devo>(t), schedule});
     Devo& op = *out_.devo.back().op;
-    maker_.write(t, op, writer);
-    check_request(t, maker_.ask(t, [&] { return op.observes(); }));
-    if (maker_.ask(t, [&] { return op.uses_growth() && !out_.encoding->sets_growth(); }))
+    factory_.write(t, op, writer);
+    check_request(t, factory_.ask(t, [&] { return op.observes(); }));
+    if (factory_.ask(t, [&] { return op.uses_growth() && !out_.encoding->sets_growth(); }))
       out_.warnings.push_back(t.full_name("name") + " = \"" + out_.uses.back().name +
                               "\": the encoding lets no spring grow, so that nothing changes; set encoding.size_range, "
                               "or take an encoding that has it");
@@ -167,13 +167,13 @@ class OperatorTables {
   }
 
   void read_fitness(TomlReader& t, TomlWriter& writer) {
-    std::unique_ptr<Fitness> fitness = maker_.make<Fitness>(t);
-    maker_.write(t, *fitness, writer);
-    const Request request = maker_.ask(t, [&] { return fitness->observes(); });
+    std::unique_ptr<Fitness> fitness = factory_.make<Fitness>(t);
+    factory_.write(t, *fitness, writer);
+    const Request request = factory_.ask(t, [&] { return fitness->observes(); });
     check_request(t, request);
     check_duration(t, "settle", request.settle, out_.step);
     check_duration(t, "window", request.window, out_.step);
-    std::vector<Objective> objectives = maker_.ask(t, [&] { return fitness->objectives(); });
+    std::vector<Objective> objectives = factory_.ask(t, [&] { return fitness->objectives(); });
     if (objectives.empty()) t.fail("name", "this operator has no objectives; expected one or more from objectives()");
     for (Objective& objective : objectives) add_objective(t, std::move(objective));
     out_.fitness.push_back(std::move(fitness));
@@ -203,15 +203,15 @@ class OperatorTables {
   }
 
   TomlReader& top_;
-  const OperatorMaker& maker_;
+  const OperatorFactory& factory_;
   Experiment& out_;
   toml::table& record_;
 };
 
 }  // namespace
 
-void read_operators(TomlReader& top, const OperatorMaker& maker, Experiment& experiment, toml::table& record) {
-  OperatorTables(top, maker, experiment, record).read();
+void read_operators(TomlReader& top, const OperatorFactory& factory, Experiment& experiment, toml::table& record) {
+  OperatorTables(top, factory, experiment, record).read();
 }
 
 }  // namespace evodevo

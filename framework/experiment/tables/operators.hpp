@@ -13,10 +13,10 @@ namespace evodevo {
 
 /// Makes the operators that tables name, and fills them with the tables' parameters. Registry and experiment must
 /// outlive it. All that it makes it adds to the experiment's uses.
-class OperatorMaker {
+class OperatorFactory {
  public:
   /// `registry_faults` describes the libraries that cannot be used.
-  OperatorMaker(const Registry& registry, const Warnings& registry_faults, Experiment& experiment)
+  OperatorFactory(const Registry& registry, const Warnings& registry_faults, Experiment& experiment)
       : registry_(registry), registry_faults_(registry_faults), experiment_(experiment) {}
 
   /// The operator that a table's `name` asks for. What the host itself knows of the table has to be read before.
@@ -55,6 +55,6 @@ class OperatorMaker {
 };
 
 /// Reads the tables of operators into an experiment that has its settings. What it has read it writes into `record`.
-void read_operators(TomlReader& top, const OperatorMaker& maker, Experiment& experiment, toml::table& record);
+void read_operators(TomlReader& top, const OperatorFactory& factory, Experiment& experiment, toml::table& record);
 
 }  // namespace evodevo

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstdio>
 
 #include "analysis/guard.hpp"
 #include "core/simulator.hpp"
@@ -36,11 +35,7 @@ inline void read_answer(const Answer& answer, Recording recording, Task& task) {
     task.work = 0;
     task.clear({}, 0);
     task.reason = divergence_reason(course, task.dt, answer.kinetic, answer.elastic, answer.finite != 0);
-    if (task.reason.empty()) {
-      char text[96];
-      std::snprintf(text, sizeof text, "force range: the force of a spring grew beyond %.3g N", course.forces.largest);
-      task.reason = text;
-    }
+    if (task.reason.empty()) task.reason = force_range_reason(course);
   }
   apply_course(task, course);
 }

@@ -1,10 +1,10 @@
 #include "cuda/runtime/cache.hpp"
 
 #define XXH_INLINE_ALL  // from the header alone, so that no library is needed at run time
+#include <fmt/format.h>
 #include <unistd.h>
 #include <xxhash.h>
 
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -33,11 +33,8 @@ std::optional<fs::path> folder() {
 }  // namespace
 
 std::string digest(std::string_view text) {
-  char name[33];
   const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
-  std::snprintf(name, sizeof name, "%016llx%016llx", static_cast<unsigned long long>(hash.high64),
-                static_cast<unsigned long long>(hash.low64));
-  return name;
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
 std::optional<std::vector<char>> load(const std::string& key) {

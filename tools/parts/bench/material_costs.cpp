@@ -54,7 +54,7 @@ Report material_costs(const Settings& settings) {
   report.erase("materials");
   report["note"] =
       "Spring evaluations per second of the steps alone; medians, the ratio's of each run's two rates. The springs "
-      "have as many materials as each row says, in application.";
+      "take as many materials as each row says, one after the other.";
   report["rows"] = std::move(rows);
   return report;
 }

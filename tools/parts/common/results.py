@@ -31,9 +31,9 @@ def groups(rows, *keys):
     return found
 
 
-def draw(makers, tool, arguments):
-    """The whole of a program that draws the charts of a folder: `makers` give a figure of a folder and the origin of its
-    data, or nothing where the data is not there."""
+def draw(figures, tool, arguments):
+    """The whole of a program that draws the charts of a folder: `figures` maps a name to the function that
+    makes that figure from the folder and the origin of its data, or None if the data is not there."""
     if len(arguments) != 1:
         sys.exit(f"{tool}: expected the name of one folder that tools/{tool} has written")
     folder = pathlib.Path(arguments[0])
@@ -41,6 +41,6 @@ def draw(makers, tool, arguments):
     if not origin_file.exists():
         sys.exit(f"{tool}: {origin_file} is not there; give a folder that tools/{tool} has written")
     origin = "  |  ".join(origin_file.read_text().splitlines())
-    for name, make in makers.items():
+    for name, make in figures.items():
         if figure := make(folder, origin):
             charts.save(figure, folder / f"{name}.svg")

@@ -22,7 +22,7 @@ bool has_muscle(const Body& body) {
 std::optional<Body> robot_of(const Experiment& experiment, const Genome& genome) {
   BuiltBody built = build_body(decoded(experiment, genome));
   if (!built.failure.empty()) return std::nullopt;
-  if (const auto& load = experiment.payload) add_payload(built.body, load->share, load->top);
+  if (const auto& payload = experiment.payload) add_payload(built.body, payload->share, payload->top);
   const State birth = state_at_birth(built.body, experiment.scene);
   const LongestStep step =
       longest_step({.dt = time_step}, built.body, birth.position, experiment.scene, Method::paper_euler);

@@ -1,8 +1,9 @@
 #include "common/table.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 #include "base/output_file.hpp"
@@ -10,12 +11,7 @@
 namespace evodevo::tools {
 namespace {
 
-std::string text_of(double number) {
-  if (!std::isfinite(number)) return "";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", number);
-  return text;
-}
+std::string text_of(double number) { return std::isfinite(number) ? fmt::format("{:.9g}", number) : ""; }
 
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;

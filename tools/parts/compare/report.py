@@ -49,21 +49,21 @@ def builds(shown):
     """What runs were made by, from what `evodevo show --json` says of each; one that was resumed, maybe by several."""
     made = collections.defaultdict(lambda: collections.defaultdict(collections.Counter))
     for run, said in shown.items():
-        for what, build in dict.fromkeys(by for maker in makers_of(said) for by in made_by(maker)):
+        for what, build in dict.fromkeys(by for provenance in provenances_of(said) for by in parts_of(provenance)):
             made[what][build][run.variant.name] += 1
     return made
 
 
-def makers_of(said):
+def provenances_of(said):
     """Those by whom any generation of a run was made."""
     return [said["provenances"][place] for place in sorted({generation["provenance"] for generation in said["generations"]})]
 
 
-def made_by(maker):
+def parts_of(provenance):
     """Each thing that results depend on, with its build."""
-    yield "device", maker["device"]
-    yield "evodevo", f"{maker['evodevo']} ({maker['program']})"
-    for operator in maker["operators"]:
+    yield "device", provenance["device"]
+    yield "evodevo", f"{provenance['evodevo']} ({provenance['program']})"
+    for operator in provenance["operators"]:
         yield f"{operator['kind']} `{operator['name']}`", f"{operator['version']} ({operator['hash']})"
 
 
