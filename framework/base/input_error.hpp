@@ -1,4 +1,4 @@
-// What ends a command that was given something it cannot use.
+// Errors that end a command because its input cannot be used.
 #pragma once
 
 #include <stdexcept>
@@ -8,15 +8,15 @@
 
 namespace evodevo {
 
-/// Bad input: a command line, a file or a folder. The command ends with exit code 2. what() is the whole message, on
-/// one line: place, value, remedy.
+/// Bad input: a command line, a file or a folder. The command ends with exit code 2. what() is the complete message on
+/// one line: the place, the value and a remedy.
 struct InputError : std::runtime_error {
   explicit InputError(const std::string& message) : std::runtime_error(printable(message, longest_message)) {}
 
-  static constexpr std::size_t longest_message = 4000;  ///< bytes
+  static constexpr std::size_t longest_message = 4000;  ///< bytes of what()
 };
 
-/// A file that people write, or an option, that cannot be used as it is written.
+/// An error in a command-line option, or in a file that the user has written.
 struct ConfigError : InputError {
   using InputError::InputError;
 };

@@ -14,18 +14,18 @@ namespace {
 using Json = JsonInput::Json;
 
 constexpr std::size_t most_levels = 16;
-constexpr std::size_t most_bytes = std::size_t{1} << 30;  // 1 GiB: a body of some ten million springs
-constexpr std::size_t longest_quote = 60;                 ///< bytes of the file in a message
+constexpr std::size_t most_bytes = std::size_t{1} << 30;  // 1 GiB, enough for about ten million springs
+constexpr std::size_t longest_quote = 60;                 ///< bytes that a message quotes from the file
 
 std::string cut(std::string text, std::size_t longest) {
   if (text.size() > longest) text.replace(longest, std::string::npos, "...");
   return text;
 }
 
-/// A value as messages show it: on one line, without control characters and not too long.
+/// Returns a value as messages show it: on one line, without control characters, cut to longest_quote.
 std::string shown(const Json& value) { return cut(value.dump(-1, ' ', true), longest_quote); }
 
-/// The same without the quotes of a text.
+/// Returns a text as shown() does, but without the quotes around it.
 std::string unquoted(const std::string& text) {
   const std::string quoted = Json(text).dump(-1, ' ', true);
   return cut(quoted.substr(1, quoted.size() - 2), longest_quote);
@@ -33,12 +33,12 @@ std::string unquoted(const std::string& text) {
 
 std::string member_of(const std::string& at, const std::string& key) { return at.empty() ? key : at + "." + key; }
 
-/// Goes along with the parser and knows where in the file it is.
+/// Callback of the JSON parser. It tracks the place in the file, and refuses duplicate keys and too many levels.
 class ParserWatch {
  public:
   explicit ParserWatch(const JsonInput& input) : input_(input) {}
 
-  /// A callback of the parser.
+  /// Called by the parser at each event.
   bool operator()(int, Json::parse_event_t event, const Json& parsed) {
     switch (event) {
       case Json::parse_event_t::object_start:
@@ -63,12 +63,12 @@ class ParserWatch {
   }
 
  private:
-  /// A list or an object that the parser is in.
+  /// A list or an object that the parser has not finished.
   struct Level {
     bool is_list = false;
-    std::size_t items = 0;            ///< of a list, so far
-    std::string key = {};             ///< of an object, the last
-    std::set<std::string> keys = {};  ///< of an object, all so far
+    std::size_t items = 0;            ///< items of a list read so far
+    std::string key = {};             ///< last key of an object
+    std::set<std::string> keys = {};  ///< all keys of an object read so far
   };
 
   void add_key(const std::string& key) {
@@ -81,14 +81,14 @@ class ParserWatch {
     if (!levels_.empty() && levels_.back().is_list) ++levels_.back().items;
   }
 
-  /// Of the level itself.
+  /// The place of the innermost unfinished list or object.
   std::string location_of_level() const {
     std::string at;
     for (std::size_t i = 0; i + 1 < levels_.size(); ++i) at = step(at, levels_[i]);
     return at;
   }
 
-  /// Of what comes next.
+  /// The place of the value that comes next.
   std::string location() const { return levels_.empty() ? "" : step(location_of_level(), levels_.back()); }
 
   static std::string step(const std::string& at, const Level& level) {
@@ -100,7 +100,8 @@ class ParserWatch {
   std::vector<Level> levels_;
 };
 
-/// What the parser complains of, without its own number.
+/// Removes the parser's error code, such as "[json.exception.parse_error.101] ", from its message, and cuts long
+/// messages.
 std::string complaint(const std::string& what) {
   const auto end = what.find("] ");
   return cut(end == std::string::npos ? what : what.substr(end + 2), 3 * longest_quote);

@@ -1,4 +1,4 @@
-// JSON files that people write: read with errors that name place, value and remedy.
+// Reads JSON files that people write. Error messages give the place, the value and a remedy.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,28 +7,30 @@
 
 namespace evodevo {
 
-/// One file. All complaints are ConfigErrors that begin with the file and `at`, a place in it such as "masses[3].mass".
+/// One JSON file. All functions throw ConfigError if the file is faulty. The message begins with the file's name and
+/// `at`, which is a place in the file such as "masses[3].mass".
 class JsonInput {
  public:
   using Json = nlohmann::ordered_json;
 
   explicit JsonInput(std::string file) : file_(std::move(file)) {}
 
-  /// The whole file. Refuses what is no JSON, keys that stand twice in one object, more than 16 levels, and more than 1
-  /// GiB.
+  /// Parses the whole file. Throws ConfigError if the file is not JSON, has a key twice in one object, has more than 16
+  /// levels of nesting, or is larger than 1 GiB.
   Json read() const;
 
-  /// Refuses what is no object, and any key but `keys`.
+  /// Throws ConfigError if `item` is not an object, or has a key that is not one of `keys`.
   void expect(const Json& item, const std::string& at, const std::vector<std::string>& keys) const;
-  /// Refuses an object without the key.
+  /// Returns the value of a key of `item`. Throws ConfigError if `item` has no such key.
   const Json& member(const Json& item, const std::string& at, const std::string& key) const;
-  /// A finite number that is at least `least`.
+  /// Returns `value` as a number. Throws ConfigError if it is not a finite number of at least `least`.
   double finite(const Json& value, const std::string& at, double least) const;
+  /// Returns the value of a key as finite() does.
   double number(const Json& item, const std::string& at, const std::string& key, double least) const;
-  /// A whole number from 0 that is less than `count`.
+  /// Returns the value of a key as an index. Throws ConfigError if it is not a whole number from 0 to count-1.
   std::uint32_t index(const Json& item, const std::string& at, const std::string& key, std::size_t count) const;
 
-  /// Calls `read(item, at)` for all items of a list.
+  /// Calls `read(item, at)` for each item of the list that is the value of `key`.
   template <class Read>
   void each(const Json& root, const std::string& key, const Read& read) const {
     const Json& list = member(root, "", key);

@@ -1,4 +1,4 @@
-// JSON as commands print it.
+// The JSON texts that commands print.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -6,8 +6,8 @@
 
 namespace evodevo {
 
-/// `json` on lines of its own. Control characters that JSON lets stand become escapes, and bytes that are not UTF-8 the
-/// character U+FFFD.
+/// Returns `json` as indented text. Control characters that JSON allows unescaped are escaped as well, and bytes that
+/// are not UTF-8 are replaced with the character U+FFFD.
 std::string json_text(const nlohmann::ordered_json& json);
 
 }  // namespace evodevo

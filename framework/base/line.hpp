@@ -1,4 +1,4 @@
-// Text that may be put together where nothing may be allocated, as in a handler of signals.
+// Text that can be composed where no memory may be allocated, such as in a signal handler.
 #pragma once
 
 #include <unistd.h>
@@ -11,7 +11,7 @@
 
 namespace evodevo {
 
-/// A text of limited length; what goes beyond is cut off.
+/// A text in a buffer of fixed size. Text that does not fit is cut off.
 class Line {
  public:
   Line& operator<<(std::string_view text) {
@@ -30,7 +30,7 @@ class Line {
   void write_to(int file) const { [[maybe_unused]] const ssize_t written = write(file, text_.data(), size_); }
 
  private:
-  std::array<char, 8192> text_;  // two of the system's longest paths
+  std::array<char, 8192> text_;  // enough for two paths of the greatest length that Linux allows
   std::size_t size_ = 0;
 };
 

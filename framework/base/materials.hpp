@@ -1,4 +1,4 @@
-// The materials of a body, each once.
+// Lists of materials without duplicates.
 #pragma once
 
 #include <cstdint>
@@ -9,22 +9,23 @@
 
 namespace evodevo {
 
-/// The same of materials that are equal, whatever the signs of their zeros.
+/// Hash of a material. Equal materials have equal hashes, even if one has 0 where the other has -0.
 struct MaterialHash {
   std::size_t operator()(const Material& material) const;
 };
 
 using MaterialNumbers = std::unordered_map<Material, std::uint32_t, MaterialHash>;
 
-/// The index of each material, of equal ones that of the first.
+/// Returns the index of each material; for equal materials, that of the first.
 MaterialNumbers numbered(const std::vector<Material>& materials);
 
-/// Finds materials in a list, and adds to it, without looking through all of it. Nobody else may change the list.
+/// Finds and adds materials in a list by hashing, without a linear search. While this object exists, nothing else may
+/// change the list.
 class MaterialList {
  public:
   explicit MaterialList(std::vector<Material>& materials) : materials_(materials), numbers_(numbered(materials)) {}
 
-  /// The index of a material in the list, to which it is appended if it is new.
+  /// Returns the index of a material in the list. Appends the material if the list does not have it.
   std::uint32_t index(const Material& material);
 
  private:

@@ -13,7 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether no other file can take the place of this one: a pipe, a link to nothing, what this process has opened.
+/// Whether a file must be written in place because a rename cannot replace it: a pipe, a device, a link without a
+/// target, or a path under /dev or /proc such as a file descriptor of this process.
 bool stays_in_place(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
@@ -50,7 +51,7 @@ void OutputFile::open_beside(const fs::path& file) {
   if (stream_ == nullptr)
     beside_.clear();
   else if (is_there)
-    fs::permissions(beside_, fs::status(target_).permissions(), error);  // as good as what it replaces, if it may
+    fs::permissions(beside_, fs::status(target_).permissions(), error);  // permissions of the old file, if allowed
 }
 
 void OutputFile::write(std::string_view text) {
@@ -82,7 +83,7 @@ void finish_standard_output() {
   errno = 0;
   const bool flushed = std::fflush(stdout) == 0 && std::cout.flush();
   if (flushed && std::ferror(stdout) == 0) return;
-  if (errno == 0) {  // something was lost long ago; one more byte shows why
+  if (errno == 0) {  // an earlier write failed; writing one more byte shows why
     std::clearerr(stdout);
     std::fputc('\n', stdout);
     std::fflush(stdout);

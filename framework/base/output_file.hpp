@@ -1,4 +1,4 @@
-// What is written is checked: files and the standard output.
+// Writing to files and to standard output, with every error checked.
 #pragma once
 
 #include <cstdio>
@@ -8,20 +8,21 @@
 
 namespace evodevo {
 
-/// A file that is written as a whole. Text goes to a file beside it, NAME.unfinished-PID, which finish() renames, so
-/// that nobody takes a part for the whole, and what was there before stays where writing fails. Pipes, devices, what
-/// lies under /dev or /proc, and files in folders that take no new ones are written in place. A link is followed.
-/// Every call throws std::runtime_error that names `title` and the cause where something cannot be written.
+/// A file that is written completely or not at all. The text goes to a temporary file NAME.unfinished-PID in the same
+/// folder, which finish() renames. Thus nobody can mistake a part of the text for the whole, and an earlier file of
+/// this name survives if writing fails. Pipes, devices, paths under /dev or /proc, and files in folders where no file
+/// can be created are written in place. Symbolic links are followed. If something cannot be written, every call throws
+/// a std::runtime_error that names `title` and the cause.
 class OutputFile {
  public:
-  /// `title` is what messages call the file, such as "--out page.html".
+  /// `title` is the name of the file in messages, such as "--out page.html".
   OutputFile(const std::filesystem::path& file, std::string title);
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
-  ~OutputFile();  ///< leaves no unfinished file behind
+  ~OutputFile();  ///< removes the temporary file if finish() was not called
 
   void write(std::string_view text);
-  /// Closes the file and gives it its name.
+  /// Closes the temporary file and renames it to the final name.
   void finish();
 
  private:
@@ -29,15 +30,15 @@ class OutputFile {
   [[noreturn]] void fail(int error) const;
 
   std::string title_;
-  std::filesystem::path target_, beside_;  ///< `beside_` is empty where the file is written in place
+  std::filesystem::path target_, beside_;  ///< `beside_`: temporary file; empty if written in place
   std::FILE* stream_ = nullptr;
 };
 
-/// Writes `text` as the whole of `file`. Throws like OutputFile.
+/// Writes `text` as the complete content of `file`. Throws like OutputFile.
 void write_file(const std::filesystem::path& file, std::string_view text);
 
-/// Throws std::runtime_error with the cause where something that was printed, through std::cout or stdio, has been
-/// lost. To be called at the end of a program.
+/// Flushes standard output. Throws std::runtime_error with the cause if anything printed through std::cout or stdio has
+/// been lost. To be called at the end of a program.
 void finish_standard_output();
 
 }  // namespace evodevo

@@ -8,8 +8,8 @@
 namespace evodevo {
 
 void open_standard_streams() {
-  // a new file gets the lowest number that is free, so that none below it may be; nobody can write to what is open for
-  // reading
+  // In ascending order, because open() returns the lowest free descriptor. Standard output is opened for reading only,
+  // so that writing to it fails.
   for (const auto& [stream, mode] :
        {std::pair{STDIN_FILENO, O_RDONLY}, {STDOUT_FILENO, O_RDONLY}, {STDERR_FILENO, O_WRONLY}})
     if (fcntl(stream, F_GETFD) < 0) open("/dev/null", mode);

@@ -1,11 +1,12 @@
-// The file descriptors 0, 1 and 2.
+// Standard input, output and error: the file descriptors 0, 1 and 2.
 #pragma once
 
 namespace evodevo {
 
-/// Opens /dev/null in place of each standard stream that this process was started without, so that no file or pipe gets
-/// the number of one and what is said to the user into it. Input is then at its end; writing output fails, as on a full
-/// disk; error messages are dropped. To be called before anything is opened.
+/// Opens /dev/null for each standard stream that was closed when this process started. Otherwise a file opened later
+/// would get that descriptor, and messages to the user would be written into it. Reading from such an input finds its
+/// end at once, writing to such an output fails, and error messages are dropped. To be called before the program opens
+/// any file.
 void open_standard_streams();
 
 }  // namespace evodevo

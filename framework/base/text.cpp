@@ -11,7 +11,7 @@
 namespace evodevo {
 namespace {
 
-/// What a number is called that has no digits; empty for all others.
+/// The words for NaN or an infinite number; empty for a finite number.
 std::string word_for(double value) {
   if (std::isnan(value)) return "not a number";
   if (std::isinf(value)) return value > 0 ? "infinity" : "-infinity";
@@ -27,17 +27,17 @@ std::string program_name() {
 
 namespace {
 
-/// The first character of a text that is not empty.
+/// The first character of a non-empty text.
 struct Character {
   std::size_t bytes = 1;
-  std::optional<char32_t> code;  ///< none: the byte begins no character of UTF-8
+  std::optional<char32_t> code;  ///< code point; none if the bytes are not valid UTF-8
 };
 
 Character first_character(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x80) return {1, byte(0)};
-  // for each length in bytes, from two: the mask and mark of the leading byte, and the smallest code point that needs
-  // this length
+  // one entry for each length of two or more bytes: the mask and mark of the leading byte, and the smallest code point
+  // that needs this length
   constexpr struct {
     unsigned mask, mark;
     char32_t least;
@@ -57,7 +57,7 @@ Character first_character(std::string_view text) {
   return {};
 }
 
-/// Controls, ends of lines and paragraphs, and what turns the direction of writing.
+/// Whether a character is a control character, separates lines or paragraphs, or changes the direction of writing.
 bool disturbs(char32_t code) {
   const auto within = [&](char32_t low, char32_t high) { return code >= low && code <= high; };
   return code < 0x20 || within(0x7f, 0x9f) || within(0x2028, 0x202e) || within(0x2066, 0x2069);
@@ -78,7 +78,7 @@ std::string escape(char32_t code) {
 std::string printable(std::string_view text, std::size_t most) {
   constexpr std::string_view cut = "...";
   std::string clean;
-  std::size_t room = 0;  // the length up to which `cut` still fits
+  std::size_t room = 0;  // length of the longest beginning after which `cut` still fits
   while (!text.empty()) {
     const Character next = first_character(text);
     if (!next.code)
@@ -101,7 +101,7 @@ std::string text_fault(std::string_view text, std::size_t most) {
 }
 
 std::string to_text(double value) {
-  return std::isfinite(value) ? fmt::format("{}", value + 0.0) : word_for(value);  // adding 0 makes 0 of -0
+  return std::isfinite(value) ? fmt::format("{}", value + 0.0) : word_for(value);  // -0 becomes 0
 }
 
 std::string short_number(double value) {
@@ -126,7 +126,7 @@ std::string joined(std::span<const std::string> items, std::string_view separato
 
 namespace {
 
-/// Levenshtein's distance: how many letters must be added, dropped or replaced.
+/// The Levenshtein distance: how many letters must at least be added, dropped or replaced to turn `a` into `b`.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -155,7 +155,7 @@ std::string nearest(std::string_view word, std::span<const std::string> candidat
   for (const std::string& candidate : candidates) {
     const std::size_t shorter = std::min(word.size(), candidate.size()),
                       longer = std::max(word.size(), candidate.size());
-    if (longer - shorter >= best_distance) continue;  // as many letters at least must be added or dropped
+    if (longer - shorter >= best_distance) continue;  // the distance is at least the difference in length
     const std::size_t distance = edit_distance(word, candidate);
     if (distance < best_distance) {
       best = candidate;
@@ -166,7 +166,7 @@ std::string nearest(std::string_view word, std::span<const std::string> candidat
 }
 
 std::string suggestion(std::string_view word, std::span<const std::string> candidates) {
-  constexpr std::size_t few = 3;  // are all named, so that nobody who meant "cuda" is sent to "cpu"
+  constexpr std::size_t few = 3;  // up to this number all are listed: the nearest to a misspelt "cuda" may be "cpu"
   if (candidates.empty()) return "; none is known";
   if (const std::string near = nearest(word, candidates); !near.empty() && candidates.size() > few)
     return "; did you mean \"" + near + "\"?";

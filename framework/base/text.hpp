@@ -1,4 +1,4 @@
-// Small helpers for messages.
+// Functions that format texts for messages.
 #pragma once
 
 #include <span>
@@ -10,38 +10,41 @@
 
 namespace evodevo {
 
-/// How the user calls this program, for remedies that can be pasted: "evodevo", or what the launching script says.
+/// The command that starts this program, for remedies that users can paste into a shell: the environment variable
+/// EVODEVO_COMMAND, which the launching script sets, or else "evodevo".
 std::string program_name();
 
-/// `text` for a message, a table or a log, none of whose lines or terminals it may break: control characters, and those
-/// that turn the direction of writing, become escapes such as \n and \x1b, as do bytes that are not UTF-8. What is
-/// longer than `most` bytes ends with "...". All other UTF-8 stays whole.
+/// Returns `text` in a form that cannot break lines of a message, table or log, or disturb a terminal. Control
+/// characters, characters that change the direction of writing, and bytes that are not UTF-8 become escapes such as \n
+/// and \x1b; all other UTF-8 stays as it is. A result of more than `most` bytes is cut and ends with "...".
 std::string printable(std::string_view text, std::size_t most = 300);
 
-/// Why `text` can be no name, or another text that is printed and recorded as it is: a sentence that begins with the
-/// text; empty where printable() changes nothing.
+/// Checks a name or another text that will be printed and recorded unchanged. Returns a sentence that begins with the
+/// text and says what is wrong, or an empty text if printable() would change nothing.
 std::string text_fault(std::string_view text, std::size_t most = 300);
 
-/// A decimal text that reads back as the same number, with no more digits than that takes; "not a number", "infinity"
-/// and "-infinity" for what has none.
+/// Returns a decimal text that reads back as the same number, with no more digits than needed; "not a number",
+/// "infinity" or "-infinity" if the value is not finite.
 std::string to_text(double value);
 
-/// Four digits, for those who only look: "0.1234", "1.2e+08"; what is not finite in the words of to_text().
+/// Returns a text of four significant digits, such as "0.1234" or "1.235e+08"; like to_text() if the value is not
+/// finite.
 std::string short_number(double value);
 
-/// "0 to 1", "at least 0" or "at most 1", without the unit; empty where everything is allowed.
+/// Returns "0 to 1", "at least 0" or "at most 1", without the unit; empty if every value is allowed.
 std::string to_text(const Range& range);
 
-/// "a, b, c".
+/// Joins texts, for example to "a, b, c".
 std::string joined(std::span<const std::string> items, std::string_view separator = ", ");
 
-/// Puts `value` in the place of every `mark`.
+/// Replaces every `mark` in `text` with `value`.
 void replace_all(std::string& text, std::string_view mark, std::string_view value);
 
-/// The candidate that `word` was probably meant to be; empty if none is near.
+/// Returns the candidate that is most similar to `word`; empty if none is similar.
 std::string nearest(std::string_view word, std::span<const std::string> candidates);
 
-/// `; did you mean "x"?` for the nearest candidate, or `; known: a, b, c` where none is near or there are only few.
+/// Returns `; did you mean "x"?` with the nearest candidate. If none is similar, or if there are at most three
+/// candidates, returns `; known: a, b, c`.
 std::string suggestion(std::string_view word, std::span<const std::string> candidates);
 
 }  // namespace evodevo

@@ -1,7 +1,8 @@
 # evodevo_add_plugin(NAME SOURCES file... VERSION x.y.z LICENSE id)
 #
-# A library of operators that the host loads at run time: one export, nothing left undefined, nothing shared with the
-# host but plain calls. Sources see the version and licence as EVODEVO_PLUGIN_VERSION and EVODEVO_PLUGIN_LICENSE.
+# Adds a library of operators that the host loads at run time. The library exports one symbol, has no undefined symbols,
+# and shares nothing with the host except function calls. Its sources can use the version and licence as the macros
+# EVODEVO_PLUGIN_VERSION and EVODEVO_PLUGIN_LICENSE.
 function(evodevo_add_plugin name)
   cmake_parse_arguments(arg "" "VERSION;LICENSE" "SOURCES" ${ARGN})
   if(NOT arg_SOURCES OR NOT arg_VERSION OR NOT arg_LICENSE)
@@ -12,9 +13,9 @@ function(evodevo_add_plugin name)
   target_link_libraries(${target} PRIVATE evodevo::sdk)
   target_compile_definitions(${target} PRIVATE
     EVODEVO_PLUGIN_VERSION="${arg_VERSION}" EVODEVO_PLUGIN_LICENSE="${arg_LICENSE}")
-  # a unique symbol would pin a class to whichever library was loaded first
+  # with GNU unique symbols, all libraries would use the class of whichever library was loaded first
   target_compile_options(${target} PRIVATE -ffp-contract=off $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)
-  # hidden visibility does not reach what the standard library's templates become here
+  # hidden visibility does not apply to instances of the standard library's templates; the version script hides these
   target_link_options(${target} PRIVATE -Wl,-z,defs
     -Wl,--version-script=${CMAKE_CURRENT_FUNCTION_LIST_DIR}/evodevo_plugin.map)
   set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/evodevo_plugin.map)

@@ -1,8 +1,8 @@
-# What `cmake --install` puts where: the command, its operators, and all that a plugin's author needs.
+# Installs the command and everything that the authors of plugins need. evodevo_add_plugin() installs the operators.
 include(CMakePackageConfigHelpers)
 set(package_dir lib/cmake/evodevo)
 
-# CUDA's runtime stays where it was found
+# the installed command finds CUDA's runtime at the same path as in the build
 set_target_properties(evodevo PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
 install(TARGETS evodevo evodevo_sdk evodevo_body EXPORT evodevo RUNTIME DESTINATION bin)
 install(EXPORT evodevo NAMESPACE evodevo:: FILE evodevoTargets.cmake DESTINATION ${package_dir})
@@ -12,10 +12,10 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/template DESTINATION share/evo
 install(FILES ${PROJECT_SOURCE_DIR}/framework/sdk/README.md DESTINATION share/doc/evodevo RENAME plugins.md)
 install(FILES ${PROJECT_SOURCE_DIR}/plugins/README.md DESTINATION share/doc/evodevo RENAME operators.md)
 
-# where it was built, which takes Node.js
+# the viewer, if it was built, which requires Node.js
 install(DIRECTORY ${PROJECT_BINARY_DIR}/${EVODEVO_VIEWER_DIR} DESTINATION share/evodevo OPTIONAL)
 
-# before 1.0 a minor version may change what plugins include
+# before version 1.0, a new minor version may change the headers that plugins include
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/evodevoConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES
   ${CMAKE_CURRENT_BINARY_DIR}/evodevoConfigVersion.cmake

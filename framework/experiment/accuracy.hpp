@@ -1,21 +1,22 @@
-// The dial between speed and accuracy.
+// The setting `accuracy`: a choice between fast and accurate simulation.
 #pragma once
 
 #include "experiment/settings.hpp"
 
 namespace evodevo {
 
-/// How a body's steps are made, and how long they are.
+/// How time steps are computed, and how long they are.
 struct Steps {
   Stepping stepping;
   StepRule step;
 };
 
-/// What `[simulation] accuracy` stands for where the file says nothing else. `paper` is the default. The others take
-/// each body's own step, and lie on the front that the accuracy study measured (experiments/results/accuracy): `fast`
-/// is the cheapest setting that still ranks robots; with contact shorter steps buy more than better methods, so
-/// `balanced` takes three of them for one, and by a method of second order, which for the same price is right where
-/// nothing touches; `reference` adds fourth order and double precision.
+/// Returns the values of those keys of [simulation] that the file leaves out. `paper` is the default and has the
+/// paper's time step. With the others, each body has its own time step; they lie on the Pareto front of speed and
+/// accuracy that the accuracy study measured (experiments/results/accuracy). `fast` is the cheapest setting that still
+/// ranks robots correctly. `balanced` divides each step by three, because in contact with the floor shorter steps
+/// reduce the error more than better methods do; its method is of second order, which costs no more and is accurate
+/// without contact. `reference` divides by four and uses a method of fourth order in double precision.
 inline Steps steps_of(Accuracy accuracy) {
   switch (accuracy) {
     case Accuracy::fast:

@@ -1,5 +1,5 @@
-// Options whose values have names: the names stand once, beside the enumeration, and are read, written, listed and
-// checked from there.
+// Options whose values are enumerators with names. The names are defined in one place, and are used to
+// read, write, list and check options.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace evodevo {
 
-/// The names of an enumeration's values, in the order of the enumerators: a specialisation for each.
+/// The names of an enumeration's values, in the order of the enumerators. Each enumeration has a specialisation.
 template <class Enum>
 inline constexpr std::array<std::string_view, 0> names_of{};
 
@@ -20,7 +20,7 @@ constexpr std::string_view name_of(Enum value) {
   return names_of<Enum>.at(static_cast<std::size_t>(value));
 }
 
-/// Declares an option to a visitor of parameters, which may change it.
+/// Declares an option to a visitor of parameters. The visitor may change `value`.
 template <class Enum>
 void choice(Parameters& visitor, Enum& value, std::string_view key, std::string_view text) {
   constexpr auto& names = names_of<Enum>;

@@ -1,4 +1,4 @@
-// Where an experiment is simulated.
+// The device on which an experiment is simulated.
 #pragma once
 
 #include <exception>
@@ -9,10 +9,12 @@
 
 namespace evodevo {
 
-/// The simulator for the experiment's device and threads. Throws ConfigError where CUDA is asked for and not to be had.
+/// Makes the simulator for the experiment's device and number of threads. Throws ConfigError if the experiment asks for
+/// CUDA and CUDA cannot be used.
 std::unique_ptr<Simulator> make_simulator(const Experiment& experiment);
 
-/// How an experiment avoids a failure of its device, to be appended to the failure's message; empty if it cannot.
+/// Returns how an experiment can avoid a failure of its device, to be appended to the failure's message; empty if it
+/// cannot.
 std::string remedy_for(const std::exception& failure);
 
 }  // namespace evodevo

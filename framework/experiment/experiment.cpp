@@ -24,7 +24,7 @@ EncodingContext encoding_context(const Settings& settings) {
   return context;
 }
 
-/// The libraries that the experiment may take its operators from. Says in `warnings` which cannot be used.
+/// Loads the libraries of operators that the experiment may use. Adds a warning for each library that cannot be used.
 Registry registry_of(const PluginsTable& plugins, Warnings& warnings) {
   Registry registry(plugins.search_path());
   for (const FailedLibrary& failed : registry.failed())

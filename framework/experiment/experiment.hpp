@@ -1,4 +1,4 @@
-// An experiment: settings, and the operators that its TOML file composes.
+// An experiment: its settings and the operators that its TOML file names.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@
 
 namespace evodevo {
 
-/// A variation operator and how often a child goes through it.
+/// A variation operator and the probability that a child goes through it.
 template <class T>
 struct Varied {
   std::unique_ptr<T> op;
@@ -23,7 +23,7 @@ struct Varied {
   double probability = 0.5;
 };
 
-/// A devo operator and when it is applied.
+/// A devo operator and the schedule of its applications.
 struct Scheduled {
   std::unique_ptr<Devo> op;
   Schedule schedule;
@@ -33,45 +33,45 @@ struct Experiment : Settings {
   Experiment() = default;
   Experiment(Experiment&&) = default;
   Experiment& operator=(Experiment&&) = default;
-  ~Experiment();  ///< names an operator whose end crashes
+  ~Experiment();  ///< if the destructor of an operator crashes, the crash report names the operator
 
-  EncodingContext context;  ///< the settings that encodings see
+  EncodingContext context;  ///< settings that encodings can read
   std::unique_ptr<Encoding> encoding;
-  Layout layout;  ///< of the encoding's genes
+  Layout layout;  ///< layout of the encoding's genes
   std::vector<Varied<Mutation>> mutations;
   std::vector<Varied<Crossover>> crossovers;
   std::vector<Scheduled> devo;
   std::vector<std::unique_ptr<Fitness>> fitness;
-  std::vector<Objective> objectives;  ///< of all fitness operators, in their order
+  std::vector<Objective> objectives;  ///< those of all fitness operators, in their order
   std::unique_ptr<Selection> selection;
 
   std::vector<OperatorUse> uses;
-  std::vector<std::filesystem::path> plugin_folders;  ///< where operators were looked for, but for the program's own
-  std::vector<std::string> warnings;                  ///< what does not keep it from running, but may not be meant
-  std::string device_location;                        ///< where simulation.device is written, for messages
-  std::string resolved;  ///< TOML that reads back as this very experiment, with every default written out
+  std::vector<std::filesystem::path> plugin_folders;  ///< search path of operators without the program's own folder
+  std::vector<std::string> warnings;                  ///< warnings for the user
+  std::string device_location;                        ///< place of [simulation] in the file, for messages
+  std::string resolved;  ///< TOML that reads back as the same experiment, with every default written out
 
-  /// A call of the operator that is the index-th of its kind.
+  /// Describes a call of the operator with this index (from 0) among those of its kind.
   OperatorCall call_of(std::string_view kind, std::size_t index, CallSubject subject = {}) const;
 };
 
-/// What a devo operator asks for, the index-th.
+/// What the devo operator with this index (from 0) asks to be recorded.
 SpringRequest devo_request(const Experiment& experiment, std::size_t index);
-/// What a fitness operator asks for, the index-th.
+/// What the fitness operator with this index (from 0) asks to observe.
 Request fitness_request(const Experiment& experiment, std::size_t index);
-/// What has to be recorded in a cycle of development for the operators that are applied after it.
+/// What must be recorded in a cycle of development for the devo operators that are applied after this cycle.
 Recording recording(const Experiment& experiment, std::int64_t cycle);
 
-/// Where an experiment comes from.
+/// Where an experiment is read from, and how.
 struct ExperimentSource {
-  std::string file;                                     ///< for messages, and for what paths in it are relative to
+  std::string file;                                     ///< name in messages; its folder is that of relative paths
   std::vector<Override> overrides;                      ///< applied in order
-  std::vector<std::filesystem::path> plugin_path = {};  ///< where operators are looked for beside those that it names
-  /// Whether it is the record of a run, which may come from elsewhere: of the folders that it names those that have
-  /// gone, and those that the user has not named, are left out and warned of.
+  std::vector<std::filesystem::path> plugin_path = {};  ///< searched for operators after the paths that the file names
+  /// Whether the text is the record of a run, which somebody else may have made. Folders of operators that it names are
+  /// then left out, with a warning, if they no longer exist or if the user has never named them (plugin_folders.hpp).
   bool is_record = false;
-  /// Whether the bodies are grown by its own encoding, so that its dt must suit its own masses and materials; a body
-  /// from elsewhere is judged by itself.
+  /// Whether the experiment's own encoding makes the bodies. If so, a dt that is too long for the experiment's masses
+  /// and materials is an error. Otherwise the dt is only checked for the body that is given.
   bool grows_bodies = true;
 };
 
@@ -81,7 +81,7 @@ struct ExperimentSource {
 ///
 /// Throws ConfigError with the location, the value and the remedy.
 Experiment read_experiment(const ExperimentSource& source);
-/// The same from text, such as the resolved text of a run's record.
+/// The same from a text, such as Experiment::resolved in the record of a run.
 Experiment read_experiment(std::string_view text, const ExperimentSource& source);
 
 }  // namespace evodevo

@@ -19,14 +19,14 @@ toml::node* child(toml::node& parent, const std::string& key) {
   return array != nullptr && is_index ? array->get(index) : nullptr;
 }
 
-/// Whether a key is not there yet, but may be: any key of a table, the number behind the last item of a list.
+/// Whether a key is absent but can be added: any absent key of a table, or the index after the last item of a list.
 bool is_next(const toml::node& parent, const std::string& key) {
   if (const toml::table* table = parent.as_table()) return !table->contains(key);
   const toml::array* array = parent.as_array();
   return array != nullptr && key == std::to_string(array->size());
 }
 
-/// Nobody who writes so means a text.
+/// Whether a value consists of digits, with or without a sign. Such a value is never meant as a string.
 bool is_whole_number(std::string_view value) {
   if (value.starts_with('+') || value.starts_with('-')) value.remove_prefix(1);
   return !value.empty() && std::all_of(value.begin(), value.end(), [](char c) { return c >= '0' && c <= '9'; });
@@ -43,7 +43,7 @@ toml::table parse_override_value(const Override& change) {
   expect_within_toml_limits(line, change.origin);
   try {
     toml::table parsed = parse_toml(line, change.origin);
-    if (parsed.size() == 1) return parsed;  // more than one: it goes on in a second line
+    if (parsed.size() == 1) return parsed;  // otherwise the value has further lines that set more keys
   } catch (const ConfigError&) {
     if (is_whole_number(change.value))
       refuse(change, printable(change.value) + " does not fit a whole number of 64 bits; give one with fewer digits");
@@ -68,7 +68,7 @@ std::vector<std::string> split_key(const Override& change) {
   return parts;
 }
 
-/// Sets a key of a table, or an item of a list; the item behind the last one is added.
+/// Sets a key of a table or an item of a list. An index equal to the length of the list appends an item.
 template <class Value>
 void set(toml::node& parent, const std::string& key, Value&& value, const Override& change) {
   if (toml::table* table = parent.as_table()) {
@@ -84,8 +84,8 @@ void set(toml::node& parent, const std::string& key, Value&& value, const Overri
   }
 }
 
-/// A table that a change needs on its way. One in a table is as if the file had it empty, so that complaints of what it
-/// lacks name the file; an item of a list is the option's.
+/// Returns an empty table to contain the key that a change sets. For a table in a table, messages about missing keys
+/// name the file, as if the file had this empty table; for an item of a list, they name the option.
 toml::table table_on_the_way(const toml::node& parent, const Override& change) {
   const toml::source_path_ptr& file = parent.source().path;
   return parse_toml("", parent.is_table() && file ? *file : change.origin);

@@ -1,4 +1,4 @@
-// Keys of an experiment that are set from outside its file.
+// Keys of an experiment that command-line options set in place of its file.
 #pragma once
 
 #include <toml++/toml.h>
@@ -7,15 +7,15 @@
 
 namespace evodevo {
 
-/// One key of an experiment, set from outside.
+/// One key of an experiment and its new value.
 struct Override {
-  std::string key;     ///< "table.key"; items of lists by their number from 0, as in "fitness.0.window"
-  std::string value;   ///< as TOML; what is not TOML is taken as a text
-  std::string origin;  ///< stands for file, line and column in messages, such as "--seed 7"
+  std::string key;     ///< "table.key"; an item of a list is given by its index from 0, as in "fitness.0.window"
+  std::string value;   ///< TOML; anything that is not valid TOML is taken as a string
+  std::string origin;  ///< place to show in messages instead of file, line and column, such as "--seed 7"
 };
 
-/// Sets one key. Creates missing tables on the way, and the item after the last one of a list; any other item of a list
-/// must exist. Throws ConfigError, for what goes beyond the limits of toml_limits.hpp too.
+/// Sets one key. Creates missing tables that contain it. An index equal to the length of a list appends an item; any
+/// other item must exist. Throws ConfigError, also if key or value exceed the limits of toml_limits.hpp.
 void apply_override(const Override& change, toml::table& root);
 
 }  // namespace evodevo

@@ -9,7 +9,7 @@
 namespace evodevo {
 namespace {
 
-/// A table that `declare` declares.
+/// Returns the table of the keys that `declare` declares.
 template <class Declare>
 toml::table written(const Declare& declare) {
   TomlWriter writer;

@@ -1,4 +1,4 @@
-// The settings of an experiment: what its file says in numbers and names, without the operators that it composes.
+// The settings of an experiment: all numbers and options of its file except those of operators.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace evodevo {
 
-/// The cycles, from 1, after which a devo operator is applied: from, from + every, ... and none after `to`.
+/// The cycles after which a devo operator is applied, counted from 1: from, from + every, and so on up to `to`.
 struct Schedule {
   std::int64_t from = 1, to = rng_stream::most_cycles, every = 1;
 
@@ -27,60 +27,63 @@ struct Schedule {
   }
 };
 
-/// What an experiment on development is compared with: all else stays the same, the simulated time included.
+/// The controls: each replaces development by the operators with something that it is compared with. Everything else
+/// stays the same, including the simulated time of a life.
 enum class Control { off, no_change, random_places, shuffled_stress };
 template <>
 inline constexpr std::array<std::string_view, 4> names_of<Control>{"off", "no-change", "random-places",
                                                                    "shuffled-stress"};
 
-/// How stress is measured: as every spring's exact mean force, or by the paper's tallies (skip_shift.hpp).
+/// How stress, the mean absolute force of a spring over a cycle, is measured: exactly, or by the paper's tallies
+/// (skip_shift.hpp).
 enum class Probe { exact, skip_shift };
 template <>
 inline constexpr std::array<std::string_view, 2> names_of<Probe>{"exact", "skip-shift"};
 
-/// Where to simulate; automatic: on a GPU where there is one.
+/// The device that simulates; automatic: a GPU if one can be used, else the CPU.
 enum class Device { automatic, cpu, cuda };
 template <>
 inline constexpr std::array<std::string_view, 3> names_of<Device>{"auto", "cpu", "cuda"};
 
-/// What the other settings of the simulation are where the file leaves them out; see accuracy.hpp.
+/// Names of sets of defaults for the other settings of the simulation; see accuracy.hpp.
 enum class Accuracy { paper, fast, balanced, reference };
 template <>
 inline constexpr std::array<std::string_view, 4> names_of<Accuracy>{"paper", "fast", "balanced", "reference"};
 
-/// A life's development: `cycles` times {simulate `cycle_time`, apply the operators} (paper, section IV-D).
+/// The development of a life. In each of `cycles` cycles, the body is simulated for `cycle_time`, then the devo
+/// operators are applied (paper, section IV-D).
 struct DevelopmentSettings {
   std::int64_t cycles = 0;
-  double cycle_time = 1;  ///< s
-  bool reset = false;     ///< back to the rest positions after every cycle
+  double cycle_time = 1;  ///< simulated time of one cycle, s
+  bool reset = false;     ///< whether bodies return to their rest positions after every cycle
   Control control = Control::off;
   Probe probe = Probe::exact;
-  std::int64_t skip = 100;  ///< steps from one tally to the next; paper, section IV-D1
+  std::int64_t skip = 100;  ///< time steps from one tally to the next; paper, section IV-D1
 
   bool operator==(const DevelopmentSettings&) const = default;
 };
 
-/// A payload that every body carries from birth on. What masses that go carried comes on others.
+/// A payload that every body carries from birth on. If masses are removed, other masses take over their payload.
 struct Payload {
-  double share = 0.5;  ///< relative to the body's mass at birth
-  double top = 0.1;    ///< the upper part of the body's height that carries it
+  double share = 0.5;  ///< mass of the payload relative to the body's mass at birth, 1
+  double top = 0.1;    ///< upper fraction of the body's height; the masses in it carry the payload, 1
 
   bool operator==(const Payload&) const = default;
 };
 
-/// The five base materials (paper, Table I; the second muscle in counter-phase, as in its source).
+/// The five base materials (paper, Table I). The second muscle has the opposite phase, as in the paper's source code.
 std::map<std::string, Material> base_materials();
 
 struct Settings {
-  std::string name;  ///< of the file, without folder and ending
+  std::string name;  ///< file name without folder and extension
   std::int64_t seed = 1;
-  std::int64_t evaluations = 1000;  ///< in the whole run
-  double spring_evaluations = 0;    ///< after which the run ends early; 0: it does not
+  std::int64_t evaluations = 1000;  ///< number of evaluations in the whole run
+  double spring_evaluations = 0;    ///< number after which the run ends early; 0: no limit
   std::int64_t population = 50;
-  std::int64_t random_individuals = 1;  ///< that enter each generation
-  std::int64_t verify = 1;              ///< best individuals to verify when the run ends
+  std::int64_t random_individuals = 1;  ///< number that enters each generation
+  std::int64_t verify = 1;              ///< number of best individuals to verify when the run ends
 
-  double mass = 0.2;  ///< of one point mass, kg
+  double mass = 0.2;  ///< mass of one point mass, kg
   std::map<std::string, Material> materials = base_materials();
   Scene scene;
   std::optional<Payload> payload;
@@ -89,18 +92,18 @@ struct Settings {
   Stepping stepping;
   StepRule step;
   Device device = Device::automatic;
-  std::int64_t threads = 0;  ///< 0: all cores
+  std::int64_t threads = 0;  ///< number of threads on the CPU; 0: one for each core
 
   DevelopmentSettings development;
 
   bool operator==(const Settings&) const = default;
 };
 
-/// As TOML, with every default written out.
+/// Writes the settings as TOML, with every default.
 std::ostream& operator<<(std::ostream& stream, const Settings& settings);
 
-/// The settings in the text of an experiment, which is not from a user but from the record of a run; no operator is
-/// looked for. `origin` stands for the file in messages. Throws ConfigError.
+/// Reads the settings from the text of an experiment in the record of a run. Ignores the operators. `origin` is the
+/// name of the text in messages. Throws ConfigError.
 Settings read_settings(std::string_view text, const std::string& origin);
 
 }  // namespace evodevo

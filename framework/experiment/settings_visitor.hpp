@@ -1,4 +1,5 @@
-// A visitor of settings and parameters: a reader that fills them from TOML, or a writer that makes TOML of them.
+// The interface of visitors of settings and parameters, such as the reader that fills them from TOML and the writer
+// that writes them as TOML.
 #pragma once
 
 #include <optional>
@@ -10,7 +11,7 @@ namespace evodevo {
 
 class SettingsVisitor : public Parameters {
  public:
-  /// A number, or the word "auto", which stands for none.
+  /// A number, or the word "auto", for which `value` is empty.
   virtual void real_or_auto(std::optional<double>& value, std::string_view name, Range range,
                             std::string_view text) = 0;
 

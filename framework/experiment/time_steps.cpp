@@ -8,7 +8,7 @@
 namespace evodevo {
 namespace {
 
-constexpr double shortest_dt = 1e-7;  ///< s; below it no life ends
+constexpr double shortest_dt = 1e-7;  ///< s; with shorter time steps, the simulation of a life would take too long
 
 LongestStep failed(const std::string& why) { return {0, "unstable dt: " + why}; }
 

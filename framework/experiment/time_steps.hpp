@@ -1,4 +1,4 @@
-// How long a body's time steps are.
+// The length and number of the time steps of a body.
 #pragma once
 
 #include <optional>
@@ -10,37 +10,38 @@
 
 namespace evodevo {
 
-/// What an experiment says of the time step.
+/// The settings of an experiment for the time step.
 struct StepRule {
-  std::optional<double> dt = 0.0005;  ///< s; none: as long as each body bears (safe_dt())
-  std::int64_t refine = 1;            ///< what every step is divided by
-  bool run_unstable = false;          ///< whether a body that cannot bear `dt` runs all the same
+  std::optional<double> dt = 0.0005;  ///< time step, s; none: safe_dt() of each body
+  std::int64_t refine = 1;            ///< number by which every time step is divided
+  bool run_unstable = false;          ///< whether to simulate bodies for which `dt` is too long
 
-  /// The dt of all bodies, s; none where each has its own.
+  /// The time step of all bodies after the division by `refine`, s; none if each body has its own.
   std::optional<double> fixed() const;
 
   bool operator==(const StepRule&) const = default;
 };
 
-/// Some steps, one after the other.
+/// A number of time steps of equal length.
 struct Pace {
-  double dt = 0;  ///< s
+  double dt = 0;  ///< time step, s
   std::uint64_t steps = 0;
 };
 
-/// The longest step (s, before it is refined) of a body whose masses are at `positions`, or why it cannot be simulated.
+/// The time step of a body, or the reason why the body cannot be simulated.
 struct LongestStep {
-  double dt = 0;
-  std::string failure;  ///< "unstable dt: ..."; empty where there is none
+  double dt = 0;        ///< s, before the division by StepRule::refine
+  std::string failure;  ///< "unstable dt: ..."; empty if the body can be simulated
 };
+/// Returns the time step for a body whose masses are at `positions` (m): `rule.dt` if it is fixed, otherwise safe_dt().
 LongestStep longest_step(const StepRule& rule, const Body& body, std::span<const Vec3> positions, const Scene& scene,
                          Method method);
 
-/// The steps that a duration (s) takes: with a fixed dt the nearest whole number, else the fewest equal ones that are
-/// no longer than `longest`; either refined.
+/// Returns the time steps for a duration (s). With a fixed dt, their number is the nearest whole number; otherwise it
+/// is the least for which equal steps are no longer than `longest` (s). In both cases `rule.refine` divides the steps.
 Pace pace_over(double duration, const StepRule& rule, double longest);
 
-/// Whether a duration can be told from a whole number of steps.
+/// Whether a duration (s) is a whole number of steps of `dt` (s), apart from rounding.
 bool is_whole_number_of_steps(double duration, double dt);
 
 }  // namespace evodevo

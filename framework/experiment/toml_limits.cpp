@@ -8,7 +8,7 @@
 namespace evodevo {
 namespace {
 
-/// Counts levels outside of comments and strings, up to where TOML's syntax is first broken: a parser stops there.
+/// Counts levels outside comments and strings. The count is right up to the first syntax error, where a parser stops.
 class LevelCounter {
  public:
   LevelCounter(std::string_view text, const std::string& origin) : text_(text), origin_(origin) {}
@@ -41,8 +41,8 @@ class LevelCounter {
 
   void skip_comment() { at_ = std::min(text_.find('\n', at_), text_.size()); }
 
-  /// A string of one quote ends with its line at the latest; one of three quotes may go on. A backslash hides a quote
-  /// where quotes are double.
+  /// Skips a string. If it begins with one quote, it ends with its line at the latest; if it begins with three quotes,
+  /// it may have several lines. In a string with double quotes, a backslash escapes a quote.
   void skip_string(char quote) {
     const std::string three(3, quote);
     const bool many_lines = text_.substr(at_).starts_with(three);
@@ -52,7 +52,7 @@ class LevelCounter {
       if (!many_lines && rest[0] == '\n') return;
       if (many_lines ? rest.starts_with(three) : rest[0] == quote) {
         at_ += many_lines ? 3 : 1;
-        // up to two quotes may stand right before the three that end it
+        // the text may end with up to two quotes before the three that end the string
         while (many_lines && at_ < text_.size() && text_[at_] == quote) ++at_;
         return;
       }

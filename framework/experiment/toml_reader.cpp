@@ -12,9 +12,9 @@
 namespace evodevo {
 namespace {
 
-constexpr std::size_t most_texts = 1000;  ///< of one list
+constexpr std::size_t most_texts = 1000;  ///< largest number of strings in one list
 
-/// Keys that had another name, and the one that they have now.
+/// Former names of keys, each with its present name.
 const std::map<std::string, std::string> renamed_keys{{"experiment.newcomers", "experiment.random_individuals"},
                                                       {"scene.load", "scene.payload"}};
 
@@ -49,13 +49,13 @@ std::string value_text(const toml::node& node) {
   std::ostringstream text;
   node.visit([&](const auto& n) { text << toml::toml_formatter(n, toml::format_flags::none); });
   std::string one_line = text.str();
-  std::replace(one_line.begin(), one_line.end(), '\n', ' ');  // between the items of a long list
+  std::replace(one_line.begin(), one_line.end(), '\n', ' ');  // line ends between items of a long list
   return one_line;
 }
 
 namespace {
 
-/// A message such as "expected a number, 0 to 1 s", without the parts that are empty or carry no information.
+/// Returns a message such as "expected a number, 0 to 1 s", without parts that are empty and without the unit "1".
 std::string expected(const std::string& what, const Range& range) {
   const std::string ends = to_text(range), separator = what.empty() || ends.empty() ? "" : ", ";
   const std::string unit = range.unit == "1" || ends.empty() ? "" : " " + std::string(range.unit);

@@ -1,4 +1,4 @@
-// Reads declared parameters from TOML, with errors that name place, value and remedy.
+// Reads declared parameters from TOML. Error messages give the place, the value and a remedy.
 #pragma once
 
 #include <toml++/toml.h>
@@ -14,24 +14,24 @@
 
 namespace evodevo {
 
-/// Parses TOML text. `origin` stands for the file in messages. Throws ConfigError with file:line:column, also where it
-/// goes beyond the limits of toml_limits.hpp.
+/// Parses TOML text. `origin` is the name of the file in messages. Throws ConfigError with file:line:column if the text
+/// is not valid TOML or exceeds the limits of toml_limits.hpp.
 toml::table parse_toml(std::string_view text, const std::string& origin);
 
-/// Reads and parses a file. Throws ConfigError where it cannot be read.
+/// Reads and parses a file. Throws ConfigError like parse_toml(), and if the file cannot be read.
 toml::table parse_toml_file(const std::string& file);
 
-/// "file:line:column" of a node or key; of what an option has set, the option.
+/// Returns "file:line:column" of a node or key. If a command-line option has set it, returns the option.
 std::string location_of(const toml::source_region& source);
 
-/// A node's value as a message shows it: `"text"`, `3`, `[1, 2]`, `a table`.
+/// Returns a node's value as messages show it: `"text"`, `3`, `[1, 2]`, `a table`.
 std::string value_text(const toml::node& node);
 
-/// The visitor that fills variables from a table. Keys that are absent leave the default.
+/// A visitor that reads variables from a TOML table. If a key is absent, its variable keeps the default.
 class TomlReader final : public SettingsVisitor {
  public:
-  /// `path` is the table's name in messages, such as "scene.floor"; empty for the top level. `materials` are the
-  /// material names that may be referred to; nullptr where none may.
+  /// `path` is the table's name in messages, such as "scene.floor"; empty for the top level. `materials` are the names
+  /// of materials that the table may refer to; nullptr if it may refer to none.
   TomlReader(const toml::table& table, std::string path, const std::vector<std::string>* materials = nullptr)
       : table_(table), path_(std::move(path)), materials_(materials) {}
 
@@ -46,31 +46,33 @@ class TomlReader final : public SettingsVisitor {
   void require(bool holds, std::string_view name, std::string_view text) override;
   void real_or_auto(std::optional<double>& value, std::string_view name, Range range, std::string_view text) override;
 
-  /// A text; where `fallback` is null the key must be there.
+  /// Returns the string of a key, or `fallback` if the key is absent. Throws ConfigError if the key is absent and
+  /// `fallback` is null.
   std::string text(std::string_view name, const char* fallback = nullptr);
   std::vector<std::string> texts(std::string_view name);
   std::vector<std::string> keys() const;
-  /// An empty table that is where this one is, for messages.
+  /// Returns an empty table that messages locate in the same file as this one.
   toml::table empty_table() const;
-  /// The sub-table `name`, or nullptr.
+  /// Returns the sub-table `name`; nullptr if it is absent.
   const toml::table* table(std::string_view name);
-  /// The tables of the array `name`; none where it is absent.
+  /// Returns the tables of the array `name`; empty if it is absent.
   std::vector<const toml::table*> tables(std::string_view name);
 
-  /// Refuses every other key before any of these is read, so that a misspelt key is not reported as a missing one.
+  /// Throws ConfigError if the table has a key that is not one of `names`. To be called before the keys are read, so
+  /// that a misspelt key is not reported as a missing one.
   void expect(std::initializer_list<std::string_view> names);
 
-  /// Throws std::logic_error if a key other than these has been read so far.
+  /// Throws std::logic_error if a key that is not one of `names` has been read so far.
   void require_read_among(std::span<const std::string_view> names) const;
 
-  /// Throws ConfigError if the table holds a key that nothing asked for.
+  /// Throws ConfigError if the table has a key that has not been read.
   void finish() const;
 
-  /// Where key `name` is, or the table where the key is absent.
+  /// Returns the place of key `name`, or the place of the table if the key is absent.
   std::string location(std::string_view name) const;
-  /// Throws ConfigError that points at key `name`, or at the table where the key is absent.
+  /// Throws ConfigError with the place of key `name`, or the place of the table if the key is absent.
   [[noreturn]] void fail(std::string_view name, const std::string& message) const;
-  /// "scene.floor.stiffness".
+  /// Returns the name of a key with its path, such as "scene.floor.stiffness".
   std::string full_name(std::string_view name) const;
 
  private:
@@ -78,7 +80,7 @@ class TomlReader final : public SettingsVisitor {
   void know(std::string_view name);
   void refuse_unknown_keys() const;
   double number(const toml::node& node, std::string_view name, Range range) const;
-  /// Of 3 and of 3.0.
+  /// Returns the value of an integer such as 3, or of a float without a fraction such as 3.0.
   std::int64_t whole_number(const toml::node& node, std::string_view name, Range range) const;
   const toml::array& three(const toml::node& node, std::string_view name) const;
   [[noreturn]] void fail_at(const toml::node& node, std::string_view name, const std::string& message) const;

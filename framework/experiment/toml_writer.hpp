@@ -1,4 +1,4 @@
-// Writes settings and parameters as TOML, every default included.
+// Writes settings and parameters as TOML, including every default.
 #pragma once
 
 #include <toml++/toml.h>
@@ -7,7 +7,8 @@
 
 namespace evodevo {
 
-/// The counterpart of TomlReader: the same declarations, handed to it, make the table that reads back as the same.
+/// The counterpart of TomlReader: given the same declarations, it makes a table from which TomlReader reads the same
+/// values.
 class TomlWriter final : public SettingsVisitor {
  public:
   void real(double& value, std::string_view name, Range range, std::string_view text) override;
@@ -21,7 +22,7 @@ class TomlWriter final : public SettingsVisitor {
   void require(bool holds, std::string_view name, std::string_view text) override;
   void real_or_auto(std::optional<double>& value, std::string_view name, Range range, std::string_view text) override;
 
-  /// Adds a text, a list or a table that is no parameter.
+  /// Adds a string, a list or a table that is not a declared parameter.
   template <class Value>
   void add(std::string_view name, Value&& value) {
     table_.insert_or_assign(name, std::forward<Value>(value));

@@ -12,8 +12,9 @@
 namespace evodevo {
 namespace {
 
-/// Why a body in the middle of its life is not let go: what the floor holds in it is more than the body can have
-/// brought there, all the energy that it has and a fall by its own size. Empty where it may go on.
+/// Returns why a body in the middle of its life must not be simulated; empty if it may be. It must not be if the floor
+/// would throw it out of the ground: the elastic energy of the floor below its masses is larger than the energy that
+/// the body can have put there, which is its total energy plus the energy of a fall by its own size.
 std::string throw_by_ground(const LivingBody& living, const Scene& scene) {
   if (!scene.floor) return {};
   const std::vector<Vec3>& positions = living.state.position;
@@ -80,7 +81,7 @@ Life Birth::of(Body body) const {
 }
 
 Life Birth::amid_life(Body body, State state) const {
-  // another scene than before may have brought energy
+  // if the scene is not the one of the body's earlier life, its forces may have added energy
   state.start_energy = std::max(state.start_energy, total_energy(body, state, experiment_.scene));
   Life life;
   life.living.body = std::move(body);
@@ -93,7 +94,7 @@ Life Birth::amid_life(Body body, State state) const {
 }
 
 void perturb(Life& life, const Experiment& experiment, std::uint32_t start) {
-  constexpr double part = 1e-4;  // of the longest side
+  constexpr double part = 1e-4;  // largest offset relative to the longest side
   State& state = life.living.state;
   const double most = part * bounding_box(state.position).longest_side();
   Rng rng(philox, {static_cast<std::uint64_t>(experiment.seed), life.newborn.generation, life.newborn.id,

@@ -1,4 +1,4 @@
-// From genomes and files to bodies that live: the one way in which a life begins.
+// Birth: makes lives from genomes and from bodies of files. Every life begins here.
 #pragma once
 
 #include <span>
@@ -10,27 +10,29 @@
 
 namespace evodevo {
 
-/// What the experiment's encoding makes of a genome. Blames the encoding for what cannot be a blueprint.
+/// Returns the blueprint that the experiment's encoding makes from a genome. Throws a std::runtime_error that
+/// names the encoding if the encoding throws or the blueprint is malformed (check_blueprint()).
 Blueprint decoded(const Experiment& experiment, const Genome& genome, CallSubject subject = {});
 
-/// Genomes or bodies go in; lives that are about to move come out: each body built, with the scene's payload, on the
-/// scene's ground, with the step that it bears. A body that cannot live comes out as invalid. Experiment and simulation
-/// must outlive it.
+/// Makes lives from genomes or bodies. It builds each body, adds the scene's payload,
+/// puts the body on the ground and chooses its time step. The life of a body that cannot be built or simulated ends as
+/// invalid. Experiment and simulation must outlive this object.
 class Birth {
  public:
   Birth(const Experiment& experiment, const LifeSimulation& simulation)
       : experiment_(experiment), simulation_(simulation) {}
 
-  /// Only decodes: the bodies before the scene has them.
+  /// Only decodes genomes and builds bodies, without payload, state and time step.
   std::vector<BuiltBody> build(std::span<const Newborn> newborns) const;
-  /// The lives of newborns, in their order.
+  /// Returns the lives of newborns, in the same order.
   std::vector<Life> of(std::span<const Newborn> newborns) const;
-  /// The life of a body from elsewhere.
+  /// Returns the life of a body that no genome of the experiment describes, such as one from a file.
   Life of(Body body) const;
-  /// A body in the middle of its life, as it is. It is invalid where the ground would throw it out.
+  /// Returns the life of a body in the middle of its life, in the given state. The life ends as invalid if the floor
+  /// would throw the body out of the ground.
   Life amid_life(Body body, State state) const;
 
-  double seconds() const { return clock_.seconds(); }  ///< in which genomes were decoded
+  double seconds() const { return clock_.seconds(); }  ///< wall-clock time spent on making bodies from genomes, s
 
  private:
   const Experiment& experiment_;
@@ -38,8 +40,8 @@ class Birth {
   mutable BusyClock clock_;
 };
 
-/// Moves each mass along each axis at random by up to 1e-4 of the body's longest side, so that starts differ by noise.
-/// `start` (below 240) selects the stream of random numbers.
+/// Perturbs a body: moves each mass along each axis at random by up to 1e-4 of the body's longest side. `start` (below
+/// 240) selects the RNG stream.
 void perturb(Life& life, const Experiment& experiment, std::uint32_t start);
 
 }  // namespace evodevo

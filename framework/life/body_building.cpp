@@ -34,7 +34,7 @@ void set_size(Spring& spring, const Size& a, const Size& b) {
   spring.growth = static_cast<float>(end / start);
 }
 
-/// The pairs of masses that springs join, each with the lower index first, ascending.
+/// Returns the pairs of masses that springs join, in ascending order. The lower index of each pair comes first.
 std::vector<IndexPair> joined_pairs(const std::vector<Spring>& springs) {
   std::vector<IndexPair> pairs;
   pairs.reserve(springs.size());
@@ -52,7 +52,7 @@ void join(Blueprint& blueprint, std::span<const IndexPair> pairs) {
   for (const auto& [a, b] : pairs) {
     if (std::binary_search(joined_already.begin(), joined_already.end(), IndexPair(std::minmax(a, b)))) continue;
     const Mass &mass_a = body.masses[a], &mass_b = body.masses[b];
-    // by value: the list of materials may grow
+    // copies, because the list of materials may grow below
     const Material of_a = body.materials.at(static_cast<std::size_t>(mass_a.material));
     const Material of_b = body.materials.at(static_cast<std::size_t>(mass_b.material));
     body.springs.push_back({a, b, norm(mass_a.rest - mass_b.rest), materials.index(mean(of_a, of_b))});
@@ -60,8 +60,8 @@ void join(Blueprint& blueprint, std::span<const IndexPair> pairs) {
   }
 }
 
-/// For every mass, the lowest index among the masses that springs connect it to, directly or indirectly, including its
-/// own index.
+/// Returns the leader of each mass's piece. A piece is a set of masses that springs connect directly or indirectly; its
+/// leader is the mass of lowest index.
 std::vector<std::uint32_t> pieces(const Body& body) {
   std::vector<std::uint32_t> leader(body.masses.size());
   std::iota(leader.begin(), leader.end(), 0u);
@@ -77,14 +77,14 @@ std::vector<std::uint32_t> pieces(const Body& body) {
   return leader;
 }
 
-/// The leader of the piece with most masses; of equal ones that of the lowest index.
+/// Returns the leader of the piece with the most masses; the lowest leader if several pieces have as many.
 std::uint32_t largest_piece(const std::vector<std::uint32_t>& leader) {
   std::vector<std::uint32_t> size(leader.size(), 0);
   for (const std::uint32_t i : leader) ++size[i];
   return static_cast<std::uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
 }
 
-/// Returns the masses kept.
+/// Removes all pieces except the largest. Returns the indices of the masses that stay.
 std::vector<std::uint32_t> keep_largest_piece(Body& body) {
   const std::vector<std::uint32_t> leader = pieces(body);
   const std::uint32_t largest = largest_piece(leader);
@@ -118,7 +118,7 @@ bool is_sound(const Size& size) {
   return size.start > 0 && size.end > 0 && std::isfinite(size.start) && std::isfinite(size.end);
 }
 
-/// Why a blueprint cannot become a body; empty where it may.
+/// Returns why a blueprint cannot become a body; empty if nothing prevents it so far.
 std::string blueprint_failure(const Blueprint& blueprint) {
   const std::vector<Mass>& masses = blueprint.body.masses;
   if (!blueprint.failure.empty()) return "no body: " + printable(blueprint.failure);
@@ -132,12 +132,12 @@ std::string blueprint_failure(const Blueprint& blueprint) {
   return "";
 }
 
-/// Where the masses' neighbours are searched for.
+/// The positions of the masses for the search of neighbours, m.
 std::vector<Vec3> pairing_positions(const Blueprint& blueprint) {
   return blueprint.paired_at.empty() ? rest_positions(blueprint.body) : blueprint.paired_at;
 }
 
-/// What is left to do once neighbours are joined.
+/// Completes a body whose neighbours are joined.
 BuiltBody finish(Body body) {
   leave_out_air(body);
   if (body.springs.empty()) return {{}, "no springs", {}};
@@ -148,11 +148,11 @@ BuiltBody finish(Body body) {
   return {std::move(body), "", std::move(kept)};
 }
 
-/// The first spring that joins a pair of masses that one before it joins. By the springs of each mass and a mark for
-/// each other end, since to sort them all takes several times as long.
+/// Returns the first spring whose pair of masses an earlier spring joins already. Groups the springs by their lower
+/// mass and marks their upper masses; sorting all springs would take several times as long.
 std::optional<std::size_t> doubled_spring(const Body& body) {
   constexpr auto nobody = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::size_t> first(body.masses.size() + 1, 0);  // of the springs whose lower end is a mass, in `by_mass`
+  std::vector<std::size_t> first(body.masses.size() + 1, 0);  // start in `by_mass` of the springs of a lower mass
   const auto lower = [](const Spring& spring) { return std::min(spring.a, spring.b); };
   for (const Spring& spring : body.springs) ++first[lower(spring) + 1];
   std::partial_sum(first.begin(), first.end(), first.begin());
@@ -177,7 +177,7 @@ std::vector<Vec3> rest_positions(const Body& body) {
 }
 
 bool has_extent(std::span<const Vec3> positions) {
-  constexpr double rounding = 1e-6;  // m; in what is smaller no body length can be measured
+  constexpr double rounding = 1e-6;  // m; the length of a smaller body cannot serve as a unit of distance
   return !(bounding_box(positions).longest_side() < rounding);
 }
 

@@ -1,4 +1,4 @@
-// From an encoding's blueprint to a body that can be simulated.
+// Builds bodies that can be simulated from the blueprints of encodings.
 #pragma once
 
 #include <span>
@@ -11,34 +11,36 @@
 
 namespace evodevo {
 
-/// A finished body, or why there is none.
+/// A finished body, or the reason why there is none.
 struct BuiltBody {
   Body body;
-  std::string failure;              ///< empty where there is a body
-  std::vector<std::uint32_t> kept;  ///< which of the blueprint's masses the body's are, ascending
+  std::string failure;              ///< empty if there is a body
+  std::vector<std::uint32_t> kept;  ///< indices in the blueprint of the body's masses, ascending
 };
 
-/// Throws std::invalid_argument, naming the fault, where the blueprint's indices or numbers make no body at all. Places
-/// and sizes that are not finite are no such fault: networks may give them, and the body is then an invalid one.
+/// Throws a std::invalid_argument that names the fault if a blueprint is malformed: for example, if an index is out of
+/// range or a mass is 0 kg. Positions and sizes that are not finite are accepted here, because neural networks may
+/// compute them; build_body() then returns a failure.
 void check_blueprint(const Blueprint& blueprint, const EncodingContext& context);
 
-/// Joins the neighbours that the blueprint asks for, leaves out springs of air (and counts them as contacts), drops
-/// masses without springs, keeps the largest piece, and moves the rest positions so that the lowest is at z = 0 and the
-/// centre of mass over the origin.
+/// Joins the neighbours that the blueprint asks for, removes springs of air (and counts them in Mass::air_contacts),
+/// removes masses without springs, keeps the largest piece, and moves the rest positions so that the lowest mass is at
+/// z = 0 and the centre of mass is over the origin.
 BuiltBody build_body(Blueprint blueprint);
 
-/// The same for a population, whose neighbours are searched for together.
+/// The same for several blueprints. Their neighbours are searched for together.
 std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, Workers& workers);
 
-/// Spreads a payload of `share` times the body's mass evenly over the masses in the upper part `top` of its height.
+/// Adds a payload of `share` times the body's mass, spread evenly over the masses in the upper fraction `top` of the
+/// body's height.
 void add_payload(Body& body, double share, double top);
 
 std::vector<Vec3> rest_positions(const Body& body);
 
-/// Whether masses do not all lie in one point. Those of a flat or a straight body do not.
+/// Whether not all positions are at the same point. True also for flat and straight bodies.
 bool has_extent(std::span<const Vec3> positions);
 
-/// The masses that springs do not tie to the largest piece, ascending.
+/// Returns the masses that no springs connect to the largest piece, in ascending order.
 std::vector<std::uint32_t> loose_masses(const Body& body);
 
 }  // namespace evodevo

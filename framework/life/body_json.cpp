@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double lowest = std::numeric_limits<double>::lowest();
 
-/// Reads the parts of one file; every complaint begins with the file and the part's place in it.
+/// Reads the parts of one file. Every error message begins with the file and the place in it.
 class BodyReader {
  public:
   explicit BodyReader(const std::string& file) : input_(file) {}

@@ -1,4 +1,4 @@
-// Bodies as JSON files.
+// Reads and writes bodies as JSON.
 #pragma once
 
 #include <optional>
@@ -9,29 +9,30 @@
 
 namespace evodevo {
 
-/// What a file says of a body.
+/// A body in a file, and its state if it is in the middle of its life.
 struct GivenBody {
   Body body;
-  std::optional<State> state;  ///< of a body in the middle of its life; none where it is yet to be born
+  std::optional<State> state;  ///< state in the middle of the life; none if the body is not born yet
 };
 
-/// A body as JSON, in SI units; the numbers read back as the same bits.
+/// Returns a body as JSON, in SI units. The numbers read back as the same bits.
 ///
 ///   masses     a list of {"position", "velocity", "mass", "material"}: m, m/s, kg and an index
 ///   springs    a list of {"a", "b", "rest_length", "material"}: indices of two masses, m and an index
 ///   materials  a list of {"name", "stiffness", "amplitude", "frequency", "phase"}: N/m, 1, Hz and rad
-///   time       since birth, s
-///   start_energy  what the energy guard measures the life by (State), J
+///   time       time since birth, s
+///   start_energy  energy that the energy guard allows (State::start_energy), J
 ///
-/// With "time" the body is in the middle of its life: its masses are where they are, as fast as they are, and bear
-/// their load. Without, it is yet to be born, where and with what load the scene says: its positions are its rest
-/// positions, and it has neither velocities nor start energy. "name", the masses' "material" and what is left of a
-/// state (0, and the energy that the state has in its scene) may be left out.
+/// With "time", the body is in the middle of its life: the positions are the present ones, and each "mass" includes the
+/// payload that the mass carries. Without "time", the body is not born yet: the positions are its rest positions, it
+/// has neither "velocity" nor "start_energy", and at birth the scene adds its payload and puts the body on the ground.
+/// These keys may be left out: "name", the "material" of a mass, "velocity" (then 0) and "start_energy" (then the
+/// energy that the body has in the scene).
 std::string body_to_json(const GivenBody& given, const std::vector<std::string>& material_names);
 
-/// Reads such a file. Throws ConfigError that names file, place and remedy for a file that cannot be read or is no such
-/// JSON: keys that are unknown or stand twice, indices out of range, a pair joined twice, numbers that are not finite
-/// or have the wrong sign.
+/// Reads such a file. Throws a ConfigError that names file, place and remedy if the file cannot be read or is not such
+/// JSON: a key is unknown or occurs twice, an index is out of range, a pair of masses is joined twice, or a number is
+/// not finite or has the wrong sign.
 GivenBody read_body(const std::string& file);
 
 }  // namespace evodevo

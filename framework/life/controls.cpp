@@ -19,10 +19,10 @@ std::optional<Material> mass_material(const Body& body, std::int32_t index) {
   return body.materials.at(static_cast<std::size_t>(index));
 }
 
-/// Springs or masses to draw from by their material. What is drawn is gone.
+/// Springs or masses, grouped by material, to be drawn at random without replacement.
 class Pools {
  public:
-  /// For items of `materials` materials and of none.
+  /// Makes a pool for each of `materials` materials, and one for masses without a material.
   explicit Pools(std::size_t materials) : pools_(materials + 1) {}
 
   void add(std::int32_t material, std::uint32_t item) {
@@ -30,7 +30,7 @@ class Pools {
     ++left_;
   }
 
-  /// One of this material, of any where none of it is left; none where nothing is left at all.
+  /// Draws an item of this material, or of any material if none of this one is left. Returns none if no item is left.
   std::optional<std::uint32_t> draw(std::int32_t material, Rng& rng) {
     if (left_ == 0) return std::nullopt;
     const std::size_t own = index(material);
@@ -45,7 +45,7 @@ class Pools {
  private:
   static std::size_t index(std::int32_t material) { return static_cast<std::size_t>(material - no_material); }
 
-  /// The pool of an item drawn at random from all pools, each item being equally likely.
+  /// Returns the pool of an item that is drawn at random from all pools; each item is equally likely.
   std::vector<std::uint32_t>& any(Rng& rng) {
     std::uint32_t item = rng.below(static_cast<std::uint32_t>(left_));
     auto pool = pools_.begin();
@@ -57,7 +57,7 @@ class Pools {
   std::size_t left_ = 0;
 };
 
-/// Which masses are joined.
+/// The pairs of masses that are joined.
 class Partners {
  public:
   explicit Partners(std::size_t masses) : partners_(masses) {}
@@ -74,7 +74,7 @@ class Partners {
   std::vector<std::vector<std::uint32_t>> partners_;
 };
 
-/// One amount of change on its way into a body.
+/// Places one amount of change at random in a body.
 class RandomPlacement {
  public:
   RandomPlacement(const Amount& amount, const DevoContext& context, std::size_t& surplus, Rng& rng)
@@ -117,7 +117,7 @@ class RandomPlacement {
       }
   }
 
-  /// The materials of the springs that have to go beside those of the masses that go.
+  /// Returns the materials of the springs to remove in addition to those of removed masses. Updates the surplus.
   std::vector<std::int32_t> springs_due() {
     std::vector<std::int32_t> due;
     for (const Material& material : amount_.springs_gone) due.push_back(index_in_body(material));
@@ -181,13 +181,13 @@ class RandomPlacement {
       }
   }
 
-  /// Where a mass, old or new, is when life goes on.
+  /// The position of an old or new mass at the start of the next cycle, m.
   Vec3 position(std::uint32_t mass) const {
     const std::size_t old = body_.masses.size();
     return mass < old ? context_.position(mass) : out_.new_masses.at(mass - old).position;
   }
 
-  /// One past the last where the body has no such material.
+  /// Returns the index of a material; one past the last index if the body does not have the material.
   std::int32_t index_in_body(const std::optional<Material>& material) const {
     if (!material) return no_material;
     const auto found = numbers_.find(*material);
@@ -197,7 +197,7 @@ class RandomPlacement {
   const Amount& amount_;
   const DevoContext& context_;
   const Body& body_;
-  MaterialNumbers numbers_;  ///< of the body's materials
+  MaterialNumbers numbers_;  ///< indices of the body's materials
   std::size_t& surplus_;
   Rng& rng_;
   Edits out_;

@@ -1,16 +1,17 @@
-// Controls: what a developing body is compared with.
+// The control random-places: as much change as by the operators, but at random places in the body.
 #pragma once
 
 #include "life/life_record.hpp"
 
 namespace evodevo {
 
-/// What an operator changed at one application, but for where. All indices are gone, so that it holds for any body.
+/// How much an operator changed at one application, without the places in the body. It has no indices of masses or
+/// springs, so that it can be applied to any body.
 struct Amount {
   struct SpringChange {
-    Material before;
-    std::optional<double> factor;   ///< of the rest length, 1; without it, that stays
-    std::optional<Material> after;  ///< without it, that of before
+    Material before;                ///< material before the change
+    std::optional<double> factor;   ///< new rest length relative to the old one, 1; none: it stays the same
+    std::optional<Material> after;  ///< material after the change; none: it stays the same
   };
   struct MassCome {
     double mass;  ///< kg
@@ -18,41 +19,47 @@ struct Amount {
   };
   struct SpringCome {
     Material material;
-    std::optional<std::uint32_t> a, b;  ///< index into `masses_come`; without it, any mass that stays
+    std::optional<std::uint32_t> a, b;  ///< index into `masses_come` of each end; none: any mass that stays
   };
 
-  std::uint32_t op = 0;                              ///< place in Development::operators
-  std::optional<Growth> growth;                      ///< of all springs
-  std::vector<Material> springs_gone;                ///< one for each, whether it went by itself or with a mass
-  std::vector<std::optional<Material>> masses_gone;  ///< one for each
+  std::uint32_t op = 0;                              ///< index into the experiment's devo operators
+  std::optional<Growth> growth;                      ///< growth of all springs
+  std::vector<Material> springs_gone;                ///< materials of removed springs and of springs of removed masses
+  std::vector<std::optional<Material>> masses_gone;  ///< materials of removed masses; none for a mass without one
   std::vector<SpringChange> springs_changed;
   std::vector<MassCome> masses_come;
   std::vector<SpringCome> springs_come;
 };
 
-/// How much `edits` of operator `op` change in `body`.
+/// Returns how much the `edits` of operator `op` change in `body`.
 Amount amount_of(const Edits& edits, const Body& body, std::uint32_t op);
 
-/// The same amount of change at random places. Springs and masses go, and springs change by the same factors, that are
-/// of the material of those that did, or of any where none is left. New springs join random masses that stay and are
-/// not yet joined, and are born without force; a new mass comes anywhere in the bounds and gets as many springs. The
-/// springs of a mass that goes count among those that go. `surplus` is how many more have gone so than should have,
-/// now and at earlier applications; as many fewer go as soon as that is possible. A new mass of a material that the
-/// body does not know has none. Fewer come where the body has no room for more. Growth has no place and happens as it
-/// is. Bounds that an operator keeps do not hold here.
+/// Returns edits that make the same amount of change at random places:
+///
+/// - For each removed or changed spring and for each removed mass of `amount`, one of the same material is drawn at
+///   random, or one of any material if none of that material is left. Rest lengths change by the same factors.
+/// - A new mass is placed at random within the bounds. It has no material if the body does not have that material.
+/// - A new spring joins two random masses that stay and are not joined yet. If it joined a new mass in `amount`, that
+///   end joins the corresponding new mass. It is born without force. If no free pair is found, it is left out.
+/// - Growth stays the same, because it applies to all springs.
+///
+/// The springs of a removed mass count as removed springs. `surplus` is the number of springs that have been removed in
+/// this way beyond the amounts, now and at earlier applications. That many fewer springs are removed as soon as
+/// possible. Limits that an operator keeps, such as on the degree of masses, do not hold here.
 Edits at_random_places(const Amount& amount, const DevoContext& context, std::size_t& surplus, Rng& rng);
 
-/// What happened in a life, for another one of the same start that is to change as much at each application.
+/// The amounts of change in one life. A second life with the same start is yoked to it: it changes as much at each
+/// application.
 class Yoke {
  public:
   Yoke(Body born, const LifeRecord& record) : body_(std::move(born)), changes_(record.changes()) {}
 
-  /// What the operators changed after a cycle; to be asked for one cycle after the other. What the body lost because it
-  /// was torn is not among it. Turns at which masses went come first: where more springs go with masses than should,
-  /// the others then make up for it in the same cycle.
+  /// Returns the amounts that the operators changed after a cycle. To be called for each cycle in ascending order.
+  /// Pieces that were torn off do not count. Amounts with removed masses come first: if these masses take too many
+  /// springs with them, the other amounts compensate for it in the same cycle.
   std::vector<Amount> amounts_after(int cycle);
 
-  std::size_t surplus = 0;  ///< of the life that follows; see at_random_places()
+  std::size_t surplus = 0;  ///< surplus of the second life; see at_random_places()
 
  private:
   Body body_;

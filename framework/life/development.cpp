@@ -14,8 +14,8 @@
 namespace evodevo {
 namespace {
 
-/// Whether a change may strain or lift a body. Exchanging springs for new ones that are born without force does little
-/// of either.
+/// Whether a change may add energy to a body by straining or lifting it. Replacing springs with new ones that are born
+/// without force adds little.
 bool adds_energy(const Change& change) {
   const Edits& edits = change.edits;
   return edits.growth || !edits.changed_springs.empty() || edits.new_masses.size() > edits.removed_masses.size() ||
@@ -45,7 +45,7 @@ void DevelopmentLoop::run(std::span<Life> lives, const Progress& progress) const
     else
       apply_operators(lives[i], cycle);
   };
-  // what was observed then is again, so that a life with a record is the same to the bit
+  // Lives with a record are observed as well, so that their re-simulation equals the original to the bit.
   run_cycles(lives, !yoked, change, progress);
 }
 
@@ -220,7 +220,7 @@ void DevelopmentLoop::return_to_rest(Life& life) const {
     state.position[i] = life.living.body.masses[i].rest;
     state.velocity[i] = {};
   }
-  // rest positions are those on level ground
+  // rest positions are for level ground
   if (const auto& floor = experiment_.scene.floor; floor && floor->rough())
     put_on_ground(state.position, experiment_.scene);
 }

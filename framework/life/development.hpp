@@ -1,4 +1,4 @@
-// The development loop: what happens in a life between birth and the final evaluation (paper, section IV-D).
+// The development loop: the part of a life between birth and the final evaluation (paper, section IV-D).
 #pragma once
 
 #include <optional>
@@ -11,61 +11,66 @@
 
 namespace evodevo {
 
-/// Newborn lives go in; matured ones come out, each with the record of its changes:
+/// Develops lives from birth to maturity, and records the changes of each. Every cycle has these steps:
 ///
-///   cycles times { simulate a cycle_time and record what the operators ask for -> edits of the operators, one after
-///   the other, each resolved, applied and recorded -> what is torn off goes -> a step for the new body }
+///   1. simulate the bodies, and record what the operators ask for
+///   2. call the operators one after the other; resolve, apply and record the edits of each
+///   3. remove the pieces that have been torn off; with DevelopmentSettings::reset, return bodies to rest
+///   4. choose a time step for each changed body
 ///
-/// A life with a record makes the recorded changes instead of asking the operators; a control asks them in another way.
-/// Experiment and simulation must outlive it.
+/// If a newborn comes with a record, the recorded changes are applied and no operator is called. A control changes what
+/// happens in step 2. Experiment and simulation must outlive this object.
 class DevelopmentLoop {
  public:
   DevelopmentLoop(const Experiment& experiment, const LifeSimulation& simulation)
       : experiment_(experiment), simulation_(simulation) {}
 
-  /// Calls `progress` after each cycle, when the lives are as that cycle has left them. Throws InputError where a
-  /// record does not fit its body.
+  /// Develops lives. Calls `progress` after each cycle, once all lives are changed. Throws InputError if a record does
+  /// not fit its body.
   void run(std::span<Life> lives, const Progress& progress) const;
 
-  /// All that is simulated in it, s.
+  /// Simulated time of all cycles, s. With the control random-places it is doubled, because each life is simulated
+  /// twice.
   double duration() const;
-  double seconds() const { return clock_.seconds(); }  ///< in which bodies were edited
+  double seconds() const { return clock_.seconds(); }  ///< wall-clock time spent on changing bodies, s
 
  private:
-  /// All cycles; `change(i, cycle)` changes the i-th life after a cycle. Where `observed`, what the operators of a
-  /// cycle ask for is recorded for them.
+  /// Runs all cycles. `change(i, cycle)` changes the i-th life after a cycle. If `observed`, what the operators ask for
+  /// is recorded in each cycle.
   template <class Action>
   void run_cycles(std::span<Life> lives, bool observed, const Action& change, const Progress& progress) const;
-  /// The simulation of a cycle, recorded as the probe does it.
+  /// Simulates a cycle and records what `recording` asks for, with stress measured by the experiment's probe.
   void simulate_cycle(std::span<Life> lives, int cycle, Recording recording) const;
-  /// For the control of random places: first simulates, with the operators, each life that has no record; then yokes
-  /// that life to the changes made there.
+  /// For the control random-places: lets a copy of each life without a record develop by the operators, and returns the
+  /// changes to which the life itself will be yoked.
   std::vector<std::optional<Yoke>> yokes_of(std::span<const Life> lives) const;
 
-  // ---- the ways to change a life after a cycle ----
+  // ---- ways to change a life after a cycle ----
   void apply_operators(Life& life, int cycle) const;
   void apply_operator(Life& life, int cycle, std::size_t index) const;
-  /// Changes as much as the operators did in the life to which this one is yoked, at random places.
+  /// Changes a life at random places as much as the operators changed the life to which it is yoked.
   void change_as_in(Yoke& yoke, Life& life, int cycle) const;
-  /// Applies the changes of this cycle, of all that a life went through, again.
+  /// Applies those of a life's recorded changes that belong to this cycle.
   void apply_recorded(const std::vector<Change>& changes, Life& life, int cycle) const;
 
-  // ---- what they share ----
-  /// What an operator sees after a cycle.
+  // ---- helper functions ----
+  /// Returns the context that an operator sees after a cycle.
   DevoContext context_of(const Life& life, int cycle, const Schedule& schedule, const SpringRequest& request) const;
   /// Applies a change and records it.
   void make(Change change, Life& life) const;
-  /// Removes from the body the pieces that development has torn off.
+  /// Removes the pieces of the body that development has torn off.
   void shed_loose_pieces(Life& life, int cycle) const;
-  /// Shuffles the recorded values among the springs; all values of one spring stay together.
+  /// Shuffles the recorded values among the springs. All values of one spring stay together.
   void shuffle_records(Life& life, int cycle) const;
-  /// Does what changes a body; the energy that it brings is no fault of the simulation, so the guard is to allow it.
+  /// Calls `action`, which changes a body, and adds the energy that it brings to the energy that the guard allows.
   template <class Action>
   void allow_energy(Life& life, const Action& action) const;
+  /// Moves a body back to its rest positions, without velocities.
   void return_to_rest(Life& life) const;
-  /// The box around the body where it is when life goes on, cut off at the floor's highest position.
+  /// Returns the box around the positions at which the next cycle starts, cut off below at the greatest height of the
+  /// floor.
   Box bounds(const LivingBody& living) const;
-  /// Random numbers for one part of a life.
+  /// Returns the RNG stream `id` of a life.
   Rng stream(const Life& life, std::uint32_t id) const;
 
   const Experiment& experiment_;

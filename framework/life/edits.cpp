@@ -50,7 +50,7 @@ void put_in_order(std::vector<std::uint32_t>& indices, std::vector<double>& caus
   }
 }
 
-/// The rest length (m) with which a new spring is born without force; none where one of its masses is not there.
+/// Returns the rest length (m) with which a new spring is born without force; none if one of its masses does not exist.
 std::optional<double> forceless_length(const NewSpring& spring, const Edits& edits, const DevoContext& context) {
   const std::size_t old_masses = context.body.masses.size();
   if (std::max(spring.a, spring.b) >= old_masses + edits.new_masses.size()) return std::nullopt;
@@ -61,10 +61,10 @@ std::optional<double> forceless_length(const NewSpring& spring, const Edits& edi
   return context.resets ? distance : distance / spring.material.relative_length(context.time);
 }
 
-/// One application of edits: the old body on one side, the new one growing on the other.
+/// Applies edits to a body once.
 class Editor {
  public:
-  /// `state` and `records` are those of the body, or nullptr where they are of no interest.
+  /// `state` and `records` are those of the body, or nullptr if they are not needed.
   Editor(const Edits& edits, Body& body, State* state, SpringRecords* records)
       : edits_(edits),
         body_(body),
@@ -79,7 +79,7 @@ class Editor {
     check_causes();
     if (edits_.growth) grow_springs(*edits_.growth);
     change_springs();
-    check_new_springs();  // while the old indices hold
+    check_new_springs();  // before the indices of masses change
     move_masses();
     move_springs();
     refuse_joined_pairs();
@@ -188,7 +188,7 @@ class Editor {
     };
     for (std::size_t i = 0; i < old_masses(); ++i) {
       if (mass_gone_[i])
-        new_index_.push_back(0);  // never looked up: springs to it go, and check_end refuses new ones
+        new_index_.push_back(0);  // never used: springs to it are removed, and check_end() refuses new ones
       else if (state_ != nullptr)
         add(body_.masses[i], state_->position[i], state_->velocity[i]);
       else
@@ -214,7 +214,7 @@ class Editor {
              std::to_string(old_materials_) + " materials");
   }
 
-  /// Spreads the payload of what goes evenly over those that carry one, or over all where nobody is left who does.
+  /// Spreads the payload of removed masses evenly over the masses that carry payload, or over all if none does.
   void pass_payload_on(std::vector<Mass>& masses) const {
     double payload = 0;
     for (std::size_t i = 0; i < old_masses(); ++i)
@@ -248,7 +248,7 @@ class Editor {
     springs.resize(staying.size());
   }
 
-  /// Leaves what stays in a record, and adds the mean of it for each spring that comes.
+  /// Keeps the values of the springs that stay, and adds the mean of these values for each new spring.
   void move_record(std::vector<double>& record, const std::vector<std::uint32_t>& staying) const {
     for (std::size_t i = 0; i < staying.size(); ++i) record[i] = record[staying[i]];
     record.resize(staying.size());
@@ -259,7 +259,8 @@ class Editor {
 
   std::uint64_t new_key(const NewSpring& spring) const { return pair_key(new_index_[spring.a], new_index_[spring.b]); }
 
-  /// Few springs come and many are there: the few are sorted and the many looked up among them.
+  /// Throws if a new spring joins a pair that is joined already. New springs are few and others many; hence the new
+  /// ones are sorted, and each of the others is looked up among them.
   void refuse_joined_pairs() const {
     const std::vector<NewSpring>& arrivals = edits_.new_springs;
     std::vector<std::uint64_t> keys;
@@ -270,7 +271,7 @@ class Editor {
         if (new_key(*spring) == key) refuse(pair_text(*spring) + ", which are joined already");
     };
     if (const auto twin = std::adjacent_find(keys.begin(), keys.end()); twin != keys.end()) refuse_pair(*twin);
-    // most springs are told apart from all arrivals by one of their ends
+    // for most of the other springs, one of their ends shows that no new spring joins the same pair
     std::vector<std::uint8_t> is_lower(body_.masses.size(), 0), is_upper = is_lower;
     for (const std::uint64_t key : keys) is_lower[key >> 32] = is_upper[key & 0xffffffff] = 1;
     for (const Spring& spring : body_.springs) {
@@ -289,10 +290,10 @@ class Editor {
   Body& body_;
   State* state_;
   SpringRecords* records_;
-  std::size_t old_materials_;  ///< how many there were before the edits
+  std::size_t old_materials_;  ///< number of materials before the edits
   MaterialList materials_;
   std::vector<std::uint8_t> spring_gone_, mass_gone_;
-  std::vector<std::uint32_t> new_index_;  ///< of every old and new mass
+  std::vector<std::uint32_t> new_index_;  ///< new index of every old and new mass
 };
 
 }  // namespace

@@ -1,4 +1,5 @@
-// What devo operators want changed: resolved once, then applied, recorded and applied again.
+// Applies the edits of devo operators to bodies. Edits are resolved once; then they are applied, recorded, and applied
+// again in re-simulations.
 #pragma once
 
 #include <memory>
@@ -8,28 +9,29 @@
 
 namespace evodevo {
 
-/// A body in the middle of its life. The records are of the last cycle.
+/// A body in the middle of its life, with its spring records of the last cycle.
 struct LivingBody : SpringRecords {
   Body body;
   State state;
-  double longest_dt = 0;                                     ///< see LongestStep, s
-  std::shared_ptr<const Preparation> preparation = nullptr;  ///< what the simulator keeps from cycle to cycle
+  double longest_dt = 0;                                     ///< LongestStep::dt, s
+  std::shared_ptr<const Preparation> preparation = nullptr;  ///< what the simulator reuses in the next cycle
 };
 
-/// What an operator's edits come down to: the form that is applied, recorded and applied again. What goes stands in
-/// ascending order and once, with its cause, and every new spring between masses that there are has its rest length.
-/// Causes that are not as many as their edits stay as they are, to be refused by apply().
+/// Returns edits in the form in which they are applied and recorded. Removed masses and springs are in ascending order
+/// without duplicates, each with its cause, and every new spring between existing masses has a rest length. If there
+/// are more or fewer causes than removed items, both lists stay as they are, and apply() throws.
 Edits resolved(const Edits& edits, const DevoContext& context);
 
-/// Applies resolved edits, all of them together. New springs carry the mean records of the old ones, and materials that
-/// nothing is made of any more go. Throws std::invalid_argument, naming the edit, for growth beyond its way, an index
-/// out of range, a mass joined to itself or to one that goes, a pair joined twice, a spring changed twice or one that
-/// goes, air, a number that is not finite, or more or fewer causes than edits.
+/// Applies resolved edits, all of them together. New springs get the mean records of the springs that stay. Materials
+/// that are no longer used are removed, except the base materials. Throws a std::invalid_argument that names the edit
+/// if growth goes beyond its end, an index is out of range, a spring joins a mass to itself or to a removed mass, a
+/// pair of masses is joined twice, a spring is changed twice or is both changed and removed, a spring is of air, a
+/// number is not finite, or there are more or fewer causes than edits.
 void apply(const Edits& resolved, LivingBody& living);
-/// The same to a body alone, whose motion is of no interest.
+/// The same for a body alone, without its state and records.
 void apply(const Edits& resolved, Body& body);
 
-/// Lets an operator's context show what the operator asked for of the springs, and no more.
+/// Makes those spring records visible in an operator's context that the operator asked for, and no others.
 void show_records(const SpringRecords& records, const SpringRequest& request, DevoContext& context);
 
 }  // namespace evodevo

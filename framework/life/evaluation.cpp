@@ -9,7 +9,7 @@
 namespace evodevo {
 namespace {
 
-// what is left of a batch for each of several cohorts should still be worth a device's while
+// least number of bodies in each of several cohorts; smaller cohorts would use a device badly
 constexpr std::size_t smallest_cohort = 64;
 
 }  // namespace
@@ -30,7 +30,8 @@ std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, cons
   std::mutex progress_mutex;
   std::vector<double> done(cohorts, 0.0);
   on_own_threads(cohorts, [&](std::size_t i) {
-    // the first cohort comes first all the way, so that its last, long simulation goes on while others develop
+    // Earlier cohorts have priority throughout. Thus the first one reaches its long final evaluation while the others
+    // still develop.
     const Priority priority(static_cast<int>(i));
     const std::size_t begin = i * newborns.size() / cohorts, end = (i + 1) * newborns.size() / cohorts;
     std::vector<Result> of_cohort = evaluate_cohort(newborns.subspan(begin, end - begin), [&](double part) {

@@ -1,4 +1,4 @@
-// From genomes to scores, for whole batches.
+// Evaluates batches of genomes: makes bodies, simulates their lives, and computes the objectives.
 #pragma once
 
 #include <span>
@@ -12,19 +12,20 @@
 
 namespace evodevo {
 
-/// The time in which evaluations were in a phase, s. Phases overlap: while some bodies move, others develop.
+/// Wall-clock time in which at least one evaluation was in a phase, s. Phases overlap, because some bodies are
+/// simulated while others are changed.
 struct PhaseTimes {
   double decode = 0, simulate = 0, develop = 0;
 };
 
-/// The stages of a life, and all of them one after the other: a genome passes through each once.
+/// The stages of a life. evaluate() sends each newborn through all of them, one after the other:
 ///
 ///   newborns -> birth -> development -> measurement -> results
-///                  \________ all move by ________/
+///                  \_______ all three use _______/
 ///                            simulation
 ///
-/// A batch goes through them in as many cohorts as the simulator wants to have at once. Experiment and simulator must
-/// outlive it.
+/// A batch is divided into cohorts, as many as keep the simulator busy at the same time. Experiment and simulator must
+/// outlive this object.
 class Evaluation {
  public:
   Evaluation(const Experiment& experiment, Simulator& simulator);
@@ -32,8 +33,8 @@ class Evaluation {
   Evaluation(const Evaluation&) = delete;  // the stages refer to each other
   Evaluation& operator=(const Evaluation&) = delete;
 
-  /// The results are in the newborns' order and independent of the batch. `progress` is called with the part of the
-  /// simulation that is done, 0 to 1, by one thread at a time.
+  /// Returns the results in the order of the newborns. They do not depend on the batch. Calls `progress` with the part
+  /// of the simulation that is done, 0 to 1, from one thread at a time.
   std::vector<Result> evaluate(std::span<const Newborn> newborns, const Progress& progress) const;
 
   PhaseTimes phase_times() const { return {birth.seconds(), simulation.seconds(), development.seconds()}; }

@@ -1,4 +1,4 @@
-// One life, from a genome to a result, and the conditions under which it is lived.
+// One life, from a genome to a result, and the conditions under which it is simulated.
 #pragma once
 
 #include <functional>
@@ -14,35 +14,35 @@
 
 namespace evodevo {
 
-/// A genome that asks to be evaluated. Its random numbers depend on the run's seed, the generation and the id alone.
+/// A genome to be evaluated. The random numbers of its life depend on the run's seed, the generation and the id alone.
 struct Newborn {
   std::uint32_t id = 0;
   std::uint32_t generation = 0;
   const Genome* genome = nullptr;
-  /// Of a life that is simulated again: its changes are made whatever the operators would do.
+  /// For a re-simulation: the changes to apply to the body, instead of calling the operators.
   std::optional<LifeRecord> record = std::nullopt;
-  std::string recorded_in = {};  ///< whose record that is, for messages
+  std::string recorded_in = {};  ///< the run and individual that the record belongs to, for messages
 };
 
 /// How an evaluation ended.
 struct Result {
   Status status = Status::ok;
-  std::string reason;              ///< of a status other than ok
-  double ended_at = 0;             ///< simulated time of a divergence, s
-  std::vector<double> objectives;  ///< in Experiment::objectives' order and units; empty unless ok
+  std::string reason;              ///< reason for a status other than ok
+  double ended_at = 0;             ///< simulated time at which the body diverged, s
+  std::vector<double> objectives;  ///< in the order and units of Experiment::objectives; empty unless ok
   std::uint64_t spring_evaluations = 0;
-  LifeRecord record;  ///< of development; kept, and archived, for those alone who reach the front
+  LifeRecord record;  ///< changes by development; kept and archived only for individuals that reach the front
 };
 
-/// What becomes of a newborn.
+/// The life of a newborn while it is being evaluated.
 struct Life {
   Newborn newborn;
   LivingBody living;
-  double work = 0;  ///< of the muscles on the body, where it was recorded, J
+  double work = 0;  ///< work of the muscles on the body, as far as it was recorded, J
   Result result;
 
   bool alive() const { return result.status == Status::ok; }
-  /// `ended_at` is the simulated time of a divergence, s.
+  /// Ends the life without objectives. `ended_at` is the simulated time at which the body diverged, s.
   void end(Status status, std::string reason, double ended_at = 0) {
     result.status = status;
     result.reason = std::move(reason);
@@ -50,16 +50,16 @@ struct Life {
   }
 };
 
-/// How lives are simulated, by default as an experiment says.
+/// How lives are simulated. The defaults are the settings of an experiment.
 struct Conditions {
   explicit Conditions(const Experiment& experiment) : method(experiment.stepping.method), step(experiment.step) {}
 
-  Method method;  ///< of the simulator
+  Method method;  ///< time-stepping method of the simulator
   StepRule step;
-  double later = 0;  ///< how much later the windows of the fitness open, s
+  double later = 0;  ///< delay of the windows of the fitness operators, s
 };
 
-/// Takes the part of a job that is done, 0 to 1.
+/// A function that is told which part of a job is done, 0 to 1.
 using Progress = std::function<void(double)>;
 
 }  // namespace evodevo

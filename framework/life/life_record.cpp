@@ -15,10 +15,12 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
 
-/// Behind the bits that say which lists of causes a change has: whether springs grow, and Change::lengths_given.
+/// Bits that say whether springs grow and whether Change::lengths_given. They come after the bits for the lists of
+/// causes.
 constexpr std::uint32_t growth_bit = 1u << Causes::lists.size(), lengths_given_bit = growth_bit << 1;
 
-/// Appends changes to bytes. Whole numbers take seven bits to a byte, the highest bit says that more follow.
+/// Appends changes to a string of bytes. A whole number is written with seven bits in each byte, the lowest bits first;
+/// the eighth bit says whether more bytes follow.
 class Writer {
  public:
   Writer(std::string& bytes, MaterialNumbers& materials) : bytes_(bytes), materials_(materials) {}
@@ -46,7 +48,8 @@ class Writer {
   }
 
  private:
-  /// Says first which of the lists there are: bit i stands for the i-th.
+  /// Writes first which lists of causes are not empty (bit i stands for the i-th list) and the two other bits, then the
+  /// lists and the growth.
   void causes_and_growth(const Change& change) {
     const Edits& edits = change.edits;
     std::uint32_t given = (edits.growth ? growth_bit : 0) | (change.lengths_given ? lengths_given_bit : 0);
@@ -81,7 +84,7 @@ class Writer {
     if (spring.material) material(*spring.material);
   }
 
-  /// Its number, and the first time what it is.
+  /// Writes the number of a material; at its first occurrence, also the material itself.
   void material(const Material& material) {
     const auto [found, is_new] = materials_.try_emplace(material, static_cast<std::uint32_t>(materials_.size()));
     whole(found->second);
@@ -92,12 +95,12 @@ class Writer {
   MaterialNumbers& materials_;
 };
 
-/// Reads what a Writer has written.
+/// Reads changes that a Writer has written.
 class Reader {
  public:
   explicit Reader(const std::string& bytes) : bytes_(bytes) {}
 
-  /// All materials that it has come across, by their numbers.
+  /// The materials read so far, by their numbers.
   const std::vector<Material>& materials() const { return materials_; }
 
   bool at_end() const { return at_ == bytes_.size(); }

@@ -1,4 +1,4 @@
-// What development did to a body in the course of its life, compactly.
+// A compact record of all changes that development makes to a body during its life.
 #pragma once
 
 #include <optional>
@@ -10,23 +10,23 @@
 
 namespace evodevo {
 
-/// Edits that were made together after a cycle. All indices refer to the body as it was before these edits.
+/// Edits that were applied together after a cycle. All indices refer to the body before these edits.
 struct Change {
-  std::uint32_t cycle = 0;          ///< from 1
-  std::optional<std::uint32_t> op;  ///< index into the experiment's devo operators; none: of what was torn off
-  Edits edits;                      ///< resolved()
-  bool lengths_given = false;       ///< whether the operator itself gave a new spring its rest length
+  std::uint32_t cycle = 0;          ///< cycle, from 1
+  std::optional<std::uint32_t> op;  ///< index into the experiment's devo operators; none: removal of torn-off pieces
+  Edits edits;                      ///< edits as resolved() returns them
+  bool lengths_given = false;       ///< whether the operator itself set the rest length of a new spring
 };
 
-/// The change that `edits`, wanted by operator `op`, are about to make.
+/// Returns the change that consists of the `edits` of operator `op`, which are still to be applied.
 Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const DevoContext& context);
 
-/// All changes of a life, in their order: about 20 bytes for a spring that goes and one that comes, some 30 for an
-/// application at which all springs grow. Causes are kept in single precision.
+/// All changes of a life, in their order. Replacing one spring takes about 20 bytes, and letting all springs grow once
+/// takes about 30 bytes. Causes are stored in single precision.
 class LifeRecord {
  public:
   LifeRecord() = default;
-  /// Restores a record from what bytes() returned. Throws std::invalid_argument if `bytes` is not such a record.
+  /// Restores a record from the bytes that bytes() returned. Throws std::invalid_argument if they are not a record.
   explicit LifeRecord(std::string bytes);
 
   void add(const Change& change);
@@ -39,22 +39,23 @@ class LifeRecord {
 
  private:
   std::string bytes_;
-  MaterialNumbers materials_;  ///< those written so far, to which others refer by their numbers
+  MaterialNumbers materials_;  ///< materials written so far; later changes refer to them by number
 };
 
-/// The numbers that masses keep through a life: those at birth their index, later ones the next numbers.
+/// Numbers of masses that stay the same throughout a life, while indices change. The number of a mass at birth is its
+/// index; masses that are added later get the next numbers.
 class MassNumbers {
  public:
   explicit MassNumbers(std::size_t born);
 
-  /// The number of a new mass, which follows the others.
+  /// Adds a mass after the others and returns its number.
   std::uint32_t add();
-  /// Lets masses go, by their indices in ascending order.
+  /// Removes masses, given by their indices in ascending order.
   void remove(const std::vector<std::uint32_t>& masses);
-  /// All that a change does: its new masses come, then others go.
+  /// Adds the new masses of a change, then removes its removed masses.
   void apply(const Edits& edits);
 
-  /// By the masses' indices, ascending.
+  /// The numbers of all masses, in the order of their indices. This order is ascending.
   const std::vector<std::uint32_t>& numbers() const { return numbers_; }
 
  private:
@@ -62,7 +63,7 @@ class MassNumbers {
   std::uint32_t next_;
 };
 
-/// The numbers of a body's masses after the changes of its life.
+/// Returns the numbers of a body's masses after all changes of its life. `born` is the number of masses at birth.
 std::vector<std::uint32_t> mass_numbers(std::size_t born, const LifeRecord& record);
 
 }  // namespace evodevo

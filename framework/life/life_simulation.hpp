@@ -1,4 +1,4 @@
-// How bodies move: choosing a stable time step for each body, and running the simulator.
+// Simulates lives: chooses a time step for each body, and runs the simulator.
 #pragma once
 
 #include <functional>
@@ -10,23 +10,23 @@
 
 namespace evodevo {
 
-/// Runs the tasks of lives, which are in the same order.
+/// A function that runs tasks on the simulator. The i-th task belongs to the i-th life.
 using Move = std::function<void(std::span<Task>, std::span<Life* const>)>;
 
-/// Bodies, their states and a duration go in; moved states and what was recorded come out, in the lives. Experiment
-/// and simulator must outlive it.
+/// Simulates the bodies of lives for a given time, and stores the new states and what was recorded in the lives.
+/// Experiment and simulator must outlive this object.
 class LifeSimulation {
  public:
   LifeSimulation(const Experiment& experiment, Simulator& simulator, const Conditions& conditions)
       : scene_(experiment.scene), simulator_(simulator), conditions_(conditions) {}
 
-  /// Chooses the longest step for the body as it is; a body that has none is invalid.
+  /// Chooses the time step for a body in its present state. If the body cannot be simulated, its life ends as invalid.
   void choose_step(Life& life) const;
-  /// Lets the bodies that are alive do something for `duration` s, by `move`.
+  /// Simulates all lives that have not ended yet. The simulated time is `duration` s, and `move` runs the tasks.
   void run(std::span<Life> lives, double duration, const Move& move) const;
 
   Simulator& simulator() const { return simulator_; }
-  double seconds() const { return clock_.seconds(); }  ///< in which bodies moved
+  double seconds() const { return clock_.seconds(); }  ///< wall-clock time spent on simulation, s
 
  private:
   const Scene& scene_;

@@ -8,7 +8,7 @@
 namespace evodevo {
 namespace {
 
-/// The index of the first mark that is not before `time` (s), but for rounding.
+/// Returns the index of the first mark at or after `time` (s), apart from rounding.
 std::size_t mark_at(const std::vector<double>& marks, double time) {
   constexpr double rounding = 1e-9;
   return static_cast<std::size_t>(std::lower_bound(marks.begin(), marks.end(), time - rounding) - marks.begin());

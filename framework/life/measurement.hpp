@@ -1,4 +1,4 @@
-// The final evaluation: what a matured body does, seen by the fitness operators.
+// The final evaluation: simulates matured bodies and lets the fitness operators score them.
 #pragma once
 
 #include <span>
@@ -10,21 +10,21 @@
 namespace evodevo {
 
 /// Evaluates matured lives: gives each its objectives, or the reason why it has none. Lives are simulated from mark to
-/// mark; a mark is a time at which the window of some fitness operator opens or closes. A snapshot is taken at each
+/// mark. A mark is a time at which the window of some fitness operator opens or closes. A snapshot is taken at each
 /// mark, and each fitness operator scores the two snapshots at the ends of its window. The experiment and the
 /// simulation must outlive this object.
 class Measurement {
  public:
   Measurement(const Experiment& experiment, const LifeSimulation& simulation, const Conditions& conditions);
 
-  /// `progress` is called at each mark.
+  /// Evaluates lives. Calls `progress` at each mark.
   void run(std::span<Life> lives, const Progress& progress) const;
 
-  /// All that is simulated in it, s.
+  /// Simulated time of the final evaluation, s.
   double duration() const { return marks_.back(); }
 
  private:
-  /// What a fitness asks for, and its window as indices of marks.
+  /// What a fitness operator asks for, and the indices of the marks at which its window opens and closes.
   struct Window {
     Request request;
     std::size_t opens, closes;
@@ -33,22 +33,22 @@ class Measurement {
   struct Snapshot {
     Box box;
     Vec3 centre;
-    double work = 0;  ///< of the muscles since the final evaluation began, J
+    double work = 0;  ///< work of the muscles since the final evaluation began, J
   };
-  using Snapshots = std::vector<Snapshot>;  ///< of one life, one for each mark
+  using Snapshots = std::vector<Snapshot>;  ///< snapshots of one life, one for each mark
 
-  /// `later` is how much later the windows open than the operators ask for, s.
+  /// Sets the windows and marks. Windows open `later` s later than the operators ask for.
   void set_windows(double later);
-  /// Whether a fitness asks for the work in the time up to a mark.
+  /// Whether a fitness operator asks for the work between the previous mark and this mark.
   bool needs_work(std::size_t mark) const;
-  /// Whether the window of some fitness opens at a mark.
+  /// Whether the window of a fitness operator opens at a mark.
   bool opens_window(std::size_t mark) const;
   void score(Life& life, const Snapshots& snapshots) const;
 
   const Experiment& experiment_;
   const LifeSimulation& simulation_;
-  std::vector<double> marks_;    ///< when some fitness looks, from the start of the final evaluation, s
-  std::vector<Window> windows_;  ///< of each fitness
+  std::vector<double> marks_;    ///< times of the marks since the start of the final evaluation, s
+  std::vector<Window> windows_;  ///< of each fitness operator
 };
 
 }  // namespace evodevo

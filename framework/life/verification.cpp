@@ -8,9 +8,9 @@
 namespace evodevo {
 namespace {
 
-constexpr double enough = 0.5;  ///< of the fitness
+constexpr double enough = 0.5;  ///< part of the fitness that an individual must keep, 1
 constexpr int perturbed_starts = 3;
-constexpr double more_settling = 10;  ///< s
+constexpr double more_settling = 10;  ///< delay of the windows in the trial settled, s
 constexpr std::int64_t step_parts = 4;
 
 const Progress unwatched = [](double) {};
@@ -27,7 +27,7 @@ void still_muscles(Life& life) {
   for (Material& material : life.living.body.materials) material.amplitude = 0;
 }
 
-/// The matured bodies of the champions, and the results of their trials.
+/// Makes the trials of matured champions and collects the results.
 class Trials {
  public:
   Trials(const Experiment& experiment, std::span<const Champion> champions, std::vector<Life> lives)
@@ -35,7 +35,7 @@ class Trials {
     for (const Champion& champion : champions) verifications_.push_back({champion.newborn.id, champion.fitness, {}});
   }
 
-  /// Changes a copy of every body with `change` and repeats its final evaluation.
+  /// Applies `change` to a copy of every matured life and repeats its final evaluation.
   template <class Change>
   void add(const std::string& name, Simulator& simulator, const Conditions& conditions, const Change& change) {
     const Evaluation evaluation(experiment_, simulator, conditions);
@@ -54,7 +54,7 @@ class Trials {
     }
   }
 
-  /// With steps of their own in double precision, on the CPU.
+  /// Repeats the final evaluation with the method and steps of `conditions`, in double precision on the CPU.
   void add_exact(const std::string& name, const Conditions& conditions) {
     const Stepping stepping{conditions.method, Precision::float64, experiment_.stepping.materials};
     const auto simulator = make_cpu_simulator(experiment_.scene, stepping, static_cast<int>(experiment_.threads));

@@ -1,4 +1,4 @@
-// Whether champions keep their fitness when they are simulated again in other ways.
+// Verification: whether the best individuals keep their fitness when they are simulated in other ways.
 #pragma once
 
 #include <map>
@@ -12,15 +12,15 @@
 
 namespace evodevo {
 
-/// The final evaluation of a matured body, repeated with one thing changed.
+/// The result of repeating the final evaluation of a matured body with one thing changed.
 struct Trial {
-  std::string name;  ///< one of those that verify() makes
+  std::string name;  ///< one of those that verify() lists
   Status status = Status::ok;
-  std::string reason;           ///< of a status other than ok
+  std::string reason;           ///< reason for a status other than ok
   std::optional<double> value;  ///< the first objective; none unless ok
 };
 
-/// An individual to verify: how it is simulated again, and its first objective, as the run recorded it.
+/// An individual to verify, and its first objective as the run recorded it.
 struct Champion {
   Newborn newborn;
   double fitness = 0;
@@ -33,28 +33,30 @@ struct Verification {
   std::vector<Trial> trials;
 };
 
-/// Lets champions mature as in the run, on `simulator`, and repeats the final evaluation
-///   again         as it was;
+/// Simulates the development of champions as in the run, on `simulator`. Then repeats the final evaluation in the
+/// following trials:
+///   again         unchanged;
 ///   quarter-step  with a quarter of the time step in double precision;
 ///   other-method  with a quarter of each body's own step in double precision by velocity-verlet (symplectic-euler
-///                 where the run has that);
+///                 if the run uses velocity-verlet);
 ///   perturbed-1   to -3: each mass moved along each axis at random by up to 1e-4 of the body's longest side;
-///   no-muscles    with springs that keep their length;
+///   no-muscles    with muscles that are not actuated;
 ///   settled       with windows that open 10 s later.
-/// The second and third run on the CPU. The same on the same device, every time.
+/// quarter-step and other-method run on the CPU. Results on the same device are the same every time.
 std::vector<Verification> verify(const Experiment& experiment, Simulator& simulator,
                                  std::span<const Champion> champions);
 
-/// Whether a trial's value is at least half the fitness; where less is better, or the fitness is not above 0, within
-/// half of it. No value is never enough.
+/// Whether an individual keeps its fitness in a trial: the trial's value is at least half the fitness. If the objective
+/// is minimised or the fitness is not above 0, the value differs from the fitness by at most half of its absolute
+/// value. False if the trial has no value.
 bool held(const Verification& verification, const Trial& trial, bool maximise);
 
-/// What an individual turned out to be:
-///   artefact  of the time step: quarter-step or other-method did not hold;
-///   passive   without muscles it keeps over half its fitness, or after 10 s more it has lost over half; only where
-///             more is better and the fitness is above 0.
+/// Returns the marks of an individual, which are found from its trials:
+///   artefact  its fitness depends on the time step or the method: it did not hold in quarter-step or other-method;
+///   passive   it keeps over half its fitness in no-muscles, or loses over half in settled; only if the objective is
+///             maximised and the fitness is above 0.
 std::vector<std::string> marks(const Verification& verification, bool maximise);
-/// "passive", or "verified" where nothing is to be said.
+/// Returns the marks as a text, such as "artefact, passive"; "verified" if there are none.
 std::string marks_text(const Verification& verification, bool maximise);
 
 }  // namespace evodevo

@@ -28,7 +28,7 @@ Seconds patience() {
   return given > 0 ? Seconds(std::min(given, 1e6)) : usual;
 }
 
-/// What a look at all calls remembers for the next.
+/// Looks at the calls of all threads, and remembers since when it has seen each.
 class Looks {
  public:
   void look() {
@@ -76,7 +76,7 @@ class Looks {
   }
 
   const Seconds patience_ = patience();
-  std::map<const void*, Seen> seen_;  ///< by thread
+  std::map<const void*, Seen> seen_;  ///< last call seen in each thread
   std::map<const OperatorTitle*, Seconds> next_warning_;
 };
 
@@ -91,7 +91,7 @@ CallWatch::CallWatch() {
   try {
     thread_ = std::jthread(watch);
   } catch (const std::system_error&) {
-    // where no thread can be made, calls that last are not named
+    // without a thread, long calls are not reported
   }
 }
 

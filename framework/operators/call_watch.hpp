@@ -1,4 +1,4 @@
-// Calls of operators that last too long.
+// Reports calls of operators that last too long.
 #pragma once
 
 #include <atomic>
@@ -8,8 +8,9 @@
 
 namespace evodevo {
 
-/// While it lives, a call of an operator that lasts longer than the environment's EVODEVO_PATIENCE (s; 10 by default)
-/// is named on stderr, and again each time that it, or another of the same operator, lasts twice as long.
+/// While this object exists, a thread warns on stderr of each operator that has a call longer than the environment
+/// variable EVODEVO_PATIENCE says (s; 10 by default). It warns of the same operator again each time that one of its
+/// calls has lasted twice as long as at the warning before.
 class CallWatch {
  public:
   CallWatch();
@@ -22,7 +23,8 @@ class CallWatch {
   std::jthread thread_;
 };
 
-/// From now on a call that lasts too long after `stop` has been set ends the process, with exit code 130.
+/// From now on, a CallWatch ends the process with exit code 130 if `stop` is true and a call lasts too long. Without
+/// this, the process could stop only after the call has returned.
 void end_long_calls_after(const std::atomic<bool>& stop);
 
 }  // namespace evodevo

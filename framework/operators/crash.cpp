@@ -28,7 +28,7 @@ void say(const OperatorCall& call, std::string_view what) {
   line.write_to(STDERR_FILENO);
 }
 
-/// Whether a thread touched what lies at the end of its stack, or shortly beyond.
+/// Whether an address is less than 64 KiB before the end of this thread's stack or less than 1 MiB beyond it.
 bool is_beyond_stack(const void* address) {
   constexpr std::ptrdiff_t beyond = 1 << 20, before = 1 << 16;
   const char* lowest = lowest_of_stack();
@@ -48,7 +48,8 @@ void blame_and_die(int signal, siginfo_t* info, void*) {
   std::raise(signal);
 }
 
-/// Nothing that an operator does is a regular end.
+/// Called when the process exits with `status`. If an operator's code has caused that, reports it and ends the process
+/// with exit code 1.
 void refuse_to_exit(int status) {
   const OperatorCall call = current_call();
   if (!names_exits || call.title == nullptr) return;
@@ -77,7 +78,8 @@ void leave_crashes_unnamed() {
 
 }  // namespace evodevo
 
-// In place of the C library's, for operators too, since the dynamic linker looks into the program first.
+// These replace the C library's _exit() and _Exit() also for the libraries of operators, because the dynamic linker
+// searches the program for a symbol before it searches libraries.
 extern "C" __attribute__((visibility("default"))) void _exit(int status) {
   evodevo::refuse_to_exit(status);
   while (true) syscall(SYS_exit_group, status);

@@ -1,12 +1,13 @@
-// Ends of the process in an operator's code, which are named before.
+// Reports which operator crashed the process or made it exit.
 #pragma once
 
 namespace evodevo {
 
-/// From now on a signal that ends the process in an operator's code names the call on stderr first; stacks that
-/// overflow are told apart. An operator that ends the process by exit() is named likewise, and the exit code is 1.
+/// Makes the process report crashes of operators. If a fatal signal occurs in an operator's code, a message on stderr
+/// names the call, and says whether its stack overflowed, before the process ends. If an operator calls exit(), a
+/// message names the call as well, and the exit code is 1.
 void name_crashing_operators();
-/// Signals and exit() do again what they do by default.
+/// Restores the default behaviour of fatal signals and of exit().
 void leave_crashes_unnamed();
 
 }  // namespace evodevo

@@ -1,4 +1,4 @@
-// Checks what an operator declares of its parameters.
+// Checks what an operator declares about its parameters.
 #pragma once
 
 #include <string>
@@ -8,13 +8,16 @@
 
 namespace evodevo {
 
-/// The first default that the operator itself does not allow, with the remedy; empty where there is none.
+/// Describes the first default value that the operator's own declaration does not allow, with a remedy; empty if there
+/// is none.
 std::string wrong_default(Operator& op);
 
-/// The first parameter whose name is a key of the host's own (host_keys.hpp); empty where there is none.
+/// Returns the name of the first parameter that has the name of one of the host's keys (host_keys.hpp); empty if there
+/// is none.
 std::string taken_name(Operator& op);
 
-/// What a reader of the declarations would miss: names, bounds, units and sentences.
+/// Describes what is wrong with the declarations: names that are missing or repeated, and missing bounds, units and
+/// descriptions.
 std::vector<std::string> declaration_faults(Operator& op);
 
 }  // namespace evodevo

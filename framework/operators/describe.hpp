@@ -1,4 +1,4 @@
-// Writes down what an operator declares.
+// Describes the parameters that an operator declares.
 #pragma once
 
 #include <string>
@@ -11,17 +11,18 @@ namespace evodevo {
 
 struct AvailableOperator;
 
-/// One declared parameter in words.
+/// The description of one declared parameter.
 struct ParameterDescription {
   std::string name;
   std::string type;      ///< "number", "whole number", "true or false", "option", …
-  std::string fallback;  ///< the default, as TOML writes it
-  std::string allowed;   ///< range or options; empty where anything of the type goes
+  std::string fallback;  ///< default value, as in a TOML file
+  std::string allowed;   ///< range or options; empty if every value of the type is allowed
   std::string unit;
   std::string text;
 };
 
-/// A visitor that writes down what is declared: `Visitor` is Parameters, or an interface with more kinds of values.
+/// A visitor that collects the descriptions of declared parameters. `Visitor` is Parameters, or a derived interface
+/// with more types of values.
 template <class Visitor>
 class Describer : public Visitor {
  public:
@@ -71,9 +72,10 @@ class Describer : public Visitor {
   static std::string in_quotes(std::string_view text) { return '"' + std::string(text) + '"'; }
 };
 
-/// The parameters of an operator that still has its defaults, in the order of their declaration.
+/// Describes the parameters of an operator in the order of their declaration. All of them must still have their default
+/// values.
 std::vector<ParameterDescription> describe_parameters(Operator& op);
-/// The same of a new operator.
+/// Creates an operator and describes its parameters.
 std::vector<ParameterDescription> describe_parameters(const AvailableOperator& available);
 
 }  // namespace evodevo

@@ -1,4 +1,4 @@
-// The keys of an operator's table that are the host's own, whatever operator the table names.
+// The keys that the host itself reads from the tables of operators, whichever operator a table names.
 #pragma once
 
 #include <algorithm>
@@ -9,12 +9,12 @@ namespace evodevo::host_key {
 
 inline constexpr std::string_view name = "name", mass = "mass", probability = "probability", from = "from", to = "to",
                                   every = "every";
-/// Not read yet, but announced to those who write operators.
+/// Not read yet, but reserved for later versions (sdk/README.md).
 inline constexpr std::string_view label = "label", over = "over";
 
 inline constexpr std::array all{name, mass, probability, from, to, every, label, over};
 
-/// Whether no operator may call a parameter so.
+/// Whether no operator may have a parameter of this name.
 constexpr bool is_reserved(std::string_view key) { return std::find(all.begin(), all.end(), key) != all.end(); }
 
 }  // namespace evodevo::host_key

@@ -22,14 +22,16 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What a child writes first: how long the text behind it is, so that nobody waits for a process of the child's own
-/// that holds the pipe open, and whether that is a result or of an exception.
+/// What a child writes before its text: the number of bytes of the text, and whether the text is about an exception
+/// instead of a result. The parent reads that many bytes and does not wait for the end of the pipe, which a process
+/// started by the child may keep open.
 struct Header {
   std::size_t size = 0;
   bool thrown = false;
 };
 
-/// The handlers of this program, or of a sanitizer, would speak of a crash that is expected and turn it into an exit.
+/// Drops all output, and restores the default handling of signals: handlers of this program or of a sanitizer would
+/// report a crash that is expected here, and would turn it into an exit.
 void become_silent() {
   leave_crashes_unnamed();
   for (const int signal : {SIGALRM, SIGTERM, SIGINT}) std::signal(signal, SIG_DFL);
@@ -39,7 +41,8 @@ void become_silent() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, stream);
 }
 
-/// A child lives no longer than its parent, and what it starts no longer than it.
+/// Lets this child be killed when its parent ends, and makes it the leader of a process group, so that the parent can
+/// kill it together with the processes that it starts.
 void join_fate(pid_t parent) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -54,7 +57,8 @@ void write_all(int pipe, const void* data, std::size_t size) {
   }
 }
 
-/// Runs `work` and never returns: the parent's stack, buffers and objects are the parent's.
+/// Runs `work`, writes the result to `pipe` and ends the process. It never returns, because the copies of the parent's
+/// stack, buffers and objects must not be unwound, flushed or destroyed here.
 [[noreturn]] void live_as_child(const std::function<std::string()>& work, int pipe, pid_t parent) {
   join_fate(parent);
   become_silent();
@@ -77,7 +81,7 @@ void write_all(int pipe, const void* data, std::size_t size) {
 
 enum class Read { whole, ended, late };
 
-/// Reads until `size` bytes are there, the pipe ends, or it is `deadline`.
+/// Reads until `size` bytes have come (whole), the pipe has ended (ended), or `deadline` has passed (late).
 Read read_all(int pipe, void* data, std::size_t size, Clock::time_point deadline) {
   for (std::size_t done = 0; done < size;) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
@@ -116,7 +120,7 @@ ChildEnd in_child(const std::function<std::string()>& work, unsigned seconds) {
     throw std::system_error(error, std::generic_category(), "fork");
   }
   if (child == 0) live_as_child(work, ends[1], parent);
-  setpgid(child, child);  // whichever of the two comes first
+  setpgid(child, child);  // child and parent both do this, because either may run first
   close(ends[1]);
   const auto deadline = Clock::now() + std::chrono::seconds(seconds);
   Header header;
@@ -127,7 +131,7 @@ ChildEnd in_child(const std::function<std::string()>& work, unsigned seconds) {
     got = read_all(ends[0], text.data(), text.size(), deadline);
   }
   close(ends[0]);
-  kill(-child, SIGKILL);  // how a process ends that is ending already stays as it is
+  kill(-child, SIGKILL);  // the status of a child that has already ended stays the same
   const int status = wait_for(child);
   if (got == Read::late) return {"", "not done after " + std::to_string(seconds) + " s", true};
   if (got == Read::ended) return {"", crash_text(status)};

@@ -1,4 +1,4 @@
-// Runs code that may crash in a process of its own.
+// Runs code that may crash in a child process.
 #pragma once
 
 #include <functional>
@@ -8,14 +8,15 @@ namespace evodevo {
 
 /// How a child process ended.
 struct ChildEnd {
-  std::string text;        ///< what the work returned
-  std::string crash;       ///< how the process ended instead, such as "Segmentation fault"; empty where work returned
-  bool timed_out = false;  ///< whether it had to be ended
+  std::string text;        ///< result of the work; empty if it did not return
+  std::string crash;       ///< what ended the work, such as "Segmentation fault"; empty if it returned
+  bool timed_out = false;  ///< whether the work took too long
 };
 
-/// Runs `work` in a copy of this process, which it can neither change nor bring down. What it prints is dropped. It is
-/// ended after `seconds`, and with it what it has started; so it is where this process ends. Throws std::system_error
-/// where no process can be made.
+/// Runs `work` in a child process that is a copy of this one, so that `work` can neither change nor crash this process.
+/// What the child prints is dropped. The child is killed after `seconds` s, or when this process ends. Once its work is
+/// done or it is killed, processes that it has started are killed too. Throws std::system_error if no child process can
+/// be made.
 ChildEnd in_child(const std::function<std::string()>& work, unsigned seconds);
 
 }  // namespace evodevo

@@ -1,6 +1,6 @@
 #include "operators/loader.hpp"
 
-#define XXH_INLINE_ALL  // from the header alone, so that no library is needed at run time
+#define XXH_INLINE_ALL  // uses only the header, so that no library is needed at run time
 #include <fmt/format.h>
 #include <xxhash.h>
 
@@ -29,7 +29,8 @@ constexpr std::string_view suffix = ".evodevo.so";
 constexpr unsigned seconds_to_load = 30;
 constexpr std::size_t longest_reason = 2000;
 
-/// Opened libraries are never closed: objects and type information of theirs may live anywhere in the process.
+/// The libraries in use. They are never closed, because any part of the process may hold their objects and type
+/// information.
 std::deque<boost::dll::shared_library>& open_libraries() {
   static std::deque<boost::dll::shared_library> libraries;
   return libraries;
@@ -42,7 +43,7 @@ std::deque<boost::dll::shared_library>& open_libraries() {
          "; rebuild the plugin against this evodevo with the same compiler");
 }
 
-/// The loader's own sentence. Boost appends the description of an unrelated errno, which misleads.
+/// Returns the dynamic linker's own message. Boost appends the text of an unrelated errno, which would mislead.
 std::string loader_sentence(const boost::dll::fs::system_error& error) {
   std::string text = error.what();
   const auto noise = text.rfind(": ");
@@ -63,7 +64,9 @@ boost::dll::shared_library open(const fs::path& file) {
            (lacks ? "; link it with all that it uses (-Wl,-z,defs tells what is missing)"
                   : "; build it for this system, or remove it"));
   } catch (const std::exception& error) {
-    throw std::logic_error(error.what());  // of a static object, through the dynamic linker, which knows no exceptions
+    // A static object threw this through the dynamic linker, which does not support exceptions. The check in
+    // crash_of_loading() does not catch a logic_error, so that it counts as a crash.
+    throw std::logic_error(error.what());
   }
   return library;
 }
@@ -75,7 +78,7 @@ const PluginManifest* read_manifest(const boost::dll::shared_library& library, c
     refuse(std::string("has no function ") + entry_symbol + "; end one of its sources with EVODEVO_PLUGIN(...)");
   }
   EntryFunction& entry = library.get<EntryFunction>(entry_symbol);
-  // a library that merely links a plugin finds the plugin's entry as if it were its own
+  // if a library links a plugin, the linker also finds the plugin's entry function in that library
   const fs::path home = boost::dll::symbol_location_ptr(&entry);
   if (!fs::equivalent(home, file)) {
     refuse(std::string("has no function ") + entry_symbol + " of its own, only that of " + home.string() +
@@ -88,7 +91,8 @@ void check_given(const std::string& what, const char* text) {
   if (text == nullptr || *text == '\0') refuse(what + " is missing; say it in EVODEVO_PLUGIN(...)");
 }
 
-/// Refuses a manifest that this host may not read on. The order matters: each line vouches for the next.
+/// Throws std::runtime_error if a manifest does not fit this host. The order matters: each check makes it safe to read
+/// the fields that the next checks need.
 void check_manifest(const PluginManifest* manifest) {
   const auto text = [](const char* given) { return given != nullptr ? given : "nothing"; };
   if (manifest == nullptr || manifest->magic != plugin_magic) {
@@ -116,12 +120,12 @@ std::string title(const OperatorEntry& entry) {
   return std::string("its ") + entry.kind + " operator \"" + entry.name + "\"";
 }
 
-/// What the operators say of themselves is printed, recorded and put on pages.
+/// Throws std::runtime_error if `text` could not be printed, recorded and put on pages unchanged.
 void check_text(const std::string& title, std::string_view text) {
   if (const std::string fault = text_fault(text); !fault.empty()) refuse(title + " " + fault + "; correct it");
 }
 
-/// Whether an object is of the class that its kind says.
+/// Whether `op` is an object of the class that belongs to `kind`.
 bool is_of_kind(const Operator* op, std::string_view kind) {
   const auto is_a = [&]<class T>(const T*) { return kind == T::kind && dynamic_cast<const T*>(op) != nullptr; };
   return is_a(static_cast<Encoding*>(nullptr)) || is_a(static_cast<Mutation*>(nullptr)) ||
@@ -165,7 +169,7 @@ void check_entry(const OperatorEntry& entry, const OperatorTitle* named) {
            "\", which is a key of the host's own in every operator's table; rename the parameter");
 }
 
-/// The operators of an opened library.
+/// Returns the operators of an opened library. Throws std::runtime_error if the library or one of them is faulty.
 std::span<const OperatorEntry> checked_entries(const boost::dll::shared_library& library, const fs::path& file) {
   const PluginManifest* manifest = read_manifest(library, file);
   check_manifest(manifest);
@@ -177,7 +181,7 @@ std::span<const OperatorEntry> checked_entries(const boost::dll::shared_library&
   return entries;
 }
 
-/// How loading the files ends a process; empty where it survives.
+/// Loads the files in a child process. Returns what crashed the child; empty if nothing did.
 std::string crash_of_loading(std::span<const fs::path> files) {
   const auto load_and_forget = [&] {
     for (const fs::path& file : files) {
@@ -185,7 +189,7 @@ std::string crash_of_loading(std::span<const fs::path> files) {
         const boost::dll::shared_library library = open(file);
         checked_entries(library, file);
       } catch (const std::runtime_error&) {
-        // whoever loads it for good gets the same and can report it
+        // Registry::load() gets the same error in this process and reports it
       }
     }
     return std::string();
@@ -226,7 +230,7 @@ std::vector<fs::path> Registry::libraries_at(const fs::path& path) {
 }
 
 void Registry::load_all(const std::vector<fs::path>& files) {
-  // a library that this process has loaded already cannot crash it by being loaded
+  // libraries that a child has loaded without a crash; they need no further trial
   static std::set<fs::path> survived;
   std::vector<fs::path> unknown;
   for (const fs::path& file : files)
@@ -249,7 +253,7 @@ void Registry::load_all(const std::vector<fs::path>& files) {
 void Registry::load(const fs::path& file) {
   std::error_code error;
   const auto here = [&](const AvailableOperator& known) { return fs::equivalent(known.file, file, error); };
-  if (std::any_of(operators_.begin(), operators_.end(), here)) return;  // two paths lead to it
+  if (std::any_of(operators_.begin(), operators_.end(), here)) return;  // loaded already by another path
   boost::dll::shared_library library = open(file);
   const auto entries = checked_entries(library, file);
   const PluginManifest* manifest = read_manifest(library, file);

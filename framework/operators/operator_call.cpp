@@ -15,13 +15,13 @@
 namespace evodevo {
 namespace {
 
-/// A stack for handlers of signals, for when the thread's own has no room left.
+/// Bytes of the alternate stack of signal handlers, which they need if a thread's own stack has overflowed.
 constexpr std::size_t handler_stack_size = 1 << 16;
 
 /// What a thread is calling, readable from other threads and from signal handlers. There is no lock, since the process
 /// may fork at any time and a signal handler may interrupt the thread anywhere.
 struct Slot {
-  std::atomic<std::uint64_t> version = 0;  ///< odd while the rest is being written
+  std::atomic<std::uint64_t> version = 0;  ///< odd while the other members are being written
   std::atomic<const OperatorTitle*> title = nullptr;
   std::atomic<std::int64_t> individual = CallSubject::none, cycle = CallSubject::none, seed = CallSubject::none;
 
@@ -46,7 +46,7 @@ struct Slot {
   }
 };
 
-/// Slots are never freed: those of threads that have ended go to new ones.
+/// The list of all slots. Slots are never freed; a new thread takes the slot of one that has ended.
 std::atomic<Slot*> slots = nullptr;
 thread_local Slot* slot_of_thread = nullptr;
 
@@ -71,7 +71,7 @@ const char* find_lowest_of_stack() {
   return static_cast<const char*>(lowest);
 }
 
-/// A thread's slot, from its first call on.
+/// Holds a thread's slot from its first call of an operator until the thread ends.
 class SlotOfThread {
  public:
   SlotOfThread() : slot_(free_slot()) {
@@ -79,13 +79,13 @@ class SlotOfThread {
     stack_t stack{}, present{};
     stack.ss_sp = slot_.handler_stack.get();
     stack.ss_size = handler_stack_size;
-    // a sanitizer has given the thread one already, which it will take away itself
+    // if a sanitizer has set an alternate stack already, it will also remove that stack itself
     sigaltstack(nullptr, &present);
     gives_stack_ = (present.ss_flags & SS_DISABLE) != 0 && sigaltstack(&stack, nullptr) == 0;
     slot_of_thread = &slot_;
   }
   ~SlotOfThread() {
-    if (slot_.get().title != nullptr) return;  // exit() in an operator, which is yet to be named
+    if (slot_.get().title != nullptr) return;  // an operator called exit(), and its name is still needed
     slot_of_thread = nullptr;
     stack_t none{};
     none.ss_flags = SS_DISABLE;

@@ -1,4 +1,5 @@
-// Calls of operators' own code: known to whoever has to name them, and without effect on the rest of the program.
+// Calls of operators' code. Error messages can name the call in which a thread is. Settings of the program that a call
+// changes are restored after the call.
 #pragma once
 
 #include <cstdint>
@@ -11,48 +12,50 @@
 
 namespace evodevo {
 
-/// How messages call an operator, or a library.
+/// The name of an operator, or of a library, in messages.
 struct OperatorTitle {
-  std::string whole;  ///< such as: devo operator "erosion" of /home/me/erosion.evodevo.so
+  std::string whole;  ///< full name, such as: devo operator "erosion" of /home/me/erosion.evodevo.so
   std::string file;
 };
 
-/// A title that stays where it is until the process ends: handlers of signals and other threads may look at it late.
+/// Returns a title that stays valid until the process ends, because signal handlers and other threads may read it at
+/// any time.
 const OperatorTitle* lasting_title(std::string_view kind, std::string_view name, const std::string& file);
 
-/// For whom an operator is called.
+/// The individual, and the cycle of its life, for which an operator is called.
 struct CallSubject {
   static constexpr std::int64_t none = -1;
   std::int64_t individual = none, cycle = none;
 };
 
-/// A call of an operator's own code.
+/// A call of an operator's code.
 struct OperatorCall {
-  const OperatorTitle* title = nullptr;  ///< nullptr: the operator is no library's
+  const OperatorTitle* title = nullptr;  ///< nullptr if the operator is not from a library
   CallSubject subject = {};
-  std::int64_t seed = CallSubject::none;  ///< of the experiment
-  std::string_view kind = {};             ///< of an operator without a title; not known to those who look on
+  std::int64_t seed = CallSubject::none;  ///< seed of the experiment
+  std::string_view kind = {};             ///< kind of an operator without a title; empty in what current_call() returns
 };
 
-/// "devo operator "erosion" of FILE, individual 5, cycle 3, seed 7", as far as it is known.
+/// Returns a text such as: devo operator "erosion" of FILE, individual 5, cycle 3, seed 7. Unknown parts are left out.
 std::string text_of(const OperatorCall& call);
 
 class Line;
 Line& operator<<(Line& line, const OperatorCall& call);
 
-/// What this thread is calling; without a title outside of operators. May be asked in a handler of signals.
+/// The call that this thread is in; it has no title if the thread is in no operator's code. A signal handler may call
+/// this function.
 OperatorCall current_call();
 
-/// What all threads are calling at this moment. `see(thread, number, call)`: calls with equal numbers of one thread are
-/// one and the same.
+/// Calls `see(thread, number, call)` for each thread that is in an operator's code at this moment. `thread` and
+/// `number` together identify the call.
 void for_each_call(const std::function<void(const void*, std::uint64_t, const OperatorCall&)>& see);
 
-/// Where this thread's stack ends, towards which it grows; nullptr before its first call. May be asked in a handler of
-/// signals.
+/// The lowest address of this thread's stack, towards which the stack grows; nullptr before the thread's first call of
+/// an operator. A signal handler may call this function.
 const char* lowest_of_stack();
 
-/// While it lives, this thread is in the code of an operator. When it goes it puts back what that code has changed of
-/// the program's surroundings, and says so on stderr, once for each operator.
+/// While this object exists, its thread counts as being in the code of an operator. The destructor restores what that
+/// code has changed of the program's Surroundings. It warns of each such change on stderr, once for each operator.
 class InOperator {
  public:
   explicit InOperator(const OperatorCall& call);
@@ -65,7 +68,8 @@ class InOperator {
   Surroundings surroundings_;
 };
 
-/// Calls the own code of an operator. Whatever it throws comes out as a std::exception.
+/// Calls an operator's code. If the code throws something that is not a std::exception, throws std::runtime_error
+/// instead.
 template <class Call>
 decltype(auto) in_operator(const OperatorCall& whose, const Call& call) {
   const InOperator guard(whose);

@@ -1,4 +1,4 @@
-// Operators in use: what is recorded of them, and who is blamed for what they throw.
+// The operators that an experiment uses: what a run records about them, and errors that name the operator at fault.
 #pragma once
 
 #include <filesystem>
@@ -13,15 +13,15 @@ namespace evodevo {
 struct OperatorUse {
   std::string kind, name, version;
   std::filesystem::path file;
-  std::string hash;                      ///< of the file
-  const OperatorTitle* title = nullptr;  ///< nullptr in a record
+  std::string hash;                      ///< hash of the file
+  const OperatorTitle* title = nullptr;  ///< nullptr if read from the record of a run
 };
 
-/// Throws std::runtime_error that names the call and `what`, and the remedy.
+/// Throws a std::runtime_error whose message names the call, says `what` went wrong, and gives a remedy.
 [[noreturn]] void blame_operator(const OperatorCall& call, const std::string& what);
 
-/// Calls the own code of an operator, and blames it for what it throws. All such calls go through here, or, while an
-/// experiment is being read, through in_operator().
+/// Calls an operator's code. If the code throws an exception, throws one that names the operator (blame_operator())
+/// instead. All calls of operators go through this function or, while an experiment is read, through in_operator().
 template <class Call>
 decltype(auto) call_operator(const OperatorCall& whose, const Call& call) {
   try {

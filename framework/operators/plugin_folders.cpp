@@ -12,14 +12,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where a variable of the environment leads; one that is relative would lead anywhere.
+/// The path in an environment variable; none if the variable is not set or the path is relative.
 std::optional<fs::path> place_in(const char* variable) {
   const char* text = std::getenv(variable);
   if (text == nullptr || !fs::path(text).is_absolute()) return std::nullopt;
   return fs::path(text);
 }
 
-/// One name for each folder, whatever links lead there; empty where it is not there.
+/// The canonical path of a folder, with all symbolic links resolved; empty if the folder does not exist.
 fs::path real_place(const fs::path& folder) {
   std::error_code error;
   fs::path path = fs::canonical(folder, error);
@@ -60,7 +60,7 @@ std::string remember_plugin_folders(const std::vector<fs::path>& folders) {
   std::error_code error;
   fs::create_directories(memory.parent_path(), error);
   std::ofstream stream(memory, std::ios::app);
-  stream << lines << std::flush;  // at once, so that runs that begin together do not mix their lines
+  stream << lines << std::flush;  // in one write, so that runs that begin at the same time do not mix their lines
   return stream ? "" : memory.string() + " cannot be written";
 }
 

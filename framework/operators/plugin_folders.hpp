@@ -1,5 +1,5 @@
-// The folders from which the record of a run may load code. A record that comes from elsewhere must not make the
-// program run the code that lies beside it.
+// The folders of operators that the user trusts. The record of a run names folders to load operators from. If somebody
+// else made the record, it must not make the program run code that came with it.
 #pragma once
 
 #include <filesystem>
@@ -8,18 +8,18 @@
 
 namespace evodevo {
 
-/// The file in which the folders are remembered, one a line: plugin-folders in $XDG_STATE_HOME/evodevo or else in
-/// ~/.local/state/evodevo. Empty where neither variable names a place.
+/// The file in which the program remembers these folders, one per line: plugin-folders in $XDG_STATE_HOME/evodevo, or
+/// else in $HOME/.local/state/evodevo. Empty if neither variable holds an absolute path.
 std::filesystem::path plugin_memory();
 
 /// The folders and libraries with which this user has run experiments.
 std::vector<std::filesystem::path> remembered_plugin_folders();
 
-/// Adds to them what is there. Returns what kept it from that; empty where nothing did.
+/// Adds the existing folders among `folders` to the remembered ones. Returns why that failed; empty if it succeeded.
 std::string remember_plugin_folders(const std::vector<std::filesystem::path>& folders);
 
-/// Whether the user has named this folder or library: as one of `given`, in EVODEVO_PLUGIN_PATH, or in an experiment
-/// that was run.
+/// Whether the user has named this folder or library: it is one of `given`, it is in EVODEVO_PLUGIN_PATH, or the user
+/// has run an experiment with it.
 bool is_named_by_user(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& given);
 
 }  // namespace evodevo

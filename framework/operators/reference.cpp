@@ -3,7 +3,7 @@
 namespace evodevo {
 namespace {
 
-/// One line of a table; a bar within a cell would end it.
+/// One row of a table. Bars within cells are escaped, because a bar ends a cell.
 std::string row(std::initializer_list<std::string> cells) {
   std::string line = "|";
   for (const std::string& cell : cells) {
@@ -48,7 +48,7 @@ std::string reference_page(const Registry& registry) {
     for (const AvailableOperator& available : registry.operators())
       if (available.entry->kind == kind) page += reference_of(available, 3);
   }
-  page.pop_back();  // one newline ends the file
+  page.pop_back();  // the page ends with one newline
   return page;
 }
 

@@ -1,4 +1,4 @@
-// The reference of operators as a Markdown page, made from what they declare.
+// Writes the reference of operators, a Markdown page, from what the operators declare.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 namespace evodevo {
 
 std::string heading_text(int level, const std::string& text);
-/// A table with a row for each parameter; its first column is called `what`.
+/// A table with one row for each parameter. `what` is the heading of its first column.
 std::string parameter_table(const std::vector<ParameterDescription>& parameters, const std::string& what);
 /// One operator: its summary and the table of its parameters, under a heading of the given level.
 std::string reference_of(const AvailableOperator& available, int heading);
-/// All operators, by kind.
+/// The whole page: all operators, grouped by kind.
 std::string reference_page(const Registry& registry);
 
 }  // namespace evodevo

@@ -14,9 +14,9 @@
 namespace evodevo {
 namespace {
 
-// on x86 the two units for floating point have a register of control each, which are read in a nanosecond
+// x86 has two floating-point units, SSE and x87. Each has a control register, and reading both takes about 1 ns.
 #if defined(__x86_64__)
-constexpr std::uint32_t flags = 0x003f;  // of MXCSR: what has happened, no matter to anybody
+constexpr std::uint32_t flags = 0x003f;  // exception flags in MXCSR, which the program does not use
 constexpr std::uint32_t rounding = 0x6000, flushing = 0x8040, rounding_x87 = 0x0c00;
 
 std::uint32_t vector_control() { return _mm_getcsr() & ~flags; }
@@ -38,7 +38,7 @@ std::uint32_t scalar_control() { return 0; }
 void set_controls(std::uint32_t vector, std::uint32_t) { std::fesetround(static_cast<int>(vector)); }
 #endif
 
-/// The locale in which the program began, which it never changes.
+/// The locale at the start of the program. The program itself never changes it.
 struct Locale {
   std::string c = std::setlocale(LC_ALL, nullptr);
   std::locale cpp;

@@ -1,4 +1,5 @@
-// What every part of the program relies on, and a library could change for all of them.
+// Settings on which the whole program relies and which the code of any library can change: those of floating-point
+// arithmetic, and the locale.
 #pragma once
 
 #include <clocale>
@@ -7,12 +8,14 @@
 
 namespace evodevo {
 
-/// How this thread rounds and traps, and the locale, as they were when the object was made.
+/// The settings at the time when the object was made: this thread's rounding, flush-to-zero and traps of floating-point
+/// arithmetic, and the locale.
 class Surroundings {
  public:
   Surroundings();
 
-  /// Puts back what has changed since and says what it was, such as "the rounding mode"; empty where nothing has.
+  /// Restores the settings that have changed since. Returns their names, such as "the rounding mode"; empty if none has
+  /// changed.
   std::string restore() const {
     if (same_arithmetic() && same_locale()) [[likely]]
       return {};

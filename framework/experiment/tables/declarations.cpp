@@ -13,7 +13,7 @@ inline constexpr std::array<std::string_view, 2> names_of<Materials>{"table", "c
 
 namespace {
 
-/// What a fixed step is to a body that cannot bear it.
+/// What happens to a body for which a fixed dt is too long: it is invalid, or it is simulated all the same.
 enum class Unstable { invalid, run };
 
 }  // namespace

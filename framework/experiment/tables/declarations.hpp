@@ -1,5 +1,5 @@
-// What each table of an experiment holds: its keys, their ranges, units and one sentence each. Readers and writers of
-// settings are handed to these.
+// The keys of each table of an experiment, with their ranges, units and one sentence each. Every function here declares
+// the keys of one table to a visitor, which may read, write or describe them.
 #pragma once
 
 #include "experiment/settings.hpp"
@@ -8,12 +8,12 @@
 namespace evodevo {
 
 void declare_run(SettingsVisitor& visitor, Settings& settings);           ///< [experiment]
-void declare_mass(SettingsVisitor& visitor, Settings& settings);          ///< the host's part of [encoding]
-void declare_accuracy(SettingsVisitor& visitor, Settings& settings);      ///< the part of [simulation] to read first
-void declare_simulation(SettingsVisitor& visitor, Settings& settings);    ///< the rest of it
-void declare_development(SettingsVisitor& visitor, Settings& settings);   ///< [development] but for its operators
-void declare_schedule(SettingsVisitor& visitor, Schedule& schedule);      ///< the host's part of a devo operator
-void declare_probability(SettingsVisitor& visitor, double& probability);  ///< the host's part of a variation
+void declare_mass(SettingsVisitor& visitor, Settings& settings);          ///< the host's key in [encoding]
+void declare_accuracy(SettingsVisitor& visitor, Settings& settings);      ///< key of [simulation] to read first
+void declare_simulation(SettingsVisitor& visitor, Settings& settings);    ///< other keys of [simulation]
+void declare_development(SettingsVisitor& visitor, Settings& settings);   ///< [development] without its operators
+void declare_schedule(SettingsVisitor& visitor, Schedule& schedule);      ///< the host's keys of a devo operator
+void declare_probability(SettingsVisitor& visitor, double& probability);  ///< the host's key of a variation operator
 
 void declare(SettingsVisitor& visitor, Material& material);  ///< [materials.NAME]
 void declare(SettingsVisitor& visitor, Gravity& gravity);    ///< [scene.gravity], and so on
@@ -23,7 +23,7 @@ void declare(SettingsVisitor& visitor, Damping& damping);
 void declare(SettingsVisitor& visitor, Drag& drag);
 void declare(SettingsVisitor& visitor, Payload& payload);
 
-/// Calls `use(name, force)` for each part of a scene, with the std::optional that holds it.
+/// Calls `use(name, part)` for each part of a scene. `part` is the std::optional that holds it.
 template <class AnySettings, class Use>
 void for_each_force(AnySettings& settings, const Use& use) {
   use("gravity", settings.scene.gravity);

@@ -7,7 +7,7 @@
 namespace evodevo {
 namespace {
 
-/// Refuses cycles that are too short for a tally.
+/// Throws ConfigError if a cycle is too short for a tally.
 void check_skip(const TomlReader& t, const Settings& settings) {
   const DevelopmentSettings& development = settings.development;
   if (development.probe != Probe::skip_shift || !settings.step.fixed()) return;

@@ -36,7 +36,7 @@ void OperatorFactory::write(const TomlReader& table, Operator& op, TomlWriter& w
 
 namespace {
 
-/// Reads the tables of the operators one after the other.
+/// Reads the tables of operators one after the other.
 class OperatorTables {
  public:
   OperatorTables(TomlReader& top, const OperatorFactory& factory, Experiment& experiment, toml::table& record)
@@ -60,7 +60,7 @@ class OperatorTables {
  private:
   const std::vector<std::string>* materials() const { return &out_.context.material_names; }
 
-  /// The table [name], and what is recorded of it.
+  /// Calls `read` for the table [name], and adds the table to the record.
   template <class Read>
   void read_one(std::string_view name, const Read& read) {
     TomlWriter writer;
@@ -69,8 +69,7 @@ class OperatorTables {
     record_.insert_or_assign(name, writer.take());
   }
 
-  /// Calls `read` for each table of the array [[name]] in `parent`, and adds what is recorded of these tables to
-  /// `record`.
+  /// Calls `read` for each table of the array [[name]] in `parent`, and adds these tables to `record`.
   template <class Read>
   void read_array(TomlReader& parent, std::string_view name, toml::table& record, const Read& read) {
     toml::array written;
@@ -145,7 +144,7 @@ class OperatorTables {
                               "or take an encoding that has it");
   }
 
-  /// When a devo operator is applied; by default after every cycle.
+  /// Reads the schedule of a devo operator; by default the operator is applied after every cycle.
   Schedule read_schedule(TomlReader& t) {
     const std::int64_t cycles = out_.development.cycles;
     Schedule schedule;
@@ -158,7 +157,8 @@ class OperatorTables {
     return schedule;
   }
 
-  /// Refuses what tallies do not tell.
+  /// Throws ConfigError if an operator asks for more than stress and the probe is skip-shift, whose tallies only
+  /// estimate stress.
   void check_request(const TomlReader& t, const SpringRequest& request) const {
     if (out_.development.probe == Probe::skip_shift && (request.peak_force || request.muscle_work || request.tension))
       t.fail("name",
@@ -179,9 +179,9 @@ class OperatorTables {
     out_.fitness.push_back(std::move(fitness));
   }
 
-  /// Refuses windows that no body can live through.
+  /// Throws ConfigError if the settling time or the window of a fitness operator is out of range.
   static void check_request(const TomlReader& t, const Request& request) {
-    constexpr double longest = 1e6;  // s, as of a cycle
+    constexpr double longest = 1e6;  // s, the same limit as for the time of a cycle
     const auto text = [](double time) { return std::isfinite(time) ? to_text(time) + " s" : "no finite number"; };
     // written so that NaN fails
     if (!(request.settle >= 0 && request.settle <= longest) || !(request.window > 0 && request.window <= longest))

@@ -11,15 +11,15 @@
 
 namespace evodevo {
 
-/// Makes the operators that tables name, and fills them with the tables' parameters. Registry and experiment must
-/// outlive it. All that it makes it adds to the experiment's uses.
+/// Makes the operators that tables name, sets their parameters from the tables, and adds each to Experiment::uses.
+/// Registry and experiment must outlive this object.
 class OperatorFactory {
  public:
-  /// `registry_faults` describes the libraries that cannot be used.
+  /// `registry_faults` are the warnings about libraries that cannot be used.
   OperatorFactory(const Registry& registry, const Warnings& registry_faults, Experiment& experiment)
       : registry_(registry), registry_faults_(registry_faults), experiment_(experiment) {}
 
-  /// The operator that a table's `name` asks for. What the host itself knows of the table has to be read before.
+  /// Makes the operator that the key `name` of a table names. The host's own keys of the table must be read before.
   template <class T>
   std::unique_ptr<T> make(TomlReader& table) const {
     const AvailableOperator& available = named_in(table, T::kind);
@@ -31,7 +31,8 @@ class OperatorFactory {
     });
   }
 
-  /// Runs the own code of the operator that was made last; what it objects to is reported at its name.
+  /// Runs code of the operator that was made last. If the code throws, throws ConfigError with the place of the key
+  /// `name`.
   template <class Call>
   auto ask(const TomlReader& table, const Call& call) const {
     try {
@@ -43,7 +44,7 @@ class OperatorFactory {
     }
   }
 
-  /// Adds the name and the parameters of the operator that was made last to what is recorded of its table.
+  /// Writes the name and the parameters of the operator that was made last to the record of its table.
   void write(const TomlReader& table, Operator& op, TomlWriter& writer) const;
 
  private:
@@ -54,7 +55,8 @@ class OperatorFactory {
   Experiment& experiment_;
 };
 
-/// Reads the tables of operators into an experiment that has its settings. What it has read it writes into `record`.
+/// Reads the tables of operators into an experiment whose settings have been read. Writes these tables, with every
+/// default, into `record`.
 void read_operators(TomlReader& top, const OperatorFactory& factory, Experiment& experiment, toml::table& record);
 
 }  // namespace evodevo

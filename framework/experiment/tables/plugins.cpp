@@ -11,14 +11,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// In an experiment, whose paths are relative to its folder.
+/// Checks a path that an experiment's file names. It is relative to the folder of the file.
 NamedPath path_in_experiment(const fs::path& named, const ExperimentSource& source) {
   const fs::path path = fs::absolute(source.file).parent_path() / named;
   if (is_plugin_path(path)) return {path, ""};
   return {path, path.lexically_normal().string() + " is no folder and no library of operators"};
 }
 
-/// In the record of a run, where they are absolute. Whoever made the record does not decide what code runs here.
+/// Checks a path that the record of a run names. It must be absolute, and the user must have named it, because the
+/// maker of a record must not decide which code runs here.
 NamedPath path_in_record(const fs::path& named, const ExperimentSource& source) {
   if (!named.is_absolute())
     return {named, named.string() +

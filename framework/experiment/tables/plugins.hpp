@@ -1,4 +1,4 @@
-// [plugins]: where an experiment looks for its operators.
+// The table [plugins], which names the folders of an experiment's operators.
 #pragma once
 
 #include <filesystem>
@@ -9,23 +9,24 @@
 
 namespace evodevo {
 
-/// A path that [plugins] names, and why it is not looked at; empty where it is.
+/// A path that [plugins] names.
 struct NamedPath {
   std::filesystem::path path;
-  std::string fault;
+  std::string fault;  ///< why it is not searched; empty if it is
 };
 
 class PluginsTable {
  public:
   PluginsTable(const toml::table& root, const ExperimentSource& source);
 
-  /// Where operators are looked for: in the paths of the table, then in those of the command line and of the
-  /// environment, then in the program's own folder.
+  /// The paths to search for operators, in this order: those of the table, those of the command line, those of the
+  /// environment, and the program's own folder.
   const std::vector<std::filesystem::path>& search_path() const { return search_path_; }
   /// The part of the search path that a record stores, so that the run can be resumed without the options and the
   /// environment that it was started with: everything except the program's own folder.
   std::vector<std::filesystem::path> recorded_path(const TomlReader& top) const;
-  /// Refuses paths that are not looked at; of those of a record, warns.
+  /// Throws ConfigError if a path of the table is faulty; if the experiment is the record of a run, adds a warning
+  /// instead.
   void check(TomlReader& top, Warnings& warnings) const;
 
  private:

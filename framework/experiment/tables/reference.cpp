@@ -14,7 +14,7 @@ class SettingsDescriber final : public Describer<SettingsVisitor> {
   }
 };
 
-/// One table: its name as a page writes it, one sentence, and the keys that `declare_keys` declares.
+/// The section of one table: its name in Markdown, one sentence, and the keys that `declare_keys` declares.
 template <class DeclareKeys>
 std::string section(const std::string& name, const std::string& sentence, const DeclareKeys& declare_keys) {
   SettingsDescriber describer;
@@ -22,7 +22,7 @@ std::string section(const std::string& name, const std::string& sentence, const 
   return heading_text(3, name) + sentence + "\n\n" + parameter_table(describer.found, "key");
 }
 
-/// A table whose keys are the members of one object, which has its defaults.
+/// The section of a table whose keys are the members of one object. The defaults are those of a new object.
 template <class Object>
 std::string section_of(const std::string& name, const std::string& sentence) {
   return section(name, sentence, [](SettingsVisitor& v) {
@@ -44,7 +44,7 @@ std::string section_of_scene() {
 
 std::string experiment_reference() {
   Settings s;
-  s.development.cycles = 100;  // which a table [development] without this key stands for
+  s.development.cycles = 100;  // the default of this key in a table [development]
   Schedule schedule;
   double probability = Varied<Mutation>().probability;
   std::string text;

@@ -1,12 +1,12 @@
-// The reference of an experiment's tables and keys, made from what they declare.
+// Writes the reference of an experiment's tables and keys from their declarations.
 #pragma once
 
 #include <string>
 
 namespace evodevo {
 
-/// A section of a Markdown page: every table that holds settings, each with its keys. The parameters of operators are
-/// in the reference of operators.
+/// Returns a section of a Markdown page: all tables that hold settings, with their keys. The parameters of operators
+/// are in the reference of operators (operators/reference.hpp).
 std::string experiment_reference();
 
 }  // namespace evodevo

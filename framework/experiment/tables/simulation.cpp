@@ -9,7 +9,8 @@
 namespace evodevo {
 namespace {
 
-/// Refuses a dt that the floor, or a single spring, could not bear, or at which a muscle could not be seen.
+/// Throws ConfigError if dt is too long for contact with the floor, for a single spring, or to sample the actuation of
+/// a muscle.
 void check_step(const TomlReader& t, const Settings& settings) {
   const double mass = settings.mass, dt = *settings.step.fixed();
   const Method method = settings.stepping.method;

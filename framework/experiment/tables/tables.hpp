@@ -1,4 +1,5 @@
-// Readers of the tables that hold an experiment's settings, one for each. They take the reader of the whole file.
+// Functions that read the tables of an experiment's settings, one function for each table. Unless said otherwise, they
+// take the reader of the whole file.
 #pragma once
 
 #include <string>
@@ -9,11 +10,11 @@
 
 namespace evodevo {
 
-/// What does not keep an experiment from running, but may not be meant.
+/// Warnings for the user, about settings that are allowed but may be unintended and libraries that cannot be used.
 using Warnings = std::vector<std::string>;
 
-/// Lets `read` take what it knows from the table [name] of `parent`, then refuses the rest. Refuses a file without a
-/// table that is `required`.
+/// Calls `read` with a reader of the table [name] of `parent`; does nothing if the table is absent. Throws ConfigError
+/// if the table is `required` and absent, or if it has a key that `read` has not read.
 template <class Read>
 void read_table(TomlReader& parent, std::string_view name, bool required, const Read& read,
                 const std::vector<std::string>* materials = nullptr) {
@@ -28,22 +29,22 @@ void read_table(TomlReader& parent, std::string_view name, bool required, const 
 void read_materials(TomlReader& top, Settings& settings, Warnings& warnings);
 void read_scene(TomlReader& top, Settings& settings);
 
-/// Whether the bodies of an experiment are grown by its own encoding, in which case dt must suit the experiment's
-/// masses and materials. A body that is given from elsewhere is judged by itself.
+/// Where the bodies of an experiment come from. The experiment's own encoding makes `grown` bodies; dt is then checked
+/// for the experiment's masses and materials. A `given` body comes from a file; dt is checked for that body later.
 enum class Bodies { grown, given };
-/// To be read after masses and materials.
+/// Reads [simulation]. To be called after the mass, the materials and the scene have been read.
 void read_simulation(TomlReader& top, Settings& settings, Bodies bodies);
 
-/// [development] but for its operators. Takes the reader of that table; to be read after [simulation].
+/// Reads [development] without its operators. Takes the reader of that table. To be called after read_simulation().
 void read_development(TomlReader& development, Settings& settings);
 
-/// Refuses a duration that is not a whole number of steps of a fixed dt.
+/// Throws ConfigError if StepRule::dt is fixed and a duration (s) is not a whole number of these steps.
 void check_duration(const TomlReader& table, std::string_view name, double duration, const StepRule& step);
 
-/// All tables of `top` that hold settings. Keys that may be those of operators are left to others.
+/// Reads all tables of settings in `top`. Does not check the keys of tables that operators read too.
 Settings read_settings(TomlReader& top, Bodies bodies, Warnings& warnings);
 
-/// The tables of settings, which read back as the same.
+/// Writes the tables of settings. read_settings() reads them back as equal settings.
 toml::table to_toml(Settings settings);
 
 }  // namespace evodevo
