@@ -1,4 +1,4 @@
-// evodevo body: a body out of a run.
+// evodevo body: prints a body of a run as JSON.
 #include <iostream>
 
 #include "commands/commands.hpp"
@@ -10,10 +10,10 @@
 namespace evodevo {
 namespace {
 
-/// A body, or why there is none.
+/// A body, or the reason why there is none.
 struct Shown {
   GivenBody given;
-  std::string failure;  ///< empty where there is a body
+  std::string failure;  ///< empty if there is a body
 };
 
 Shown newborn(const Evaluation& evaluation, const Individual& individual) {

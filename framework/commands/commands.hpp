@@ -28,10 +28,10 @@ Command help_command();
 Command completion_command();
 Command man_command();
 
-/// All of them, in the order in which help lists them.
+/// Returns all commands, in the order in which help lists them.
 const std::vector<Command>& commands();
 
-/// Throws UsageError where there is none of this name.
+/// Returns the command with this name. Throws UsageError if there is none.
 const Command& command_named(std::string_view name);
 
 }  // namespace evodevo

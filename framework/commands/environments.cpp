@@ -1,4 +1,4 @@
-// evodevo environments: the bodies that one genome grows in several scenes, and how far they are from each other.
+// evodevo environments: develops bodies of one genome in several scenes, and compares them.
 #include <fmt/ostream.h>
 
 #include <algorithm>
@@ -81,7 +81,8 @@ Json to_json(const SceneStudy& study) {
   return {{"individual", study.individual}, {"scenes", std::move(scenes)}, {"pairs", std::move(pairs)}};
 }
 
-/// One genome must mean the same in all scenes.
+/// Throws ConfigError if encoding or materials differ from those of the first experiment, because a genome must encode
+/// the same body in all scenes.
 void expect_same_meaning(const Experiment& experiment, const std::string& title, const Experiment& first) {
   if (const auto other = difference(experiment, first, {"encoding", "materials"}); !other.empty())
     throw ConfigError(title + ": " + other + "; the genome would mean another body: make them equal");
@@ -106,15 +107,16 @@ std::vector<Experiment> read_experiments(const std::vector<std::string>& files, 
   return experiments;
 }
 
-/// Of those that an experiment begins with.
+/// Returns one of the random individuals with which an experiment begins.
 Individual random_individual(const Experiment& experiment, std::int64_t id) {
   if (id < 0 || id > std::numeric_limits<std::uint32_t>::max())
     throw UsageError("--individual " + std::to_string(id) + ": expected 0 or more");
   return breed(experiment, {}, 0, static_cast<std::uint32_t>(id), 1).front();
 }
 
-/// Individuals of a run, or else random ones. The experiments get the seed that goes with them, so that development
-/// draws the same random numbers everywhere.
+/// Returns the individuals that the user chose: of a run if --run is given, else random ones. Sets the seed of all
+/// experiments to that of the run or of the first experiment, so that development draws the same random numbers in all
+/// scenes.
 std::vector<Individual> chosen_genomes(std::vector<Experiment>& experiments, const Given& given) {
   const auto ids =
       given.contains("individual") ? given["individual"].as<std::vector<std::int64_t>>() : std::vector<std::int64_t>();
@@ -139,7 +141,7 @@ int environments(const Given& given) {
   const auto starts = given["starts"].as<std::int64_t>();
   if (starts < 1 || starts > 50) throw UsageError("--starts " + std::to_string(starts) + ": expected 1 to 50");
   auto experiments = read_experiments(given["EXPERIMENT.toml"].as<std::vector<std::string>>(), given);
-  std::size_t cycles = std::numeric_limits<std::size_t>::max();  // that all have
+  std::size_t cycles = std::numeric_limits<std::size_t>::max();  // smallest number of cycles of any experiment
   for (const Experiment& experiment : experiments)
     cycles = std::min(cycles, static_cast<std::size_t>(experiment.development.cycles));
   std::vector<SceneStudy> studies;

@@ -1,4 +1,4 @@
-// evodevo help, completion and man: what the declarations of the commands say, in several forms.
+// evodevo help, completion and man: present the declarations of the commands in several forms.
 #include "commands/shell/help.hpp"
 
 #include <iostream>

@@ -1,4 +1,4 @@
-// evodevo life: what development did to a robot, edit by edit.
+// evodevo life: lists all edits that development made to a robot.
 #include <fmt/ostream.h>
 
 #include <cmath>
@@ -49,7 +49,7 @@ Json to_json(const Event& event, const std::vector<Narrated>& operators) {
   return json;
 }
 
-/// The mass or spring, by its numbers.
+/// Returns the name of the mass or spring, with its numbers.
 std::string who(const Event& event) {
   if (event.is_spring()) return "spring " + std::to_string(event.masses[0]) + "-" + std::to_string(event.masses[1]);
   return "mass " + std::to_string(event.masses[0]);
@@ -80,7 +80,7 @@ void print(const Event& event, const std::vector<Narrated>& operators) {
   std::cout << '\n';
 }
 
-/// What is told of an individual of a run, whose life is simulated again.
+/// The report on the life of an individual of a run. The constructor simulates the development again.
 class LifeReport {
  public:
   LifeReport(const Archive& archive, const ArchivedIndividual& individual, const Given& given)
@@ -135,7 +135,7 @@ class LifeReport {
 
   ArchivedIndividual individual_;
   Experiment experiment_;
-  std::vector<Narrated> operators_;  ///< of `experiment_`
+  std::vector<Narrated> operators_;  ///< devo operators of `experiment_`, to which they refer
   Body born_, matured_;
   std::vector<Event> events_;
 };

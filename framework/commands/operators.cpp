@@ -1,4 +1,4 @@
-// evodevo operators and describe: what the operators say of themselves.
+// evodevo operators and describe: list operators, and describe them from their declarations.
 #include <fmt/ostream.h>
 
 #include <iostream>
@@ -42,7 +42,7 @@ void print_description(const AvailableOperator& available) {
   std::cout << "\nfrom " << printable(available.file.string()) << '\n';
 }
 
-/// The kind that --kind names; empty for all.
+/// Returns the value of --kind, or an empty text if it is not given, which stands for all kinds.
 std::string given_kind(const Given& given) {
   if (!given.contains("kind")) return "";
   const auto kind = given["kind"].as<std::string>();

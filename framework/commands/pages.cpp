@@ -1,4 +1,4 @@
-// evodevo report, film and gallery: robots as a page, a film or a picture.
+// evodevo report, film and gallery: show robots on a page, in a film or in a picture.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,7 +32,7 @@ void say_size(const std::string& file, std::size_t bytes, const std::string& opt
   if (verbosity() != Verbosity::quiet) std::cerr << size_note(file, bytes, option);
 }
 
-/// Simulates the cast of a run again and returns the data for the run's page.
+/// Simulates the robots of `cast` again and returns the data of the run for a page.
 Json filmed_run(const Archive& archive, const Experiment& experiment, const Cast& cast, std::size_t budget) {
   const auto simulator = opened_simulator(experiment);
   return timed("simulating robots of " + printable(archive.folder().string()) + " again",
@@ -68,7 +68,8 @@ int report(const Given& given) {
   return 0;
 }
 
-/// A time since birth, s. Throws UsageError.
+/// Returns the value of an option that is a time since birth, s, if given. Throws UsageError if it is negative or not
+/// finite.
 std::optional<double> given_moment(const Given& given, const char* option) {
   if (!given.contains(option)) return std::nullopt;
   const double moment = given[option].as<double>();
@@ -76,7 +77,7 @@ std::optional<double> given_moment(const Given& given, const char* option) {
   throw UsageError(std::string("--") + option + " " + to_text(moment) + ": expected a time since birth, 0 s or later");
 }
 
-/// What of a life is filmed. Throws UsageError where the options do not go together.
+/// Returns the part of a life to show. Throws UsageError if the options contradict each other.
 Shooting given_shooting(const Given& given, bool is_picture) {
   const Shooting shooting{given_moment(given, "at"), given_moment(given, "from"), given_moment(given, "to"),
                           verbosity() == Verbosity::quiet};

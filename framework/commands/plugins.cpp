@@ -1,4 +1,4 @@
-// evodevo new and conform: the project of a plugin, and whether plugins keep to the rules.
+// evodevo new and conform: create the project of a plugin, and check whether plugins obey the rules.
 #include <fmt/ostream.h>
 
 #include <algorithm>
@@ -25,7 +25,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using conformance::Verdict;
 
-/// Beside the program as it is built and as it is installed.
+/// Returns the folder of the template, which has the same place relative to the program in the build folder and in the
+/// installed package.
 fs::path template_folder() {
   const fs::path program = boost::dll::program_location();
   return program.parent_path().parent_path() / "share/evodevo/template";
@@ -40,7 +41,7 @@ std::string checked_kind(const std::string& kind) {
 
 std::string checked_name(const std::string& name) {
   static const std::regex allowed("[a-z][a-z0-9]*([-.][a-z][a-z0-9]*)*");
-  constexpr std::size_t longest = 100;  // bytes; the matcher calls itself for each of them
+  constexpr std::size_t longest = 100;  // bytes; limits the recursion of std::regex_match, one level for each byte
   if (name.size() > longest || !std::regex_match(name, allowed))
     throw UsageError("new " + printable(name) +
                      ": is no name for an operator; expected at most 100 small letters and digits, joined by - or ., "
@@ -48,17 +49,17 @@ std::string checked_name(const std::string& name) {
   return name;
 }
 
-/// The part of an operator's name after the last dot; its words are joined by hyphens.
+/// Returns the part of an operator's name after the last dot. Hyphens separate its words.
 std::string last_part(const std::string& name) { return name.substr(name.rfind('.') + 1); }
 
-/// "mass_turnover" for "my-lab.mass-turnover".
+/// Returns, for example, "mass_turnover" for "my-lab.mass-turnover".
 std::string file_name(const std::string& name) {
   std::string file = last_part(name);
   std::replace(file.begin(), file.end(), '-', '_');
   return file;
 }
 
-/// "MassTurnover" for "my-lab.mass-turnover".
+/// Returns, for example, "MassTurnover" for "my-lab.mass-turnover".
 std::string class_name(const std::string& name) {
   std::istringstream words(last_part(name));
   std::string text;
@@ -69,8 +70,9 @@ std::string class_name(const std::string& name) {
   return text;
 }
 
-/// Keeps the lines that are for the kind: those behind a line such as "@devo@" are for devo operators alone, up to the
-/// next line of this form; behind "@end@" they are for all again.
+/// Returns the lines of a template that apply to one kind of operator. A line such as "@devo@" or "@mutation@@devo@"
+/// begins a section for the kinds that it names. The section ends at the next line of this form. "@end@" begins a
+/// section for all kinds.
 std::string for_kind(std::istream& source, const std::string& kind) {
   static const std::regex section("(@[a-z]+@)+");
   bool wanted = true;
@@ -107,7 +109,7 @@ int create(const Given& given) {
       write_from(template_folder() / file, fs::path(name) / file, kind, name);
     write_from(template_folder() / "operator.cpp", fs::path(name) / (file_name(name) + ".cpp"), kind, name);
   } catch (...) {
-    fs::remove_all(name, error);  // half a project would be in the way of the next attempt
+    fs::remove_all(name, error);  // an incomplete project would make the next attempt fail
     throw;
   }
   remarks() << name << ": a " << kind << " operator in " << file_name(name) << ".cpp; next:\n"
@@ -118,7 +120,7 @@ int create(const Given& given) {
 void print(const Verdict& verdict) {
   fmt::print(std::cout, "{:<8} {:<28} {}{}{}\n", verdict.outcome, verdict.subject, verdict.name,
              verdict.reason.empty() ? "" : ": ", printable(verdict.reason, 2000));
-  std::cout << std::flush;  // a child that crashes next must not say it again
+  std::cout << std::flush;  // before the next fork, so that the child process does not print the line again
 }
 
 bool is_good(const Verdict& verdict) { return verdict.outcome == "passed" || verdict.outcome == "skipped"; }
@@ -184,7 +186,7 @@ Command conform_command() {
       .examples = {"conform build/lib/evodevo/growth.evodevo.so"},
       .options = options,
       .function = conform,
-      .watches_operators = false};  // each case has a time limit in a process of its own
+      .watches_operators = false};  // because each case runs in a process of its own with a time limit
 }
 
 }  // namespace evodevo

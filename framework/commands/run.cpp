@@ -28,8 +28,8 @@ constexpr int interrupted = 130;
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
 
-/// The first Ctrl-C asks for a stop after the generation under way, or ends the process where an operator does not
-/// return; the second ends the process at once. Neither loses anything that is committed.
+/// Sets what Ctrl-C does. The first Ctrl-C makes the run stop after the current generation, or ends the process if an
+/// operator does not return. The second one ends the process at once. Committed generations are kept in any case.
 void stop_on_interrupt() {
   struct sigaction action {};
   action.sa_handler = [](int) { stop_requested = true; };
@@ -39,12 +39,12 @@ void stop_on_interrupt() {
   end_long_calls_after(stop_requested);
 }
 
-/// What is left to do can be done later: Ctrl-C ends the process.
+/// Makes Ctrl-C end the process at once, because the remaining work can be done later by another command.
 void end_on_interrupt() {
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
 }
 
-/// runs/NAME-1, or the first number that no other run has taken. Making the folder takes it.
+/// Creates and returns the folder runs/NAME-N, where N is the first number from 1 for which there is no folder yet.
 fs::path new_run_folder(const std::string& name) {
   std::error_code error;
   fs::create_directories("runs", error);
@@ -59,7 +59,8 @@ std::string resume_command_for(const Archive& archive) {
   return program_name() + " resume " + archive.folder().string();
 }
 
-/// What a failure leaves behind, on a line of its own; nothing where the run's file is gone.
+/// Returns a line that says which generation the run has completed and how to continue it, or an empty text if the
+/// run's file is gone.
 std::string state_of(const Archive& archive) {
   if (!archive.is_in_place()) return "";
   const std::vector<Summary> generations = archive.generations();
@@ -75,7 +76,7 @@ void add_journal_option(Options& options) {
                         "on file systems of other machines; default: what the file system can do");
 }
 
-/// Throws UsageError.
+/// Returns the value of --journal, if given. Throws UsageError if it is neither wal nor delete.
 std::optional<Journal> given_journal(const Given& given) {
   if (!given.contains("journal")) return std::nullopt;
   const auto text = given["journal"].as<std::string>();
@@ -84,7 +85,7 @@ std::optional<Journal> given_journal(const Given& given) {
   return journal;
 }
 
-/// So that `resume` and other commands may load what this run has loaded.
+/// Remembers the folders of the experiment's operators, so that `resume` and other commands may load these operators.
 void remember_folders_of(const Experiment& experiment) {
   if (const std::string fault = remember_plugin_folders(experiment.plugin_folders); !fault.empty())
     std::cerr << "warning: " << fault

@@ -1,13 +1,13 @@
-// What `run` and `resume` do once they have a run to go on with.
+// The common part of `run` and `resume`.
 #pragma once
 
 #include "evolution/archive/archive.hpp"
 
 namespace evodevo {
 
-/// Evolves until the end or an interruption, says what came out and returns the exit code. Where anything fails, such
-/// as the simulator's device, it throws std::runtime_error, whose text adds up to which generation the run is complete
-/// and how it goes on.
+/// Evolves until the run is finished or interrupted, prints the outcome and returns the exit code. If anything fails,
+/// such as the simulator's device, throws std::runtime_error; its text also names the last complete generation and the
+/// command that continues the run.
 int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive);
 
 }  // namespace evodevo

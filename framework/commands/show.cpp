@@ -1,4 +1,4 @@
-// evodevo show: what a run has come to.
+// evodevo show: prints the state of a run.
 #include <fmt/ostream.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ class Report {
  private:
   std::int64_t done() const { return generations_.empty() ? 0 : generations_.back().evaluations; }
 
-  /// In the order in which they came.
+  /// Returns the devices of the run, in the order in which they were first used.
   std::string devices() const {
     std::vector<std::string> devices;
     for (const Provenance& provenance : archive_.provenances())

@@ -1,4 +1,4 @@
-// evodevo simulate: any body in any scene.
+// evodevo simulate: simulates a body from a file in the scene of an experiment.
 #include <array>
 #include <charconv>
 #include <chrono>
@@ -18,10 +18,10 @@
 namespace evodevo {
 namespace {
 
-constexpr double frame_time = 0.01;  ///< between two frames of a trajectory, s
+constexpr double frame_time = 0.01;  ///< time between two frames of a trajectory, s
 
-/// Writes a body's motion frame by frame: time, mass, x, y, z, vx, vy, vz in SI units, in digits that read back as the
-/// same bits.
+/// Writes a body's motion as CSV, frame by frame: time, mass, x, y, z, vx, vy, vz in SI units. Numbers have as many
+/// digits as are needed to read back the same bits.
 class TrajectoryFile {
  public:
   explicit TrajectoryFile(const std::string& file) : output_(file, "--trajectory " + file) {
@@ -50,13 +50,13 @@ class TrajectoryFile {
   OutputFile output_;
 };
 
-/// How a life went on.
+/// The cost of a simulation.
 struct Motion {
   std::uint64_t spring_evaluations = 0;
-  double seconds = 0;  ///< of this computer
+  double seconds = 0;  ///< wall-clock time, s
 };
 
-/// Lets a life go on in one run or, with a trajectory, from frame to frame.
+/// Continues a life for `duration` (s): in one run or, if there is a trajectory to write, from frame to frame.
 Motion go_on(const Evaluation& evaluation, Simulator& simulator, Life& life, double duration,
              std::uint64_t steps_of_frame, TrajectoryFile* trajectory) {
   const auto start = std::chrono::steady_clock::now();
@@ -77,7 +77,8 @@ std::string vector_text(Vec3 v) {
   return "(" + short_number(v.x) + ", " + short_number(v.y) + ", " + short_number(v.z) + ")";
 }
 
-/// The life of the body in a file; throws ConfigError where the scene or its steps are not for it.
+/// Returns the life of the body in a file. Throws ConfigError if the body cannot live in the scene or with the time
+/// step.
 Life life_of(const std::string& file, const Evaluation& evaluation) {
   GivenBody given = read_body(file);
   Life life = given.state ? evaluation.birth.amid_life(std::move(given.body), std::move(*given.state))

@@ -1,4 +1,4 @@
-// evodevo verify: whether the best individuals keep their fitness when they are simulated again in other ways.
+// evodevo verify: checks whether the best individuals keep their fitness if they are simulated again in other ways.
 #include <iostream>
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-// What operators of every kind have to keep to.
+// Test cases for operators of every kind.
 #include <unistd.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ void declarations(const AvailableOperator& subject, std::uint64_t) {
   if (version.empty() || licence.empty()) throw Violation("its library names no version or no licence");
 }
 
-/// For every declared parameter, values that it must refuse.
+/// Collects, for every declared parameter, values that must be refused.
 class Refusable final : public Parameters {
  public:
   std::vector<std::pair<std::string, toml::table>> tables;
@@ -133,7 +133,7 @@ void untouched_inputs(const AvailableOperator& subject, std::uint64_t seed) {
   for (std::uint32_t input = 0; input < inputs_for(subject); ++input) try_new(subject, seed, input);
 }
 
-/// Sets every parameter to another value that is allowed.
+/// Sets every parameter to another allowed value.
 class Changer final : public Parameters {
  public:
   void real(double& value, std::string_view, Range range, std::string_view) override { value = other(value, range); }
@@ -182,7 +182,7 @@ void instances(const AvailableOperator& subject, std::uint64_t seed) {
 
 // ---- a run ----
 
-/// A small experiment that uses the operator with its defaults.
+/// Returns a small experiment that uses the operator with its default parameters.
 std::string experiment_with(const AvailableOperator& subject, std::uint64_t seed) {
   const std::string kind = kind_of(subject), own = std::string("name = \"") + subject.entry->name + "\"\n";
   const auto either = [&](std::string_view k, const char* otherwise) {
@@ -200,7 +200,8 @@ std::string experiment_with(const AvailableOperator& subject, std::uint64_t seed
   return text + "[selection]\n" + either("selection", "name = \"elitist\"\n");
 }
 
-/// Evolves from where the archive stands; where asked to, stops after the first generation that had parents.
+/// Continues the run in the archive. If `stop_early`, stops after generation 1, the first one that is bred from
+/// parents.
 void live(const Experiment& experiment, Archive& archive, bool stop_early) {
   const auto simulator =
       make_cpu_simulator(experiment.scene, experiment.stepping, static_cast<int>(experiment.threads));
@@ -221,7 +222,7 @@ std::string transcript(const Archive& archive) {
   return text;
 }
 
-/// A folder for a run, removed in the end.
+/// A temporary folder for runs. The destructor removes it.
 struct RunFolder {
   fs::path path;
   RunFolder() {

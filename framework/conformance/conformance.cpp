@@ -14,9 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double listing_limit = 0.1;  ///< CPU time, s
+constexpr double listing_limit = 0.1;  ///< longest CPU time for listing a library, s
 
-/// What a child says of a check: the outcome, and behind a newline the reason.
+/// Runs a check and returns its outcome, a newline and the reason. It is called in a child process.
 std::string tell(const std::function<void()>& check) {
   try {
     check();
@@ -40,7 +40,7 @@ Verdict judge(const std::string& subject, const char* name, unsigned seconds, co
 
 void loads(const fs::path& library) {
   const Surroundings before;
-  dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);  // why it may fail, the registry says
+  dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);  // if this fails, the registry below gives the reason
   if (const std::string changed = before.restore(); !changed.empty())
     throw Violation("it changes " + changed + " while it is loaded; build it without -ffast-math");
   const Registry registry({library});

@@ -1,4 +1,4 @@
-// The conformance kit: what every plugin has to keep to, one case after the other, each in a process of its own.
+// The conformance kit: test cases for the rules that every plugin must obey. Each case runs in a process of its own.
 #pragma once
 
 #include <cstdint>
@@ -12,40 +12,42 @@
 
 namespace evodevo::conformance {
 
-/// Thrown by a case that does not pass. what() says what was expected and what came.
+/// Thrown by a case that fails. what() names the violation of the rule.
 struct Violation : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Thrown by a case that cannot say anything about this operator. what() says why.
+/// Thrown by a case that does not apply to this operator. what() says why.
 struct Skipped : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Something to check of one operator. It may crash, hang and change the process as it likes.
+/// A test case for one operator. `check` may crash, hang or change its process in any way.
 struct Case {
   const char* name;
   void (*check)(const AvailableOperator& subject, std::uint64_t seed);
 };
 
-/// The cases for operators of every kind.
+/// Returns cases for operators of every kind.
 std::vector<Case> general_cases();
-/// More of them: what operators leave as it is in the process, and what they call things.
+/// Returns further cases for operators of every kind: that operators keep no hidden state, leave the process as it is,
+/// and have plain names and texts.
 std::vector<Case> process_cases();
-/// The laws of one kind.
+/// Returns the cases for operators of one kind.
 std::vector<Case> laws_of(std::string_view kind);
 
+/// The result of one case.
 struct Verdict {
-  std::string subject;  ///< "devo erosion", or the library's file name
-  std::string name;     ///< of the case
+  std::string subject;  ///< kind and name of the operator, such as "devo erosion", or the library's file name
+  std::string name;     ///< name of the case
   std::string outcome;  ///< "passed", "failed", "crashed" or "skipped"
-  std::string reason;   ///< empty where it passed
+  std::string reason;   ///< empty if the case passed
 };
 
 constexpr unsigned seconds_per_case = 60;
 
-/// Runs all cases on all operators of a library; `seed` makes all inputs. Reports each verdict as it comes. A case that
-/// is not done after `seconds` is not kept.
+/// Runs all cases on all operators of a library, and reports each verdict as soon as it is known. `seed` determines all
+/// inputs. A case that is not done after `seconds` has failed.
 void examine(const std::filesystem::path& library, std::uint64_t seed,
              const std::function<void(const Verdict&)>& report, unsigned seconds = seconds_per_case);
 

@@ -12,7 +12,7 @@
 namespace evodevo::conformance {
 namespace {
 
-/// A file's bytes, read with checks, since it may be anything.
+/// The bytes of a file. Every access is checked, because the file may have any content.
 class Bytes {
  public:
   explicit Bytes(const std::filesystem::path& file) {
@@ -44,7 +44,8 @@ bool is_export(const Elf64_Sym& symbol) {
          (visibility == STV_DEFAULT || visibility == STV_PROTECTED);
 }
 
-/// What the templates of the standard library become (Itanium C++ ABI, 5.1): visible whatever the compiler is told.
+/// Returns whether a mangled name (Itanium C++ ABI, 5.1) belongs to an instance of a template of the standard library.
+/// Such symbols are exported whatever visibility the compiler was told to use.
 bool is_of_standard_library(const std::string& name) {
   static const std::regex mangled("_Z(GV|T[A-Z])?Z?N?[VK]*(S[abdiost]|9__gnu_cxx).*");
   return std::regex_match(name, mangled);

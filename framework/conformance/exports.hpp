@@ -1,4 +1,4 @@
-// The symbols that a shared library offers to others.
+// The symbols that a shared library exports.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,8 @@
 
 namespace evodevo::conformance {
 
-/// The defined symbols of the ELF file's dynamic table, sorted, but for those of the standard library's templates.
-/// Throws std::runtime_error where it is no such file.
+/// Returns the names of the exported symbols of an ELF file, sorted, without those of the standard library's templates.
+/// Throws std::runtime_error if the file is not an ELF file.
 std::vector<std::string> exports(const std::filesystem::path& library);
 
 }  // namespace evodevo::conformance

@@ -1,4 +1,4 @@
-// What operators of one kind have to keep to.
+// Test cases for operators of one kind.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,7 +16,8 @@ std::string numbered(const char* what, std::uint32_t input) { return std::string
 
 // ---- encodings ----
 
-/// In a run the host drops a body that is not finite.
+/// Throws unless the blueprint is correct and all of its positions are finite. A run is more tolerant: it treats a body
+/// whose positions are not finite as invalid.
 void require_sound(const Blueprint& blueprint, const EncodingContext& context) {
   check_blueprint(blueprint, context);
   for (const Mass& mass : blueprint.body.masses)
@@ -29,7 +30,7 @@ bool springs_grow(const Blueprint& blueprint) {
          std::any_of(springs.begin(), springs.end(), [](const Spring& spring) { return spring.growth != 1; });
 }
 
-/// Every genome gives a sound body, or a reason.
+/// Checks that every genome gives a sound body, or a reason why there is none.
 void decodes(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Encoding>(subject);
   const EncodingContext context = sample_world();
@@ -77,7 +78,8 @@ void nothing_stays_nothing(const AvailableOperator& subject, std::uint64_t seed)
   if (!nothing.empty()) throw Violation("it makes genes of no genes");
 }
 
-/// Of a mutation that changes nothing, every child is a clone.
+/// Checks that the mutation changes at least one of many genomes. If it never changes any, all of its children are
+/// clones.
 void mutates(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Mutation>(subject);
   const Layout layout = sample_layout();
@@ -115,7 +117,8 @@ void twins_stay_twins(const AvailableOperator& subject, std::uint64_t seed) {
   }
 }
 
-/// The child is what becomes of the first genome.
+/// Checks that the crossover changes the first genome of at least one of many pairs, because the child is made from the
+/// first genome.
 void crosses(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Crossover>(subject);
   const Layout layout = sample_layout();
@@ -150,7 +153,7 @@ void require_measures(const Devo& op) {
       throw Violation("a measure has no name or no unit; \"1\" is that of a pure number");
 }
 
-/// Cycle after cycle the host can apply the edits, and new masses lie within the bounds.
+/// Checks over several cycles that the host can apply all edits, and that new masses are within the bounds.
 void bodies_stay_sound(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Devo>(subject);
   require_measures(*op);
@@ -183,7 +186,8 @@ void bodies_stay_sound(const AvailableOperator& subject, std::uint64_t seed) {
 
 // ---- fitness ----
 
-/// Along the ground: heights are those above the floor. By powers of two, so that little is rounded.
+/// Checks that scores do not change if a body is moved horizontally (heights are relative to the floor). The distances
+/// are powers of two, so that rounding errors are small.
 void unmoved_by_translation(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Fitness>(subject);
   for (std::uint32_t input = 0; input < 20; ++input) {
@@ -227,7 +231,7 @@ void scores_every_objective(const AvailableOperator& subject, std::uint64_t seed
 
 // ---- selection ----
 
-/// The table in another order of birth; `order[i]` is the old row of the new row i.
+/// Returns the table in another order of birth. `order[i]` is the old index of the new row i.
 SampleTable reordered(const SampleTable& table, const std::vector<std::uint32_t>& order) {
   std::vector<std::uint32_t> position(order.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) position[order[i]] = i;
@@ -264,7 +268,7 @@ void order_does_not_matter(const AvailableOperator& subject, std::uint64_t seed)
   }
 }
 
-/// The rows that live on, checked to be as many and as different as they have to be.
+/// Returns the rows that live on. Throws Violation unless they are 1 to 10 different rows of the table.
 std::vector<std::uint32_t> survivors(const Selection& op, const SampleTable& table, Rng& rng) {
   const auto living = op.survivors(table.rows, 10, rng);
   const std::set<std::uint32_t> different(living.begin(), living.end());
@@ -287,7 +291,8 @@ void keeps_its_elite(const AvailableOperator& subject, std::uint64_t seed) {
   }
 }
 
-/// Twelve of twenty rows are sound and ten live on, so no failed one has to.
+/// Checks that no failed row lives on or breeds. Twelve of the twenty rows did not fail and only ten live on, so there
+/// is no need for a failed one. If all rows failed, there must be survivors and parents nevertheless.
 void failed_rows_lose(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Selection>(subject);
   for (std::uint32_t input = 0; input < 20; ++input) {

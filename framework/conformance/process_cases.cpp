@@ -1,4 +1,4 @@
-// What operators of every kind leave as it is, and what they call things.
+// Further test cases for operators of every kind: hidden state, changes of the process, names and texts.
 #include <algorithm>
 #include <cstring>
 
@@ -13,11 +13,12 @@ namespace {
 
 std::string bytes_of(const Numbers& numbers) {
   std::string bytes(numbers.size() * sizeof(double), '\0');
-  if (!numbers.empty()) std::memcpy(bytes.data(), numbers.data(), bytes.size());  // which takes no nullptr
+  if (!numbers.empty())
+    std::memcpy(bytes.data(), numbers.data(), bytes.size());  // no call if empty: memcpy must not get nullptr
   return bytes;
 }
 
-/// Every call gives what it gives as the first of a process, whatever has been called before.
+/// Checks that every call gives the same result as if it were the first call of a process, whatever calls came before.
 void no_hidden_state(const AvailableOperator& subject, std::uint64_t seed) {
   constexpr std::uint32_t rounds = 16;
   const std::uint32_t inputs = inputs_for(subject);
@@ -33,14 +34,15 @@ void no_hidden_state(const AvailableOperator& subject, std::uint64_t seed) {
   }
 }
 
-/// How numbers are rounded, and the locale, are everybody's.
+/// Checks that the operator leaves the rounding mode, flush-to-zero and the locale as they are, because they hold for
+/// the whole process.
 void same_surroundings(const AvailableOperator& subject, std::uint64_t seed) {
   const Surroundings before;
   const auto require_same = [&](const char* where) {
     if (const std::string changed = before.restore(); !changed.empty())
       throw Violation("it changes " + changed + " in " + where);
   };
-  // not by create(), which puts everything back
+  // not by create<Operator>(), which would restore what the constructor changes
   const std::unique_ptr<Operator> op(subject.entry->create());
   require_same("its constructor");
   describe_parameters(*op);
@@ -55,7 +57,8 @@ void same_surroundings(const AvailableOperator& subject, std::uint64_t seed) {
 
 bool is_letter(char letter) { return std::isalnum(static_cast<unsigned char>(letter)) != 0; }
 
-/// Names are typed, and are keys of TOML.
+/// Checks a name, which users must be able to type, and which must be a key of TOML. `besides` are the characters that
+/// are allowed besides letters and digits.
 void require_name(const std::string& what, std::string_view name, std::string_view besides) {
   const auto is_allowed = [&](char letter) { return is_letter(letter) || besides.find(letter) != besides.npos; };
   if (name.empty() || !std::all_of(name.begin(), name.end(), is_allowed))
@@ -63,7 +66,7 @@ void require_name(const std::string& what, std::string_view name, std::string_vi
                     std::string(besides));
 }
 
-/// Texts are shown on terminals and pages.
+/// Checks that a text has no control characters and no markup, because it is shown on terminals and pages.
 void require_plain(const std::string& what, std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto letter = static_cast<unsigned char>(text[i]);

@@ -12,7 +12,7 @@
 namespace evodevo::conformance {
 namespace {
 
-using conformance::numbers_of;  // the overloads below would hide them
+using conformance::numbers_of;  // which the overloads below would otherwise hide
 
 void append(Numbers& numbers, std::initializer_list<double> more) { numbers.insert(numbers.end(), more); }
 void append(Numbers& numbers, Vec3 v) { append(numbers, {v.x, v.y, v.z}); }
@@ -226,7 +226,7 @@ SampleLife sample_life(std::uint64_t seed, std::uint32_t input) {
   body.materials = sample_world().materials;
   const auto materials = static_cast<std::uint32_t>(body.materials.size());
   body.base_materials = materials;
-  // every eighth body has next to nothing, which is where operators forget to look
+  // every eighth body has only two masses, a case that operators often do not consider
   const std::uint32_t masses = input % 8 == 7 ? 2 : 12 + rng.below(24);
   const bool masses_have_materials = input % 2 == 0;
   for (std::uint32_t i = 0; i < masses; ++i) {
@@ -275,7 +275,7 @@ SampleTable sample_table(std::uint64_t seed, std::uint32_t input, std::size_t ro
     Candidate row;
     row.scores = table.scores[i];
     row.age = rng.below(6);
-    // the later half are newborns, most of them children of the earlier
+    // the rows of the second half are newborns, most of which are children of rows of the first half
     if (i >= rows / 2 && rng.chance(0.8)) row.challenges = rng.below(static_cast<std::uint32_t>(rows / 2));
     table.rows.push_back(row);
   }
@@ -294,7 +294,7 @@ Numbers try_out(std::string_view kind, const Operator& op, std::uint64_t seed, s
 std::string kind_of(const AvailableOperator& subject) { return subject.entry->kind; }
 
 std::uint32_t inputs_for(const AvailableOperator& subject) {
-  return subject.entry->kind == Encoding::kind ? 4 : 16;  // encodings may make bodies of thousands of masses
+  return subject.entry->kind == Encoding::kind ? 4 : 16;  // bodies of encodings may have thousands of masses
 }
 
 Numbers try_new(const AvailableOperator& subject, std::uint64_t seed, std::uint32_t input) {

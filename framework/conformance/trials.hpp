@@ -1,4 +1,4 @@
-// Made-up inputs for operators, and calls whose whole result is a list of numbers.
+// Artificial inputs for operators, and calls of operators whose complete result is a list of numbers.
 #pragma once
 
 #include <cstdint>
@@ -15,21 +15,22 @@ namespace evodevo::conformance {
 
 using Numbers = std::vector<double>;
 
-/// Equal to the bit, so that NaN equals itself.
+/// Returns whether both lists have the same bits, so that NaN equals itself.
 bool same(const Numbers& a, const Numbers& b);
 
+/// Returns a stream of random numbers that depends on nothing but the arguments.
 Rng stream(std::uint64_t seed, std::uint32_t input, std::uint32_t part = 0);
 
-/// The base materials.
+/// Returns a context with the base materials.
 EncodingContext sample_world();
-/// Real genes and choices, in groups of several sizes.
+/// Returns a layout with real genes and choice genes, in groups of several sizes.
 Layout sample_layout();
-/// Throws Violation where the genome is not one of the layout.
+/// Throws Violation if the layout does not allow the genome.
 void require_within(const Genome& genome, const Layout& layout);
 Numbers numbers_of(const Genome& genome);
 Numbers numbers_of(const Edits& edits);
 
-/// A body in the middle of its life, and all else that a devo operator sees.
+/// A body in the middle of its life, and everything else that a devo operator sees.
 struct SampleLife {
   LivingBody living;
   Box bounds;
@@ -38,34 +39,34 @@ struct SampleLife {
   int cycle = 1;
   bool resets = false;
 
-  /// `request`: what the operator asks for; it sees nothing else of the springs.
+  /// Returns the context with only those records of the springs that `request` asks for.
   DevoContext context(const SpringRequest& request) const;
 };
-/// Some are of masses with materials, some of springs with theirs; some are as good as empty.
+/// Returns a random life. Depending on `input`, the masses have materials or not, and the body has many masses or two.
 SampleLife sample_life(std::uint64_t seed, std::uint32_t input);
 
 Observation sample_observation(std::uint64_t seed, std::uint32_t input);
 
-/// A table for selection. Rows refer to the scores.
+/// A table for a selection operator.
 struct SampleTable {
   std::vector<Numbers> scores;
-  std::vector<Candidate> rows;
+  std::vector<Candidate> rows;  ///< refer to `scores`
 };
-/// All scores differ; `failed` of the rows, spread over the table, have none.
+/// Returns a random table in which all scores differ. `failed` of the rows, at random positions, have no scores.
 SampleTable sample_table(std::uint64_t seed, std::uint32_t input, std::size_t rows, std::size_t failed);
 
-/// Calls all that the operator's kind asks for on the input of this number. Throws Violation where the call changes
-/// what is not its own to change.
+/// Calls the functions of an operator with input number `input`, and returns all results as numbers. Throws Violation
+/// if the operator changes inputs that it may only read.
 Numbers try_out(std::string_view kind, const Operator& op, std::uint64_t seed, std::uint32_t input);
 
 std::string kind_of(const AvailableOperator& subject);
-/// How many inputs a case has for an operator of this kind.
+/// Returns how many inputs the cases use for an operator of this kind.
 std::uint32_t inputs_for(const AvailableOperator& subject);
-/// The same of a new instance with its defaults.
+/// Does the same as try_out(), with a new instance of the operator with its default parameters.
 Numbers try_new(const AvailableOperator& subject, std::uint64_t seed, std::uint32_t input);
 
-/// What `work` returns in a process that has not called the operator yet, as after a restart. Throws Violation where it
-/// ends otherwise.
+/// Returns what `work` returns in a child process, in which the operator has not been called yet. Throws Violation if
+/// `work` throws, or if the process crashes or takes too long.
 std::string in_new_process(const std::function<std::string()>& work);
 
 }  // namespace evodevo::conformance

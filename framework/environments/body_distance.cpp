@@ -11,9 +11,10 @@ namespace {
 
 using Pairs = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// Names of the masses of two bodies by their indices, which are equal where the masses are the same.
+/// A name for each mass of two bodies. A mass of one body and a mass of the other have equal names if they count as the
+/// same mass.
 struct Names {
-  std::vector<std::uint32_t> of_a, of_b;
+  std::vector<std::uint32_t> of_a, of_b;  ///< by the indices of the masses
 };
 
 std::vector<std::uint32_t> own_names(const GrownBody& grown, std::size_t first_of_later) {
@@ -26,7 +27,7 @@ std::vector<std::uint32_t> own_names(const GrownBody& grown, std::size_t first_o
 Names shared_names(const GrownBody& a, const GrownBody& b) {
   const std::size_t born = std::max(a.born, b.born);
   Names names{own_names(a, born), own_names(b, born + a.numbers.size())};
-  std::vector<std::tuple<double, std::size_t, std::size_t>> near;  // distance, and the masses of a and b
+  std::vector<std::tuple<double, std::size_t, std::size_t>> near;  // distance, mass of a, mass of b
   for (std::size_t i = 0; i < a.numbers.size(); ++i)
     for (std::size_t j = 0; a.came_later(i) && j < b.numbers.size(); ++j)
       if (const double distance = norm(a.rest_positions[i] - b.rest_positions[j]);
@@ -48,13 +49,13 @@ Pairs joined_masses(const Body& body, const std::vector<std::uint32_t>& names) {
   return pairs;
 }
 
-/// Where mass lies along one axis.
+/// One point mass in the distribution of a body's mass along one axis.
 struct Portion {
-  double position;  ///< body lengths
-  double mass;      ///< part of all
+  double position;  ///< rest position, body lengths at birth
+  double mass;      ///< fraction of the body's total mass
 };
 
-/// In ascending order.
+/// Returns the distribution of a body's mass along an axis, by ascending position.
 std::vector<Portion> portions_along(double Vec3::*axis, const GrownBody& grown) {
   std::vector<Portion> portions;
   double all = 0;
@@ -70,9 +71,9 @@ std::vector<Portion> portions_along(double Vec3::*axis, const GrownBody& grown) 
   return portions;
 }
 
-/// The integral of the difference of the distribution functions (Vallender 1974).
+/// Returns the integral of the absolute difference of the two cumulative distribution functions (Vallender 1974).
 double wasserstein_distance(const std::vector<Portion>& a, const std::vector<Portion>& b) {
-  double below_a = 0, below_b = 0;  // mass so far
+  double below_a = 0, below_b = 0;  // mass at lower positions
   double distance = 0, last = 0;
   for (auto i = a.begin(), j = b.begin(); i != a.end() || j != b.end();) {
     const double position = j == b.end() || (i != a.end() && i->position < j->position) ? i->position : j->position;

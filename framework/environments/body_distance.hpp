@@ -1,4 +1,4 @@
-// Distances between bodies that grow from the same genome.
+// Distances between bodies that developed from the same genome.
 #pragma once
 
 #include "environments/grown_body.hpp"
@@ -6,21 +6,23 @@
 namespace evodevo {
 
 /// Masses that were added after birth in two lives count as the same mass if their rest positions are closer than this,
-/// in body lengths at birth. The value is the smallest distance that operators keep between masses by default, 0.02 m,
-/// in a body that fills the cube of the neural encoding. The number and identity of the masses added before a mass do
-/// not help to identify it.
+/// in body lengths at birth. By default, operators keep masses at least 0.02 m apart; in a body that fills the cube of
+/// the neural encoding, whose sides are 2 m long, that is 0.01 body lengths. The numbers of such masses cannot identify
+/// them, because a number depends on how many masses were added before.
 inline constexpr double same_position = 0.01;
 
-/// The part of all springs of two bodies that only one of them has (Jaccard's distance); a spring is named by its two
-/// masses, those of birth by their numbers, later ones by their positions, the nearest pairs first. 0 for equal bodies,
-/// 1 where no spring is in both.
+/// Returns the Jaccard distance between the springs of two bodies: of all springs that either body has, the fraction
+/// that only one body has. It is 0 if both bodies have the same springs, and 1 if they have none in common. A spring is
+/// identified by its two masses. Masses that the bodies have had since birth are identified by their numbers; masses
+/// that were added later are matched by their rest positions, the closest pairs first.
 double spring_distance(const GrownBody& a, const GrownBody& b);
 
-/// How far mass has to be moved to make one body's distribution that of the other, body lengths at birth: the
-/// Wasserstein distance of the rest positions' coordinates along an axis, mean of the three axes. Both bodies count as
-/// one kilogram, the payload of the scene as none. A metric of the three distributions: 0 for bodies whose masses have
-/// the same rest positions, numbers or not. Poses do not count: soft bodies lie and bend otherwise in each scene, by
-/// more than development moves. Each body has a mass at least.
+/// Returns how far mass has to be moved to turn the mass distribution of one body into that of the other, in body
+/// lengths at birth: the Wasserstein distance between the coordinates of the rest positions along one axis, averaged
+/// over the three axes. The total mass of each body counts as 1; the scene's payload does not count. The distance is 0
+/// if masses have the same rest positions, whatever their numbers. Rest positions are compared rather than present
+/// positions, because the poses of soft bodies differ between scenes by more than development moves masses. Each body
+/// must have at least one mass.
 double mass_distance(const GrownBody& a, const GrownBody& b);
 
 }  // namespace evodevo

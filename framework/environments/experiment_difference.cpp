@@ -7,7 +7,7 @@
 namespace evodevo {
 namespace {
 
-/// Values of a resolved experiment by their full keys, as messages show them.
+/// The values of a resolved experiment, as messages show them, by their full keys.
 using Values = std::map<std::string, std::string>;
 
 void collect(const toml::node& node, const std::string& key, Values& values) {

@@ -1,4 +1,4 @@
-// In which values two experiments differ.
+// Finds a value in which two experiments differ.
 #pragma once
 
 #include <initializer_list>
@@ -8,8 +8,8 @@
 
 namespace evodevo {
 
-/// "simulation.dt is 0.001, in the first experiment 0.0005" for the first value in one of these tables that differs
-/// from that of `first`; empty where none does.
+/// Returns a text such as "simulation.dt is 0.001, in the first experiment 0.0005" for the first value in one of these
+/// tables that differs from that in `first`, or an empty text if no value differs.
 std::string difference(const Experiment& experiment, const Experiment& first,
                        std::initializer_list<const char*> tables);
 

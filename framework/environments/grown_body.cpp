@@ -12,7 +12,7 @@ namespace {
 
 Eigen::Vector3d vector(Vec3 v) { return {v.x, v.y, v.z}; }
 
-/// Without the mirrored solution (Kabsch 1976): `covariance` is the sum of to * from^T.
+/// Returns the best rotation without reflection (Kabsch 1976). `covariance` is the sum of to * from^T.
 Eigen::Matrix3d best_rotation(const Eigen::Matrix3d& covariance) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d u = svd.matrixU();
@@ -24,7 +24,7 @@ Eigen::Matrix3d best_rotation(const Eigen::Matrix3d& covariance) {
 
 Vec3 undeformed(Vec3 position, std::span<const Vec3> positions, std::span<const Vec3> rest_positions) {
   if (positions.empty()) return position;
-  constexpr double closest = 1e-9;  // m; a mass at the very place would have all weight there is
+  constexpr double closest = 1e-9;  // m; keeps the weight of a mass at the same position finite
   std::vector<double> weights;
   double sum = 0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero(), rest_centre = centre;
@@ -53,7 +53,7 @@ GrowthObserver::GrowthObserver(const Body& born) : born_(born.masses.size()) {
 
 GrownBody GrowthObserver::after_cycle(const Life& life) {
   GrownBody grown{life.living.body, life.living.state.position, {}, mass_numbers(born_, life.result.record), born_};
-  std::vector<Vec3> positions, rest_positions;  // of the masses that were there before
+  std::vector<Vec3> positions, rest_positions;  // of the masses that were in the body before this cycle's changes
   for (std::size_t i = 0; i < grown.numbers.size(); ++i)
     if (const auto known = rest_.find(grown.numbers[i]); known != rest_.end()) {
       positions.push_back(grown.positions[i]);

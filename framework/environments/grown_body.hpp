@@ -1,4 +1,4 @@
-// Bodies as they grow, in a frame in which what grows of one genome can be compared.
+// Developing bodies with the rest positions of their masses, in a frame in which bodies of one genome can be compared.
 #pragma once
 
 #include <map>
@@ -9,39 +9,43 @@
 
 namespace evodevo {
 
-/// What a life has made of a body so far.
+/// A body at some time during its development.
 struct GrownBody {
   Body body;
-  std::vector<Vec3> positions;  ///< of its masses, m
+  std::vector<Vec3> positions;  ///< present positions of the masses, m
   std::vector<Vec3>
-      rest_positions;  ///< of its masses in the undeformed body, body lengths at birth; see GrowthObserver
-  std::vector<std::uint32_t> numbers;  ///< of its masses (MassNumbers)
-  std::size_t born = 0;                ///< how many masses it had at birth; those have the numbers below
+      rest_positions;  ///< positions of the masses in the undeformed body, body lengths at birth; see GrowthObserver
+  std::vector<std::uint32_t> numbers;  ///< numbers of the masses (MassNumbers)
+  std::size_t born = 0;                ///< number of masses at birth; these masses have the numbers below it
 
+  /// Returns whether a mass was added after birth.
   bool came_later(std::size_t mass) const { return numbers[mass] >= born; }
 };
 
-/// Where `place` lies in the undeformed body, m, if masses that now are at `positions` belong to `rest_positions`;
-/// where it is if there are none. It goes along with the masses around it: by the rotation and shift that best take
-/// them back, weighted by distance^-4, so that near ones outweigh all far ones in three dimensions (rigid moving least
-/// squares: Schaefer, McPhail and Warren 2006).
+/// Maps a position in the present, deformed body to the undeformed body, m. `positions` are the present positions of
+/// the masses, `rest_positions` those in the undeformed body. The map is the rotation and translation that best map
+/// `positions` to `rest_positions`, weighted by distance^-4, so that near masses outweigh all far ones in three
+/// dimensions (rigid moving least squares: Schaefer, McPhail and Warren 2006). Returns `position` if there are no
+/// masses.
 Vec3 undeformed(Vec3 position, std::span<const Vec3> positions, std::span<const Vec3> rest_positions);
 
-/// Follows one life and knows the rest position of every mass: that which it has at birth, or else undeformed() of
-/// where it comes, by the masses that were there before. Rest positions are measured from the lower corner of the
-/// body's box at birth, in the longest sides of that box, since each scene puts the body elsewhere.
+/// Follows one life and keeps the rest position of every mass. The rest position of a mass of birth is the one that it
+/// has at birth; that of a later mass is undeformed() of the position at which it was added, by the masses that were in
+/// the body before. Rest positions are relative to the lower corner of the body's bounding box at birth, in units of
+/// the longest side of that box, because each scene puts the body at another position.
 class GrowthObserver {
  public:
   explicit GrowthObserver(const Body& born);
 
-  /// The body after a cycle; to be called after each, since masses are where they came only then.
+  /// Returns the body after a cycle. Must be called after every cycle, because new masses are at the positions at which
+  /// they were added only until the simulation continues.
   GrownBody after_cycle(const Life& life);
 
  private:
-  Vec3 corner_;        ///< m
-  double length_ = 1;  ///< at birth, m; without any, the unit
+  Vec3 corner_;        ///< lower corner of the bounding box at birth, m
+  double length_ = 1;  ///< body length at birth, m; 1 if the body has none
   std::size_t born_;
-  std::map<std::uint32_t, Vec3> rest_;  ///< by the numbers of the masses, m
+  std::map<std::uint32_t, Vec3> rest_;  ///< rest positions by the numbers of the masses, m
 };
 
 }  // namespace evodevo

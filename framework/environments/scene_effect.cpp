@@ -16,7 +16,7 @@ struct Means {
   double excess() const { return between - within; }
 };
 
-/// Where both scenes have two bodies.
+/// Returns the mean distances between and within the scenes, each of which must have at least two bodies.
 Means means(const std::vector<std::vector<double>>& distances, const Deal& in_other) {
   double sum[2] = {}, between = 0;
   for (std::size_t i = 0; i < in_other.size(); ++i)
@@ -38,13 +38,13 @@ double mean_between(const std::vector<std::vector<double>>& distances, std::size
 
 SceneEffect scene_effect(const std::vector<std::vector<double>>& distances, std::size_t first) {
   constexpr int deals = 9999;
-  constexpr double rounding = 1e-12;  // of sums in another order; distances are about 1 at most
+  constexpr double rounding = 1e-12;  // rounding error of sums in different orders; distances are at most about 1
   if (first < 2 || distances.size() < first + 2) return {mean_between(distances, first), {}, {}};
   Deal deal(distances.size(), 0);
   std::fill(deal.begin() + static_cast<std::ptrdiff_t>(first), deal.end(), 1);
   const Means given = means(distances, deal);
   Rng rng(philox, {});
-  int as_far = 1;  // the given one
+  int as_far = 1;  // the actual assignment counts as one
   for (int i = 0; i < deals; ++i) {
     rng.shuffle(deal);
     if (means(distances, deal).excess() >= given.excess() - rounding) ++as_far;

@@ -1,4 +1,4 @@
-// Whether the scene decides what a genome grows into, or the noise of the start.
+// Tests whether bodies of one genome differ because of the scene or only because of perturbed starts.
 #pragma once
 
 #include <optional>
@@ -6,16 +6,19 @@
 
 namespace evodevo {
 
-/// How far the bodies of two scenes are apart.
+/// How different the bodies of two scenes are.
 struct SceneEffect {
-  double between = 0;            ///< mean distance of a body of one scene from one of the other
-  std::optional<double> within;  ///< of two bodies of one scene, mean of both scenes; none unless both have two bodies
-  std::optional<double> p;       ///< how often bodies dealt out at random to the scenes are as far apart or further
+  double between = 0;  ///< mean distance between a body of one scene and a body of the other
+  std::optional<double>
+      within;               ///< mean distance within a scene, averaged over both; none if a scene has only one body
+  std::optional<double> p;  ///< p-value of a permutation test; none if a scene has only one body
 };
 
-/// `distances[i][j]`, i < j, is that of two bodies; the first `first` of them are those of one scene, and each scene
-/// has at least one. Further apart is where `between` is more above `within` (the energy statistic of Székely and Rizzo
-/// 2004). p is that of a permutation test by 9,999 deals, the given one counted in, which are the same at every call.
+/// Compares the bodies of two scenes. `distances[i][j]`, i < j, is the distance between bodies i and j. The first
+/// `first` bodies belong to one scene, the others to the other scene; each scene has at least one body. The test
+/// statistic is `between` - `within` (the energy statistic of Székely and Rizzo 2004). The permutation test assigns
+/// bodies to scenes at random 9,999 times, and p is the fraction of assignments, including the actual one, with a
+/// statistic at least as large. The random assignments are the same in every call.
 SceneEffect scene_effect(const std::vector<std::vector<double>>& distances, std::size_t first);
 
 }  // namespace evodevo

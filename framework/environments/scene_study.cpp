@@ -35,7 +35,7 @@ Environment grow(const Experiment& experiment, const Newborn& newborn, std::uint
   return environment;
 }
 
-/// The bodies that are left after a cycle, counted from 0.
+/// Returns the bodies of the lives that had not failed after a cycle. Cycles are counted from 0.
 std::vector<const GrownBody*> bodies_after(std::size_t cycle, const Environment& environment) {
   std::vector<const GrownBody*> bodies;
   for (const Grown& grown : environment.grown)
@@ -77,7 +77,7 @@ SceneStudy study_scenes(const std::vector<Experiment>& experiments, const Newbor
       }
     }
   for (Environment& environment : environments)
-    for (Grown& grown : environment.grown) grown.after.clear();  // there are too many to keep them all
+    for (Grown& grown : environment.grown) grown.after.clear();  // all of them would take too much memory
   return study;
 }
 

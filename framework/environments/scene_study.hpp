@@ -1,4 +1,5 @@
-// One genome in several scenes: what it grows into, and whether the scene or the noise of the start decides that.
+// Develops one genome in several scenes, and tests whether the bodies differ because of the scene or only because of
+// perturbed starts.
 #pragma once
 
 #include <cstdint>
@@ -12,48 +13,49 @@
 
 namespace evodevo {
 
-/// What became of the genome after one start.
+/// The development of the genome from one start.
 struct Grown {
   Status status = Status::ok;
-  std::string reason;
-  std::vector<GrownBody> after;  ///< each cycle that it lived through
-  GivenBody matured = {};        ///< unless it failed
+  std::string reason;            ///< reason of a status other than ok
+  std::vector<GrownBody> after;  ///< the body after each cycle, until the life failed
+  GivenBody matured = {};        ///< the body after the last cycle, unless the life failed
 };
 
-/// A scene and what grew in it from each start, the first without noise.
+/// A scene, and the development in it from each start. The first start is not perturbed.
 struct Environment {
   std::string name;
-  double slope = 0;  ///< degrees
-  std::vector<std::string> materials;
-  std::vector<Grown> grown;
+  double slope = 0;                    ///< degrees
+  std::vector<std::string> materials;  ///< names of the materials
+  std::vector<Grown> grown;            ///< one for each start
 };
 
-/// A measure of how far two bodies are apart.
+/// A distance between two bodies.
 struct BodyDistance {
   const char* name;
   const char* title;
   double (*distance)(const GrownBody&, const GrownBody&);
 };
 
-/// All measures: by springs, and by mass.
+/// All distances: spring_distance() and mass_distance().
 extern const std::vector<BodyDistance> body_distances;
 
-/// Two scenes, and how far apart the bodies are that grew in them after each cycle, by each of body_distances; none
-/// where a scene has no body left.
+/// The comparison of two scenes.
 struct ScenePair {
-  std::size_t a, b;
+  std::size_t a, b;  ///< indices into SceneStudy::environments
+  /// effects[d][c]: difference of the bodies by body_distances[d] after cycle c, counted from 0; none if all bodies of
+  /// a scene had failed by then
   std::vector<std::vector<std::optional<SceneEffect>>> effects;
 };
 
-/// One genome in all scenes.
+/// The development of one genome in all scenes.
 struct SceneStudy {
   std::uint32_t individual;               ///< id
-  std::vector<Environment> environments;  ///< their Grown::after are empty
-  std::vector<ScenePair> pairs;           ///< every two scenes
+  std::vector<Environment> environments;  ///< one for each scene; Grown::after is empty
+  std::vector<ScenePair> pairs;           ///< all pairs of scenes
 };
 
-/// Lets a newborn develop in the scene of each experiment from `starts` starts, of which all but the
-/// first are perturbed (perturbation.hpp), and compares the bodies after each of the first `cycles` cycles.
+/// Lets a newborn develop in the scene of each experiment from `starts` starts, of which all but the first are
+/// perturbed (perturb() in life/birth.hpp), and compares the bodies after each of the first `cycles` cycles.
 SceneStudy study_scenes(const std::vector<Experiment>& experiments, const Newborn& newborn, std::uint32_t starts,
                         std::size_t cycles);
 

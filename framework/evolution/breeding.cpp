@@ -13,13 +13,13 @@
 namespace evodevo {
 namespace {
 
-constexpr std::uint32_t most_repeats = 16;  ///< how often a newborn that is a clone is made anew
+constexpr std::uint32_t most_repeats = 16;  ///< largest number of times that a newborn is made anew if it is a clone
 
 Rng stream(const Experiment& experiment, std::uint32_t generation, std::uint32_t individual, std::uint32_t where) {
   return Rng(philox, {static_cast<std::uint64_t>(experiment.seed), generation, individual, where});
 }
 
-/// Refuses genes that the layout does not allow, so that a faulty operator is found where it errs.
+/// Throws std::runtime_error if the layout does not allow the genome, so that the error names the faulty operator.
 void check_genome(const Genome& genome, const Layout& layout) {
   if (const std::string fault = genome_fault(genome, layout); !fault.empty())
     throw std::runtime_error("made a genome with " + fault);
@@ -39,9 +39,9 @@ Individual random_individual(const Experiment& experiment, std::uint32_t generat
   return individual;
 }
 
-/// Which variation operators a child goes through: crossovers first, then mutations, counted through both lists. Each
-/// is drawn by its own probability; where none comes, one is drawn in proportion to them, so that no child goes
-/// unvaried.
+/// Draws the variation operators that are applied to a child. Returns their indices in the list of all crossovers
+/// followed by all mutations. Each operator is drawn with its own probability. If none is drawn, one operator is chosen
+/// with probabilities in proportion to theirs, so that each child is varied.
 std::vector<std::size_t> draw_variation(const Experiment& experiment, Rng& rng) {
   std::vector<double> probabilities;
   for (const auto& crossover : experiment.crossovers) probabilities.push_back(crossover.probability);
@@ -96,8 +96,9 @@ Individual child(const Experiment& experiment, const Individual& parent, const I
   return individual;
 }
 
-/// A newborn that `make(repeat)` makes: anew, with other random numbers, as long as its genome is `known`, but not for
-/// ever, since there may be no other genomes. It is known from then on.
+/// Returns a newborn made by `make(repeat)`, with a genome that is not in `known` if possible. As long as the genome is
+/// in `known`, the newborn is made anew with other random numbers, but at most `most_repeats` times, because there may
+/// be no other genomes. Adds the genome to `known`.
 template <class Make>
 Individual distinct(GenomeSet& known, const Make& make) {
   Individual newborn = make(0);

@@ -1,4 +1,4 @@
-// New individuals: random ones, and children of a population.
+// Breeding: makes random individuals, and children of a population.
 #pragma once
 
 #include <string>
@@ -8,13 +8,14 @@
 
 namespace evodevo {
 
-/// The table that selection works on, with the scores that its rows refer to. Rows are in the order of `individuals`,
-/// ages are those in `generation`; a newborn of it challenges its first parent where that has a row.
+/// The table that a selection operator works on, with the scores that its rows refer to. Row i is that of
+/// `individuals[i]`. Ages are those in `generation`. An individual that was born in `generation` challenges its parent,
+/// if the parent is in the table.
 class SelectionTable {
  public:
   SelectionTable(const std::vector<Individual>& individuals, const std::vector<Objective>& objectives,
                  std::uint32_t generation);
-  SelectionTable(const SelectionTable&) = delete;  // rows refer to the scores
+  SelectionTable(const SelectionTable&) = delete;  // because the rows refer to scores_
   SelectionTable& operator=(const SelectionTable&) = delete;
   std::span<const Candidate> rows() const { return rows_; }
 
@@ -23,13 +24,13 @@ class SelectionTable {
   std::vector<Candidate> rows_;
 };
 
-/// What the layout does not allow in a genome; empty where it is one of its.
+/// Returns what in a genome the layout does not allow, or an empty text if the layout allows all of it.
 std::string genome_fault(const Genome& genome, const Layout& layout);
 
-/// The `count` newborns of a generation, ids from `first_id`: as many random_individuals as the experiment asks for,
-/// all of them where there is no population, and children. A newborn that is genetically equal to a member of the
-/// population or to an earlier newborn is made anew, at most 16 times; only where that does not help is it a clone.
-/// Nothing but the arguments and the experiment's seed decides.
+/// Makes the `count` newborns of a generation, with ids from `first_id`: children of the population, and as many random
+/// individuals as the experiment asks for. If the population is empty, all newborns are random individuals. A newborn
+/// that is genetically equal to a member of the population or to an earlier newborn is made anew with other random
+/// numbers, at most 16 times; if it is equal even then, it is a clone. The result depends only on the arguments.
 std::vector<Individual> breed(const Experiment& experiment, const std::vector<Individual>& population,
                               std::uint32_t generation, std::uint32_t first_id, std::size_t count);
 

@@ -8,9 +8,9 @@
 namespace evodevo {
 
 std::size_t GenomeSet::Hash::operator()(Genes genes) const {
-  std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a by whole genes, since genomes may have thousands
+  std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a over genes instead of bytes, for speed
   for (const float gene : genes)
-    hash = (hash ^ std::bit_cast<std::uint32_t>(gene + 0.0F)) * 0x100000001b3;  // of -0 comes 0, which is equal
+    hash = (hash ^ std::bit_cast<std::uint32_t>(gene + 0.0F)) * 0x100000001b3;  // adding 0 turns -0 into its equal, 0
   return hash;
 }
 

@@ -1,4 +1,4 @@
-// Individuals that are genetically equal: how they are found, and that no two of them live on with the same scores.
+// Clones and copies: finds genetically equal individuals, and removes those that also have equal scores.
 #pragma once
 
 #include <span>
@@ -9,14 +9,15 @@
 
 namespace evodevo {
 
-/// Genomes, told apart by the values of their genes. It refers to genes that have to stay where they are.
+/// A set of genomes, compared by the values of their genes. The set refers to the genomes, so they must not move or
+/// change while it exists.
 class GenomeSet {
  public:
   GenomeSet() = default;
   explicit GenomeSet(const std::vector<Individual>& individuals);
 
   bool contains(const Genome& genome) const { return genomes_.contains(genome); }
-  /// False where an equal genome is there already.
+  /// Adds a genome; returns false if the set has an equal one already.
   bool add(const Genome& genome) { return genomes_.insert(genome).second; }
 
   using Genes = std::span<const float>;
@@ -31,12 +32,13 @@ class GenomeSet {
   std::unordered_set<Genes, Hash, Equal> genomes_;
 };
 
-/// How many of `newborns` are genetically equal to a member of `population` or to an earlier one of them.
+/// Returns the number of newborns that are genetically equal to a member of `population` or to an earlier newborn.
 std::int64_t count_clones(const std::vector<Individual>& population, const std::vector<Individual>& newborns);
 
-/// Takes out of `everyone` the copies, which are equal in their genes and in every objective, so that they push no
-/// others off a front. Of those that are copies of each other the youngest stays, and of equally young ones the first
-/// born. Individuals without scores are equal in them. Returns the ids of those taken out, in ascending order.
+/// Removes copies from `everyone`, so that they do not displace other individuals from the front. Copies are
+/// individuals with equal genes and equal values of all objectives; individuals without scores count as having equal
+/// scores. Of several copies, the youngest stays, and of equally young ones, the one with the lowest id. Returns the
+/// ids of the removed individuals in ascending order.
 std::vector<std::uint32_t> remove_copies(std::vector<Individual>& everyone);
 
 }  // namespace evodevo

@@ -32,7 +32,7 @@ std::vector<std::uint32_t> chosen_survivors(const Experiment& experiment, const 
   return rows;
 }
 
-/// Those whom nobody in `everyone` surpasses in the objectives and in youth.
+/// Returns the Pareto front of `everyone` in the objectives and in youth.
 std::vector<const Individual*> front(const std::vector<Individual>& everyone, const Experiment& experiment,
                                      std::uint32_t generation) {
   const SelectionTable table(everyone, experiment.objectives, generation);
@@ -43,7 +43,7 @@ std::vector<const Individual*> front(const std::vector<Individual>& everyone, co
   return front;
 }
 
-/// Chooses the lives of which a run keeps the records: of all who are ever on the front.
+/// Decides which records of lives the archive keeps: those of all individuals that are ever on the front.
 class FrontLives {
  public:
   FrontLives(const Experiment& experiment, const Evaluation& evaluation, const Archive& archive,
@@ -53,15 +53,16 @@ class FrontLives {
       if (archive.life(individual.id)) kept_.insert(individual.id);
   }
 
-  /// Takes the records from newborns, since there is no room for those of a whole population.
+  /// Moves the records out of the newborns, because the records of a whole population would take too much memory.
   void take(std::vector<Individual>& newborns) {
     for (Individual& individual : newborns)
       newborn_[individual.id] = std::exchange(individual.result.record, LifeRecord());
   }
 
-  /// Keeps the records of those on the front. The few elders who come there only now, because selection has removed
-  /// those before them, are simulated again for their records; but not elders of another provenance, since theirs might
-  /// be another life than the one that was scored.
+  /// Keeps the records of the individuals on the front. A few older individuals reach the front only now, because
+  /// selection has removed the individuals that dominated them. Their records are gone, so they are simulated again.
+  /// Individuals of another provenance are not simulated again, because the new life might differ from the one that was
+  /// scored.
   void keep_front(const std::vector<Individual>& everyone, std::uint32_t generation) {
     std::vector<Newborn> elders;
     for (const Individual* individual : front(everyone, experiment_, generation)) {
@@ -77,7 +78,7 @@ class FrontLives {
     for (Life& life : lives) to_commit_[life.newborn.id] = std::move(life.result.record);
   }
 
-  /// What a generation has added.
+  /// Returns the records that the current generation adds to the archive, and forgets them.
   std::map<std::uint32_t, LifeRecord> committed() {
     newborn_.clear();
     return std::exchange(to_commit_, {});
@@ -92,7 +93,8 @@ class FrontLives {
   std::set<std::uint32_t> kept_;
 };
 
-/// Reduces `everyone` to the survivors, in the order of birth; adds the ids of the others to `dropped`.
+/// Removes from `everyone` all individuals except the survivors, which stay in the order of birth. Adds the ids of the
+/// removed individuals to `dropped`.
 void select(std::vector<Individual>& everyone, const Experiment& experiment, std::uint32_t generation,
             std::vector<std::uint32_t>& dropped) {
   const auto population = static_cast<std::uint32_t>(experiment.population);
@@ -146,7 +148,7 @@ bool is_finished(const Settings& settings, const std::vector<Summary>& generatio
 
 namespace {
 
-/// Calls `use(key, time)` for each entry of the record that holds one of a run's times.
+/// Calls `use(key, time)` for each of the times, with the key of its entry in the run's record.
 template <class Time, class Use>
 void for_each_time(Time& time, const Use& use) {
   use("seconds", time.whole);
@@ -183,7 +185,7 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
   TimeSpent time;
   const Evaluation evaluation(experiment, simulator);
   std::vector<Summary> summaries = archive.generations();
-  if (is_finished(experiment, summaries)) return {};  // and whoever finds that has made nothing
+  if (is_finished(experiment, summaries)) return {};  // no provenance is recorded, because this process makes nothing
   auto generation = static_cast<std::uint32_t>(summaries.size());
   std::int64_t evaluations = summaries.empty() ? 0 : summaries.back().evaluations;
   std::vector<Individual> population = archive.population();
@@ -194,7 +196,7 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
   for (; !is_finished(experiment, summaries) && !stop; ++generation) {
     const auto start = Clock::now();
     const std::int64_t count = std::min(experiment.population, experiment.evaluations - evaluations);
-    // every evaluation takes one id, so ids go on from the evaluations so far
+    // each evaluation uses one id, so the next id is the number of evaluations so far
     std::vector<Individual> newborns = breed(experiment, population, generation,
                                              static_cast<std::uint32_t>(evaluations), static_cast<std::size_t>(count));
     evaluate(newborns, evaluation, observer);

@@ -9,29 +9,31 @@
 
 namespace evodevo {
 
-/// Who watches a run.
+/// Functions that evolve() calls to report its progress.
 struct Observer {
+  /// Called after each generation.
   std::function<void(const Summary&)> generation_done = [](const Summary&) {};
-  /// Part of the generation under way that is simulated, 0 … 1.
+  /// Called with the part of the current generation that has been simulated, 0 to 1.
   std::function<void(double)> generation_progress = [](double) {};
 };
 
-/// Where a run's time went, s. Phases overlap, so they may add up to more than the whole.
+/// Wall-clock time that a run has spent, s. Phases overlap, so the sum of the phases may exceed the whole.
 struct TimeSpent {
-  double whole = 0, archive = 0;
-  PhaseTimes evaluation;
+  double whole = 0, archive = 0;  ///< time in evolve(), and the part of it spent writing the archive
+  PhaseTimes evaluation;          ///< time in each phase of evaluation
 };
 
-/// Adds what a process has spent to the run's record. A process that is killed adds nothing.
+/// Adds the time that this process has spent to the times in the run's record. The time of a process that is killed is
+/// not recorded.
 void record_time_spent(Archive& archive, const TimeSpent& time);
-/// The sum of what was added; nothing where that is nothing yet.
+/// Returns the recorded times, summed over all processes that worked on the run; none if no time was recorded yet.
 std::optional<TimeSpent> recorded_time_spent(const Archive& archive);
 
-/// Whether a run that has come to these generations has spent the experiment's evaluations or spring evaluations.
+/// Returns whether a run with these generations has used up the experiment's evaluations or spring evaluations.
 bool is_finished(const Settings& settings, const std::vector<Summary>& generations);
 
-/// Evolves from where the archive stands until the run is finished, or `stop` is set and the generation under way is
-/// committed. An archive continued gives the same as one never interrupted.
+/// Continues the run in the archive until the run is finished. If `stop` is set meanwhile, finishes and commits the
+/// current generation and returns. A run that was interrupted and continued gives the same results as one that was not.
 TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& archive, const std::atomic<bool>& stop,
                  const Observer& observer);
 

@@ -7,7 +7,7 @@
 namespace evodevo {
 
 Provenance this_provenance(const Experiment& experiment, const std::string& device) {
-  // the file that runs, even where a later build has taken its place
+  // the file of the running program, even if a later build has replaced it on disk
   static const std::string program = file_hash("/proc/self/exe");
   return {device, EVODEVO_VERSION, program, experiment.uses};
 }

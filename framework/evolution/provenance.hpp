@@ -1,4 +1,4 @@
-// What made a generation of a run: a device, a build of this program and builds of operators.
+// Provenance: the device, the build of this program and the builds of the operators that made a generation of a run.
 #pragma once
 
 #include <string>
@@ -10,18 +10,18 @@ namespace evodevo {
 
 struct Provenance {
   std::string device;
-  std::string version;  ///< of evodevo
-  std::string program;  ///< hash of its file
+  std::string version;  ///< version of evodevo
+  std::string program;  ///< hash of the program's executable file
   std::vector<OperatorUse> operators;
 };
 
-/// This program with the operators that it has loaded for the experiment.
+/// Returns the provenance of this process: this program, `device` and the operators loaded for the experiment.
 Provenance this_provenance(const Experiment& experiment, const std::string& device);
 
-/// Whether the program and all operators are the same builds, wherever their files lie.
+/// Returns whether both have the same builds of the program and of all operators, wherever the files lie.
 bool are_same_builds(const Provenance& a, const Provenance& b);
 
-/// Whether what both make is the same to the last bit: on the same device by the same builds.
+/// Returns whether both have the same device and the same builds, so that their results are equal to the last bit.
 bool are_same(const Provenance& a, const Provenance& b);
 
 }  // namespace evodevo

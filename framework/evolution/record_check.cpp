@@ -16,7 +16,8 @@ std::string title(const Objective& objective) {
   return (objective.maximise ? "more " : "less ") + objective.name + " in " + objective.unit;
 }
 
-/// What is wrong with a change that follows one of cycle `before`; empty where nothing is.
+/// Returns what is wrong with a change, or an empty text if nothing is. `before` is the cycle of the previous change,
+/// or 0 if there is none.
 std::string fault_of(const Change& change, std::uint32_t before, const Experiment& experiment) {
   const auto cycles = static_cast<std::uint32_t>(experiment.development.cycles);
   if (change.cycle < std::max(before, 1u) || change.cycle > cycles)

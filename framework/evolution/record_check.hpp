@@ -1,21 +1,23 @@
-// Whether what a run has recorded fits its experiment. All of these throw ArchiveError where it does not: a record may
-// come from anywhere, and no operator is to blame for what it holds.
+// Checks whether the record of a run fits the run's experiment. All functions throw ArchiveError if it does not. They
+// run before operators see the record, because a record may come from anywhere, and operators must not be blamed for
+// what it holds.
 #pragma once
 
 #include "evolution/archive/archive.hpp"
 
 namespace evodevo {
 
+/// Checks that the recorded objectives are those of the experiment's fitness operators.
 void check_objectives(const Archive& archive, const Experiment& experiment);
 
-/// That an individual's genes are those that the encoding lays out.
+/// Checks that the layout of the encoding allows an individual's genes.
 void check_genes(const Archive& archive, const Experiment& experiment, const Individual& individual);
 
-/// That a run can go on from what it has: reads all that evolve() will.
+/// Checks that the run can be resumed: reads and checks everything that evolve() will read.
 void check_resumable(const Archive& archive, const Experiment& experiment);
 
-/// That the record of an individual's life names cycles and operators that there are. Whether its edits fit the body
-/// shows when they are made.
+/// Checks that the cycles and operators in the record of an individual's life exist. Whether the recorded edits fit the
+/// body is checked only when they are applied.
 void check_life(const Archive& archive, const Experiment& experiment, std::uint32_t individual,
                 const LifeRecord& record);
 

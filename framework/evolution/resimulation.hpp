@@ -1,4 +1,4 @@
-// Lives of a run, simulated again on this machine: the changes that the run has recorded are applied again.
+// Re-simulation: lives of a run are simulated again on this machine, with the edits that the run has recorded.
 #pragma once
 
 #include <filesystem>
@@ -10,12 +10,13 @@
 
 namespace evodevo {
 
-/// The experiment of a run, to be simulated where its GPU may be missing.
+/// Returns the experiment of a run, changed so that it can be simulated on a machine without a GPU.
 Experiment experiment_for_resimulation(const Archive& archive, std::vector<std::filesystem::path> plugin_path);
 
-/// An individual of a run, to be simulated again on `device`. It follows the record of its life where the run has one.
-/// Warns on stderr where it may develop otherwise than in the run: there is no record, and it was born elsewhere or by
-/// other builds. Refers to the individual's genome.
+/// Returns an individual of a run as a newborn to be simulated again on `device`, with the record of its life if the
+/// run has one. If there is no record, and the individual was made by another device or by other builds, its
+/// development may differ from that in the run; the function then warns on stderr. The newborn refers to the
+/// individual's genome.
 Newborn for_resimulation(const Archive& archive, const Experiment& experiment, const Individual& individual,
                          const std::string& device);
 

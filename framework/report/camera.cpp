@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder that goes with this object.
+/// A temporary folder. The destructor removes it with its content.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -40,7 +40,7 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-/// Runs a program of the search path to its end and returns its exit code.
+/// Runs a program from the search path, waits for its end, and returns its exit code.
 int run_program(std::vector<std::string> words) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());

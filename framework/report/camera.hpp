@@ -1,4 +1,4 @@
-// Films and pictures of pages: headless Chromium draws, ffmpeg encodes.
+// Makes films and pictures of the viewer's pages: headless Chromium draws them, ffmpeg encodes them.
 #pragma once
 
 #include <filesystem>
@@ -9,16 +9,16 @@
 
 namespace evodevo {
 
-/// What of a life is shot; times are in s since birth.
+/// The part of a life that a picture or film shows. Times are since birth, s.
 struct Shooting {
-  std::optional<double> at = {};             ///< of a picture; by default one that the page chooses
-  std::optional<double> from = {}, to = {};  ///< of a film; by default the whole life
-  bool quiet = false;                        ///< whether nothing but errors is said
+  std::optional<double> at = {};             ///< time of a picture; by default, the page chooses it
+  std::optional<double> from = {}, to = {};  ///< beginning and end of a film; by default, those of the life
+  bool quiet = false;                        ///< whether to print only errors
 };
 
-/// Lets `page` play into `output`, whose name is `file`: a film (.mp4, .gif or .webp), or where that ends in .png a
-/// picture. Throws std::runtime_error where the file cannot be written, or where Node.js, Chromium or ffmpeg is missing
-/// or fails; they say why on standard error.
+/// Writes to `output`, whose name is `file`, what `page` plays: a film (.mp4, .gif or .webp) or a picture (.png),
+/// depending on the ending of the name. Throws std::runtime_error if the file cannot be written, or if Node.js,
+/// Chromium or ffmpeg is missing or fails; these programs write the reason to standard error.
 void shoot(const std::string& page, OutputFile& output, const std::filesystem::path& file, const Shooting& shooting);
 
 }  // namespace evodevo

@@ -14,17 +14,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t least_thinning = 2;  ///< 30 frames a second look smooth
-constexpr std::size_t measured_finer = 4;  ///< so many times as many frames are kept of measured shots as of others
+constexpr std::size_t least_thinning = 2;  ///< keeps every second frame at most, because 30 frames/s look smooth
+constexpr std::size_t measured_finer = 4;  ///< ratio of the frame rate of measured shots to that of others
 
-/// How fine numbers are, and how far frames are thinned before coarser numbers do less harm.
+/// A level of detail: the precision of numbers, and how many frames may be left out at this precision.
 struct Detail {
-  double parts_of_length;     ///< positions are whole multiples of so small a part of the body's longest side
-  int stress_levels;          ///< of the root of stress, since few springs bear much and many little
-  std::size_t most_thinning;  ///< of the frames that were filmed, every so many-th is kept
+  double parts_of_length;     ///< the unit of positions is the body's longest side divided by this
+  int stress_levels;          ///< levels of the root of stress: many springs bear little stress, and few bear much
+  std::size_t most_thinning;  ///< largest n for keeping only every n-th filmed frame, before precision is reduced
 };
 
-// 2048 parts of a body are finer than the pixels of a page; every 16th frame leaves four of a stroke of a second
+// With 2048 units per body length, errors are smaller than the pixels of a page. Every 16th frame of 60 per second
+// leaves four frames of a muscle's period of one second.
 constexpr Detail details[] = {{8192, 255, 4}, {2048, 63, 16}, {1024, 15, std::numeric_limits<std::size_t>::max()}};
 
 /// Numbers springs through a film, by the masses that they join.
@@ -32,8 +33,8 @@ class SpringNumbers {
  public:
   /// The springs of a shot.
   struct Present {
-    std::vector<std::uint32_t> numbers;  ///< ascending
-    std::vector<std::size_t> indices;    ///< in the body, in the same order
+    std::vector<std::uint32_t> numbers;  ///< their numbers in the film, ascending
+    std::vector<std::size_t> indices;    ///< their indices in the body, in the same order
   };
 
   explicit SpringNumbers(const Film& film) {
@@ -71,7 +72,7 @@ class SpringNumbers {
 
 double on_grid(double value, double step) { return step * static_cast<double>(std::llround(value / step)); }
 
-/// Collects how far linear interpolation between the kept frames deviates from each of the frames.
+/// Collects the errors of positions that are interpolated linearly between the kept frames, over all filmed frames.
 class ErrorSum {
  public:
   void add(const Shot& shot, const std::vector<const Frame*>& kept, double step) {
@@ -107,7 +108,7 @@ class ErrorSum {
   std::vector<float> distances_;
 };
 
-/// The longest side of the body at birth, m; 1 where it has none.
+/// Returns the longest side of the body at birth, m, or 1 if it is zero.
 double body_size(const Film& film) {
   std::vector<Vec3> positions;
   for (const SeenPlace& p : film.front().frames.front().positions) positions.push_back({p[0], p[1], p[2]});
@@ -129,7 +130,7 @@ double most_stress(const Film& film) {
   return most;
 }
 
-/// The materials of a film's bodies, those of the experiment first. No body has all of them.
+/// The materials of all bodies of a film, those of the experiment first.
 class FilmMaterials {
  public:
   explicit FilmMaterials(const Film& film) : materials_(base_materials(film.front().body)) {
@@ -140,7 +141,7 @@ class FilmMaterials {
         positions.push_back(list.index(material));
   }
 
-  /// What a material of a shot's body is in the film.
+  /// Returns the index in the film of a material of a shot's body.
   std::int64_t position(std::size_t shot, std::size_t material) const { return positions_[shot][material]; }
 
   Json json() const {
@@ -157,10 +158,10 @@ class FilmMaterials {
   }
 
   std::vector<Material> materials_;
-  std::vector<std::vector<std::int64_t>> positions_;  ///< by shot and by material of its body
+  std::vector<std::vector<std::int64_t>> positions_;  ///< indices in the film, by shot and by material of its body
 };
 
-/// The masses' materials by their numbers; -1 where a mass has none.
+/// Returns the materials of all masses, in the order of their numbers; -1 for a mass without a material.
 std::string packed_mass_materials(const Film& film, const FilmMaterials& materials) {
   std::vector<std::int64_t> of_masses(mass_count(film), no_material);
   for (std::size_t s = 0; s < film.size(); ++s)
@@ -178,10 +179,10 @@ std::vector<double> times(const std::vector<const Frame*>& frames) {
 
 /// The moving part of a film.
 struct Motion {
-  Json shots;             ///< times and positions
+  Json shots;             ///< times and positions of each shot
   double step = 0;        ///< unit of positions, m
-  std::size_t every = 0;  ///< of the frames that were filmed, every so many-th is kept
-  bool fits = false;
+  std::size_t every = 0;  ///< n, if every n-th filmed frame is kept
+  bool fits = false;      ///< whether it fits the budget
 };
 
 class FilmWriter {
@@ -194,7 +195,7 @@ class FilmWriter {
         size_(body_size(film)),
         most_stress_(most_stress(film)) {}
 
-  /// Everything but the motion.
+  /// Returns the JSON of the film without times and positions.
   Json still(const Detail& detail) const {
     return {{"masses", mass_count(film_)},
             {"mass_materials", packed_mass_materials(film_, materials_)},
@@ -205,7 +206,8 @@ class FilmWriter {
             {"shots", shots_json(detail.stress_levels)}};
   }
 
-  /// The motion, thinned no more than for it to take at most `budget` bytes, and no further than `detail` allows.
+  /// Returns the motion. Leaves out only as many frames as necessary for at most `budget` bytes, and no more than
+  /// `detail` allows.
   Motion motion(const Detail& detail, std::size_t budget) const {
     std::size_t most = least_thinning;
     for (const Shot& shot : film_) most = std::max(most, std::min(shot.frames.size(), detail.most_thinning));
@@ -215,12 +217,12 @@ class FilmWriter {
       const std::size_t size = motion.shots.dump().size();
       motion.fits = size <= budget;
       if (motion.fits || motion.every >= most) return motion;
-      // what is further apart takes more bits as a rule, so this leaves out no more than it has to
+      // Frames that are further apart usually take more bits each, so this does not leave out more than necessary.
       motion.every = budget == 0 ? most : std::clamp(motion.every * size / budget, motion.every + 1, most);
     }
   }
 
-  /// Puts the parts together, and says how far they are from what was simulated.
+  /// Merges the motion into the rest of the film's JSON, and adds the ViewError.
   Json whole(Json still, const Motion& motion) const {
     ErrorSum errors;
     for (std::size_t i = 0; i < film_.size(); ++i) {
@@ -228,7 +230,7 @@ class FilmWriter {
       still["shots"][i].update(motion.shots[i]);
     }
     const ViewError error = errors.error();
-    // half a level at the top, where levels are furthest apart
+    // half the distance of the two highest levels, which are furthest apart
     const double stress = most_stress_ / still["stress_levels"].get<double>();
     still["step"] = motion.step;
     still["error"] = {{"largest", error.largest}, {"most", error.most}, {"stress", stress}};
@@ -236,7 +238,7 @@ class FilmWriter {
   }
 
  private:
-  /// Who is there in each shot, and how hard it works.
+  /// Returns, for each shot, the masses and springs that are present, and the springs' materials and stress.
   Json shots_json(int stress_levels) const {
     ValuePacking materials(springs_.count()), stress(springs_.count());
     std::vector<std::uint32_t> masses_before, springs_before;
@@ -279,7 +281,8 @@ class FilmWriter {
     return shots;
   }
 
-  /// Of the i-th shot every so many-th frame, or more where it is measured, and the last.
+  /// Returns every n-th frame of the i-th shot for n = `every`, or more frames if the shot is measured, and the last
+  /// frame.
   std::vector<const Frame*> kept_frames(std::size_t i, std::size_t every) const {
     const std::vector<Frame>& frames = film_[i].frames;
     if (titles_.at(i).measured && every < frames.size()) every = std::max(least_thinning, every / measured_finer);
@@ -293,8 +296,8 @@ class FilmWriter {
   const std::vector<Title>& titles_;
   SpringNumbers springs_;
   FilmMaterials materials_;
-  double size_;         ///< m
-  double most_stress_;  ///< N
+  double size_;         ///< longest side of the body at birth, m
+  double most_stress_;  ///< largest stress in the film, N
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A film as a page of the viewer holds it.
+// Films in the format of the viewer's pages.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,35 +7,36 @@
 
 namespace evodevo {
 
-/// How far what the page shows may be from what was simulated.
+/// Largest deviations of what the page shows from what was simulated.
 struct ViewError {
-  double largest = 0;  ///< over all masses and filmed moments, m
-  double most = 0;     ///< of 99 in 100, m
-  double stress = 0;   ///< N
+  double largest = 0;  ///< largest error of a position over all masses and all filmed frames, m
+  double most = 0;     ///< 99th percentile of the errors of positions, m
+  double stress = 0;   ///< largest error of a stress, N
 };
 
-/// What a shot shows.
+/// The title of a shot.
 struct Title {
   std::string name;
-  bool measured = false;  ///< within the window of a fitness
+  bool measured = false;  ///< whether the shot lies within the window of a fitness
 };
 
-/// A film as JSON: its springs and masses numbered through the whole life, the shots with who is there, the springs'
-/// materials and stress, and the positions, in such detail that all takes at most `budget` bytes: frames are left out,
-/// fewer of measured shots than of others, and positions and stress get coarser. Who is there, and the first and the
-/// last frame of each shot, are never left out, whatever they take. `titles` are those of the shots. A film without
-/// shots gives none.
+/// Converts a film to JSON of at most `budget` bytes, if possible. Masses and springs keep their numbers through the
+/// whole life. If the film is too large, frames are left out (fewer from measured shots than from others), and
+/// positions and stress are stored with lower precision. The masses and springs of each shot, and the first and the
+/// last frame of each shot, are always kept, even if they exceed the budget. `titles` has one title for each shot. The
+/// JSON of an empty film has only an empty list of shots.
 ///
-///   masses          how many there ever are
-///   mass_materials  of each; packed like all that follows in numbers
-///   ends            of each spring, two masses
-///   materials       what they do, those of the experiment first
-///   most_stress     N
-///   stress_levels   into which the root of stress up to the most is divided
+///   masses          number of masses that are ever in the body
+///   mass_materials  material of each mass; packed (packing.hpp), as are all lists of numbers below except times
+///   ends            the two masses of each spring
+///   materials       properties of the materials, those of the experiment first
+///   most_stress     largest stress in the film, N
+///   stress_levels   number of levels of stress; level = stress_levels * sqrt(stress / most_stress)
 ///   step            unit of positions, m
-///   error           ViewError of straight lines between the frames kept
-///   shots           name, times (s), masses and springs (numbers of those that came or went), materials and stress
-///                   of the springs present, in the order of their numbers, positions of the masses present
+///   error           ViewError, with positions interpolated linearly between the frames kept
+///   shots           for each shot: name; times (s); masses and springs: the numbers of those that were added or
+///                   removed since the previous shot; materials and stress: of the springs present, in the order of
+///                   their numbers; places: positions of the masses present
 nlohmann::ordered_json film_json(const Film& film, const std::vector<Title>& titles, std::size_t budget);
 
 }  // namespace evodevo

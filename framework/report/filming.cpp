@@ -11,8 +11,9 @@ namespace {
 
 bool is_finite(const SeenPlace& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
 
-/// What a divergence leaves cannot be shown. Where runs are shorter than frames, as between the tallies of skip-shift,
-/// the end of one gives way to that of the next.
+/// Adds the present positions as a frame, unless they are not finite, as after a divergence. If the previous frame is
+/// less than half a frame's duration after the one before it, the new frame replaces the previous one; this happens if
+/// the runs of the simulator are shorter than frames, as between the tallies of skip-shift.
 void add_frame(std::vector<Frame>& frames, const State& state, double rate) {
   Frame frame{state.time, {}};
   for (const Vec3& position : state.position) frame.positions.push_back(seen(position));
@@ -22,7 +23,8 @@ void add_frame(std::vector<Frame>& frames, const State& state, double rate) {
   frames.push_back(std::move(frame));
 }
 
-/// Adds what was recorded in `part`, which made up `share` of the steps, to what `whole` was asked for.
+/// Adds the records of a part of a run to those of the whole run. `share` is the part's fraction of all steps. Only
+/// records that `whole` was asked for are added.
 void add_records(SpringRecords& whole, const SpringRecords& part, double share) {
   for (std::size_t s = 0; s < whole.stress.size(); ++s) whole.stress[s] += share * part.stress[s];
   for (std::size_t s = 0; s < whole.tension.size(); ++s) whole.tension[s] += share * part.tension[s];
@@ -31,7 +33,7 @@ void add_records(SpringRecords& whole, const SpringRecords& part, double share) 
     whole.peak_force[s] = std::max(whole.peak_force[s], part.peak_force[s]);
 }
 
-/// A task that is filmed: it is done in parts, each up to the next frame.
+/// A filmed task. It is simulated in parts, each of which ends at the next frame.
 class Take {
  public:
   Take(Task& task, Recording recording, Reel& reel, double rate) : whole_(task), reel_(reel), rate_(rate) {
@@ -44,13 +46,13 @@ class Take {
     add_frame(shot().frames, *task.state, rate);
   }
 
-  /// As many as make the parts as even as whole steps allow.
+  /// Returns the number of steps of the next part; all parts are equally long, up to one step.
   std::uint64_t next_steps() {
     ++begun_;
     return whole_.steps * begun_ / parts_ - done_;
   }
 
-  /// Films the answer to a part, in which stress was recorded whether asked for or not.
+  /// Adds the result of a part to the film. Stress was recorded in it even if the task did not ask for it.
   void look(const Task& part) {
     if (whole_.status == Status::ok)
       add(part);
@@ -81,12 +83,13 @@ class Take {
 
   Task& whole_;
   Reel& reel_;
-  double rate_;  ///< of frames, 1/s
-  std::uint64_t parts_ = 1, begun_ = 0;
-  std::uint64_t done_ = 0;  ///< steps
+  double rate_;                          ///< frames per simulated second
+  std::uint64_t parts_ = 1, begun_ = 0;  ///< number of parts, and number of parts begun so far
+  std::uint64_t done_ = 0;               ///< number of steps done
 };
 
-/// The i-th shot comes after as many cycles, and all behind the last cycle show the same body.
+/// Sets the numbers of the masses in all shots. Shot i begins after i cycles; all shots after the last cycle show the
+/// same body.
 void number_masses(Film& film, const LifeRecord& record) {
   if (film.empty()) return;
   MassNumbers numbers(film.front().body.masses.size());

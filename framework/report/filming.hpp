@@ -1,4 +1,5 @@
-// Lives simulated again with a camera: where every mass was, and how hard every spring worked.
+// Films of lives: lives are simulated again, and the positions of all masses and the stress of all springs are
+// recorded.
 #pragma once
 
 #include <array>
@@ -10,35 +11,35 @@
 
 namespace evodevo {
 
-/// A place that is only looked at, m.
+/// A position that is only displayed, m; single precision suffices.
 using SeenPlace = std::array<float, 3>;
 
 inline SeenPlace seen(Vec3 p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
 
-/// All masses of a body at one moment.
+/// The positions of all masses of a body at one moment.
 struct Frame {
-  double time = 0;  ///< since birth, s
-  std::vector<SeenPlace> positions;
+  double time = 0;                   ///< simulated time since birth, s
+  std::vector<SeenPlace> positions;  ///< one for each mass
 };
 
-/// A stretch of a life in which the body stays the same.
+/// A part of a life during which the body does not change.
 struct Shot {
   Body body;
-  std::vector<Frame> frames;                ///< from the beginning of the stretch to its end; one or more
-  std::vector<double> stress;               ///< of each spring, N; empty after a divergence
-  std::vector<std::uint32_t> numbers = {};  ///< of the masses, which they keep through the film, ascending
+  std::vector<Frame> frames;                ///< from the beginning of the shot to its end; at least one
+  std::vector<double> stress;               ///< stress of each spring during the shot, N; empty after a divergence
+  std::vector<std::uint32_t> numbers = {};  ///< numbers of the masses, which stay the same in all shots; ascending
 };
 
 using Film = std::vector<Shot>;
 
-/// What was filmed of a body so far.
+/// The film of a body so far.
 struct Reel {
   Film film;
-  std::uint64_t steps = 0;  ///< on the last shot; 0: what comes is on a new one
+  std::uint64_t steps = 0;  ///< number of time steps in the last shot; 0: the next frame begins a new shot
 };
 
-/// A simulator that films what another one simulates: it simulates from frame to frame. Apart from that a body moves
-/// as it would in one go.
+/// A simulator that films what another simulator computes. It interrupts the simulation at every frame to record the
+/// positions; bodies move as they would without interruptions.
 class FilmingSimulator final : public Simulator {
  public:
   /// `rate` is in frames per simulated second.
@@ -49,10 +50,10 @@ class FilmingSimulator final : public Simulator {
   Workers& workers() override { return simulator_.workers(); }
   std::string device() const override { return simulator_.device(); }
 
-  /// Ends all shots: of the same body, runs up to here are one shot, and what comes is on a new one.
+  /// Ends the present shot of every body; later runs of a body are in a new shot.
   void cut();
 
-  /// What was filmed of a body. Its masses have no numbers yet.
+  /// Returns the film of a body and removes it from the simulator. Shot::numbers are not set yet.
   Film take(const Body& body) { return std::move(reels_[&body].film); }
 
  private:
@@ -61,16 +62,16 @@ class FilmingSimulator final : public Simulator {
   std::map<const Body*, Reel> reels_;
 };
 
-/// A life, and what it looked like.
+/// A life and its film.
 struct FilmedLife {
   Result result;
-  Film film;  ///< the development cycles, then the stretches of the final evaluation; empty where there was no body
-  std::size_t cycles = 0;  ///< how many of the shots are development cycles
+  Film film;               ///< one shot for each cycle, then those of the final evaluation; empty if there was no body
+  std::size_t cycles = 0;  ///< number of shots that are development cycles
 };
 
-inline constexpr double filmed_frames_per_second = 60;
+inline constexpr double filmed_frames_per_second = 60;  ///< frames per simulated second
 
-/// Simulates newborns again as in their run. A diverged life ends early.
+/// Simulates newborns again as in their run, and films them. The film of a life that diverges ends early.
 std::vector<FilmedLife> film_lives(const Experiment& experiment, Simulator& simulator,
                                    std::span<const Newborn> newborns);
 

@@ -10,13 +10,13 @@
 namespace evodevo {
 namespace {
 
-/// Nothing where there is no number.
+/// Returns the cause of an edit, or nullopt if the operator gave none.
 std::optional<Cause> cause_at(const Causes& causes, Causes::List list, std::size_t index) {
   const std::vector<double>& numbers = causes.*list;
   return numbers.empty() || std::isnan(numbers[index]) ? std::nullopt : std::optional(Cause{list, numbers[index]});
 }
 
-/// What happened in a life, as its changes are added in their order.
+/// Collects the events of a life. Its changes must be added in their order.
 class EventLog {
  public:
   explicit EventLog(Body born) : body_(std::move(born)), masses_(body_.masses.size()) {}
@@ -81,7 +81,7 @@ class EventLog {
   std::uint32_t number(std::uint32_t mass) const { return masses_.numbers().at(mass); }
 
   Body body_;
-  MassNumbers masses_;  ///< of `body_`
+  MassNumbers masses_;  ///< numbers of the masses of `body_`
   std::vector<Event> events_;
 };
 

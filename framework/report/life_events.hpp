@@ -1,4 +1,4 @@
-// What happened in a life, event by event, as it is told to people.
+// The edits of a life as a list of events for people to read.
 #pragma once
 
 #include <optional>
@@ -9,38 +9,38 @@
 
 namespace evodevo {
 
-/// A devo operator, as the events of a life describe it.
+/// A devo operator, with what is needed to describe its edits.
 struct Narrated {
   std::string name;
   const Experiment* experiment = nullptr;
-  std::size_t index = 0;    ///< among the experiment's devo operators
-  bool is_tallied = false;  ///< whether stress is in points of skip-shift
-  bool is_unique = true;    ///< among the names of the experiment's devo operators
+  std::size_t index = 0;    ///< index among the experiment's devo operators
+  bool is_tallied = false;  ///< whether the operator sees stress in points of skip-shift instead of N
+  bool is_unique = true;    ///< whether no other devo operator of the experiment has this name
 
-  /// In what it measures the causes of a list of edits.
+  /// Returns the name and unit of the causes in a list.
   Measure measure(Causes::List list) const;
 };
 
-/// Those of an experiment, which must outlive them.
+/// Returns the devo operators of an experiment. They refer to the experiment, which must outlive them.
 std::vector<Narrated> narrated_operators(const Experiment& experiment);
 
-/// The number that led to an edit.
+/// The number that caused an edit.
 struct Cause {
-  Causes::List list;  ///< which says in what the operator measures
+  Causes::List list;  ///< the list that the number comes from, which determines its name and unit
   double number;
 };
 
-/// What happened to one mass or spring, or to all springs that grow.
+/// One edit of a mass or spring, or the growth of all springs.
 struct Event {
-  std::uint32_t cycle = 0;
-  std::optional<std::uint32_t> op;    ///< index among the devo operators; none: it was torn off
+  std::uint32_t cycle = 0;            ///< cycle after which the edit was made
+  std::optional<std::uint32_t> op;    ///< index among the devo operators; none: removed with a loose piece of the body
   const char* what = "";              ///< "gone", "come", "changed" or "growth"
-  std::vector<std::uint32_t> masses;  ///< the mass's number, or those of the two that the spring joins; of growth none
+  std::vector<std::uint32_t> masses;  ///< number of the mass, or of the two masses of the spring; empty for growth
   std::optional<Growth> growth;
-  std::optional<Cause> cause;         ///< only of what the operator names itself
-  std::optional<Vec3> position;       ///< of a new mass, m
-  std::optional<double> rest_length;  ///< of a spring that comes or changes, m
-  std::optional<Material> material;   ///< likewise
+  std::optional<Cause> cause;         ///< cause, if the operator requested this edit itself and gave a cause
+  std::optional<Vec3> position;       ///< position of a new mass, m
+  std::optional<double> rest_length;  ///< rest length of a new spring, or the new one of a changed spring, m
+  std::optional<Material> material;   ///< material of a new spring, or the new one of a changed spring
 
   bool is_spring() const { return masses.size() == 2; }
 };
@@ -48,10 +48,10 @@ struct Event {
 /// The events of a life.
 struct LifeEvents {
   std::vector<Event> events;
-  Body matured;  ///< what they made of the body
+  Body matured;  ///< body after all events
 };
 
-/// The events that made up the changes of a life which began with the body `born`.
+/// Returns the events of a life. `born` is the body at birth.
 LifeEvents life_events(const Body& born, const LifeRecord& record);
 
 }  // namespace evodevo

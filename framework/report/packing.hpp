@@ -1,4 +1,4 @@
-// Numbers as short text: what a page holds in place of long lists.
+// Packs lists of numbers into short text for the viewer's pages.
 #pragma once
 
 #include <cstdint>
@@ -10,51 +10,56 @@
 
 namespace evodevo {
 
-/// Integers as text: zigzag and LEB128 to bytes, then zlib, then base64. A page unpacks it with what browsers bring.
+/// Packs integers: zigzag and LEB128 encode them as bytes, zlib compresses the bytes, and base64 turns them into text.
+/// All of this can be undone with functions that browsers have built in and a few lines of code.
 std::string packed(std::span<const std::int64_t> numbers);
 
-/// The differences between numbers that mostly ascend, packed.
+/// Packs the differences between successive numbers. The text is short if the numbers mostly ascend.
 std::string packed_differences(std::span<const std::uint32_t> numbers);
 
-/// The numbers that are in only one of two ascending lists, packed as differences: what came or went from `before` to
-/// `after`.
+/// Packs the numbers that are in only one of two ascending lists, that is, those that were added or removed from
+/// `before` to `after`. They are packed as differences.
 std::string packed_changes(std::span<const std::uint32_t> before, std::span<const std::uint32_t> after);
 
-/// Packs values that masses or springs have shot by shot, as differences from what each had when it was last there.
+/// Packs the values of masses or springs, shot by shot. Packs the difference of each value from the last value of the
+/// same mass or spring.
 class ValuePacking {
  public:
-  /// For things with numbers up to `count`, all of which have 0 at first.
+  /// `count` is the number of masses or springs. The last value of each is 0 at first.
   explicit ValuePacking(std::size_t count) : last_(count) {}
 
-  /// The values of the things of these numbers, as many as there are values.
+  /// Packs the values of one shot; values[i] is that of the mass or spring with number numbers[i]. Packs nothing if
+  /// there are no values.
   std::string next(std::span<const std::uint32_t> numbers, std::span<const std::int64_t> values);
 
  private:
   std::vector<std::int64_t> last_;
 };
 
-/// Packs where masses are shot by shot, axis by axis and frame by frame.
+/// Packs the positions of masses, shot by shot. Within a shot, frame by frame; within a frame, all x, all y, all z.
 class PlacePacking {
  public:
-  /// For masses with numbers up to `count`, in units of `step` (m).
+  /// `count` is the number of masses, `step` the unit of positions (m).
   PlacePacking(std::size_t count, double step) : step_(step), last_(3 * count), known_(count) {}
 
-  /// The frames of a shot with masses of these numbers. The first holds differences from where each mass was last, and
-  /// of new masses from the one before; the second those from the first; every other what is left after half of the
-  /// motion between the two before it.
+  /// Packs the frames of one shot; numbers[i] is the number of mass i. Packs the difference of each coordinate from a
+  /// prediction. In the first frame, the prediction is the last position of the mass or, for a new mass, the position
+  /// of the mass before it in the frame. In the second frame, it is the position in the first frame. In later frames,
+  /// it is the position in the previous frame plus half of the motion between the two previous frames.
   std::string next(std::span<const Frame* const> frames, std::span<const std::uint32_t> numbers);
 
  private:
-  /// Where masses are at a moment, in steps: all x, all y, all z.
+  /// Returns the positions of a frame in units of `step`: all x, all y, all z.
   std::vector<std::int64_t> positions(const Frame& frame) const;
-  /// Where they are thought to be, before the first frame of a shot is known, given where they are.
+  /// Returns the predictions for the first frame of a shot. `now` are the actual positions in that frame.
   std::vector<std::int64_t> first_guess(std::span<const std::int64_t> now,
                                         std::span<const std::uint32_t> numbers) const;
+  /// Remembers the positions in the last frame of a shot.
   void keep(std::span<const std::int64_t> last, std::span<const std::uint32_t> numbers);
 
-  double step_;
-  std::vector<std::int64_t> last_;  ///< all x, all y, all z
-  std::vector<bool> known_;         ///< has been in a shot
+  double step_;                     ///< m
+  std::vector<std::int64_t> last_;  ///< last position of each mass: all x, all y, all z
+  std::vector<bool> known_;         ///< for each mass, whether it has been in a shot
 };
 
 }  // namespace evodevo

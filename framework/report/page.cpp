@@ -12,14 +12,15 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t largest_page = 30'000'000;  ///< bytes
 constexpr const char* page_name = "page.html";
-constexpr std::string_view place_of_data = "EVODEVO_DATA";  ///< in the template, alone in a script element
+constexpr std::string_view place_of_data =
+    "EVODEVO_DATA";  ///< placeholder for the data in a script element of the page
 
 std::string escaped(const std::string& json) {
   std::string text;
   text.reserve(json.size());
   for (const char c : json) {
     if (c == '<')
-      text += "\\u003c";  // "<" is found inside JSON's strings alone; there "</script>" must not end the element
+      text += "\\u003c";  // so that "</script>" in a JSON string, the only place for a "<", does not end the element
     else
       text += c;
   }

@@ -1,4 +1,4 @@
-// The page of the viewer: one HTML file that holds its program and its data.
+// The viewer's page: one HTML file with the viewer's program and its data.
 #pragma once
 
 #include <filesystem>
@@ -7,17 +7,18 @@
 
 namespace evodevo {
 
-/// The folder of the built viewer. Throws std::runtime_error, saying how to build it, where it is not there.
+/// Returns the folder of the built viewer. If the viewer is not there, throws std::runtime_error that says how to build
+/// it.
 std::filesystem::path viewer_folder();
 
-/// The built page without data. Throws like viewer_folder().
+/// Returns the built page without data. Throws like viewer_folder().
 std::string page_template();
 
-/// The page with `data` in it. Nothing in the data is read as markup.
+/// Inserts `data` into the page. Data are escaped so that a browser does not read any of them as markup.
 std::string filled_page(const std::string& page, const nlohmann::ordered_json& data);
 
-/// A line that says how large a page of more than 30 MB is, and the option with which it would show fewer robots; of a
-/// smaller one, nothing.
+/// If a page is larger than 30 MB, returns a line that says how large it is and names the option that reduces the
+/// number of robots on it; else returns an empty text.
 std::string size_note(const std::string& file, std::size_t bytes, const std::string& option);
 
 }  // namespace evodevo

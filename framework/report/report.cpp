@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// An individual and why it is shown.
+/// An individual and the role for which it is shown, such as "best" or "ancestor".
 struct Role {
   ArchivedIndividual individual;
   std::string role;
@@ -41,7 +41,7 @@ class Casting {
     roles_.push_back({archive_.known_individual(id), role});
   }
 
-  /// `line` begins with the descendant and ends with the founder.
+  /// Adds `count` ancestors, evenly spaced. `line` begins with the descendant and ends with the founder.
   void add_ancestors(const std::vector<ArchivedIndividual>& line, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t back = (line.size() - 1) * (count - i) / count;
@@ -93,7 +93,8 @@ Json time_json(const Archive& archive) {
           {"develop", time->evaluation.develop}};
 }
 
-/// A film of how points become positions and then a body. A body whose encoding maps no points is just there.
+/// Returns a film in which points move to the positions that the encoding maps them to, and then become a body. If the
+/// encoding maps no points, the film shows only the body.
 Film mapping_film(const Blueprint& blueprint, BuiltBody built) {
   constexpr int frames = 60;
   constexpr double duration = 2;  // s
@@ -165,7 +166,7 @@ Json reported_run(const Archive& archive, const Experiment& experiment, Simulato
   run["time"] = time_json(archive);
   run["robots"] = Json::array();
   for (std::size_t i = 0; i < roles.size(); ++i) {
-    // what one leaves over goes to those that follow
+    // robots share the budget evenly; what one robot does not use is left to those after it
     const std::size_t share = budget / (roles.size() - i);
     const Json& robot = run["robots"].emplace_back(robot_json(archive, roles[i], lives[i], experiment, share));
     budget -= std::min(budget, robot.dump().size());

@@ -1,4 +1,4 @@
-// What the pages of report, gallery and film hold.
+// The data of the pages that the commands report, gallery and film make.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,25 +9,27 @@
 
 namespace evodevo {
 
-/// Bytes that the films of all robots of a page may take together, so that it stays under 30 MB.
+/// Largest size of the films of all robots on a page, bytes. It keeps the page under 30 MB.
 inline constexpr std::size_t page_budget = 27'000'000;
 
-/// Which robots of a run are shown.
+/// The robots of a run that a page shows.
 struct Cast {
-  std::size_t best = 3;                    ///< champions, by the first objective
-  std::size_t ancestors = 3;               ///< of the best one, spread over its line, the founder first
-  std::vector<std::uint32_t> individuals;  ///< these as well; all are in the archive
+  std::size_t best = 3;                    ///< number of best individuals by the first objective
+  std::size_t ancestors = 3;               ///< number of ancestors of the best individual, evenly spaced, founder first
+  std::vector<std::uint32_t> individuals;  ///< ids of further individuals, which are in the archive
 };
 
-/// A run as a report shows it: its numbers, its population, and its cast simulated again on `simulator`; see
-/// living_again.hpp. `budget` is for its robots' films.
+/// Returns the data of a run for a report: numbers of the run, its population, and the robots of `cast` with films.
+/// `simulator` simulates the robots again (evolution/resimulation.hpp). `budget` is the largest size of all films,
+/// bytes.
 nlohmann::ordered_json reported_run(const Archive& archive, const Experiment& experiment, Simulator& simulator,
                                     const Cast& cast, std::size_t budget);
 
-/// A page of runs.
+/// Returns the data of a page that shows runs.
 nlohmann::ordered_json report_data(std::vector<nlohmann::ordered_json> runs);
 
-/// A page of `count` random robots of an experiment: how each one's points become positions, and its body.
+/// Returns the data of a page that shows `count` random robots of an experiment: for each robot, how the encoding maps
+/// points to positions, and the body.
 nlohmann::ordered_json gallery_data(const Experiment& experiment, std::size_t count);
 
 }  // namespace evodevo

@@ -1,4 +1,4 @@
-// A run in numbers, as JSON: what `show --json` prints and a report's page holds.
+// The numbers of a run as JSON, for `show --json` and for the page of a report.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,22 +7,23 @@
 
 namespace evodevo {
 
-/// How many of all newborns were clones.
+/// Returns the number of clones in all generations.
 std::int64_t clones(const std::vector<Summary>& generations);
 
-/// An individual and its first parents, back to the random individual that it comes from.
+/// Returns an individual, its parent, the parent's parent, and so on, back to a random individual. Mates are left out.
 std::vector<ArchivedIndividual> ancestry(const Archive& archive, std::uint32_t id);
 
-/// The age of its oldest genes when it was last in the population, generations.
+/// Returns an individual's age, in generations, when it was dropped, or in the last generation if it still lives.
 std::uint32_t last_age(const ArchivedIndividual& individual, std::uint32_t last_generation);
 
-/// An individual with its objectives, parents, ancestors and verification. One without fitness has no objectives.
+/// Returns an individual with its objectives, parents, ancestors and verification. If it has no fitness, the JSON has
+/// no objectives.
 nlohmann::ordered_json individual_json(const Archive& archive, const ArchivedIndividual& individual);
 
-/// A verification with its marks and trials.
+/// Returns a verification with its marks and trials.
 nlohmann::ordered_json verification_json(const Verification& verification, const Objective& objective);
 
-/// The whole run: where from, how far, every generation, and the best individual.
+/// Returns the whole run: its origin, its progress, all generations, and the best individual.
 nlohmann::ordered_json run_json(const Archive& archive, const Settings& settings);
 
 }  // namespace evodevo

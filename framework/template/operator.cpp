@@ -8,7 +8,7 @@
 namespace {
 
 @encoding@
-/// Every mass has three genes for its place and one for its material; the host joins neighbours.
+/// Each mass has three genes for its position and one gene for its material. The host joins neighbouring masses.
 class @CLASS@ final : public evodevo::Encoding {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -41,7 +41,7 @@ class @CLASS@ final : public evodevo::Encoding {
   double side_ = 1;
 };
 @mutation@
-/// Any number of genes may change, or none.
+/// Draws each gene anew with probability `rate`. Any number of genes may change, or none.
 class @CLASS@ final : public evodevo::Mutation {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -57,7 +57,7 @@ class @CLASS@ final : public evodevo::Mutation {
   double rate_ = 0.1;
 };
 @crossover@
-/// Uniform crossover.
+/// Uniform crossover: swaps each gene with probability `rate`.
 class @CLASS@ final : public evodevo::Crossover {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -73,8 +73,8 @@ class @CLASS@ final : public evodevo::Crossover {
   double rate_ = 0.5;
 };
 @devo@
-/// The same spring may be drawn twice, so that fewer go. What else may change, one by one or all springs at once by their
-/// growth, is said of evodevo::Edits in evodevo/devo.hpp.
+/// Removes random springs after each cycle, fewer than `springs` if the same spring is drawn twice.
+/// evodevo::Edits in evodevo/devo.hpp lists all changes that a devo operator can make.
 class @CLASS@ final : public evodevo::Devo {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -90,7 +90,7 @@ class @CLASS@ final : public evodevo::Devo {
   std::int64_t springs_ = 5;
 };
 @fitness@
-/// In m/s, so that large bodies have it easier than with body lengths.
+/// Measures the horizontal speed in m/s. Unlike a speed in body lengths per second, this favours large bodies.
 class @CLASS@ final : public evodevo::Fitness {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -115,7 +115,7 @@ class @CLASS@ final : public evodevo::Fitness {
 @selection@
 using evodevo::Candidate;
 
-/// Truncation selection. Failed rows have no scores and come last.
+/// Truncation selection: the best part of the population breeds. Failed rows have no scores and come last.
 class @CLASS@ final : public evodevo::Selection {
  public:
   void parameters(evodevo::Parameters& p) override {

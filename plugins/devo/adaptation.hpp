@@ -1,12 +1,12 @@
-// What the operators share that change a property of the most stressed springs: "Modify the tension of highest stress
+// Shared by the operators that change a property of the most stressed springs: "Modify the tension of highest stress
 // springs rather than adding new springs" (paper, section VII).
 #pragma once
 
 #include "evodevo/devo.hpp"
 #include "stress.hpp"
 
-/// Multiplies a property of the most stressed of the springs that have it, within bounds. A spring that lies beyond a
-/// bound already goes no further.
+/// Multiplies a property of the most stressed springs by a factor, within bounds. Springs without the property are
+/// passed over. A value that is already beyond its bound stays as it is.
 class Adaptation : public evodevo::Devo {
  public:
   evodevo::SpringRequest observes() const final { return measure_.request(); }
@@ -43,8 +43,9 @@ class Adaptation : public evodevo::Devo {
   }
 
  private:
-  /// The property of a spring; 0 where it has none.
+  /// Returns the property of a spring, or 0 if the spring does not have it.
   virtual double value(const evodevo::Body& body, std::uint32_t spring) const = 0;
+  /// Adds to `edits` the change that gives the property of a spring a new value.
   virtual void change(const evodevo::Body& body, std::uint32_t spring, double value, evodevo::Edits& edits) const = 0;
 
   double adapted(double before) const {

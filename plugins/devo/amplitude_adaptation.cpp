@@ -1,10 +1,11 @@
-// Tension by the muscles' amplitude (paper, section VII): used muscles grow, or tire.
+// Adapts the tension of springs by changing the amplitude of muscles (paper, section VII): the most stressed muscles
+// become stronger, as if trained, or weaker, as if tired.
 #include "adaptation.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
 
-/// Springs without amplitude are no muscles and are passed over.
+/// Springs with an amplitude of zero are not muscles; the operator passes over them.
 class AmplitudeAdaptation final : public Adaptation {
  public:
   AmplitudeAdaptation() : Adaptation(1.05, 0.02, 0.3) {}

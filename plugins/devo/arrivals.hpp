@@ -4,7 +4,8 @@
 #include "evodevo/devo.hpp"
 #include "stress.hpp"
 
-/// How new masses come, as parameters: the paper's way (section IV-D3), or one that it proposes (section VII).
+/// The parameters by which new masses are placed and joined: as in the paper (section IV-D3), or as the paper proposes
+/// for future work (section VII).
 struct ArrivalRule {
   std::int64_t springs = 25;
   double min_distance = 0.02;  ///< m
@@ -24,8 +25,9 @@ struct ArrivalRule {
   evodevo::SpringRequest request() const { return where == "by-stress" ? measure.request() : evodevo::SpringRequest{}; }
 };
 
-/// New masses on their way into a body, which has springs. A new mass has the material of a random mass that stays and
-/// is not air; where masses have no material, its springs have those of random springs of the body.
+/// Adds new masses to a body that has at least one spring. A new mass gets the material of a random mass that stays in
+/// the body and is not air. A new spring gets the mean material of its two masses or, if one of them has no material,
+/// the material of a random spring of the body.
 class Arrivals {
  public:
   Arrivals(const ArrivalRule& rule, const evodevo::DevoContext& context)
@@ -35,10 +37,11 @@ class Arrivals {
     lottery_ = StressLottery(stress_);
   }
 
-  /// Whether a mass stays; one that goes takes up no room and is not joined to.
+  /// Sets whether a mass stays in the body. A mass that is about to be removed takes up no room, and new masses are not
+  /// joined to it.
   void set_staying(std::uint32_t mass, bool stays) { stays_[mass] = stays; }
 
-  /// Finds a place for one more mass; false where many tries fail.
+  /// Finds a free position for one more mass. Returns false if all attempts fail.
   bool find_position(evodevo::Rng& rng) {
     for (int attempt = 0; attempt < attempts_per_position; ++attempt) {
       const std::optional<std::uint32_t> spring = lottery_.empty() ? std::nullopt : std::optional(lottery_.draw(rng));
@@ -51,7 +54,8 @@ class Arrivals {
     return false;
   }
 
-  /// Adds the masses and their springs. False where all that stays is air, to which nothing can be joined.
+  /// Adds to `edits` one mass for each position found, and its springs. Returns false without adding anything if all
+  /// masses that stay are air, because the new masses and all of their springs would be air too.
   bool come(evodevo::Edits& edits, evodevo::Rng& rng) const {
     auto partners = masses_where([&](std::uint32_t i) { return stays_[i]; });
     const auto models = masses_where([&](std::uint32_t i) { return stays_[i] && !is_of_air(i); });
@@ -73,7 +77,8 @@ class Arrivals {
     return {rng.uniform(low.x, high.x), rng.uniform(low.y, high.y), rng.uniform(low.z, high.z)};
   }
 
-  /// Anywhere between the spring's ends; not below the floor, into which masses may have sunk.
+  /// Returns a random position between the two ends of a spring, raised to the floor if masses have sunk into the
+  /// floor.
   evodevo::Vec3 position_on_spring(std::uint32_t index, evodevo::Rng& rng) const {
     const evodevo::Spring& spring = context_.body.springs[index];
     const evodevo::Vec3 a = context_.position(spring.a), b = context_.position(spring.b);
@@ -82,7 +87,7 @@ class Arrivals {
     return position;
   }
 
-  /// Far enough from all masses that stay and from the new ones.
+  /// Returns whether a position is far enough from all masses that stay and from all new masses.
   bool is_free(const evodevo::Vec3& position) const {
     const auto is_near = [&](const evodevo::Vec3& other) { return !(norm(position - other) >= rule_.min_distance); };
     if (std::any_of(positions_.begin(), positions_.end(), is_near)) return false;
@@ -91,7 +96,7 @@ class Arrivals {
     return true;
   }
 
-  /// Springs from the newest mass to different ones of `partners`, whose order changes.
+  /// Adds springs from the newest mass to several of `partners`; changes the order of `partners`.
   void join(std::vector<std::uint32_t>& partners, evodevo::Edits& edits, evodevo::Rng& rng) const {
     const evodevo::Body& body = context_.body;
     const auto newest = static_cast<std::uint32_t>(body.masses.size() + edits.new_masses.size() - 1);
@@ -108,7 +113,7 @@ class Arrivals {
     }
   }
 
-  /// Nearest first, as far as they are needed; equally distant ones by their index.
+  /// Sorts `partners` by distance, nearest first, ties by index; sorts only as many as the new mass gets springs.
   void sort_by_distance(std::vector<std::uint32_t>& partners, const evodevo::Vec3& position) const {
     std::vector<std::pair<double, std::uint32_t>> order;
     for (const std::uint32_t i : partners) order.emplace_back(norm(context_.position(i) - position), i);
@@ -137,9 +142,9 @@ class Arrivals {
 
   const ArrivalRule& rule_;
   const evodevo::DevoContext& context_;
-  std::vector<double> stress_;  ///< of every spring, where it decides
+  std::vector<double> stress_;  ///< stress of every spring; empty unless it decides where masses come
   StressLottery lottery_;
   std::vector<bool> stays_;
   std::vector<evodevo::Vec3> positions_;
-  std::vector<double> causes_;  ///< the stress of the spring that each place lies on, where it decides
+  std::vector<double> causes_;  ///< for each position, the stress of the spring that it is on; empty as `stress_` is
 };

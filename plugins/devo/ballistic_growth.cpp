@@ -1,12 +1,13 @@
-// Ballistic development: genes set where growth starts and ends, and it goes there linearly, whatever happens on the
-// way (Kriegman, Cheney, Corucci & Bongard 2017, "A minimal developmental model can increase evolvability in soft
-// robots"; paper, section II).
+// Ballistic development: genes set the sizes at birth and at the end of development, and the body grows linearly from
+// one to the other, whatever it experiences (Kriegman, Cheney, Corucci & Bongard 2017, "A minimal developmental model
+// can increase evolvability in soft robots"; paper, section II).
 #include "evodevo/plugin.hpp"
 
 namespace {
 
-/// The way from a spring's rest length at birth to Spring::growth times it is gone in equal parts, one at each
-/// application. Encodings set `growth`, by their `size_range`; springs that come later have none.
+/// At each application, the rest length of every spring changes by the same amount, so that it goes from L at birth to
+/// Spring::growth * L at the last application. Encodings with a parameter `size_range` set Spring::growth; springs that
+/// are added during development do not grow.
 class BallisticGrowth final : public evodevo::Devo {
  public:
   evodevo::SpringRequest observes() const override { return {}; }

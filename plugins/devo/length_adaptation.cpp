@@ -1,12 +1,11 @@
-// Tension by rest length (paper, section VII).
+// Adapts the tension of springs by changing their rest lengths (paper, section VII).
 #include "adaptation.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
 
-/// The bounds are relative to the rest length that the spring had when it was created, so that they hold for a whole
-/// life, no matter where the spring's masses come from and go. Springs that were created with no length stay as they
-/// are.
+/// The bounds are relative to the rest length with which the spring was created, so that they hold for a whole life,
+/// however the spring's masses move. Springs that were created with a rest length of zero stay as they are.
 class LengthAdaptation final : public Adaptation {
  public:
   LengthAdaptation() : Adaptation(0.98, 0.7, 1.3) {}

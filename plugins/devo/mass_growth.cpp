@@ -5,7 +5,7 @@
 
 namespace {
 
-/// A mass for which no free place is found does not come.
+/// An application adds fewer masses than asked for if it finds no free position for the next one.
 class MassGrowth final : public evodevo::Devo {
  public:
   void parameters(evodevo::Parameters& p) override {

@@ -10,9 +10,11 @@ using evodevo::DevoContext;
 using evodevo::Edits;
 using evodevo::Rng;
 
-/// The paper's operation, "currently partially implemented" there, with the choices that it leaves open. Masses are
-/// judged once, before any goes; springs of air count, since a body with much air would be wiped out otherwise; at
-/// most `limit` and half of the body go at once, fewest springs first. A mass for which no free place is found stays.
+/// The paper's operation, which the paper calls "currently partially implemented". The paper leaves open these choices:
+/// The operator determines the degree of all masses once, before it removes any. Contacts to air count as springs,
+/// because a body with much air would be wiped out otherwise. One application removes the masses with the fewest
+/// springs, at most `limit` and at most half of the body. The operator removes a mass only if it finds a free position
+/// for a new one.
 class MassTurnover final : public evodevo::Devo {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -47,7 +49,7 @@ class MassTurnover final : public evodevo::Devo {
   }
 
  private:
-  /// How many springs each mass has, those of air included.
+  /// Returns the number of springs of each mass, including its contacts to air.
   static std::vector<std::int64_t> degrees(const Body& body) {
     std::vector<std::int64_t> degree;
     for (const auto& mass : body.masses) degree.push_back(mass.air_contacts);
@@ -58,7 +60,7 @@ class MassTurnover final : public evodevo::Devo {
     return degree;
   }
 
-  /// The masses below the threshold that may go, fewest springs first, ties in random order.
+  /// Returns the masses below the threshold that may be removed, fewest springs first, ties in random order.
   std::vector<std::uint32_t> poorest(const std::vector<std::int64_t>& degree, Rng& rng) const {
     std::vector<std::uint32_t> poor;
     for (std::uint32_t i = 0; i < degree.size(); ++i)

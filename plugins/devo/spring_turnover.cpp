@@ -14,7 +14,7 @@ using evodevo::Material;
 using evodevo::no_material;
 using evodevo::Rng;
 
-/// The partners of every mass, in one block of memory.
+/// For every mass, the masses that springs join it to (its partners), all in one array.
 class Partners {
  public:
   explicit Partners(const Body& body) : first_(body.masses.size() + 1), partners_(2 * body.springs.size()) {
@@ -40,19 +40,19 @@ class Partners {
   }
 
  private:
-  std::vector<std::uint32_t> first_;  ///< where a mass's partners begin
+  std::vector<std::uint32_t> first_;  ///< for each mass, the index of its first partner in `partners_`
   std::vector<std::uint32_t> partners_;
 };
 
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Two masses that a new spring may join, and the spring that it would come beside.
+/// Two masses that a new spring may join.
 struct Candidate {
   Pair pair;
-  std::optional<std::uint32_t> beside = {};
+  std::optional<std::uint32_t> beside = {};  ///< the stressed spring beside which the new spring would lie, if any
 };
 
-/// Suggests positions for new springs, again and again.
+/// Suggests pairs of masses for new springs.
 class Candidates {
  public:
   Candidates(const std::string& where, const DevoContext& context, std::span<const double> stress,
@@ -73,7 +73,8 @@ class Candidates {
   }
 
  private:
-  /// From one end of a spring past the other end to a mass that is joined to it. May be that spring itself.
+  /// Suggests a pair that closes a triangle with a spring: one end of the spring and a random partner of its other end.
+  /// If that partner is the first end itself, the suggested pair is that of the spring.
   Candidate beside(std::uint32_t index, Rng& rng) const {
     std::uint32_t from = context_.body.springs[index].a, past = context_.body.springs[index].b;
     if (rng.chance(0.5)) std::swap(from, past);
@@ -89,10 +90,10 @@ class Candidates {
   std::size_t turn_ = 0;
 };
 
-/// The number of springs stays the same: a spring is removed only if another can be added. A body in which all masses
-/// are joined therefore stays as it is, and a body with fewer springs than `springs` exchanges the springs that it has.
-/// A new spring joins two masses that were not joined when the cycle ended and that are not at the same position; its
-/// material is not air. New springs are born without force.
+/// The number of springs stays the same: a spring is removed only if another can be added. A body in which every pair
+/// of masses is joined therefore stays as it is, and a body with fewer springs than `springs` can exchange only those
+/// that it has. A new spring joins two masses that are not joined before the application and that are not at the same
+/// position; its material is not air. A new spring exerts no force at first.
 class SpringTurnover final : public evodevo::Devo {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -115,7 +116,7 @@ class SpringTurnover final : public evodevo::Devo {
     const Partners partners(body);
     Candidates candidates(where_, context, stress, partners, count, rng);
     std::set<Pair> taken;
-    // enough to fill a body that is nearly complete; a complete one ends here
+    // enough attempts to find the free pairs of a body in which nearly all masses are joined; ends if there are none
     for (std::size_t attempts = evodevo::attempts_per_spring * count; attempts > 0 && taken.size() < count;
          --attempts) {
       const auto [pair, beside] = candidates.next(rng);
@@ -134,7 +135,7 @@ class SpringTurnover final : public evodevo::Devo {
   }
 
  private:
-  /// The mean of the two masses' materials; where masses have none, that of the spring that goes.
+  /// Returns the mean of the materials of two masses or, if one of them has none, the material of the removed spring.
   static Material material_between(const Body& body, std::uint32_t a, std::uint32_t b, std::uint32_t leaves) {
     const std::int32_t first = body.masses[a].material, second = body.masses[b].material;
     if (first == no_material || second == no_material) return body.materials[body.springs[leaves].material];

@@ -1,17 +1,17 @@
-// What the devo operators share: springs chosen by their stress.
+// Shared by the devo operators: functions that choose springs by their stress.
 #pragma once
 
 #include <tuple>
 
 #include "evodevo/devo.hpp"
 
-/// The `count` springs with the smallest `key`, or all springs if there are fewer, smallest first, ties in random
-/// order. No key may be NaN.
+/// Returns the `count` springs with the smallest `key`, or all springs if there are fewer; smallest first, ties in
+/// random order. No key may be NaN.
 inline std::vector<std::uint32_t> springs_of_least(const std::vector<double>& key, std::size_t count,
                                                    evodevo::Rng& rng) {
   count = std::min(count, key.size());
   if (count == 0) return {};
-  std::vector<double> least(count);  // few of many: most keys are looked at once
+  std::vector<double> least(count);  // `count` is small, so most keys are compared only once
   std::partial_sort_copy(key.begin(), key.end(), least.begin(), least.end());
   using Ranked = std::tuple<double, std::uint32_t, std::uint32_t>;
   std::vector<Ranked> ranked;
@@ -23,7 +23,7 @@ inline std::vector<std::uint32_t> springs_of_least(const std::vector<double>& ke
   return springs;
 }
 
-/// The least stressed springs, least first. A stress that is not a number counts as the greatest.
+/// Returns the `count` least stressed springs, least stressed first. A stress of NaN counts as the greatest.
 inline std::vector<std::uint32_t> least_stressed(std::span<const double> stress, std::size_t count, evodevo::Rng& rng) {
   std::vector<double> key(stress.begin(), stress.end());
   for (double& value : key)
@@ -31,14 +31,14 @@ inline std::vector<std::uint32_t> least_stressed(std::span<const double> stress,
   return springs_of_least(key, count, rng);
 }
 
-/// The most stressed springs, most first. A stress that is not a number counts as the least.
+/// Returns the `count` most stressed springs, most stressed first. A stress of NaN counts as the least.
 inline std::vector<std::uint32_t> most_stressed(std::span<const double> stress, std::size_t count, evodevo::Rng& rng) {
   std::vector<double> key(stress.begin(), stress.end());
   for (double& value : key) value = std::isnan(value) ? std::numeric_limits<double>::infinity() : -value;
   return springs_of_least(key, count, rng);
 }
 
-/// What springs are judged by, as a parameter that all operators have in common.
+/// The parameter `by`, which all these operators share: the quantity that counts as the stress of a spring.
 class StressMeasure {
  public:
   void declare(evodevo::Parameters& p) {
@@ -56,7 +56,7 @@ class StressMeasure {
 
   evodevo::Measure measure() const { return {by_, by_ == "work" ? "J" : "N"}; }
 
-  /// Of every spring, N or J.
+  /// Returns the chosen quantity of every spring, N or J.
   std::vector<double> of(const evodevo::DevoContext& context) const {
     const std::span<const double> record = by_ == "mean-force" ? context.stress
                                            : by_ == "peak"     ? context.peak_force
@@ -72,11 +72,11 @@ class StressMeasure {
   std::string by_ = "mean-force";
 };
 
-/// Draws springs with probability in proportion to their stress; all alike where no spring has any. A stress that is
-/// not finite counts as none.
+/// Draws springs with probability proportional to their stress, or uniformly if no spring has stress. A stress that is
+/// negative or not finite counts as zero.
 class StressLottery {
  public:
-  /// Without springs; nothing can be drawn.
+  /// Makes a lottery without springs, from which draw() must not be called.
   StressLottery() = default;
   explicit StressLottery(std::span<const double> stress) {
     double sum = 0;
@@ -89,11 +89,11 @@ class StressLottery {
     const double total = sums_.back();
     if (!(total > 0) || !std::isfinite(total)) return rng.below(static_cast<std::uint32_t>(sums_.size()));
     const auto drawn = std::upper_bound(sums_.begin(), sums_.end(), rng.uniform() * total);
-    // rounding may make the product as great as the total
+    // the product can be rounded up to the total
     const auto last = std::lower_bound(sums_.begin(), sums_.end(), total);
     return static_cast<std::uint32_t>(std::min(drawn, last) - sums_.begin());
   }
 
  private:
-  std::vector<double> sums_;  ///< of the stress up to each spring
+  std::vector<double> sums_;  ///< cumulative stress: for each spring, the sum over the springs up to and including it
 };

@@ -1,5 +1,6 @@
-// A compositional pattern-producing network: neurons whose functions, and so the patterns' symmetries and repetitions,
-// evolve with the weights (Stanley 2007). Here its topology is fixed.
+// A compositional pattern-producing network (Stanley 2007): the activation functions of the neurons evolve together
+// with the weights, and with the functions the symmetries and repetitions of the pattern. Here the topology of the
+// network is fixed.
 #include <array>
 #include <cmath>
 
@@ -8,16 +9,18 @@
 
 namespace {
 
-/// The functions that a neuron may have: Stanley's, each about as large as its argument is around 1.
+/// The activation functions that a neuron may have. They are Stanley's; the value of each is of the order of 1 if its
+/// argument is.
 constexpr std::array<double (*)(double), 5> functions = {
     [](double x) { return x; },           [](double x) { return std::tanh(x); },
     [](double x) { return std::sin(x); }, [](double x) { return std::exp(-x * x); },
     [](double x) { return std::abs(x); },
 };
 
-/// A network 4 - hidden - hidden - outputs_in(context); its inputs are a point's coordinates and its distance from the
-/// centre. One gene group for each neuron: its function (that of an output neuron is the identity and no gene), its
-/// bias, then the weights that come in, up to 3 as usual with such networks, so that a sine repeats itself.
+/// A fully connected network with 4 inputs, two layers of hidden() neurons, and outputs_in(context) outputs. The inputs
+/// are the coordinates of a point and its distance from the centre. Each neuron has one gene group: its activation
+/// function, its bias, then its input weights. Output neurons have no gene for the function, which is the identity.
+/// Biases and weights are in [-3, 3], as is usual for such networks, so that a sine can go through several periods.
 class Cppn final : public NetworkEncoding {
  public:
   evodevo::Layout layout(const evodevo::EncodingContext& context) const override {

@@ -4,7 +4,7 @@
 
 namespace {
 
-/// One gene for each spring of a lattice, in groups by the spring's first mass.
+/// Each spring of a lattice has one gene, its material. The springs with the same first mass form one gene group.
 class Direct final : public LatticeEncoding {
  public:
   evodevo::Layout layout(const evodevo::EncodingContext& context) const override {

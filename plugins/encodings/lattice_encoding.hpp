@@ -1,11 +1,11 @@
-// What the two encodings on a lattice of voxels share (paper, section II: the authors' earlier encodings).
+// Shared by the two encodings on a lattice of voxels (paper, section II: the authors' earlier encodings).
 #pragma once
 
 #include "chosen.hpp"
 #include "evodevo/encoding.hpp"
 #include "evodevo/lattice.hpp"
 
-/// A lattice whose corners are masses without a material; its springs have theirs from the genes.
+/// A lattice whose corners are masses without a material. The genes determine the materials of its springs.
 class LatticeEncoding : public evodevo::Encoding {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -25,12 +25,13 @@ class LatticeEncoding : public evodevo::Encoding {
     return context.material_indices(materials_);
   }
 
-  /// A gene that chooses a material. At least one option, since a gene of none would be a real one.
+  /// Returns the description of a gene that chooses a material. The gene has at least one option, because a gene with
+  /// no options would be a real gene.
   evodevo::GeneSpec choice(const evodevo::EncodingContext& context) const {
     return {0, 0, std::max(1u, static_cast<std::uint32_t>(chosen(context).size()))};
   }
 
-  /// The lattice's masses around the origin, not joined yet.
+  /// Returns a body of the lattice's masses, centred on the origin, without springs.
   evodevo::Body masses(const evodevo::Lattice& lattice, const evodevo::EncodingContext& context) const {
     evodevo::Body body;
     body.materials = context.materials;
@@ -39,7 +40,8 @@ class LatticeEncoding : public evodevo::Encoding {
     return body;
   }
 
-  /// Makes the lattice's spring of the material; where that is air, counts the contact and returns false.
+  /// Adds a spring of the lattice to the body, with the given material. If the material is air, counts a contact to air
+  /// for both masses instead, and returns false.
   static bool join(evodevo::Body& body, const evodevo::LatticeSpring& spring, const evodevo::Material& material) {
     evodevo::Mass &a = body.masses[spring.a], &b = body.masses[spring.b];
     if (is_air(material)) {

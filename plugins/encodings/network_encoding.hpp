@@ -1,4 +1,4 @@
-// What the encodings share that map points to masses by a network (paper, section IV-A1).
+// Shared by the encodings that map points to masses by a network (paper, section IV-A1).
 #pragma once
 
 #include <Eigen/Core>
@@ -7,10 +7,11 @@
 #include "chosen.hpp"
 #include "evodevo/encoding.hpp"
 
-/// A network from the points of a ball to positions in a cube and materials; neighbours are joined. Where the paper is
-/// silent: the points are uniform in the ball, and positions lie in [-side/2, side/2]^3. Neighbours are those of the
-/// positions, or, as the paper proposes in section VII, those of the points. Where sizes develop, each mass has one at
-/// birth and one at the end of development (Kriegman et al. 2017).
+/// A network that maps each point of a ball to a mass: to its position in a cube and its material. Nearest neighbours
+/// are joined. The paper leaves open these choices: the points are uniformly distributed in the ball, and the positions
+/// lie in [-side/2, side/2]^3. Neighbours are determined among the positions or, as the paper proposes in section VII,
+/// among the points. If sizes develop, each mass has a size at birth and a size at the end of development (Kriegman et
+/// al. 2017).
 class NetworkEncoding : public evodevo::Encoding {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -40,7 +41,7 @@ class NetworkEncoding : public evodevo::Encoding {
     blueprint.body.materials = context.materials;
     blueprint.neighbours = static_cast<std::uint32_t>(neighbours_);
     for (const auto& output : outputs.colwise()) {
-      // softmax, which the paper puts before the maximum, does not change where the maximum is
+      // the paper applies a softmax before it takes the maximum; that does not change where the maximum is
       Eigen::Index material = 0;
       output.segment(3, materials).maxCoeff(&material);
       blueprint.body.masses.push_back({{position(output[0]), position(output[1]), position(output[2])},
@@ -58,21 +59,23 @@ class NetworkEncoding : public evodevo::Encoding {
  protected:
   using Matrix = Eigen::MatrixXd;
 
-  /// Neurons in each of the two hidden layers.
+  /// Returns the number of neurons in each of the two hidden layers.
   std::int64_t hidden() const { return hidden_; }
-  /// x, y and z, one value for each material to choose from, of which the greatest wins, and the sizes where they
-  /// develop.
+  /// Returns the number of outputs of the network: x, y and z; one value for each material to choose from, the greatest
+  /// of which selects the material; and, if sizes develop, the size at birth and the size at the end.
   std::int64_t outputs_in(const evodevo::EncodingContext& context) const {
     return 3 + static_cast<std::int64_t>(context.material_indices(materials_).size()) + (size_range_ > 0 ? 2 : 0);
   }
 
-  /// What a layer of neurons sums up, one column for each point: `rows` holds each neuron's bias, then its weights.
+  /// Returns the weighted sums of a layer of neurons plus their biases: one row for each neuron, one column for each
+  /// point. `rows` has one row for each neuron, with its bias and then its weights.
   static Matrix sums(const Matrix& rows, const Matrix& input) {
-    // a lazy product sums in one order, the blocked one in an order that depends on the size of the caches
+    // A lazy product always sums in the same order. Eigen's default product sums in an order that depends on the sizes
+    // of the caches, and would thus give different bits on different machines.
     return rows.rightCols(input.rows()).lazyProduct(input).colwise() + rows.col(0);
   }
 
-  /// The next `neurons` groups of `count` genes as rows; `genes` moves on behind them.
+  /// Returns the next `neurons` groups of `count` genes as the rows of a matrix, and moves `genes` past them.
   static Matrix next_rows(const float*& genes, Eigen::Index neurons, Eigen::Index count) {
     using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const Matrix rows = Eigen::Map<const Rows>(genes, neurons, count).cast<double>();
@@ -81,10 +84,10 @@ class NetworkEncoding : public evodevo::Encoding {
   }
 
  private:
-  /// The network's outputs, one column for each point.
+  /// Returns the network's outputs, one column for each point.
   virtual Matrix map(const float* genes, const Matrix& points, Eigen::Index outputs) const = 0;
 
-  /// The run's points, uniform in the unit ball, as columns.
+  /// Returns the points as columns, uniformly distributed in the unit ball. All bodies of a run have the same points.
   Matrix ball(const evodevo::EncodingContext& context) const {
     evodevo::Rng rng = context.rng(static_cast<std::uint64_t>(points_seed_));
     Matrix points(3, points_);

@@ -1,12 +1,13 @@
-// The paper's encoding (section IV-A1, Fig. 1): a small neural network maps the points of a ball to positions in a cube
-// and gives each a material; every place becomes a mass that is joined to its nearest neighbours.
+// The paper's encoding (section IV-A1, Fig. 1): a small neural network maps each point of a ball to a position in a
+// cube and to a material. At each position there is a mass, which is joined to its nearest neighbours.
 #include "evodevo/plugin.hpp"
 #include "network_encoding.hpp"
 
 namespace {
 
-/// A network 3 - hidden - hidden - outputs_in(context), ReLU within, one gene group for each neuron: its bias, then the
-/// weights that come in. Where the paper is silent: biases are genes like the weights.
+/// A fully connected network with 3 inputs, two layers of hidden() neurons with ReLU, and outputs_in(context) linear
+/// outputs. Each neuron has one gene group: its bias, then its input weights. The paper does not mention biases; here
+/// they are genes like the weights.
 class Neural final : public NetworkEncoding {
  public:
   evodevo::Layout layout(const evodevo::EncodingContext& context) const override {

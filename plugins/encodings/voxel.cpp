@@ -6,10 +6,10 @@ namespace {
 
 using evodevo::Material;
 
-/// One gene group for each voxel: its material and, where sizes develop, its size at birth and at the end of
-/// development (Kriegman et al. 2017: "a start and end volume", as the paper has it). Voxels of air are absent. A
-/// spring between several voxels has the mean of their materials and sizes. Masses are born in the positions of a
-/// lattice of equal voxels.
+/// Each voxel has one gene group: its material and, if sizes develop, its size at birth and its size at the end of
+/// development (Kriegman et al. 2017; in the paper's words, "a start and end volume"). Voxels of air are absent. A
+/// spring that belongs to several voxels has the mean of their materials and sizes. The positions of the masses at
+/// birth are those of a lattice of equal voxels.
 class Voxel final : public LatticeEncoding {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -53,7 +53,7 @@ class Voxel final : public LatticeEncoding {
   bool sets_growth() const override { return size_range_ > 0; }
 
  private:
-  /// The sizes of the solid voxels around a spring, summed up.
+  /// The sum of the sizes of the solid voxels that a spring belongs to.
   struct Sizes {
     double start = 0, end = 0;
     int count = 0;
@@ -69,8 +69,9 @@ class Voxel final : public LatticeEncoding {
     }
   };
 
-  /// The mean of those that are not air; air where there are none. Equal shares give equal bits and one material alone
-  /// is not rounded, so that a body needs few different materials.
+  /// Returns the mean of the materials that are not air, or air if there are none. `indices` has one entry for each
+  /// voxel. The same mixture always gives the same bits, and the mean of a single material is exactly that material, so
+  /// that a body has few different materials.
   static Material mean_of_solid(const std::vector<Material>& materials, std::vector<std::int32_t> indices) {
     std::erase_if(indices, [&](std::int32_t i) { return is_air(materials[i]); });
     std::sort(indices.begin(), indices.end());

@@ -1,9 +1,11 @@
-// The price of moving, for a front of two objectives with a distance (paper, section IV-F: "multiple criteria").
+// The cost of moving. Together with the fitness `distance`, it gives a Pareto front of two objectives (paper, section
+// IV-F: "multiple criteria").
 #include "evodevo/plugin.hpp"
 
 namespace {
 
-/// Settling and window should be those of the fitness beside it, so that both judge the same seconds.
+/// `settle` and `window` should be the same as those of the other fitness operator, so that both measure the same part
+/// of a life.
 class ActuationWork final : public evodevo::Fitness {
  public:
   void parameters(evodevo::Parameters& p) override {

@@ -6,8 +6,8 @@
 
 namespace {
 
-/// The body length is the longest side of the bounding box when the window opens. The paper settles for 3 s; 10 s is
-/// the default here because some bodies topple for longer than that. Swimmers need no settling.
+/// The body length is the longest side of the bounding box when the window opens. In the paper, bodies settle for 3 s;
+/// the default here is 10 s because some bodies topple for longer than 3 s. Bodies that swim need not settle.
 class Distance final : public evodevo::Fitness {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -25,7 +25,7 @@ class Distance final : public evodevo::Fitness {
 
   std::vector<double> score(const evodevo::Observation& observation) const override {
     const evodevo::Box& box = observation.box;
-    // neither a point nor what is no number has a length
+    // a body whose masses all lie in one point has no length, and neither has a body with a position of NaN
     if (!(norm(box.high - box.low) > 0)) return {std::numeric_limits<double>::quiet_NaN()};
     const evodevo::Vec3 way = observation.centre_after - observation.centre_before;
     return {dot(way, direction_) / norm(direction_) / box.longest_side()};

@@ -1,4 +1,4 @@
-// The plain choice: the best live on, and the better of a few breed.
+// Simple elitist selection: the best individuals live on, and parents are the winners of small tournaments.
 #include "evodevo/plugin.hpp"
 #include "rows.hpp"
 
@@ -6,7 +6,7 @@ namespace {
 
 using evodevo::Candidate;
 
-/// Best is who has the highest first score; further scores, then youth, break ties.
+/// The best individual is the one with the highest first score. Ties are broken by the other scores, then by youth.
 class Elitist final : public evodevo::Selection {
  public:
   void parameters(evodevo::Parameters& p) override {

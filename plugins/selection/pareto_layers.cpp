@@ -9,10 +9,11 @@ namespace {
 using evodevo::Candidate;
 using evodevo::Point;
 
-/// The paper's replacement, with the choices that it leaves open. A child challenges its parent, of several children
-/// the best one; a row without a parent challenges the worst; fitness is the first objective. The front lives on, its
-/// most crowded rows excepted where it would exceed the population. Losers live on only where positions are free,
-/// failed rows only after all others.
+/// The paper's replacement. The paper leaves open these choices: A child competes with its parent for the parent's
+/// place; if a parent has several children, only the best of them can win. Individuals without a parent compete with
+/// the worst. "Fitness" is the first objective. The whole front lives on; if it is larger than the population, its most
+/// crowded members do not. Individuals that lost against their parent or child live on only if places are left, and
+/// failed individuals only after all others.
 class ParetoLayers final : public evodevo::Selection {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -31,7 +32,7 @@ class ParetoLayers final : public evodevo::Selection {
     const auto points = age_ ? evodevo::scores_and_youth(sorted) : scores(sorted);
     const auto layer = evodevo::pareto_layers(points);
 
-    // ranks from the best on: within a layer the rows are in order of fitness already
+    // from best to worst: by layer, and within a layer by fitness, by which the rows are sorted already
     std::vector<std::uint32_t> ranked(rows.size());
     std::iota(ranked.begin(), ranked.end(), 0u);
     std::stable_sort(ranked.begin(), ranked.end(), [&](auto a, auto b) { return layer[a] < layer[b]; });
@@ -54,7 +55,8 @@ class ParetoLayers final : public evodevo::Selection {
     return points;
   }
 
-  /// For every row of the sorted table where its parent is in that table; rows.size() for none.
+  /// Returns, for every row of the sorted table, the position of its parent in that table, or rows.size() for no
+  /// parent.
   static std::vector<std::size_t> parent_positions(std::span<const Candidate> rows,
                                                    const std::vector<std::uint32_t>& order) {
     std::vector<std::size_t> location_of(rows.size()), parents;
@@ -64,7 +66,8 @@ class ParetoLayers final : public evodevo::Selection {
     return parents;
   }
 
-  /// Who lost a contest: a parent to the best of its children, or a child that was not better or not the best.
+  /// Returns which rows lost: a parent if its best child is better, and a child if it is not better than its parent or
+  /// not the best of several children.
   static std::vector<bool> losers(const std::vector<Candidate>& rows, const std::vector<std::size_t>& parents,
                                   const std::vector<std::uint32_t>& layer, const std::vector<std::uint32_t>& ranked) {
     const auto better = [&](std::size_t a, std::size_t b) {

@@ -1,4 +1,5 @@
-// What the selection operators share: an order of the rows that does not depend on the order of birth, and parents.
+// Shared by the selection operators: an order of the rows that does not depend on the order of birth, and the choice of
+// parents.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +9,9 @@
 
 #include "evodevo/selection.hpp"
 
-/// The rows from best to worst: by their scores, the first score first, then the younger ones, then the first born.
-/// Failed rows come last. Working in this order makes a result independent of births but for exact ties.
+/// Returns the rows from best to worst: by the first score, ties by the further scores in their order, then by youth,
+/// then by the order of birth. Failed rows come last. An operator that works in this order gives a result that depends
+/// on the order of birth only for exact ties.
 inline std::vector<std::uint32_t> best_first(std::span<const evodevo::Candidate> rows) {
   std::vector<std::uint32_t> order(rows.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -22,7 +24,7 @@ inline std::vector<std::uint32_t> best_first(std::span<const evodevo::Candidate>
   return order;
 }
 
-/// The rows in the given order.
+/// Returns the rows in the given order.
 inline std::vector<evodevo::Candidate> in_order(std::span<const evodevo::Candidate> rows,
                                                 const std::vector<std::uint32_t>& order) {
   std::vector<evodevo::Candidate> sorted;
@@ -30,8 +32,9 @@ inline std::vector<evodevo::Candidate> in_order(std::span<const evodevo::Candida
   return sorted;
 }
 
-/// `count` pairs of rows that did not fail, or of all rows where all failed. `draw(n, rng)` chooses among the best n
-/// rows, 0 the best. The mate is another row than the parent where there is one to choose.
+/// Returns `count` pairs of a parent and a mate. Both are drawn from the rows that did not fail, or from all rows if
+/// all failed. `draw(n, rng)` returns a rank from 0 (the best) to n-1. The mate differs from the parent if there is
+/// more than one row to draw from.
 template <class Draw>
 std::vector<std::pair<std::uint32_t, std::uint32_t>> draw_pairs(std::span<const evodevo::Candidate> rows,
                                                                 std::uint32_t count, evodevo::Rng& rng,
@@ -44,11 +47,11 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> draw_pairs(std::span<const 
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t parent = draw(size, rng);
     std::uint32_t mate = size > 1 ? draw(size - 1, rng) : parent;
-    if (size > 1 && mate >= parent) ++mate;  // any but the parent
+    if (size > 1 && mate >= parent) ++mate;  // so that the mate is any row except the parent
     pairs.emplace_back(pool[parent], pool[mate]);
   }
   return pairs;
 }
 
-/// The draw in which all rows have the same chance.
+/// Draws a row uniformly: for draw_pairs(), a draw in which all rows have the same chance.
 inline std::uint32_t draw_any(std::uint32_t rows, evodevo::Rng& rng) { return rng.below(rows); }

@@ -5,8 +5,8 @@
 
 namespace {
 
-/// Works on real and on choice genes alike. A choice gene takes one of its other options: drawing the old one again
-/// would spend an evaluation on a copy.
+/// Works with real genes and with choice genes. A choice gene gets one of its other options, because drawing the old
+/// option again would waste an evaluation on a copy.
 class ResetWeight final : public evodevo::Mutation {
  public:
   void parameters(evodevo::Parameters& p) override {

@@ -3,8 +3,8 @@
 
 namespace {
 
-/// Works on any encoding: what is swapped is one of the layout's gene groups, for a neuron its bias and the weights
-/// that come in.
+/// Swaps one of the layout's gene groups, and so works with any encoding. In a neural network, a gene group consists of
+/// the bias and the input weights of one neuron.
 class SwapNeuron final : public evodevo::Crossover {
  public:
   void cross(evodevo::Genome& one, evodevo::Genome& other, const evodevo::Layout& layout,

@@ -13,11 +13,11 @@ std::string title(const Provenance& provenance) {
   return "evodevo " + provenance.version + " (" + provenance.program + ")";
 }
 
-/// Calls `report(then, now)` for each operator whose library is not the one that the run began with.
+/// Calls `report(then, now)` for each operator whose library is not the one with which the run began.
 template <class Report>
 void for_each_changed_operator(const Experiment& experiment, const Provenance& first, const Report& report) {
   const std::vector<OperatorUse>& past = first.operators;
-  // a run uses the operators of its own record, in the same order
+  // both lists are in the same order, because a resumed run reads its operators from its own record
   for (std::size_t i = 0; i < past.size() && i < experiment.uses.size(); ++i)
     if (past[i].hash != experiment.uses[i].hash) report(past[i], experiment.uses[i]);
 }

@@ -1,18 +1,18 @@
-// Whether a run goes on with the device and the builds that it began with.
+// Checks whether a run is resumed with the device and the builds with which it began.
 #pragma once
 
 #include "evolution/archive/archive.hpp"
 
 namespace evodevo {
 
-/// Warns where this program or a library of an operator is not the build that the run began with.
+/// Warns if this program or the library of an operator is not the build with which the run began.
 void warn_of_other_builds(const Experiment& experiment, const Simulator& simulator, const Archive& archive);
 
-/// Warns where the run began on another device, which may change results.
+/// Warns if the run began on another device, because results may differ between devices.
 void warn_of_another_device(const Simulator& simulator, const Archive& archive);
 
-/// Throws ArchiveError where an operator has another version than when the run began: another build of the same version
-/// may do the same, another version says that it does not.
+/// Throws ArchiveError if an operator has another version than when the run began. Another version means that results
+/// have changed; another build of the same version may give the same results.
 void refuse_other_versions(const Experiment& experiment, const Archive& archive);
 
 }  // namespace evodevo

@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Throws UsageError where the standard output goes into `input`, or into the run in that folder.
+/// Throws UsageError if the standard output goes to the file `input` or, if `input` is the folder of a run, to the
+/// run's file.
 void refuse_to_print_into(const std::string& input) {
   struct stat output = {}, read = {};
   if (fstat(STDOUT_FILENO, &output) != 0 || !S_ISREG(output.st_mode)) return;
@@ -70,7 +71,7 @@ std::string usage_of(const Command& command) { return call_of(command) + " [opti
 
 std::string value_name_of(const po::option_description& option) {
   if (option.semantic()->max_tokens() == 0) return "";
-  const std::string name = option.semantic()->name();  // "N (=3)" where there is a default
+  const std::string name = option.semantic()->name();  // such as "N (=3)" if the option has a default
   return name.substr(0, name.find(" (="));
 }
 

@@ -1,5 +1,5 @@
-// What a command declares of itself. The reading of its arguments, its --help, the completion of shells and the manual
-// page all come from this declaration.
+// The declaration of a command. From it come the parsing of arguments, --help, the completion in shells and the manual
+// page.
 #pragma once
 
 #include <boost/program_options.hpp>
@@ -11,13 +11,13 @@
 
 namespace evodevo {
 
-/// The words behind a command's name.
+/// The words after a command's name on the command line.
 using Arguments = std::vector<std::string>;
 using Options = boost::program_options::options_description;
 /// The values of arguments and options, by their names.
 using Given = boost::program_options::variables_map;
 
-/// A command line that does not make sense.
+/// Thrown for a command line with an error.
 struct UsageError : InputError {
   using InputError::InputError;
 };
@@ -25,7 +25,7 @@ struct UsageError : InputError {
 enum class Count { one, optional, one_or_more };
 
 struct Argument {
-  std::string name;  ///< a placeholder such as "DIR" (see vocabulary.hpp), or all its values: "bash|zsh|fish"
+  std::string name;  ///< placeholder such as "DIR" (see vocabulary.hpp), or all allowed values, such as "bash|zsh|fish"
   Count count = Count::one;
 };
 
@@ -33,42 +33,44 @@ struct Command {
   std::string name;
   std::vector<Argument> arguments;    ///< only the last one may be optional or repeated
   std::string summary;                ///< one line, in the imperative
-  std::vector<std::string> text;      ///< paragraphs that say more
-  std::vector<std::string> examples;  ///< each without the name of the program: "show runs/quickstart-1"
-  Options options;                    ///< without common_options()
-  /// Returns the exit code: 0 done, 1 the run or simulation failed, 130 interrupted. Bad input is thrown as InputError
-  /// (exit code 2). What it prints through std::cout or stdio is checked when it is done (exit code 1).
+  std::vector<std::string> text;      ///< paragraphs with details
+  std::vector<std::string> examples;  ///< each without the name of the program, such as "show runs/quickstart-1"
+  Options options;                    ///< options of this command, without common_options()
+  /// Executes the command and returns the exit code: 0 done, 1 the run or simulation failed, 130 interrupted. Throws
+  /// InputError for bad input (exit code 2). After it returns, the program checks whether its output through std::cout
+  /// and stdio could be written (exit code 1 if not).
   int (*function)(const Given&);
-  bool watches_operators = true;  ///< whether calls of operators that last too long are named
+  bool watches_operators = true;  ///< whether the program reports calls of operators that take too long
 };
 
-/// --help, --quiet and --verbose, which every command has.
+/// Returns the options that every command has: --help, --quiet and --verbose.
 const Options& common_options();
 
-/// "run EXPERIMENT.toml"
+/// Returns, for example, "run EXPERIMENT.toml".
 std::string call_of(const Command& command);
-/// "run EXPERIMENT.toml [options]"
+/// Returns, for example, "run EXPERIMENT.toml [options]".
 std::string usage_of(const Command& command);
 
-/// A placeholder such as "DIR" for the value of an option; empty where the option has none.
+/// Returns the placeholder for the value of an option, such as "DIR", or an empty text if the option takes no value.
 std::string value_name_of(const boost::program_options::option_description& option);
-/// An option that takes a value of type T.
+/// Declares the value of an option, of type T, with its placeholder.
 template <class T>
 boost::program_options::typed_value<T>* value(const char* name) {
   return boost::program_options::value<T>()->value_name(name);
 }
-/// The same of an option that may be repeated; its type is std::vector<T>.
+/// Declares the values, of type T, of an option that may be repeated, with their placeholder.
 template <class T>
 boost::program_options::typed_value<std::vector<T>>* values(const char* name) {
   return value<std::vector<T>>(name)->composing();
 }
 
-/// The values that the command line gives. Throws UsageError, also where an argument is missing, unless --help is
-/// given.
+/// Returns the values of arguments and options on a command line. Throws UsageError if there is an error or, unless
+/// --help is given, an argument is missing.
 Given parse(const Command& command, const Arguments& arguments);
 
-/// Reads the arguments, sets how much is said, and runs the command, or prints its help where --help is given. Throws
-/// what the command throws, and UsageError, also where what it prints would go into a file that it reads.
+/// Parses the arguments, sets the verbosity, and executes the command or, if --help is given, prints its help. Throws
+/// what the command throws, and UsageError for errors in the arguments or if the standard output goes to a file that
+/// the command reads.
 int call(const Command& command, const Arguments& arguments);
 
 }  // namespace evodevo

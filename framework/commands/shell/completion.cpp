@@ -12,11 +12,11 @@ namespace {
 using Source = Vocabulary::Source;
 using boost::algorithm::join;
 
-/// An option of a command, as a script needs it.
+/// An option of a command, with the data that the scripts need.
 struct CompletedOption {
-  std::string name;   ///< without dashes
-  std::string text;   ///< what it does
-  std::string value;  ///< placeholder; empty where it has none
+  std::string name;   ///< name without dashes
+  std::string text;   ///< description
+  std::string value;  ///< placeholder of the value; empty if the option takes none
   bool repeatable;
 };
 
@@ -34,12 +34,13 @@ std::string replaced(std::string text, std::string_view mark, std::string_view v
   return text;
 }
 
-/// `text` as one word of a shell.
+/// Quotes `text` so that a shell reads it as one word.
 std::string quoted(const std::string& text) { return "'" + replaced(text, "'", "'\\''") + "'"; }
 
 // ---- bash ----
 
-/// A line that offers what a placeholder stands for; `offer_words` is the function that offers words.
+/// Returns a line of bash that offers the possible values of a placeholder. `offer_words` is the name of the shell
+/// function that offers words.
 std::string bash_offer(const Vocabulary& vocabulary, const std::string& offer_words) {
   switch (vocabulary.source) {
     case Source::words:
@@ -105,7 +106,7 @@ std::string bash_script(std::span<const Command> commands) {
 
 // ---- zsh ----
 
-/// The action of _arguments that offers what a placeholder stands for.
+/// Returns the action for zsh's _arguments that offers the possible values of a placeholder.
 std::string zsh_action(const Vocabulary& vocabulary) {
   switch (vocabulary.source) {
     case Source::words:
@@ -121,7 +122,7 @@ std::string zsh_action(const Vocabulary& vocabulary) {
   }
 }
 
-/// `text` within a specification of _arguments or _describe, where colons and brackets separate.
+/// Escapes `text` for a specification of zsh's _arguments or _describe, in which colons and brackets are separators.
 std::string zsh_text(std::string text) {
   for (const char* mark : {"\\", ":", "[", "]"}) replace_all(text, mark, std::string("\\") + mark);
   return text;
@@ -186,7 +187,7 @@ std::string zsh_script(std::span<const Command> commands) {
 
 // ---- fish ----
 
-/// The options of `complete` that offer what a placeholder stands for.
+/// Returns the options of fish's `complete` that offer the possible values of a placeholder.
 std::string fish_offer(const Vocabulary& vocabulary) {
   switch (vocabulary.source) {
     case Source::words:

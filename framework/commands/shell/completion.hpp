@@ -1,4 +1,4 @@
-// Scripts that let a shell complete the program's commands, options and arguments.
+// Scripts by which a shell completes the program's commands, options and arguments.
 #pragma once
 
 #include <span>
@@ -8,10 +8,10 @@
 
 namespace evodevo {
 
-/// What completion_script() writes for, as a placeholder: "bash|zsh|fish".
+/// The shells that completion_script() knows, as a placeholder of an argument.
 inline constexpr const char* shells = "bash|zsh|fish";
 
-/// The script for `shell`, one of `shells`. Throws UsageError for any other.
+/// Returns the completion script for a shell. Throws UsageError if `shell` is not one of `shells`.
 std::string completion_script(const std::string& shell, std::span<const Command> commands);
 
 }  // namespace evodevo

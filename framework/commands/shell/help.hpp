@@ -1,4 +1,4 @@
-// Help at the terminal.
+// Help texts on the terminal.
 #pragma once
 
 #include <ostream>
@@ -9,10 +9,10 @@
 
 namespace evodevo {
 
-/// The first page: what the program is, all commands and all topics.
+/// Prints the first page of help: what the program is, all commands and all topics.
 void print_overview(std::ostream& stream, std::span<const Command> commands);
 
-/// Usage, text, examples and options of a command.
+/// Prints usage, text, examples and options of a command.
 void print_help(std::ostream& stream, const Command& command);
 
 void print_topic(std::ostream& stream, const Topic& topic);

@@ -9,7 +9,7 @@
 namespace evodevo {
 namespace {
 
-/// `text` as roff prints it letter by letter.
+/// Escapes `text` so that roff prints it literally.
 std::string escaped(std::string text) {
   replace_all(text, "\\", "\\e");
   replace_all(text, "-", "\\-");
@@ -17,7 +17,7 @@ std::string escaped(std::string text) {
   replace_all(text, "`", "\\(ga");
   replace_all(text, "^", "\\(ha");
   replace_all(text, "~", "\\(ti");
-  // at the beginning of a line a dot begins a request
+  // roff reads a line that begins with a dot as a request
   replace_all(text, "\n.", "\n\\&.");
   return text.starts_with('.') ? "\\&" + text : text;
 }
@@ -31,12 +31,12 @@ std::string section(std::string title) {
 
 std::string paragraph(const std::string& text) { return ".PP\n" + escaped(text) + "\n"; }
 
-/// A term and what it means.
+/// Returns an item of a definition list: a term and its meaning.
 std::string item(const std::string& term, const std::string& text) {
   return ".TP\n" + term + "\n" + escaped(text) + "\n";
 }
 
-/// Lines as they are.
+/// Returns lines that roff does not fill or wrap.
 std::string verbatim(const std::string& text) { return ".PP\n.nf\n" + escaped(text) + "\n.fi\n"; }
 
 std::string with_full_stop(const std::string& sentence) { return sentence + "."; }
@@ -68,7 +68,7 @@ std::string topic_section(const Topic& topic) {
   for (const std::string& lines : topic.text) text += paragraph(lines);
   for (const Definition& definition : topic.definitions) text += item(bold(definition.term), definition.text);
   std::string example = topic.example;
-  if (!example.empty()) example.pop_back();  // the end of its last line
+  if (!example.empty()) example.pop_back();  // removes the newline at the end
   return example.empty() ? text : text + verbatim(example);
 }
 

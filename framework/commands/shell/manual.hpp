@@ -8,7 +8,7 @@
 
 namespace evodevo {
 
-/// evodevo(1), in roff with the macros of man(7).
+/// Returns the manual page evodevo(1) in roff with the macros of man(7).
 std::string manual_page(std::span<const Command> commands);
 
 }  // namespace evodevo

@@ -18,7 +18,7 @@ Verbosity& current() {
   return verbosity;
 }
 
-/// A line on standard error; on a terminal it takes the place of a progress line.
+/// Prints a line on standard error. On a terminal, the line replaces a progress line.
 void say(const std::string& text) {
   std::cerr << (isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "") + ("evodevo: " + text + '\n');
 }
@@ -27,8 +27,8 @@ void say_step(std::string_view what, std::optional<double> seconds) {
   say(std::string(what) + (seconds ? " took " + short_number(*seconds) + " s" : " ..."));
 }
 
-/// Kernels are compiled at their first use on a machine, several of them at the same time; a single line explains the
-/// wait.
+/// Reports the first slow step only. Slow steps are compilations of GPU kernels at their first use on a machine;
+/// several are compiled at the same time, and a single line suffices to explain the wait.
 void say_first_step(std::string_view what, std::optional<double> seconds) {
   static std::atomic<bool> said{false};
   if (seconds || said.exchange(true)) return;

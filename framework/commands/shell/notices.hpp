@@ -1,4 +1,4 @@
-// What commands say beside their results.
+// What commands print besides their results.
 #pragma once
 
 #include <chrono>
@@ -9,15 +9,18 @@ namespace evodevo {
 
 enum class Verbosity { quiet, normal, verbose };
 
-/// How much commands say from now on. From now on users also hear of slow steps of the simulator (slow_step.hpp): of
-/// the first one on a terminal, of all of them under --verbose, of none under --quiet.
+/// Sets how much commands print. From then on, the program also reports slow steps of the simulator
+/// (core/slow_step.hpp) on standard error: all of them if verbose, none if quiet, and otherwise only the first and only
+/// on a terminal.
 void set_verbosity(Verbosity verbosity);
 Verbosity verbosity();
 
-/// The standard output, for what is not a result, such as hints and speeds; goes nowhere under --quiet.
+/// Returns the stream for output that is not a result, such as hints and speeds: the standard output or, if quiet, a
+/// stream that discards everything.
 std::ostream& remarks();
 
-/// Says on standard error what takes how long; only under --verbose.
+/// Reports on standard error the beginning and the duration of a step that lasts as long as this object. Does so only
+/// if verbose.
 class TimedStep {
  public:
   explicit TimedStep(std::string what);
@@ -30,7 +33,7 @@ class TimedStep {
   std::chrono::steady_clock::time_point start_;
 };
 
-/// Runs `work` and returns its result; a TimedStep reports how long `what` takes.
+/// Runs `work` as a TimedStep with the description `what`, and returns its result.
 template <class Work>
 auto timed(std::string what, const Work& work) {
   const TimedStep step(std::move(what));

@@ -36,7 +36,7 @@ namespace {
 struct Shorthand {
   const char* option;
   const char* key;
-  const char* value;  ///< its placeholder
+  const char* value;  ///< placeholder of the value
   const char* text;
 };
 
@@ -46,7 +46,7 @@ constexpr Shorthand shorthands[] = {
     {"threads", "simulation.threads", "N", "threads on the CPU; 0: one for each core"},
 };
 
-/// An option and its value, as a message shows them.
+/// Returns an option with its value, for messages.
 std::string option_text(const std::string& option, const std::string& value) {
   return "--" + option + " " + printable(value);
 }

@@ -1,4 +1,4 @@
-// What a run shows while it goes on, and at its end.
+// The display of a run's progress, and of its outcome.
 #pragma once
 
 #include <atomic>
@@ -8,17 +8,18 @@
 
 namespace evodevo {
 
-/// One line that is kept up to date on a terminal; one line for each generation elsewhere.
+/// Displays progress: on a terminal, by one line that it keeps up to date; elsewhere, by one line for each generation.
 class ProgressDisplay {
  public:
-  /// `past` are the generations done before this process began; `stop` is shown while it waits for a generation's end.
+  /// `past` are the generations that earlier processes have made. If `stop` is set, the display says that the run stops
+  /// after the current generation.
   ProgressDisplay(const Experiment& experiment, const std::vector<Summary>& past, const std::atomic<bool>& stop);
 
   Observer observer();
-  /// Ends the live line.
+  /// Ends the line on the terminal.
   void finish();
 
-  /// Of this process.
+  /// Wall-clock time [s] and spring evaluations of this process.
   double seconds() const;
   std::uint64_t spring_evaluations() const { return spring_evaluations_; }
 
@@ -34,17 +35,17 @@ class ProgressDisplay {
   const std::atomic<bool>& stop_;
   const bool live_;
   const std::chrono::steady_clock::time_point start_;
-  std::int64_t evaluations_before_ = 0;  ///< this process
-  double spring_evaluations_before_ = 0;
+  std::int64_t evaluations_before_ = 0;   ///< evaluations by earlier processes
+  double spring_evaluations_before_ = 0;  ///< spring evaluations by earlier processes
   Summary last_;
   std::int64_t diverged_ = 0;
   std::uint64_t spring_evaluations_ = 0;
 };
 
-/// Prints the best robot, where everything is, and the speed.
+/// Prints the best robot, the folder of the run, and the speed.
 void print_outcome(const Experiment& experiment, const Archive& archive, const ProgressDisplay& progress);
 
-/// Prints where the time of this process went.
+/// Prints how this process has spent its time.
 void print_time_spent(const TimeSpent& time, const Simulator& simulator);
 
 }  // namespace evodevo

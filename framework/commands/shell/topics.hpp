@@ -1,4 +1,4 @@
-// What `evodevo help TOPIC` explains, and the manual page as well.
+// The topics that `evodevo help TOPIC` and the manual page explain.
 #pragma once
 
 #include <string>
@@ -15,8 +15,8 @@ struct Topic {
   std::string name;
   std::string summary;                  ///< one line
   std::vector<std::string> text;        ///< paragraphs
-  std::vector<Definition> definitions;  ///< behind the text
-  std::string example;                  ///< behind the definitions; lines as they are
+  std::vector<Definition> definitions;  ///< definitions that follow the text
+  std::string example;                  ///< lines that follow the definitions; they are not wrapped
 };
 
 const std::vector<Topic>& topics();

@@ -1,4 +1,4 @@
-// Verifications as commands make and print them.
+// Verifies individuals and prints the results, for several commands.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace evodevo {
 
-/// Verifies the `count` best individuals of a run and stores what came out.
+/// Verifies the `count` best individuals of a run, and stores and returns the results.
 std::vector<Verification> verify_best(const Experiment& experiment, Simulator& simulator, Archive& archive,
                                       std::size_t count);
 

@@ -1,4 +1,4 @@
-// What the placeholders of arguments and options stand for, for those who complete them.
+// The possible values of the placeholders of arguments and options, for completion.
 #pragma once
 
 #include <span>
@@ -13,10 +13,11 @@ struct Vocabulary {
   enum class Source { nothing, words, files, folders, operators };
 
   Source source = Source::nothing;
-  std::vector<std::string> words = {};  ///< of Source::words
+  std::vector<std::string> words = {};  ///< all possible values, if the source is Source::words
 };
 
-/// `placeholder` is such as "DIR" or "EXPERIMENT.toml", or all words themselves, such as "bash|zsh|fish".
+/// Returns the possible values of a placeholder. It is a name such as "DIR" or "EXPERIMENT.toml", or the list of all
+/// possible values, such as "bash|zsh|fish".
 Vocabulary vocabulary_of(const std::string& placeholder, std::span<const Command> commands);
 
 }  // namespace evodevo

@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 using boost::interprocess::file_lock;
 
 constexpr const char* lock_name = "lock";
-constexpr const char* journal_key = "journal";  ///< of what was wished for
+constexpr const char* journal_key =
+    "journal";  ///< entry of the record with the journal that the user asked for, if any
 
 std::string utc_now() {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
@@ -46,7 +47,8 @@ void require_empty(const fs::path& folder) {
                          program_name() + " resume " + folder.string() + "`");
 }
 
-/// Anything but a file, such as a pipe, would keep a reader waiting for ever.
+/// Throws ArchiveError unless the folder has a run's file that is a regular file. Opening anything else, such as a
+/// pipe, could block for ever.
 void require_run(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_regular_file(folder / database_name, error))
@@ -71,7 +73,7 @@ Archive Archive::create(const fs::path& folder, const Experiment& experiment, co
   fs::create_directories(folder, error);
   if (error)
     throw ArchiveError(folder.string() + ": cannot be made: " + error.message() + "; give another place with --out");
-  require_empty(folder);  // before the lock, which leaves a file behind, and again when nobody else can write
+  require_empty(folder);  // before locked(), which creates a file, and again when no other process can write
   auto lock = locked(folder);
   require_empty(folder);
   Archive archive(std::make_unique<RunDatabase>(folder, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, std::move(lock)));
@@ -120,7 +122,7 @@ Archive Archive::annotate(const fs::path& folder) {
 
 Archive Archive::read(const fs::path& folder) {
   require_run(folder);
-  // what a process left behind when it was killed is put in order, for which the file has to be written
+  // writable, because SQLite may have to recover a file that a killed process left behind
   Archive archive(std::make_unique<RunDatabase>(folder, SQLite::OPEN_READWRITE, std::nullopt));
   archive.run_->take_snapshot();
   check_tables(*archive.run_);

@@ -1,4 +1,4 @@
-// The record of a run: one folder with one SQLite file. What is committed stays, whatever happens to the process.
+// The archive of a run: one SQLite file in the folder of the run. Committed data remain even if the process is killed.
 #pragma once
 
 #include <filesystem>
@@ -23,77 +23,83 @@ struct ArchivedIndividual : Individual {
   std::optional<std::uint32_t> died;
 };
 
-/// Individuals that have no fitness, and why.
+/// A group of individuals that have no fitness for the same reason.
 struct Failure {
   std::string status;
-  std::string reason;  ///< of the first of them
+  std::string reason;  ///< reason of the first individual in the group
   std::int64_t count = 0;
-  bool varies = false;  ///< whether others have other numbers in it
+  bool varies = false;  ///< whether the reasons of other individuals in the group have other numbers in them
 };
 
-/// What it is asked for it checks as input: whatever cannot be is thrown as ArchiveError.
+/// The archive of a run. Functions that read it check every value; they throw ArchiveError if a value is not possible.
 class Archive {
  public:
-  /// Starts the record of a run in a new folder; this program on `device` is its first provenance. Throws ArchiveError
-  /// if the folder is there and not empty. A wish for a journal holds for the whole run; without one, the folder's file
-  /// system decides.
+  /// Starts the archive of a new run. The first provenance is that of this program on `device`. Throws ArchiveError if
+  /// the folder exists and is not empty. `journal` holds for the whole run; without it, the file system of the folder
+  /// decides.
   static Archive create(const std::filesystem::path& folder, const Experiment& experiment, const std::string& device,
                         std::optional<Journal> journal = std::nullopt);
-  /// Opens a record to go on with it; refuses while another process writes it.
+  /// Opens an archive to continue its run. Throws ArchiveError if another process is continuing the run.
   static Archive resume(const std::filesystem::path& folder, std::optional<Journal> journal = std::nullopt);
-  /// Opens a record to add what is found out about its individuals. Does not disturb a process that writes it.
+  /// Opens an archive to add findings about its individuals, such as verifications. Another process may continue the
+  /// run meanwhile.
   static Archive annotate(const std::filesystem::path& folder);
-  /// Opens a record to read: all that it says is as of the first question. Does not disturb a process
-  /// that writes it.
+  /// Opens an archive for reading. All functions return its content as of the first read, even if another process
+  /// continues the run meanwhile.
   static Archive read(const std::filesystem::path& folder);
 
   Archive(Archive&&) noexcept;
   ~Archive();
 
-  /// Adds one generation in one transaction: its newborns with their results, who was dropped, records of lives by id,
-  /// and its summary. An empty record is kept too: it says that the individual was on the front and nothing changed.
+  /// Adds one generation in one transaction: its newborns with their results, the ids of the individuals that selection
+  /// dropped, records of lives by id, and its summary. An empty record is stored too; it means that the individual was
+  /// on the front and that its body did not change.
   void commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,
               const std::map<std::uint32_t, LifeRecord>& lives, const Summary& summary);
 
-  /// Adds verifications; they take the place of earlier ones of the same individuals.
+  /// Adds verifications. They replace earlier verifications of the same individuals.
   void add_verifications(const std::vector<Verification>& verifications);
 
   const std::filesystem::path& folder() const;
-  /// Whether the run's file is still the one that was opened; if it is not, what is written is lost.
+  /// Returns whether the run's file is still the one that was opened; if it is not, written data are lost.
   bool is_in_place() const;
-  /// Throws ArchiveError: `what` cannot be in the record of a run.
+  /// Throws ArchiveError: the record of the run is inconsistent, as `what` says.
   [[noreturn]] void refuse(const std::string& what) const;
-  /// An entry of the run's record, such as "seed" or "created". Throws ArchiveError if there is none.
+  /// Returns an entry of the run's record, such as "seed" or "created". Throws ArchiveError if there is none.
   std::string record(const std::string& key) const;
-  /// The same; nothing if there is none.
+  /// Returns an entry of the run's record, or nullopt if there is none.
   std::optional<std::string> find_record(const std::string& key) const;
-  /// The same of a time, s.
+  /// Returns an entry of the run's record that holds a time, s, or nullopt if there is none.
   std::optional<double> find_seconds(const std::string& key) const;
+  /// Sets an entry of the run's record.
   void set_record(const std::string& key, const std::string& value);
-  /// The same for several entries, all of them or none.
+  /// Sets several entries of the run's record in one transaction.
   void set_records(const std::map<std::string, std::string>& entries);
-  /// The index of a provenance among those of the run, to which it is added if it is not among them yet.
+  /// Adds a provenance to those of the run, if it is not among them yet, and returns its index.
   std::uint32_t add_provenance(const Provenance& provenance);
-  /// The provenances of all generations, and of those that were about to be made, in the order in which they came.
+  /// Returns the provenances of all processes that began or resumed the run, in the order in which they were added. A
+  /// process that ended before its first generation is among them.
   std::vector<Provenance> provenances() const;
-  /// The provenance of a generation.
+  /// Returns the provenance of a generation.
   Provenance provenance(std::uint32_t generation) const;
   std::vector<Objective> objectives() const;
   std::vector<Summary> generations() const;
-  /// What individuals failed of, the most frequent first; reasons that differ from the first number on are one.
+  /// Returns the reasons why individuals failed, most frequent first. Reasons that agree up to the first digit are one
+  /// group.
   std::vector<Failure> failures() const;
-  /// Number of individuals by status.
+  /// Returns the number of individuals for each status.
   std::map<std::string, std::int64_t> statuses() const;
-  /// Those who live on, in the order of birth.
+  /// Returns the individuals that live after the last generation, in the order of birth.
   std::vector<Individual> population() const;
+  /// Returns an individual, or nullopt if there is none with this id.
   std::optional<ArchivedIndividual> individual(std::uint32_t id) const;
-  /// One that the record itself names.
+  /// Returns an individual to which the archive itself refers. Throws ArchiveError if there is none with this id.
   ArchivedIndividual known_individual(std::uint32_t id) const;
-  /// The ids of the `count` individuals with the best first objective, best first; ties in the order of birth.
+  /// Returns the ids of the `count` individuals with the best first objective, best first; ties in the order of birth.
   std::vector<std::uint32_t> best(std::size_t count) const;
-  /// What development did to an individual; nothing where it never reached the front.
+  /// Returns the record of an individual's life, or nullopt if the individual never reached the front.
   std::optional<LifeRecord> life(std::uint32_t id) const;
-  /// Of an individual; nothing where it was not verified.
+  /// Returns the verification of an individual, or nullopt if it was not verified.
   std::optional<Verification> verification(std::uint32_t id) const;
 
  private:
@@ -104,10 +110,10 @@ class Archive {
   std::unique_ptr<RunDatabase> run_;
 };
 
-/// The settings that a run used, read from its record; no operator is looked for.
+/// Returns the settings of a run from its record, without loading any operator.
 Settings recorded_settings(const Archive& archive);
 
-/// The experiment that a run used, read from its record. Operators are looked for on `plugin_path` too.
+/// Returns the experiment of a run from its record, and loads its operators, also from the folders in `plugin_path`.
 Experiment recorded_experiment(const Archive& archive, std::vector<std::filesystem::path> plugin_path = {});
 
 }  // namespace evodevo

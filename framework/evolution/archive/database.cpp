@@ -14,17 +14,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int opening_ms = 5'000;   ///< how long to wait for a process that is reading or writing, at first
-constexpr int writing_ms = 60'000;  ///< and once a run goes on, which is not to end for a copy being made
+constexpr int opening_ms = 5'000;   ///< longest wait for other processes when a file is opened, ms
+constexpr int writing_ms = 60'000;  ///< longest wait while a run is written, ms; a run must not end because of a copy
 constexpr std::chrono::seconds between_checkpoints{1};
-constexpr int most_bytes = 256 << 20;        ///< of a row; far more than any genome or life has
-constexpr std::size_t most_shown = 40;       ///< letters of a text in a message
-constexpr std::size_t most_of_sqlite = 100;  ///< letters of what SQLite says, which may quote the file
+constexpr int most_bytes = 256 << 20;        ///< largest size of a row, bytes; far more than any genome or life needs
+constexpr std::size_t most_shown = 40;       ///< largest number of bytes of a text that a message shows
+constexpr std::size_t most_of_sqlite = 100;  ///< the same for a message of SQLite, which may quote the file
 
-/// What an error of SQLite means.
+/// What an error of SQLite means for the user.
 struct Meaning {
   int code;
-  bool of_storage;  ///< whether it came over us, and no input is to blame
+  bool of_storage;  ///< true: the storage failed; false: the input is wrong
   const char* what;
   const char* remedy;
 };
@@ -83,7 +83,7 @@ RunDatabase::RunDatabase(fs::path folder, int flags, std::optional<boost::interp
   limit();
 }
 
-/// What others may have put into the file is not to run, and not to fill the memory.
+/// Keeps a file from an untrusted source from executing code (triggers, views) and from filling the memory.
 void RunDatabase::limit() const {
   sqlite3* const handle = database_.getHandle();
   sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, most_bytes);
@@ -98,13 +98,14 @@ RunDatabase::~RunDatabase() {
     database_.setBusyTimeout(0);
     database_.exec("PRAGMA journal_mode = DELETE");
   } catch (const SQLite::Exception&) {
-    // somebody reads, or the file is gone
+    // another process is reading, or the file is gone
   }
 }
 
 void RunDatabase::prepare_for_rollback() { execute("PRAGMA locking_mode = EXCLUSIVE"); }
 
-/// Not everywhere that it can be set it works, so it is used at once.
+/// Tries to set the write-ahead log. If that does not work in the folder, throws if `must`, else returns false. Throws
+/// also if another process uses the file or the disk is full.
 bool RunDatabase::try_wal(bool must) {
   try {
     if (database_.execAndGet("PRAGMA journal_mode = WAL").getString() == "wal") return true;
@@ -121,7 +122,7 @@ void RunDatabase::set_journal(std::optional<Journal> wish) {
   guarded([&] {
     const bool wal = wish.value_or(journal_for(folder_)) == Journal::wal && try_wal(wish == Journal::wal);
     if (!wal) {
-      // a write-ahead log that was left behind is read without shared memory
+      // in exclusive mode, SQLite can merge a write-ahead log that was left behind without shared memory
       database_.exec("PRAGMA locking_mode = EXCLUSIVE");
       database_.execAndGet("PRAGMA journal_mode = DELETE");
       database_.exec("PRAGMA locking_mode = NORMAL");
@@ -141,7 +142,7 @@ void RunDatabase::take_snapshot() {
     execute("PRAGMA query_only = ON");
     return execute("BEGIN");
   }
-  // a reader of the file itself would keep everybody from writing
+  // With a rollback journal, a reader keeps others from writing, so the file is copied and the copy is read.
   guarded([&] {
     SQLite::Database copy("", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);  // a temporary file
     if (SQLite::Backup(copy, database_).executeStep() != SQLITE_DONE)
@@ -154,7 +155,7 @@ void RunDatabase::take_snapshot() {
 void RunDatabase::start_writing() {
   database_.setBusyTimeout(writing_ms);
   journal_ = journal_in_use();
-  execute("SELECT 1 FROM sqlite_master");  // lets the log come into being
+  execute("SELECT 1 FROM sqlite_master");  // makes SQLite create the log, which require_in_place() looks for
 }
 
 void RunDatabase::require_in_place() const {
@@ -174,7 +175,7 @@ void RunDatabase::checkpoint_if_due() {
   if (journal_ != Journal::wal || (last_checkpoint_ && now - *last_checkpoint_ < between_checkpoints)) return;
   last_checkpoint_ = now;
   guarded([&] {
-    database_.setBusyTimeout(0);  // readers are not waited for: what they hold back comes later
+    database_.setBusyTimeout(0);  // does not wait for readers: a later checkpoint moves what they hold back now
     database_.exec("PRAGMA wal_checkpoint(TRUNCATE)");
     database_.setBusyTimeout(writing_ms);
   });

@@ -1,5 +1,5 @@
-// The SQLite file of a run: how it is opened, locked and written, and rows of which every value is checked. Whatever
-// SQLite objects to leaves here as an ArchiveError or a StorageError that names the folder and the remedy.
+// The SQLite file of a run: opens, locks and writes it, and reads rows with a check of every value. Every error of
+// SQLite becomes an ArchiveError or a StorageError, which names the folder and the remedy.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -18,44 +18,44 @@
 
 namespace evodevo {
 
-/// Throws what `error` means for the run in `folder`.
+/// Throws the ArchiveError or StorageError that corresponds to `error`, for the run in `folder`.
 [[noreturn]] void throw_as_our_own(const SQLite::Exception& error, const std::filesystem::path& folder);
 
-/// The open file and, for the process that makes the run, the lock that keeps others out. The lock goes with the
-/// process, however it ends.
+/// The open file of a run and, in the process that makes the run, the lock that keeps other processes from resuming it.
+/// The operating system releases the lock when the process ends, even if it is killed.
 class RunDatabase {
  public:
-  /// Opens the file in `folder`, or makes it where `flags` say so.
+  /// Opens the file in `folder`, or creates it if `flags` has SQLite::OPEN_CREATE.
   RunDatabase(std::filesystem::path folder, int flags, std::optional<boost::interprocess::file_lock> lock);
   RunDatabase(const RunDatabase&) = delete;
   RunDatabase& operator=(const RunDatabase&) = delete;
-  /// The process that made the run leaves one file behind that can be read from anywhere. Where a reader is at work
-  /// there are three.
+  /// In the process that makes the run, merges the write-ahead log into the database file, so that the run is one file,
+  /// which can be read on any file system. While another process reads the run, the log and its index file stay.
   ~RunDatabase();
 
-  /// Allows what needs no shared memory alone; to be called before anything else where a rollback journal is asked for.
+  /// Makes SQLite work without shared memory. Must be called first if the run shall have a rollback journal.
   void prepare_for_rollback();
-  /// Chooses the journal. Without a wish it is the one that works in the folder.
+  /// Sets the journal to `wish` or, without a wish, to the one that works in the folder.
   void set_journal(std::optional<Journal> wish);
-  /// Lets all that is read from now on be of one moment, without keeping anyone from writing.
+  /// Makes all later reads see the same state of the run, without keeping other processes from writing.
   void take_snapshot();
-  /// From now on others are waited for as long as it takes: the file is one of ours, and there is work to keep.
+  /// Prepares for writing: from now on, waits longer for other processes that use the file.
   void start_writing();
 
-  /// Throws StorageError where the file is no longer the one that was opened.
+  /// Throws StorageError if the file was moved, removed or replaced since it was opened, or its log is gone.
   void require_in_place() const;
-  /// Moves what the write-ahead log holds to the file itself, as far as readers allow it. Not more than once a second,
-  /// since the disk is waited for.
+  /// Moves the content of the write-ahead log to the database file, as far as readers allow it. Does nothing if the
+  /// last call that did so was less than a second ago, because each such call waits for the disk.
   void checkpoint_if_due();
 
   void execute(const char* sql);
-  /// Throws ArchiveError: what was read cannot be.
+  /// Throws ArchiveError: the record of the run is inconsistent, as `what` says.
   [[noreturn]] void refuse(const std::string& what) const;
 
   const std::filesystem::path& folder() const { return folder_; }
   SQLite::Database& sqlite() const { return database_; }
 
-  /// Calls something that SQLite may object to.
+  /// Returns the result of `call()`, and turns SQLite's exceptions into ArchiveError and StorageError.
   template <class Call>
   decltype(auto) guarded(const Call& call) const {
     try {
@@ -72,13 +72,13 @@ class RunDatabase {
 
   std::filesystem::path folder_;
   std::optional<boost::interprocess::file_lock> lock_;
-  mutable SQLite::Database database_;  ///< SQLite's handle says itself what is written
+  mutable SQLite::Database database_;  ///< mutable because SQLite has no const interface, not even for reading
   Journal journal_ = Journal::rollback;
   std::optional<std::chrono::steady_clock::time_point> last_checkpoint_;
 };
 
-/// Everything that is written between its beginning and commit(), or nothing of it. It waits for other writers at its
-/// beginning, so that it never fails half-way because of one.
+/// A transaction: either everything that is written from its construction to commit() is kept, or nothing. It waits for
+/// other writers in its constructor, so that later writes do not fail because of them.
 class WriteTransaction {
  public:
   explicit WriteTransaction(RunDatabase& run);
@@ -89,14 +89,14 @@ class WriteTransaction {
   std::optional<SQLite::Transaction> transaction_;
 };
 
-/// A statement, and the rows that it gives. A value that is not of the kind and range that is asked for is refused with
-/// its table and column.
+/// An SQL statement and its result rows. Reading a value that does not have the expected type or range throws an
+/// ArchiveError that names table and column.
 class Statement {
  public:
-  /// `table` names what is read in messages.
+  /// `table` is the name of the table in messages.
   Statement(const RunDatabase& run, std::string table, const std::string& sql);
 
-  /// Starts anew with values for all positions, in their order.
+  /// Resets the statement and binds the values to its parameters, in their order.
   template <class... Values>
   void bind(const Values&... values) {
     int position = 0;
@@ -106,28 +106,30 @@ class Statement {
       (bind_one(++position, values), ...);
     });
   }
-  /// Does the statement with these values.
+  /// Executes the statement with these values.
   template <class... Values>
   void execute(const Values&... values) {
     bind(values...);
     run_.guarded([&] { statement_.exec(), statement_.reset(); });
   }
-  /// Goes to the next row; false where there is none.
+  /// Goes to the next row; returns false if there is none.
   bool step();
 
   bool is_null(int column) const;
+  /// Reads a whole number from `least` to `most`.
   std::int64_t integer(int column, std::int64_t least, std::int64_t most) const;
-  /// An id, a place or a number of a generation.
+  /// Reads an id, a position or the number of a generation: a whole number from 0 to `most`.
   std::uint32_t index(int column, std::uint32_t most = std::numeric_limits<std::uint32_t>::max()) const;
-  /// Finite.
+  /// Reads a finite number.
   double number(int column) const;
+  /// Reads a finite number, or NULL.
   std::optional<double> optional_number(int column) const;
-  /// Valid UTF-8, whatever there is.
+  /// Reads a text; replaces what is not valid UTF-8.
   std::string text(int column) const;
-  /// Valid until the next step().
+  /// Reads bytes; they are valid until the next step().
   std::string_view bytes(int column) const;
 
-  /// Throws ArchiveError for the value of a column.
+  /// Throws ArchiveError: the value of a column is not what was expected.
   [[noreturn]] void refuse(int column, const std::string& expected) const;
 
  private:
@@ -139,7 +141,7 @@ class Statement {
   void bind_one(int position, const std::optional<T>& value) {
     if (value) bind_one(position, *value);
   }
-  /// Bytes; without any, SQLite would take a null pointer for NULL.
+  /// Binds bytes. Passes a valid pointer even if there are none, because SQLite would take a null pointer for NULL.
   void bind_one(int position, std::string_view bytes) {
     statement_.bind(position, bytes.empty() ? "" : static_cast<const void*>(bytes.data()),
                     static_cast<int>(bytes.size()));

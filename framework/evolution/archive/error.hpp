@@ -1,4 +1,4 @@
-// What can be wrong with the folder of a run.
+// The errors that the folder of a run can cause.
 #pragma once
 
 #include <stdexcept>
@@ -7,13 +7,14 @@
 
 namespace evodevo {
 
-/// A folder that cannot be made, opened, read or is in use, or a record in it that does not fit together. what() names
+/// The folder of a run cannot be made, opened or read, or is in use, or the record in it is inconsistent. what() names
 /// folder, cause and remedy.
 struct ArchiveError : InputError {
   using InputError::InputError;
 };
 
-/// Storage that fails while it is used, such as a full disk or a file that somebody removes. Likewise.
+/// The storage fails while the run's file is in use, for example because the disk is full or because somebody removes
+/// the file. what() names folder, cause and remedy.
 struct StorageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

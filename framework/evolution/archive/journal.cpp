@@ -8,7 +8,7 @@
 namespace evodevo {
 namespace {
 
-/// The type numbers of these file systems, from linux/magic.h or, for file systems outside the Linux kernel, from their
+/// Type numbers of remote file systems, from linux/magic.h or, for file systems outside the Linux kernel, from their
 /// own sources.
 constexpr std::array<std::uint32_t, 17> remote_types = {
     0x00006969,  // NFS

@@ -1,4 +1,4 @@
-// The file of a run, and which of SQLite's journals it has while it is written.
+// The name of a run's file, and the choice of SQLite's journal for it.
 #pragma once
 
 #include <cstdint>
@@ -8,24 +8,25 @@
 
 namespace evodevo {
 
-/// A run's file in its folder.
+/// The name of a run's file in the folder of the run.
 inline constexpr const char* database_name = "run.sqlite";
 
+/// How SQLite makes transactions atomic.
 enum class Journal {
-  wal,      ///< a write-ahead log: readers and the writer do not wait for each other; needs memory that processes share
-  rollback  ///< works wherever files can be locked; who writes and who reads wait for each other
+  wal,      ///< write-ahead log: readers and the writer do not wait for each other; processes must share memory
+  rollback  ///< rollback journal: works wherever files can be locked; readers and the writer wait for each other
 };
 
-/// "wal" or "delete", as SQLite calls them.
+/// Returns SQLite's name of a journal: "wal" or "delete".
 const char* name(Journal journal);
-/// The journal with this name, or nullopt if there is none.
+/// Returns the journal with this name, or nullopt if there is none.
 std::optional<Journal> journal_named(std::string_view name);
 
-/// Whether a file system of this type (statfs.f_type) may lie on another machine, or in a program, so that processes do
-/// not share memory through its files.
+/// Returns whether a file system of this type (statfs.f_type) may be on another machine or in user space, so that
+/// processes cannot share memory through its files.
 bool is_remote(std::uint32_t file_system_type);
 
-/// The journal that works in a folder, as far as its file system tells.
+/// Returns the journal that should work in a folder, judging by the type of its file system.
 Journal journal_for(const std::filesystem::path& folder);
 
 }  // namespace evodevo

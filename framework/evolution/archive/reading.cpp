@@ -1,4 +1,4 @@
-// What the record of a run says, every value of it checked.
+// The functions of Archive that read. They check every value.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace evodevo {
 namespace {
 
 constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
-constexpr std::int64_t most_ids = std::int64_t{1} << 32;  ///< every evaluation takes one
+constexpr std::int64_t most_ids = std::int64_t{1} << 32;  ///< largest number of evaluations, each of which uses one id
 
 Status status_in(const Statement& row, int column) {
   const std::string text = row.text(column);
@@ -22,7 +22,7 @@ Status status_in(const Statement& row, int column) {
   row.refuse(column, "\"ok\", \"invalid\" or \"diverged\"");
 }
 
-/// A text that is shown as it is.
+/// Reads a text and makes it safe to print: escapes control characters and cuts it if it is too long.
 std::string line(const Statement& row, int column) {
   constexpr std::size_t longest = 5000;  // bytes, longer than any path
   return printable(row.text(column), longest);
@@ -30,7 +30,7 @@ std::string line(const Statement& row, int column) {
 
 std::string line_or_empty(const Statement& row, int column) { return row.is_null(column) ? "" : line(row, column); }
 
-/// Seconds, as a text.
+/// Returns the number of seconds in a text, or nullopt if the text is not a finite number of at least 0.
 std::optional<double> seconds_in(const std::string& text) {
   double seconds = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
@@ -83,7 +83,7 @@ class Individuals {
   }
 
  private:
-  /// That whoever comes next finds no rows of theirs there already.
+  /// Checks that no table has a row of an id that the next individuals of the run will get.
   void check_ids(std::int64_t evaluations) {
     for (const char* column : {"individuals.id", "scores.individual", "lives.individual", "verifications.individual"}) {
       const std::string_view name(column);
@@ -94,7 +94,7 @@ class Individuals {
     }
   }
 
-  /// Who was born before, so that no line of descent leads back to where it began.
+  /// Reads the parents and checks that they were born before the individual, so that ancestry has no cycles.
   void read_parents(ArchivedIndividual& individual) {
     for (const int column : {3, 4}) {
       if (row_.is_null(column)) continue;

@@ -5,13 +5,14 @@
 
 namespace evodevo {
 
-/// Raised when a change of the tables keeps older programs from reading them, or this one from reading theirs.
+/// Version of the tables. It must be raised whenever they change so that older programs cannot read the new tables, or
+/// this program cannot read the old ones.
 inline constexpr const char* archive_format = "6";
 
 void create_tables(RunDatabase& run);
 
-/// Throws ArchiveError where the file holds no run, one of another format, or other tables than those of a run. Views
-/// in their place would be code that comes with the data.
+/// Throws ArchiveError if the file holds no run, a run of another format, or tables that differ from those of a run.
+/// The check also keeps a foreign file from executing code of its own, such as views in the place of tables.
 void check_tables(const RunDatabase& run);
 
 }  // namespace evodevo

@@ -1,4 +1,4 @@
-// What is added to the record of a run.
+// The functions of Archive that write.
 #include <algorithm>
 
 #include "evolution/archive/archive.hpp"

@@ -1,4 +1,4 @@
-// Development: what changes in a body between two cycles of its life.
+// Devo operators: they change a body after each cycle of its development.
 #pragma once
 
 #include <array>
@@ -13,71 +13,76 @@
 
 namespace evodevo {
 
-/// What a devo operator has to know about every spring's last cycle; nothing else is recorded.
+/// The records of the last cycle that a devo operator needs; each record has one number for every spring. The host
+/// makes no other records.
 struct SpringRequest {
-  bool stress = false;       ///< DevoContext::stress
-  bool peak_force = false;   ///< DevoContext::peak_force
-  bool muscle_work = false;  ///< DevoContext::muscle_work
-  bool tension = false;      ///< DevoContext::tension
+  bool stress = false;       ///< whether DevoContext::stress is needed
+  bool peak_force = false;   ///< whether DevoContext::peak_force is needed
+  bool muscle_work = false;  ///< whether DevoContext::muscle_work is needed
+  bool tension = false;      ///< whether DevoContext::tension is needed
 };
 
-/// The context of a devo operator: what it may look at after a cycle.
+/// The context of a devo operator: everything that the operator may look at after a cycle.
+///
+/// `stress`, `peak_force`, `muscle_work` and `tension` are the records of the last cycle, with one number for every
+/// spring of `body`. A record is empty unless Devo::observes() asks for it. A spring that another operator has added
+/// since the cycle ended has the mean of the other springs as its record.
 struct DevoContext {
   const Body& body;
   const State& state;
-  std::span<const double> stress;  ///< mean absolute force of every spring over the last cycle, N; where the
-                                   ///< experiment's probe is skip-shift, how often it was its group's most
-                                   ///< stressed less how often its least
-  int cycle;                       ///< cycles lived so far, from 1
-  int cycles;                      ///< cycles in the whole development
-  int application;                 ///< how often this operator has been applied, this time included
-  int applications;                ///< how often it is applied in the whole development
-  double time;                     ///< since birth, s
-  Box bounds;                      ///< of the body now, cut off at the floor where there is one, m
-  double mass;                     ///< of a new mass, kg
-  bool resets;                     ///< whether the body goes back to its rest positions before it moves on
+  std::span<const double> stress;  ///< mean absolute force of each spring, N; if the experiment's probe is skip-shift,
+                                   ///< points instead: +1 for each tally in which the spring was the most stressed of
+                                   ///< its group, -1 for each in which it was the least stressed
+  int cycle;                       ///< number of cycles simulated so far, from 1
+  int cycles;                      ///< number of cycles in the whole development
+  int application;                 ///< number of applications of this operator so far, including this one
+  int applications;                ///< number of applications of this operator in the whole development
+  double time;                     ///< simulated time since birth, s
+  Box bounds;                      ///< bounding box of the body now, cut off at the floor if the scene has one, m
+  double mass;                     ///< mass that a new point mass should have, kg
+  bool resets;                     ///< whether the body returns to its rest positions before the next cycle
   const Genome& genome;
   const Layout& layout;
-  // like stress, empty where Devo::observes() does not ask for them; springs that came since the cycle ended carry the
-  // mean of the others
-  std::span<const double> peak_force = {};   ///< the largest absolute force, N
-  std::span<const double> muscle_work = {};  ///< positive work of the spring's muscle on the body, J
-  std::span<const double> tension = {};      ///< the mean force, N: positive where it pulled, negative where it pushed
+  std::span<const double> peak_force = {};   ///< largest absolute force of each spring, N
+  std::span<const double> muscle_work = {};  ///< positive work that each spring's muscle did on the body, J
+  std::span<const double> tension = {};      ///< mean force of each spring, N; positive: it pulled, negative: it pushed
 
-  /// Where a mass is when life goes on, m.
+  /// Returns the position from which a mass continues, m: its rest position if `resets`, else its present position.
   Vec3 position(std::uint32_t mass_index) const {
     return resets ? body.masses[mass_index].rest : state.position[mass_index];
   }
 };
 
 struct NewMass {
-  Vec3 position;    ///< m; it starts at rest
-  double mass = 0;  ///< kg
-  std::int32_t material = no_material;
+  Vec3 position;                        ///< initial position, m; the initial velocity is zero
+  double mass = 0;                      ///< kg
+  std::int32_t material = no_material;  ///< index into DevoContext::body.materials, or no_material
 };
 
 struct NewSpring {
-  std::uint32_t a = 0, b = 0;
+  std::uint32_t a = 0, b = 0;  ///< indices of the two masses; see Edits
   Material material;
-  std::optional<double> rest_length;  ///< m; without it, the one at which the spring is born without force
+  std::optional<double> rest_length;  ///< m; if not given, the length at which the new spring exerts no force
 };
 
-/// New properties of a spring that stays between its masses.
+/// New properties of an existing spring, which continues to join the same two masses.
 struct ChangedSpring {
-  std::uint32_t spring = 0;
-  std::optional<double> rest_length = {};  ///< m; without it, that of before
-  std::optional<Material> material = {};   ///< without it, that of before
+  std::uint32_t spring = 0;                ///< index of the spring
+  std::optional<double> rest_length = {};  ///< new rest length, m; if not given, it stays the same
+  std::optional<Material> material = {};   ///< new material; if not given, it stays the same
 };
 
-/// A part of the way that all springs go from their rest length at birth to Spring::growth times it, in a straight
-/// line. By a factor, so that whatever else has changed a rest length stays.
+/// One step in the linear growth of all springs. Over its whole growth, a spring's rest length changes linearly from L
+/// to Spring::growth * L, where L is the rest length at birth. The host multiplies the present rest length by the ratio
+/// that this step makes, so that other changes of the rest length are preserved.
 struct Growth {
-  double from = 0, to = 0;  ///< how much of the way is gone before and after, 0 to `whole`
-  double whole = 1;         ///< such as the number of the operator's applications
+  double from = 0, to = 0;  ///< progress of the growth before and after this step, 0 to `whole`
+  double whole = 1;         ///< progress at which growth is complete, for example the number of applications
 };
 
-/// For the record of a life: the number that led to each edit, such as the stress of the spring that goes, in the order
-/// of the edits and as Devo::measure() says. A list is empty where no number did.
+/// The number that caused each edit, for example the stress of a spring that is removed. The host stores causes in the
+/// record of the life; they have no effect on the body. Each list is either empty or has one number for each edit of
+/// its kind, in the order of the edits. Devo::measure() gives the name and unit of the numbers in a list.
 struct Causes {
   std::vector<double> removed_springs, removed_masses, changed_springs, new_masses, new_springs;
 
@@ -86,14 +91,15 @@ struct Causes {
                                     &Causes::new_masses, &Causes::new_springs};
 };
 
-/// The changes that a devo operator requests. All indices are those of the DevoContext; the masses in `new_masses` are
-/// numbered after its masses. The host applies an operator's edits together after the call. It refuses dangling
-/// springs, duplicate springs, springs of air, and numbers that are not finite.
+/// The changes that a devo operator requests. Indices of masses and springs refer to DevoContext::body; if that body
+/// has n masses, then index n + i refers to the new mass i in `new_masses`. The host applies an operator's edits
+/// together after the call. It refuses dangling springs, duplicate springs, springs of air, and numbers that are not
+/// finite.
 struct Edits {
-  std::optional<Growth> growth;  ///< of all springs at once; a rest length among `changed_springs` takes its place
+  std::optional<Growth> growth;  ///< growth of all springs; a rest length given in `changed_springs` overrides it
   std::vector<std::uint32_t> removed_springs;
-  std::vector<std::uint32_t> removed_masses;   ///< their springs go with them
-  std::vector<ChangedSpring> changed_springs;  ///< none of which goes
+  std::vector<std::uint32_t> removed_masses;   ///< the host also removes the springs of these masses
+  std::vector<ChangedSpring> changed_springs;  ///< changes of springs that are not removed
   std::vector<NewMass> new_masses;
   std::vector<NewSpring> new_springs;
   Causes causes;
@@ -104,10 +110,11 @@ struct Edits {
   }
 };
 
-/// How many random pairs of masses to try for each new spring before a body counts as one in which all are joined.
+/// Number of random pairs of masses to try for each new spring before giving up because too many pairs are joined
+/// already.
 inline constexpr std::size_t attempts_per_spring = 100;
 
-/// What numbers are: a name, and a unit ("1" for pure numbers).
+/// The name and unit of a quantity ("1" is the unit of a dimensionless quantity).
 struct Measure {
   std::string name, unit;
 };
@@ -116,12 +123,13 @@ class Devo : public Operator {
  public:
   static constexpr std::string_view kind = "devo";
 
-  /// Asked once the parameters are set.
+  /// Returns the records that develop() needs. The host calls this function after it has set the parameters.
   virtual SpringRequest observes() const { return {.stress = true}; }
-  /// What the causes in one of the lists are. Where the probe is skip-shift, those in N are in points.
+  /// Returns the name and unit of the causes in a list. If the probe is skip-shift, the host reports points, not N.
   virtual Measure measure([[maybe_unused]] Causes::List list) const { return {"stress", "N"}; }
-  /// Whether it lets springs grow, which changes nothing unless Encoding::sets_growth().
+  /// Returns whether the operator sets Edits::growth. Growth has an effect only if Encoding::sets_growth() is true.
   virtual bool uses_growth() const { return false; }
+  /// Adds the wanted changes to `edits`, which is empty at the call.
   virtual void develop(const DevoContext& context, Edits& edits, Rng& rng) const = 0;
 };
 

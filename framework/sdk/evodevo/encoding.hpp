@@ -1,4 +1,4 @@
-// Encodings: from genes to a body.
+// Encodings: they turn a genome into a body.
 #pragma once
 
 #include <string>
@@ -10,17 +10,17 @@
 
 namespace evodevo {
 
-/// What every body of an experiment is made from.
+/// The context of an encoding: the materials and the mass from which all bodies of an experiment are made.
 struct EncodingContext {
   std::vector<std::string> material_names;
-  std::vector<Material> materials;  ///< in the order of their names
-  double mass = 0.2;                ///< of one point mass, kg
-  Rng::Philox philox = nullptr;
+  std::vector<Material> materials;  ///< the materials, in the order of `material_names`
+  double mass = 0.2;                ///< mass that one point mass should have, kg
+  Rng::Philox philox = nullptr;     ///< the generator behind rng()
 
-  /// A stream of random numbers that depends on `seed` alone.
+  /// Returns a stream of random numbers that depends on `seed` alone.
   Rng rng(std::uint64_t seed) const { return Rng(philox, {seed, 0, 0, 0}); }
 
-  /// The indices of the named materials; of all where `names` is empty.
+  /// Returns the indices of the named materials in ascending order, or of all materials if `names` is empty.
   std::vector<std::int32_t> material_indices(const std::vector<std::string>& names) const {
     std::vector<std::int32_t> indices;
     for (std::size_t i = 0; i < material_names.size(); ++i)
@@ -30,34 +30,37 @@ struct EncodingContext {
   }
 };
 
-/// What the distance of two rest positions is multiplied by for the rest length of a spring between them: the mean of
-/// both masses' sizes.
+/// The size of a mass, which scales its springs: the rest length of a spring is the distance between the rest positions
+/// of its two masses, times the mean of their sizes.
 struct Size {
-  double start = 1;  ///< at birth
-  double end = 1;    ///< at the end of a ballistic development
+  double start = 1;  ///< size at birth
+  double end = 1;    ///< size at the end of a ballistic development
 };
 
-/// A body as an encoding leaves it. The host joins neighbours, drops springs of air and masses without springs, keeps
-/// the largest piece, and puts it on the floor.
+/// The result of an encoding. To make a body of it, the host joins neighbours, drops springs of air and masses without
+/// springs, keeps the largest connected piece, and puts that piece on the floor.
 struct Blueprint {
-  Body body;  ///< `materials` begins with those of the context, in their order
+  Body body;  ///< its `materials` begin with those of the context, in the same order
   std::uint32_t neighbours =
-      0;                ///< > 0: every mass is joined to as many nearest ones; materials: mean of the two masses'
-  std::string failure;  ///< why there is no body; empty where there is one
-  std::vector<Vec3> paired_at = {};  ///< where neighbours are searched for, one place for each mass; empty: at the rest
-                                     ///< positions
-  std::vector<Size> sizes = {};      ///< for the springs to neighbours, one for each mass; empty: all are 1
-  std::vector<Vec3> origins = {};  ///< of an encoding that maps points: the point of each mass, for pictures; or empty
+      0;                ///< > 0: the host joins each mass to this many nearest masses by springs of their mean material
+  std::string failure;  ///< reason why there is no body; empty if there is one
+  std::vector<Vec3> paired_at = {};  ///< positions, one for each mass, by which the nearest masses are determined;
+                                     ///< empty: the rest positions
+  std::vector<Size> sizes = {};      ///< sizes, one for each mass, for springs to `neighbours`; empty: all sizes are 1
+  std::vector<Vec3> origins = {};  ///< the point that the encoding mapped to each mass, for pictures; empty: no points
 };
 
 class Encoding : public Operator {
  public:
   static constexpr std::string_view kind = "encoding";
 
+  /// Returns the layout of all genomes of the experiment.
   virtual Layout layout(const EncodingContext& context) const = 0;
+  /// Returns the genome of a random individual.
   virtual Genome random(const Layout& layout, Rng& rng) const { return random_genome(layout, rng); }
+  /// Turns a genome into a blueprint, or into the reason why there is no body (Blueprint::failure).
   virtual Blueprint decode(const Genome& genome, const EncodingContext& context) const = 0;
-  /// Whether springs may grow: whether it sets Blueprint::sizes or Spring::growth.
+  /// Returns whether springs may grow, that is, whether decode() sets Blueprint::sizes or Spring::growth.
   virtual bool sets_growth() const { return false; }
 };
 

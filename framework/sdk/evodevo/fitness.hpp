@@ -1,4 +1,4 @@
-// Fitness: what a matured body did, as numbers.
+// Fitness operators: they score what a matured body did in the final evaluation.
 #pragma once
 
 #include <string>
@@ -9,20 +9,21 @@
 
 namespace evodevo {
 
-/// What the final evaluation has to show a fitness function; nothing else is recorded.
+/// What a fitness operator needs to know of the final evaluation. A body first settles; then the window opens, which is
+/// the time in which the body is measured.
 struct Request {
-  double settle = 0;   ///< time before the window opens, s
+  double settle = 0;   ///< time for which the body settles before the window opens, s
   double window = 10;  ///< length of the window, s
-  bool work = false;   ///< whether the muscles' work is needed
+  bool work = false;   ///< whether Observation::work is needed
 };
 
-/// One body over its window.
+/// What one body did during its window.
 struct Observation {
-  Box box;             ///< around the body when the window opened, m
+  Box box;             ///< bounding box of the body when the window opened, m
   Vec3 centre_before;  ///< centre of mass when the window opened, m
-  Vec3 centre_after;   ///< centre of mass when it closed, m
-  double window = 0;   ///< s
-  double work = 0;     ///< work done by the muscles on the body, each spring's positive part, J; 0 if not requested
+  Vec3 centre_after;   ///< centre of mass when the window closed, m
+  double window = 0;   ///< length of the window, s
+  double work = 0;     ///< sum of the positive work of each spring's muscle on the body, J; 0 if not requested
 };
 
 struct Objective {
@@ -35,9 +36,10 @@ class Fitness : public Operator {
  public:
   static constexpr std::string_view kind = "fitness";
 
+  /// Returns what score() needs to know.
   virtual Request observes() const = 0;
   virtual std::vector<Objective> objectives() const = 0;
-  /// One number for each objective. A number that is not finite makes the evaluation `invalid`.
+  /// Returns one number for each objective. A number that is not finite makes the evaluation `invalid`.
   virtual std::vector<double> score(const Observation& observation) const = 0;
 };
 

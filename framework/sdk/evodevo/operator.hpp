@@ -1,18 +1,18 @@
-// What all operators have in common.
+// The base class of all operators.
 #pragma once
 
 #include "evodevo/parameters.hpp"
 
 namespace evodevo {
 
-/// Base of every operator. An operator holds parameters and nothing else, so its calls are const and may come from
-/// several threads at once; what outlives a call belongs to the host. An exception that leaves an operator ends the
-/// run at its last committed generation.
+/// The base class of all operators. An operator holds its parameters and no other data. Its functions are therefore
+/// const, and several threads may call them at once; the host stores everything that outlives a call. An exception that
+/// leaves an operator ends the run; the generations committed before are kept.
 class Operator {
  public:
   virtual ~Operator() = default;
 
-  /// Declares every parameter.
+  /// Declares every parameter of the operator by one call of a function of Parameters.
   virtual void parameters(Parameters&) {}
 };
 

@@ -1,4 +1,5 @@
-// Parameters, declared once beside what they steer: the host reads them from TOML, checks, describes and records them.
+// The interface by which operators declare their parameters. An operator declares each parameter once; from the
+// declarations, the host reads parameters from TOML, checks them, describes them and records them.
 #pragma once
 
 #include <array>
@@ -20,8 +21,9 @@ struct Range {
   std::string_view unit = "1";
 };
 
-/// A visitor of parameters. An operator hands it every parameter once: the variable, whose value is the default, its
-/// name, what is allowed, and one sentence. The host's visitors fill the variables or write down what is declared.
+/// A visitor of parameters. For every parameter, an operator calls one of these functions with the variable that holds
+/// the parameter (its initial value is the default), the name, the allowed values, and one sentence that explains the
+/// parameter. The host implements visitors, for example one that sets the variables and one that lists the parameters.
 class Parameters {
  public:
   virtual void real(double& value, std::string_view name, Range range, std::string_view text) = 0;
@@ -29,14 +31,15 @@ class Parameters {
   virtual void flag(bool& value, std::string_view name, std::string_view text) = 0;
   virtual void choice(std::string& value, std::string_view name, std::initializer_list<std::string_view> options,
                       std::string_view text) = 0;
-  /// Three numbers, each in the range.
+  /// A vector of three real numbers, each within the range.
   virtual void vector(Vec3& value, std::string_view name, Range range, std::string_view text) = 0;
-  /// Three whole numbers, each in the range.
+  /// A vector of three whole numbers, each within the range.
   virtual void counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range,
                       std::string_view text) = 0;
-  /// Names of the experiment's materials; an empty list stands for all of them.
+  /// A list of names of the experiment's materials; an empty list stands for all of them.
   virtual void materials(std::vector<std::string>& value, std::string_view name, std::string_view text) = 0;
-  /// What has to hold between parameters handed over before. `name` is the one to blame, `text` says what is expected.
+  /// A condition on parameters that were declared before. If it does not hold, the host reports an error in parameter
+  /// `name` with `text`, which should say what is expected.
   virtual void require(bool holds, std::string_view name, std::string_view text) = 0;
 
  protected:

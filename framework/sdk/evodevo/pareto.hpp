@@ -11,10 +11,11 @@
 
 namespace evodevo {
 
-/// Objectives of one candidate, greater is better. Empty: it failed, and is dominated by every candidate that did not.
+/// The objectives of one candidate; greater is better. A candidate that failed has no objectives, and every candidate
+/// that did not fail dominates it.
 using Point = std::vector<double>;
 
-/// Whether `a` is at least as good as `b` everywhere and better somewhere.
+/// Returns whether `a` dominates `b`: it is at least as good in every objective and better in at least one.
 inline bool dominates(const Point& a, const Point& b) {
   if (a.empty() || b.empty()) return !a.empty() && b.empty();
   bool better = false;
@@ -25,7 +26,7 @@ inline bool dominates(const Point& a, const Point& b) {
   return better;
 }
 
-/// The candidates' scores and, as a last objective, their youth.
+/// Returns one point for each candidate: its scores and, as the last objective, its youth (the negative age).
 inline std::vector<Point> scores_and_youth(std::span<const Candidate> rows) {
   std::vector<Point> points;
   for (const Candidate& row : rows) {
@@ -35,9 +36,10 @@ inline std::vector<Point> scores_and_youth(std::span<const Candidate> rows) {
   return points;
 }
 
-/// Every point's Pareto layer: 0 for the front, 1 for the front of the rest, and so on (paper, section IV-F). Failed
-/// points share one layer behind all others. By efficient non-dominated sort (Zhang et al. 2015): in descending order a
-/// point is dominated by earlier ones only, and lies in the first layer where none of them does so.
+/// Returns every point's Pareto layer: 0 for the front, 1 for the front of the remaining points, and so on (paper,
+/// section IV-F). Failed points share the last layer. The algorithm is the efficient non-dominated sort (Zhang et al.
+/// 2015): it takes the points in descending lexicographic order, in which only earlier points can dominate a point, and
+/// puts each into the first layer that has no point dominating it.
 inline std::vector<std::uint32_t> pareto_layers(const std::vector<Point>& points) {
   std::vector<std::uint32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -56,7 +58,7 @@ inline std::vector<std::uint32_t> pareto_layers(const std::vector<Point>& points
   return layer;
 }
 
-/// Points of one layer, each between its neighbours along every objective in which the points differ.
+/// The points of one layer, linked to their neighbours along every objective in which the points differ.
 class Crowd {
  public:
   Crowd(const std::vector<Point>& points, const std::vector<std::uint32_t>& members) {
@@ -64,8 +66,9 @@ class Crowd {
     for (std::size_t o = 0; o < objectives; ++o) add_objective(points, members, o);
   }
 
-  /// How much room a member (its place in `members`) has between its neighbours, as a share of the range and summed
-  /// over the objectives; infinitely much at an end (crowding distance, Deb et al. 2002).
+  /// Returns the crowding distance of a member (Deb et al. 2002): the distance between its two neighbours relative to
+  /// the range of the objective, summed over the objectives; infinity if the member is the first or last along any of
+  /// them. `member` is an index into `members`.
   double room(std::uint32_t member) const {
     double sum = 0;
     for (const Line& line : lines_) {
@@ -76,7 +79,7 @@ class Crowd {
     return sum;
   }
 
-  /// Takes a member out; returns those that got room by it.
+  /// Removes a member and returns its former neighbours, whose crowding distance has grown.
   std::vector<std::uint32_t> remove(std::uint32_t member) {
     std::vector<std::uint32_t> neighbours;
     for (Line& line : lines_) {
@@ -92,8 +95,8 @@ class Crowd {
 
   /// The members in the order of one objective, as a doubly linked list.
   struct Line {
-    std::vector<double> value;  ///< in units of the range
-    std::vector<std::uint32_t> before, after;
+    std::vector<double> value;                 ///< value of each member relative to the range of the objective
+    std::vector<std::uint32_t> before, after;  ///< each member's neighbours; `none` at an end
   };
 
   void add_objective(const std::vector<Point>& points, const std::vector<std::uint32_t>& members, std::size_t o) {
@@ -101,7 +104,7 @@ class Crowd {
     std::iota(order.begin(), order.end(), 0u);
     const auto value = [&](std::uint32_t i) { return points[members[i]][o]; };
     std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return value(a) < value(b); });
-    // halves, since the range of two finite numbers may be infinite
+    // half of the range, since the difference of two finite numbers may overflow to infinity
     const double half_range = value(order.back()) / 2 - value(order.front()) / 2;
     if (!(half_range > 0)) return;
     Line line{{}, std::vector(members.size(), none), std::vector(members.size(), none)};
@@ -116,8 +119,8 @@ class Crowd {
   std::vector<Line> lines_;
 };
 
-/// The `count` members that stay when the most crowded go, one after the other. A member whose neighbour is gone has
-/// more room than before. Of equally crowded members the last of `members` goes.
+/// Removes the most crowded member, updates the crowding distances of its neighbours, and repeats this until `count`
+/// members are left; returns these. Of several equally crowded members, it removes the last in `members`.
 inline std::vector<std::uint32_t> least_crowded(const std::vector<Point>& points,
                                                 const std::vector<std::uint32_t>& members, std::size_t count) {
   if (members.size() <= count) return members;

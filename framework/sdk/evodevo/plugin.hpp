@@ -1,4 +1,4 @@
-// The border between host and plugin: one exported function that returns constant data.
+// The interface between host and plugin: a plugin exports one function, which returns constant data.
 #pragma once
 
 #include <cstddef>
@@ -16,10 +16,11 @@
 namespace evodevo {
 
 inline constexpr std::uint64_t plugin_magic = 0x6f7665646f7665ull;  // "evodevo", little-endian
-/// Raised whenever anything that crosses the border changes its meaning; tests/host/plugin_border_test.cpp sees to it.
+/// Version of the interface. It must be raised whenever a declaration that plugins see changes its meaning, or is
+/// changed, moved, added or removed; tests/host/plugin_border_test.cpp finds changed declarations.
 inline constexpr std::uint32_t plugin_epoch = 6;
 
-/// A digest of the sizes of everything that crosses the border.
+/// A hash of the sizes of all structs that host and plugin exchange.
 inline constexpr std::uint32_t plugin_struct_digest = [] {
   std::uint32_t digest = 2166136261u;  // FNV-1a
   for (const std::size_t size :
@@ -35,7 +36,7 @@ inline constexpr std::uint32_t plugin_struct_digest = [] {
 #define EVODEVO_TEXT_(x) #x
 #define EVODEVO_TEXT(x) EVODEVO_TEXT_(x)
 
-/// Compiler and standard library, as far as their binary interfaces may differ.
+/// The binary interfaces (ABI) of the compiler and of the standard library.
 inline constexpr const char* plugin_toolchain =
 #if defined(__GLIBCXX__)
     "C++ ABI " EVODEVO_TEXT(__GXX_ABI_VERSION) ", libstdc++, std::string ABI " EVODEVO_TEXT(_GLIBCXX_USE_CXX11_ABI);
@@ -45,7 +46,7 @@ inline constexpr const char* plugin_toolchain =
     "unknown";
 #endif
 
-/// Build switches that change the layout of standard types.
+/// Compiler switches that change the memory layout of types of the standard library.
 inline constexpr const char* plugin_switches =
 #if defined(_GLIBCXX_DEBUG)
     "_GLIBCXX_DEBUG";
@@ -53,16 +54,16 @@ inline constexpr const char* plugin_switches =
     "none";
 #endif
 
-/// One operator that a plugin brings.
+/// One operator of a plugin.
 struct OperatorEntry {
-  const char* kind;     ///< "encoding", "mutation", "crossover", "devo", "fitness" or "selection"
-  const char* name;     ///< as TOML files write it
-  const char* summary;  ///< one sentence, with its source
-  Operator* (*create)();
+  const char* kind;       ///< "encoding", "mutation", "crossover", "devo", "fitness" or "selection"
+  const char* name;       ///< name by which experiments refer to the operator
+  const char* summary;    ///< one sentence that says what the operator does and which publication it comes from
+  Operator* (*create)();  ///< returns a new instance of the operator
 };
 
-/// What a plugin says of itself. The members up to `switches` keep their order in every epoch, so that a host can
-/// refuse a plugin of another one before it reads further.
+/// The description of a plugin. The members up to `switches` keep their order in every epoch. A host can therefore read
+/// them from a plugin of any epoch, and refuse the plugin before it reads further.
 struct PluginManifest {
   std::uint64_t magic;
   std::uint32_t epoch;
@@ -76,7 +77,7 @@ struct PluginManifest {
   std::size_t entry_count;
 };
 
-/// The table row of operator class `T`.
+/// Returns the entry of operator class `T`.
 template <class T>
 constexpr OperatorEntry operator_entry(const char* name, const char* summary) {
   return {T::kind.data(), name, summary, []() -> Operator* { return new T; }};
@@ -84,7 +85,8 @@ constexpr OperatorEntry operator_entry(const char* name, const char* summary) {
 
 }  // namespace evodevo
 
-/// Exports the operators that follow, each as operator_entry<Class>("name", "sentence"). Once per library.
+/// Exports the operators of a library. The arguments after the licence are the operators, each as
+/// operator_entry<Class>("name", "summary"). Use this macro once in each library.
 #define EVODEVO_PLUGIN(version, license, ...)                                                         \
   extern "C" __attribute__((visibility("default"))) const evodevo::PluginManifest* evodevo_plugin() { \
     static constexpr evodevo::OperatorEntry entries[] = {__VA_ARGS__};                                \

@@ -1,4 +1,4 @@
-// Selection: who breeds, who stays.
+// Selection operators: they choose the parents of the next generation, and the individuals that survive.
 #pragma once
 
 #include <cstdint>
@@ -13,26 +13,27 @@
 
 namespace evodevo {
 
-/// One row of the table that selection works on. The scores are finite and oriented so that greater is better; they
-/// exist only where the evaluation ended `ok`.
+/// One individual, as a row of the table that a selection operator works on.
 struct Candidate {
-  std::span<const double> scores;           ///< one per objective; empty unless `ok`
-  std::uint32_t age = 0;                    ///< of its oldest genes, generations
-  std::optional<std::uint32_t> challenges;  ///< the row of the parent whose place it may take
+  std::span<const double> scores;  ///< finite scores, one for each objective, greater is better; empty unless ok()
+  std::uint32_t age = 0;           ///< number of generations since the individual's oldest genes were drawn
+  std::optional<std::uint32_t> challenges;  ///< row of the parent that this individual may replace; none: no such row
 
+  /// Returns whether the individual's evaluation ended `ok`.
   bool ok() const { return !scores.empty(); }
 };
 
-/// Rows are in the order of birth. The result must not depend on that order other than to break exact ties. No two
-/// rows are copies of each other, equal in their genes and in all scores: the host keeps one of them, the youngest.
+/// Rows are in the order of birth. The result must not depend on that order, except to break exact ties. No two rows
+/// are equal in all genes and in all scores: of such individuals, the host keeps only the youngest.
 class Selection : public Operator {
  public:
   static constexpr std::string_view kind = "selection";
 
-  /// `count` pairs of rows: the parent whose copy is varied, and its mate for crossover.
+  /// Returns `count` pairs of rows. In each pair, the first row is the parent, whose copy is varied, and the second row
+  /// is its mate for crossover.
   virtual std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows,
                                                                        std::uint32_t count, Rng& rng) const = 0;
-  /// At most `population` different rows that live on.
+  /// Returns the rows of the individuals that live on: at least one and at most `population` different rows.
   virtual std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
                                                Rng& rng) const = 0;
 };
