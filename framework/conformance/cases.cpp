@@ -6,6 +6,7 @@
 
 #include "base/text.hpp"
 #include "conformance/trials.hpp"
+#include "cpu/simulator.hpp"
 #include "evolution/archive/archive.hpp"
 #include "evolution/evolution.hpp"
 #include "experiment/toml_reader.hpp"

@@ -1,5 +1,6 @@
 #include "experiment/device.hpp"
 
+#include "cpu/simulator.hpp"
 #include "experiment/toml_reader.hpp"
 #ifdef EVODEVO_CUDA
 #include "cuda/runtime/cuda_simulator.hpp"

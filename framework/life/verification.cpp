@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cpu/simulator.hpp"
 #include "life/birth.hpp"
 
 namespace evodevo {

@@ -141,8 +141,4 @@ class Simulator {
   virtual std::string device() const = 0;
 };
 
-/// A simulator on the CPU with `threads` threads (0: one per core). It uses the best instruction set that the processor
-/// has.
-std::unique_ptr<Simulator> make_cpu_simulator(const Scene& scene, const Stepping& stepping, int threads);
-
 }  // namespace evodevo

@@ -1,5 +1,5 @@
-// The simulator on the CPU. Each thread moves one body at a time.
-#include "core/simulator.hpp"
+// Each thread moves one body at a time.
+#include "cpu/simulator.hpp"
 
 #include "analysis/neighbours.hpp"
 #include "cpu/run.hpp"

@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "bodies.hpp"
+#include "cpu/simulator.hpp"
 #include "cuda/runtime/cuda_simulator.hpp"
 
 namespace evodevo::testing_gpu {

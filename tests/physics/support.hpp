@@ -9,6 +9,7 @@
 
 #include "core/scene.hpp"
 #include "core/simulator.hpp"
+#include "cpu/simulator.hpp"
 #include "evodevo/body.hpp"
 
 namespace evodevo::test {

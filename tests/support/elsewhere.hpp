@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/simulator.hpp"
+#include "cpu/simulator.hpp"
 #include "experiment/experiment.hpp"
 
 namespace evodevo::testing {

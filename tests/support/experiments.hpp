@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "cpu/simulator.hpp"
 #include "experiment/experiment.hpp"
 
 namespace evodevo::testing {

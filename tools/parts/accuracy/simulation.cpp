@@ -4,6 +4,7 @@
 #include <ctime>
 
 #include "analysis/energy.hpp"
+#include "cpu/simulator.hpp"
 #ifdef EVODEVO_CUDA
 #include "cuda/runtime/cuda_simulator.hpp"
 #endif

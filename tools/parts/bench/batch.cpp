@@ -7,6 +7,7 @@
 
 #include "analysis/ground.hpp"
 #include "common/bodies.hpp"
+#include "cpu/simulator.hpp"
 #ifdef EVODEVO_CUDA
 #include "cuda/runtime/cuda_simulator.hpp"
 #endif
