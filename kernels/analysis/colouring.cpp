@@ -6,7 +6,7 @@
 namespace evodevo {
 namespace {
 
-/// The indices of the springs by falling degree of their two masses together.
+/// The indices of the springs in descending order of the sum of their two masses' degrees.
 std::vector<std::uint32_t> most_connected_first(const Body& body) {
   std::vector<std::uint32_t> degree(body.masses.size()), order(body.springs.size());
   for (const Spring& spring : body.springs) ++degree[spring.a], ++degree[spring.b];

@@ -9,9 +9,9 @@
 
 namespace evodevo {
 
-/// The colour of every spring, counted from 0. Springs get their colours in the order of falling degree (number of
-/// springs) of their two masses together, equal ones in the body's order; each gets the lowest colour that no spring at
-/// its two masses has. There are fewer than twice as many colours as the highest degree.
+/// The colour of every spring, counted from 0. Springs are coloured in descending order of the sum of their two masses'
+/// degrees (numbers of springs); springs with equal sums keep the body's order. Each spring gets the lowest colour that
+/// no other spring at its two masses has. The number of colours is less than twice the highest degree.
 std::vector<std::uint32_t> spring_colours(const Body& body);
 
 }  // namespace evodevo

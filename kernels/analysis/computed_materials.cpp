@@ -6,7 +6,7 @@
 namespace evodevo {
 namespace {
 
-constexpr std::uint32_t phases = 1u << (32 - phase_shift);  // per turn
+constexpr std::uint32_t phases = 1u << (32 - phase_shift);  // number of phases in a full turn
 constexpr double most_stiffness = 65'520, most_amplitude = 1'020, most_frequency = 1'020;
 
 std::uint32_t counted(double value, double unit) {

@@ -24,15 +24,16 @@ struct MaterialUnits {
 /// largest, are represented exactly.
 MaterialUnits material_units(const Body& body);
 
-/// The nearest code of a material that a spring of the body has. Each number is rounded by at most half a unit, the
-/// phase by at most 1/8,192 of a turn. A stiffness above zero is at least one unit, so that no spring loses its force.
+/// The code that is closest to a material of one of the body's springs. Rounding changes each number by at most half a
+/// unit, and the phase by at most 1/8,192 of a turn. A stiffness above zero is encoded as at least one unit, so that no
+/// spring loses its force.
 MaterialCode code_of(const Material& material, const MaterialUnits& units);
 
-/// The material that a code stands for.
+/// The material that a code represents.
 Material material_of(const MaterialCode& code, const MaterialUnits& units);
 
-/// The materials with which a body is simulated: rounded if `way` is Materials::computed. Materials that no spring has
-/// stay as they are.
+/// The materials with which a body is simulated: those of springs are rounded if `way` is Materials::computed;
+/// materials that no spring has are unchanged.
 std::vector<Material> simulated_materials(const Body& body, Materials way);
 
 }  // namespace evodevo

@@ -6,8 +6,8 @@
 
 namespace evodevo {
 
-/// The sum of a body's kinetic energy, elastic energy and, in a scene with gravity, height energy above the origin, J.
-/// It is the State::start_energy of a body that does not start from state_at_birth().
+/// The sum of a body's kinetic energy, elastic energy and, in a scene with gravity, gravitational energy relative to
+/// the origin, J. A State that is not made by state_at_birth() gets this value as its start_energy.
 double total_energy(const Body& body, const State& state, const Scene& scene);
 
 }  // namespace evodevo

@@ -16,7 +16,7 @@ double epsilon(Precision precision) {
                                          : std::numeric_limits<double>::epsilon();
 }
 
-/// The largest distance from the origin along an axis, m.
+/// The largest absolute coordinate of any mass, m.
 double extent(const State& state) {
   double largest = 0;
   for (const Vec3& p : state.position) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
@@ -34,7 +34,7 @@ double drive_of(const Body& body) {
   return std::sqrt(sum / 2);
 }
 
-/// The strain energy of all muscles from full extension to full contraction, J.
+/// The sum over muscles of the strain energy that a change from full extension to full contraction causes, J.
 double strain_allowance(const Body& body) {
   double sum = 0;
   for (const Spring& spring : body.springs) {
@@ -45,8 +45,8 @@ double strain_allowance(const Body& body) {
   return sum;
 }
 
-/// The energy (J) of all springs strained by rounding: by 16,384 rounding units of the spring's length and of the
-/// largest distance from the origin.
+/// The energy (J) of all springs if rounding strains each of them by 16,384 rounding units of its length and of the
+/// largest coordinate.
 double rounding_allowance(const Body& body, const State& state, Precision precision) {
   const double rounding = 16384 * epsilon(precision), positions = extent(state);
   double sum = 0;
@@ -57,7 +57,7 @@ double rounding_allowance(const Body& body, const State& state, Precision precis
   return sum;
 }
 
-/// The height energy that masses lose by sinking into the floor, J: m g (m g/k + g dt^2) each.
+/// The gravitational energy that masses lose by sinking into the floor, J: m g (m g/k + g dt^2) for each mass.
 double sag_allowance(const Body& body, const Scene& scene, double dt) {
   if (!scene.gravity || !scene.floor || scene.floor->stiffness <= 0) return 0;
   const double g = scene.gravity->downwards();

@@ -24,8 +24,8 @@ struct Points {
   }
 };
 
-/// The nearest points found so far, `capacity` at most, without the point itself; of equally near ones those of lower
-/// index.
+/// The nearest other points found so far, at most `capacity`. Of equally near points, those with lower indices are
+/// kept.
 class NearestOthers {
  public:
   using DistanceType = double;

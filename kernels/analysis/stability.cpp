@@ -35,7 +35,7 @@ class StiffnessMatrix {
     for (const Link& link : links_) {
       const double wa = weight_[link.a], wb = weight_[link.b];
       const Eigen::Vector3d across = wb * v.segment<3>(3 * link.b) - wa * v.segment<3>(3 * link.a);
-      // a spring without a direction counts as resisting in every direction: an upper bound for whichever it will have
+      // a spring without a direction is treated as resisting in every direction: an upper bound for any direction
       const Eigen::Vector3d force =
           link.stiffness * (link.directed ? (link.direction.dot(across) * link.direction).eval() : across);
       result.segment<3>(3 * link.a) -= wa * force;
@@ -112,7 +112,7 @@ class Tridiagonal {
   }
 
  private:
-  std::vector<double> diagonal_, off_diagonal_;  // the first off-diagonal element lies outside
+  std::vector<double> diagonal_, off_diagonal_;  // the first off-diagonal element is outside the matrix
 };
 
 /// The largest eigenvalue (1/s^2) of `matrix` by Lanczos' iteration; if it is above `enough`, some number between

@@ -16,8 +16,8 @@ namespace evodevo {
 /// addition rate dt must stay below 2.78.
 double oscillation_limit(Method method);
 
-/// The largest dt (s) for contact of a mass of `mass` kg with the floor: dt sqrt(stiffness / mass) <= 1.2. At longer
-/// steps the floor throws masses back much faster than they came (kernels/README.md). Infinite without a floor and for
+/// The largest dt (s) for contact of a mass of `mass` kg with the floor: dt sqrt(stiffness / mass) <= 1.2. With longer
+/// steps, masses can leave the floor much faster than they hit it (kernels/README.md). Infinite without a floor and for
 /// methods that are not explicit.
 double largest_contact_dt(const Scene& scene, double mass, Method method);
 /// The same for the lightest mass of a body.
@@ -34,24 +34,23 @@ double largest_muscle_dt(const Material& material);
 double largest_muscle_dt(const Body& body);
 
 /// The largest stable dt (s) of `body` with its masses at `positions` (m): dt times the highest angular frequency of
-/// the undamped body is at most oscillation_limit(). If the body is stable at `wanted` (s) the answer is `wanted`,
-/// which is cheaper to find; so it is for a body without springs and for a method that is not explicit. NaN if a
-/// position is not finite.
+/// the undamped body is at most oscillation_limit(). Returns `wanted` (s) if the body is stable at that step, which is
+/// cheaper to determine, and also if it has no springs or the method is not explicit. NaN if a position is not finite.
 ///
-/// An upper bound of the frequency decides where it can; for random robots it is 1.35 times the true frequency on
-/// average and 1.40 times at most. Otherwise Lanczos' iteration finds the frequency. The answer is then at most 2 %
-/// below the true limit; it is above it, by half a percent at most, only for bodies whose highest frequencies are close
-/// together, such as long chains.
+/// If an upper bound of the frequency shows that `wanted` is stable, no more is computed; for random robots, this bound
+/// is 1.35 times the true frequency on average and 1.40 times at most. Otherwise Lanczos' iteration finds the
+/// frequency. The result is then at most 2 % below the true limit; only for bodies whose highest frequencies are close
+/// together, such as long chains, is it above the limit, by at most half a percent.
 double largest_dt(const Body& body, std::span<const Vec3> positions, Method method,
                   double wanted = std::numeric_limits<double>::infinity());
 
-/// The safety factor for steps chosen by largest_dt(). That function knows neither how positions and directions of
-/// springs will change before the step is chosen again, nor the transverse stiffness of springs under tension.
+/// The safety factor for steps chosen by largest_dt(). That function considers neither the change of positions and of
+/// springs' directions until the step is chosen again, nor the transverse stiffness of springs under tension.
 inline constexpr double spring_margin = 0.9;
 
-/// A dt (s) at which a body is safe with an explicit method in a scene: the least of spring_margin times largest_dt(),
-/// largest_contact_dt() (which has a margin of its own), a twentieth of the fastest muscle's period, 0.01 s and, where
-/// damping is a force (rk4), 2/rate. NaN if a position is not finite.
+/// A safe dt (s) for a body with an explicit method in a scene: the minimum of spring_margin times largest_dt(),
+/// largest_contact_dt() (which includes a margin), a twentieth of the fastest muscle's period, 0.01 s and, if damping
+/// is a force (rk4), 2/rate. NaN if a position is not finite.
 double safe_dt(const Body& body, std::span<const Vec3> positions, const Scene& scene, Method method);
 
 /// Whether `dt` is at most largest_dt().

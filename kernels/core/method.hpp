@@ -7,20 +7,20 @@
 
 namespace evodevo {
 
-/// How a body is moved by one time step.
+/// The method that computes a time step.
 ///
-/// The first four methods are explicit: they diverge where the step is longer than a limit that depends on the body
+/// The first four methods are explicit: they diverge if the step is longer than a limit that depends on the body
 /// (analysis/stability.hpp). implicit is stable at any step; it damps oscillations that are faster than the step.
 ///
-/// xpbd damps them as well. At steps longer than about three times the explicit methods' limit it lets bodies sag under
-/// their weight, and longer than about seven times, one Gauss-Seidel pass leaves so large a residual that bodies with
-/// few springs gain energy. At any step it rotates bodies with active muscles, by an angle of order dt^2, because
-/// springs that come later in the pass use velocities that earlier springs have changed. A reversed order in every
-/// second step would reduce that to order dt^4, but then bodies gain energy already at twice the explicit methods'
-/// limit.
+/// xpbd damps these oscillations as well. At steps longer than about three times the explicit methods' limit, bodies
+/// sag under their weight; at steps longer than about seven times the limit, one Gauss-Seidel pass leaves so large a
+/// residual that bodies with few springs gain energy. At any step, xpbd rotates bodies with active muscles by an angle
+/// of order dt^2, because later springs in the pass use velocities that earlier springs have changed. Reversing the
+/// order in every second step would reduce the angle to order dt^4, but then bodies would gain energy already at twice
+/// the explicit methods' limit.
 enum class Method {
   paper_euler,       ///< semi-implicit Euler, the new velocity multiplied by exp(-rate dt); order 1
-  symplectic_euler,  ///< semi-implicit Euler with damping and drag that end in the true terminal velocity; order 1
+  symplectic_euler,  ///< semi-implicit Euler with damping and drag that give the exact terminal velocity; order 1
   velocity_verlet,   ///< kick, drift, kick between half steps of damping and drag; order 2
   rk4,               ///< the classical Runge-Kutta method; order 4
   implicit,          ///< backward Euler, linearised, by conjugate gradients; order 1

@@ -8,7 +8,7 @@
 namespace evodevo {
 namespace {
 
-/// A task of which some pieces have been made.
+/// A task that is simulated in pieces, and its progress.
 class Piecewise {
  public:
   explicit Piecewise(Task& whole) : whole_(whole) { whole_.spring_evaluations = 0; }

@@ -1,4 +1,4 @@
-// Runs that are interrupted to observe the bodies on the way.
+// Runs that are divided into pieces, so that bodies can be observed in between.
 #pragma once
 
 #include <cstdint>
@@ -9,15 +9,15 @@
 
 namespace evodevo {
 
-/// Moves every task's body through its steps in several pieces. The end is the same, to the bit, as that of one run.
+/// Simulates the steps of every task in several pieces. The final state is the same, to the bit, as that of one run.
 ///
-///   next_steps(i) ─► steps of task i's next piece, at least 1 (the last piece has the steps that are left)
-///   simulator.run(pieces) ─► one answer per piece, with what `recording` asks for
-///   look(i, piece) ◄─ the answer, after tasks[i] has taken its state, status and course
+///   next_steps(i) ─► number of steps of task i's next piece, at least 1 (the last piece has the remaining steps)
+///   simulator.run(pieces) ─► one result per piece, with the quantities that `recording` requests
+///   look(i, piece) ◄─ the result, after its state, status and course have been stored in tasks[i]
 ///
-/// `look` is called on the simulator's workers, never twice at once for the same task. Bodies are checked for
-/// divergence at the same steps as in one run, so positions that `look` sees of a diverging body may not be finite. The
-/// tasks' own records and work stay as they are.
+/// `look` is called on the simulator's workers, never twice at the same time for the same task. Bodies are checked for
+/// divergence at the same steps as in one run, so the positions of a diverging body that `look` sees may not be finite.
+/// The records and the work in `tasks` are not changed.
 void run_in_pieces(Simulator& simulator, std::span<Task> tasks, Recording recording,
                    const std::function<std::uint64_t(std::size_t)>& next_steps,
                    const std::function<void(std::size_t, const Task&)>& look);

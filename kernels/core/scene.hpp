@@ -1,4 +1,4 @@
-// A scene: the forces that act on a body beside those of its springs. A force that a scene does not have is not
+// A scene: the forces that act on a body besides those of its springs. Forces that a scene does not have are not
 // computed.
 #pragma once
 
@@ -10,11 +10,11 @@ namespace evodevo {
 
 struct Gravity {
   double acceleration = 9.81;  ///< m/s^2
-  double slope = 0;            ///< degrees; +x is downhill. The floor stays level, and gravity is tilted instead
+  double slope = 0;            ///< degrees; +x is downhill. The floor stays level; gravity is tilted instead
 
   /// The component of the acceleration along -z, m/s^2.
   double downwards() const { return acceleration * std::cos(radians()); }
-  /// How much the ground falls along x, m per m.
+  /// The descent of the ground along x, m per m.
   double grade() const { return std::tan(radians()); }
 
   bool operator==(const Gravity&) const = default;
@@ -26,14 +26,14 @@ struct Gravity {
 /// the depth (paper, section IV-C1).
 struct Floor {
   double stiffness = 1e6;  ///< N/m
-  double roughness = 0;    ///< largest height of hills and depth of hollows, m
+  double roughness = 0;    ///< largest height of hills and largest depth of hollows, m
   double wavelength = 1;   ///< distance between two hills with a hollow between them, m
-  std::int64_t seed = 1;   ///< of the random heights
+  std::int64_t seed = 1;   ///< seed of the random heights
 
   bool rough() const { return roughness > 0; }
-  /// The number of the line of heights at y = 0; heights are a hash of this number and their position. The lines along
-  /// x are numbered upwards from here. If this were the seed itself, the ground of the next seed would be the same
-  /// ground moved by half a wavelength.
+  /// The number of the grid line at y = 0. A height at a grid point is a hash of the number of its line along x, which
+  /// increases with y, and of its position on the line. If this number were the seed itself, the next seed would give
+  /// the same ground moved by half a wavelength.
   std::uint32_t first_line() const { return static_cast<std::uint32_t>(seed) * 2654435769u; }  // 2^32/golden ratio
   /// The largest slope of the ground, m per m: that between a hollow and a hill half a wavelength apart.
   double steepest() const { return 7.5 * roughness / wavelength; }

@@ -29,7 +29,7 @@ enum class Precision { float32, float64 };
 /// device uses the rounded materials.
 enum class Materials { table, computed };
 
-/// How steps are made. Each task has a step length of its own.
+/// How time steps are computed. The length of the step is given by each task.
 struct Stepping {
   Method method = Method::paper_euler;
   Precision precision = Precision::float32;
@@ -38,7 +38,7 @@ struct Stepping {
   bool operator==(const Stepping&) const = default;
 };
 
-/// What a run records beside the motion. What is not asked for costs no time.
+/// The quantities that a run records besides the motion. Quantities that are not requested cost no time.
 struct Recording {
   bool stress = false;       ///< SpringRecords::stress
   bool work = false;         ///< Task::work
@@ -49,7 +49,8 @@ struct Recording {
   bool of_springs() const { return stress || peak_force || muscle_work || tension; }
 };
 
-/// What a run has recorded of a body's springs: one number for each spring. A list that was not asked for is empty.
+/// The recorded quantities of a body's springs, with one number for each spring. Lists that were not requested are
+/// empty.
 struct SpringRecords {
   std::vector<double> stress;       ///< mean absolute force over the run, N
   std::vector<double> peak_force;   ///< largest absolute force, N
@@ -59,7 +60,7 @@ struct SpringRecords {
   static constexpr std::array lists{&SpringRecords::stress, &SpringRecords::peak_force, &SpringRecords::muscle_work,
                                     &SpringRecords::tension};
 
-  /// Sets the lists that `recording` asks for to zeros for `springs` springs, and empties the others.
+  /// Sets the lists that `recording` requests to zeros for `springs` springs, and empties the others.
   void clear(Recording recording, std::size_t springs) {
     stress.assign(recording.stress ? springs : 0, 0.0);
     peak_force.assign(recording.peak_force ? springs : 0, 0.0);
@@ -68,32 +69,32 @@ struct SpringRecords {
   }
 };
 
-/// What a simulator has computed about a body's masses and springs (on a GPU, their arrangement in memory) and can use
-/// again while they stay the same.
+/// Data on a body's masses and springs that a simulator has computed (on a GPU, their arrangement in memory) and can
+/// reuse as long as they do not change.
 class Preparation {
  public:
   virtual ~Preparation() = default;
 };
 
-/// One body of a batch and what to do with it: `steps` time steps of length `dt`. The caller sets `body`, `state`,
-/// `dt`, `steps` and, where they apply, `later_steps`, `course` and `preparation`; the simulator sets the rest. The
-/// records are empty after a divergence.
+/// One body of a batch, to be simulated for `steps` time steps of length `dt`. The caller sets `body`, `state`, `dt`,
+/// `steps` and, if needed, `later_steps`, `course` and `preparation`; the simulator sets the rest. The records are
+/// empty after a divergence.
 ///
-/// A run can be made in pieces with the same body and dt: each piece except the last says how many `later_steps`
-/// follow, and the caller hands its `course` to the next piece. State and status are then those of one run, to the bit.
-/// Records and work are those of the piece alone; their sums over the pieces may differ from those of one run by
-/// rounding.
+/// A run can be divided into pieces with the same body and dt: each piece except the last gives the number of
+/// `later_steps` that follow, and the caller passes its `course` to the next piece. State and status are then the same
+/// as in one run, to the bit. Records and work are those of the piece only; their sums over the pieces may differ from
+/// those of one run by rounding.
 struct Task : SpringRecords {
   const Body* body = nullptr;
-  State* state = nullptr;  ///< moved in place
+  State* state = nullptr;  ///< updated in place
   double dt = 0.0005;      ///< time step, s; paper, Table II
   std::uint64_t steps = 0;
-  std::uint64_t later_steps = 0;  ///< steps of the same run in pieces still to come
-  std::optional<Course> course;   ///< before: from the run's earlier piece, if any; after: for the next piece, if any
-  /// Before: from the body's last run, or null; after: of this run. One that does not fit the body any more is ignored.
+  std::uint64_t later_steps = 0;  ///< steps of the same run in later pieces
+  std::optional<Course> course;   ///< in: from the run's earlier piece, if any; out: for the next piece, if any
+  /// In: from the body's last run, or null; out: of this run. A preparation that no longer fits the body is ignored.
   std::shared_ptr<const Preparation> preparation;
 
-  Status status = Status::ok;            ///< afterwards ok or diverged; a task that is not ok before the run is skipped
+  Status status = Status::ok;            ///< in: tasks that are not ok are skipped; out: ok or diverged
   double ended_at = 0;                   ///< time of the divergence since birth, s; detected up to 100 steps late
   std::string reason;                    ///< why the body has diverged
   double work = 0;                       ///< work of the muscles on the body, J; 0 unless recorded
@@ -106,38 +107,39 @@ class DeviceOutOfMemory : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// How a device such as a GPU was used since its simulator was made.
+/// The use of a device such as a GPU since its simulator was created.
 struct DeviceUse {
-  double busy = 0;           ///< time in which the device was working, s
+  double busy = 0;           ///< time during which the device was working, s
   std::size_t portions = 1;  ///< largest number of portions into which a batch was divided to fit the device's memory
 };
 
-/// Moves bodies through a scene. A mass of 0 kg stays where it is. The answer for a body is the same, to the bit,
+/// Simulates bodies in a scene. Masses of 0 kg are held in place. The result for a body is the same, to the bit,
 /// whether the body is alone or in any batch, and for any number of threads.
 class Simulator {
  public:
   virtual ~Simulator() = default;
 
-  /// Moves every task's body through its steps and records what `recording` asks for. A body that diverges stops, and
-  /// does not affect the others. Several threads may call this at once. Throws DeviceOutOfMemory, or another
-  /// std::runtime_error if the device fails.
+  /// Simulates the steps of every task, and records the quantities that `recording` requests. A body that diverges
+  /// stops, and does not affect the others. Several threads may call this function at the same time. Throws
+  /// DeviceOutOfMemory, or another std::runtime_error if the device fails.
   virtual void run(std::span<Task> tasks, Recording recording) = 0;
 
   /// A search for nearest neighbours on the same device.
   virtual NeighbourSearch& neighbours() = 0;
 
-  /// The threads that prepare bodies and read their answers. Other work between calls of run() should use them too, so
+  /// The threads that prepare bodies and read their results. Other work between calls of run() should use them too, so
   /// that no more threads than cores compete and priorities (threads/parallel.hpp) apply to all work.
   virtual Workers& workers() = 0;
 
-  /// How many simultaneous calls of run() keep the device busy: while one batch moves, others are prepared.
+  /// The number of simultaneous calls of run() that keep the device busy: while one batch is simulated, others are
+  /// prepared.
   virtual int concurrency() const { return 1; }
 
-  /// How the device was used; none if the device is the host's own processor.
+  /// The use of the device; nothing if the device is the host's own processor.
   virtual std::optional<DeviceUse> device_use() const { return std::nullopt; }
 
-  /// The device and its instruction set, for example "cpu, AVX-512". Results on equal devices are equal; between
-  /// different ones they may differ in the last bit.
+  /// The device and its instruction set, for example "cpu, AVX-512". Equal devices give equal results; results of
+  /// different devices may differ by rounding.
   virtual std::string device() const = 0;
 };
 

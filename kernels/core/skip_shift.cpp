@@ -36,7 +36,7 @@ void tally(const Body& body, const State& state, Rng& random, std::vector<double
   for (std::size_t group = 0; group < groups; ++group) {
     const auto first = forces.begin() + static_cast<std::ptrdiff_t>(group * order.size() / groups);
     const auto last = forces.begin() + static_cast<std::ptrdiff_t>((group + 1) * order.size() / groups);
-    // of equal forces the first is taken, which is a random one because the order is random
+    // of equal forces, the first one counts; the choice is random because the order is random
     points[order[static_cast<std::size_t>(std::max_element(first, last) - forces.begin())]] += 1;
     points[order[static_cast<std::size_t>(std::min_element(first, last) - forces.begin())]] -= 1;
   }

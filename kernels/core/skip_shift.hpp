@@ -10,22 +10,23 @@
 
 namespace evodevo {
 
-/// The number of groups into which a body's springs are divided: as many as the paper's blocks have threads. Bodies of
-/// fewer than 512 springs have half as many groups as springs, because the only spring of a group would gain a point
-/// and lose it again.
+/// The number of groups into which a body's springs are divided, which is the number of threads in the paper's blocks.
+/// Bodies of fewer than 512 springs have half as many groups as springs, because the only spring of a group would gain
+/// and lose a point.
 inline constexpr std::size_t most_tally_groups = 256;
 
-/// Moves every task's body and tallies its springs after every `skip` steps. A tally divides the springs among the
-/// groups in a new random order; in each group the spring of largest absolute force gains one point and the spring of
-/// smallest absolute force loses one; ties are decided at random. The points become the task's `stress`: the springs
-/// with the most points are the most stressed. A task of fewer than `skip` steps would have no tally; it ends as
-/// invalid before its first step. `random` has one stream per task; the orders depend on nothing else.
+/// Simulates every task, with a tally of its springs after every `skip` steps. A tally divides the springs among the
+/// groups in a new random order. In each group, the spring with the largest absolute force gains one point, and the
+/// spring with the smallest absolute force loses one; ties are decided at random. The points become the task's
+/// `stress`: the springs with the most points are the most stressed. A task of fewer than `skip` steps would have no
+/// tally; it ends as invalid before its first step. `random` has one stream per task, which alone determines the
+/// orders.
 ///
-/// The simulator moves the bodies from one tally to the next, and the host makes the tallies, the same way for every
-/// device. That costs more than recording the exact stress; this function is here to repeat the paper.
+/// The simulator advances the bodies from one tally to the next, and the host computes the tallies, in the same way for
+/// every device. That costs more than recording the exact stress; this function exists only to reproduce the paper.
 void run_with_tallies(Simulator& simulator, std::span<Task> tasks, std::uint64_t skip, std::span<Rng> random);
 
-/// Makes one tally of `body` in `state` and adds its points to `points`, which has one entry for each of the body's
+/// Computes one tally of `body` in `state` and adds its points to `points`, which has one entry for each of the body's
 /// springs.
 void tally(const Body& body, const State& state, Rng& random, std::vector<double>& points);
 

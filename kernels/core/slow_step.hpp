@@ -1,4 +1,4 @@
-// Steps that can take seconds, such as compiling a kernel, for callers that tell their users what is going on.
+// Notifications of steps that can take seconds, such as compiling a kernel, so that users can be told about them.
 #pragma once
 
 #include <chrono>
@@ -9,14 +9,15 @@
 
 namespace evodevo {
 
-/// Hears what a slow step does, such as "compiling the kernel resident.cu": without a duration when the step begins,
-/// with it (s) when the step has ended. Threads that do slow steps call it at the same time.
+/// A function that is called at the beginning of each slow step, without a duration, and at its end, with its duration
+/// (s). `what` describes the step, such as "compiling the kernel resident.cu". Several threads may call it at the same
+/// time.
 using SlowStepListener = std::function<void(std::string_view what, std::optional<double> seconds)>;
 
-/// Sets the listener of this process, which hears nothing before. To be called while no slow step is under way.
+/// Sets the listener of this process; initially there is none. Must be called while no slow step is in progress.
 void set_slow_step_listener(SlowStepListener listener);
 
-/// A slow step, which lasts as long as this object.
+/// Represents a slow step, which lasts as long as this object.
 class SlowStep {
  public:
   explicit SlowStep(std::string what);

@@ -14,14 +14,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
-/// A row of at most this many materials is held in registers; 0: never.
+/// The largest number of materials whose row is held in registers; 0 if no row is.
 template <class T>
 constexpr std::size_t register_table_size() {
   constexpr std::size_t lanes = hn::MaxLanes(hn::ScalableTag<T>());
   return lanes >= 8 ? 16 : 0;
 }
 
-/// A row of a table, read from memory one lane after the other: gather instructions are slower on many processors.
+/// A row of a table, which is read from memory one lane after the other, because gather instructions are slower on many
+/// processors.
 template <class T>
 struct TableInMemory {
   using D = hn::ScalableTag<T>;

@@ -8,7 +8,7 @@
 
 namespace evodevo::cpu {
 
-/// An array of `size` numbers, zero at first, aligned for the widest SIMD vectors.
+/// An array of `size` numbers, initially zero, aligned for the widest SIMD vectors.
 template <class T>
 class Array {
  public:

@@ -8,7 +8,7 @@
 namespace evodevo::cpu {
 namespace {
 
-/// The springs at each mass: those of mass i are `spring[first[i]] .. spring[first[i + 1] - 1]`, ascending.
+/// The springs at each mass: those of mass i are `spring[first[i]] .. spring[first[i + 1] - 1]`, in ascending order.
 struct Incidence {
   explicit Incidence(const Body& body) : first(body.masses.size() + 1), spring(2 * body.springs.size()) {
     for (const Spring& s : body.springs) ++first[s.a + 1], ++first[s.b + 1];
@@ -26,7 +26,7 @@ struct Incidence {
   std::vector<std::uint32_t> first, spring;
 };
 
-/// The indices of the masses by falling degree; masses of equal degree by rising index.
+/// The indices of the masses in descending order of degree; masses of equal degree in ascending order of index.
 std::vector<std::uint32_t> sorted_masses(const Incidence& incidence, std::size_t masses) {
   std::vector<std::uint32_t> order(masses);
   std::iota(order.begin(), order.end(), 0u);

@@ -11,7 +11,7 @@
 
 namespace evodevo::cpu {
 
-/// An integer of the same size as T, as SIMD code needs for indices beside vectors of T.
+/// An integer of the same size as T, which SIMD code needs for indices that belong to vectors of T.
 template <class T>
 using Index = std::conditional_t<sizeof(T) == sizeof(float), std::int32_t, std::int64_t>;
 
@@ -19,10 +19,11 @@ using Index = std::conditional_t<sizeof(T) == sizeof(float), std::int32_t, std::
 /// reads the position of a neighbour.
 inline constexpr std::size_t position_stride = 4;
 
-/// A body's springs, listed by mass. Masses are sorted by falling degree (number of springs) and divided into groups of
-/// `lanes`, one mass per SIMD lane. A group has as many rows as its mass of highest degree has springs. Row r holds the
-/// r-th spring of each mass, so that every lane adds up its mass's forces in a fixed order. A slot is one lane of one
-/// row. Every spring is in two slots, one at each end. Empty slots hold springs of stiffness 0 from a mass to itself.
+/// A body's springs, listed by mass. Masses are sorted by descending degree (number of springs) and divided into groups
+/// of `lanes`, one mass per SIMD lane. A group has as many rows as its mass of highest degree has springs. Row r holds
+/// the r-th spring of each mass, so that every lane adds up its mass's forces in a fixed order. A slot is one lane of
+/// one row. Every spring is in two slots, one at each end. Empty slots hold springs of stiffness 0 from a mass to
+/// itself.
 template <class T>
 struct Layout {
   Layout(const Body& body, std::size_t lanes);

@@ -86,7 +86,7 @@ HWY_INLINE void add_drag(const cpu::Motion<T>& m, const cpu::StepConstants<T>& c
   }
 }
 
-/// Adds damping as a force.
+/// Adds damping to the forces.
 template <class T>
 HWY_INLINE void add_damping(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, std::size_t masses) {
   const hn::ScalableTag<T> d;

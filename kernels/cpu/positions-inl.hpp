@@ -31,8 +31,8 @@ HWY_INLINE void store_positions(D d, const Triple<hn::Vec<D>>& positions, T* to)
 
 #else
 
-/// A vector whose 16-byte block b comes from positions + offset[b * stride]. Each load fills all blocks, and blends
-/// keep the right one; this is faster than inserting the blocks one after the other.
+/// Returns a vector whose 16-byte block b is loaded from positions + offset[b * stride]. Each load fills all blocks,
+/// and blends keep the right one; this is faster than inserting the blocks one after the other.
 template <class D, class T = hn::TFromD<D>>
 HWY_INLINE hn::Vec<D> load_blocks(D d, const T* positions, const std::uint32_t* offset, std::size_t stride) {
   constexpr std::size_t blocks = hn::MaxLanes(D()) * sizeof(T) / 16;

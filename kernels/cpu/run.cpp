@@ -59,7 +59,7 @@ class ActuationTables {
     }
   }
 
-  /// The tables, beginning with row `first`.
+  /// Returns the tables, beginning with row `first`.
   Actuation<T> view(std::size_t first = 0) {
     return {.materials = materials_,
             .padded = padded_,
@@ -99,7 +99,7 @@ class MovingBody {
       const std::uint32_t from = layout_.mass_at[i];
       const double mass = body.masses[from].mass;
       mass_[i] = static_cast<T>(mass);
-      // an inverse mass of 0 keeps a mass of 0 kg where it is
+      // an inverse mass of 0 holds a mass of 0 kg in place
       inverse_mass_[i] = static_cast<T>(mass > 0 ? 1 / mass : 0);
       put(position_, i, state.position[from]);
       put(velocity_, i, state.velocity[from]);

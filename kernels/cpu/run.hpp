@@ -1,4 +1,4 @@
-// The run of one body on one CPU thread.
+// Simulates one body on one CPU thread.
 #pragma once
 
 #include "core/scene.hpp"
@@ -7,12 +7,12 @@
 
 namespace evodevo::cpu {
 
-/// Moves one task's body and fills in its answer.
+/// Simulates one task and fills in its result.
 ///
 ///   arrange   body, state ─► arrays in Layout's order
 ///   repeat until the end or a divergence, up to the next check:
 ///     actuate   times ─► relative lengths of the materials
-///     advance   arrays, lengths ─► arrays after these steps
+///     advance   arrays, lengths ─► arrays after the steps up to the check
 ///     collect   sums of the slots ─► records of the springs
 ///     check     energies ─► status
 ///   write     arrays ─► state; sums ─► means over the run

@@ -1,4 +1,4 @@
-// Each thread moves one body at a time.
+// Each thread simulates one body at a time.
 #include "cpu/simulator.hpp"
 
 #include "analysis/neighbours.hpp"

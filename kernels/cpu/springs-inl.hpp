@@ -31,10 +31,9 @@ struct AnySums : cpu::Sums {
 
 /// Computes the spring forces on the masses of one group.
 ///
-///   in:  positions, springs of the group, `lengths` (relative length of each material now), `rates` (its rate of
-///   change,
-///        1/s; not read without sums.power)
-///   out: motion.fx, fy, fz: the sum of spring forces on each mass, N; the sums that are on, for each slot
+///   in:  positions, springs of the group, `lengths` (current relative length of each material), `rates` (its rate of
+///        change, 1/s; not read without sums.power)
+///   out: motion.fx, fy, fz: the sum of spring forces on each mass, N; the enabled sums, for each slot
 template <class Sums, class Table, class T>
 HWY_INLINE void set_spring_forces(const cpu::Motion<T>& motion, const Sums& sums, std::size_t group,
                                   const Table& lengths, const Table& rates) {
@@ -47,7 +46,7 @@ HWY_INLINE void set_spring_forces(const cpu::Motion<T>& motion, const Sums& sums
   Triple<V> force{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
   const std::size_t end = motion.first_row[group + 1] * lanes;
   std::size_t slot = motion.first_row[group] * lanes;
-  // positions are read one row ahead, so that memory works while this row waits for its square root and division
+  // positions are read one row ahead, so that the loads overlap with the square root and division of this row
   Separation<V> next = separation(own, load_positions(d, motion.interleaved_positions, motion.neighbour + slot));
   for (; slot < end; slot += lanes) {
     const Separation<V> s = next;

@@ -1,9 +1,9 @@
-// The CPU's kernels, compiled once for each instruction set; the best one is chosen at run time.
+// The kernels of the CPU, compiled once for each instruction set; the best instruction set is chosen at run time.
 #include "cpu/step.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cpu/step.cpp"
-// instruction sets that are rare or no faster here than the next lower one
+// disables instruction sets that are rare, or no faster for this code than the next lower one
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>

@@ -16,7 +16,7 @@
 
 namespace evodevo::cpu {
 
-/// The length of a step, or of half a step.
+/// A time interval, which is a step or half a step.
 template <class T>
 struct TimeSpan {
   T dt;         ///< s
@@ -24,15 +24,15 @@ struct TimeSpan {
   T damped_dt;  ///< (1 - decay)/rate, s: a constant acceleration a adds a damped_dt to a damped velocity in dt
 };
 
-/// The constants of a step: the scene and the step length as numbers of type T. A force that is off is not computed.
+/// The constants of a step: the scene and the step length as numbers of type T. Disabled forces are not computed.
 template <class T>
 struct StepConstants {
   bool gravity, slope, floor, rough, friction, drag, damping;
-  T acceleration;      ///< of gravity along -z, m/s^2
+  T acceleration;      ///< acceleration of gravity along -z, m/s^2
   T grade;             ///< Gravity::grade()
   T floor_stiffness;   ///< N/m
   T roughness;         ///< m
-  T cells;             ///< of rough ground, 1/m
+  T cells;             ///< number of cells of rough ground per metre, 1/m
   std::uint32_t seed;  ///< Floor::first_line()
   T friction_coefficient;
   T drag_coefficient;  ///< kg/m
@@ -40,7 +40,7 @@ struct StepConstants {
   TimeSpan<T> step, half_step;
 };
 
-/// What is summed for each slot during the steps.
+/// The quantities that are summed for each slot during the steps.
 struct Sums {
   bool force = false;    ///< |force|, whose mean over the steps is the stress
   bool power = false;    ///< power that the muscle puts into the body
@@ -108,8 +108,8 @@ struct Integrator {
   std::size_t rows_per_step;  ///< rows of the tables per step
   std::size_t mass_arrays;    ///< scratch arrays, one number per mass each; their content is not kept between calls
   std::size_t slot_arrays;    ///< scratch arrays, one number per slot each
-  bool coloured;              ///< whether it needs the springs by colour
-  /// Moves the body by `steps` steps. `actuation` has the relative lengths from their beginning to their end.
+  bool coloured;              ///< whether the method needs the springs by colour
+  /// Advances the body by `steps` steps. `actuation` holds the relative lengths from the first to the last of them.
   void (*advance)(const Motion<T>&, const StepConstants<T>&, const Actuation<T>& actuation, std::size_t steps, Sums);
 };
 
@@ -122,8 +122,8 @@ struct Kernels {
 
   /// Fills `rows` rows of the tables, for the times start + first dt, start + (first + 1) dt, .. (s).
   void (*actuate)(const Actuation<T>&, double start, std::uint64_t first, std::size_t rows, double dt);
-  Integrator<T> integrator[method_names.size()];  ///< by Method
-  /// The energies now; row 0 of the tables holds the relative lengths now.
+  Integrator<T> integrator[method_names.size()];  ///< one for each Method
+  /// Returns the current energies; row 0 of the tables must hold the current relative lengths.
   Energies (*energies)(const Motion<T>&, const StepConstants<T>&, const Actuation<T>& actuation);
 };
 

@@ -1,6 +1,6 @@
-// The frame of all time-stepping methods on the CPU. Included once per instruction set.
+// The common frame of all time-stepping methods on the CPU. Included once per instruction set.
 //
-// Each step of a method calls, in its own order:
+// Each step of a method calls the following functions, in an order of its own:
 //   springs(..)              positions, relative lengths ─► spring forces (and records of the springs)
 //   add_gravity, add_floor.. positions, velocities ─► added to the forces
 //   advance_velocities, damp, apply_drag, apply_friction   forces ─► velocities
@@ -40,7 +40,7 @@ SpringPass<T> spring_pass_with(cpu::Sums sums) {
   return set_spring_forces<Table, UsualSums<false, false>, T>;
 }
 
-/// The pass over the springs that adds to the given sums.
+/// Returns the pass over the springs that adds to the given sums.
 template <class T>
 SpringPass<T> spring_pass(const cpu::Actuation<T>& actuation, cpu::Sums sums) {
   if constexpr (register_table_size<T>() > 0)
@@ -48,7 +48,7 @@ SpringPass<T> spring_pass(const cpu::Actuation<T>& actuation, cpu::Sums sums) {
   return spring_pass_with<TableInMemory<T>, T>(sums);
 }
 
-/// What a method gets: a body in motion, the constants of the step and the passes over the springs.
+/// The input of a method: a body in motion, the constants of the step and the passes over the springs.
 template <class T>
 struct Stepper {
   const cpu::Motion<T>& motion;
@@ -56,8 +56,8 @@ struct Stepper {
   const cpu::Actuation<T>& actuation;
   cpu::Sums sums;
   std::size_t masses;               ///< padded to whole groups
-  SpringPass<T> springs;            ///< records nothing
-  SpringPass<T> recording_springs;  ///< also records: adds to the sums that are on
+  SpringPass<T> springs;            ///< pass without recording
+  SpringPass<T> recording_springs;  ///< pass that also adds to the enabled sums
 
   /// Whether anything is recorded.
   bool is_recording() const { return sums.force || sums.power || sums.peak || sums.tension; }
@@ -66,8 +66,8 @@ struct Stepper {
   T* scratch(std::size_t index) const { return motion.mass_scratch + index * masses; }
 };
 
-/// The base of a method: defaults that it may override. The method adds `step(stepper, row)`, which makes one step; row
-/// `row` of the tables holds the relative lengths at the beginning of the step.
+/// The base of a method, with defaults that the method may override. The method adds `step(stepper, row)`, which
+/// computes one step; row `row` of the tables holds the relative lengths at the beginning of the step.
 struct StepMethod {
   static constexpr std::size_t rows_per_step = 1, mass_arrays = 0, slot_arrays = 0;
   static constexpr bool coloured = false;

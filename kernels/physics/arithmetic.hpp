@@ -79,8 +79,8 @@ EVODEVO_HD std::uint32_t mix_bits(std::uint32_t n) {
   return n ^ n >> 16;
 }
 
-/// A pseudo-random number in [-1, 1) that depends on the whole numbers i and j and the seed alone. It has 24 random
-/// bits, so that float and double hold the same number.
+/// A pseudo-random number in [-1, 1) that depends only on the whole numbers i and j and the seed. It has 24 random
+/// bits, so that float and double represent the same number.
 template <class T>
 EVODEVO_HD T random_of(T i, T j, std::uint32_t seed) {
   const std::uint32_t row = mix_bits(seed + static_cast<std::uint32_t>(static_cast<std::int32_t>(j)));

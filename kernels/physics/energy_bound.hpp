@@ -6,21 +6,22 @@
 
 namespace evodevo {
 
-/// The numbers that bound a body's energy during a run. They are computed once, at the beginning of the run.
+/// The numbers from which the bound of a body's energy during a run is computed. They are set once, at the beginning of
+/// the run.
 struct EnergyBound {
-  double start = 0;      ///< upper bound of height + kinetic + elastic energy at the beginning, J
+  double start = 0;      ///< upper bound of gravitational + kinetic + elastic energy at the beginning, J
   double drive = 0;      ///< largest rate at which muscles can raise the square root of the energy, J^(1/2)/s
-  double allowance = 0;  ///< for muscle strain, rounding, and masses that sink into the floor, J
+  double allowance = 0;  ///< allowance for muscle strain, rounding, and masses that sink into the floor, J
 
-  /// The most (J) that muscles can have added to height + kinetic + elastic energy `time` seconds after the beginning.
-  /// `fallen` is the most energy (J) that falling below the origin has released until then.
+  /// The largest energy (J) that muscles can have added, to gravitational + kinetic + elastic energy, `time` seconds
+  /// after the beginning. `fallen` is the largest energy (J) lost by falling below the origin until then.
   EVODEVO_HD double added(double time, double fallen) const {
     const double root = drive * time, before = physics::maximum(start, 0.0) + fallen;
     return root * (root + 2 * physics::square_root(before));
   }
 
-  /// The limit (J) of kinetic + elastic energy at that time: ten times what exact motion can have, because the energy
-  /// of motion in finite steps swings around that of exact motion.
+  /// The limit (J) of kinetic + elastic energy at that time: ten times the energy that exact motion can have, because
+  /// with finite steps the energy oscillates around that of the exact motion.
   EVODEVO_HD double limit(double time, double fallen) const {
     return 10 * (physics::maximum(start, 0.0) + added(time, fallen) + fallen + allowance);
   }

@@ -1,6 +1,6 @@
 // The physics: every force, the parts of a time step and the energies, as small functions of an arithmetic type T.
 //
-// kernels/README.md states the equations and the choices against the paper. A time step uses these functions as
+// kernels/README.md states the equations, and where they differ from the paper. A time step uses these functions as
 // follows:
 //
 //   positions, velocities ─► separation, length ─► spring_factor ─► force on both ends        (once per spring)
@@ -34,7 +34,7 @@ struct Triple {
   T x, y, z;
 };
 
-/// Where the end b of a spring is as seen from its end a.
+/// The position of a spring's end b relative to its end a.
 template <class T>
 struct Separation {
   Triple<T> d;  ///< from a to b, m
@@ -49,7 +49,7 @@ EVODEVO_HD Separation<T> separation(const Triple<T>& a, const Triple<T>& b) {
   return {d, multiply_add(d.z, d.z, multiply_add(d.y, d.y, multiply_add(d.x, d.x, vanishing_square<T>())))};
 }
 
-/// |d|, m; greater than zero even where the masses coincide.
+/// |d|, m; greater than zero even if the masses coincide.
 template <class T>
 EVODEVO_HD T length(const Separation<T>& s) {
   return square_root(s.squared);
@@ -87,8 +87,8 @@ EVODEVO_HD T spring_tension(const Separation<T>& s, T distance, T factor) {
   return zero_unless_greater(s.squared, vanishing_square<T>(), factor * distance);
 }
 
-/// The power (W) that a muscle puts into the body while its rest length L changes at `rate` (m/s). Where the muscle
-/// takes energy from the body the power counts as 0.
+/// The power (W) that a muscle puts into the body while its rest length L changes at `rate` (m/s). If the muscle takes
+/// energy from the body, the power counts as 0.
 template <class T>
 EVODEVO_HD T actuation_power(T tension, T rate) {
   return maximum(negative_multiply_add(tension, rate, constant<T>(0)), constant<T>(0));
@@ -156,8 +156,8 @@ EVODEVO_HD T kinetic_energy(T mass, const Triple<T>& velocity) {
   return constant<T>(0.5) * mass * squared;
 }
 
-/// The height (m) of a point above a slope through the origin that falls by `grade` metres for each metre along x. It
-/// is the height that height energy counts from.
+/// The height (m) of a point above a slope through the origin that descends by `grade` metres for each metre along x.
+/// Gravitational energy is proportional to this height.
 template <class T>
 EVODEVO_HD T height(T x, T z, T grade) {
   return negative_multiply_add(grade, x, z);
@@ -169,7 +169,7 @@ EVODEVO_HD T weight(T mass, T acceleration) {
   return constant<T>(0) - mass * acceleration;
 }
 
-/// The component of gravity along +x (N), downhill, of a mass whose weight() along z is `weight` (N).
+/// The downhill component of gravity, along +x (N), on a mass whose weight() along z is `weight` (N).
 template <class T>
 EVODEVO_HD T downhill_force(T weight, T grade) {
   return constant<T>(0) - grade * weight;
@@ -221,7 +221,7 @@ EVODEVO_HD Ground<T> ground_at(T x, T y, const Roughness<T>& shape) {
           steepness * q.rise * (far - near)};
 }
 
-/// The scalar product of a velocity (m/s) with the ground's normal (-slope_x, -slope_y, 1), which has not unit length.
+/// The scalar product of a velocity (m/s) with the ground's normal (-slope_x, -slope_y, 1), which is not a unit vector.
 template <class T>
 EVODEVO_HD T along_normal(const Ground<T>& ground, const Triple<T>& v) {
   return negative_multiply_add(ground.slope_x, v.x, negative_multiply_add(ground.slope_y, v.y, v.z));

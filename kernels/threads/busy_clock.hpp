@@ -1,4 +1,4 @@
-// Measures how long at least one thread was busy with something.
+// Measures the time during which at least one thread was busy with a certain kind of work.
 #pragma once
 
 #include <chrono>
@@ -6,7 +6,7 @@
 
 namespace evodevo {
 
-/// Measures the time in which at least one Span exists. Spans of several threads may overlap.
+/// Measures the time during which at least one Span exists. Spans of several threads may overlap.
 class BusyClock {
  public:
   class Span {

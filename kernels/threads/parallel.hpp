@@ -19,20 +19,20 @@ int thread_count(int threads);
 /// the lowest priority number come first.
 class Workers {
  public:
-  /// Starts `threads` threads (0: one for each core). If the system grants fewer, the pool keeps half of those, so that
-  /// other parts of the program can start theirs, and prints one warning to stderr. If the system grants none, the
-  /// callers of for_each() do the work themselves.
+  /// Starts `threads` threads (0: one for each core). If the system grants fewer, the pool keeps half of the granted
+  /// threads, so that other parts of the program can start threads too, and prints a warning to stderr once. If the
+  /// system grants none, the callers of for_each() do the work themselves.
   explicit Workers(int threads);
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
   ~Workers();
 
   /// Calls body(i) for every i < count, in no particular order, and returns when all calls have returned. If a call
-  /// throws an exception, no further call begins and the exception is thrown again here. `body` must not call
-  /// for_each() of the same workers.
+  /// throws an exception, no further call begins, and the exception is rethrown here. `body` must not call for_each()
+  /// of the same workers.
   void for_each(std::size_t count, const std::function<void(std::size_t)>& body);
 
-  /// How many threads do the work, at least 1: the caller's own if the pool has none.
+  /// The number of threads that do the work, at least 1: the caller's own if the pool has none.
   std::size_t count() const { return std::max<std::size_t>(threads_.size(), 1); }
 
  private:
@@ -56,7 +56,7 @@ class Workers {
 
   std::mutex mutex_;
   std::condition_variable work_comes_, loop_done_;
-  std::vector<Loop*> loops_;  ///< those with items left
+  std::vector<Loop*> loops_;  ///< loops with items left
   bool ending_ = false;
   std::vector<std::jthread> threads_;
 };
@@ -76,8 +76,8 @@ class Priority {
 };
 
 /// Calls body(i) for every i < count, each on a thread of its own. If the system grants no more threads, the calling
-/// thread makes the remaining calls one after the other. After all calls have ended, the first exception is thrown
-/// again here.
+/// thread makes the remaining calls one after the other. After all calls have ended, the first exception is rethrown
+/// here.
 void on_own_threads(std::size_t count, const std::function<void(std::size_t)>& body);
 
 }  // namespace evodevo

@@ -1,4 +1,4 @@
-"""The charts of tools/accuracy, each from a little data."""
+"""Tests that tools/accuracy draws each of its charts, from small tables."""
 
 import pathlib
 import tempfile

@@ -1,4 +1,4 @@
-// Fitnesses are those that evolution sees.
+// The study's fitnesses equal those that evolution uses.
 #include "fitnesses.hpp"
 
 #include <gtest/gtest.h>

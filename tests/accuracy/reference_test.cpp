@@ -1,4 +1,4 @@
-// The reference against solutions on paper.
+// The reference solution compared with closed-form solutions.
 #include "accuracy/reference.hpp"
 
 #include <gtest/gtest.h>

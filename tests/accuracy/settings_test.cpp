@@ -1,4 +1,4 @@
-// The studies' command line.
+// The command line of the studies.
 #include "accuracy/settings.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// Rankings and how they agree, where it is known.
+// Ranks and their statistics, compared with known results.
 #include "statistics.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ TEST(Ranks, WhatIsNoNumberIsBelowAllNumbers) { EXPECT_EQ(ranks(Values{-5, none, 
 TEST(RankCorrelation, IsThatOfSpearman) {
   EXPECT_DOUBLE_EQ(rank_correlation(Values{1, 2, 3, 4}, Values{10, 200, 300, 4e4}), 1);
   EXPECT_DOUBLE_EQ(rank_correlation(Values{1, 2, 3, 4}, Values{4, 3, 2, 1}), -1);
-  // 1 - 6 sum(d^2)/(n (n^2 - 1)), the d^2 being 1, 1, 1, 1, 0
+  // 1 - 6 sum(d^2)/(n (n^2 - 1)), where the values of d^2 are 1, 1, 1, 1, 0
   EXPECT_DOUBLE_EQ(rank_correlation(Values{1, 2, 3, 4, 5}, Values{2, 1, 4, 3, 5}), 1 - 6 * 4.0 / (5 * 24));
 }
 
@@ -36,7 +36,7 @@ TEST(BootstrapInterval, HoldsTheCorrelationAndIsNarrowerForMore) {
     EXPECT_GT(interval.high, rank_correlation(a, b));
     return interval.high - interval.low;
   };
-  // as one over the root of the number
+  // widths shrink in proportion to one over the square root of the number of values
   const double ratio = interval_of(30) / interval_of(480);
   EXPECT_GT(ratio, 2);
   EXPECT_LT(ratio, 8);

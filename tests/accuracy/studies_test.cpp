@@ -1,4 +1,4 @@
-// What the studies claim.
+// The results that the studies claim.
 #include "studies.hpp"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ TEST(Beam, BendsAndSwingsAsEulerAndBernoulliSay) {
       return std::abs(table.number(row, quantity) / table.number(row, "Euler-Bernoulli " + quantity) - 1);
     };
     const double deflection = off("deflection (m)"), frequency = off("first frequency (Hz)");
-    // that theory knows no shear, and that the held end cannot draw in, matters less the longer the beam
+    // theory neglects shear and the fixed width of the clamped end; both matter less for longer beams
     EXPECT_LT(deflection, 0.02) << row;
     EXPECT_LT(frequency, row == 0 ? 0.04 : 0.005) << row;
     EXPECT_LT(deflection + frequency, last_sum) << row;

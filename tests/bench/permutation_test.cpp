@@ -1,4 +1,4 @@
-// The random orders of Skip-Shift.
+// The random permutations of Skip-Shift.
 #include "paper/permutation.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ TEST(Permutation, HoldsEachNumberOnce) {
 }
 
 TEST(Permutation, GivesEveryPlaceEverySpring) {
-  // chi squared of 256 equally likely ranges: 255 +- 23
+  // expected chi-squared for 256 equally likely ranges: 255 +- 23
   std::vector<double> seen(groups);
   for (std::uint32_t tally = 1; tally <= tallies; ++tally)
     ++seen[std::uint64_t{shifted(springs, 0, tally)(5)} * groups / springs];
@@ -35,13 +35,13 @@ TEST(Permutation, GivesEveryPlaceEverySpring) {
 }
 
 TEST(Permutation, PutsSpringsThatWereInOneGroupIntoOthers) {
-  // springs whose places in an order are alike modulo 256 share a group: two given ones every 256th time
+  // springs whose positions in an order are equal modulo 256 share a group; two given springs do so once in 256 times
   int together = 0;
   for (std::uint32_t tally = 1; tally <= 500; ++tally) {
     const Permutation now = shifted(springs, 1, tally), next = shifted(springs, 1, tally + 1);
     std::vector<std::uint32_t> group(springs);
     for (std::uint32_t i = 0; i < springs; ++i) group[next(i)] = i % groups;
-    // the 55 springs that shared the first group
+    // the 55 springs of the first group
     const std::uint32_t first = group[now(0)];
     for (std::uint32_t i = groups; i < 55 * groups; i += groups) together += group[now(i)] == first;
   }

@@ -1,4 +1,4 @@
-// Results as text.
+// Results as Markdown.
 #include "report.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ TEST(Report, IsATableWithItsConditionsAndItsCommand) {
 }
 
 TEST(Bodies, CubeIsThePapers) {
-  // corners; edges, face diagonals and body diagonals of 10 x 10 x 10 voxels
+  // for 10 x 10 x 10 voxels: a mass at each corner; springs along edges, face diagonals and body diagonals
   const Body cube = body_named("cube10", 0).body;
   EXPECT_EQ(cube.masses.size(), 11u * 11 * 11);
   EXPECT_EQ(cube.springs.size(), 3u * 10 * 11 * 11 + 2u * 3 * 10 * 10 * 11 + 4u * 10 * 10 * 10);

@@ -1,4 +1,4 @@
-// The benchmark's command line.
+// The command line of the benchmark.
 #include "bench/settings.hpp"
 
 #include <gmock/gmock.h>

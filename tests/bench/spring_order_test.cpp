@@ -1,4 +1,4 @@
-// The orders of springs that the paper's methods are tried with.
+// The orders of springs in which the paper's methods are measured.
 #include "paper/spring_order.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace evodevo::tools::bench {
 namespace {
 
-/// The share of full warps in which no mass has two springs.
+/// Returns the share of full warps in which no two springs share a mass.
 double warps_without_conflict(const Body& body, const std::vector<std::uint32_t>& order) {
   std::size_t free = 0, warps = 0;
   for (std::size_t first = 0; first + 32 <= order.size(); first += 32, ++warps) {

@@ -1,4 +1,4 @@
-"""What all charts share: labels that keep clear of each other, and files that come out the same."""
+"""Tests code that all charts share: labels do not overlap, and files are reproducible."""
 
 import pathlib
 import tempfile

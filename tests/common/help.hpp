@@ -1,4 +1,5 @@
-// What the tests of several tools' command lines share: the check of a page of help, and the message of a refusal.
+// Shared by the tests of several tools' command lines: the check that a page of help describes exactly the options that
+// a program takes, and the message of a refusal.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,19 +14,19 @@
 
 namespace evodevo::tools {
 
-/// What the page says of an option: its line and those below it, up to the next option or an empty line.
+/// Returns the entry of an option: its line and the lines below it, up to the next option or an empty line.
 inline std::string described(const std::string& help, const std::string& option) {
   std::smatch found;
   const std::regex entry("\n  --" + option + "[ \n](?:.*)(?:\n   .*)*");
   return std::regex_search(help, found, entry) ? found.str() : "";
 }
 
-/// Every option has an entry that names its default, except those that are given without their name, and there is an
-/// entry for nothing else.
+/// Expects that every option has an entry that names its default, except positional ones, and that there are no other
+/// entries.
 inline void expect_page_of_options(const Program& program, const boost::program_options::options_description& options,
                                    const std::set<std::string>& positional = {}) {
   const std::string help(program.help), name(program.name);
-  int entries = 1;  // that of --help
+  int entries = 1;  // the entry of --help
   for (const auto& option : options.options()) {
     if (positional.count(option->long_name()) > 0) continue;
     ++entries;

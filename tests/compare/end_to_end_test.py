@@ -1,4 +1,4 @@
-"""Whole comparisons of experiments that take moments, also stopped ones."""
+"""Tests complete comparisons of very short experiments, including interrupted ones."""
 
 import contextlib
 import csv
@@ -75,7 +75,7 @@ class Comparison(unittest.TestCase):
         return subprocess.run(self.command(*more, out=out), capture_output=True, text=True)
 
     def results(self, out="out"):
-        """Everything but the wall time."""
+        """Returns the rows of results.csv without the wall time."""
         with open(self.folder / out / "results.csv", newline="") as stream:
             return [row[:-1] for row in csv.reader(stream)]
 
@@ -94,7 +94,8 @@ class Comparison(unittest.TestCase):
         self.assertEqual(len(rows), len(names) * 2 * 4)  # variants, seeds, generations
         springs = header.index("spring_evaluations")
         cost = {name: sum(int(row[springs]) for row in rows if (row[0], row[2]) == (name, "20")) for name in names}
-        # a life of 0.15 s without development; twice 0.05 s or 0.1 s more with it, of much the same bodies
+        # a life takes 0.15 s without development, and two cycles of 0.05 s or 0.1 s more with it; bodies have about the
+        # same number of springs
         self.assertLess(cost[names[0]], cost[names[1]])
         self.assertLess(cost[names[1]], cost[names[2]])
 
@@ -116,7 +117,7 @@ class Comparison(unittest.TestCase):
                 for _ in range(lines):
                     run.stdout.readline()
                 run.kill()
-        # and one that was killed before its first transaction
+        # a run that was killed before its first transaction
         empty = self.folder / "out" / "runs" / "developing" / "seed-1"
         empty.mkdir(parents=True)
         (empty / "run.sqlite").touch()
@@ -175,7 +176,7 @@ class Comparison(unittest.TestCase):
         self.assertLess(len(rows), 16)
 
     def test_experiments_are_added_without_a_folder_named(self):
-        # what is set for the second does not concern the first, whose run is there
+        # --set affects only the second experiment, which has that table; the run of the first one exists already
         for more in ([], [self.developing, "--set", "development.cycles=1"]):
             command = [*COMPARE, self.plain, *more, "--seeds", "1"]
             done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
@@ -188,7 +189,7 @@ class Comparison(unittest.TestCase):
         self.assertEqual(self.compare().returncode, 0)
         with contextlib.closing(sqlite3.connect(self.folder / "out/runs/plain/seed-2/run.sqlite")) as run, run:
             run.execute("UPDATE operators SET hash = 'another' WHERE kind = 'fitness'")
-        # begun by another build of the program, resumed by this one
+        # a run that another build of the program began and this one resumed
         with contextlib.closing(sqlite3.connect(self.folder / "out/runs/plain/seed-1/run.sqlite")) as run, run:
             run.execute("INSERT INTO provenances SELECT 1, device, evodevo, 'another' FROM provenances")
             run.execute("INSERT INTO operators SELECT 1, kind, name, version, file, hash FROM operators")
@@ -196,7 +197,7 @@ class Comparison(unittest.TestCase):
         done = self.compare()
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("**Not all runs were made by the same builds", done.stdout)
-        self.assertEqual(done.stdout.count("  - 0.1.0 (another): 1 of `plain`\n"), 2)  # the program and the fitness
+        self.assertEqual(done.stdout.count("  - 0.1.0 (another): 1 of `plain`\n"), 2)  # program, fitness operator
         self.assertRegex(done.stdout, r"- evodevo:\n  - 0.1.0 \([0-9a-f]{16}\): 2 of `plain`, 2 of `developing`\n")
 
     def test_runs_of_something_else_are_refused(self):
@@ -233,7 +234,7 @@ class Comparison(unittest.TestCase):
         self.assertIn("differ in their first objective: ", refused.stderr)
 
     def test_a_run_that_fails_stops_the_comparison(self):
-        # nothing can be written where a file stands in the way
+        # a file with the name of the run's folder
         folder = self.folder / "out" / "runs" / "plain"
         folder.mkdir(parents=True)
         (folder / "seed-1").write_text("in the way")

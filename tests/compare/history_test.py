@@ -1,4 +1,4 @@
-"""Runs on a common axis: steps, failures, directions."""
+"""Tests histories of runs and the report: steps, failures, directions of objectives."""
 
 import math
 import pathlib
@@ -13,7 +13,7 @@ CHEAP = Objective("work", "J", False)
 
 
 def shown(best, springs=10, evaluations=5, marks=None):
-    """What `show --json` says of a run in which every generation costs the same."""
+    """Returns the output of `show --json` for a run in which every generation costs the same."""
     verification = None if marks is None else {"marks": marks}
     return {
         "best": None if set(best) == {None} else {"verification": verification},
@@ -74,7 +74,7 @@ class Reports(unittest.TestCase):
             histories = self.histories(objective, first=worse, second=better)
             first, second = report.standings(histories, objective, "evaluations", 10, "first")
             self.assertEqual((first.a12, first.p, second.a12), (0.5, 1, 1))
-            self.assertAlmostEqual(second.p, 2 / 12870, places=14)  # of C(16, 8) ways the two most extreme
+            self.assertAlmostEqual(second.p, 2 / 12870, places=14)  # the two most extreme of C(16, 8) ways
             self.assertRegex(second.verdict("first"), "`second`, beside `first`: better")
 
     def test_any_experiment_may_be_tested_against(self):
@@ -88,7 +88,7 @@ class Reports(unittest.TestCase):
         rows = [line for line in text.split("## After ")[1].splitlines() if line.startswith("| `")]
         self.assertEqual([row.split(" | ")[0] for row in rows], ["| `low`", "| `middle`", "| `high`"])
         self.assertEqual([row.endswith("| - | - | - | - |") for row in rows], [False, True, False])
-        # 2 of C(16, 8) = 12870 ways are as extreme, and two tests double that
+        # 2 of C(16, 8) = 12870 ways are as extreme; Holm's correction for two tests doubles p
         self.assertEqual([row.split(" | ")[-2:] for row in (rows[0], rows[2])], [["0.00016", "0.00031 |"]] * 2)
 
     def test_a_small_difference_is_no_finding(self):
@@ -103,7 +103,7 @@ class Reports(unittest.TestCase):
         return report.markdown(histories, FAR, report.Setting("tools/compare", seeds, against, made))
 
     def test_too_few_seeds_bear_neither_interval_nor_verdict(self):
-        # the least p of 3 and 3 is 2 of C(6, 3) = 20, and two tests double that of 4 and 4, 2 of 70
+        # the smallest p of 3 and 3 values is 2/C(6, 3) = 2/20; that of 4 and 4 values is 2/70, which two tests double
         cases = ((3, 2, "that takes 4."), (4, 2, None), (4, 3, "that takes 5."), (5, 3, None), (6, 3, None))
         for seeds, experiments, need in cases:
             some = {f"e{i}": [[i + seed / 10] for seed in range(seeds)] for i in range(experiments)}
@@ -114,7 +114,7 @@ class Reports(unittest.TestCase):
             self.assertEqual("No intervals of medians: they take 6 seeds" in text, seeds < 6, text)
             row = next(line for line in text.splitlines() if line.startswith("| `e1` |")).split(" | ")
             self.assertEqual(row[2] == "-", seeds < 6, row)  # the median's interval
-            self.assertEqual(row[6] == "-", need is not None, row)  # that of A12
+            self.assertEqual(row[6] == "-", need is not None, row)  # the interval of A12
 
     def test_a_single_experiment_is_compared_with_nothing(self):
         text = self.report(self.histories(FAR, alone=[[i, i + 1] for i in range(6)]))
@@ -123,7 +123,7 @@ class Reports(unittest.TestCase):
             self.assertNotIn(absent, text)
 
     def test_no_cost_is_compared_at_which_a_run_has_no_generation(self):
-        # all of the first is over before the first generation of the second
+        # every run of the first ends before the first generation of the second is complete
         histories = {
             Variant(pathlib.Path("small")): [history(shown([1, 2], springs=10), FAR)] * 6,
             Variant(pathlib.Path("large")): [history(shown([5, 6], springs=30), FAR)] * 6,
@@ -136,7 +136,7 @@ class Reports(unittest.TestCase):
         self.assertNotIn("worse", text)
         self.assertIn("- `large`, beside `small`: better", evaluations)
         compared = [[line.get_label() for line in axes.lines].count("compared here") for axes in panels(histories)]
-        self.assertEqual(compared, [0, 1])  # only where evaluations are compared
+        self.assertEqual(compared, [0, 1])  # only on the axis of evaluations
 
     def test_no_cost_is_compared_within_one_experiment_either(self):
         runs = [history(shown([1], springs=10), FAR), history(shown([1], springs=11), FAR)]
@@ -172,7 +172,7 @@ class Reports(unittest.TestCase):
             return {"device": device, "evodevo": "0.1.0", "program": program, "operators": [operator]}
 
         def made(*provenances, by=None):
-            """What `show --json` says of a run whose generations have those provenances."""
+            """Returns the output of `show --json` for a run whose generations were made by these provenances."""
             places = range(len(provenances)) if by is None else by
             return {"provenances": list(provenances), "generations": [{"provenance": place} for place in places]}
 
@@ -192,14 +192,14 @@ class Reports(unittest.TestCase):
         self.assertIn("- device:\n  - cpu: 1 of `evo`, 2 of `devo`\n  - cuda: 1 of `evo`\n", text)
         self.assertIn("- evodevo:\n  - 0.1.0 (p): 2 of `evo`, 1 of `devo`\n  - 0.1.0 (q): 1 of `devo`\n", text)
         self.assertNotIn("distance", text)
-        # resumed elsewhere, each of them in the same way; and by somebody who made no generation
+        # all runs were resumed on another device, with generations by both; then, with no generation by the second
         resumed = made(a, provenance("aa", device="cuda"))
         text = differences(*[resumed] * 4)
         self.assertIn("- device:\n  - cpu: 2 of `evo`, 2 of `devo`\n  - cuda: 2 of `evo`, 2 of `devo`\n", text)
         self.assertEqual(differences(*[made(a, provenance("aa", device="cuda"), by=[0, 0])] * 4), "")
 
     def test_costs_differ_between_the_axes(self):
-        # the second spends three times as much on each generation, so it has a third of them at equal cost
+        # a generation of the second costs three times as much, so at equal cost it has a third of the generations
         first = [history(shown([1, 2, 3], springs=10), FAR)]
         second = [history(shown([10, 20, 30], springs=30), FAR)]
         histories = {Variant(pathlib.Path("first")): first, Variant(pathlib.Path("second")): second}

@@ -1,4 +1,4 @@
-"""Statistics against closed forms, published values and enumeration."""
+"""Tests statistics against closed forms, published values and enumeration."""
 
 import itertools
 import math
@@ -9,14 +9,14 @@ from compare import inference
 
 
 def samples_with(u, m, n):
-    """Samples of m and n different values, where `u` pairs have the first one's value above the second one's."""
+    """Returns samples of m and n distinct values, such that in `u` pairs the first sample's value is the larger one."""
     below = [min(n, max(0, u - i * n)) for i in range(m)]
     return [count + 0.5 + i / 1000 for i, count in enumerate(below)], list(range(1, n + 1))
 
 
 class RankSumTest(unittest.TestCase):
     def test_published_critical_values(self):
-        # two-tailed at 0.05, as in the tables of Mann & Whitney's U of most textbooks
+        # two-tailed critical values at 0.05, as in the tables of Mann-Whitney's U in most textbooks
         published = ((5, 5, 2), (6, 8, 8), (7, 9, 12), (8, 10, 17), (10, 10, 23), (15, 15, 64), (20, 20, 127))
         for m, n, critical in published:
             with self.subTest(m=m, n=n):
@@ -24,7 +24,7 @@ class RankSumTest(unittest.TestCase):
                 self.assertGreater(inference.rank_sum_test(*samples_with(critical + 1, m, n)), 0.05)
 
     def test_an_example_by_hand(self):
-        # of 9 values all ways to choose 4 are as likely: 7 of 126 have a sum of ranks of at most 13, and as many the other
+        # all 126 ways to choose 4 of 9 values are equally likely: 7 have a rank sum of at most 13, and 7 the opposite
         males, females = [19, 22, 16, 29, 24], [20, 11, 17, 12]
         self.assertAlmostEqual(inference.rank_sum_test(males, females), 14 / 126, places=14)
         self.assertEqual(inference.superiority(males, females), 17 / 20)
@@ -43,12 +43,12 @@ class RankSumTest(unittest.TestCase):
         self.assertAlmostEqual(inference.rank_sum_test(a, b), expected, places=14)
 
     def test_many_values_without_ties_by_the_normal_distribution(self):
-        # U of 21 and 21 values: mean 220.5, variance 21 * 21 * 43 / 12; the continuity correction takes 0.5
+        # U of 21 and 21 values has mean 220.5 and variance 21 * 21 * 43 / 12; the continuity correction is 0.5
         z = (220.5 - 140 - 0.5) / math.sqrt(21 * 21 * 43 / 12)
         self.assertAlmostEqual(inference.rank_sum_test(*samples_with(140, 21, 21)), math.erfc(z / math.sqrt(2)), places=12)
 
     def test_the_variance_with_ties_is_that_of_all_permutations(self):
-        # p of a distance of exactly z standard deviations behind the continuity correction is erfc(z / sqrt 2)
+        # after the continuity correction, a distance of z standard deviations has p = erfc(z / sqrt 2)
         pooled = [1, 1, 1, 2, 3, 3, 4, 4, 5, 6, 7, 7, 8, 9, 9, 10, 10, 11]
         ranks = [sum(other < value for other in pooled) + (pooled.count(value) + 1) / 2 for value in pooled]
         sums = [sum(chosen) for chosen in itertools.combinations(ranks, 9)]
@@ -83,7 +83,7 @@ class Medians(unittest.TestCase):
         self.assertEqual(inference.median([-math.inf, -math.inf, 1]), -math.inf)
 
     def test_resamples_have_their_medians_as_often_as_the_binomial_says(self):
-        # a resample's median is at most the k-th of 11 values where 6 or more of 11 draws are
+        # a resample's median is at most the k-th of 11 values if at least 6 of the 11 draws are
         medians = inference.resampled_medians(tuple(range(1, 12)))
         for k in range(1, 12):
             share = sum(math.comb(11, n) * k**n * (11 - k) ** (11 - n) for n in range(6, 12)) / 11**11
@@ -96,12 +96,13 @@ class Medians(unittest.TestCase):
         self.assertEqual(inference.median_interval(values[::-1]), first)
 
     def test_intervals(self):
-        # by the binomial, a resample's median is at most the 2nd of 11 values with 0.7 %, at most the 3rd with 5.1 %
+        # by the binomial distribution, a resample's median is at most the 2nd of 11 values with a probability of 0.7 %,
+        # and at most the 3rd with 5.1 %
         self.assertEqual(inference.median_interval(range(11, 0, -1)), (3, 9))
         self.assertEqual(inference.median_interval([-math.inf] * 5 + [1, 2])[0], -math.inf)
 
     def test_too_few_values_have_no_interval(self):
-        # the median lies outside of all n values with probability 2 / 2^n: 6.3 % of 5, 3.1 % of 6
+        # the median lies outside the range of n values with probability 2 / 2^n: 6.3 % for 5 values, 3.1 % for 6
         self.assertIsNone(inference.median_interval(range(5)))
         low, high = inference.median_interval(range(6))
         self.assertLess(low, high)
@@ -112,7 +113,7 @@ class Superiority(unittest.TestCase):
         for size, a12 in itertools.product((4, 10, 25), (0, 0.3, 0.5, 0.97)):
             for bound in inference.superiority_interval(a12, size):
                 if bound in (0, 1):
-                    self.assertEqual(bound, a12)  # nothing lies beyond
+                    self.assertEqual(bound, a12)  # A12 cannot be outside [0, 1]
                     continue
                 q1, q2 = bound / (2 - bound), 2 * bound**2 / (1 + bound)
                 others = (size - 1) * (q1 - bound**2) + (size - 1) * (q2 - bound**2)
@@ -120,14 +121,14 @@ class Superiority(unittest.TestCase):
                 self.assertAlmostEqual(abs(a12 - bound) / deviation, 1.959964, places=6)
 
     def test_at_no_difference_it_agrees_with_the_rank_sum_test(self):
-        # without ties and continuity correction, that test's z is (A12 - 0.5) / sqrt((2 n + 1) / (12 n^2))
+        # without ties and continuity correction, z of the rank test is (A12 - 0.5) / sqrt((2 n + 1) / (12 n^2))
         for size in (5, 10, 20):
             step = 1.959964 * math.sqrt((2 * size + 1) / (12 * size**2))
             self.assertGreater(inference.superiority_interval(0.5 + 1.001 * step, size)[0], 0.5)
             self.assertLess(inference.superiority_interval(0.5 + 0.999 * step, size)[0], 0.5)
 
     def test_it_holds_the_truth_as_often_as_it_says(self):
-        # of exponential samples, whose A12 is known: the second one's rate over the sum of both
+        # exponential samples have a known A12: the rate of the second sample over the sum of both rates
         draw = random.Random(1)
         size, samples = 10, 2000
         for rate in (1, 3, 10):

@@ -1,4 +1,4 @@
-"""Which runs sweeps ask for, and what they are called."""
+"""Tests which variants sweeps produce, and their names."""
 
 import pathlib
 import re
@@ -38,7 +38,7 @@ class Sweeps(unittest.TestCase):
         )
 
     def test_only_where_the_table_is_there(self):
-        # a key set without its table would bring a force or a development into being
+        # setting a key whose table is missing would add a force or development to the experiment
         evo, evo_devo = self.file("evo.toml", "[encoding]\n"), self.file("evo-devo.toml", "[development]\n")
         self.assertEqual(
             self.names([evo, evo_devo], "development.cycle_time=0.5,1"),
@@ -52,7 +52,7 @@ class Sweeps(unittest.TestCase):
         evo_devo = self.file("evo-devo.toml", "[encoding]\n[development]\n")
         settings = ["encoding.points=64", "development.cycles=2", "simulation.threads=1"]
         first, second = self.variants([evo, evo_devo], settings=settings)
-        # the simulation is there with its defaults whether the file names it or not
+        # the table [simulation] has defaults, so it exists even if the file does not name it
         self.assertEqual(overrides(first), ["--set", "encoding.points=64", "--set", "simulation.threads=1"])
         self.assertEqual(overrides(second), [word for setting in settings for word in ("--set", setting)])
         with self.assertRaisesRegex(Failure, r"--set scene.drag.k: no experiment has a table \[scene.drag\]; add it"):

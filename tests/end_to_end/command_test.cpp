@@ -1,4 +1,4 @@
-// The commands as a user types them: output, exit codes, and what they leave behind.
+// The commands as a user types them: their output, exit codes, and files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ Finished evodevo(std::vector<std::string> arguments) {
   return testing::run(arguments);
 }
 
-/// A finished run of the small experiment.
+/// Provides a finished run of the small experiment.
 class Command : public ::testing::Test {
  protected:
   testing::Scratch scratch_;
@@ -85,7 +85,7 @@ TEST_F(Command, ShowAgreesWithTheArchive) {
 }
 
 TEST_F(Command, FailedBodiesNeverReachAReportAsNumbers) {
-  // gravity and drag that no step of this length follows: everything that has a body diverges
+  // gravity and drag too strong for this time step: every valid body diverges
   const Finished finished = evodevo({"run", file_, "--out", folder_, "--set", "scene.drag.coefficient=1e6", "--set",
                                      "scene.gravity.acceleration=1000"});
   EXPECT_EQ(finished.exit_code, 0) << finished.output;
@@ -110,7 +110,7 @@ TEST_F(Command, FailedBodiesNeverReachAReportAsNumbers) {
 }
 
 TEST_F(Command, FailedBodiesLoseToAnyFiniteOne) {
-  // bone that a pair of masses bears, and a block of bone does not
+  // at this stiffness of bone, a pair of masses is stable and a block of bone is not
   for (const std::string selection : {"age-fitness-pareto", "pareto-layers", "elitist"}) {
     const std::string folder = folder_ + selection;
     const Finished finished = evodevo({"run", file_, "--out", folder, "--set", "materials.bone.stiffness=1e6", "--set",
@@ -148,7 +148,7 @@ TEST_F(Command, LifeTellsEveryEditFromBirthToTheMaturedBody) {
     for (const auto& spring : body.at("springs")) pairs.insert(pair_of(spring.at("a"), spring.at("b")));
     return pairs;
   };
-  Pairs pairs = pairs_of(born);  // no masses come or go, so numbers are indices
+  Pairs pairs = pairs_of(born);  // no masses are added or removed, so numbers of masses are indices
   ASSERT_EQ(life.at("edits").size(), 2u * (2 + 2)) << "two springs for two others in each of two cycles";
   for (const auto& edit : life.at("edits")) {
     EXPECT_EQ(edit.at("operator"), "spring-turnover");

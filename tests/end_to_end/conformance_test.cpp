@@ -1,4 +1,4 @@
-// The conformance kit: all built-in operators keep to it, and each wrong plugin is caught by the case meant for it.
+// The conformance kit: all built-in operators pass it, and each wrong plugin fails the case meant for it.
 #include "conformance/conformance.hpp"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::Finished;
 
-/// The outcome of every case, "case: outcome" with the reason behind where there is one.
+/// Returns the outcome of every case, followed by the reason if there is one.
 std::map<std::string, std::string> verdicts(const fs::path& library, int expected_exit) {
   const Finished finished = testing::run({EVODEVO_PROGRAM, "conform", library.string(), "--json"});
   EXPECT_EQ(finished.exit_code, expected_exit) << finished.output;
@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(Conformance, BuiltIn, ::testing::ValuesIn(built_in_libr
 struct Broken {
   const char* plugin;
   const char* rule;
-  const char* verdict;  ///< how the verdict begins
+  const char* verdict;  ///< beginning of the expected verdict
 };
 
 class Wrong : public ::testing::TestWithParam<Broken> {};

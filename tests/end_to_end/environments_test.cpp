@@ -1,4 +1,4 @@
-// evodevo environments: one genome in several scenes.
+// The command `evodevo environments`, which develops one genome in several scenes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ using testing::small_experiment;
 
 class Environments : public ::testing::Test {
  protected:
-  /// The command's answer; individual 4 has a body.
+  /// Runs the command for individual 4, which has a valid body.
   static testing::Finished environments(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), {EVODEVO_PROGRAM, "environments"});
     arguments.insert(arguments.end(), {"--individual", "4", "--set", "encoding.size=[3,2,2]", "--set",

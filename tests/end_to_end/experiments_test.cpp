@@ -1,4 +1,4 @@
-// Every experiment that comes with the project runs, and the robots of the first one walk.
+// Every experiment of the project runs, and the robots of the quickstart walk.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -55,7 +55,7 @@ TEST(Experiments, TheEnvironmentsDifferInTheirSceneAlone) {
   }
 }
 
-/// What the paper gives, value by value.
+/// Compares all values that the paper gives.
 TEST(Experiments, PaperHoldsThePapersValues) {
   const Experiment paper = read_experiment({experiment_file("paper.toml"), {}});
   EXPECT_EQ(paper.development.cycles, 100);
@@ -74,7 +74,7 @@ TEST(Experiments, PaperHoldsThePapersValues) {
     EXPECT_NE(paper.resolved.find(line), std::string::npos) << line;
 }
 
-/// All of an experiment but [development] and [experiment].
+/// Returns the resolved text of an experiment without [development] and [experiment].
 std::string rest_of(const Experiment& experiment) {
   const std::string& text = experiment.resolved;
   const std::size_t encoding = text.find("[encoding]"), own = text.find("[experiment]");  // in alphabetical order
@@ -88,7 +88,7 @@ TEST(Experiments, EvoAndEvoDevoDifferInDevelopmentAlone) {
   EXPECT_GT(read_experiment({experiment_file("evo-devo.toml"), {}}).development.cycles, 0);
 }
 
-/// What an experiment is compared at: the same for all of a study.
+/// Returns the settings that must be the same for all experiments of a study.
 std::tuple<std::string, std::int64_t, std::int64_t, double, std::int64_t> terms(const Experiment& experiment) {
   return {rest_of(experiment), experiment.population, experiment.random_individuals, experiment.spring_evaluations,
           experiment.evaluations};
@@ -101,7 +101,7 @@ TEST(Experiments, TheStudysDifferInDevelopmentAlone) {
     EXPECT_EQ(evo.development.cycles, 0);
     const Experiment sized = read_experiment({study.path() / "evo.toml", {{"encoding.size_range", "0.25", ""}}});
     for (const fs::directory_entry& entry : fs::directory_iterator(study)) {
-      const bool ballistic = entry.path().filename() == "ballistic.toml";  // which cannot do without sizes
+      const bool ballistic = entry.path().filename() == "ballistic.toml";  // ballistic growth needs genes for sizes
       EXPECT_EQ(terms(read_experiment({entry.path(), {}})), terms(ballistic ? sized : evo)) << entry.path();
     }
   }
@@ -163,7 +163,7 @@ TEST(Experiments, QuickstartLearnsToWalkAndDoesNotFall) {
   const std::vector<Summary> generations = archive.generations();
   EXPECT_GT(generations.back().best.value(), 1.5 * generations.front().best.value());
 
-  // the run verifies its champion's matured body in the end
+  // at its end, the run verifies the matured body of its champion
   const Individual champion = archive.individual(archive.best(1).at(0)).value();
   const Verification verification = archive.verification(champion.id).value();
   const auto value = [&](const std::string& name) {

@@ -1,4 +1,5 @@
-// Help, completion and the manual page, against the declarations of the commands; and how much a command says.
+// Help, completion and the manual page agree with the declarations of the commands; options control how much a command
+// prints.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -124,7 +125,7 @@ TEST(Help, TheTopicOfVerificationNamesTheTrials) {
   for (const auto& trial : verified[0].at("trials")) EXPECT_THAT(page, HasSubstr(trial.at("trial").get<std::string>()));
 }
 
-/// What a shell that has loaded the script in `scratch` answers, line by line.
+/// Returns the lines of a shell's output; expects that the shell has succeeded.
 std::vector<std::string> lines_of(const Finished& finished) {
   EXPECT_EQ(finished.exit_code, 0) << finished.output;
   std::istringstream stream(finished.output);
@@ -146,7 +147,7 @@ class Completion : public ::testing::Test {
     scratch_.write("file.toml", "");
   }
 
-  /// What bash offers for the last of these words.
+  /// Returns the completions that bash offers for the last of these words.
   std::vector<std::string> offered(const std::vector<std::string>& words) const {
     std::vector<std::string> line = {
         "bash",
@@ -206,7 +207,7 @@ TEST_F(Completion, FishCompletes) {
                                "cd \"$0\" && export HOME=$0 PATH=\"$1:$PATH\" && "
                                "fish -c 'source script.fish; complete -C \"'\"$2\"'\"'",
                                (scratch_ / "").string(), fs::path(EVODEVO_PROGRAM).parent_path().string(), line}));
-    for (std::string& offer : lines) offer = offer.substr(0, offer.find('\t'));  // behind it stands the explanation
+    for (std::string& offer : lines) offer = offer.substr(0, offer.find('\t'));  // the explanation follows the tab
     return lines;
   };
   EXPECT_THAT(fish_offers("evodevo sim"), ElementsAre("simulate"));
@@ -248,7 +249,7 @@ TEST(Manual, IsGoodRoff) {
   EXPECT_THAT(shown, AllOf(HasSubstr("--allow-other-versions"), HasSubstr("\n       [experiment]\n")));
 }
 
-/// A run of the small experiment with more options.
+/// Runs the small experiment with more options.
 class Verbosity : public ::testing::Test {
  protected:
   std::vector<std::string> run(std::vector<std::string> options) {

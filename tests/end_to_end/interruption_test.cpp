@@ -1,4 +1,4 @@
-// Whatever happens to a run, what is committed stays and the end is the same.
+// However a run is interrupted, committed generations are kept, and resuming gives the same result.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::Process;
 
-/// Thirteen generations, each some tens of milliseconds long.
+/// A run of thirteen generations, each of which takes some tens of milliseconds.
 class Interruption : public ::testing::Test {
  protected:
   testing::Scratch scratch_;
@@ -44,7 +44,8 @@ class Interruption : public ::testing::Test {
   }
 };
 
-/// Every individual's genes, way and fate, and every generation's figures but the wall time, must be the same.
+/// Expects that all individuals are the same in genes, ancestry and result, and all generations in their numbers,
+/// except the wall time.
 void expect_same_runs(const Archive& a, const Archive& b) {
   const auto generations_a = a.generations(), generations_b = b.generations();
   ASSERT_EQ(generations_a.size(), generations_b.size());
@@ -83,10 +84,10 @@ TEST_P(InterruptedJournal, KilledAtEachLineAndResumedEndsTheSame) {
   ASSERT_EQ(testing::run(run_command("straight")).exit_code, 0);
   std::vector<std::string> command = run_command("killed");
   command.insert(command.end(), {"--journal", GetParam()});
-  std::set<std::size_t> complete;  // generations, when it was killed
+  std::set<std::size_t> complete;  // numbers of complete generations at which the run was killed
   const auto run_to_line = [&](int line) {
     Process process(command);
-    // the first line says where the run goes; from then on there is something to resume
+    // once the first line, which names the folder, is printed, the run can be resumed
     for (int i = 0; i < line; ++i) process.read_line();
     process.send(SIGKILL);
     process.wait();
@@ -206,7 +207,7 @@ TEST_F(Interruption, ReportsOfARunThatGoesOnDisturbItNotAtAll) {
     const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
     const auto run = reported_run(archive, std::move(experiment), *simulator, {.best = 1}, 1'000'000);
     seen.insert(run["evaluations"].get<std::int64_t>());
-    // everything is of one moment
+    // all numbers must belong to the same moment
     std::int64_t evaluations = 0;
     for (const auto& count : run["statuses"]) evaluations += count.get<std::int64_t>();
     EXPECT_EQ(run["evaluations"], evaluations);
@@ -227,7 +228,7 @@ TEST_F(Interruption, AFinishedRunHasNothingToResume) {
 }
 
 TEST_F(Interruption, GoingOnElsewhereOrByAnotherBuildWarns) {
-  // begun by the program of this test
+  // this test program begins the run
   { Archive::create(scratch_ / "run", testing::read(testing::small_experiment), "cpu, an older one"); }
   const std::string begun_by = Archive::read(scratch_ / "run").provenances().front().program;
   const testing::Finished resumed = testing::run(resume_command("run"));
@@ -256,7 +257,7 @@ TEST_F(Interruption, ThreadsDoNotChangeARun) {
 }
 
 TEST_F(Interruption, TwoRunsAtOnceTakeFoldersOfTheirOwn) {
-  // without --out each makes a folder in runs/ of the current folder
+  // without --out, each makes a folder of its own in runs/
   const std::string command = "cd '" + (scratch_ / "").string() + "' && exec '" + EVODEVO_PROGRAM + "' run small.toml";
   Process one({"sh", "-c", command}), two({"sh", "-c", command});
   EXPECT_EQ(one.wait(), 0) << one.output();

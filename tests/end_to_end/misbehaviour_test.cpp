@@ -1,4 +1,4 @@
-// Operators that misbehave: the run ends, or goes on, by name of the one who did it.
+// Operators that misbehave: whether the run ends or continues, a message names the operator.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ class Misbehaviour : public ::testing::Test {
   std::string folder_ = (scratch_ / "run").string();
   std::string library_ = (fs::path(EVODEVO_FAULTY_PLUGINS) / "misbehaving/plugin.evodevo.so").string();
 
-  /// A run in which the operator in table `table` does `how`.
+  /// Returns the command of a run in which the operator of table `table` misbehaves as `how` says.
   std::vector<std::string> run_with(const std::string& table, const std::string& how,
                                     const std::string& more = "") const {
     return {EVODEVO_PROGRAM,
@@ -36,7 +36,7 @@ class Misbehaviour : public ::testing::Test {
             "--plugin-path",
             library_};
   }
-  /// The same of a mutation that every child goes through.
+  /// Returns the same for a mutation that is applied to every child.
   std::vector<std::string> mutating(const std::string& how) const {
     return run_with("mutation.0", how, ",probability=1.0");
   }
@@ -44,14 +44,14 @@ class Misbehaviour : public ::testing::Test {
   std::size_t generations_kept() const { return Archive::read(folder_).generations().size(); }
 };
 
-/// Reads on until a line has the text.
+/// Reads lines until one contains the text.
 void read_to(Process& process, const std::string& text) {
   while (const auto line = process.read_line())
     if (line->find(text) != std::string::npos) return;
   ADD_FAILURE() << "no line has: " << text << "\n" << process.output();
 }
 
-/// In the environment of what is started while it lives.
+/// Sets EVODEVO_PATIENCE for the processes that are started during the lifetime of this object.
 struct Patience {
   explicit Patience(const char* seconds) { setenv("EVODEVO_PATIENCE", seconds, 1); }
   ~Patience() { unsetenv("EVODEVO_PATIENCE"); }

@@ -1,4 +1,4 @@
-// Everything that commands write: to full devices, to readers that have gone, and over what they read.
+// The output of commands: to full devices, to pipes whose reader is gone, and over their own input files.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,8 @@ using ::testing::AllOf;
 using testing::Finished;
 using ::testing::HasSubstr;
 
-/// A finished run, a body of it and, instead of the viewer and its programs, stand-ins that take data and make a film.
+/// A folder with a finished run, a body of that run, and stand-ins for the viewer and its programs, which accept data
+/// and write a film.
 class Workplace {
  public:
   Workplace() {
@@ -44,7 +45,7 @@ class Workplace {
       fs::create_symlink("/dev/full", scratch_ / link);
   }
 
-  /// Runs a line of the shell here.
+  /// Runs a line of shell in the folder.
   Finished shell(const std::string& line) const {
     const std::string here = scratch_ / "";
     return testing::run({"sh", "-c", "cd \"$0\" && PATH=\"$0/bin:$0/tools:$PATH\" && export PATH && " + line, here});
@@ -57,7 +58,7 @@ class Workplace {
   testing::Scratch scratch_;
 };
 
-/// Made by the first test that needs it, and kept for all others of the process.
+/// Returns the folder that all tests of this process share; the first call creates it.
 const Workplace& workplace() {
   static const Workplace workplace;
   return workplace;
@@ -123,8 +124,8 @@ TEST(Output, ARunIsWholeEvenIfNobodyCouldReadHowItWent) {
   EXPECT_EQ(Archive::read(workplace() / "unheard").generations().back().evaluations, 24);
 }
 
-/// Runs a line of the shell whose standard output is a pipe that nobody reads any more. The exit code, or 128 + the
-/// signal that ended it.
+/// Runs a line of shell whose standard output is a pipe without a reader. Returns the exit code, or 128 + the number of
+/// the signal that ended it.
 int exit_without_reader(const std::string& line, const std::string& errors) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
@@ -148,7 +149,7 @@ int exit_without_reader(const std::string& line, const std::string& errors) {
 TEST(Output, AReaderThatHasGoneEndsACommandQuietly) {
   const testing::Scratch scratch;
   const std::string errors = (scratch / "errors").string();
-  for (const std::string before : {"", "trap '' PIPE; "}) {  // also where the caller ignores such readers
+  for (const std::string before : {"", "trap '' PIPE; "}) {  // also if the caller ignores SIGPIPE
     const int code = exit_without_reader(before + "exec '" EVODEVO_PROGRAM "' operators --markdown", errors);
     EXPECT_EQ(code, 128 + SIGPIPE) << before;
     EXPECT_EQ(content(errors), "") << before;

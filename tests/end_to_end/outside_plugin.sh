@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs evodevo, and writes, builds, checks and runs a plugin of a kind outside the source tree, with the package
-# alone.
+# Installs evodevo. Then writes, builds, checks and runs a plugin of the given kind outside the source tree, using only
+# the installed package.
 #
 #   outside_plugin.sh BUILD_FOLDER KIND
 set -euo pipefail
@@ -12,7 +12,7 @@ unset EVODEVO_COMMAND EVODEVO_PLUGIN_PATH
 
 cmake --install "$build" --prefix "$scratch/package" >/dev/null
 PATH=$scratch/package/bin:$PATH
-# what a plugin includes needs nothing but the standard library
+# the headers of the SDK must include only the standard library
 if grep -rhE '^#include' "$scratch/package/include" | grep -vE '<[a-z_0-9]+>|"evodevo/'; then
   echo "the SDK includes more than the C++ standard library"
   exit 1
@@ -29,10 +29,10 @@ cmake -B build >/dev/null
 cmake --build build
 ctest --test-dir build --output-on-failure
 evodevo run experiment.toml --out run
-# not through a pipe, which grep would leave at the first match
+# not through a pipe, which grep would close at the first match
 [[ $(evodevo show run --json) == *'"my-lab.growth"'* ]] || { echo "the run does not use the operator"; exit 1; }
 
-# after a change one file is compiled
+# after a change, only one file is compiled
 touch growth.cpp
 [ "$(cmake --build build | grep -c 'Building')" = 1 ] || { echo "a change of one file builds others"; exit 1; }
 

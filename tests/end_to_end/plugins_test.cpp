@@ -1,5 +1,5 @@
-// Plugins as a user meets them: where they are found, what the record keeps of them, and what a faulty one does to a
-// run.
+// Plugins as users experience them: where they are found, what the record keeps of them, and how a faulty plugin
+// affects a run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -37,15 +37,15 @@ class Plugins : public ::testing::Test {
   }
   void TearDown() override { unsetenv("XDG_STATE_HOME"); }
 
-  /// Folders of operators are remembered for each.
+  /// Switches to another user's state folder; folders of operators are remembered for each user.
   void become_user(const std::string& name) const { setenv("XDG_STATE_HOME", (scratch_ / name).c_str(), 1); }
 
-  /// Puts a library from tests/plugins where the user keeps plugins.
+  /// Copies a library from tests/plugins to the folder in which the user keeps plugins.
   void install(const std::string& which) {
     fs::copy_file(plugins / which / "plugin.evodevo.so", library_, fs::copy_options::overwrite_existing);
   }
   std::string own() const { return (scratch_ / "own").string(); }
-  /// As a record names it.
+  /// The same folder as a record names it.
   std::string recorded_own() const { return fs::path(own()).lexically_normal().string(); }
 
   static Finished evodevo(std::vector<std::string> arguments) {
@@ -217,7 +217,7 @@ TEST_F(Plugins, ARunOutlivesTheFolderOfItsOperators) {
   EXPECT_EQ(found.exit_code, 0) << found.output;
 }
 
-/// Each command that takes code by what a record says.
+/// Returns all commands that load code which a record names.
 std::vector<std::vector<std::string>> readers_of(const std::string& folder, const std::string& file) {
   return {{"resume", folder},
           {"life", folder},

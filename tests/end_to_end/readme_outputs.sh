@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# What the examples of all pages write beside README.md leaves `git status` as it was: readme_outputs.sh SOURCE_FOLDER
+# Tests that the files written by the examples of all pages do not show up in `git status`:
+# readme_outputs.sh SOURCE_FOLDER
 set -euo pipefail
 source=$1
 if ! command -v git >/dev/null; then
@@ -9,8 +10,8 @@ fi
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-# in commands: what follows --out, --trajectory or >, a tool's first or last word that names a file or a folder, a new
-# plugin, in whose folder walk.toml lies
+# Finds output files in commands: words after --out, --trajectory or >, the first or last word of a tool if it names a
+# file or folder, and the folders of new plugins, one of which also contains walk.toml.
 pages=$(find "$source" -name '*.md' -not -path "$source/build/*" -not -path '*/template/*' -not -path '*/node_modules/*')
 commands=$(while IFS= read -r page; do sed -n '/^```sh$/,/^```$/p' "$page"; done <<<"$pages" | sed 's/ *#.*//')
 outputs=$(sed -nE -e 's/.*(--out|--trajectory|>) ([^ ]+).*/\2/p' -e 's/^tools\/figure .* ([^ ]+)$/\1/p' \

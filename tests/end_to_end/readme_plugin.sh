@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the plugin of "Writing an operator" with the compiler line given there, and runs it in the experiment that
-# experiments/README.md shows first.
+# Builds the plugin of "Writing an operator" with the compiler command given there, and runs it in the first experiment
+# of experiments/README.md.
 #
 #   readme_plugin.sh SOURCE_FOLDER EVODEVO_PROGRAM
 set -euo pipefail
@@ -10,7 +10,7 @@ trap 'rm -rf "$scratch"' EXIT
 export XDG_STATE_HOME=$scratch/state
 
 page=$source/framework/sdk/README.md
-# the first block of a language
+# prints the first code block of a language
 block() { awk -v opens="\`\`\`$1" '$0 == "```" && inside { exit } inside; $0 == opens { inside = 1 }' "$2"; }
 mkdir "$scratch/my-plugins"
 block cpp "$page" >"$scratch/erosion.cpp"
@@ -31,5 +31,5 @@ eval "$compile"
 "$evodevo" body run --matured >matured.json
 springs() { grep -c rest_length "$1"; }
 lost=$(($(springs born.json) - $(springs matured.json)))
-# four cycles, in each of which at most eight springs go
+# there are four cycles, each of which removes at most eight springs
 [ "$lost" -gt 0 ] && [ "$lost" -le 32 ] || { echo "$lost springs went"; exit 1; }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Types the README's first command in a clean copy of the working tree, as a newcomer would. The second command,
-# tools/test, is what continuous integration types in a clean clone.
+# Runs the README's first command in a clean copy of the working tree, as a new user would. Continuous integration runs
+# the second command, tools/test, in a clean clone.
 #
 #   readme_run.sh SOURCE_FOLDER
 set -euo pipefail
@@ -12,7 +12,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 copy="$scratch/a (clean) copy & ü"
 mkdir "$copy"
-# without what .gitignore names, whose lines are either /NAME, beside it, or NAME, anywhere
+# leaves out what .gitignore names; its lines are either /NAME, which is in the same folder, or NAME, which is anywhere
 without=(--no-wildcards-match-slash --anchored --exclude=./.git)
 while IFS= read -r line; do
   case $line in
@@ -30,7 +30,7 @@ echo "$output" | tail -n 8
 grep -q '^quickstart on cpu\|^quickstart on cuda' <<<"$output" || { echo "it does not say which device it uses"; exit 1; }
 [ -e runs/quickstart-1/run.sqlite ] || { echo "it left no run behind"; exit 1; }
 
-# from now on there is nothing to build
+# from now on, nothing needs to be built
 started=$(date +%s%N)
 tools/evodevo show runs/quickstart-1 >/dev/null
 echo "a later call took $((($(date +%s%N) - started) / 1000000)) ms"

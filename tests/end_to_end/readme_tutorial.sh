@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Types the README's ten minutes to an operator of one's own, word by word, from where evodevo is installed; what comes
-# before is ReadmeRun's.
+# Runs the commands of the README's section "Ten minutes to an operator of your own", from the installation of evodevo
+# on. The test ReadmeRun covers the commands before.
 #
 #   readme_tutorial.sh SOURCE_FOLDER BUILD_FOLDER
 set -euo pipefail
@@ -10,7 +10,7 @@ trap 'rm -rf "$scratch"' EXIT
 export XDG_STATE_HOME=$scratch/state HOME=$scratch/home
 unset EVODEVO_COMMAND EVODEVO_PLUGIN_PATH
 mkdir "$HOME" "$scratch/build"
-# what the page calls build/cpu
+# the README calls the build folder build/cpu
 ln -s "$build" "$scratch/build/cpu"
 ln -s "$source/experiments" "$scratch/experiments"
 
@@ -24,7 +24,7 @@ if [ ! -d "$build/share/evodevo/viewer" ]; then
   commands=$(grep -v '^evodevo report' <<<"$commands")
 fi
 
-# the loop of the template gives way to that of the page before it is built again
+# before the second build, replaces the loop of the template by that of the README
 change='sed -i -e "/^    for (.*springs_/{r $scratch/loop" -e "d}" growth.cpp'
 commands=${commands/$'\n'cmake --build build$'\n'/$'\n'"$change"$'\n'cmake --build build$'\n'}
 grep -qF 'sed -i' <<<"$commands" || { echo "README.md does not build the operator again"; exit 1; }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What the scripts in tools/ install, configure and build, and what they say where they cannot, with programs that stand
-# for apt, CMake and the rest. Nothing is installed, and no network is asked.
+# Tests what the scripts in tools/ install, configure and build, and their messages on failure. Stand-ins replace
+# apt-get, CMake and other programs, so that nothing is installed and no network is used.
 #
 #   setup.sh SOURCE_FOLDER EVODEVO_PROGRAM CASE
 set -euo pipefail
@@ -10,20 +10,20 @@ trap 'rm -rf "$scratch"' EXIT
 unset EVODEVO_COMMAND EVODEVO_CHROMIUM
 export EVODEVO_PRESET=cpu
 
-# a checkout that holds no more than setting up reads
+# a checkout with only the files that the setup reads
 checkout="$scratch/a (b) & ü"
 mkdir -p "$checkout/framework" "$scratch/bin"
 cp -r "$source/tools" "$checkout"
 cp "$source/CMakeLists.txt" "$checkout"
 cp "$source/framework/help.txt" "$checkout/framework"
 
-# the only programs are those that scripts are made of, and the stand-ins
+# PATH contains only the programs that the scripts use, and the stand-ins
 for name in bash env sh cat chmod dirname flock grep ln mkdir readlink rm sed awk touch tr; do
   ln -s "$(command -v $name)" "$scratch/bin/$name"
 done
 called=$scratch/called installed=$scratch/installed
 touch "$called" "$installed"
-stand_in() {  # NAME   its program comes on standard input
+stand_in() {  # NAME   reads the text of the stand-in from standard input
   {
     printf '#!/usr/bin/env bash\ncheckout=%q scratch=%q\n' "$checkout" "$scratch"
     echo 'echo "${0##*/} $*" >>"$scratch/called"'
@@ -64,7 +64,7 @@ case $1 in
 esac
 END
 stand_in ninja <<<'[ ! -e "$2/bin/evodevo" ] || echo "ninja: no work to do."'
-# a Python that has the modules whose packages are installed
+# a stand-in for Python that has the modules whose packages are marked as installed
 stand_in python3 <<'END'
 if [ "$1" = -c ]; then
   for module in "${@:3}"; do grep -qx "python3-$module" "$scratch/installed" || exit 1; done
@@ -74,7 +74,7 @@ fi
 END
 stand_in ctest <<<''
 
-# call COMMAND...   in the checkout; what it says is in $said (both streams) and $output (the standard output)
+# call COMMAND...   runs it in the checkout; $said holds both output streams, $output only the standard output
 call() {
   status=0
   output=$(cd "$checkout" && PATH=$scratch/bin "$@" 2>"$scratch/errors") || status=$?
@@ -85,7 +85,7 @@ fail() {
   exit 1
 }
 succeeded() { [ "$status" = 0 ] || fail "it failed"; }
-# failed_in_a_line WORDS...   no more than what is being installed is said before
+# failed_in_a_line WORDS...   expects a failure with one line of error; before it, only messages on installations
 failed_in_a_line() {
   [ "$status" = 1 ] || fail "the exit status is not 1"
   local line
@@ -174,7 +174,7 @@ case_no_charts() {
   rm "$scratch/bin/apt-get" "$scratch/bin/dpkg-query"
   call tools/compare some.toml
   failed_in_a_line "there is no apt-get" "python3-matplotlib python3-scipy"
-  # what takes long to measure is written all the same
+  # the measurements, which take long, are written nevertheless
   call tools/accuracy charts --quick
   succeeded
   [[ $output = "evodevo-accuracy charts --quick" && $errors == *"data without charts: "*"python3-matplotlib"* ]] ||

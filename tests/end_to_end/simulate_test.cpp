@@ -1,4 +1,4 @@
-// Bodies out of runs and files into scenes: as in their run, whole, and judged by what they are.
+// The command `evodevo simulate`: bodies from runs move as in their run, and unsuitable bodies and options are refused.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ Finished evodevo(std::vector<std::string> arguments) {
   return testing::run(arguments);
 }
 
-/// Rough ground, a load and steps that are no powers of two.
+/// Returns an experiment with rough ground, a payload and time steps that are not powers of two.
 std::string awkward_experiment() {
   std::string text = testing::small_experiment;
   const auto replace = [&](const std::string& from, const std::string& to) {
@@ -43,7 +43,7 @@ std::string awkward_experiment() {
   return text;
 }
 
-/// All masses at one moment of a trajectory.
+/// The state of all masses at one moment of a trajectory.
 struct Seen {
   double time = 0;
   std::vector<Vec3> position, velocity;
@@ -86,14 +86,14 @@ class Simulate : public ::testing::Test {
     ASSERT_EQ(finished.exit_code, 0) << finished.output;
   }
 
-  /// What a command prints, as a file.
+  /// Writes the output of a command to a file, and returns its path.
   std::string printed(std::vector<std::string> arguments) {
     const Finished finished = evodevo(std::move(arguments));
     EXPECT_EQ(finished.exit_code, 0) << finished.output;
     return scratch_.write("body.json", finished.output);
   }
 
-  /// The first and the last frame of a body's first 14 steps: one frame lies between.
+  /// Simulates a body for 14 steps; returns the first and the last frame, which have one frame between them.
   std::pair<Seen, Seen> simulated(const std::string& body) {
     const Finished finished = evodevo({"simulate", body, file_, "--duration", "0.0098", "--trajectory", csv_});
     EXPECT_EQ(finished.exit_code, 0) << finished.output;
@@ -102,7 +102,7 @@ class Simulate : public ::testing::Test {
     return {frames.front(), frames.back()};
   }
 
-  /// The life of the best of the run, as that lived it.
+  /// Repeats the life of the run's best individual as it was in the run.
   struct Again {
     ArchivedIndividual individual;
     Experiment experiment;
@@ -166,7 +166,8 @@ TEST_F(Simulate, ABodyThatGrewInAnotherSceneGoesOnToo) {
   EXPECT_EQ(first.velocity[3].z, body.at("masses").at(3).at("velocity").at(2).get<double>());
 }
 
-/// Four masses in a soft tetrahedron of 1 m; `more` goes into each mass, `rest` into the body.
+/// Returns the JSON of a body: four masses in a soft tetrahedron of 1 m. `more` is added to each mass, `rest` to the
+/// body.
 std::string tetrahedron(const std::string& mass, double stiffness, const std::string& more = "",
                         const std::string& rest = "", double z = 0) {
   std::string masses, springs;

@@ -1,5 +1,5 @@
-// What a command is started with and in: streams that are closed, limits of the system, files that are none, numbers
-// that are none.
+// Commands in unusual surroundings: closed streams, limits of the system, no home folder, pipes instead of files, and
+// hostile arguments.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ class Surroundings : public ::testing::Test {
   std::string file_ = scratch_.write("small (ü).toml", testing::small_experiment);
   std::string folder_ = (scratch_ / "run").string();
 
-  /// Runs `line` in bash, where $evodevo, $file and $folder stand for the program and what is above.
+  /// Runs `line` in bash, with the variables $evodevo, $file, $folder and $scratch.
   Finished in_shell(const std::string& line) const {
     return testing::run({"env", std::string("evodevo=") + EVODEVO_PROGRAM, "file=" + file_, "folder=" + folder_,
                          "scratch=" + (scratch_ / "").string(), "bash", "-c", line});
@@ -41,7 +41,7 @@ TEST_F(Surroundings, ClosedStreamsAreNoFault) {
   }
   for (const char* closed : {">&-", "<&- >&-"})
     EXPECT_THAT(in_shell("\"$evodevo\" check \"$file\" " + std::string(closed)).output, Not(HasSubstr("crash")));
-  // nothing of a run gets the number of a stream, and then what is said to the user
+  // no file of the run may get the number of a closed stream, since messages would then be written into it
   const Finished run = in_shell("\"$evodevo\" run \"$file\" --out \"$folder\" <&- 2>&-");
   EXPECT_EQ(run.exit_code, 0) << run.output;
   EXPECT_EQ(in_shell("\"$evodevo\" show \"$folder\" <&- >/dev/null 2>&-").exit_code, 0);

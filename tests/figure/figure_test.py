@@ -1,4 +1,4 @@
-"""The pictures of tools/figure, of a run and of environments."""
+"""Tests the pictures that tools/figure draws of a run and of environments."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-// The GPU computes what the CPU computes: to rounding, as long as rounding has not grown.
+// The GPU computes the same as the CPU, up to rounding; runs are short enough that rounding errors have not grown much.
 #include "analysis/energy.hpp"
 #include "analysis/ground.hpp"
 #include "analysis/stability.hpp"
@@ -9,8 +9,8 @@
 namespace evodevo::testing_gpu {
 namespace {
 
-/// How far a place may be off after 0.1 s, m; about ten times what is seen on an H200. Places of 1 m are 1e-7 m apart
-/// in float32; a mass that touches the floor a step earlier or later multiplies what rounding has done until then.
+/// Returns the tolerance of positions after 0.1 s, m; about ten times the deviations seen on an H200. Near 1 m, the
+/// resolution of float32 is 1e-7 m. A mass that touches the floor one step earlier or later amplifies earlier rounding.
 double bound(const Way& way, bool contact) {
   if (std::get<Precision>(way) == Precision::float32) return contact ? 3e-3 : 5e-5;
   return contact ? 3e-9 : 1e-13;
@@ -71,7 +71,7 @@ TEST_P(AgreementOfRecords, StressAndWorkOf150Steps) {
   simulate(*make_cpu_simulator(scene, stepping(way), 1), {&cpu}, 150, all);
   simulate(*simulator, {&gpu}, 150, all);
   simulate(*simulator, {&plain}, 150);
-  // recording changes nothing
+  // recording does not change the motion
   EXPECT_EQ(distance(gpu.state, plain.state), 0);
   for (const auto list : SpringRecords::lists) ASSERT_EQ((gpu.answer.*list).size(), body.springs.size());
   double largest = 0, largest_peak = 0, mean = 0, sum = 0;
@@ -88,7 +88,7 @@ TEST_P(AgreementOfRecords, StressAndWorkOf150Steps) {
               std::abs(gpu.answer.work - cpu.answer.work), cpu.answer.work);
   EXPECT_GT(cpu.answer.work, 0);
   const double accuracy = bound(way, scene.floor.has_value());
-  // N; seen are at most 0.2 in float32 and 6e-9 in float64, but for one touch of the floor that comes a step later
+  // N; deviations seen are at most 0.2 in float32 and 6e-9 in float64, except where one contact begins a step later
   const bool late_touch = way == Way{Method::symplectic_euler, Precision::float64};
   EXPECT_LT(largest, std::get<Precision>(way) == Precision::float32 ? 3 : late_touch ? 1e-3 : 3e-5);
   EXPECT_LT(largest_peak, std::get<Precision>(way) == Precision::float32 ? 60 : 1e-1);
@@ -117,7 +117,8 @@ TEST(AgreementOfTallies, InFloat64) {
   EXPECT_EQ(tallied(*make_cuda_simulator(scene, stepping)), cpu);
 }
 
-/// Methods that bear steps beyond those of the explicit ones, in float64: in float32 contact parts them soon.
+/// Methods that are stable for larger steps than explicit methods. They are compared in float64, since in float32
+/// contact soon makes the two motions differ.
 class AgreementOfLargeSteps : public testing::TestWithParam<Method> {};
 
 TEST_P(AgreementOfLargeSteps, After100Steps) {
@@ -142,7 +143,7 @@ TEST_P(AgreementOfLargeSteps, After100Steps) {
 INSTANTIATE_TEST_SUITE_P(Gpu, AgreementOfLargeSteps, testing::Values(Method::implicit, Method::xpbd),
                          [](const auto& test) { return std::string(evodevo::name(test.param)); });
 
-/// A ball that is thrown, whatever else: positions are those that each method's sum of steps gives.
+/// A mass that is thrown: positions must be those of the closed form of each method's steps.
 class FreeFall : public testing::TestWithParam<Way> {};
 
 TEST_P(FreeFall, IsThatOfTheMethod) {
@@ -157,7 +158,7 @@ TEST_P(FreeFall, IsThatOfTheMethod) {
   Robot run(body, start);
   simulate(*make_cuda_simulator(scene, stepping(GetParam())), {&run}, 1000);
   const auto [method, precision] = GetParam();
-  // x <- x + dt v with the new v falls g t dt / 2 further than g t^2 / 2, which the others hit
+  // methods with x <- x + dt v and the new v fall g t dt / 2 further than g t^2 / 2; the other methods are exact
   const double t = 0.5, further = method == Method::velocity_verlet || method == Method::rk4 ? 0 : 0.0005;
   const double rounding = precision == Precision::float32 ? 1e-4 : 1e-12;
   EXPECT_NEAR(run.state.position[0].z, 4 + 4 * t - 9.81 * t * (t + further) / 2, rounding);

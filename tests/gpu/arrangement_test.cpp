@@ -1,4 +1,4 @@
-// The layout of bodies on the chip.
+// The arrangement of bodies on the chip.
 #include "cuda/layout/arrangement.hpp"
 
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@ namespace {
 
 using testing_gpu::random_body;
 
-/// Checks that every spring is in one slot, in the lane of one of its ends and leading to the other, and that the rows
-/// of each warp belong to the groups that it is told.
+/// Checks that every spring is in exactly one slot, which is in the lane of one of its ends and refers to the other
+/// end, and that the rows of each warp belong to the groups listed for it.
 void expect_sound(const Arrangement& a, const Body& body, unsigned largest_block) {
   ASSERT_LE(a.shape.block, largest_block);
   ASSERT_LE(a.shape.warps, a.shape.block);
@@ -53,7 +53,8 @@ void expect_sound(const Body& body, unsigned largest_block) {
   expect_sound(Arrangement(body, largest_block), body, largest_block);
 }
 
-/// Takes `masses` random masses and `springs` random springs away and appends as many, the way the host applies edits.
+/// Removes `masses` random masses and `springs` random springs and appends as many, as the host does when it applies
+/// edits.
 void turn_over(Body& body, std::uint32_t masses, std::uint32_t springs, std::mt19937& random) {
   const auto below = [&](std::size_t n) {
     return std::uniform_int_distribution<std::uint32_t>(0, static_cast<std::uint32_t>(n - 1))(random);
@@ -140,7 +141,7 @@ TEST(Arrangement, KeepsBanksApart) {
 }
 
 TEST(RowOrder, ColoursWhatCanBeColoured) {
-  // every lane has a spring to every bank: 32 rows, each a permutation
+  // every lane has one spring to every bank, so 32 rows suffice, each a permutation
   std::vector<Link> links;
   for (std::uint8_t lane = 0; lane < 32; ++lane)
     for (std::uint8_t bank = 0; bank < 32; ++bank)

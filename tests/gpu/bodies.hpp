@@ -1,4 +1,4 @@
-// Bodies and scenes that the tests of the CUDA simulator move.
+// Bodies and scenes for the tests of the CUDA simulator.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +16,11 @@ namespace evodevo::testing_gpu {
 
 inline constexpr double pi = 3.14159265358979323846;
 
-/// Numbers that are the same with every standard library.
+/// Random numbers that are the same with every standard library.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : generator_(seed) {}
-  /// In [-1, 1).
+  /// Returns a number in [-1, 1).
   double next() { return static_cast<double>(generator_() >> 11) * 0x1p-52 - 1; }
   Vec3 vector() { return {next(), next(), next()}; }
 
@@ -33,8 +33,8 @@ inline std::vector<Material> paper_materials() {
   return {{5000, 0.14, 1, 0}, {4000, 0, 0, 0}, {5000, 0.14, 1, pi}, {10000, 0, 0, 0}};
 }
 
-/// `masses` random points in a cube of side 2 m, each joined to its `neighbours` nearest, of masses from 0.15 kg to
-/// 0.25 kg, all materials.
+/// `masses` random points in a cube of side 2 m with masses from 0.15 kg to 0.25 kg, each joined to its `neighbours`
+/// nearest ones; springs take the materials in turn.
 inline Body random_body(std::uint32_t masses, std::uint32_t neighbours, std::uint64_t seed,
                         std::vector<Material> materials = paper_materials()) {
   Random random(seed);
@@ -63,7 +63,7 @@ inline State moving_state(const Body& body, const Scene& scene, std::uint64_t se
 
 inline Scene walking_scene() { return {Gravity{}, Floor{}, Friction{}, Damping{}, std::nullopt}; }
 
-/// A body's run and its answer.
+/// The run of a body, and its result.
 struct Robot {
   Robot(const Body& body_, const State& state_) : body(&body_), state(state_) {}
   Task task(std::uint64_t steps) { return {.body = body, .state = &state, .dt = dt, .steps = steps}; }
@@ -74,7 +74,7 @@ struct Robot {
   Task answer;
 };
 
-/// Moves all bodies in one batch.
+/// Simulates all bodies in one batch.
 inline void simulate(Simulator& simulator, std::vector<Robot*> runs, std::uint64_t steps, Recording recording = {}) {
   std::vector<Task> tasks;
   for (Robot* run : runs) tasks.push_back(run->task(steps));
@@ -82,7 +82,7 @@ inline void simulate(Simulator& simulator, std::vector<Robot*> runs, std::uint64
   for (std::size_t i = 0; i < runs.size(); ++i) runs[i]->answer = tasks[i];
 }
 
-/// The largest distance between the positions of a mass in two runs, m.
+/// Returns the largest distance between the positions of any mass in two states, m.
 inline double distance(const State& a, const State& b) {
   double largest = 0;
   for (std::size_t i = 0; i < a.position.size(); ++i) {

@@ -1,4 +1,4 @@
-// Kernels compile without a GPU, and are compiled once.
+// Kernels can be compiled without a GPU, and are compiled only once.
 #include "cuda/runtime/compiler.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A cache of the test's own.
+/// Uses a separate cache for the test.
 class Compiler : public testing::Test {
  protected:
   Compiler() : cache_(fs::temp_directory_path() / ("evodevo-cache-" + std::to_string(::getpid()))) {
@@ -52,7 +52,7 @@ const Features every_feature{.gravity = true,
                              .muscle_work = true,
                              .tension = true};
 
-/// Whether the kernels of a method are there in the form for bodies of any size.
+/// Whether a method's kernels for bodies of any size compile.
 bool compiles_streamed(const Features& features) {
   const char* source = is_explicit(features.method) ? "cuda/device/streamed.cu" : form_of(features.method).file;
   return !compile(source, definitions(features), "sm_90").empty();
@@ -123,7 +123,7 @@ TEST_F(Compiler, KeepsNothingWhereNoVariableNamesAFolder) {
   const fs::path before = fs::current_path();
   fs::create_directories(cache_ / "here");
   fs::current_path(cache_ / "here");
-  // a relative path would be another folder wherever a command is typed
+  // a relative path would mean another folder for each current folder
   for (const char* relative : {"", ".", "cache"}) {
     ::setenv("XDG_CACHE_HOME", relative, 1);
     const auto expect_nothing_kept = [&] {

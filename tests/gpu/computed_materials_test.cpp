@@ -1,4 +1,5 @@
-// Springs whose materials are computed from codes move as the CPU moves them, on the chip and beyond it.
+// Springs whose materials are computed from codes move as on the CPU, both in bodies that stay on the chip and in
+// bodies that do not fit there.
 #include "analysis/computed_materials.hpp"
 
 #include "analysis/energy.hpp"
@@ -12,7 +13,7 @@ constexpr Recording all_records{.stress = true, .work = true, .peak_force = true
 
 Stepping computed(const Way& way) { return {std::get<Method>(way), std::get<Precision>(way), Materials::computed}; }
 
-/// `count` materials of 4,000 to 9,000 N/m, amplitudes and frequencies of either sign, all phases.
+/// `count` materials of 4,000 to 9,000 N/m, with amplitudes and frequencies of either sign and any phase.
 std::vector<Material> random_materials(std::size_t count) {
   Random random(12);
   std::vector<Material> all;
@@ -21,7 +22,7 @@ std::vector<Material> random_materials(std::size_t count) {
   return all;
 }
 
-/// A random body whose springs each have their own material.
+/// A random body in which each spring has a material of its own.
 Body varied_body(std::uint32_t masses, std::uint32_t neighbours) {
   Body body = random_body(masses, neighbours, 4);
   body.materials = random_materials(body.springs.size());
@@ -31,7 +32,7 @@ Body varied_body(std::uint32_t masses, std::uint32_t neighbours) {
 
 class ComputedMaterials : public testing::TestWithParam<Way> {
  protected:
-  /// Moves a body for 0.055 s on both devices and compares positions and all that is recorded.
+  /// Simulates a body for 0.055 s on both devices, and compares positions and all recorded quantities.
   static void compare(const Body& body, const Scene& scene) {
     const Way way = GetParam();
     const bool single = std::get<Precision>(way) == Precision::float32;
@@ -43,8 +44,8 @@ class ComputedMaterials : public testing::TestWithParam<Way> {
     simulate(*simulator, {&plain}, 110);
     ASSERT_EQ(cpu.answer.status, Status::ok) << cpu.answer.reason;
     ASSERT_EQ(gpu.answer.status, Status::ok) << gpu.answer.reason;
-    // recording changes nothing where materials are codes; float64 takes them from tables, in kernels of other
-    // roundings
+    // In float32, materials are codes, and recording does not change the motion. In float64, materials are in tables,
+    // and kernels with recording round differently.
     if (single) {
       EXPECT_EQ(distance(gpu.state, plain.state), 0);
     }
@@ -100,7 +101,7 @@ TEST_P(ComputedMaterials, Masses20000BeyondTheChip) {
 
 INSTANTIATE_TEST_SUITE_P(Gpu, ComputedMaterials, all_ways(), [](const auto& test) { return name(test.param); });
 
-/// Forces between masses that never move, at any time since birth, are those of the codes' materials.
+/// Between masses that never move, forces at any time since birth must be those of the materials in the codes.
 class ComputedForces : public testing::TestWithParam<double> {};
 
 TEST_P(ComputedForces, AreThoseOfTheCodes) {
@@ -115,10 +116,10 @@ TEST_P(ComputedForces, AreThoseOfTheCodes) {
   simulate(*make_cuda_simulator(nothing, {.materials = Materials::computed}), {&run}, 1, all_records);
   ASSERT_EQ(run.answer.status, Status::ok) << run.answer.reason;
   const std::vector<Material> materials = simulated_materials(body, Materials::computed);
-  // the clock is off by 2^-33 turns, of which the largest frequency makes 1,020; the angle is rounded twice, and the
-  // sine is good to 2^-20.5
+  // the clock has an error of 2^-33 periods, multiplied by up to 1,020, the largest frequency; the angle is rounded
+  // twice, and the sine has an error of up to 2^-20.5
   const double sine = 2 * pi * (1020 * 0x1p-33 + 0x1p-25) + pi * 0x1p-24 + 0x1p-20;
-  const double rounding = 8 * 0x1p-24;  // of positions and of the products and sums of a force
+  const double rounding = 8 * 0x1p-24;  // rounding of positions, and of products and sums in the force
   for (std::size_t i = 0; i < body.springs.size(); ++i) {
     const Spring& spring = body.springs[i];
     const Material& m = materials[spring.material];
@@ -128,7 +129,7 @@ TEST_P(ComputedForces, AreThoseOfTheCodes) {
     const double muscle = m.stiffness * spring.rest_length * m.amplitude;
     const double accuracy = muscle * sine + m.stiffness * (1 + distance + length) * rounding;
     EXPECT_NEAR(run.answer.tension[i], tension, accuracy) << i;
-    const double speed = 2 * pi * m.frequency * m.amplitude * spring.rest_length;  // at most, m/s
+    const double speed = 2 * pi * m.frequency * m.amplitude * spring.rest_length;  // largest speed, m/s
     const double rate = speed * std::cos(2 * pi * m.frequency * state.time + m.phase);
     EXPECT_NEAR(run.answer.muscle_work[i], run.dt * std::max(0.0, -tension * rate),
                 run.dt * (speed * accuracy + std::abs(tension) * speed * (sine + rounding)))

@@ -1,4 +1,4 @@
-// A body's answer is the same bits wherever and however often it is computed.
+// The result of a body is the same to the bit, whatever its position in a batch and however often it is computed.
 #include "analysis/ground.hpp"
 #include "gpu.hpp"
 
@@ -56,7 +56,7 @@ TEST_P(Determinism, BesideBodiesOfOtherSteps) {
   const Scene scene = walking_scene();
   const Recording all{.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};
   const auto simulator = make_cuda_simulator(scene, stepping(GetParam()));
-  // on the chip, and one that is streamed
+  // a body on the chip, and a streamed one
   for (const std::uint32_t masses : {60u, 12000u}) {
     const Body body = random_body(masses, 8, 3);
     std::vector<Robot> together;
@@ -84,7 +84,7 @@ TEST_P(Determinism, BesideBodiesWithAndWithoutMuscles) {
   const Scene scene = walking_scene();
   const Recording all{.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};
   const auto simulator = make_cuda_simulator(scene, stepping(GetParam()));
-  // on the chip; with springs in the device's memory; there altogether
+  // on the chip; with its springs in the device's memory; completely in the device's memory
   for (const std::uint32_t masses : {60u, 1500u, 12000u}) {
     if (masses > 1500 && !is_explicit(std::get<Method>(GetParam()))) continue;
     const Body still = random_body(masses, 8, 3, {{4000, 0, 0, 0}, {10000, 0, 0, 0}});
@@ -123,7 +123,7 @@ TEST_P(Determinism, InternalForcesLeaveTheMomentumAlone) {
   Vec3 momentum;
   for (const Vec3& velocity : run.state.velocity) momentum = momentum + 0.25 * velocity;
   const auto [method, precision] = GetParam();
-  // implicit leaves up to a millionth of each step's equation unsolved
+  // implicit solves the equation of each step only up to a relative residual of 1e-6
   const double rest = method == Method::implicit ? 1e-5 : 1e-12;
   EXPECT_LT(norm(momentum), precision == Precision::float32 ? 1e-4 : rest);
 }

@@ -1,4 +1,4 @@
-// Bodies that gain energy from nothing are stopped, and no other body notices.
+// Bodies whose energy has no source are stopped, and other bodies are not affected.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 class Divergence : public testing::TestWithParam<Way> {};
 
-/// A body that its stiffness tears apart at the step of 0.5 ms.
+/// A body that is too stiff for a step of 0.5 ms, and diverges.
 Body unstable_body() { return random_body(100, 15, 1, {{2e7, 0, 0, 0}}); }
 
 TEST_P(Divergence, StopsOneBodyAlone) {
@@ -65,7 +65,7 @@ TEST_P(NotFinite, IsDivergence) {
 
 TEST_P(Divergence, ForceRange) {
   EVODEVO_NEEDS_GPU();
-  // a step beyond the limit swings the body up from what was no large force at the start
+  // a step beyond the stability limit makes the oscillation grow, although forces are small at the start
   const Body body = random_body(50, 10, 2);
   State start = moving_state(body, {}, 3);
   start.start_energy = 1e300;

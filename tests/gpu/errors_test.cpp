@@ -1,4 +1,4 @@
-// Failures of driver and device say what happened and what to do.
+// Messages on failures of driver and device say what happened and what to do.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -71,7 +71,7 @@ TEST(Driver, ThatIsMissingOrTooOldIsNamed) {
             "CUDA: the NVIDIA driver is too old: it knows CUDA 12.8, this program needs 13.0; install a newer driver");
 }
 
-/// A process of its own under CTest: what is visible is settled by the first call.
+/// Under CTest, this test runs in a separate process: CUDA reads the visible devices only at its first call.
 TEST(Device, ThatIsHiddenIsMissed) {
   ::setenv("CUDA_VISIBLE_DEVICES", "-1", 1);
   EXPECT_THAT(why_cuda_is_unusable(), testing::AnyOf(HasSubstr("CUDA_VISIBLE_DEVICES"), HasSubstr("NVIDIA driver")));

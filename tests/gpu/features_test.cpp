@@ -1,5 +1,5 @@
-// What a scene does not ask for leaves no instruction: with a feature off, a kernel is the same machine code as one
-// that is written without it.
+// Features that a scene does not use cost no instruction: a kernel with a feature switched off has the same operations
+// as a kernel whose source does not contain the feature.
 #include "cuda/layout/features.hpp"
 
 #include <elf.h>
@@ -16,24 +16,24 @@
 namespace evodevo::cuda {
 namespace {
 
-/// A feature and what is there for it alone.
+/// A feature, and the code that exists only for it.
 struct Subject {
   const char* name;
   bool Features::*on;
   std::vector<const char*> constants;     ///< compile-time switches, in mass_step.cuh
   std::vector<const char*> declarations;  ///< members and variables
-  std::vector<const char*> functions;     ///< of the kernels and of physics.hpp
+  std::vector<const char*> functions;     ///< functions of the kernels and of physics.hpp
 };
 
 const std::vector<Subject> subjects{
-    // a slope needs gravity
+    // without gravity there is no slope
     {"gravity",
      &Features::gravity,
      {"gravity", "slope"},
      {"height_moment"},
      {"weight", "downhill_force", "height_moment_of", "record_fall"}},
     {"slope", &Features::slope, {"slope"}, {}, {"downhill_force"}},
-    // rough ground and friction need the floor
+    // without the floor there is no rough ground and no friction
     {"floor",
      &Features::floor,
      {"floor_on", "friction", "rough"},
@@ -44,10 +44,10 @@ const std::vector<Subject> subjects{
     {"damping", &Features::damping, {"damping"}, {}, {}},
     {"drag", &Features::drag, {"drag"}, {}, {"drag_factor"}},
     {"actuation", &Features::actuation, {"actuation"}, {}, {"half_turns"}},
-    // row_stress, which nobody uses then, stays: it leaves nothing, but the compiler numbers registers otherwise
-    // without
+    // row_stress stays, although it is unused then: it leaves no instruction, but without it the compiler would number
+    // registers differently
     {"stress", &Features::stress, {"stress"}, {}, {}},
-    // each muscle's work is a part of the body's
+    // the work of single muscles is recorded only together with the work of the body
     {"work",
      &Features::work,
      {"muscle_work", "work"},
@@ -74,23 +74,23 @@ Features without(const Subject& subject) {
   return features;
 }
 
-/// The sources of the kernels, from which code is taken out.
+/// The sources of the kernels, from which code can be removed.
 class Sources {
  public:
   Sources() {
     const std::string method = form_of(Method::paper_euler).file;
     for (const EmbeddedSource& source : embedded_sources()) {
       if (source.name.starts_with("cuda/device/methods/") && source.name != method) continue;
-      // comments name what they explain
+      // comments are removed, since they contain the searched names
       names_.emplace_back(source.name);
       texts_.push_back(std::regex_replace(std::string(source.text), std::regex(" *//[^\n]*"), ""));
     }
   }
 
-  /// Takes out a feature; throws where there is none, or where anything of it is left.
+  /// Removes the code of a feature. Throws if there is none, or if a part of it is left.
   void remove(const Subject& subject) {
     for (const char* constant : subject.constants) {
-      // another constant takes its place, because the compiler numbers them and puts the numbers into instructions
+      // replaced by another constant, because the compiler numbers constants and uses the numbers in instructions
       replace_all("constexpr bool " + std::string(constant) + " = \\w+;",
                   "constexpr bool no_" + std::string(constant) + " = true;");
       if (remove_statements(constant) == 0) throw std::runtime_error("nothing is for " + std::string(constant));
@@ -109,7 +109,7 @@ class Sources {
   }
 
  private:
-  /// The end of what begins with the bracket at `begin`.
+  /// Returns the end of the text that the bracket at `begin` opens.
   static std::size_t closing(const std::string& text, std::size_t begin) {
     const char open = text[begin], close = open == '(' ? ')' : '}';
     int depth = 0;
@@ -120,7 +120,7 @@ class Sources {
     throw std::runtime_error("a bracket is not closed");
   }
 
-  /// Replaces whatever an expression finds in the kernels.
+  /// Replaces all matches of an expression in the kernels.
   void replace_all(const std::string& expression, const std::string& replacement) {
     bool found = false;
     for (std::size_t i = 0; i < texts_.size(); ++i) {
@@ -132,7 +132,7 @@ class Sources {
     if (!found) throw std::runtime_error("nothing to remove: " + expression);
   }
 
-  /// Takes out the statements that are compiled only where `constant` holds; returns how many there were.
+  /// Removes the statements that are compiled only if `constant` is true; returns their number.
   int remove_statements(const std::string& constant) {
     const std::regex condition("\n *if constexpr \\((\\w+ && )*" + constant + "( && \\w+)*\\)");
     int count = 0;
@@ -149,7 +149,7 @@ class Sources {
     return count;
   }
 
-  /// Takes out the definitions of a function: from the empty line before each to its closing brace.
+  /// Removes the definitions of a function, each from the empty line before it to its closing brace.
   void remove_function(const std::string& name) {
     const std::regex head("\n *\n(template <class T>\n)?[\\w ]+ " + name + "\\([^{;]*\\) (const )?\\{");
     bool found = false;
@@ -169,13 +169,13 @@ class Sources {
         throw std::runtime_error(names_[i] + " still has " + name);
   }
 
-  /// What the host sends, whatever a kernel reads of it.
+  /// The format of the data that the host sends; kernels read only parts of it.
   static constexpr const char* formats = "cuda/layout/formats.hpp";
 
   std::vector<std::string> names_, texts_;
 };
 
-/// All instructions in an ELF file of machine code: its sections .text.*, one behind the other.
+/// Returns all instructions in an ELF file of machine code, which are its concatenated sections .text.*.
 std::string text_of(const std::vector<char>& file) {
   const auto read = [&]<class T>(T& value, std::size_t offset) { std::memcpy(&value, &file.at(offset), sizeof value); };
   Elf64_Ehdr header;
@@ -192,9 +192,9 @@ std::string text_of(const std::vector<char>& file) {
 
 using Operations = std::vector<std::uint16_t>;
 
-/// The operations of the instructions in a file, sorted, but those that only fill up a section: 16 bytes each since
-/// Volta, the low twelve bits name the operation. Which registers they use is left out: the compiler's choice may hang
-/// on a name.
+/// Returns the sorted operations of the instructions in a file, without instructions that only pad a section. Since
+/// Volta, an instruction has 16 bytes, whose low twelve bits name the operation. Registers are not compared, since the
+/// compiler's choice may depend on names.
 Operations operations(const std::vector<char>& file) {
   const std::string instructions = text_of(file);
   Operations all;
@@ -208,7 +208,7 @@ Operations operations(const std::vector<char>& file) {
   return all;
 }
 
-/// A kernel in one of its forms.
+/// One form of a kernel.
 struct Form {
   const char* name;
   const char* source;
@@ -265,7 +265,7 @@ TEST_P(FeatureCode, IsNotThereWhereTheFeatureIsOff) {
 TEST_P(FeatureCode, IsNotThereWhereAllAreOff) {
   Sources sources;
   for (const Subject& subject : subjects)
-    // the others are gone with gravity, the floor and the body's work
+    // the excluded features have been removed together with gravity, the floor and the body's work
     if (subject.on != &Features::slope && subject.on != &Features::rough && subject.on != &Features::friction &&
         subject.on != &Features::muscle_work)
       sources.remove(subject);

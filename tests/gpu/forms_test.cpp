@@ -1,4 +1,4 @@
-// Bodies of every size take the way through the device that suits them; odd ones are bodies too.
+// Bodies of all sizes are simulated by the kernels for their size, and so are unusual bodies.
 #include "analysis/ground.hpp"
 #include "gpu.hpp"
 
@@ -7,7 +7,7 @@ namespace {
 
 class Forms : public testing::TestWithParam<Way> {
  protected:
-  /// Moves a body for 0.05 s on both devices and compares positions and all that is recorded.
+  /// Simulates a body for 0.05 s on both devices, and compares positions and all recorded quantities.
   void compare(const Body& body, const State& start) {
     const Scene scene = walking_scene();
     const Recording all{.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};
@@ -74,7 +74,7 @@ TEST_P(Forms, MassesOfManySprings) {
   compare(body);
 }
 
-/// Materials of stiffness 4,000 to 9,000 N/m, amplitude up to 0.14, all phases.
+/// Materials with stiffnesses of 4,000 to 9,000 N/m, amplitudes up to 0.14 and all phases.
 std::vector<Material> materials(int count) {
   std::vector<Material> all;
   for (int i = 0; i < count; ++i) {
@@ -122,7 +122,7 @@ TEST_P(Forms, Chain) {
   compare(body);
 }
 
-/// The ways that sizes take through the device are each method's own.
+/// Each method has its own kernels for each size.
 class Sizes : public Forms {};
 
 TEST_P(Sizes, Masses64) {

@@ -1,4 +1,4 @@
-// What tests need a GPU for.
+// Helpers for tests that need a GPU.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 
 namespace evodevo::testing_gpu {
 
-/// Skips a test where there is no GPU; with EVODEVO_REQUIRE_GPU=1 it fails.
+/// Skips a test if there is no usable GPU; with EVODEVO_REQUIRE_GPU=1, the test fails instead.
 #define EVODEVO_NEEDS_GPU()                                          \
   do {                                                               \
     const std::string missing = evodevo::why_cuda_is_unusable();     \
@@ -26,7 +26,7 @@ namespace evodevo::testing_gpu {
     GTEST_SKIP() << missing;                                         \
   } while (false)
 
-/// A method in a precision.
+/// A method and a precision.
 using Way = std::tuple<Method, Precision>;
 
 inline Stepping stepping(Precision precision) { return {Method::paper_euler, precision}; }
@@ -34,7 +34,7 @@ inline Stepping stepping(const Way& way) { return {std::get<Method>(way), std::g
 
 inline const char* name(Precision precision) { return precision == Precision::float32 ? "float32" : "float64"; }
 
-/// As tests are called: letters and digits alone.
+/// Returns the name for tests, which has only letters, digits and underscores.
 inline std::string name(const Way& way) {
   std::string text = std::string(evodevo::name(std::get<Method>(way))) + "_" + name(std::get<Precision>(way));
   std::replace(text.begin(), text.end(), '-', '_');

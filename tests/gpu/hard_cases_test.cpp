@@ -1,4 +1,5 @@
-// Where methods fail, the GPU is right or flags it as well, and no neighbour notices.
+// In cases in which methods can fail, the GPU gives correct results or flags the failure, and other bodies are not
+// affected.
 #include "physics/hard_cases.hpp"
 
 #include "gpu.hpp"
@@ -14,7 +15,7 @@ INSTANTIATE_TEST_SUITE_P(Gpu, HardCases, all_ways(),
 TEST_P(HardCases, AreRightOrFlagged) {
   EVODEVO_NEEDS_GPU();
   const auto [method, precision] = GetParam();
-  // forces are multiples of a 2^23rd of the largest, of which each step near the limit of dt adds some
+  // forces are multiples of 2^-23 of the largest force; near the limit of dt, each step adds energy by this rounding
   const double rounding = precision == Precision::float32 ? 1e-2 : 1e-6;
   test::expect_outcomes(
       test::hard_cases(method),

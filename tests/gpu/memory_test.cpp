@@ -1,4 +1,4 @@
-// Where the device's memory is scarce, batches are divided, down to one body, and give the same bits.
+// If the device's memory is scarce, batches are divided, down to single bodies, and results are the same to the bit.
 #include "cuda/runtime/memory.hpp"
 
 #include <cuda_runtime_api.h>
@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t mebibyte = std::size_t{1} << 20;
 constexpr Recording all{.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};
 
-/// All of the device's memory but about `left` bytes, until its end.
+/// Occupies all of the device's memory except about `left` bytes during its lifetime.
 class Ballast {
  public:
   explicit Ballast(std::size_t left) {
@@ -41,7 +41,7 @@ class Ballast {
   std::vector<void*> pieces_;
 };
 
-/// Several hundred robots of a few bodies, each with its answer where memory is plenty.
+/// Provides several bodies, each with its result when memory is plentiful.
 class ScarceMemory : public testing::Test {
  protected:
   void SetUp() override {
@@ -56,7 +56,7 @@ class ScarceMemory : public testing::Test {
     simulate(*make_cuda_simulator(scene, stepping(Precision::float32)), batch, 300, all);
   }
 
-  /// Moves `count` robots in one batch and compares each.
+  /// Simulates `count` robots in one batch, and compares each with the result of its body.
   void expect_the_same(Simulator& simulator, std::size_t count) const {
     std::vector<Robot> robots;
     for (std::size_t i = 0; i < count; ++i) {
@@ -94,7 +94,7 @@ TEST_F(ScarceMemory, IsSharedByBatchesAtOnce) {
 }
 
 TEST_F(ScarceMemory, IsNotKeptFromOthers) {
-  // what one simulator keeps for its next batch is there for another's
+  // memory that one simulator keeps for its next batch is given to another simulator that needs it
   const auto first = make_cuda_simulator(scene, stepping(Precision::float32)),
              second = make_cuda_simulator(scene, stepping(Precision::float32));
   expect_the_same(*first, 512);

@@ -1,4 +1,4 @@
-// Neighbours found on the GPU are those that the CPU finds, for every kind of cloud.
+// The GPU finds the same neighbours as the CPU, for all kinds of point clouds.
 #include "analysis/neighbours.hpp"
 
 #include <cmath>
@@ -28,7 +28,7 @@ Places shuffled(Places places) {
   return places;
 }
 
-/// Searches all clouds in one call and compares each answer with nearest_pairs().
+/// Searches all clouds in one call, and compares each result with nearest_pairs().
 void compare(NeighbourSearch& search, const std::vector<PointCloud>& clouds) {
   std::vector<std::vector<IndexPair>> found(clouds.size());
   std::vector<int> calls(clouds.size(), 0);
@@ -39,13 +39,13 @@ void compare(NeighbourSearch& search, const std::vector<PointCloud>& clouds) {
   });
   for (std::size_t i = 0; i < clouds.size(); ++i) {
     EXPECT_EQ(calls[i], 1) << "cloud " << i;
-    // no printing of a million pairs
+    // not EXPECT_EQ, which would print a million pairs
     EXPECT_TRUE(found[i] == nearest_pairs(clouds[i].positions, clouds[i].k))
         << "cloud " << i << ", " << clouds[i].positions.size() << " points, k = " << clouds[i].k;
   }
 }
 
-/// All clouds with each k, in one call.
+/// Searches all clouds with each k in one call, and compares the results.
 void compare(const std::vector<Places>& all, std::initializer_list<std::uint32_t> ks) {
   std::vector<PointCloud> clouds;
   for (const std::uint32_t k : ks)
@@ -63,7 +63,7 @@ TEST(GpuNeighbours, RandomPlacesOfManySizes) {
 TEST(GpuNeighbours, EquallyNearPlacesGoByIndex) {
   EVODEVO_NEEDS_GPU();
   const Places lattice = shuffled(make_lattice({9, 9, 9}, 1).corners);
-  // off the origin the distances round
+  // away from the origin, distances are rounded
   Places moved = lattice;
   for (Vec3& p : moved) p = 0.1 * p + Vec3{0.3, -7.7, 1e3};
   compare({lattice, moved}, {1, 4, 7, 25, 300});
@@ -112,7 +112,7 @@ TEST(GpuNeighbours, Portions) {
   for (std::size_t i = 0; i < 40; ++i) all.push_back(random_places(20 + 17 * i, i));
   std::vector<PointCloud> clouds;
   for (const Places& places : all) clouds.push_back({places, 25});
-  // less than the larger clouds need by themselves
+  // a limit that is less than a single large cloud needs
   compare(*make_cuda_neighbour_search(100'000), clouds);
 }
 

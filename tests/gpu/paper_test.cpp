@@ -1,4 +1,4 @@
-// The paper's methods, which ours is measured against, compute the same motion and record what they say.
+// The paper's methods, with which ours is compared in speed, compute the same motion, and record stress correctly.
 #include <algorithm>
 #include <numeric>
 
@@ -25,7 +25,7 @@ Robot simulated(const Body& body, const Scene& scene, std::uint64_t steps, Recor
   return robot;
 }
 
-/// What is recorded of one body in `steps` steps.
+/// Returns the recorded stress of one body after `steps` steps.
 RecordedStress recorded(const Body& body, const PaperMethod& method, std::uint64_t steps) {
   PaperSimulator simulator({&body, 1}, 2, walking_scene(), dt, method);
   simulator.run(steps);
@@ -43,10 +43,10 @@ TEST_P(PaperMotion, IsOurs) {
   const auto& [memory, order] = GetParam();
   const std::vector<Body> bodies{random_body(300, 20, 1), random_body(77, 10, 2)};
   const Scene swimming{{}, {}, {}, {}, Drag{0.5}};
-  // bounds as for the agreement of GPU and CPU
+  // the same tolerances as for the agreement of GPU and CPU
   for (const auto& [scene, bound] : {std::pair{walking_scene(), 3e-3}, std::pair{swimming, 5e-5}}) {
     PaperSimulator simulator(bodies, 3, scene, dt, {.memory = memory, .order = order});
-    simulator.run(150);  // more than a table of material lengths holds
+    simulator.run(150);  // more steps than a table of materials holds
     simulator.restart();
     simulator.run(130);
     simulator.run(70);
@@ -80,7 +80,7 @@ TEST(PaperStress, CountsTheExtremesOfAllSprings) {
   const RecordedStress many = recorded(body, method, 50);
   EXPECT_EQ(sum(many.least), 50u);
   EXPECT_EQ(sum(many.most), 50u);
-  // in the first steps there is no doubt which one is stressed most
+  // in the first steps, the most stressed spring is unambiguous
   const RecordedStress two = recorded(body, method, 2);
   const Robot ours = simulated(body, walking_scene(), 2, {.stress = true});
   const auto most = std::max_element(ours.answer.stress.begin(), ours.answer.stress.end());
@@ -103,7 +103,7 @@ TEST(PaperStress, SkipShiftFindsWhatIsStressed) {
   const RecordedStress stress = recorded(body, {.stress = StressMethod::skip_shift, .skip = 1}, 2000);
   const Robot ours = simulated(body, walking_scene(), 2000, {.stress = true});
   const std::vector<double> most(stress.most.begin(), stress.most.end());
-  // chance finds 0.02
+  // a random choice would find 0.02
   EXPECT_GT(tools::share_found(ours.answer.stress, most, 125), 0.3);
 }
 

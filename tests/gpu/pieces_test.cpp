@@ -1,4 +1,4 @@
-// A run in pieces is the run in one, and the guard's verdict is the CPU's, on the GPU.
+// On the GPU, a run in several pieces equals the run as a whole, and the guard decides as on the CPU.
 #include "physics/pieces.hpp"
 
 #include "gpu.hpp"
@@ -19,7 +19,7 @@ INSTANTIATE_TEST_SUITE_P(Gpu, GpuRuns, all_ways(), [](const auto& test) { return
 
 TEST_P(GpuRuns, InPiecesEndInTheBitsOfTheWhole) {
   EVODEVO_NEEDS_GPU();
-  // on the chip; with springs in the device's memory; there altogether
+  // on the chip; with its springs in the device's memory; completely in the device's memory
   std::vector<Body> bodies{test::random_body(107, 9, 5, 6), test::random_body(41, 6, 23, 7), test::single_mass(0.2),
                            test::random_body(1701, 14, 5, 8)};
   if (is_explicit(method())) bodies.push_back(test::random_body(12001, 6, 5, 9));

@@ -1,4 +1,4 @@
-// What holds for random bodies in random scenes holds on the GPU, and it moves them as the CPU does.
+// Properties of random bodies in random scenes hold on the GPU as well, and the GPU agrees with the CPU.
 #include <algorithm>
 #include <string>
 
@@ -17,10 +17,10 @@ class Property : public testing::TestWithParam<test::Arithmetic> {
   static Stepping stepping() { return {std::get<Method>(GetParam()), std::get<Precision>(GetParam())}; }
   static std::unique_ptr<Simulator> simulator(const Scene& scene) { return make_cuda_simulator(scene, stepping()); }
 
-  /// How far two ways of rounding may lead apart, m; some ten times what is seen.
+  /// How far different rounding may move positions apart, m; about ten times the deviations seen.
   static double rounding() { return stepping().precision == Precision::float32 ? 1e-2 : 1e-9; }
 
-  /// Calls `check(scene, lives)` for each of some random scenes.
+  /// Calls `check(scene, lives)` for each of 16 random scenes.
   template <class F>
   static void for_random_scenes(const F& check) {
     for (std::uint64_t seed = 0; seed < 16; ++seed) {

@@ -1,4 +1,4 @@
-// What a body that stays on the chip is told.
+// The data that the host prepares for a body that stays on the chip.
 #include "cuda/layout/resident.hpp"
 
 #include <gtest/gtest.h>
@@ -15,10 +15,11 @@
 namespace evodevo::cuda {
 namespace {
 
-constexpr std::size_t shared_bytes = 227 << 10;  // of an H200
+constexpr std::size_t shared_bytes = 227 << 10;  // shared memory of a block on an H200
 const Features features{.gravity = true, .floor = true, .friction = true, .damping = true};
 
-/// A body of 1,000 masses and 25 neighbours whose springs have `materials` materials in turn; 0: each its own.
+/// A body of 1,000 masses, each joined to 25 neighbours, whose springs take `materials` materials in turn; if 0, each
+/// spring has a material of its own.
 Body body_of(std::size_t materials) {
   Body body = testing_gpu::random_body(1000, 25, 1);
   if (materials == 0) materials = body.springs.size();
@@ -29,7 +30,7 @@ Body body_of(std::size_t materials) {
   return body;
 }
 
-/// A task at its beginning.
+/// A task at the start of its simulation.
 template <class T>
 Task task_of(const Body& body, State& state, const Scene& scene) {
   Task task{.body = &body, .state = &state};
@@ -46,7 +47,7 @@ TEST(Resident, RecordsLeadToTheirMaterials) {
     const Task task = task_of<float>(body, state, scene);
     const auto resident = Resident<float>::arrange(task, features, shared_bytes);
     ASSERT_TRUE(resident) << materials;
-    const bool wide = body.materials.size() > 8190;  // of 8 bytes in 64 KiB, beside that of empty slots
+    const bool wide = body.materials.size() > 8190;  // entries of 8 bytes in 64 KiB, besides that for empty slots
     EXPECT_EQ(resident->form().wide_table, wide) << materials;
 
     std::vector<std::byte> input(resident->sizes().input), motion(resident->sizes().state);
@@ -100,7 +101,7 @@ TEST(Resident, SpringsCarryTheCodesOfTheirMaterials) {
 }
 
 TEST(Resident, LeavesToTheDevicesMemoryWhatTheChipCannotHold) {
-  const Body body = body_of(0);  // in float64 its table alone is as large as the chip
+  const Body body = body_of(0);  // in float64, its table alone is as large as the chip's memory
   State state = state_at_birth(body, testing_gpu::walking_scene());
   const Task task = task_of<double>(body, state, testing_gpu::walking_scene());
   EXPECT_FALSE(Resident<double>::arrange(task, features, shared_bytes));

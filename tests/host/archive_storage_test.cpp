@@ -1,5 +1,5 @@
-// The file of a run among other processes and on storage that fails: nothing is lost, nobody waits for ever, and every
-// refusal names the folder.
+// The file of a run when other processes use it and when storage fails: no data is lost, no process waits for ever, and
+// every error message names the folder.
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ class ArchiveStorage : public ::testing::Test {
   Experiment experiment_ = testing::read(testing::small_experiment);
 };
 
-/// Without the log beside it.
+/// Copies only the file itself, without its journal.
 TEST_F(ArchiveStorage, TheFileAloneFollowsTheRun) {
   const fs::path copy = scratch_ / "copy";
   fs::create_directory(copy);
@@ -75,7 +75,7 @@ TEST_F(ArchiveStorage, TheFileAloneFollowsTheRun) {
   EXPECT_GT(generations_alone(), 0u) << "and while it goes on";
 }
 
-/// What happens to a file that a run has opened.
+/// An accident that happens to a file while a run has it open.
 struct Loss {
   const char* name;
   std::function<void(const fs::path& folder)> happen;
@@ -115,7 +115,7 @@ TEST_F(ArchiveStorage, AReaderKeepsNobodyFromGoingOn) {
   for (const Journal journal : {Journal::wal, Journal::rollback}) {
     SCOPED_TRACE(name(journal));
     { created(journal); }
-    const Archive before = Archive::read(folder_);  // in the middle of a long report
+    const Archive before = Archive::read(folder_);  // such as for a report that takes long
     EXPECT_EQ(before.generations().size(), 0u);
     Archive archive = Archive::resume(folder_);
     const Archive beside = Archive::read(folder_);
@@ -128,29 +128,29 @@ TEST_F(ArchiveStorage, AReaderKeepsNobodyFromGoingOn) {
 }
 
 TEST_F(ArchiveStorage, WritersTakeTurns) {
-  constexpr std::uint32_t applications = 200;
+  constexpr std::uint32_t rounds = 200;
   Archive run = created();
   commit(run, 0);
   std::string failure = "none";
   std::thread verifier([&] {
     try {
       Archive archive = Archive::annotate(folder_);
-      for (std::uint32_t i = 0; i < applications; ++i)
+      for (std::uint32_t i = 0; i < rounds; ++i)
         archive.add_verifications({{0, 0.3, {{"trial " + std::to_string(i), Status::ok, "", 0.3}}}});
     } catch (const std::exception& error) {
       failure = error.what();
     }
   });
-  for (std::uint32_t generation = 1; generation < applications; ++generation) commit(run, generation);
+  for (std::uint32_t generation = 1; generation < rounds; ++generation) commit(run, generation);
   verifier.join();
   EXPECT_EQ(failure, "none");
-  EXPECT_EQ(generations(), applications);
-  EXPECT_EQ(Archive::read(folder_).verification(0)->trials.size(), applications);
+  EXPECT_EQ(generations(), rounds);
+  EXPECT_EQ(Archive::read(folder_).verification(0)->trials.size(), rounds);
 }
 
 TEST_F(ArchiveStorage, AnInterruptedCommitIsUndoneByWhoReads) {
   { created(Journal::rollback); }
-  // what a process leaves that is killed while it writes: a journal, and pages that are not whole
+  // a process that is killed while it writes leaves a journal, and a file with only some of the changed pages
   SQLite::Database other(file_.string(), SQLite::OPEN_READWRITE);
   other.exec("PRAGMA cache_size = 1; PRAGMA cache_spill = 1; BEGIN IMMEDIATE");
   for (int i = 0; i < 2000; ++i) other.exec("INSERT INTO record VALUES('key " + std::to_string(i) + "', 'value')");
@@ -162,7 +162,7 @@ TEST_F(ArchiveStorage, AnInterruptedCommitIsUndoneByWhoReads) {
   EXPECT_FALSE(archive.find_record("key 0").has_value());
 }
 
-/// File systems without memory that processes share.
+/// Simulates file systems without memory that processes can share.
 class WithoutSharedMemory : public ArchiveStorage {
  protected:
   WithoutSharedMemory() { sqlite3_vfs_register(sqlite3_vfs_find("unix-dotfile"), 1); }

@@ -1,4 +1,4 @@
-// The archive: what goes in comes out, and nobody writes over anybody.
+// The archive: data that is written can be read again, and no process overwrites the data of another.
 #include "evolution/archive/archive.hpp"
 
 #include <gmock/gmock.h>
@@ -174,7 +174,7 @@ TEST_F(ArchiveTest, SaysWhereThereIsNoRun) {
 
 TEST_F(ArchiveTest, ARunThatEndedBeforeItBeganIsTold) {
   fs::create_directories(folder_);
-  std::ofstream(folder_ / "run.sqlite").close();  // what is left where the first transaction was not committed
+  std::ofstream(folder_ / "run.sqlite").close();  // the file that is left if the first transaction was not committed
   const std::string said = refusal([&] { Archive::resume(folder_); });
   EXPECT_THAT(said, AllOf(StartsWith(folder_.string()), HasSubstr("run.sqlite-wal"), HasSubstr("another folder")));
   EXPECT_THAT(said, Not(HasSubstr("remove"))) << "it advises nothing that destroys";

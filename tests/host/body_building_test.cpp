@@ -1,4 +1,4 @@
-// From blueprints to bodies.
+// Building bodies from blueprints.
 #include "life/body_building.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace evodevo {
 namespace {
 
-/// Masses of the world's material 0 (bone) or 1 (air) at the given positions along x.
+/// A blueprint of masses at the given positions along x, with material 0 (bone) or 1 (air).
 Blueprint row(const std::vector<std::pair<double, std::int32_t>>& masses, std::uint32_t neighbours) {
   Blueprint blueprint;
   blueprint.body.materials = {{10000, 0, 0, 0}, {}};
@@ -33,7 +33,7 @@ TEST(BodyBuilding, JoinsNeighboursByTheMeanOfTheirMaterials) {
 }
 
 TEST(BodyBuilding, LeavesOutAirAndCountsIt) {
-  // 1 and 2 are air and neighbours of each other; both still hang on bone
+  // masses 1 and 2 are air and neighbours of each other; both are also joined to bone
   const BuiltBody built = build_body(row({{0, 0}, {1, 1}, {2, 1}, {3, 0}}, 3));
   ASSERT_EQ(built.failure, "");
   EXPECT_EQ(built.body.springs.size(), 5u);
@@ -76,7 +76,7 @@ TEST(BodyBuilding, AFailureOfTheEncodingIsCleanText) {
 
 TEST(BodyBuilding, NeighboursAreThoseOfThePlacesToPairAt) {
   Blueprint blueprint = row({{0, 0}, {1, 0}, {5, 0}, {6, 0}}, 1);
-  // 0 and 3 are near, and 1 and 2, and 0 and 1 after that
+  // masses 0 and 3 are close, so are 1 and 2, and next closest are 0 and 1
   blueprint.paired_at = {{0, 0, 0}, {2, 0, 0}, {3, 0, 0}, {0, 1, 0}};
   blueprint.neighbours = 2;
   const BuiltBody built = build_body(blueprint);
@@ -102,7 +102,7 @@ TEST(BodyBuilding, SpringsToNeighboursHaveTheMeanSizeOfTheirMasses) {
     EXPECT_DOUBLE_EQ(built.body.springs[spring].rest_length, start);
     EXPECT_FLOAT_EQ(built.body.springs[spring].growth, static_cast<float>(end / start));
   };
-  expect_length(0, 5, 5);  // the encoding's own
+  expect_length(0, 5, 5);  // springs that the encoding gives keep their rest length
   expect_length(1, 1.0 * 1, 0.75 * 1);
   expect_length(2, 0.625 * 2, 1.125 * 2);
   EXPECT_EQ(norm(built.body.masses[2].rest - built.body.masses[1].rest), 2) << "rest places stay";
@@ -213,7 +213,7 @@ TEST(BodyBuilding, CoincidentMassesMakeABodyUnlessAllAre) {
 TEST(BodyBuilding, APopulationIsBuiltAsEachBodyAlone) {
   std::vector<Blueprint> blueprints{row({{0, 0}, {1, 1}, {3, 0}, {3.5, 0}}, 2), row({}, 3),
                                     row({{0, 1}, {1, 1}, {2, 1}}, 2), row({{0, 0}, {1, 0}, {10, 0}, {10.5, 0}}, 1)};
-  // a body that comes with springs of its own
+  // a body whose encoding gives it springs
   blueprints.push_back(row({{0, 0}, {1, 0}, {5, 0}}, 0));
   blueprints.back().body.springs = {{1, 2, 4, 0}};
   blueprints.push_back(blueprints.front());

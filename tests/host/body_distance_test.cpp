@@ -1,4 +1,4 @@
-// Distances between grown bodies.
+// Distances between developed bodies.
 #include "environments/body_distance.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace evodevo {
 namespace {
 
-/// Masses of 1 kg at rest positions, each joined to the next. Those with numbers from `born` on came later.
+/// A chain of masses of 1 kg at rest positions. Masses with numbers from `born` on were added after birth.
 GrownBody chain(const std::vector<Vec3>& positions, std::vector<std::uint32_t> numbers, std::size_t born = 100) {
   GrownBody grown{{}, positions, positions, std::move(numbers), born};
   for (std::uint32_t i = 0; i < positions.size(); ++i) {
@@ -25,7 +25,7 @@ GrownBody chain(const std::vector<Vec3>& positions, std::vector<std::uint32_t> n
   return grown;
 }
 
-/// Of masses of birth.
+/// A chain in which all masses exist from birth.
 GrownBody cloud(const std::vector<Vec3>& positions) {
   std::vector<std::uint32_t> numbers(positions.size());
   std::iota(numbers.begin(), numbers.end(), 0u);
@@ -63,7 +63,7 @@ TEST(BodyDistance, OfSpringsToMassesThatCameLaterGoesByWhereTheyCame) {
 }
 
 TEST(BodyDistance, OfTwoMassesThatCameNearOneTheNearerIsTheSame) {
-  // each later mass joined to a mass of birth of its own
+  // each mass added later is joined to a different mass of birth
   const auto body = [](const std::vector<double>& later) {
     GrownBody grown = cloud({{0, 0, 0}, {5, 0, 0}, {9, 0, 0}});
     grown.born = 3;
@@ -115,7 +115,7 @@ TEST(BodyDistance, OfMassHeedsNeitherOrderNorNumberNorPose) {
 
 TEST(BodyDistance, OfMassIsTheCheapestWayToCarryItAlongEachAxis) {
   Rng rng(philox, {.seed = 5});
-  // 2 and 3 masses are as 6 and 6 of a third and half of the mass
+  // 2 and 3 masses are equivalent to 6 and 6 masses of a third and half of the mass
   const std::vector<Vec3> a = random_places(2, rng), b = random_places(3, rng);
   double expected = 0;
   for (const auto axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
@@ -144,7 +144,7 @@ TEST(BodyDistance, OfMassIsAPseudometric) {
   }
 }
 
-/// The bodies of one random genome after so many starts.
+/// The bodies that one random genome develops from `starts` starts.
 std::vector<GrownBody> grown_from_starts(const Experiment& experiment, std::uint32_t starts, bool noise) {
   const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
   const Individual individual = breed(experiment, {}, 0, 4, 1).front();
@@ -159,7 +159,7 @@ std::vector<GrownBody> grown_from_starts(const Experiment& experiment, std::uint
   return bodies;
 }
 
-/// The small experiment with an operator more.
+/// The small experiment with an additional operator.
 Experiment experiment_with(const std::string& devo, std::vector<Override> overrides = {}) {
   std::string text = testing::small_experiment;
   text.insert(text.find("[[fitness]]"), "[[development.operator]]\n" + devo + "\n");
@@ -204,7 +204,7 @@ TEST(BodyDistance, OfBodiesThatDidNotDevelopIsZeroWhateverTheScene) {
   EXPECT_NE(flat.positions, on_slope.positions);
   EXPECT_EQ(mass_distance(flat, on_slope), 0);
   EXPECT_EQ(spring_distance(flat, on_slope), 0);
-  // the load shifts the body, and adds to masses from which it is then taken, with a rounding
+  // the payload shifts the body, and is added to masses and later subtracted from them, with rounding
   EXPECT_NE(flat.body.masses.back().rest, loaded.body.masses.back().rest);
   EXPECT_NEAR(mass_distance(flat, loaded), 0, 1e-14);
   EXPECT_EQ(spring_distance(flat, loaded), 0);

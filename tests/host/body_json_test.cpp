@@ -1,4 +1,4 @@
-// Bodies as files: every bit comes back.
+// Bodies in JSON files: reading restores every bit.
 #include "life/body_json.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace evodevo {
 namespace {
 
-/// Numbers of all sizes with all their digits.
+/// Random numbers of all magnitudes, with all their digits.
 class Awkward {
  public:
   double any() {

@@ -1,4 +1,4 @@
-// Newborns and the table that selection sees.
+// Newborns, and the table that selection operators see.
 #include "evolution/breeding.hpp"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ TEST(SelectionTable, TurnsScoresAndCountsAges) {
   EXPECT_FALSE(rows[1].ok());
   EXPECT_FALSE(rows[0].challenges.has_value());
   EXPECT_EQ(rows[2].challenges, 1u);
-  EXPECT_FALSE(rows[3].challenges.has_value()) << "a random_individual";
+  EXPECT_FALSE(rows[3].challenges.has_value()) << "a random individual";
 }
 
 TEST(Breeding, TheFirstGenerationIsRandom) {
@@ -70,7 +70,7 @@ TEST(Breeding, ChildrenKnowTheirParentsAndTheOldestGenesAge) {
     ASSERT_EQ(child.parents.size(), crossed ? 2u : 1u);
     EXPECT_EQ(child.origin, *std::min_element(child.parents.begin(), child.parents.end()));
   }
-  EXPECT_EQ(newborns.back().parents.size(), 0u) << "one random_individual, as the experiment asks";
+  EXPECT_EQ(newborns.back().parents.size(), 0u) << "one random individual, as the experiment asks";
   EXPECT_EQ(made_by, (std::set<std::string>{"random", "reset-weight", "two-point", "two-point+reset-weight"}));
 }
 
@@ -101,7 +101,7 @@ TEST(Breeding, WithSmallProbabilitiesAChildStillGoesThroughOneOperator) {
   }
 }
 
-/// Leaves a gene that is not a number.
+/// A mutation that sets a gene to NaN.
 struct Poison final : Mutation {
   void mutate(Genome& genome, const Layout&, Rng&) const override {
     genome[0] = std::numeric_limits<float>::quiet_NaN();

@@ -1,4 +1,4 @@
-// Newborns that are genetically equal to others, and what they may not take from those.
+// Clones, which are newborns that are genetically equal to another individual, and how selection treats copies.
 #include "evolution/clones.hpp"
 
 #include <gmock/gmock.h>
@@ -62,7 +62,7 @@ TEST(Copies, WithoutScoresAreEqualInThem) {
   EXPECT_THAT(remove_copies(everyone), ElementsAre(1));
 }
 
-/// Two voxels, and mostly crossover, which alone makes a clone as often as not.
+/// An experiment with two voxels and mostly crossover, which on its own makes clones in about half of the cases.
 Experiment few_genomes(std::vector<Override> overrides = {}) {
   overrides.insert(overrides.begin(), {"mutation.0.probability", "0.3", ""});
   return testing::read(testing::small_experiment, std::move(overrides));
@@ -92,7 +92,7 @@ TEST(Clones, ThatCannotBeAvoidedAreBorn) {
   EXPECT_EQ(count_clones(population, children), 5);
 }
 
-/// Whole runs of few genomes.
+/// Complete runs with few possible genomes.
 class Run : public ::testing::TestWithParam<const char*> {
  protected:
   Experiment experiment(std::vector<Override> overrides = {}) const {
@@ -100,7 +100,7 @@ class Run : public ::testing::TestWithParam<const char*> {
     return few_genomes(std::move(overrides));
   }
 
-  /// Runs, or resumes, the run in a folder up to so many generations.
+  /// Starts or resumes the run in a folder, up to the given number of generations.
   Archive live(const std::string& folder, const Experiment& experiment, std::size_t generations = 100) const {
     const bool there = std::filesystem::exists(scratch_ / folder);
     Archive archive =
@@ -120,7 +120,7 @@ class Run : public ::testing::TestWithParam<const char*> {
     return everyone;
   }
 
-  /// Those among whom a generation's selection chose.
+  /// Returns the individuals among which the selection of a generation chose.
   static std::vector<ArchivedIndividual> candidates(const std::vector<ArchivedIndividual>& everyone,
                                                     std::uint32_t generation) {
     std::vector<ArchivedIndividual> candidates;
@@ -133,7 +133,7 @@ class Run : public ::testing::TestWithParam<const char*> {
 };
 
 TEST_P(Run, CountsTheClonesThatItsGenesShow) {
-  // one voxel: soon there are no other genomes
+  // with one voxel, all possible genomes soon exist
   const Archive archive = live("run", experiment({{"encoding.size", "[1, 1, 1]", ""}}));
   const std::vector<ArchivedIndividual> all = everyone(archive);
   ASSERT_EQ(all.size(), 75u) << "clones are evaluated";

@@ -1,4 +1,4 @@
-// Batches that go through life in several cohorts at once.
+// Batches that are simulated in several cohorts at the same time.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -10,7 +10,7 @@
 namespace evodevo {
 namespace {
 
-/// A simulator that wants to be called by several threads, as a GPU's does.
+/// A simulator that should be called by several threads at the same time, like that of a GPU.
 class Concurrent final : public Simulator {
  public:
   Concurrent(const Experiment& experiment, int calls)
@@ -42,7 +42,7 @@ TEST(Cohorts, GiveTheResultsOfOneBatch) {
   const std::vector<Result> together = Evaluation(experiment, one).evaluate(newborns, [](double) {});
   double before = 0;
   const std::vector<Result> apart = Evaluation(experiment, four).evaluate(newborns, [&](double done) {
-    EXPECT_GE(done, before);  // of all cohorts together
+    EXPECT_GE(done, before);  // progress of all cohorts together
     before = done;
   });
   EXPECT_NEAR(before, 1, 1e-12);

@@ -1,4 +1,4 @@
-// Every complaint about an experiment, by its exact text.
+// The exact text of every error message about an experiment.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 using testing::small_experiment;
 
-/// The message that reading `text` ends with.
+/// Returns the error message of reading `text`.
 std::string complaint(const std::string& text, std::vector<Override> overrides = {}) {
   try {
     testing::read(text, std::move(overrides));
@@ -24,7 +24,7 @@ std::string complaint(const std::string& text, std::vector<Override> overrides =
   return "no complaint";
 }
 
-/// The small experiment with its first `from` replaced.
+/// Returns the small experiment with the first occurrence of `from` replaced.
 std::string with(const std::string& from, const std::string& to) {
   std::string text = small_experiment;
   const auto at = text.find(from);
@@ -210,7 +210,8 @@ TEST(Configuration, AStepOfItsOwnForEveryBody) {
 }
 
 TEST(Configuration, TheLargestStepIsThatOfTheMethod) {
-  // two masses on a spring of bone bear 6.3 ms with a limit of 2, 8.9 ms with 2 sqrt(2); there is no floor
+  // for two masses on a spring of bone, without a floor, dt may be up to 6.3 ms for methods with a limit of omega dt =
+  // 2, and 8.9 ms for 2 sqrt(2)
   const std::string airborne = with("[scene.floor]\n[scene.friction]\n", "");
   const auto objection = [&](const char* method, const char* dt) {
     std::vector<Override> overrides{{"simulation.method", method, "--set"}, {"simulation.dt", dt, "--set"}};
@@ -322,7 +323,7 @@ TEST(Configuration, NumbersThatAreNotFiniteAreRefusedWhereverTheyStand) {
     }
 }
 
-/// A parameter that may have any finite value, and one with a bound on one side.
+/// Tests a parameter that may have any finite value, and parameters with a bound on one side.
 TEST(Configuration, ARangeWithoutAnEndAsksForAFiniteNumber) {
   const auto complaint_of = [](const std::string& text, Range range) -> std::string {
     const toml::table table = parse_toml(text, "x");

@@ -1,4 +1,4 @@
-// Controls of development, schedules of its operators, and what becomes of torn bodies.
+// Controls of development, schedules of its operators, and bodies that development tears apart.
 #include "life/controls.hpp"
 
 #include <gmock/gmock.h>
@@ -21,7 +21,7 @@ const Material muscle{5000, 0.14, 1, 0};
 
 // changes at random places -------------------------------------------------------------------------------------------
 
-/// A ring of 40 masses, each joined to its two nearest on either side; springs of bone and muscle in turn.
+/// A ring of 40 masses, each joined to the two nearest ones on either side by springs of bone and muscle in turn.
 struct Ring {
   LivingBody living;
   Genome genome;
@@ -63,7 +63,8 @@ struct Ring {
   }
 };
 
-/// Something of everything. Springs 40, of bone, and 42, of muscle, change; seven springs go with the two masses.
+/// Edits of every kind. Springs 40 (bone) and 42 (muscle) change; removing the two masses removes seven springs as
+/// well.
 Edits some_of_everything() {
   return {
       .removed_springs = {0, 1, 2},
@@ -195,14 +196,14 @@ TEST(RandomPlaces, FewerComeWhereThereIsNoRoom) {
 
 // controls of an experiment ------------------------------------------------------------------------------------------
 
-/// What an operator saw in a life.
+/// The contexts that an operator saw during a life.
 struct Seen {
   std::vector<std::vector<double>> stress, peak_force;
   std::vector<std::pair<int, int>> applications;
   std::vector<int> cycles;
 };
 
-/// Watches, and changes nothing.
+/// An operator that records its contexts and changes nothing.
 class Watcher final : public Devo {
  public:
   explicit Watcher(Seen& seen, SpringRequest request = {.stress = true}) : seen_(seen), request_(request) {}
@@ -219,7 +220,7 @@ class Watcher final : public Devo {
   SpringRequest request_;
 };
 
-/// Edits that do not depend on what is there.
+/// An operator whose edits do not depend on the body.
 class Fixed final : public Devo {
  public:
   explicit Fixed(Edits edits) : edits_(std::move(edits)) {}
@@ -350,7 +351,7 @@ TEST(Control, OperatorsSeeTheLifeBeforeAloneAndItsCostDoesNotCount) {
   EXPECT_NEAR(life.living.state.time, 0.1, 1e-12);
 }
 
-/// What operators have done in a cycle, counted on bodies.
+/// The edits of a cycle, counted by comparing bodies.
 struct Total {
   std::size_t springs_gone = 0, springs_come = 0, masses_gone = 0, masses_come = 0;
   friend bool operator==(const Total&, const Total&) = default;
@@ -449,7 +450,7 @@ TEST(Control, YokedLivesDoNotDependOnThreadsOrCompany) {
 }
 
 TEST(Control, NothingMoreChangesAfterTheYokesEnd) {
-  /// Lets what it simulates the second time diverge, which is the second cycle of the yoke.
+  /// A simulator that lets a body diverge in its second run, which is the second cycle of the yoke.
   class Breaking final : public Simulator {
    public:
     explicit Breaking(std::unique_ptr<Simulator> simulator) : simulator_(std::move(simulator)) {}
@@ -478,7 +479,7 @@ TEST(Control, NothingMoreChangesAfterTheYokesEnd) {
 
 // schedules ----------------------------------------------------------------------------------------------------------
 
-/// The cycles in which an operator with this schedule comes, of eight.
+/// Returns what an operator with this schedule saw in a life of eight cycles.
 Seen scheduled(std::vector<Override> overrides) {
   overrides.insert(overrides.begin(), {{"development.cycles", "8", "--set"}, {"development.cycle_time", "0.001", ""}});
   return watch(testing::read(testing::small_experiment, std::move(overrides)));
@@ -507,7 +508,7 @@ TEST(Schedule, OperatorsKnowTheirTurns) {
 
 TEST(Development, TheLargestPieceGoesOn) {
   Experiment experiment = with_control("off");
-  // the springs of a corner mass, and with them the mass
+  // removes all springs of a corner mass, which tears off the mass
   const Body newborn = matured(with_control("no-change")).living.body;
   Edits edits;
   for (std::uint32_t s = 0; s < newborn.springs.size(); ++s)

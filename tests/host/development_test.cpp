@@ -1,4 +1,4 @@
-// What apply_edits does to a body, and what it refuses.
+// The effects of apply_edits on a body, and the edits that it refuses.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 const Material bone{10000, 0, 0, 0};
 const Material muscle{5000, 0.14, 1, 0};
 
-/// Four masses on a line, 1 m apart, joined one after the other; mass i moves at i m/s.
+/// A chain of four masses on a line, 1 m apart; mass i moves at i m/s.
 struct Line {
   LivingBody living;
   Genome genome;
@@ -75,9 +75,9 @@ TEST(Development, ASpringGoesAndOneComes) {
   EXPECT_EQ(body.springs[2].a, 0u);
   EXPECT_EQ(body.springs[2].b, 3u);
   EXPECT_EQ(body.materials.at(body.springs[2].material), muscle);
-  // born without force: L(t) = 3 m at t = 0.25 s, when a muscle of 1 Hz is longest
+  // the new spring starts without force: L(t) = 3 m at t = 0.25 s, when a muscle of 1 Hz is longest
   EXPECT_NEAR(body.springs[2].rest_length, 3 / 1.14, 1e-12);
-  EXPECT_EQ(line.living.stress, (std::vector<double>{10, 30, 20})) << "a random_individual carries the mean";
+  EXPECT_EQ(line.living.stress, (std::vector<double>{10, 30, 20})) << "a new spring has the mean of the others";
 }
 
 TEST(Development, WithResetANewSpringIsAsLongAsTheRestPlacesAreApart) {
@@ -202,7 +202,7 @@ TEST(Development, FaultyEditsAreRefused) {
             "grows springs from not a number to 1 of a way of 1; expected 0 to all of a finite one");
   EXPECT_EQ(Line().refusal(grow(0, 0, 0)),
             "grows springs from 0 to 0 of a way of 0; expected 0 to all of a finite one");
-  Line shrunk;  // to nothing, as far as 1 + (growth - 1) can tell
+  Line shrunk;  // to zero length, since 1 + (growth - 1) rounds to 0
   shrunk.living.body.springs[1].growth = 1e-30f;
   EXPECT_EQ(shrunk.refusal(grow(0, 1, 1)), "accepted");
   EXPECT_THAT(shrunk.refusal(grow(1, 1, 1)), testing::HasSubstr("whose rest length then is not a number"));

@@ -1,4 +1,4 @@
-// Evaluations: independent of company and threads, honest about failures.
+// Evaluations: results do not depend on the other bodies or on the number of threads, and failures have a reason.
 #include "life/evaluation.hpp"
 
 #include <gtest/gtest.h>
@@ -90,7 +90,7 @@ TEST(Evaluation, AllAirIsInvalidAndDisturbsNobody) {
   expect_equal(results[1], evaluate(experiment, {bone}).front());
 }
 
-/// Drag that a step of this length cannot bear: a force that grows with the square of the speed overshoots.
+/// The time step is too long for this drag: a force that grows with the square of the speed overshoots.
 TEST(Evaluation, ADivergedBodyIsToldWithTimeAndReason) {
   const Experiment experiment = testing::read(
       testing::small_experiment, {{"scene.drag.coefficient", "1e6", ""}, {"scene.gravity.acceleration", "1000", ""}});
@@ -102,7 +102,7 @@ TEST(Evaluation, ADivergedBodyIsToldWithTimeAndReason) {
   EXPECT_TRUE(result.objectives.empty());
 }
 
-/// A fitness that answers with what it is given.
+/// A fitness operator that returns a given value.
 class Constant final : public Fitness {
  public:
   explicit Constant(double value) : value_(value) {}
@@ -127,7 +127,7 @@ TEST(Evaluation, AFitnessThatIsNotANumberIsNoFitness) {
   }
 }
 
-/// Watches the window that it asked for.
+/// A fitness operator that stores the observation of its window.
 class Watcher final : public Fitness {
  public:
   Watcher(Request request, Observation& seen) : request_(request), seen_(seen) {}
@@ -147,7 +147,7 @@ TEST(Evaluation, EveryFitnessSeesItsOwnWindow) {
   Experiment experiment = testing::read(testing::small_experiment);
   experiment.development = {};
   experiment.scene = {};
-  experiment.scene.gravity = Gravity{};  // nothing but a fall: z = -g t^2 / 2
+  experiment.scene.gravity = Gravity{};  // the body only falls: z = -g t^2 / 2
   Observation early, late, whole;
   const auto observe = [&](Request request, Observation& seen) {
     experiment.fitness.push_back(std::make_unique<Watcher>(request, seen));
@@ -168,11 +168,11 @@ TEST(Evaluation, EveryFitnessSeesItsOwnWindow) {
 }
 
 TEST(Evaluation, ABodysOwnStepEndsWithItsWindow) {
-  // nothing but a fall, whose way a step of first order overshoots by g t dt/2
+  // the body only falls; a method of first order overshoots its path by g t dt/2
   Experiment experiment = testing::read(testing::small_experiment, {{"simulation.dt", "auto", ""}});
   experiment.scene = {};
   experiment.scene.gravity = Gravity{};
-  experiment.development.cycle_time = 0.0513;  // no whole number of any step
+  experiment.development.cycle_time = 0.0513;  // not a multiple of any step
   Observation seen;
   experiment.fitness.clear();
   experiment.fitness.push_back(std::make_unique<Watcher>(Request{.settle = 0.1, .window = 0.2, .work = true}, seen));
@@ -198,7 +198,7 @@ TEST(Evaluation, AnUnstableBodyIsInvalidOrRunsAsTheFileAsks) {
   EXPECT_NE(status("run").status, Status::invalid);
 }
 
-/// Stiffens the body a thousand times, by other springs or the same.
+/// Makes all springs a thousand times stiffer, by changing them or by exchanging them for others.
 struct Stiffener final : Devo {
   explicit Stiffener(bool by_exchange) : exchanges(by_exchange) {}
 
@@ -215,7 +215,7 @@ struct Stiffener final : Devo {
     }
   }
 
-  bool exchanges;  ///< the springs, instead of changing them
+  bool exchanges;  ///< whether springs are exchanged instead of changed
 };
 
 TEST(Evaluation, DevelopmentChangesTheStep) {
@@ -244,7 +244,7 @@ TEST(Evaluation, DevelopmentThatAFixedStepCannotBearIsInvalid) {
 }
 
 TEST(Evaluation, ALoadSinksTheFasterInWater) {
-  // where weight and drag are equal: M g = 12 c v^2
+  // terminal speed, at which weight and drag are equal: M g = 12 c v^2
   Experiment experiment = testing::read(
       testing::small_experiment,
       {{"scene.payload.share", "3", ""}, {"scene.payload.top", "1", ""}, {"scene.drag.coefficient", "0.5", ""}});
@@ -298,7 +298,7 @@ TEST(Evaluation, TheEnergyThatGrowthBringsIsAllowed) {
 TEST(Evaluation, ABodysLengthIsThatOfTheStartOfTheWindow) {
   Experiment experiment = testing::read(testing::small_experiment);
   experiment.scene.gravity.reset();
-  experiment.scene.damping->rate = 100;  // so that it has its new length soon
+  experiment.scene.damping->rate = 100;  // so that it reaches its new length soon
   experiment.devo[0].op = std::make_unique<Stretcher>();
   experiment.development.cycles = 1;
   Observation born, grown;
@@ -312,7 +312,7 @@ TEST(Evaluation, ABodysLengthIsThatOfTheStartOfTheWindow) {
   EXPECT_NEAR(grown.box.longest_side(), 3, 0.05);
 }
 
-/// The robots of a network that grow ballistically in the cycles of `schedule`, of four.
+/// An experiment of robots with ballistic growth in those of four cycles that `schedule` selects.
 Experiment ballistic(const std::string& encoding, const std::string& schedule) {
   std::string text = testing::small_experiment;
   const auto replace = [&](const char* from, const char* to, const std::string& by) {
@@ -330,7 +330,7 @@ size_range = 0.25
   return testing::read(text, {{"development.cycles", "4", ""}});
 }
 
-/// The cycles in which something changed.
+/// The cycles in which the body changed.
 std::set<std::uint32_t> cycles_of_change(const Life& life) {
   std::set<std::uint32_t> cycles;
   for (const Change& change : LifeRecord(life.result.record.bytes()).changes()) cycles.insert(change.cycle);
@@ -409,7 +409,7 @@ TEST(Evaluation, AFaultyOperatorIsNamed) {
   }
 }
 
-/// Gives a spring to a mass that is not there.
+/// An encoding with a spring to a mass that does not exist.
 struct Dangling final : Encoding {
   Layout layout(const EncodingContext&) const override { return {}; }
   Blueprint decode(const Genome&, const EncodingContext& context) const override {
@@ -431,7 +431,7 @@ TEST(Evaluation, AFaultyEncodingIsNamed) {
   }
 }
 
-/// Masses at given positions, all joined by springs of one rest length.
+/// An encoding of masses at given positions, all joined to each other by springs of the same rest length.
 struct Placed final : Encoding {
   std::vector<Vec3> positions;
   double rest_length;
@@ -472,7 +472,7 @@ TEST(Evaluation, OnlyABodyInOnePointHasNoExtent) {
     EXPECT_EQ(result({{0, 0, 0}, {0.3, 0, 0}}, 0.3).reason, "") << "straight";
     EXPECT_EQ(result({{0, 0, 0}, {0, 0, 0.3}}, 0.3).reason, "") << "upright";
     EXPECT_EQ(result({{0, 0, 0}, {0.3, 0, 0}, {0, 0.3, 0}}, 0.3).reason, "") << "flat";
-    // without a floor that it could lie on its springs pull it into one point
+    // without a floor on which it could lie, its springs pull it into a single point
     experiment.scene = {.damping = Damping{}};
     const Result shrunk = result({{0, 0, 0}, {0.3, 0, 0}}, 0);
     EXPECT_EQ(shrunk.reason, "no extent");
@@ -481,7 +481,7 @@ TEST(Evaluation, OnlyABodyInOnePointHasNoExtent) {
   }
 }
 
-/// Keeps where the body was when development looked.
+/// A devo operator that stores the height of the body at each application.
 class Place final : public Devo {
  public:
   explicit Place(std::vector<double>& heights) : heights_(heights) {}
@@ -512,7 +512,7 @@ TEST(Evaluation, ResetPutsTheBodyBackAfterEveryCycle) {
 }
 
 TEST(Evaluation, ResetPutsTheBodyOnRoughGroundAsAtBirth) {
-  for (const char* seed : {"1", "2", "3", "4"}) {  // hills and hollows
+  for (const char* seed : {"1", "2", "3", "4"}) {  // grounds with hills and hollows
     const Experiment experiment = testing::read(
         testing::small_experiment,
         {{"development.reset", "true", ""}, {"scene.floor.roughness", "0.05", ""}, {"scene.floor.seed", seed, ""}});

@@ -1,4 +1,5 @@
-// Runs that fail in the middle: what is committed stays, and resuming ends as if nothing had happened.
+// Runs that fail in the middle: committed generations are kept, and resuming gives the same result as without a
+// failure.
 #include "evolution/evolution.hpp"
 
 #include <gmock/gmock.h>
@@ -16,7 +17,7 @@ namespace {
 using ::testing::EndsWith;
 using ::testing::StartsWith;
 
-/// A simulator whose device is lost at some time.
+/// A simulator whose device is lost when `lost` returns true.
 class Breaking final : public Simulator {
  public:
   Breaking(const Experiment& experiment, std::function<bool()> lost)
@@ -37,7 +38,7 @@ class Breaking final : public Simulator {
 
 class LostDevice : public ::testing::Test {
  protected:
-  /// What the run in the folder `name` says where the device is lost after `generations`.
+  /// Returns the error message of a run in the folder `name` whose device is lost after `generations`.
   std::string failure(const std::string& name, std::size_t generations) {
     Archive archive = Archive::create(scratch_ / name, experiment_, "test");
     Breaking simulator(experiment_, [&] { return archive.generations().size() == generations; });
@@ -83,7 +84,8 @@ TEST_F(LostDevice, ResumedEndsAsIfItHadNotBeen) {
   }
 }
 
-/// Bone that whole voxels of tear apart at 0.5 ms: what it does before it is flagged goes farther than anything walks.
+/// Bone is so stiff that whole voxels of it diverge at 0.5 ms. Before such a body is flagged, it moves farther than any
+/// robot walks.
 TEST(Flagged, BodiesNeverWinThoughManyAreBorn) {
   const testing::Scratch scratch;
   const Experiment experiment = testing::read(testing::small_experiment, {{"materials.bone.stiffness", "1e6", ""},
@@ -117,7 +119,7 @@ TEST(SpringEvaluations, EndTheRunWithTheGenerationThatReachesThem) {
   };
   const auto all = run("all");
   ASSERT_EQ(all.size(), 4u);
-  // exactly what two generations need, and one more than that
+  // exactly the number of spring evaluations in two generations, and then one more
   experiment.spring_evaluations = static_cast<double>(all[0].spring_evaluations + all[1].spring_evaluations);
   EXPECT_EQ(run("two").size(), 2u);
   experiment.spring_evaluations += 1;

@@ -1,4 +1,5 @@
-// Records from elsewhere: whatever is in one, each command ends well or refuses it in one line that names the folder.
+// Runs with arbitrary contents from other sources: each command succeeds, or refuses the run in one line that names the
+// folder.
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,7 +26,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Half of a small run, so that there is something to resume.
+/// Provides half of a small run, which can be resumed.
 class ForeignRecord : public ::testing::Test {
  protected:
   ForeignRecord() {
@@ -43,7 +44,8 @@ class ForeignRecord : public ::testing::Test {
       if (archive.life(id) && !archive.life(id)->empty()) recorded_ = id;
   }
 
-  /// What a command says that does not take the record; empty where it takes it. What is none of the two is an error.
+  /// Returns the message with which a command refuses the run, or an empty text if the command succeeds. Any other end
+  /// of the command is a failure of the test.
   std::string refusal(const std::function<void()>& command) const {
     ::testing::internal::CaptureStdout();
     ::testing::internal::CaptureStderr();
@@ -63,7 +65,7 @@ class ForeignRecord : public ::testing::Test {
     return said;
   }
 
-  /// Gives the folder to all commands; how many refuse it.
+  /// Calls all commands with the folder; returns how many refuse it.
   int refusals() const {
     const std::string folder = folder_.string(), recorded = std::to_string(recorded_);
     int refused = 0;
@@ -90,7 +92,7 @@ class ForeignRecord : public ::testing::Test {
   }
   SQLite::Database database() const { return {(folder_ / "run.sqlite").string(), SQLite::OPEN_READWRITE}; }
 
-  /// Makes a change to a copy of the run; false where the tables do not allow it.
+  /// Changes a copy of the run; returns false if the constraints of the tables do not allow the change.
   bool change(const std::string& sql) const {
     renew();
     try {
@@ -103,7 +105,7 @@ class ForeignRecord : public ::testing::Test {
 
   testing::Scratch scratch_;
   fs::path original_ = scratch_ / "original", folder_ = scratch_ / "a foreign run";
-  std::uint32_t recorded_ = 0;  ///< an individual that has a record of its life
+  std::uint32_t recorded_ = 0;  ///< an individual whose life is recorded
 };
 
 TEST_F(ForeignRecord, AnUntouchedOneIsTaken) {
@@ -130,7 +132,7 @@ TEST_P(ForeignTable, MayHoldAnything) {
     for (const char* value : {"NULL", "-1", "3", "9000000000000000000", "1e308", "-9e999",
                               "'two' || char(10) || 'lines'", "x''", "x'80'", "zeroblob(4000)"}) {
       SCOPED_TRACE(column + " = " + value);
-      // of all rows, or where that would make two equal, of one
+      // changes all rows or, if that would violate uniqueness, one row
       const std::string update = "UPDATE " + table + " SET " + column + " = " + value;
       if (!change(update) &&
           !change(update + " WHERE " + columns.front() + " = (SELECT max(" + columns.front() + ") FROM " + table + ")"))

@@ -1,4 +1,4 @@
-// The frame in which grown bodies are compared.
+// The frame of reference in which developed bodies are compared.
 #include "environments/grown_body.hpp"
 
 #include <gtest/gtest.h>
@@ -8,15 +8,15 @@
 namespace evodevo {
 namespace {
 
-/// Turned about the z axis, then the x axis, and shifted.
-Vec3 moved(Vec3 p, double application, Vec3 shift) {
-  const double c = std::cos(application), s = std::sin(application);
+/// Returns `p` rotated by the angle `angle` about the z axis and then about the x axis, and shifted.
+Vec3 moved(Vec3 p, double angle, Vec3 shift) {
+  const double c = std::cos(angle), s = std::sin(angle);
   p = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
   return Vec3{p.x, c * p.y - s * p.z, s * p.y + c * p.z} + shift;
 }
 
-std::vector<Vec3> all_moved(std::vector<Vec3> positions, double application, Vec3 shift) {
-  for (Vec3& position : positions) position = moved(position, application, shift);
+std::vector<Vec3> all_moved(std::vector<Vec3> positions, double angle, Vec3 shift) {
+  for (Vec3& position : positions) position = moved(position, angle, shift);
   return positions;
 }
 
@@ -38,12 +38,12 @@ TEST(Undeformed, UndoesARigidMotion) {
 TEST(Undeformed, MirrorsNothing) {
   const std::vector<Vec3> flat{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
   const Vec3 above{0.3, 0.4, 0.5};
-  for (const double application : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0})
-    expect_near(undeformed(moved(above, application, far_away), all_moved(flat, application, far_away), flat), above);
+  for (const double angle : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0})
+    expect_near(undeformed(moved(above, angle, far_away), all_moved(flat, angle, far_away), flat), above);
 }
 
 TEST(Undeformed, GoesAlongWithTheMassesAroundIt) {
-  // two pieces ten body lengths apart, each turned by itself
+  // two pieces ten body lengths apart, each rotated separately
   std::vector<Vec3> rest = tetrahedron;
   for (const Vec3& position : tetrahedron) rest.push_back(position + Vec3{10, 0, 0});
   std::vector<Vec3> positions = all_moved(tetrahedron, 1, {0, 0, 0});
@@ -51,7 +51,7 @@ TEST(Undeformed, GoesAlongWithTheMassesAroundIt) {
   const Vec3 inside{0.2, 0.3, 0.2};
   expect_near(undeformed(moved(inside, 1, {0, 0, 0}), positions, rest), inside, 0.01);
   expect_near(undeformed(moved(inside, -0.5, {10, 0, 0}), positions, rest), inside + Vec3{10, 0, 0}, 0.01);
-  // at a mass it is that mass, whatever the others do
+  // at the position of a mass, the result is the rest position of that mass, independently of the others
   expect_near(undeformed(positions[1], positions, rest), rest[1], 1e-9);
 }
 
@@ -62,7 +62,7 @@ Life newborn(const std::vector<Vec3>& rest) {
   return life;
 }
 
-/// Lets a mass come at a place and one go, as devo operators do.
+/// Adds a mass at a position and removes another one, as devo operators do.
 void replace_mass(Life& life, Vec3 position, std::uint32_t goes) {
   LivingBody& living = life.living;
   living.body.masses.push_back({position, 1});

@@ -1,4 +1,4 @@
-// Experiments and options that nobody means well with: each is read, or refused in one clean line that names the place.
+// Malicious experiments and options: each is read, or refused in one clean line that names the location.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 using testing::small_experiment;
 using ::testing::StartsWith;
 
-/// The message that reading `text` ends with; empty where it is read.
+/// Returns the error message of reading `text`, or an empty text if it is valid.
 std::string complaint(const std::string& text, std::vector<Override> overrides = {}) {
   try {
     testing::read(text, std::move(overrides));
@@ -38,7 +38,7 @@ std::string complaint_of_file(const std::string& file) {
 
 void expect_clean(const std::string& message) { EXPECT_EQ(message, printable(message, InputError::longest_message)); }
 
-/// Whatever is wrong with a text, a message begins with its name.
+/// Expects that `text` is read, or refused with a message that begins with the name of its file.
 void expect_read_or_refused(const std::string& text) {
   const std::string message = complaint(text);
   if (message.empty()) return;
@@ -52,14 +52,14 @@ std::string times(std::size_t count, const std::string& part) {
   return text;
 }
 
-/// The small experiment with its first `from` replaced.
+/// Returns `text` with the first occurrence of `from` replaced.
 std::string with(const std::string& from, const std::string& to, std::string text = small_experiment) {
   const auto at = text.find(from);
   if (at == std::string::npos) throw std::logic_error("the text has no " + from);
   return text.replace(at, from.size(), to);
 }
 
-/// Texts that are nested `depth` times, each in its own way.
+/// Returns texts with `depth` levels of nesting, each of another kind.
 std::vector<std::string> nested(std::size_t depth) {
   return {"a" + times(depth, ".a") + " = 1",
           "\"a\"" + times(depth, " . 'a'") + " = 1",

@@ -1,4 +1,4 @@
-// Work in a process of its own: whatever it does, this one goes on.
+// Work in a child process: whatever happens there, the parent process continues.
 #include "operators/isolation.hpp"
 
 #include <gmock/gmock.h>
@@ -62,21 +62,21 @@ TEST(Isolation, WaitsForNoProcessThatAChildLeavesBehind) {
   const auto leave_one_behind = [&] {
     const pid_t left = fork();
     if (left == 0) {
-      setpgid(0, 0);  // so that nobody ends it with the child
+      setpgid(0, 0);  // so that it is not ended together with the child
       while (access((scratch / "").c_str(), F_OK) == 0) usleep(1000);
       _exit(0);
     }
     return std::to_string(left);
   };
-  // it holds the pipe open; were it waited for, the child would not be done
+  // the process left behind keeps the pipe open; in_child() must not wait for it
   const ChildEnd end = in_child(leave_one_behind, seconds);
   EXPECT_NE(end.text, "");
-}  // and with its folder goes what was left behind
+}  // the removal of the folder ends the process left behind
 
 TEST(Isolation, WritesNothingTwice) {
   const testing::Scratch scratch;
   std::FILE* file = std::fopen((scratch / "lines").c_str(), "w");
-  std::fputs("once\n", file);  // and it is in the buffer still
+  std::fputs("once\n", file);  // stays in the buffer, which the child inherits
   in_child([] { return std::exit(0), std::string(); }, seconds);
   in_child([] { return std::string(); }, seconds);
   std::fclose(file);

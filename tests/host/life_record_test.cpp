@@ -1,5 +1,5 @@
-// Records of lives: what goes in comes out, replaying gives the matured body to the bit, and runs keep those of the
-// front.
+// Records of lives: edits that are written can be read again, re-simulation gives the matured body to the bit, and runs
+// keep the records of individuals on the front.
 #include "life/life_record.hpp"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@
 namespace evodevo {
 namespace {
 
-/// As many operators as possible, on bodies of some dozens of masses.
+/// An experiment with as many operators as possible, on bodies of some dozens of masses.
 Experiment all_operators(bool reset) {
   std::string text = testing::small_experiment;
   const std::string operators = R"(
@@ -207,7 +207,7 @@ TEST(LifeRecord, ASpringThatGoesAndOneThatComesTakeSome20Bytes) {
   }
 }
 
-/// Voxel robots that grow in each of `cycles` short cycles, and nothing else.
+/// An experiment of voxel robots whose only development is ballistic growth, in each of `cycles` short cycles.
 Experiment growing(int cycles) {
   std::string text = testing::small_experiment;
   const std::string turnover = "name = \"spring-turnover\"\nsprings = 2";
@@ -249,7 +249,7 @@ TEST(LifeRecord, CausesStayWithTheirEdits) {
   EXPECT_TRUE(change.edits.causes.removed_masses.empty());
 }
 
-/// How many causes the changes of several lives name.
+/// The number of causes that the changes of several lives name.
 std::size_t causes_named(const Experiment& experiment) {
   std::size_t count = 0;
   for (const Lived& lived : matured(experiment, 6))
@@ -276,7 +276,8 @@ void expect_same_life(const Life& a, const Life& b) {
   EXPECT_EQ(a.result.record, b.result.record);
 }
 
-/// Lives again, by their record, the last of some lives under `control`, where development would do otherwise.
+/// Re-simulates the last of several lives under `control` by its record, in an experiment in which development would
+/// decide differently.
 void expect_that_a_life_follows_its_record(Control control) {
   const auto experiment = [&] {
     Experiment all = all_operators(true);
@@ -305,7 +306,8 @@ TEST(LifeRecord, ALifeAtRandomPlacesFollowsItsRecordWhicheverOperatorComesFirst)
   expect_that_a_life_follows_its_record(Control::random_places);
 }
 
-/// Exchanges the first spring for one of the same ends, which is `stretch` times as long or, without it, has no force.
+/// Exchanges the first spring for one between the same masses, whose rest length is `stretch` times as long or, without
+/// `stretch`, such that it starts without force.
 class Exchange final : public Devo {
  public:
   explicit Exchange(std::optional<double> stretch) : stretch_(stretch) {}
@@ -343,7 +345,8 @@ TEST(LifeRecord, ALifeLivedAgainIsAllowedTheEnergyThatItHadThen) {
   EXPECT_GT(energies[1], energies[0]) << "what an operator strains is allowed";
 }
 
-/// Lives with a record and lives without it, in one batch, where development does otherwise than in the record.
+/// Simulates lives with and without a record in one batch, in which development decides differently than in the
+/// records.
 void expect_that_each_life_goes_its_own_way(Control control) {
   Experiment experiment = all_operators(false);
   experiment.development.control = control;
@@ -400,7 +403,7 @@ bool surpasses(const ArchivedIndividual& a, const ArchivedIndividual& b) {
   return x[0] > y[0] || x[1] < y[1] || a.origin > b.origin;
 }
 
-/// Whether nobody surpasses an individual before, or after, the selection of a generation, in which it is there.
+/// Whether an individual is on the front before or after the selection of a generation in which it is alive.
 bool on_front(const ArchivedIndividual& one, const std::vector<ArchivedIndividual>& all, std::uint32_t generation,
               bool after_selection) {
   const auto is_there = [&](const ArchivedIndividual& other) {
@@ -429,7 +432,7 @@ TEST(LifeRecord, ARunKeepsThoseOfTheFrontAlone) {
   EXPECT_LT(kept, 57);
 }
 
-/// Drops the best, so that others come to the front.
+/// A selection operator that drops the best individuals, so that others come to the front.
 class Levelling final : public Selection {
  public:
   std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
@@ -475,14 +478,14 @@ TEST(LifeRecord, ARunKeepsThoseWhoReachTheFrontLaterToo) {
   EXPECT_GT(late, 3);
 }
 
-/// A run of ten generations that is stopped after five and continues under another provenance.
+/// A run of ten generations that is stopped after five and resumed with another provenance.
 class GoneOn : public ::testing::Test {
  protected:
   static constexpr std::uint32_t first_half = 5;
 
   GoneOn() { experiment_.selection = std::make_unique<Levelling>(); }
 
-  /// All individuals of the run, the second half of which is made by `second` on `device`.
+  /// Returns all individuals of the run, whose second half is made by the experiment `second` on `device`.
   std::vector<ArchivedIndividual> evolved_by_two(const Experiment& second, const std::string& device) {
     std::atomic<bool> stop = false;
     const Observer observer{
@@ -497,7 +500,8 @@ class GoneOn : public ::testing::Test {
     return evolved(second, archive, there);
   }
 
-  /// Elders of the first half who reach the front in the second live no other life that would be recorded as theirs.
+  /// Expects that individuals of the first half that reach the front only in the second half do not get the record of a
+  /// life that differs from their own.
   void expect_no_other_life_recorded(const std::vector<ArchivedIndividual>& all) {
     const Archive archive = Archive::read(folder_);
     int without_record = 0, late = 0;

@@ -1,4 +1,4 @@
-// The border between host and plugin: what is refused, and in which words.
+// The border between host and plugins: which libraries are refused, and with which messages.
 #include "operators/loader.hpp"
 
 #include <gmock/gmock.h>
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Why the only library in tests/plugins' folder `fault` is refused.
+/// Returns the message with which the only library in tests/plugins' folder `fault` is refused.
 std::string refusal(const std::string& fault, std::vector<fs::path> others_first = {}) {
   others_first.emplace_back(fs::path(EVODEVO_FAULTY_PLUGINS) / fault);
   const Registry registry(others_first);
@@ -104,7 +104,7 @@ TEST(Loader, WhatAManifestLacksIsNamedAndDisturbsNoOther) {
   EXPECT_NE(registry.find("mutation", "nothing"), nullptr) << "of the sound library, which came last";
 }
 
-/// Has one parameter, of a given name.
+/// An operator with one parameter of the given name.
 struct Named final : Operator {
   std::string name;
   double value = 1;
@@ -206,7 +206,8 @@ TEST(Loader, AFileThatIsNoLibraryDisturbsNoOther) {
   EXPECT_NE(registry.find("mutation", "nothing"), nullptr);
 }
 
-/// What the folder says to somebody who may not read it; root may, so root becomes somebody else.
+/// Tests the message for a folder without read permission. Root may read all folders, so as root the test switches to
+/// another user.
 TEST(Loader, AFolderWithoutPermissionIsNamed) {
   const testing::Scratch scratch;
   fs::create_directory(scratch / "closed");

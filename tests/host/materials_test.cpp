@@ -1,4 +1,4 @@
-// The materials of a body: those of the experiment, and others for as long as something is made of them.
+// The materials of a body: those of the experiment, and additional ones as long as a spring or mass uses them.
 #include "base/materials.hpp"
 
 #include <gmock/gmock.h>
@@ -21,7 +21,7 @@ using ::testing::ElementsAre;
 
 const Material bone{10000, 0, 0, 0}, muscle{5000, 0.14, 1, 0}, soft{700, 0, 0, 0}, odd{0.7, 0.1, 0.0007, -3};
 
-/// A body whose springs and masses have the materials of these indices.
+/// A body whose springs and masses have materials with the given indices.
 Body body_of(std::vector<Material> materials, std::vector<std::uint32_t> springs, std::vector<std::int32_t> masses,
              std::uint32_t base = 0) {
   Body body;
@@ -32,7 +32,7 @@ Body body_of(std::vector<Material> materials, std::vector<std::uint32_t> springs
   return body;
 }
 
-/// What the springs are made of, then the masses.
+/// The materials of all springs, then of all masses.
 std::vector<Material> made_of(const Body& body) {
   std::vector<Material> made;
   for (const Spring& spring : body.springs) made.push_back(body.materials.at(spring.material));
@@ -69,7 +69,7 @@ TEST(Materials, OfTheExperimentStayInTheirPlaces) {
   EXPECT_EQ(made_of(body), before);
 }
 
-/// Fifty masses in a chain, whose springs all change at every turn, each in its own way.
+/// Tests a chain of fifty masses whose springs all change at every step, each to a different material.
 TEST(Materials, AreNoMoreThanTheSpringsAreHoweverOftenTheseChange) {
   LivingBody living;
   living.body = body_of({bone, muscle}, {}, {}, 2);

@@ -1,4 +1,4 @@
-// How messages tell numbers.
+// The format of numbers in messages.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// What is known of the calls of operators, and what they leave behind.
+// The context of operator calls, and changes of process state that operators leave behind.
 #include "operators/operator_call.hpp"
 
 #include <gmock/gmock.h>
@@ -62,7 +62,7 @@ TEST(OperatorCall, IsSeenByOtherThreads) {
   EXPECT_NE(numbers[1], numbers[2]) << "it is another";
 }
 
-/// What is said of an operator that changes something.
+/// Returns the message about an operator that changes process state.
 std::string said_of(const char* name, void (*change)()) {
   ::testing::internal::CaptureStderr();
   in_operator({title(name)}, change);

@@ -1,4 +1,4 @@
-// Files that are written as a whole or not at all.
+// Files that are written completely or not at all.
 #include "base/output_file.hpp"
 
 #include <gmock/gmock.h>
@@ -18,7 +18,7 @@ std::string content(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// What is thrown where `write` fails.
+/// Returns the message of the exception that `write` throws.
 template <class Write>
 std::string failure(const Write& write) {
   try {

@@ -1,4 +1,4 @@
-// What crosses the border to plugins, word by word: whoever changes it raises the epoch.
+// All declarations that cross the border to plugins: a change of them requires a higher ABI epoch.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Behind the brace that closes the one at `open`.
+/// Returns the position after the brace that closes the one at `open`.
 std::size_t behind_braces(const std::string& text, std::size_t open) {
   int depth = 0;
   for (std::size_t i = open; i < text.size(); ++i) {
@@ -36,9 +36,9 @@ std::size_t behind_braces(const std::string& text, std::size_t open) {
   return text.size();
 }
 
-/// The declarations of a header, one a line, in their order: types, names, defaults and signatures; neither comments,
-/// nor preprocessor lines, nor bodies of functions. Types of members and their order make their offsets, the order of
-/// virtual functions their positions.
+/// Returns the declarations of a header, one per line, in their order: types, names, defaults and signatures, without
+/// comments, preprocessor lines and bodies of functions. Types and order of members determine their offsets; the order
+/// of virtual functions determines their positions in the table.
 std::string declarations(std::string text) {
   text = std::regex_replace(text, std::regex("//[^\n]*"), "");
   text = std::regex_replace(text, std::regex("\n#([^\n]*\\\\\n)*[^\n]*"), "\n");
@@ -76,7 +76,7 @@ std::string declarations(std::string text) {
   return lines;
 }
 
-/// The declarations of a header and of all that it includes of the SDK, the included ones first.
+/// Appends the declarations of a header after those of all headers of the SDK that it includes.
 void add_declarations(const std::string& header, std::set<std::string>& seen, std::string& all) {
   if (!seen.insert(header).second) return;
   for (const char* folder : {"framework/sdk", "kernels/include"}) {

@@ -1,4 +1,4 @@
-// What pages of the viewer hold: lives as they were, and numbers that can be unpacked.
+// The data in pages of the viewer: lives as they were simulated, and numbers that can be unpacked.
 #include "report/report.hpp"
 
 #include <gmock/gmock.h>
@@ -35,7 +35,7 @@ std::vector<Newborn> newborns_of(const std::vector<Individual>& individuals) {
   return newborns;
 }
 
-/// What a page does with a packed text.
+/// Unpacks a text in the same way as a page.
 std::vector<std::int64_t> unpacked(const std::string& text) {
   const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::vector<unsigned char> deflated, plain(1 << 22);
@@ -59,7 +59,7 @@ std::vector<std::int64_t> unpacked(const std::string& text) {
   return numbers;
 }
 
-/// The small experiment, with other operators and more to say about development.
+/// Returns the small experiment with other devo operators, and additional keys of development.
 std::string with_development(const std::string& keys, const std::string& operators) {
   std::string text = testing::small_experiment;
   const std::size_t first = text.find("[[development.operator]]");
@@ -122,7 +122,7 @@ TEST(Filming, ReachesFromBirthToTheEndWithoutAGap) {
       time = shot.frames.back().time;
     }
     EXPECT_NEAR(time, 2 * 0.05 + 0.15, 1e-9);
-    EXPECT_EQ(life.film.back().frames.size(), 7u);  // 60 a second in 0.1 s, and the first
+    EXPECT_EQ(life.film.back().frames.size(), 7u);  // 60 per second for 0.1 s, and the first one
   }
   EXPECT_GT(lives, 4u);
 }
@@ -159,7 +159,7 @@ TEST(Filming, ACycleOfManyRunsIsOneShot) {
     const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
     return film_lives(experiment, *simulator, newborns_of(individuals)).front().film;
   };
-  const Film exact = film(""), tallied = film("probe = 'skip-shift'\nskip = 7\n");  // runs of 3.5 ms
+  const Film exact = film(""), tallied = film("probe = 'skip-shift'\nskip = 7\n");  // a tally every 3.5 ms
   ASSERT_EQ(exact.size(), 4u);
   ASSERT_EQ(tallied.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -170,7 +170,7 @@ TEST(Filming, ACycleOfManyRunsIsOneShot) {
     EXPECT_GE(frames.size(), exact[i].frames.size());
     EXPECT_LE(frames.size(), 2 * exact[i].frames.size());
   }
-  // the body at birth is the same, so it works as hard
+  // the body at birth is the same, so its stress is the same
   ASSERT_EQ(tallied.front().stress.size(), exact.front().stress.size());
   for (std::size_t s = 0; s < exact.front().stress.size(); ++s)
     EXPECT_NEAR(tallied.front().stress[s], exact.front().stress[s], 1e-4 * exact.front().stress[s] + 1e-6);
@@ -234,11 +234,11 @@ TEST(Packing, TellsPlacesByHowMassesMoved) {
   PlacePacking positions(3, 0.5);
   EXPECT_THAT(unpacked(positions.next(frames, std::vector<std::uint32_t>{0, 1})),
               ElementsAre(2, 2, 4, 0, 6, 0, 2, 2, 0, 0, 0, 0, 3, 3, 0, 0, 0, 8));
-  // the second mass stays where it was, and a new one comes
+  // the second mass stays at its position, and a new one is added
   EXPECT_THAT(unpacked(positions.next(again, std::vector<std::uint32_t>{1, 2})), ElementsAre(0, 2, 0, 0, 0, 0));
 }
 
-/// A body with masses at these x, of these numbers, joined by these pairs.
+/// A shot of a body with masses at the given x positions, with the given numbers, joined in the given pairs.
 Shot shot_of(const std::vector<double>& positions, std::vector<std::uint32_t> numbers,
              const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {
   Shot shot;
@@ -255,7 +255,8 @@ Shot shot_of(const std::vector<double>& positions, std::vector<std::uint32_t> nu
 }
 
 TEST(FilmJson, KnowsMassesAndSpringsAgainAfterEdits) {
-  // the first mass goes with its spring, the others move up by one; a new mass and a spring to it come
+  // the first mass and its spring are removed, so the indices of the others decrease by one; a new mass and a spring to
+  // it are added
   const Film film = {shot_of({0, 1, 2}, {0, 1, 2}, {{0, 1}, {1, 2}}), shot_of({1, 2, 5}, {1, 2, 3}, {{0, 1}, {2, 0}})};
   const auto json = film_json(film, {{"before"}, {"after"}}, 1000);
   EXPECT_EQ(json["masses"], 4);
@@ -283,13 +284,13 @@ TEST(FilmJson, KnowsMaterialsAgainThatABodyHasLost) {
   EXPECT_EQ(json["materials"][1]["stiffness"], muscle.stiffness);
   std::int64_t material = 0;
   for (const auto& [shot, made_of] : {std::pair{0, bone}, {1, stiffer}, {2, stiffest}}) {
-    material += unpacked(json["shots"][shot]["materials"]).front();  // the difference from what it was
+    material += unpacked(json["shots"][shot]["materials"]).front();  // stored as the difference from the previous value
     EXPECT_EQ(json["materials"][material]["stiffness"], made_of.stiffness) << shot;
   }
   EXPECT_THAT(unpacked(json["mass_materials"]), ElementsAre(0, 1));
 }
 
-/// Masses in a row that swing, each at a rate of its own, for so many frames.
+/// A shot of `frames` frames with masses in a row that oscillate, each with a frequency of its own.
 Shot swinging(std::size_t masses, std::size_t frames) {
   std::vector<double> positions(masses);
   std::vector<std::uint32_t> numbers(masses);
@@ -325,7 +326,7 @@ TEST(FilmJson, KeepsTheEndsOfEachShotWhateverTheyTake) {
 }
 
 TEST(FilmJson, StatesTheErrorOfWhatItLeavesOut) {
-  // a mass that jumps by 1 m in the middle of a stretch of which every other frame is kept
+  // a mass jumps by 1 m in the middle of an interval of which every other frame is kept
   Shot shot = shot_of({0, 4}, {0, 1}, {{0, 1}});
   for (int i = 1; i <= 4; ++i) {
     shot.frames.push_back(shot.frames.front());
@@ -337,7 +338,7 @@ TEST(FilmJson, StatesTheErrorOfWhatItLeavesOut) {
   EXPECT_NEAR(json["error"]["largest"].get<double>(), 1, 1e-3);
 }
 
-/// Spring turnover: so many springs give way to others, between masses that none joins yet.
+/// Spring turnover: replaces `springs` random springs by springs between masses that are not joined yet.
 void turn_over(Body& body, std::size_t springs, std::mt19937& random) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> joined;
   for (const Spring& spring : body.springs) joined.insert(std::minmax(spring.a, spring.b));
@@ -352,8 +353,8 @@ void turn_over(Body& body, std::size_t springs, std::mt19937& random) {
   }
 }
 
-/// A life of the paper's length with a fifth of its masses and springs: all pulse once a second, each as far as it
-/// likes and with some noise, drift away, and work differently hard in every shot.
+/// A life as long as those of the paper, with a fifth of the masses and springs. All masses pulse once per second, each
+/// with an amplitude of its own and some noise, and drift away; stress differs from shot to shot.
 Film long_life(int cycles) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> any(-1, 1);
@@ -388,12 +389,12 @@ Film long_life(int cycles) {
 
 TEST(FilmJson, ThirteenLivesOfAHundredCyclesFitIntoAPage) {
   constexpr int cycles = 100;
-  constexpr std::size_t budget = page_budget / 13 / 5;  // ten champions and three ancestors
+  constexpr std::size_t budget = page_budget / 13 / 5;  // a page has ten champions and three ancestors
   const Film film = long_life(cycles);
   std::vector<Title> titles(cycles, {"cycle"});
   titles.insert(titles.end(), {{"settling"}, {"measured", true}});
   const auto json = film_json(film, titles, budget);
-  EXPECT_LE(json.dump().size(), budget + 200);  // and the error
+  EXPECT_LE(json.dump().size(), budget + 200);  // the error is added after packing
   std::set<std::int64_t> springs;
   for (int i = 0; i < cycles; ++i) {
     const auto& shot = json["shots"][static_cast<std::size_t>(i)];
@@ -433,7 +434,7 @@ TEST(FilmJson, StatesTheErrorOfStress) {
   }
 }
 
-/// A life in which one body was seen at these positions.
+/// A filmed life with a single frame, in which the masses are at these positions.
 FilmedLife life_at(const std::vector<SeenPlace>& positions, Status status = Status::ok) {
   FilmedLife life;
   life.result.status = status;

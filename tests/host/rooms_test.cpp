@@ -1,4 +1,5 @@
-// Which folder may include which, and how large folders and files may be: see framework/README.md, kernels/README.md.
+// Rules on which folder may include which, and on the sizes of folders and files: see framework/README.md and
+// kernels/README.md.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 
 const fs::path source = EVODEVO_SOURCE_FOLDER;
 
-/// Floors from below: a folder may include those of lower floors and itself, and none beside it.
+/// The layers, lowest first: a folder may include itself and folders of lower layers, but no other folder of its layer.
 using Floors = std::vector<std::set<std::string>>;
 const Floors floors{{"kernels/include"},
                     {"kernels/threads", "kernels/physics"},
@@ -36,7 +37,7 @@ const Floors floors{{"kernels/include"},
                     {"framework/commands"},
                     {"framework/main.cpp", "framework/help.inc"}};
 
-/// "framework/life" of framework/life/birth.cpp.
+/// Returns the folder of the table in which a file lies, such as "framework/life" for framework/life/birth.cpp.
 std::string room_of(const fs::path& file) {
   const fs::path relative = fs::relative(file, source);
   auto part = relative.begin();
@@ -71,7 +72,7 @@ std::vector<std::string> lines_of(const fs::path& file) {
   return lines;
 }
 
-/// The file of the project that an #include "..." names; nothing where it is another's.
+/// Returns the file of this project that an #include "..." names, or nothing if it belongs to another project.
 std::optional<fs::path> included(const std::string& name) {
   for (const char* root : {"framework", "kernels", "kernels/include", "framework/sdk"})
     if (fs::exists(source / root / name)) return source / root / name;

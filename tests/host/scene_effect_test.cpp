@@ -12,7 +12,7 @@ namespace {
 
 using Distances = std::vector<std::vector<double>>;
 
-/// Of bodies that differ in one number.
+/// Returns the distances between bodies that are represented by one number each.
 Distances distances(const std::vector<double>& bodies) {
   Distances all(bodies.size(), std::vector<double>(bodies.size()));
   for (std::size_t i = 0; i < bodies.size(); ++i)
@@ -23,12 +23,12 @@ Distances distances(const std::vector<double>& bodies) {
 TEST(SceneEffect, HoldsTheMeans) {
   const SceneEffect effect = scene_effect(distances({0, 0.1, 0.2, 1, 1}), 3);
   EXPECT_NEAR(effect.between, 0.9, 1e-12);
-  // 0.4/3 within the first scene and 0 within the other
+  // the mean distance is 0.4/3 within the first scene and 0 within the other
   EXPECT_NEAR(effect.within.value(), 0.2 / 3, 1e-12);
 }
 
 TEST(SceneEffect, IsAsRareAsItsDeal) {
-  // 2 of the 20 ways to deal six bodies to two scenes are as good as this, 2 of 252 those of ten
+  // of the 20 ways to assign six bodies to two scenes, 2 give at least this effect; of ten bodies, 2 of 252
   EXPECT_NEAR(scene_effect(distances({0, 0.01, 0.02, 0.9, 0.91, 0.92}), 3).p.value(), 0.1, 0.015);
   EXPECT_NEAR(scene_effect(distances({0, 0.1, 0.2, 0.3, 0.4, 1, 1.1, 1.2, 1.3, 1.4}), 5).p.value(), 2.0 / 252, 0.004);
 }
@@ -47,7 +47,7 @@ TEST(SceneEffect, OfNoiseAloneIsSelectedAsOftenAsPSays) {
     for (double& body : bodies) body = rng.uniform();
     if (scene_effect(distances(bodies), 5).p <= 0.2) ++at_most_a_fifth;
   }
-  // four standard deviations of a binomial number
+  // four standard deviations of a binomial distribution
   EXPECT_NEAR(at_most_a_fifth, trials * 0.2, 4 * std::sqrt(trials * 0.2 * 0.8));
 }
 

@@ -1,4 +1,4 @@
-// The paper's tallies against their definition.
+// The paper's tallies, compared with their definition.
 #include "core/skip_shift.hpp"
 
 #include <gmock/gmock.h>
@@ -23,7 +23,7 @@ using ::testing::HasSubstr;
 
 Rng stream(std::uint32_t individual) { return Rng(philox, {5, 0, individual, 0}); }
 
-/// A row of masses along x, each joined to the next; spring i is stretched by i mm, so that it pulls with i N.
+/// A chain of masses along x; spring i is stretched by i mm, so that it pulls with i N.
 Body chain(std::uint32_t springs) {
   Body body;
   body.materials = {{1000, 0, 0, 0}};
@@ -45,7 +45,7 @@ TEST(SkipShift, EachGroupGivesAPointToItsMostAndTakesOneFromItsLeast) {
   Rng random = stream(1);
   tally(body, resting(body, {}), random, points);
 
-  // the same groups again, group by group
+  // computes the same groups again, group by group
   std::vector<std::uint32_t> order(1000);
   std::iota(order.begin(), order.end(), 0u);
   Rng again = stream(1);
@@ -55,7 +55,7 @@ TEST(SkipShift, EachGroupGivesAPointToItsMostAndTakesOneFromItsLeast) {
     const std::size_t first = group * 1000 / 256, last = (group + 1) * 1000 / 256;
     std::uint32_t most = order[first], least = order[first];
     for (std::size_t i = first; i < last; ++i) {
-      most = std::max(most, order[i]);  // the force rises with the index
+      most = std::max(most, order[i]);  // force increases with the index
       least = std::min(least, order[i]);
     }
     expected[most] += 1;
@@ -65,7 +65,8 @@ TEST(SkipShift, EachGroupGivesAPointToItsMostAndTakesOneFromItsLeast) {
 }
 
 TEST(SkipShift, ChanceDecidesAmongEquals) {
-  // two kinds of springs: the points of a kind are shared evenly, wherever its springs stand
+  // springs have one of two forces: springs with equal forces get equal points on average, independently of their
+  // indices
   Body body = chain(600);
   for (std::uint32_t i = 0; i < 600; ++i) body.springs[i].rest_length = i % 2 ? 0.9 : 0.8;
   const State state = resting(body, {});
@@ -81,7 +82,7 @@ TEST(SkipShift, ChanceDecidesAmongEquals) {
 }
 
 TEST(SkipShift, FewSpringsAreRankedToo) {
-  // in pairs, spring i has more force than i of its 9 possible partners and less than the others
+  // with groups of two, spring i has more force than i of its 9 possible partners, and less than the others
   const Body body = chain(10);
   const State state = resting(body, {});
   constexpr int tallies = 10'000;
@@ -106,7 +107,7 @@ TEST(SkipShift, AnOddSpringMakesAGroupOfThree) {
   EXPECT_EQ(points, std::vector<double>{0}) << "nothing to compare";
 }
 
-/// The stress and the state after a run with tallies.
+/// The task, with its stress, and the state after a run with tallies.
 struct Tallied {
   Task task;
   State state;
@@ -139,7 +140,7 @@ TEST(SkipShift, TalliesAfterEverySkipSteps) {
   EXPECT_EQ(tallied.task.status, Status::ok);
   EXPECT_EQ(tallied.task.spring_evaluations, 105u * 700);
   EXPECT_EQ(tallied.state.time, 105 * 0.0007);
-  // all steps are made, those after the last tally too
+  // all steps are simulated, including those after the last tally
   State whole = start;
   Task task{.body = &body, .state = &whole, .dt = 0.0007, .steps = 105};
   simulator->run({&task, 1}, {});
@@ -151,7 +152,7 @@ TEST(SkipShift, FindsTheExtremesThatTheExactStressFinds) {
   const Scene scene;
   const auto simulator = make_cpu_simulator(scene, {}, 1);
   Body body = chain(1000);
-  for (Mass& mass : body.masses) mass.mass = 0;  // held, so that forces stay
+  for (Mass& mass : body.masses) mass.mass = 0;  // held in place, so that forces are constant
   const Tallied tallied = run(*simulator, body, resting(body, scene), 400, 10);
   std::vector<std::size_t> order(1000);
   std::iota(order.begin(), order.end(), std::size_t{0});

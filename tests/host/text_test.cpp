@@ -1,4 +1,4 @@
-// What foreign text becomes in messages, tables and JSON.
+// How text from outside is escaped in messages, tables and JSON.
 #include "base/text.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Which steps a body takes.
+// The choice of a body's time step.
 #include "experiment/time_steps.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,8 @@
 namespace evodevo {
 namespace {
 
-/// One mass with 399 springs of 10,000 N/m that lead away on one line: omega^2 is about 399 k/m, and 2/omega 0.45 ms.
+/// One mass with 399 springs of 10,000 N/m, all in nearly the same direction: omega^2 is about 399 k/m, and 2/omega is
+/// 0.45 ms.
 Body star() {
   Body body;
   body.materials = {{10000, 0, 0, 0}};
@@ -54,7 +55,7 @@ TEST(TimeSteps, WithoutAFixedStepABodyHasItsOwn) {
 TEST(TimeSteps, MaterialsThatNoSpringHasShortenNone) {
   const Body body = star();
   Body with_others = body;
-  with_others.materials.push_back({1, 0.1, 70'001, 0});  // a muscle too fast for any step
+  with_others.materials.push_back({1, 0.1, 70'001, 0});  // a muscle whose frequency is too high for any step
   with_others.materials.push_back({1e15, 0, 0, 0});
   with_others.masses.back().material = 2;
   const std::vector<Vec3> positions = state_at_birth(body, {}).position;

@@ -1,4 +1,4 @@
-// What becomes of champions that only seemed to be some.
+// Verification of champions: fitness that is an artefact is detected.
 #include "life/verification.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 
 const Progress unwatched = [](double) {};
 
-/// Random robots of some thirty masses that walk.
+/// An experiment of random walking robots with about thirty masses.
 const std::string walkers = R"(
 [experiment]
 seed = 7
@@ -63,7 +63,7 @@ std::vector<Verification> verified(const Experiment& experiment, Simulator& simu
   return verify(experiment, simulator, champions);
 }
 
-/// The best of 24 random individuals, verified.
+/// Verifies the best of 24 random individuals.
 Verification verified_best(const Experiment& experiment) {
   const auto simulator = simulator_for(experiment);
   std::vector<Individual> individuals = evaluated(experiment, *simulator, breed(experiment, {}, 0, 0, 24));
@@ -103,7 +103,7 @@ TEST(Verify, WhatFallsIsPassive) {
 
 constexpr double mass = 0.2, strain = 0.1;
 
-/// Two masses 1 m apart whose spring wants to be longer by `strain`.
+/// An encoding of two masses 1 m apart, whose spring has a rest length that is longer by `strain`.
 class StrainedPair final : public Encoding {
  public:
   explicit StrainedPair(double stiffness) : stiffness_(stiffness) {}
@@ -121,7 +121,7 @@ class StrainedPair final : public Encoding {
   double stiffness_;
 };
 
-/// By how much more than its strain a body is stretched at some time.
+/// A fitness operator that measures by how much more than its strain a body is stretched at a given time.
 class Stretch final : public Fitness {
  public:
   explicit Stretch(double time) : time_(time) {}
@@ -133,7 +133,8 @@ class Stretch final : public Fitness {
   double time_;
 };
 
-/// A step just below the limit multiplies a swing by 1/sqrt(1 - (omega dt)^2/4); in truth it stays at the strain.
+/// A step just below the limit increases the amplitude of an oscillation by 1/sqrt(1 - (omega dt)^2/4); the exact
+/// amplitude is the strain.
 TEST(Verify, WhatOnlyTheStepBringsForthIsAnArtefact) {
   constexpr double h = 1.9, dt = 0.001;  // omega dt, s
   double x = -strain, v = 0, furthest = 0;
@@ -179,7 +180,7 @@ TEST(Verify, TheSameEveryTimeWhateverElseIsVerified) {
   }
 }
 
-/// Away from the ground a body's posture decides its step.
+/// Without ground, the posture of a body determines its time step.
 TEST(Verify, ABodyThatNoOperatorChangesKeepsItsFitnessToo) {
   std::string swimmers = walkers;
   const std::size_t scene = swimmers.find("[scene.gravity]");
@@ -195,7 +196,7 @@ TEST(Verify, ABodyThatNoOperatorChangesKeepsItsFitnessToo) {
     EXPECT_EQ(value(swimmer, "again"), swimmer.fitness) << "the same bits";
 }
 
-/// A small run, and where it is recorded.
+/// A small run, and the folder with its archive.
 struct SmallRun {
   testing::Scratch scratch;
   Experiment experiment = testing::read(testing::small_experiment);

@@ -7,7 +7,7 @@
 namespace evodevo::test {
 namespace {
 
-/// 40 springs of bone and muscle in turn along a chain; spring s has a stress of s N.
+/// A chain of 40 springs, in turn of bone and muscle; spring s has a stress of s N.
 Life chain() {
   Life life = life_of_masses(41, false);
   for (std::uint32_t s = 0; s < 40; ++s) life.add_spring(s, s + 1, s % 2 ? muscle : bone, s);
@@ -25,7 +25,7 @@ struct Property {
   const char* name;
   double (*value)(const Body&, std::uint32_t);
   bool of_muscles_alone;
-  double low, high;  ///< bounds for the tests, around what the chain has
+  double low, high;  ///< bounds in the tests, around the values in the chain
 };
 
 class Adaptation : public testing::TestWithParam<Property> {
@@ -142,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(Properties, Adaptation,
                            return name.substr(0, name.find('-'));
                          });
 
-/// The life after `turns` turns of an operator.
+/// Returns the life after an operator has been applied `applications` times.
 Life lived_on(Life life, const Devo& devo, std::uint64_t applications) {
   for (std::uint64_t application = 0; application < applications; ++application)
     life.living = after(life, develop(devo, life, application));

@@ -1,4 +1,4 @@
-// What holds for every devo operator, alone and in any order with others.
+// Properties of every devo operator, alone and in any order with others.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@
 namespace evodevo::test {
 namespace {
 
-/// One way to use each operator.
+/// Operators with parameters; each operator occurs at least once.
 const std::vector<std::pair<const char*, const char*>> uses = {
     {"spring-turnover", "springs = 40\nwhere = 'by-stress'"},
     {"spring-turnover", "springs = 40\nwhere = 'most-stressed'"},
@@ -20,7 +20,7 @@ const std::vector<std::pair<const char*, const char*>> uses = {
     {"ballistic-growth", ""},
 };
 
-/// 60 masses, 400 springs of random stress and growth.
+/// A life of 60 masses and 400 springs with random stress and growth.
 Life busy_life() {
   Life life = life_of_masses(60);
   for (auto& mass : life.living.body.masses)
@@ -54,7 +54,7 @@ TEST(AnyDevo, DependsOnItsKeyAlone) {
   }
 }
 
-/// The host applies all edits without an objection, and what comes of them is a body.
+/// Expects that the host accepts all edits of operators in the given order, and that the result is a valid body.
 void expect_a_life(const std::vector<std::size_t>& order, std::uint64_t seed) {
   Life life = busy_life();
   for (life.application = 1; life.application <= life.applications; ++life.application)

@@ -3,7 +3,7 @@
 namespace evodevo::test {
 namespace {
 
-/// A chain of four springs, the first two of which grow and shrink.
+/// A chain of four springs, of which the first grows and the second shrinks.
 Life chain() {
   Life life = life_of_masses(5, false);
   for (std::uint32_t s = 0; s < 4; ++s) life.add_spring(s, s + 1, bone, 1);

@@ -1,4 +1,4 @@
-// What every built-in operator has to say about itself.
+// The declarations that every built-in operator must make.
 #include <set>
 
 #include "experiment/toml_writer.hpp"
@@ -7,7 +7,7 @@
 namespace evodevo::test {
 namespace {
 
-/// Checks every parameter as it is declared.
+/// Checks each parameter when it is declared.
 class DeclarationCheck final : public Parameters {
  public:
   void real(double& value, std::string_view name, Range range, std::string_view text) override {

@@ -8,7 +8,7 @@
 namespace evodevo::test {
 namespace {
 
-/// Everything that an encoding decides, for comparisons.
+/// Returns all values of a blueprint in one list, for comparisons.
 std::vector<double> digest(const Blueprint& blueprint) {
   std::vector<double> digest{static_cast<double>(blueprint.neighbours)};
   for (const Mass& m : blueprint.body.masses)
@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(Encodings, AnyEncoding, testing::Values("neural", "cppn
 
 TEST(Neural, HasThePapersGenes) {
   const Layout layout = make<Encoding>("neural")->layout(context());
-  // 25 neurons of 1 + 3, 25 of 1 + 25, 3 + 5 of 1 + 25
+  // genes: 25 neurons with 1 + 3, 25 with 1 + 25, and 3 + 5 with 1 + 25
   ASSERT_EQ(layout.genes.size(), 958u);
   ASSERT_EQ(layout.groups.size(), 58u);
   for (std::size_t n = 0; n < 58; ++n) EXPECT_EQ(layout.groups[n].count, n < 25 ? 4u : 26u);
@@ -112,7 +112,7 @@ TEST(Neural, BiasesOfTheOutputsAloneSetPlaceAndMaterial) {
   }
 }
 
-/// A network of six hidden neurons that lets the points through: x = relu(x) - relu(-x).
+/// Returns the points themselves, as outputs of a network whose six hidden neurons compute x = relu(x) - relu(-x).
 std::vector<Vec3> points_of(const std::string& toml) {
   const auto encoding = make<Encoding>("neural", "hidden = 6\n" + toml);
   const Layout layout = encoding->layout(context());
@@ -143,7 +143,7 @@ TEST(Neural, PointsAreUniformInTheBall) {
     mean = mean + (1.0 / 20000) * point;
     inner += norm(point) < 0.5;
   }
-  // an eighth of the volume; five standard deviations
+  // the inner ball has an eighth of the volume; the tolerance is five standard deviations
   EXPECT_NEAR(static_cast<double>(inner) / 20000, 1.0 / 8, 0.012);
   EXPECT_LT(norm(mean), 0.02);
 }
@@ -155,7 +155,7 @@ TEST(Neural, PointsDependOnTheirSeedAlone) {
   EXPECT_EQ(points_of("points = 100")[99], points_of("")[99]);
 }
 
-/// The outputs of the paper's network for one point, written out.
+/// Computes the outputs of the paper's network for one point directly.
 std::vector<double> network(const Genome& genome, const Layout& layout, Vec3 point) {
   std::vector<double> values{point.x, point.y, point.z};
   std::size_t group = 0;
@@ -295,7 +295,7 @@ TEST(Cppn, EveryHiddenNeuronHasAFunctionOfItsOwn) {
 }
 
 TEST(Cppn, FunctionsAreStanleys) {
-  // the first neuron of each hidden layer and the first output pass on its value: what comes is the function of x
+  // the first neuron of each hidden layer and the first output pass on the value, so the output is the function of x
   const auto encoding = make<Encoding>("cppn", "hidden = 2\npoints = 50");
   const Layout layout = encoding->layout(context());
   const std::vector<Vec3> points = points_of("points = 50");
@@ -323,7 +323,7 @@ TEST(Cppn, FunctionsAreStanleys) {
 
 Genome choices(std::initializer_list<std::int32_t> options) { return Genome(options.begin(), options.end()); }
 
-/// How many springs there are of each material.
+/// Returns the number of springs of each stiffness.
 std::map<double, int> stiffnesses(const Body& body) {
   std::map<double, int> count;
   for (const Spring& spring : body.springs) ++count[body.materials[spring.material].stiffness];
@@ -342,7 +342,7 @@ TEST(Voxel, OneVoxelIsACubeOfTwentyEightSprings) {
     EXPECT_EQ(mass.material, no_material);
     EXPECT_EQ(mass.air_contacts, 0u);
   }
-  std::map<long, int> lengths;  // in tenths of a millimetre
+  std::map<long, int> lengths;  // keys in tenths of a millimetre
   for (const Spring& spring : body.springs) {
     ++lengths[std::lround(spring.rest_length * 1e4)];
     EXPECT_DOUBLE_EQ(spring.rest_length, norm(body.masses[spring.a].rest - body.masses[spring.b].rest));
@@ -355,7 +355,7 @@ TEST(Voxel, SharedSpringsTakeTheMean) {
   const auto encoding = make<Encoding>("voxel", "size = [2, 1, 1]");
   const Body body = encoding->decode(choices({muscle2, bone}), context()).body;
   EXPECT_EQ(body.masses.size(), 12u);
-  // the six springs of the face between them belong to both
+  // the six springs of the shared face belong to both voxels
   EXPECT_EQ(stiffnesses(body), (std::map<double, int>{{5000, 22}, {7500, 6}, {10000, 22}}));
   for (const Spring& spring : body.springs) {
     const Material& material = body.materials[spring.material];
@@ -371,7 +371,7 @@ TEST(Voxel, VoxelsOfAirAreAbsent) {
   const Body body = encoding->decode(choices({muscle, air}), context()).body;
   EXPECT_EQ(stiffnesses(body), (std::map<double, int>{{5000, 28}}));
   for (const Mass& mass : body.masses) {
-    // a corner of air alone has 7 contacts; one of the shared face those with the 4 far corners
+    // a corner that belongs only to air has 7 contacts; a corner of the shared face has 4, with the far corners
     const unsigned expected = mass.rest.x < -0.05 ? 0 : mass.rest.x < 0.05 ? 4 : 7;
     EXPECT_EQ(mass.air_contacts, expected);
   }
@@ -387,7 +387,7 @@ TEST(Voxel, UniformBodiesNeedNoNewMaterial) {
 TEST(Voxel, OptionsAreTheChosenMaterials) {
   const auto encoding = make<Encoding>("voxel", "size = [2, 1, 1]\nmaterials = ['air', 'tissue', 'bone']");
   EXPECT_EQ(encoding->layout(context()).genes[1].choices, 3u);
-  // in the order of the world: air, bone, tissue
+  // options are in the order of the world's materials: air, bone, tissue
   EXPECT_EQ(stiffnesses(encoding->decode(choices({1, 2}), context()).body),
             (std::map<double, int>{{4000, 22}, {7000, 6}, {10000, 22}}));
 }
@@ -406,7 +406,7 @@ TEST(Voxel, SizesAreGenesOnlyWhereTheyDevelop) {
 
 TEST(Voxel, SpringsTakeTheSizesOfTheirVoxels) {
   const auto encoding = make<Encoding>("voxel", "size = [3, 1, 1]\nedge = 0.5\nsize_range = 0.5");
-  // the last voxel is air, whose sizes count for nothing
+  // the last voxel is air, whose sizes have no effect
   const Genome genome{bone, 0.5f, 1.5f, muscle, 1.0f, 0.75f, air, 1.5f, 1.5f};
   const Body body = encoding->decode(genome, context()).body;
   ASSERT_EQ(body.springs.size(), 50u);
@@ -426,7 +426,7 @@ TEST(Direct, EverySpringHasAGene) {
   for (const GeneGroup& group : one.groups) counts.push_back(group.count);
   EXPECT_THAT(counts, testing::ElementsAre(7, 6, 5, 4, 3, 2, 1));
   EXPECT_EQ(make<Encoding>("direct", "size = [2, 1, 1]")->layout(context()).genes.size(), 50u);
-  // the paper's benchmark body, section V-A
+  // the body of the paper's benchmark, section V-A
   EXPECT_EQ(make<Encoding>("direct", "size = [10, 10, 10]")->layout(context()).genes.size(), 14230u);
 }
 

@@ -6,7 +6,7 @@
 namespace evodevo::test {
 namespace {
 
-/// A body of 2 m length that moves by (3, 4, 1) m.
+/// An observation of a body that is 2 m long and moves by (3, 4, 1) m; `offset` shifts it.
 Observation moved(Vec3 offset = {}) {
   return {{offset, offset + Vec3{1, 2, 0.5}}, offset + Vec3{5, 5, 5}, offset + Vec3{8, 9, 6}, 10, 0};
 }

@@ -1,4 +1,4 @@
-// A moment in a life, for tests of devo operators.
+// A snapshot of a life, for tests of devo operators.
 #pragma once
 
 #include <cmath>
@@ -11,12 +11,12 @@
 
 namespace evodevo::test {
 
-/// A living body and all else that a moment refers to.
+/// A living body, and the other values from which a DevoContext is made.
 struct Life {
   LivingBody living;
   double time = 3.3;
   Box bounds = {{-2, -2, 0}, {2, 2, 2}};
-  double mass = 0.35;  // other than that of the body's masses
+  double mass = 0.35;  // differs from that of the body's masses
   bool resets = false;
   int application = 3, applications = 100;
   Genome genome;
@@ -31,7 +31,7 @@ struct Life {
 
   void add_mass(Vec3 rest, std::int32_t material) {
     living.body.masses.push_back({rest, 0.2, material, 0});
-    // where it is now is not where it rests
+    // its current position differs from its rest position
     living.state.position.push_back(1.25 * rest);
     living.state.velocity.push_back({});
   }
@@ -42,7 +42,7 @@ struct Life {
   }
 };
 
-/// `masses` masses at random places, with the world's materials in turn.
+/// A life of `masses` masses at random positions, with the world's materials in turn.
 inline Life life_of_masses(std::uint32_t masses, bool with_materials = true) {
   Life life;
   life.living.body.materials = context().materials;
@@ -66,7 +66,7 @@ inline Life two_chains() {
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
 inline Pair ordered(std::uint32_t a, std::uint32_t b) { return std::minmax(a, b); }
 
-/// Which masses springs join.
+/// Returns the pairs of masses that springs join.
 inline std::set<Pair> joined(const Body& body) {
   std::set<Pair> pairs;
   for (const Spring& spring : body.springs) pairs.insert(ordered(spring.a, spring.b));
@@ -80,7 +80,7 @@ inline Edits develop(const Devo& devo, const Life& life, std::uint64_t seed) {
   return edits;
 }
 
-/// Everything in the edits, for comparisons.
+/// Returns all values of the edits in one list, for comparisons.
 inline std::vector<double> digest(const Edits& edits) {
   std::vector<double> digest(edits.removed_springs.begin(), edits.removed_springs.end());
   if (edits.growth) digest.insert(digest.end(), {edits.growth->from, edits.growth->to, edits.growth->whole});
@@ -95,7 +95,7 @@ inline std::vector<double> digest(const Edits& edits) {
   return digest;
 }
 
-/// The life after the edits, which the host checks as it applies them.
+/// Applies the edits with the host's checks; returns the changed body.
 inline LivingBody after(const Life& life, const Edits& edits) {
   Life changed = life;
   apply(resolved(edits, changed.context()), changed.living);

@@ -49,7 +49,7 @@ TEST(MassGrowth, MassesComeOnSpringsByTheirStress) {
     ++along.at(static_cast<std::size_t>(4 * (position.y - std::floor(position.y))));
   }
   EXPECT_NEAR(first_chain, 750, 70);                              // five standard deviations
-  for (const int quarter : along) EXPECT_NEAR(quarter, 250, 70);  // everywhere between the ends
+  for (const int quarter : along) EXPECT_NEAR(quarter, 250, 70);  // uniformly between the ends
 }
 
 TEST(MassGrowth, NoMassComesBelowTheFloorOrTooNear) {

@@ -5,8 +5,8 @@ namespace {
 
 constexpr std::uint32_t masses = 100;
 
-/// A ring in which every mass is joined to the ten on either side, but for the springs from mass 0 to 1, 2 and 3.
-/// Mass 0 has 17 springs, masses 1, 2 and 3 have 19, all others 20.
+/// A ring in which every mass is joined to the ten masses on either side, except that the springs from mass 0 to 1, 2
+/// and 3 are missing. So mass 0 has 17 springs, masses 1, 2 and 3 have 19, and all others have 20.
 Life ring(bool with_materials = true) {
   Life life = life_of_masses(masses, with_materials);
   for (std::uint32_t i = 0; i < masses; ++i)
@@ -24,7 +24,7 @@ TEST(MassTurnover, MassesOfFewSpringsGo) {
   const auto devo = make<Devo>("mass-turnover");
   const Life life = ring();
   const Edits edits = develop(*devo, life, 1);
-  // the neighbours of those that go fall below the threshold, but they were judged before
+  // neighbours of removed masses fall below the threshold too, but degrees were compared before the removal
   EXPECT_THAT(edits.removed_masses, testing::UnorderedElementsAre(0, 1, 2, 3));
   EXPECT_EQ(edits.removed_masses[0], 0u) << "fewest springs first";
   EXPECT_EQ(edits.new_masses.size(), 4u);
@@ -113,7 +113,7 @@ TEST(MassTurnover, WithoutAFreePlaceTheMassStays) {
   const Life life = ring();
   EXPECT_TRUE(digest(develop(*make<Devo>("mass-turnover", "min_distance = 50.0"), life, 1)).empty());
 
-  // room for one new mass: the box's diagonal is shorter than the distance
+  // there is room for one new mass: the diagonal of the box is shorter than the minimum distance
   Life narrow = life;
   narrow.bounds = {{10, 10, 10}, {11, 11, 11}};
   const Edits edits = develop(*make<Devo>("mass-turnover", "min_distance = 2.0\nsprings = 1000"), narrow, 1);
@@ -222,7 +222,7 @@ TEST(MassTurnover, HalfOfASmallBodyStays) {
   const Edits edits = develop(*devo, life, 1);
   EXPECT_EQ(edits.removed_masses.size(), 3u);
   EXPECT_EQ(edits.new_masses.size(), 3u);
-  EXPECT_EQ(edits.new_springs.size(), 3u * 4);  // fewer than 25, for there are no more to join to
+  EXPECT_EQ(edits.new_springs.size(), 3u * 4);  // fewer than 25, since there are no other masses
   EXPECT_EQ(after(life, edits).body.springs.size(), 6u + 12);
 }
 

@@ -1,4 +1,4 @@
-// The helpers that selection operators build on, against plain definitions.
+// The helpers for selection operators, compared with direct implementations of their definitions.
 #include "evodevo/pareto.hpp"
 
 #include "support.hpp"
@@ -6,7 +6,7 @@
 namespace evodevo::test {
 namespace {
 
-/// Points with many ties; every seventh or so failed.
+/// Random points with many ties; about one in seven has failed.
 std::vector<Point> random_points(std::uint64_t seed, std::size_t count, std::size_t objectives) {
   Rng rng = stream(seed);
   std::vector<Point> points(count);
@@ -16,7 +16,7 @@ std::vector<Point> random_points(std::uint64_t seed, std::size_t count, std::siz
   return points;
 }
 
-/// Layers by taking front after front away.
+/// Computes layers by removing one front after the other.
 std::vector<std::uint32_t> peel(const std::vector<Point>& points) {
   constexpr std::uint32_t none = 1000000;
   std::vector<std::uint32_t> layer(points.size(), none);
@@ -74,7 +74,7 @@ TEST(Youth, IsTheLastObjective) {
   EXPECT_EQ(scores_and_youth(rows), (std::vector<Point>{{3, 4, -7}, {}}));
 }
 
-/// The least crowded by distances taken anew after each that goes.
+/// Selects the least crowded points; recomputes crowding distances after each removal.
 std::vector<std::uint32_t> thin(const std::vector<Point>& points, std::vector<std::uint32_t> members,
                                 std::size_t count) {
   while (members.size() > count) {
@@ -114,7 +114,8 @@ TEST(LeastCrowded, AreThoseThatStayWhenTheMostCrowdedGoOneByOne) {
 }
 
 TEST(LeastCrowded, EndsStayAndCrowdsThin) {
-  // on a line: 0 and 10 are the ends; 5.1 sits beside 5, and its other neighbour is nearer than that of 5
+  // points on a line: 0 and 10 are the ends; 5 and 5.1 are close, and the other neighbour of 5.1 is closer than that of
+  // 5
   const std::vector<Point> points{{0, 10}, {2, 8}, {5, 5}, {5.1, 4.9}, {7, 3}, {10, 0}};
   EXPECT_THAT(least_crowded(points, {0, 1, 2, 3, 4, 5}, 5), testing::ElementsAre(0, 1, 2, 4, 5));
   EXPECT_THAT(least_crowded(points, {0, 1, 2, 3, 4, 5}, 2), testing::ElementsAre(0, 5));

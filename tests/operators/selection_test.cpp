@@ -7,9 +7,9 @@
 namespace evodevo::test {
 namespace {
 
-/// A row that owns its scores.
+/// A candidate for selection, with its own copy of the scores.
 struct Row {
-  std::vector<double> scores;  ///< none: failed
+  std::vector<double> scores;  ///< empty if the individual has failed
   std::uint32_t age = 0;
   std::optional<std::uint32_t> parent = {};
 
@@ -37,7 +37,8 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(const Selection& se
   return selection.parents(candidates(rows), count, rng);
 }
 
-/// `old` rows and as many children of theirs as come; few values, so that there are ties, and some that failed.
+/// Returns `old` random rows and up to `children` children of them. Scores have few different values, so that there are
+/// ties, and some rows have failed.
 std::vector<Row> random_rows(std::uint64_t seed, std::uint32_t old = 20, std::uint32_t children = 15,
                              std::size_t objectives = 2, double failing = 0.25) {
   Rng rng = stream(seed);
@@ -53,7 +54,7 @@ std::vector<Row> random_rows(std::uint64_t seed, std::uint32_t old = 20, std::ui
   return rows;
 }
 
-/// All rows different in their scores, so that no two are tied.
+/// Returns random rows with distinct scores, so that there are no ties.
 std::vector<Row> rows_without_ties(std::uint64_t seed) {
   auto rows = random_rows(seed);
   Rng rng = stream(seed + 1000);
@@ -65,7 +66,7 @@ std::vector<Row> rows_without_ties(std::uint64_t seed) {
   return rows;
 }
 
-/// The same rows in another order of birth.
+/// Returns the same rows in another order.
 std::vector<Row> permuted(const std::vector<Row>& rows, std::uint64_t seed) {
   std::vector<std::uint32_t> order(rows.size()), position(rows.size());
   for (std::uint32_t i = 0; i < rows.size(); ++i) order[i] = i;
@@ -154,7 +155,7 @@ TEST_P(AnySelection, FailedRowsDoNotBreedWhereOthersCan) {
     EXPECT_FALSE(rows[mate].scores.empty());
     breeding.insert(parent);
   }
-  // each that can, does
+  // every individual that has not failed becomes a parent
   EXPECT_EQ(breeding.size(), static_cast<std::size_t>(std::count_if(
                                  rows.begin(), rows.end(), [](const Row& row) { return !row.scores.empty(); })));
 }
@@ -187,7 +188,7 @@ TEST_P(AnySelection, DependsOnItsKeyAlone) {
 
 INSTANTIATE_TEST_SUITE_P(Selections, AnySelection, testing::Values("age-fitness-pareto", "pareto-layers", "elitist"));
 
-/// How often each of ten rows, best first, is a parent; in per cent.
+/// Returns how often each of ten rows, best first, is a parent, in per cent.
 std::vector<double> shares(const Selection& selection) {
   std::vector<Row> rows;
   for (int i = 0; i < 10; ++i) rows.push_back({{10.0 - i}, 1});
@@ -203,10 +204,10 @@ TEST(UniformParents, HaveTheSameChance) {
 
 TEST(Elitist, ParentsAreWinnersOfTournaments) {
   const auto two = shares(*make<Selection>("elitist"));
-  // of two draws the best is row i in 2 (9 - i) + 1 of 100 cases
+  // the better of two draws is row i in 2 (9 - i) + 1 of 100 cases
   for (int i = 0; i < 10; ++i) EXPECT_NEAR(two[static_cast<std::size_t>(i)], 2 * (9 - i) + 1, 1.5);
   for (const double share : shares(*make<Selection>("elitist", "tournament = 1"))) EXPECT_NEAR(share, 10, 1.1);
-  // the best wins all but always; its mate is still another
+  // the best row nearly always wins; its mate is nevertheless another row
   const auto strict = make<Selection>("elitist", "tournament = 100");
   for (const auto& [parent, mate] : parents(*strict, {{{1}}, {{3}}, {{2}}}, 50)) {
     EXPECT_EQ(parent, 1u);
@@ -217,7 +218,7 @@ TEST(Elitist, ParentsAreWinnersOfTournaments) {
 TEST(Elitist, KeepsTheBest) {
   const auto selection = make<Selection>("elitist");
   EXPECT_THAT(survivors(*selection, {{{1, 9}}, {{5, 0}}, {}, {{-3, 9}}, {{4, 0}}}, 3), testing::ElementsAre(1, 4, 0));
-  // further scores, then youth, then birth decide between equals
+  // ties are decided by further scores, then by lower age, then by earlier birth
   EXPECT_THAT(survivors(*selection, {{{1, 1}, 5}, {{1, 2}, 9}, {{1, 1}, 3}, {{1, 1}, 3}}, 3),
               testing::ElementsAre(1, 2, 3));
 }
@@ -239,33 +240,33 @@ TEST(AgeFitnessPareto, KeepsWholeLayersFirst) {
 
 TEST(AgeFitnessPareto, SparesTheYoung) {
   const auto selection = make<Selection>("age-fitness-pareto");
-  // the weak random_individual is on the front; the older copy of row 1 is not
+  // the weak random individual 3 is on the front; the older copy of row 1 is not
   EXPECT_THAT(survivors(*selection, {{{9}, 40}, {{5}, 10}, {{5}, 11}, {{0.1}, 0}}, 3),
               testing::UnorderedElementsAre(0, 1, 3));
 }
 
 TEST(AgeFitnessPareto, ThinsTheCrowd) {
   const auto selection = make<Selection>("age-fitness-pareto");
-  // all on the front; rows 2 and 3 are close
+  // all rows are on the front; rows 2 and 3 are close to each other
   EXPECT_THAT(survivors(*selection, {{{0}, 0}, {{30}, 30}, {{50}, 50}, {{51}, 51}, {{80}, 80}, {{100}, 100}}, 5),
               testing::AllOf(testing::SizeIs(5), testing::IsSupersetOf({0, 1, 4, 5})));
 }
 
 // pareto-layers ------------------------------------------------------------------------------------------------------
 
-// row 0 of each table dominates all others, so that only it is exempt
+// row 0 of each table, which dominates all others, so that the front contains only it
 const Row champion{{100}, 0};
 
 TEST(ParetoLayers, AChildTakesItsParentsPlaceOnlyIfBetter) {
   const auto selection = make<Selection>("pareto-layers");
-  // 1 loses to its child 3; 2 keeps its place against its child 4, although 1 is better than both
+  // row 1 loses to its child 3; row 2 keeps its place against its child 4, although 1 is better than both
   EXPECT_THAT(survivors(*selection, {champion, {{50}, 3}, {{10}, 3}, {{60}, 3, 1}, {{9}, 3, 2}}, 3),
               testing::UnorderedElementsAre(0, 3, 2));
 }
 
 TEST(ParetoLayers, AHigherLayerBeatsAHigherFitness) {
   const auto selection = make<Selection>("pareto-layers");
-  // row 1 lies behind row 2, row 3 only behind the champion
+  // row 1 is dominated by row 2, row 3 only by the champion
   EXPECT_THAT(survivors(*selection, {champion, {{50}, 9}, {{60}, 8}, {{20}, 2, 1}}, 3),
               testing::UnorderedElementsAre(0, 2, 3));
 }
@@ -283,7 +284,7 @@ TEST(ParetoLayers, OfSeveralChildrenTheBestTakesThePlace) {
 
 TEST(ParetoLayers, TheFrontIsExempt) {
   const auto selection = make<Selection>("pareto-layers");
-  // 2 is weaker than its parent 1 but younger: both are on the front; the worst of the others makes room
+  // row 2 is weaker than its parent 1 but younger, so both are on the front; the worst of the others is removed
   EXPECT_THAT(survivors(*selection, {{{100}, 9}, {{50}, 5}, {{40}, 4, 1}, {{30}, 6}, {{20}, 6}}, 4),
               testing::UnorderedElementsAre(0, 1, 2, 3));
 }
@@ -297,7 +298,8 @@ TEST(ParetoLayers, TheMostCrowdedOfTooLargeAFrontGo) {
 
 TEST(ParetoLayers, NewcomersChallengeTheWorst) {
   const auto selection = make<Selection>("pareto-layers");
-  // the random_individual 3, of the champion's age, beats the worst; 4 is the worst itself
+  // in the first table, the random individual 3, which is as old as the champion, replaces the worst row; in the second
+  // table, it is the worst row itself
   EXPECT_THAT(survivors(*selection, {champion, {{50}, 3}, {{10}, 3}, {{20}, 0}}, 3),
               testing::UnorderedElementsAre(0, 1, 3));
   EXPECT_THAT(survivors(*selection, {champion, {{50}, 3}, {{10}, 3}, {{5}, 4}}, 3),
@@ -308,7 +310,7 @@ TEST(ParetoLayers, AgeIsAnObjectiveUnlessToldOtherwise) {
   const std::vector<Row> rows{{{100}, 9}, {{50}, 5}, {{1}, 0}};
   EXPECT_THAT(survivors(*make<Selection>("pareto-layers", "age = false"), rows, 2),
               testing::UnorderedElementsAre(0, 1));
-  // with it, all three are on the front, and the one between the ends is the most crowded
+  // with the second objective, all three are on the front, and the one between the ends is the most crowded
   EXPECT_THAT(survivors(*make<Selection>("pareto-layers"), rows, 2), testing::UnorderedElementsAre(0, 2));
 }
 
@@ -321,7 +323,7 @@ TEST(ParetoLayers, LosersFillFreePlacesBeforeTheFailed) {
 TEST(ParetoLayers, AFailedChildDoesNotReplace) {
   const auto selection = make<Selection>("pareto-layers");
   EXPECT_THAT(survivors(*selection, {champion, {{-5}, 9}, {{}, 0, 1}}, 2), testing::UnorderedElementsAre(0, 1));
-  // and a failed parent goes
+  // a failed parent is removed
   EXPECT_THAT(survivors(*selection, {champion, {{}, 1}, {{-5}, 9, 1}}, 2), testing::UnorderedElementsAre(0, 2));
 }
 

@@ -6,7 +6,7 @@
 namespace evodevo::test {
 namespace {
 
-/// 60 masses, 400 springs with stresses 0 … 399 N in random order.
+/// A life of 60 masses and 400 springs with stresses of 0 to 399 N in random order.
 Life busy_life(bool with_materials = true) {
   Life life = life_of_masses(60, with_materials);
   std::vector<std::uint32_t> stress(400);
@@ -43,7 +43,7 @@ TEST(SpringTurnover, NewSpringsJoinPairsThatWereNotJoined) {
     std::set<Pair> pairs = joined(life.living.body);
     for (const NewSpring& spring : develop(*devo, life, seed).new_springs) {
       EXPECT_NE(spring.a, spring.b);
-      // neither of old springs, gone or not, nor of each other
+      // new springs join pairs of masses that no old spring, removed or not, and no other new spring joins
       EXPECT_TRUE(pairs.insert(ordered(spring.a, spring.b)).second);
     }
   }
@@ -116,7 +116,7 @@ TEST(SpringTurnover, ResettingBodiesGetTheirRestDistances) {
 TEST(SpringTurnover, BreaksTiesAtRandom) {
   const auto devo = make<Devo>("spring-turnover", "springs = 40");
   Life life = busy_life();
-  // 20 springs below all others, which are equal
+  // 20 springs have distinct low stresses, and all others the same high stress
   for (double& stress : life.living.stress) stress = stress < 20 ? stress : 1000;
   std::vector<int> gone(400, 0);
   for (std::uint64_t seed = 0; seed < 950; ++seed)
@@ -125,7 +125,7 @@ TEST(SpringTurnover, BreaksTiesAtRandom) {
     if (life.living.stress[s] < 20)
       EXPECT_EQ(gone[s], 950);
     else
-      EXPECT_NEAR(gone[s], 50, 38);  // 20 of 380, five and a half standard deviations
+      EXPECT_NEAR(gone[s], 50, 38);  // 20 of 380 springs; the tolerance is five and a half standard deviations
   }
 }
 
@@ -150,7 +150,7 @@ TEST(SpringTurnover, OnlyWhatCanBeReplacedGoes) {
   ASSERT_EQ(edits.new_springs.size(), 1u);
   EXPECT_EQ(ordered(edits.new_springs[0].a, edits.new_springs[0].b), Pair(0, 2));
 
-  // all are joined: nothing can come, so nothing goes
+  // all masses are joined: no spring can be added, so none is removed
   chain.add_spring(0, 2, bone, 3);
   for (const char* where : {"random", "most-stressed", "by-stress"})
     EXPECT_TRUE(
@@ -190,7 +190,7 @@ TEST(SpringTurnover, EachOfTheMostStressedGetsOneBeside) {
   }
 }
 
-/// How often of 1,000 times one spring of `two_chains` comes in the first chain.
+/// Returns how often, in 1,000 trials, the new spring in `two_chains` is in the first chain.
 int times_in_first_chain(const Life& life, const std::string& where) {
   const auto devo = make<Devo>("spring-turnover", "springs = 1\nwhere = '" + where + "'");
   int first = 0, second = 0;
@@ -233,14 +233,14 @@ TEST(SpringTurnover, DegenerateBodiesStayAsTheyAre) {
   EXPECT_TRUE(digest(develop(*devo, life_of_masses(1), 1)).empty());
   EXPECT_TRUE(digest(develop(*devo, life_of_masses(5), 1)).empty());
 
-  // two masses in one place: a spring between them would have no direction
+  // two masses at the same position: a spring between them would have no direction
   Life chain = life_of_masses(3, false);
   chain.add_spring(0, 1, bone, 2);
   chain.add_spring(1, 2, bone, 1);
   chain.living.state.position[2] = chain.living.state.position[0];
   EXPECT_TRUE(digest(develop(*devo, chain, 1)).empty());
 
-  // the one free pair is air
+  // both masses of the only free pair are air
   Life airy = life_of_masses(3);
   airy.living.body.masses[0].material = airy.living.body.masses[2].material = air;
   airy.add_spring(0, 1, bone, 2);

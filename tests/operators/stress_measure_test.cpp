@@ -1,10 +1,10 @@
-// What counts as stress: the parameter that the operators have in common.
+// The parameter that chooses the measure of stress, which several operators have.
 #include "life.hpp"
 
 namespace evodevo::test {
 namespace {
 
-/// A chain of five springs, each of which one measure puts first and another last.
+/// A chain of five springs; different measures give different orders of them.
 Life chain() {
   Life life = life_of_masses(6, false);
   for (std::uint32_t s = 0; s < 5; ++s) life.add_spring(s, s + 1, bone, s == 0 ? 9 : 5 - s * 0.1);
@@ -24,7 +24,7 @@ class StressMeasure : public testing::TestWithParam<Judgement> {
  protected:
   std::string by() const { return std::string("by = '") + GetParam().by + "'\n"; }
 
-  /// What the springs of `life` are judged by.
+  /// The values by which the springs of `life` are ordered.
   std::vector<double> stress(const Life& life) const {
     const std::string name = GetParam().by;
     const LivingBody& records = life.living;
@@ -60,7 +60,7 @@ TEST_P(StressMeasure, IsTheCauseOfSpringsThatComeByIt) {
   const auto drawn = develop(*make<Devo>("spring-turnover", by() + "springs = 2\nwhere = 'by-stress'"), chain(), 1);
   ASSERT_EQ(drawn.causes.new_springs.size(), drawn.new_springs.size());
   for (std::size_t i = 0; i < drawn.new_springs.size(); ++i) {
-    // of the chain's masses i, i + 1, i + 2, one of the two springs between them
+    // the cause is one of the two springs between the chain's masses i, i + 1 and i + 2
     const std::uint32_t first = std::min(drawn.new_springs[i].a, drawn.new_springs[i].b);
     EXPECT_THAT(drawn.causes.new_springs[i], testing::AnyOf(stress(chain())[first], stress(chain())[first + 1]));
   }

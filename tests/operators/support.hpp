@@ -1,4 +1,4 @@
-// Operators out of their libraries, for tests.
+// Loads operators from their libraries, for tests.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ inline const Registry& registry() {
   return registry;
 }
 
-/// The paper's materials, in the order of the alphabet.
+/// A context with the paper's materials in alphabetical order.
 inline EncodingContext context() {
   const double pi = 3.14159265358979323846;
   return {{"air", "bone", "muscle", "muscle2", "tissue"},
@@ -30,7 +30,7 @@ inline EncodingContext context() {
 }
 enum : std::int32_t { air, bone, muscle, muscle2, tissue };
 
-/// The operator with the parameters that `toml` sets.
+/// Creates an operator with the parameters that `toml` sets.
 template <class T>
 std::unique_ptr<T> make(const std::string& name, const std::string& toml = "") {
   const AvailableOperator* available = registry().find(T::kind, name);
@@ -46,7 +46,7 @@ std::unique_ptr<T> make(const std::string& name, const std::string& toml = "") {
 
 inline Rng stream(std::uint64_t seed) { return Rng(philox, {seed, 1, 2, 3}); }
 
-/// The result of `call`, after checking that eight calls at once give the same.
+/// Returns the result of `call`, and checks that eight simultaneous calls give the same.
 template <class Call>
 auto from_eight_threads(const Call& call) {
   const auto alone = call();

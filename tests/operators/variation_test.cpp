@@ -6,7 +6,7 @@
 namespace evodevo::test {
 namespace {
 
-/// Two real genes, a group of three choices of 4, two real genes of another range.
+/// A layout of two real genes, a group of three genes with four options each, and two real genes of another range.
 Layout mixed_layout() {
   Layout layout;
   layout.add_group(2, {-1, 1});
@@ -53,7 +53,7 @@ TEST(ResetWeight, ChangesExactlyOneGeneAndEveryGeneAlike) {
     ASSERT_EQ(changed.size(), 1u);
     ++hits[changed[0]];
   }
-  // 1,000 expected, five standard deviations are 150
+  // expected are 1,000; five standard deviations are 150
   for (const int count : hits) EXPECT_NEAR(count, 1000, 150);
 }
 
@@ -182,7 +182,7 @@ TEST_P(AnyCrossover, DependsOnItsKeyAlone) {
 
 INSTANTIATE_TEST_SUITE_P(Crossovers, AnyCrossover, testing::Values("swap-neuron", "two-point"));
 
-/// For each set of exchanged genes how often it came.
+/// Returns how often each set of genes was exchanged.
 std::map<std::vector<std::size_t>, int> exchanges(const Crossover& crossover, const Layout& layout, int rounds) {
   std::map<std::vector<std::size_t>, int> seen;
   Rng rng = stream(4);
@@ -208,7 +208,7 @@ TEST(TwoPoint, SwapsEverySegmentAlikeOften) {
   Layout layout;
   layout.add_group(4, {0, 1});
   const auto seen = exchanges(*make<Crossover>("two-point"), layout, 10000);
-  ASSERT_EQ(seen.size(), 10u);  // pairs among the five positions to cut
+  ASSERT_EQ(seen.size(), 10u);  // pairs of the five positions at which genomes can be cut
   for (const auto& [genes, count] : seen) {
     EXPECT_EQ(genes.back() - genes.front() + 1, genes.size()) << "not one segment";
     EXPECT_NEAR(count, 1000, 150);

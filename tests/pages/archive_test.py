@@ -1,4 +1,4 @@
-"""The page of the archive: its tables and columns are those of a run, and its queries and program answer."""
+"""Tests the page on the archive: its tables and columns are those of a run, and its queries and program work."""
 
 import re
 import sqlite3
@@ -11,11 +11,11 @@ from pathlib import Path
 from pages import ROOT, blocks, make_small_run
 
 PAGE = ROOT / "framework/evolution/archive/README.md"
-MAY_BE_EMPTY = "status <> 'ok'"  # the query for failures, of which a run may have none
+MAY_BE_EMPTY = "status <> 'ok'"  # part of the query for failures; a run may have none
 
 
 def tables_on_page():
-    """The columns of each table that has a heading of its own."""
+    """Returns the columns of each table that has its own heading."""
     tables = {}
     for section in re.split(r"^### ", PAGE.read_text(encoding="utf-8"), flags=re.M)[1:]:
         columns = re.search(r"\| column \|.*\n\|[-|]+\n((?:\|.*\n)+)", section)[1]

@@ -1,4 +1,5 @@
-"""Every command in every `sh` block of every page exists, with its options; those that take little time are run."""
+"""Tests that every command in every `sh` block of every page exists and has the options used. Commands that take little
+time are run."""
 
 import re
 import shlex
@@ -12,13 +13,13 @@ from typing import NamedTuple
 
 from pages import PROGRAM, ROOT, SHRINK, PageTest, all_pages, blocks, evodevo, make_small_run, name
 
-# programs of others, whose options are not ours to check
+# programs of other projects, whose options are not checked
 OTHERS = {"apt-get", "cd", "clang-format", "cmake", "cp", "ctest", "echo", "export", "g++", "git", "man", "mkdir",
           "ninja", "python3", "sed", "source", "sqlite3", "sudo"}
-# their options go to another program, or they have none
+# programs whose options go to another program, or that have none
 WITHOUT_HELP = {"tools/test": "hands its options to CTest", "tools/setup": "is read by the other tools"}
 
-# what is not run here, and why
+# commands that are not run here, with the reason
 NOT_RUN = {
     "conform": "takes a minute; OutsidePlugin and ReadmeTutorial run it",
     "environments": "takes minutes; EnvironmentsCommand tests it",
@@ -27,14 +28,14 @@ NOT_RUN = {
     "new": "writes a project; OutsidePlugin and ReadmeTutorial build it",
     "report": "takes a built viewer; the tests of the viewer run it",
 }
-OWN_PROJECT = ("experiment.toml", "walk.toml", "walk-1", "my-lab.growth")  # of a reader; ReadmeTutorial has it
+OWN_PROJECT = ("experiment.toml", "walk.toml", "walk-1", "my-lab.growth")  # see ReadmeTutorial
 
 
 class Command(NamedTuple):
     page: Path
     line: int
     words: list  # without redirections
-    output: str | None  # the file that takes its output
+    output: str | None  # the file to which its output is redirected
 
     def __str__(self):
         return f"{name(self.page)}:{self.line}: {' '.join(self.words)}"
@@ -50,7 +51,7 @@ class Command(NamedTuple):
 
 
 def commands_in(line):
-    """The simple commands of a line of shell, as (words, output)."""
+    """Splits a line of shell into simple commands, as (words, output)."""
     lexer = shlex.shlex(line, posix=True, punctuation_chars=True)
     lexer.whitespace_split = True
     lexer.commenters = "#"
@@ -71,7 +72,7 @@ def commands_in(line):
 
 def commands_of(page):
     for block in blocks(page, "sh"):
-        text, line = block.text.replace("\\\n", " \0"), block.line  # joined lines keep count
+        text, line = block.text.replace("\\\n", " \0"), block.line  # "\0" keeps the count of lines
         for row in text.splitlines():
             for words, output in commands_in(row.replace("\0", "")):
                 yield Command(page, line, words, output)
@@ -80,14 +81,15 @@ def commands_of(page):
 
 @cache
 def help_of(program, command=None):
-    """What a program says of itself; None where it fails to."""
+    """Returns the help of a program, or None if it fails."""
     call = [PROGRAM, command, "--help"] if program == "evodevo" else [str(ROOT / program), "--help"]
     finished = subprocess.run(call, capture_output=True, text=True, stdin=subprocess.DEVNULL)
     return finished.stdout if finished.returncode == 0 else None
 
 
 def missing_files(command):
-    """Files of the source tree that a command names and that are not there; {a,b} stands for two, * for any."""
+    """Yields the files of the source tree that a command names and that do not exist. {a,b} and * are expanded as in
+    shell."""
     for word in command.words:
         if not re.match(r"(tools/[\w/]+|(experiments|framework|kernels|plugins|tests)/.*\.\w+)$", word):
             continue
@@ -117,7 +119,7 @@ def fault_of(command):
 
 
 def runnable(command):
-    """The words to run for a command in a folder with a small run; None where it is not run."""
+    """Returns the words to run for a command, in a folder with a small run, or None if it is not run."""
     if command.program != "evodevo" or len(command.words) < 2 or command.words[1] in NOT_RUN:
         return None
     if any(own in word for own in OWN_PROJECT for word in command.words):
@@ -126,8 +128,8 @@ def runnable(command):
     if words[0] == "run":
         if "experiments/quickstart.toml" in words:
             return words + SHRINK
-        return ["check", *(word for word in words[1:] if word.endswith(".toml"))]  # the others take hours
-    return [re.sub(r"^531$", "1", word) for word in words]  # an individual of a long run
+        return ["check", *(word for word in words[1:] if word.endswith(".toml"))]  # other experiments take hours
+    return [re.sub(r"^531$", "1", word) for word in words]  # 531 is an individual of a long run
 
 
 class Commands(PageTest):

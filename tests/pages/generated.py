@@ -1,4 +1,4 @@
-"""Parts of pages that a command writes, between <!-- evodevo ARGUMENTS --> and <!-- end -->."""
+"""Finds and renews the parts of pages that a command writes, between <!-- evodevo ARGUMENTS --> and <!-- end -->."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""What a page marks as written by a command is what the command writes; tests/pages/renew writes it anew."""
+"""Tests that generated parts of pages are equal to the output of their commands; tests/pages/renew renews them."""
 
 import unittest
 

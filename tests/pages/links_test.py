@@ -1,4 +1,5 @@
-"""Every relative link of every page leads to a file, every anchor to a heading, and every path in backticks exists."""
+"""Tests that every relative link of every page leads to a file, every anchor to a heading, and that every path in
+backticks exists."""
 
 import re
 import tempfile
@@ -10,14 +11,14 @@ from pages import ROOT, PageTest, all_pages, name, prose
 LINK = re.compile(r"!?\[[^\]]*\]\(<?([^)>\s]+)>?(?: \"[^\"]*\")?\)")
 IMAGE = re.compile(r"<(?:img|source|a)\b[^>]*\b(?:src|srcset|href)=\"([^\"]+)\"")
 SPAN = re.compile(r"`([^`]+)`")
-# such as `kernels/physics/physics.hpp`
+# a path of a source file, such as `kernels/physics/physics.hpp`
 SOURCE = re.compile(r"[\w.-]+(?:/[\w.-]+)+\.(?:cpp|hpp|cu|cuh|inc|md|toml|py|mjs|sh|cmake|txt|csv|svg|png|webp|gif)")
-# what commands and builds write
+# folders that commands and builds write
 WRITTEN = ("build/", "runs/", "my-plugins/", "my-lab.growth/", "share/", "include/", "lib/", "charts/")
 
 
 def anchor(heading):
-    """As GitHub makes it of a heading."""
+    """Returns the anchor that GitHub makes from a heading."""
     text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading).strip().lower()
     return re.sub(r"[^\w\- ]", "", text).replace(" ", "-")
 
@@ -33,7 +34,7 @@ def anchors(page):
 
 def fault_of_link(page, target):
     if re.match(r"[a-z]+:", target):
-        return None  # elsewhere; tests have no network
+        return None  # a link to another site; tests have no network
     path, _, fragment = target.partition("#")
     file = (page.parent / path).resolve() if path else page
     if not file.exists():

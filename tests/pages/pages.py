@@ -1,4 +1,4 @@
-"""What the tests of pages share: which pages there are, their blocks, and a small run to try commands on."""
+"""Code that the tests of pages share: the list of pages, their blocks, and a small run for trying commands."""
 
 import os
 import re
@@ -10,7 +10,7 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("EVODEVO_PROGRAM", str(ROOT / "tools/evodevo"))
 NOT_OURS = {"build", "runs", "node_modules", ".git", ".cache"}
-# where `evodevo new` fills in names
+# templates of `evodevo new`, with placeholders for names
 TEMPLATE = ROOT / "framework/template"
 
 
@@ -21,7 +21,7 @@ class PageTest(unittest.TestCase):
 
 class Block(NamedTuple):
     page: Path
-    line: int  # of its first line of text, from 1
+    line: int  # number of its first line of text, counted from 1
     text: str
 
     def __str__(self):
@@ -41,7 +41,7 @@ def all_pages():
 
 
 def blocks(page, language):
-    """The fenced blocks of a language, in their order."""
+    """Returns the fenced blocks of a language, in order."""
     found, start, fence = [], None, ""
     lines = page.read_text(encoding="utf-8").splitlines()
     for number, line in enumerate(lines, 1):
@@ -57,7 +57,7 @@ def blocks(page, language):
 
 
 def prose(page):
-    """The lines of a page with their numbers, without fenced blocks."""
+    """Yields the lines of a page outside fenced blocks, with their numbers."""
     inside = False
     for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1):
         if re.match(r" *(```|~~~)", line):
@@ -74,7 +74,7 @@ def evodevo(*arguments, folder=None, check=True):
     return finished
 
 
-# a life of a few milliseconds
+# settings with which a life takes a few milliseconds
 SHRINK = [word for key in ("experiment.evaluations=24", "experiment.population=6", "encoding.points=24",
                            "development.cycle_time=0.1", "fitness.0.settle=0", "fitness.0.window=0.1",
                            "simulation.device=cpu") for word in ("--set", key)]

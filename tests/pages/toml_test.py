@@ -1,5 +1,5 @@
-"""`evodevo check` accepts every TOML block of every page. What a block leaves out comes from an experiment that has
-everything: a block's tables take the place of those of the same name."""
+"""Tests that `evodevo check` accepts every TOML block of every page. Tables that a block leaves out are taken from a
+complete experiment; the block's tables replace those of the same name."""
 
 import re
 import tempfile
@@ -12,12 +12,12 @@ from pages import ROOT, Block, PageTest, all_pages, blocks, evodevo
 HEADER = re.compile(r"\[\[?([\w.-]+)\]\]? *(?:#.*)?")
 ORDER = ["experiment", "encoding", "mutation", "crossover", "scene", "simulation", "development",
          "development.operator", "fitness", "selection", "materials", "plugins"]
-# what a reader of the page builds
+# operators that a reader of the page builds
 OWN_OPERATORS = ["erosion", "my-lab.growth"]
 
 
 def sections(block):
-    """The tables of a block, as (name, text)."""
+    """Returns the tables of a block, as (name, text)."""
     found = []
     for offset, line in enumerate(block.text.splitlines(keepends=True)):
         if header := HEADER.fullmatch(line.rstrip()):
@@ -38,7 +38,7 @@ def completed(block, base):
     given = sections(block)
     names = {name for name, _ in given}
     if {"encoding", "mutation", "fitness", "selection"} <= names:
-        return block.text  # it claims to be whole
+        return block.text  # the block is a complete experiment
     tables = [table for table in base if table[0] not in names] + given
     return "".join(text for _, text in sorted(tables, key=lambda table: position(table[0])))
 

@@ -1,4 +1,4 @@
-// A body's answer does not depend on what else is simulated, nor on how.
+// The result of a body does not depend on the other bodies of its batch, nor on threads.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using testing::Test;
 
 constexpr Steps stepping{Method::paper_euler, Precision::float32, 0.0005};
 
-/// Bodies of many sizes, each with its answer alone.
+/// Bodies of many sizes, each with its result when it is simulated alone.
 class Bodies {
  protected:
   explicit Bodies(const Steps& steps) : steps_(steps) {
@@ -28,7 +28,7 @@ class Bodies {
       alone.push_back(simulate(body, state_at_birth(body, full_scene()), full_scene(), steps_, 333, recording));
   }
 
-  /// Simulates the bodies named by `order` in one batch and expects the answers that they have alone.
+  /// Simulates the bodies with the indices in `order` in one batch, and expects the results that they have alone.
   void expect_the_same(const std::vector<std::size_t>& order, int threads) const {
     std::vector<State> states;
     for (const std::size_t i : order) states.push_back(state_at_birth(bodies[i], full_scene()));
@@ -94,7 +94,7 @@ TEST_P(BatchOfEachMethod, EveryBodyHasItsOwnSteps) {
 }
 
 TEST_F(Batch, ABodyThatDivergesIsFlaggedAndDisturbsNoOther) {
-  // a spring whose swing the step cannot follow
+  // a spring whose oscillation is too fast for the step
   Body unstable = pair_of_masses(0.2, {1e7, 0, 0, 0}, 1.01);
   std::vector<State> states{state_at_birth(bodies[4], full_scene()), state_at_birth(unstable, full_scene()),
                             state_at_birth(bodies[5], full_scene())};

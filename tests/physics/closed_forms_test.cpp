@@ -1,4 +1,4 @@
-// The simulator against solutions on paper.
+// The simulator compared with closed-form solutions.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -44,7 +44,7 @@ TEST_P(ClosedForm, FreeFallIsThatOfTheMethod) {
   const double t = 1, dt = 0.0005;
   EXPECT_EQ(a.task.status, Status::ok);
   EXPECT_NEAR(a.state.velocity[0].z, 4 - g * t, 30 * rounding());
-  // x <- x + dt v with the new v falls g t dt / 2 further than g t^2 / 2, which the others hit
+  // methods with x <- x + dt v and the new v fall g t dt / 2 further than g t^2 / 2; the other methods are exact
   const bool exact = method() == Method::velocity_verlet || method() == Method::rk4;
   EXPECT_NEAR(a.state.position[0].z, 100 + 4 * t - g * t * (t + (exact ? 0 : dt)) / 2, 1000 * rounding());
   EXPECT_NEAR(a.state.position[0].x, 1 + 3 * t, 100 * rounding());
@@ -58,7 +58,7 @@ TEST_P(ClosedForm, FallingFarIsNoDivergence) {
   EXPECT_NEAR(a.state.velocity[0].z, -98.1, 0.05);
 }
 
-/// How far, in units of its start, a spring at rest is stretched after n steps of h = omega dt.
+/// The stretch of a spring that starts at rest, relative to its initial stretch, after n steps of h = omega dt.
 double discrete_swing(Method method, double h, double n) {
   using namespace std::complex_literals;
   const double theta = std::acos(1 - h * h / 2);
@@ -71,7 +71,7 @@ double discrete_swing(Method method, double h, double n) {
     case Method::rk4:
       return std::pow(1.0 + 1i * h - h * h / 2 - 1i * h * h * h / 6.0 + h * h * h * h / 24, n).real();
     case Method::implicit:
-    case Method::xpbd:  // which, for one spring, is backward Euler
+    case Method::xpbd:  // equals backward Euler for a single spring
       return std::pow(1.0 / (1.0 - 1i * h), n).real();
   }
   return std::numeric_limits<double>::quiet_NaN();
@@ -97,12 +97,12 @@ TEST_P(ClosedForm, ADrivenSpringFollowsItsEquation) {
   const double t = 0.7;
   const double stretch = c * (std::sin(drive * t + phase) - std::sin(phase) * std::cos(omega * t) -
                               drive / omega * std::cos(phase) * std::sin(omega * t));
-  const double error = is_explicit(method()) ? 1e-3 : 2e-2;  // the others are first order and damp
+  const double error = is_explicit(method()) ? 1e-3 : 2e-2;  // the other methods are of first order, and damp
   EXPECT_NEAR(a.state.position[1].x - a.state.position[0].x, 1 + stretch, error);
 }
 
 TEST_P(ClosedForm, LateTimesKeepTheirPhase) {
-  // after 10^6 periods of the drive the spring is driven as at its birth
+  // after 10^6 periods of the muscle, the drive is the same as at birth
   const Body body = pair_of_masses(0.2, {500, 0.1, 2, 0.3});
   State late = resting(body, {});
   late.time = 500000;
@@ -116,7 +116,7 @@ TEST_P(ClosedForm, DragEndsInTheTerminalVelocity) {
   const Scene scene{Gravity{}, {}, {}, {}, Drag{0.8}};
   const Body body = single_mass(0.2);
   const Answer a = simulate(body, resting(body, scene), scene, stepping(), 6000);
-  const double error = 10 * rounding() + (method() == Method::velocity_verlet ? 1e-5 : 0);  // of second order
+  const double error = 10 * rounding() + (method() == Method::velocity_verlet ? 1e-5 : 0);  // an error of second order
   EXPECT_NEAR(a.state.velocity[0].z, -std::sqrt(0.2 * g / 0.8), error);
 }
 
@@ -136,7 +136,7 @@ TEST_P(ClosedForm, DampingIsAnExactDecay) {
   for (const double dt : {0.0005, 0.002}) {
     const auto steps = static_cast<std::uint64_t>(std::lround(0.5 / dt));
     const Answer a = simulate(body, moving(body, scene, {1, 2, -2}), scene, stepping(dt), steps);
-    // rk4 takes damping for a force
+    // rk4 integrates damping like a force; the other methods apply its exact factor
     const double error = 10 * rounding() + (method() == Method::rk4 ? 1e-10 : 0);
     EXPECT_NEAR(norm(a.state.velocity[0]), 3 * std::exp(-1.5), error) << "dt " << dt;
   }
@@ -165,7 +165,7 @@ TEST_P(ClosedForm, ASlidingMassStopsAfterItsStoppingDistance) {
   const double v = 1.5;
   const Answer a = simulate(body, moving(body, scene, {0.6 * v, 0.8 * v, 0}), scene, stepping(), 2000);
   const double distance = v * v / (2 * 0.4 * g);
-  // velocity-verlet and rk4 are exact but for the last step
+  // velocity-verlet and rk4 are exact except in the last step
   const bool exact = method() == Method::velocity_verlet || method() == Method::rk4;
   const double error = (exact ? 0.1 : 1) * v * 0.0005;
   EXPECT_NEAR(a.state.position[0].x, 0.6 * distance, error);
@@ -187,7 +187,8 @@ TEST_P(ClosedForm, ASlidingBlockStopsAfterItsStoppingDistance) {
   EXPECT_NEAR(centre_of_mass(body, a.state.position).x - from, distance, 0.05 * distance);
 }
 
-/// A mass on the floor, drawn along x by a spring with `force` newtons; a mass of 0 kg holds the other end.
+/// A mass on the floor, pulled along x by a spring with the force `force` (N). The other end of the spring is held by a
+/// mass of 0 kg.
 Body drawn_mass(double force) {
   const double k = 100;
   Body body = pair_of_masses(0.2, {k, 0, 0, 0}, 1 + force / k);
@@ -210,7 +211,7 @@ TEST_P(ClosedForm, FrictionHoldsInsideTheConeAndOnlyThere) {
                                                                   : slipping.masses[1].rest.x));
 }
 
-/// On a slope of so many degrees.
+/// A scene with a slope, in degrees.
 Scene inclined(double slope, double friction) { return {Gravity{g, slope}, Floor{}, Friction{friction}, {}, {}}; }
 
 TEST_P(ClosedForm, AMassGoesDownASlopeFasterThanFrictionHolds) {
@@ -280,7 +281,7 @@ TEST_P(ClosedForm, FrictionNeedsAFloor) {
   EXPECT_EQ(a.state.velocity[0].x, 1);
 }
 
-/// Of the methods that do not damp by themselves.
+/// Tests of the methods without numerical damping.
 class LossFreeClosedForm : public ClosedForm {};
 
 INSTANTIATE_TEST_SUITE_P(Methods, LossFreeClosedForm,

@@ -1,4 +1,4 @@
-// Springs in colours.
+// The colouring of springs.
 #include "analysis/colouring.hpp"
 
 #include <gtest/gtest.h>

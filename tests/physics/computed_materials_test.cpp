@@ -1,4 +1,4 @@
-// Materials as springs' codes say them: near what they are, the same on the way to the GPU and on the CPU.
+// Materials encoded in springs' codes: they are close to the given materials, and the same on the CPU and for the GPU.
 #include "analysis/computed_materials.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace evodevo::test {
 namespace {
 
-/// Materials of all kinds of numbers, muscles and others.
+/// Random materials, some of them muscles.
 std::vector<Material> random_materials(std::size_t count) {
   const Body places = random_body(static_cast<std::uint32_t>(count), 1, 1, 3);  // coordinates in [-1, 1]
   std::vector<Material> materials;
@@ -55,7 +55,7 @@ TEST(ComputedMaterials, OthersAreOffByHalfAUnitAtMost) {
     EXPECT_NEAR(rounded.stiffness, given.stiffness, units.stiffness / (is_least ? 1 : 2) * rounding);
     EXPECT_NEAR(rounded.amplitude, std::abs(given.amplitude), units.amplitude / 2 * rounding);
     EXPECT_NEAR(rounded.frequency, std::abs(given.frequency), units.frequency / 2 * rounding);
-    // the same motion, whatever the signs
+    // the motion is the same even if signs of amplitude and frequency have been changed
     const double amplitude = std::abs(given.amplitude), time = 2.3;
     EXPECT_NEAR(rounded.relative_length(time), given.relative_length(time),
                 (units.amplitude / 2 + amplitude * (half_phase + 2 * pi * units.frequency / 2 * time)) * rounding)

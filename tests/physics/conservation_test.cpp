@@ -1,4 +1,4 @@
-// What internal forces must keep.
+// Quantities that internal forces must conserve.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,16 +37,17 @@ TEST_P(Conservation, InternalForcesKeepLinearAndAngularMomentum) {
   // conjugate gradients leave a residual
   const double residual = method() == Method::implicit ? 1e-6 : 0;
   EXPECT_LT(norm(after.linear - before.linear), (error + residual) * after.scale);
-  // forces act along the springs as they lie at the beginning of a step; rk4 takes them from elsewhere too, to fourth
-  // order; backward Euler slows a turn of omega down by omega^2 dt a second, and xpbd by much more where muscles pull
+  // Explicit methods use forces along the springs at the beginning of a step, which conserves angular momentum; rk4
+  // also uses intermediate positions, with an error of fourth order. Backward Euler slows a rotation at omega down by
+  // omega^2 dt per second, and xpbd by much more if muscles pull.
   const double lost = method() == Method::rk4 ? 1e-6 : method() == Method::implicit ? 2 * 1.16 * 0.0005 : 0;
   if (method() != Method::xpbd) {
     EXPECT_LT(norm(after.angular - before.angular), 2 * (error + lost) * after.scale);
   }
-  EXPECT_GT(largest_difference(start, a.state), 0.1);  // it did move
+  EXPECT_GT(largest_difference(start, a.state), 0.1);  // the body has moved
 }
 
-/// By the methods that do not damp by themselves.
+/// Tests of the methods without numerical damping.
 class EnergyConservation : public Conservation {};
 
 INSTANTIATE_TEST_SUITE_P(Methods, EnergyConservation,

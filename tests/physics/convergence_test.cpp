@@ -1,4 +1,4 @@
-// Every method tends to the same motion, and with its own order.
+// All methods converge to the same motion, each with its own order.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,12 +17,12 @@ struct Smooth {
   Scene scene;
 };
 
-/// One muscle that swings, slowed down by all that slows down.
+/// One oscillating muscle, slowed down by damping and drag.
 Smooth one_spring() {
   return {"one_spring", pair_of_masses(0.2, {500, 0.1, 2, 0.7}, 1.05), {{}, {}, {}, Damping{3}, Drag{0.2}}};
 }
 
-/// A lattice of muscles in two phases that turns as it falls.
+/// A lattice of muscles with two phases, which rotates as it falls.
 Smooth lattice() {
   Body body = block(2, {800, 0.1, 3, 0});
   body.materials.push_back({1000, 0.1, 2, 1});
@@ -66,14 +66,14 @@ TEST_P(Convergence, TheErrorFallsWithTheOrderOfTheMethod) {
       EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
       return largest_difference(a.state, truth);
     };
-    // small enough for the order to show, large enough for the error to stand above the rounding
+    // enough steps for the asymptotic order, but few enough for an error above rounding
     const std::uint64_t steps = order == 1 ? 12800 : order == 2 ? 1600 : 200;
     EXPECT_NEAR(std::log2(error(steps) / error(2 * steps)), order, 0.1) << smooth.name;
   }
 }
 
 TEST_P(Convergence, WithFloorAndFrictionAllTendToOneMotion) {
-  // a block falls onto a soft floor, slides and comes to rest
+  // a block falls on a soft floor, slides and comes to rest
   const Scene scene{Gravity{}, Floor{2e4}, Friction{0.5}, Damping{2}, {}};
   const Body body = block(1, {2000, 0, 0, 0});
   State start = state_at_birth(body, scene);
@@ -90,10 +90,10 @@ TEST_P(Convergence, WithFloorAndFrictionAllTendToOneMotion) {
   };
   const double coarse = error(600), fine = error(9600);
   EXPECT_LT(coarse, 0.01);
-  EXPECT_LT(fine, coarse / 6);  // a sixteenth of the step
+  EXPECT_LT(fine, coarse / 6);  // `fine` has a sixteenth of the step
 }
 
-/// The speed (m/s) at which damping and drag together bear the weight: rate m v + c v^2 = m g.
+/// The terminal speed (m/s), at which damping and drag balance the weight: rate m v + c v^2 = m g.
 double terminal_speed(const Scene& scene, double mass) {
   const double a = scene.drag->coefficient, b = scene.damping->rate * mass, weight = mass * scene.gravity->acceleration;
   return (std::sqrt(b * b + 4 * a * weight) - b) / (2 * a);
@@ -108,7 +108,7 @@ TEST_P(Convergence, TheTerminalVelocityIsTrue) {
     const Answer a = simulate(body, resting(body, scene), scene, stepping, static_cast<std::uint64_t>(20 / dt));
     const double error = std::abs(a.state.velocity[0].z + expected) / expected;
     switch (GetParam()) {
-      case Method::paper_euler:  // v <- (v + dt a) decay: short by about rate dt/2
+      case Method::paper_euler:  // v <- (v + dt a) decay: too slow by a share of about rate dt/2
         EXPECT_LT(error, 5 * dt);
         EXPECT_GT(error, 0.5 * dt);
         break;

@@ -1,4 +1,4 @@
-// Bodies that are hardly bodies: no crash, no NaN.
+// Degenerate bodies: the simulator neither crashes nor gives NaN.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,8 @@
 namespace evodevo::test {
 namespace {
 
-/// Runs `body` by every method in two scenes and both precisions with everything recorded; expects numbers.
+/// Simulates `body` with every method in two scenes and both precisions, with everything recorded. Expects that all
+/// results are finite.
 void expect_numbers(const Body& body) {
   for (const Method method : all_methods)
     for (const Precision precision : {Precision::float32, Precision::float64})

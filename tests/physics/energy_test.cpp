@@ -1,4 +1,4 @@
-// What each method does to the energy of a body that nothing slows down.
+// The change of energy by each method, for a body without damping and drag.
 #include "analysis/energy.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ class Energy : public testing::TestWithParam<Method> {};
 INSTANTIATE_TEST_SUITE_P(Methods, Energy, testing::ValuesIn(all_methods),
                          [](const auto& instance) { return name_of(instance.param); });
 
-/// What a step of h = omega dt leaves of a swinging spring's energy, on average over its swing.
+/// The factor by which a step of h = omega dt changes the energy of an oscillating spring, on average over its period.
 double kept_energy(Method method, double h) {
   switch (method) {
     case Method::rk4:
@@ -65,7 +65,8 @@ TEST_P(Energy, OfOneSpringIsWhatTheoryLeaves) {
     state = simulate(body, state, {}, {GetParam(), Precision::float64, h / omega}, steps).state;
     const double ratio = total_energy(body, state, {}) / before;
     const double expected = std::pow(kept_energy(GetParam(), h), static_cast<double>(steps));
-    // of those that keep it, energy swings around what is conserved, between 1/(1 + h/2) and 1/(1 - h/2) at most
+    // methods without damping conserve a modified energy; the energy oscillates around it, at most between 1/(1 + h/2)
+    // and 1/(1 - h/2)
     if (kept)
       EXPECT_TRUE(ratio > (1 - h / 2) / (1 + h / 2) && ratio < (1 + h / 2) / (1 - h / 2)) << ratio << " at " << h;
     else
@@ -86,7 +87,7 @@ TEST_P(Energy, NeverRisesWithoutMuscles) {
         const Answer a = simulate(body, state, {}, {GetParam(), precision, factor * limit}, 100);
         ASSERT_EQ(a.task.status, Status::ok) << a.task.reason;
         state = a.state;
-        // explicit methods conserve a neighbour of it
+        // explicit methods conserve a modified energy, which differs a little
         EXPECT_LT(total_energy(body, state, {}), (is_explicit(GetParam()) ? 1.1 : 1.0) * before)
             << name_of(precision) << ", " << factor << " of the limit, " << i;
       }
@@ -102,7 +103,7 @@ TEST_P(LimitedEnergy, IsBoundedBelowTheLimitOfTheStepAndNotAbove) {
   for (const Body& body : {passive_body(), block(2, {5000, 0, 0, 0})}) {
     const double limit = largest_dt(body, rest_positions(body), GetParam());
     State start = shaken(body, 1e-3);
-    start.start_energy *= 100;  // near the limit the true energy swings far around a conserved one
+    start.start_energy *= 100;  // near the limit, energy oscillates far around the conserved, modified energy
     const auto status = [&](double dt) {
       return simulate(body, start, {}, {GetParam(), Precision::float64, dt}, 10000).task.status;
     };
@@ -118,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, UnlimitedStep, testing::Values(Method::implici
 
 TEST_P(UnlimitedStep, CarriesAWalkerWhereExplicitMethodsFail) {
   const Body body = random_body(60, 10, 5, 4);
-  // one pass of xpbd carries a body's weight only so far up
+  // one pass of xpbd transmits the weight only through a few springs, which limits the step
   const double factor = GetParam() == Method::implicit ? 20 : 3;
   const double dt = factor * largest_dt(body, rest_positions(body), Method::paper_euler);
   for (const Precision precision : {Precision::float32, Precision::float64})

@@ -61,7 +61,7 @@ TEST(Ground, ComesFromItsSeedAlone) {
 }
 
 TEST(Ground, OfOneSeedIsNotThatOfAnotherMoved) {
-  // by how far the corners of two grounds are apart where one is moved by whole cells
+  // largest difference between the heights of two grounds at corners of cells, with one ground moved by whole cells
   const auto difference = [](std::int64_t seed, std::int64_t other, int right, int behind) {
     double largest = 0;
     for (int i = 0; i < 10; ++i)
@@ -99,7 +99,7 @@ class OnRoughGround : public testing::TestWithParam<Arithmetic> {
   static Precision precision() { return std::get<Precision>(GetParam()); }
   static Steps stepping(double dt = 0.0005) { return {method(), precision(), dt}; }
 
-  /// The corner (m) of the ground's cells next to (x, y) that is a hollow: lower than all four around.
+  /// The corner (m) of a ground cell next to (x, y) that is a hollow, which means lower than its four neighbours.
   static Vec3 hollow(const Floor& floor, double x, double y) {
     const auto height = [&](double i, double j) { return ground(floor, i / 2, j / 2).height; };
     for (double i = std::round(2 * x);; ++i) {
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, OnRoughGround,
 
 TEST_P(OnRoughGround, AMassRestsInAHollow) {
   const Scene scene{Gravity{}, rough_floor(), {}, Damping{}, {}};
-  // near and far, on either side
+  // close to and far from the origin, on both sides
   for (const double at : {0.0, -37.0, 300.0}) {
     const Vec3 bottom = hollow(*scene.floor, at, -at);
     const Body body = single_mass(0.2, bottom);
@@ -129,7 +129,7 @@ TEST_P(OnRoughGround, AMassRestsInAHollow) {
   }
 }
 
-/// A place of the ground, sunk in by the weight, that rises by about `slope` for each metre.
+/// A point of the ground with a gradient of about `slope`, lowered by the depth to which the weight sinks in.
 Vec3 place_of_slope(const Floor& floor, double slope) {
   for (double x = 0;; x += 1e-3) {
     const auto here = ground(floor, x, 0.3);
@@ -148,7 +148,7 @@ TEST_P(OnRoughGround, FrictionHoldsAMassInsideTheConeAndOnlyThere) {
   EXPECT_GT(norm(b.state.position[0] - slipping.masses[0].rest), 1e-3);
 }
 
-/// With the energy that the ground holds, J.
+/// The energy of the body, including the elastic energy of the ground, J.
 double whole_energy(const Body& body, const State& state, const Scene& scene) {
   double energy = total_energy(body, state, scene);
   for (const Vec3& x : state.position)
@@ -165,8 +165,8 @@ TEST_P(OnRoughGround, AMassWithoutFrictionKeepsItsEnergy) {
   EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
   EXPECT_GT(norm(a.state.position[0] - start.position[0]), 0.05);
   const double gained = whole_energy(body, a.state, scene) - whole_energy(body, start, scene);
-  // methods of first order keep an energy that is off by dt F v/2: at most on the steepest slope, as fast as from the
-  // highest to the lowest place
+  // methods of first order conserve an energy that deviates by dt F v/2; it is largest on the steepest slope, at the
+  // speed that a fall from the highest to the lowest point gives
   const double force = 0.2 * g * scene.floor->steepest(), speed = std::sqrt(2 * g * 2 * scene.floor->roughness);
   EXPECT_NEAR(gained, 0, dt * force * speed / 2);
 }

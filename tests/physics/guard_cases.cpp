@@ -10,7 +10,8 @@
 namespace evodevo::test {
 namespace {
 
-/// Two masses of 0.2 kg joined by the default muscle, `length` m long, whose stroke is `amplitude`, at resonance.
+/// Two masses of 0.2 kg joined by a muscle that is `length` m long, has the amplitude `amplitude`, and is driven at
+/// resonance.
 Body resonant_pair(double length, double amplitude) {
   Body body = pair_of_masses(0.2, {5000, amplitude, std::sqrt(2 * 5000 / 0.2) / (2 * pi), 0}, length);
   body.springs[0].rest_length = length;
@@ -30,8 +31,8 @@ Ending end_of(Simulator& simulator, const Body& body, const State& start, double
   return ending;
 }
 
-/// Kinetic and elastic energy of resonant_pair() at rest at t = 0 while it is stretched by less than its length: the
-/// distance is length (1 + amplitude/2 (sin wt - wt cos wt)).
+/// Kinetic and elastic energy of resonant_pair(), which starts at rest at t = 0. It holds as long as the stretch is
+/// less than the length; the distance of the masses is length (1 + amplitude/2 (sin wt - wt cos wt)).
 double energy_at_resonance(double length, double amplitude, double t) {
   const double w = std::sqrt(2 * 5000 / 0.2), angle = w * t;
   const double distance = length * amplitude / 2 * (std::sin(angle) - angle * std::cos(angle));
@@ -52,7 +53,7 @@ void expect_resonance_to_live(const SimulatorFactory& simulator_for, Method meth
   if (is_explicit(method)) {
     EXPECT_NEAR(total_energy(linear, early.state, {}), truth, 0.05 * truth);
   }
-  // until the masses fly through each other, again and again
+  // long enough for the masses to fly through each other repeatedly
   const Body wild = resonant_pair(0.5, 0.14);
   for (const Recording recording : {Recording{}, Recording{.stress = true, .work = true}}) {
     const Ending late = end_of(*simulator, wild, resting(wild, {}), 0.0005, 4000, recording);

@@ -1,19 +1,21 @@
-// Motion near the guard's bound: bodies that muscles drive as hard as they can, and bodies that gain energy from
-// nothing.
+// Motion near the guard's bound: bodies that muscles drive at resonance, and bodies whose energy grows without a
+// source.
 #pragma once
 
 #include "hard_cases.hpp"
 
 namespace evodevo::test {
 
-/// A muscle at its body's resonance: expects that it lives, and of methods that keep energy what it has by the closed
-/// form, more than strain alone could bring.
+/// Simulates bodies whose muscle is driven at resonance. Expects that none is ended and that, with methods without
+/// damping, the energy is that of the closed form, which is more than strain alone could give.
 void expect_resonance_to_live(const SimulatorFactory& simulator_for, Method method);
 
-/// Bodies that a floor too hard for their step pumps up: expects that some end, and none where the step is short.
+/// Simulates bodies that gain energy because the floor is too stiff for the time step. Expects that some are ended, and
+/// none with a short time step.
 void expect_pumped_bodies_to_end(const SimulatorFactory& simulator_for);
 
-/// Expects that the bound after runs of several lengths is that after one, and the closed form of guard.hpp.
+/// Expects that the bound after several short runs is the same as after one long run, and equals the closed form in
+/// guard.hpp.
 void expect_one_bound(const SimulatorFactory& simulator_for);
 
 }  // namespace evodevo::test

@@ -1,4 +1,4 @@
-// The guard lets bodies live whose muscles drive them, and ends those that gain energy from nothing, on the CPU.
+// On the CPU, the guard does not end bodies that muscles drive, and ends bodies whose energy grows without a source.
 #include <gtest/gtest.h>
 
 #include "guard_cases.hpp"
@@ -24,7 +24,7 @@ TEST_P(GuardOfEachMethod, LetsResonanceLive) { expect_resonance_to_live(factory(
 TEST_P(GuardOfEachMethod, HasOneBoundForOneRunAndForSeveral) { expect_one_bound(factory()); }
 
 TEST_P(GuardOfEachMethod, EndsWhatTheFloorPumpsUp) {
-  // the others bear this step
+  // the other methods are stable at this step
   if (is_explicit(method()) && method() != Method::rk4) expect_pumped_bodies_to_end(factory());
 }
 

@@ -20,7 +20,7 @@ std::vector<Vec3> rest_positions(const Body& body) {
   return places;
 }
 
-/// The limit of the method's dt, or of paper-euler's where it has none, s.
+/// The largest stable dt of the method, s; that of paper-euler if the method has no limit.
 double limit_of(const Body& body, Method method) {
   return largest_dt(body, rest_positions(body), is_explicit(method) ? method : Method::paper_euler);
 }
@@ -56,7 +56,7 @@ State shaken(const Body& body, double speed) {
   return state;
 }
 
-/// Rest lengths that fit the rest positions.
+/// Sets all rest lengths to the distances between the rest positions.
 void relax(Body& body) {
   for (Spring& s : body.springs) s.rest_length = norm(body.masses[s.b].rest - body.masses[s.a].rest);
 }
@@ -67,8 +67,8 @@ Body with_stiffnesses(double a, double b) {
   return body;
 }
 
-/// Springs of 5,000 and 5e9 N/m at some thousand times their largest step; one pass of xpbd leaves so much of them
-/// unsolved that it brings energy of its own, which stays below the guard's bound.
+/// Springs of 5,000 and 5e9 N/m, at some thousand times their largest stable step. One pass of xpbd leaves so large a
+/// residual that energy grows, but it stays below the guard's bound.
 HardCase very_stiff_springs(Method method, Outcome outcome) {
   HardCase c = from_birth("stiffness_ratio_1e6", with_stiffnesses(5000, 5e9), walking_scene(), 0.0005, 4000, outcome);
   if (method == Method::xpbd) c.most_gain = 10;
@@ -79,7 +79,8 @@ HardCase near_the_limit(std::string name, double part, Method method) {
   const Body body = passive_body();
   HardCase c = from(std::move(name), body, shaken(body, 1e-3), {}, part * limit_of(body, method), 10000,
                     flagged_if(part > 1 && is_explicit(method)));
-  // near the limit the true energy swings by (1 + h/2)/(1 - h/2) = 39, h = 1.9, around what is conserved
+  // near the limit, energy oscillates around the conserved, modified energy by a factor of (1 + h/2)/(1 - h/2), which
+  // is 39 at h = 1.9
   c.most_gain = 40;
   c.start.start_energy *= 100;
   return c;
@@ -91,7 +92,7 @@ Body with_masses(double a, double b) {
   return body;
 }
 
-/// Two positions with two masses each, joined in all ways.
+/// Two positions with two masses each; all pairs of masses are joined.
 Body coincident_springs() {
   Body body;
   body.materials = {{5000, 0.14, 1, 0}};
@@ -116,7 +117,7 @@ HardCase inverted_voxel() {
   return from("inverted_voxel", body, start, walking_scene(), 0.0005, 2000);
 }
 
-/// A block turned inside out, which strains no spring.
+/// A mirrored block, in which no spring is strained.
 HardCase mirrored_block() {
   const Body body = block(2, {5000, 0, 0, 0});
   State start = resting(body, {});
@@ -154,7 +155,8 @@ HardCase lonely_mass() {
   return c;
 }
 
-/// A mass drawn along the floor by exactly the force that friction can hold; a mass of 0 kg holds the other end.
+/// A mass pulled along the floor with exactly the largest force of static friction. The other end of the spring is held
+/// by a mass of 0 kg.
 HardCase at_the_edge_of_sliding() {
   const double k = 100, m = 0.2, stretch = 0.5 * m * g / k;
   Body body = pair_of_masses(m, {k, 0, 0, 0}, 1 + stretch);
@@ -192,7 +194,7 @@ HardCase fast_muscles(std::string name, double frequency) {
   return from_birth(std::move(name), body, walking_scene(), 0.0005, 4000, Outcome::right_or_flagged);
 }
 
-/// Four masses joined by muscles of two phases that walk for ten minutes.
+/// Four masses joined by muscles with two phases, which walk for ten minutes.
 HardCase ten_minutes() {
   Body body;
   body.materials = {{5000, 0.14, 1, 0}, {5000, 0.14, 1, pi}};
@@ -207,7 +209,7 @@ HardCase ten_minutes() {
   return c;
 }
 
-/// A mass that the floor throws back faster than it came, again and again, as its step is too long for that floor.
+/// A mass that gains speed in each bounce on the floor, because the time step is too long for that floor.
 HardCase pumped_by_the_floor(Method method) {
   const Scene scene{Gravity{}, Floor{}, {}, {}, {}};
   const Body body = single_mass(0.1, {0, 0, 0.1});
@@ -222,7 +224,7 @@ HardCase not_a_number(std::string name, double number) {
   return c;
 }
 
-/// Every number of the answer is one.
+/// Expects that all numbers of the result are finite.
 void expect_finite(const Task& task, const State& state) {
   EXPECT_TRUE(std::isfinite(task.work));
   for (const double stress : task.stress) EXPECT_TRUE(std::isfinite(stress));
@@ -249,7 +251,7 @@ void expect_flagged(const HardCase& c, const Task& task) {
   EXPECT_EQ(task.work, 0);
 }
 
-/// What lives beside a case.
+/// Another body in the batch of a case.
 struct Neighbour {
   Body body;
   State state;

@@ -1,5 +1,5 @@
-// Bodies, scenes and steps at which methods fail, and what has to come of them: the truth, or a flag with time and
-// reason.
+// Bodies, scenes and steps at which methods can fail, with the required outcome: a correct result, or a flag with time
+// and reason.
 #pragma once
 
 #include <cstdint>
@@ -22,17 +22,18 @@ struct HardCase {
   double dt = 0.0005;  ///< s
   std::uint64_t steps = 0;
   Outcome outcome = Outcome::right;
-  double most_gain = 1.05;  ///< of the energy at the start and the muscles' work, at the end of a life not flagged
-  std::function<void(const State& end)> check = [](const State&) {};  ///< what else is then right
+  /// Largest energy at the end, if not flagged, relative to the sum of initial energy and the muscles' work.
+  double most_gain = 1.05;
+  std::function<void(const State& end)> check = [](const State&) {};  ///< further expectations if not flagged
 };
 
-/// The cases for one method: some of their steps and outcomes are those of its limits.
+/// Returns the cases for one method; some steps and outcomes depend on its stability limits.
 std::vector<HardCase> hard_cases(Method method);
 
 using SimulatorFactory = std::function<std::unique_ptr<Simulator>(const Scene&)>;
 
-/// Simulates every case between two other bodies, and expects the case's outcome and of the others the bits that they
-/// have alone. `rounding`: the energy that it may bring to a body at rest, J.
+/// Simulates every case in a batch with two other bodies. Expects the outcome of the case and, for the others, the same
+/// bits as alone. `rounding` is the energy that rounding may add to a body at rest, J.
 void expect_outcomes(const std::vector<HardCase>& cases, const SimulatorFactory& simulator_for, double rounding = 1e-6);
 
 }  // namespace evodevo::test

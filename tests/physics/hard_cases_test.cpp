@@ -1,4 +1,5 @@
-// Where methods fail: each case simulates rightly or is flagged with time and reason, and no neighbour notices.
+// Cases in which methods can fail: each gives a correct result or is flagged with time and reason, and other bodies of
+// the batch are not affected.
 #include "hard_cases.hpp"
 
 #include <gtest/gtest.h>

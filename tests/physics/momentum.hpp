@@ -1,4 +1,4 @@
-// A body's momentum, which internal forces leave alone.
+// The momentum of a body, which internal forces conserve.
 #pragma once
 
 #include "support.hpp"

@@ -1,4 +1,4 @@
-// k-nearest neighbours against counting all distances.
+// k-nearest neighbours, compared with a search through all distances.
 #include "analysis/neighbours.hpp"
 
 #include <gtest/gtest.h>
@@ -44,12 +44,12 @@ TEST(Neighbours, RandomPlaces) {
 }
 
 TEST(Neighbours, EquallyNearPlacesGoByIndex) {
-  // integer edges: distances are exact and most are shared by many
+  // integer edges: distances are exact, and many are equal
   std::vector<Vec3> places = make_lattice({5, 6, 4}, 1).corners;
   std::mt19937_64 random(1);
   std::shuffle(places.begin(), places.end(), random);
   for (const std::uint32_t k : {1u, 4u, 7u, 25u}) EXPECT_EQ(nearest_pairs(places, k), brute_force(places, k)) << k;
-  // off the origin, where the tree's own distances round
+  // away from the origin, where distances in the tree are rounded
   for (Vec3& p : places) p = 0.1 * p + Vec3{0.3, -7.7, 1e3};
   for (const std::uint32_t k : {1u, 4u, 7u, 25u}) EXPECT_EQ(nearest_pairs(places, k), brute_force(places, k)) << k;
 }

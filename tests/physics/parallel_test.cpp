@@ -1,4 +1,4 @@
-// Loops on several threads, and the clock that measures overlapping spans.
+// Parallel loops, and the clock that measures overlapping intervals.
 #include "threads/parallel.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,8 @@ TEST(Workers, CallEveryItemOnce) {
   }
 }
 
-/// The exit code of `body` in a copy of this process that has no room for 200 threads; none where it does not end.
+/// Runs `body` in a child process whose address space is too small for 200 threads. Returns its exit code, or nothing
+/// if it did not exit.
 std::optional<int> where_threads_are_short(const std::function<bool()>& body) {
   const pid_t child = fork();
   if (child == 0) {
@@ -104,7 +105,7 @@ TEST(Workers, DoWhatHasAnEarlierTurnFirst) {
   Workers workers(1);
   std::promise<void> begun;
   std::atomic<bool> urgent_done = false;
-  std::size_t items = 0, items_before = 0;  // of the loop that can wait; only the one worker counts
+  std::size_t items = 0, items_before = 0;  // items of the loop that can wait; counted by its only worker
   on_own_threads(2, [&](std::size_t caller) {
     const Priority priority(caller == 0 ? 1 : 0);
     if (caller == 0) {

@@ -26,14 +26,14 @@ State late(const Body& body, const Scene& scene) {
   return state;
 }
 
-/// A body whose run is to be one, and how it goes.
+/// A body, its state, and the task of its run.
 struct Run {
   const Body* body;
   State state;
   double dt = test::dt;
   Task task = {};
 
-  /// Makes all steps, `pieces` at a time.
+  /// Simulates all steps in pieces of the given numbers of steps.
   void make(Simulator& simulator, const std::vector<std::uint64_t>& pieces, Recording recording = {}) {
     std::uint64_t later = std::accumulate(pieces.begin(), pieces.end(), std::uint64_t{0});
     task = {.body = body, .state = &state, .dt = dt};
@@ -108,7 +108,7 @@ void expect_one_verdict(const SimulatorFactory& simulator_for, Method method) {
   for (Material& material : unstable.materials) material.stiffness *= 4000;
   const Scene scene = walking_scene();
   expect_one_verdict_on(unstable, late(unstable, scene), 0.0005, simulator_for, scene);
-  // what nothing but the range of forces ends on the GPU
+  // the initial energy switches the guard off, so that on the GPU only the range of forces can end the body
   State start = late(sound, {});
   for (std::size_t i = 0; i < start.velocity.size(); ++i) start.velocity[i].x = 0.001 * static_cast<double>(i % 7);
   start.start_energy = 1e300;
@@ -116,7 +116,7 @@ void expect_one_verdict(const SimulatorFactory& simulator_for, Method method) {
 }
 
 void expect_no_check_between_pieces(const SimulatorFactory& simulator_for) {
-  // its energy falls from 1 J below the bound of 0.2 J between step 37, where it has 0.35 J, and step 100
+  // Energy falls from 1 J to 0.35 J at step 37, and below the bound of 0.2 J before step 100.
   const Scene scene{{}, {}, {}, Damping{20}, {}};
   const Body body = single_mass(0.2);
   State start = resting(body, scene);

@@ -1,4 +1,4 @@
-// A run in pieces is the run in one.
+// A run in several pieces must equal the run as a whole.
 #pragma once
 
 #include <vector>
@@ -8,17 +8,18 @@
 
 namespace evodevo::test {
 
-/// Moves every body whole and in uneven pieces, from a start time and with a step that are no sums of powers of two,
-/// and expects the same state to the bit.
+/// Simulates every body as a whole and in uneven pieces, with a start time and a time step that are not exact binary
+/// fractions. Expects the same state to the bit.
 void expect_pieces_to_be_the_whole(const SimulatorFactory& simulator_for, const std::vector<Body>& bodies);
 
-/// The same of the tallies' run, whose pieces are the steps between two tallies.
+/// Expects the same of a run with tallies, whose pieces are the steps between two tallies.
 void expect_tallies_to_leave_the_motion_alone(const SimulatorFactory& simulator_for, const Body& body);
 
-/// Expects of bodies that diverge the same moment and reason whole and in pieces, whatever is recorded.
+/// Expects that bodies diverge at the same time and for the same reason as a whole and in pieces, and whatever is
+/// recorded.
 void expect_one_verdict(const SimulatorFactory& simulator_for, Method method);
 
-/// Expects that the end of a piece is no check, but the end of the whole is.
+/// Expects that the guard checks energy at the end of the whole run, but not at the end of a piece.
 void expect_no_check_between_pieces(const SimulatorFactory& simulator_for);
 
 }  // namespace evodevo::test

@@ -1,4 +1,4 @@
-// A run in pieces is the run in one, on the CPU.
+// On the CPU, a run in several pieces equals the run as a whole.
 #include "pieces.hpp"
 
 #include <gtest/gtest.h>

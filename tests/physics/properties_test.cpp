@@ -1,4 +1,4 @@
-// What holds for random bodies in random scenes, a thousand of them for each method.
+// Properties of random bodies in random scenes, with a thousand bodies for each method.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -92,7 +92,8 @@ TEST_P(Property, NoPlaceIsSpecial) {
       life.start.start_energy = 1 + std::max(0.0, total_energy(life.body, life.start, scene));
     }
     const std::vector<Answer> here = simulate(*simulator(scene), lives), there = simulate(*simulator(scene), elsewhere);
-    // positions of a few m are rounded otherwise, which a stiff contact and a direction without a length multiply
+    // positions of a few m are rounded differently; stiff contact, and directions of springs of nearly zero length,
+    // amplify this
     const double error = precision() == Precision::float32 ? 1e-3 : 1e-10;
     for (std::size_t i = 0; i < lives.size(); ++i) {
       State back = there[i].state;
@@ -102,7 +103,7 @@ TEST_P(Property, NoPlaceIsSpecial) {
   });
 }
 
-/// Those that a smooth or an approximate solution needs double precision for.
+/// Properties that need double precision, since their tolerances are tight.
 class ExactProperty : public testing::TestWithParam<Method> {
  protected:
   static std::unique_ptr<Simulator> simulator(const Scene& scene) {
@@ -119,7 +120,7 @@ double total_mass(const Body& body) {
   return sum;
 }
 
-/// Lives in which nothing is held.
+/// Random lives in which no mass is held in place.
 std::vector<Life> free_lives(const Scene& scene, std::uint64_t seed) {
   std::vector<Life> lives = random_lives(scene, seed, lives_of_each);
   for (Life& life : lives)
@@ -128,7 +129,7 @@ std::vector<Life> free_lives(const Scene& scene, std::uint64_t seed) {
   return lives;
 }
 
-/// What a step leaves of a momentum under damping alone.
+/// The factor by which a step with damping alone changes momentum.
 double kept_by_damping(Method method, double rate_dt) {
   const double a = rate_dt;
   return method == Method::rk4 ? 1 - a + a * a / 2 - a * a * a / 6 + a * a * a * a / 24 : std::exp(-a);
@@ -156,7 +157,7 @@ TEST_P(ExactProperty, MomentumIsWhatGravityAndDampingLeave) {
   }
 }
 
-/// Of the methods whose forces act along the springs as they lie, not as they will.
+/// Properties of explicit methods, whose forces act along the springs at the beginning of a step, not at its end.
 class ExplicitProperty : public ExactProperty {};
 
 INSTANTIATE_TEST_SUITE_P(Methods, ExplicitProperty, testing::ValuesIn(explicit_methods),
@@ -170,14 +171,14 @@ TEST_P(ExplicitProperty, AngularMomentumIsKept) {
     for (std::size_t i = 0; i < lives.size(); ++i) {
       const Momentum before = momentum(lives[i].body, lives[i].start),
                      after = momentum(lives[i].body, answers[i].state);
-      // rk4 takes forces from positions that it has not reached, to fourth order
+      // rk4 also uses forces at intermediate positions, which gives an error of fourth order
       const double error = (GetParam() == Method::rk4 ? 1e-6 : 1e-11) * (before.scale + after.scale);
       EXPECT_LE(norm(after.angular - before.angular), error) << trace(lives[i]);
     }
   }
 }
 
-/// A body's kinetic, elastic and height energy and the floor's elastic energy, J.
+/// The kinetic, elastic and gravitational energy of a body, and the elastic energy of the floor, J.
 double energy(const Life& life, const State& state, const Scene& scene) {
   double sum = total_energy(life.body, state, scene);
   if (scene.floor)
@@ -187,7 +188,7 @@ double energy(const Life& life, const State& state, const Scene& scene) {
   return sum;
 }
 
-/// What brings and takes energy, W.
+/// The power of muscles, and the power lost by damping and drag, W.
 struct Power {
   double muscles = 0, losses = 0;
 };
@@ -209,15 +210,15 @@ Power power(const Life& life, const State& state, const Scene& scene) {
   return sum;
 }
 
-/// What a life's energy is off from what muscles, damping and drag account for, at each step, relative to all energy
-/// that there was.
+/// Compares, after each step, the energy of a life with the initial energy plus the work of muscles minus losses by
+/// damping and drag. Deviations are relative to the sum of all energies.
 class Balance {
  public:
   Balance(const Life& life, const Scene& scene)
       : life_(life), scene_(scene), first_(energy(life, life.start, scene)), last_(power(life, life.start, scene)) {
     for (std::size_t i = 0; i < life.start.velocity.size(); ++i)
       turnover_ += life.body.masses[i].mass * dot(life.start.velocity[i], life.start.velocity[i]) / 2;
-    turnover_ += std::abs(first_) + 1e-9;  // nothing moves where all is held
+    turnover_ += std::abs(first_) + 1e-9;  // avoids 0 if all masses are held and nothing moves
   }
 
   void add(const State& state) {
@@ -243,9 +244,9 @@ class Balance {
   double accounted_ = 0, turnover_ = 0, gained_ = 0, lost_ = 0;
 };
 
-/// The most that a balance may be off where dt times the highest frequency h is at most 0.1: the semi-implicit methods
-/// conserve a neighbour of energy, by h/2 from it, and velocity-verlet one by h^2/8; the rest is the rule by which
-/// Balance integrates, and how xpbd splits a step among its springs.
+/// The largest relative deviation of a balance if h, which is dt times the highest angular frequency, is at most 0.1.
+/// Semi-implicit methods conserve a modified energy that differs by h/2, and velocity-verlet one that differs by h^2/8.
+/// Other deviations are due to the quadrature in Balance, and to the sequential solution of springs in xpbd.
 double most_gained(Method method) {
   switch (method) {
     case Method::velocity_verlet:

@@ -12,7 +12,7 @@
 namespace evodevo::test {
 namespace {
 
-/// Numbers that are the same with every standard library.
+/// Random numbers that are the same with every standard library.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : generator_(seed) {}
@@ -58,7 +58,7 @@ State random_start(const Body& body, const Scene& scene, Random& random) {
     if (body.masses[i].mass > 0) state.velocity[i] = velocity + random.vector(1);
   }
   state.time = random.between(0, 10);
-  state.start_energy = 1 + total_energy(body, state, scene);  // it may be near nothing
+  state.start_energy = 1 + total_energy(body, state, scene);  // the energy itself may be almost 0
   return state;
 }
 

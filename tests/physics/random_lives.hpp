@@ -1,4 +1,4 @@
-// Random bodies in random scenes, for properties that hold whatever they are.
+// Random bodies in random scenes, for tests of general properties.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace evodevo::test {
 
-/// A random body in motion, and steps that every method bears.
+/// A random body in motion, with a step at which every method is stable.
 struct Life {
   std::uint64_t seed = 0;
   Body body;
@@ -17,18 +17,18 @@ struct Life {
   std::uint64_t steps = 60;
 };
 
-/// Any of the forces, each of any strength.
+/// Returns a scene with random forces of random strength.
 Scene random_scene(std::uint64_t seed);
 
-/// `count` lives of up to 16 masses in one scene: springs of any material and strain, some of no length; masses of 0
-/// kg, masses that coincide, and masses without springs.
+/// Returns `count` lives of up to 16 masses in one scene. Springs have random materials and strains, and some have no
+/// length. There are masses of 0 kg, masses at the same position, and masses without springs.
 std::vector<Life> random_lives(const Scene& scene, std::uint64_t seed, std::size_t count);
 
-/// A state and a scene as seen in a mirror across the x axis.
+/// Mirrors the x axis of a state, and of a scene.
 State mirrored(State state);
 Scene mirrored(Scene scene);
 
-/// All lives in one batch.
+/// Simulates all lives in one batch.
 std::vector<Answer> simulate(Simulator& simulator, const std::vector<Life>& lives, Recording recording = {});
 
 }  // namespace evodevo::test

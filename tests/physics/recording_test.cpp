@@ -1,4 +1,4 @@
-// Stress and work, where the answer is known beforehand.
+// Recordings of stress and work, compared with known results.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, Recorded,
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(Recorded, AStaticallyLoadedSpringIsUnderItsLoad) {
-  // a mass of 0.2 kg hangs from one that does not move, stretched by m g / k
+  // a mass of 0.2 kg hangs on a spring from a fixed mass; the spring is stretched by m g / k
   const double weight = 0.2 * 9.81, k = 1000;
   Body body = pair_of_masses(0.2, {k, 0, 0, 0});
   body.masses[0] = {{0, 0, 2}, 0};
@@ -49,8 +49,8 @@ TEST_P(Recorded, ALoadedSpringUnderItsMassIsCompressed) {
 }
 
 TEST_P(Recorded, ASwingingSpringPeaksAtTheEndsOfItsSwing) {
-  // let go at its rest length, a hanging mass swings between no force and twice its weight; over whole periods of
-  // 2 pi sqrt(m/k) = 88.9 ms it pulls with its weight in the mean
+  // A hanging mass that is released at the rest length oscillates; the force of the spring varies between 0 and twice
+  // the weight. Over whole periods of 2 pi sqrt(m/k) = 88.9 ms, its mean is the weight.
   const double mass = 0.2, weight = mass * 9.81, k = 1000, period = 2 * pi * std::sqrt(mass / k);
   Body body = pair_of_masses(mass, {k, 0, 0, 0});
   body.masses[0] = {{0, 0, 2}, 0};
@@ -59,7 +59,7 @@ TEST_P(Recorded, ASwingingSpringPeaksAtTheEndsOfItsSwing) {
   const Steps steps{std::get<Method>(GetParam()), precision(), period / 1000};
   const Answer a =
       simulate(body, resting(body, scene), scene, steps, 3000, {.stress = true, .peak_force = true, .tension = true});
-  // implicit and xpbd damp the swing: the peak of its first half is e^(-pi/2 dt omega) of what it was
+  // implicit and xpbd damp the oscillation: its first peak is reduced by a factor of e^(-pi/2 dt omega)
   const double damped = is_explicit(steps.method) ? 1e-3 : 0.02;
   EXPECT_NEAR(a.task.peak_force.at(0), 2 * weight, damped * 2 * weight);
   EXPECT_NEAR(a.task.tension.at(0), weight, damped * weight);
@@ -67,8 +67,8 @@ TEST_P(Recorded, ASwingingSpringPeaksAtTheEndsOfItsSwing) {
 }
 
 TEST_P(Recorded, AnIsometricMuscleWorksWhileItPushesOut) {
-  // both ends held: |d| = L0, so force = -k L0 A sin, dL/dt = L0 A w cos; the positive part of their product over a
-  // period has the integral k (L0 A)^2, and |force| the mean 2/pi k L0 A
+  // Both ends are held: |d| = L0, so force = -k L0 A sin and dL/dt = L0 A w cos. Over a period, the positive part of
+  // their product has the integral k (L0 A)^2, and |force| has the mean 2/pi k L0 A.
   const double k = 2000, amplitude = 0.1;
   Body body = pair_of_masses(0, {k, amplitude, 2, 0});
   const Recording all{.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};
@@ -125,14 +125,14 @@ TEST_P(Recorded, OnlyWhatIsAskedForIsAnswered) {
   const Answer muscles = simulate(body, start, {}, stepping(), 200, {.muscle_work = true});
   EXPECT_EQ(muscles.task.muscle_work.size(), body.springs.size());
   EXPECT_EQ(muscles.task.work, 0);
-  // what is recorded does not depend on what else is
+  // a recorded quantity does not depend on which other quantities are recorded
   const Answer all = simulate(body, start, {}, stepping(), 200,
                               {.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true});
   EXPECT_EQ(all.task.stress, stress.task.stress);
   EXPECT_EQ(all.task.work, work.task.work);
   EXPECT_EQ(all.task.muscle_work, muscles.task.muscle_work);
   EXPECT_EQ(all.task.tension, tension.task.tension);
-  // and recording changes nothing
+  // recording does not change the motion
   EXPECT_TRUE(same_bits(none.state, all.state));
   EXPECT_TRUE(same_bits(none.state, stress.state));
   EXPECT_TRUE(same_bits(none.state, work.state));

@@ -1,4 +1,4 @@
-// The simulator against a plain second program, on every instruction set that this processor has.
+// The simulator compared with a simple second implementation, on every instruction set of this processor.
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
@@ -13,7 +13,7 @@
 namespace evodevo::test {
 namespace {
 
-/// Lets the simulators made during its life use one instruction set only.
+/// Limits simulators that are created during its lifetime to one instruction set.
 class OnlyTarget {
  public:
   explicit OnlyTarget(std::int64_t target) { hwy::SetSupportedTargetsForTest(target); }
@@ -22,8 +22,8 @@ class OnlyTarget {
 
 struct Set {
   std::int64_t target;
-  const char* name;    ///< as a test is called
-  const char* device;  ///< as Simulator::device() says
+  const char* name;    ///< name in the names of tests
+  const char* device;  ///< name in the text of Simulator::device()
 };
 
 constexpr Set avx512{HWY_AVX3, "avx512", "cpu, AVX-512"};
@@ -33,7 +33,7 @@ constexpr Set scalar{HWY_SCALAR, "scalar", "cpu, no vectors"};
 
 bool is_there(const Set& set) { return set.target == HWY_SCALAR || (hwy::SupportedTargets() & set.target) != 0; }
 
-using Case = std::tuple<Set, Precision, std::uint32_t>;  // the last: materials
+using Case = std::tuple<Set, Precision, std::uint32_t>;  // the number is that of materials
 
 std::string name_of_case(const testing::TestParamInfo<Case>& info) {
   const auto& [set, precision, materials] = info.param;
@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(Sets, AgainstReference,
                                           testing::Values(16u, 40u)),
                          name_of_case);
 
-/// `body` in motion: turning, as its muscles begin to work.
+/// A state of `body` in rotation and moving downwards, at birth.
 State turning(const Body& body, const Scene& scene) {
   State state = state_at_birth(body, scene);
   for (std::size_t i = 0; i < state.velocity.size(); ++i)
@@ -76,7 +76,7 @@ TEST_P(AgainstReference, RandomBodiesInAllForcesAgreeToRounding) {
       EXPECT_EQ(a.task.spring_evaluations, steps * body.springs.size());
       const Reference r = reference(body, start, scene, stepping.dt, steps);
       ASSERT_GT(largest_difference(start, r.state), 0.02);
-      // the stiff floor multiplies what rounding does to the moment of a contact
+      // rounding changes the time of a contact, which the stiff floor amplifies
       const double error = single ? (scene.floor ? 3e-3 : 2e-5) : 1e-11;
       EXPECT_LT(largest_difference(a.state, r.state), error);
       EXPECT_NEAR(a.task.work, r.work, (single ? 2e-3 : 1e-10) * r.work);
@@ -88,7 +88,7 @@ TEST_P(AgainstReference, RandomBodiesInAllForcesAgreeToRounding) {
 
 class InstructionSets : public testing::TestWithParam<Arithmetic> {
  protected:
-  /// A body in all forces after a while, simulated with one set.
+  /// Simulates a body in a scene with all forces, with one instruction set.
   static Answer simulated_with(const Set& set, std::uint64_t steps) {
     const OnlyTarget only(set.target);
     const Body body = random_body(150, 12, 14, 8);
@@ -103,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, InstructionSets,
                                           testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
-/// All methods but implicit, whose scalar products depend on the vectors' width.
+/// Tests of all methods except implicit, whose scalar products depend on the width of vectors.
 class ExactInstructionSets : public InstructionSets {};
 
 INSTANTIATE_TEST_SUITE_P(Methods, ExactInstructionSets,
@@ -122,7 +122,7 @@ TEST_P(ExactInstructionSets, ThatFuseMultiplyAndAddAgreeToTheBit) {
 
 TEST_P(InstructionSets, AllAgreeToRounding) {
   const bool single = std::get<Precision>(GetParam()) == Precision::float32;
-  const bool residual = std::get<Method>(GetParam()) == Method::implicit;  // what conjugate gradients leave differs
+  const bool residual = std::get<Method>(GetParam()) == Method::implicit;  // of conjugate gradients, which differ
   const double error = (single ? 1e-4 : 1e-10) + (residual ? 1e-6 : 0);
   const Answer plain = simulated_with(scalar, 200);
   for (const Set& set : {avx512, avx2, sse4}) {

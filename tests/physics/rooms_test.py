@@ -1,4 +1,5 @@
-"""Which folder of the simulation core may include which (kernels/README.md), and that it names no key of an experiment."""
+"""Tests that folders of the simulation core include only those that they may include (kernels/README.md), and that the
+core names no key of an experiment."""
 
 import pathlib
 import re
@@ -6,7 +7,7 @@ import unittest
 
 KERNELS = pathlib.Path(__file__).resolve().parents[2] / "kernels"
 
-# every folder includes itself and evodevo/ (kernels/include) as well; the order leaves no room for a circle
+# Every folder may also include itself and evodevo/ (kernels/include). The order of the table excludes cycles.
 MAY_INCLUDE = {
     "include": [],
     "physics": [],
@@ -21,7 +22,7 @@ MAY_INCLUDE = {
 
 
 def room_of(path):
-    """The longest folder of the table that a path, relative to kernels/, lies in; None outside of all."""
+    """Returns the longest folder of the table that contains a path (relative to kernels/), or None if there is none."""
     return max((room for room in MAY_INCLUDE if path.startswith(room + "/")), key=len, default=None)
 
 

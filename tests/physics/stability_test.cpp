@@ -1,4 +1,4 @@
-// The largest stable step against dense eigenvalues and against what the simulator does.
+// The largest stable step, compared with dense eigenvalues and with the behaviour of the simulator.
 #include "analysis/stability.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace evodevo::test {
 namespace {
 
-/// The highest angular frequency of a body at its rest positions, 1/s.
+/// The highest angular frequency of a body at its rest positions, by dense eigenvalues, 1/s.
 double highest_frequency(const Body& body) {
   const auto n = static_cast<Eigen::Index>(3 * body.masses.size());
   Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n, n);
@@ -40,7 +40,7 @@ std::vector<Vec3> rest_positions(const Body& body) {
   return places;
 }
 
-/// At its rest positions.
+/// Whether a step is stable for the body at its rest positions.
 bool is_stable_at_rest(const Body& body, const Steps& stepping) {
   return is_stable(body, rest_positions(body), stepping.method, stepping.dt);
 }
@@ -85,7 +85,7 @@ TEST(Stability, TheLimitOfRandomBodiesIsThatOfTheirHighestFrequency) {
 }
 
 TEST(Stability, TheLimitOfAChainIsThatOfItsHighestFrequency) {
-  // hard for an iteration: the highest frequencies lie close together
+  // hard for an iterative method: the highest frequencies are close to each other
   Body body;
   body.materials = {{1000, 0, 0, 0}};
   for (std::uint32_t i = 0; i < 100; ++i) body.masses.push_back({{0.1 * i, 0, 0}, 0.2});
@@ -102,9 +102,9 @@ TEST(Stability, OneSpringIsStableUpToItsLimitAndNotBeyond) {
   EXPECT_NEAR(limit, 2 / highest_frequency(body), 1e-12);
   EXPECT_TRUE(is_stable_at_rest(body, at(0.9999 * limit)));
   EXPECT_FALSE(is_stable_at_rest(body, at(1.0001 * limit)));
-  // and so it turns out
+  // the simulation confirms the limit
   State start = resting(body, {});
-  start.start_energy *= 100;  // near the limit the true energy swings by a factor of 50 around a conserved one
+  start.start_energy *= 100;  // near the limit, energy oscillates by a factor of 50 around a conserved, modified energy
   EXPECT_EQ(simulate(body, start, {}, at(0.99 * limit), 50000).task.status, Status::ok);
   EXPECT_EQ(simulate(body, start, {}, at(1.01 * limit), 1000).task.status, Status::diverged);
 }
@@ -172,7 +172,7 @@ TEST(Stability, DegenerateBodiesHaveAnAnswer) {
 }
 
 TEST(Stability, AFixedMassAddsNothing) {
-  // one end held: omega^2 = k / m, half of that between two free ends
+  // one end is held: omega^2 = k / m, which is half of the value for two free ends
   Body body = pair_of_masses(0.2, {5000, 0, 0, 0});
   body.masses[0].mass = 0;
   const double limit = 2 / std::sqrt(5000 / 0.2);

@@ -16,7 +16,7 @@ namespace evodevo::test {
 
 inline constexpr double pi = 3.14159265358979323846;
 
-/// How a test makes its steps.
+/// The method, precision and time step of a test.
 struct Steps {
   Method method = Method::paper_euler;
   Precision precision = Precision::float32;
@@ -25,7 +25,7 @@ struct Steps {
   operator Stepping() const { return {method, precision}; }
 };
 
-/// What a test of each precision tells apart: a little more than rounding brings in a few hundred steps.
+/// The tolerance of tests in each precision: a little more than the rounding error of a few hundred steps.
 inline double tolerance(Precision precision) { return precision == Precision::float32 ? 2e-5 : 1e-12; }
 inline std::string name_of(Precision precision) { return precision == Precision::float32 ? "float32" : "float64"; }
 
@@ -35,32 +35,32 @@ static_assert(all_methods.size() == method_names.size());
 inline constexpr std::array explicit_methods = {Method::paper_euler, Method::symplectic_euler, Method::velocity_verlet,
                                                 Method::rk4};
 
-/// As a test is called.
+/// The name in the names of tests.
 std::string name_of(Method method);
 
-/// What most tests run with each of.
+/// The combinations that most tests run with.
 using Arithmetic = std::tuple<Method, Precision>;
 std::string name_of(const Arithmetic& arithmetic);
 
-/// One mass at `place`.
+/// A body of one mass at `place`.
 Body single_mass(double mass, Vec3 place = {});
 
-/// Two masses of `mass` kg along x, `distance` apart, and a spring of rest length 1 between them.
+/// Two masses of `mass` kg on the x axis, `distance` m apart, with a spring of rest length 1 m between them.
 Body pair_of_masses(double mass, const Material& material, double distance = 1);
 
-/// Random points in the unit ball joined to their nearest neighbours, with masses from 0.1 to 0.3 kg; spring i is of
-/// material i modulo `materials`, the first five of which are the paper's and a mean of two of them.
+/// Random points in the unit ball joined to their nearest neighbours, with masses from 0.1 to 0.3 kg. Spring i has
+/// material i modulo `materials`; the first five materials are the paper's and a mean of two of them.
 Body random_body(std::uint32_t masses, std::uint32_t neighbours, std::uint32_t materials, std::uint64_t seed);
 
 /// A lattice of n x n x n voxels with edges of 0.1 m and masses of 0.2 kg.
 Body block(std::uint32_t n, const Material& material);
 
-/// All forces at once.
+/// A scene with all forces.
 Scene full_scene();
-/// Gravity, floor, friction and damping.
+/// A scene with gravity, floor, friction and damping.
 Scene walking_scene();
 
-/// A body in a state of its own: at its rest positions, at rest, its energy set.
+/// The state of a body at its rest positions without velocity; start_energy is set.
 State resting(const Body& body, const Scene& scene);
 
 struct Answer {
@@ -68,12 +68,12 @@ struct Answer {
   State state;
 };
 
-/// One body simulated alone on one thread.
+/// Simulates one body with one thread.
 Answer simulate(const Body& body, State state, const Scene& scene, const Steps& stepping, std::uint64_t steps,
                 Recording recording = {});
 
-/// The same by a plain program in double precision that shares no code with the simulator: one spring after the other,
-/// its force added at both ends.
+/// The result of a simple implementation in double precision that shares no code with the simulator. It computes one
+/// spring after the other, and adds the force at both ends.
 struct Reference {
   State state;
   std::vector<double> stress;  ///< N

@@ -1,4 +1,4 @@
-// Libraries with one fault each, which FAULT names: the host must refuse them, or stop where their operator errs.
+// Libraries with one fault each, which FAULT names. The host must refuse the library, or stop when its operator fails.
 #include <cfenv>
 #include <csignal>
 #include <cstdlib>

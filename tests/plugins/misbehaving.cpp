@@ -1,4 +1,4 @@
-// Operators of every kind that load and then do, where `how` says so, what no operator may.
+// Operators of every kind that load, but misbehave in the way that the parameter `how` names.
 #include <unistd.h>
 
 #include <cfenv>
@@ -23,21 +23,21 @@ using evodevo::Parameters;
 
 volatile bool endless = true;
 
-/// Overflows the stack, not in a way that a compiler turns into a loop.
+/// Overflows the stack; written so that the compiler cannot turn the recursion into a loop.
 int deeper(int depth) {
   volatile char room[4096] = {};
   room[0] = static_cast<char>(depth);
   return endless ? deeper(depth + 1) + room[0] : depth;
 }
 
-/// Never returns; says so, for those who wait for it.
+/// Prints a line for waiting tests, and never returns.
 [[noreturn]] void hang() {
   constexpr std::string_view text = "it hangs\n";
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
   for (;;) std::this_thread::sleep_for(std::chrono::milliseconds(5));
 }
 
-/// A locale that goes when the library does.
+/// A locale that is freed when the library is unloaded.
 struct OtherLocale {
   OtherLocale() = default;
   OtherLocale(const OtherLocale&) = delete;

@@ -1,4 +1,4 @@
-// Plugins that load and break one rule each, which WRONG names.
+// Plugins that load, but break one rule each, which WRONG names.
 #include <unistd.h>
 
 #include <algorithm>
@@ -212,7 +212,7 @@ struct Wrong final : evodevo::Mutation {
 }  // namespace
 
 #if defined(WRONG_EXPORTS)
-extern "C" __attribute__((visibility("default"), weak)) int another_export() { return 1; }  // as inline functions are
+extern "C" __attribute__((visibility("default"), weak)) int another_export() { return 1; }  // as inline functions
 #endif
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,

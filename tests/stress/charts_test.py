@@ -1,4 +1,4 @@
-"""The chart of tools/stress, from a little data."""
+"""Tests that tools/stress draws its chart, from a small table."""
 
 import pathlib
 import tempfile

@@ -1,4 +1,4 @@
-// The arithmetic of the study of stress, and that its data is complete.
+// The arithmetic of the study of stress, and the completeness of its data.
 #include "overlap.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ TEST(Overlap, CountsTheLeastAndTheMostThatBothRankingsHave) {
   const std::vector<double> truth = rising(1000);
   EXPECT_EQ(found(truth, truth).least, 1);
   EXPECT_EQ(found(truth, truth).most, 1);
-  // 25 of the 125 least change positions with springs in the middle, and 40 of the 100 most
+  // 25 of the 125 least stressed springs, and 40 of the 100 most stressed, are exchanged with springs in the middle
   std::vector<double> estimate = truth;
   for (std::size_t i = 0; i < 25; ++i) std::swap(estimate[i], estimate[500 + i]);
   for (std::size_t i = 0; i < 40; ++i) std::swap(estimate[999 - i], estimate[600 + i]);
@@ -32,7 +32,7 @@ TEST(Overlap, CountsTheLeastAndTheMostThatBothRankingsHave) {
 
 const Case scene{"scene", "file.toml"};
 
-/// A robot whose springs stand as at the end from cycle time `known` on, and the other way round before.
+/// A robot whose springs have their final order from cycle time `known` on, and the reverse order before.
 StressOverTime robot_known_from(std::size_t known) {
   StressOverTime robot;
   for (std::size_t t = 0; t < cycle_times().size(); ++t) {
@@ -62,7 +62,7 @@ TEST(Overlap, TheShortestCycleIsTheOneFromWhichOnEnoughIsFound) {
   const std::vector<double> times = cycle_times();
   const std::size_t last = times.size() - 1;
   Table table = overlap_table();
-  // half of all from the fourth time on, all from the sixth on
+  // half of the springs are found from the fourth time on, and all from the sixth on
   add_rows(scene, {robot_known_from(3), robot_known_from(5)}, table);
   add_rows({"other", "file.toml"}, {robot_known_from(last)}, table);
   const double shares[] = {0.4, 0.5, 0.6, 0.9};

@@ -1,4 +1,4 @@
-// The command line of the study of stress.
+// The command line of tools/stress.
 #include "stress/settings.hpp"
 
 #include <gmock/gmock.h>

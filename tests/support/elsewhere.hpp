@@ -1,4 +1,4 @@
-// A simulator for tests that stands for one on another device.
+// A simulator for tests that pretends to run on another device.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace evodevo::testing {
 
-/// The CPU's under another name.
+/// The simulator of the CPU with another name of the device.
 class Elsewhere final : public Simulator {
  public:
   Elsewhere(const Experiment& experiment, std::string device)

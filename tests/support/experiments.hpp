@@ -8,7 +8,7 @@
 
 namespace evodevo::testing {
 
-/// A complete experiment of small voxel robots with development and two objectives; an evaluation takes milliseconds.
+/// A complete experiment of small voxel robots, with development and two objectives. An evaluation takes milliseconds.
 inline const std::string small_experiment = R"(
 [experiment]
 seed = 7

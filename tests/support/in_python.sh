@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs a test that is a Python program: in_python.sh TEST.py [MODULE]...; 77 where there is no Python 3.11 or newer with
-# these modules.
+# Runs a test that is a Python program: in_python.sh TEST.py [MODULE]...
+# The exit status is 77 if there is no Python 3.11 or newer with these modules.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../../tools/setup"
 test_file=$1

@@ -19,10 +19,11 @@ class Process {
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  /// The next line without its end; nothing when the output has ended. Waits.
+  /// Waits for the next line and returns it without its end, or nothing if the output has ended.
   std::optional<std::string> read_line();
   void send(int signal);
-  /// Reads the output to its end and waits. The exit code, or 128 + the signal that ended it.
+  /// Reads the output to its end and waits for the process. Returns the exit code, or 128 + the number of the signal
+  /// that ended the process.
   int wait();
   /// All output so far.
   const std::string& output() const { return output_; }
@@ -31,7 +32,7 @@ class Process {
   pid_t child_ = -1;
   int pipe_ = -1;
   std::string output_;
-  std::size_t read_ = 0;  ///< how much of output_ has gone out through read_line
+  std::size_t read_ = 0;  ///< number of characters of output_ that read_line() has returned
 };
 
 struct Finished {

@@ -1,4 +1,4 @@
-// A folder that a test may fill.
+// A temporary folder for a test.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 namespace evodevo::testing {
 
-/// A new empty folder, removed with everything in it when the object goes.
+/// A new empty folder, which is removed with its contents when the object is destroyed.
 class Scratch {
  public:
   Scratch() {

@@ -30,7 +30,7 @@ const hasFfmpeg = (process.env.PATH ?? "").split(":").some((folder) => existsSyn
 const withFfmpeg = { skip: hasFfmpeg ? false : "there is no ffmpeg" };
 const duration = cycles * cycleTime + 0.5 + 1.0;
 
-/** Width, height, frame rate and number of frames. */
+/** Width, height, frame rate and number of frames of a film, by ffprobe. */
 function probed(file) {
   const entries = "stream=width,height,nb_read_frames,r_frame_rate";
   const options = ["-v", "error", "-count_frames", "-show_entries", entries, "-of", "json", file];

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Runs a test of the page: in_browser.sh TEST.mjs EVODEVO VIEWER_FOLDER; 77 where something is missing.
+# Runs a test of the page: in_browser.sh TEST.mjs EVODEVO VIEWER_FOLDER
+# The exit status is 77 if a required program is missing.
 set -euo pipefail
 test_file=$1
 export EVODEVO_PROGRAM=$2 EVODEVO_VIEWER=$3

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Where the viewer was not built, report says so, and how to get it: missing_test.sh EVODEVO
+# Tests that `evodevo report` without a built viewer says so, and how to get the viewer: missing_test.sh EVODEVO
 set -euo pipefail
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT

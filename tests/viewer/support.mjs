@@ -1,4 +1,4 @@
-// What the tests of the page share: a small run, a browser, and ways to look at pictures.
+// Code that the tests of the page share: a small run, a browser, and functions that examine pictures.
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -7,7 +7,7 @@ import { pathToFileURL } from "node:url";
 
 export const { chromiumProgram, launch, patience } = await import(pathToFileURL(join(process.env.EVODEVO_VIEWER, "browser.mjs")).href);
 
-/** Names that would do harm, were they read as markup. */
+/** Names that would be harmful if they were interpreted as markup. */
 export const experimentName = `<img src=x onerror="window.harmed=1">`;
 export const materialName = `</script><script>window.harmed=1</script>`;
 
@@ -71,21 +71,21 @@ export function evodevo(...words) {
   return execFileSync(process.env.EVODEVO_PROGRAM, words, { encoding: "utf8", maxBuffer: 1 << 28 });
 }
 
-/** What a query finds in a run's archive, read by SQLite itself. */
+/** Returns the result of an SQL query in a run's archive, without using evodevo. */
 export function archived(folder, query) {
   const program =
     "import json,sqlite3,sys; print(json.dumps(sqlite3.connect(sys.argv[1]).execute(sys.argv[2]).fetchall()))";
   return JSON.parse(execFileSync("python3", ["-c", program, join(folder, "run.sqlite"), query], { encoding: "utf8" }));
 }
 
-/** A page opened from its file; what it asks for and complains of is kept in `requests` and `complaints`. */
+/** Opens a page from its file; its requests and its errors and warnings are kept in `requests` and `complaints`. */
 export async function opened(browser, file, options = {}) {
   const page = await browser.newPage({ viewport: { width: 640, height: 600 }, ...options });
   page.requests = [];
   page.complaints = [];
   page.on("request", (request) => page.requests.push(request.url()));
   page.on("console", (message) => {
-    // what a renderer says of its own speed is no fault of the page
+    // a renderer's messages on its own speed are not errors of the page
     if (!message.text().includes("GL Driver Message (OpenGL, Performance,"))
       page.complaints.push(`${message.type()}: ${message.text()}`);
   });
@@ -95,7 +95,7 @@ export async function opened(browser, file, options = {}) {
   return page;
 }
 
-/** Calls a function in the page with its parts {viewer, charts, data}, then waits until the moment is drawn. */
+/** Calls a function in the page with its parts {viewer, charts, data}, then waits until the page has been drawn. */
 export async function inPage(page, action, argument) {
   return page.evaluate(
     async ([text, given]) => {
@@ -107,12 +107,13 @@ export async function inPage(page, action, argument) {
   );
 }
 
-/** Waits until a function of the page's parts gives true. */
+/** Waits until a function of the page's parts returns true. */
 export async function until(page, condition) {
   while (!(await inPage(page, condition)));
 }
 
-/** Takes a picture of the stage without what is written over it; kept in the page, which counts faster than it tells. */
+/** Takes a picture of the stage without captions. The picture stays in the page, since counting pixels there is faster
+*  than transferring them. */
 export async function picture(page) {
   await page.addStyleTag({ content: ".caption { visibility: hidden }" });
   const png = (await (await page.$(".stage")).screenshot()).toString("base64");
@@ -126,7 +127,7 @@ export async function picture(page) {
   }, png);
 }
 
-/** How many pixels of two pictures differ clearly, in the left and in the right half. */
+/** Returns the numbers of pixels that differ clearly between two pictures, in the left and in the right half. */
 export async function differing(a, b) {
   return a.evaluate(({ data, width }, other) => {
     const counts = [0, 0];
@@ -137,7 +138,7 @@ export async function differing(a, b) {
   }, b);
 }
 
-/** How many pixels have the amber of new springs. */
+/** Returns the number of pixels with the amber colour of new springs. */
 export async function amber(picture) {
   return picture.evaluate(({ data }) => {
     let count = 0;

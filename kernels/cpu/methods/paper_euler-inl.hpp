@@ -1,5 +1,5 @@
-// paper-euler: semi-implicit Euler as the paper's equations are read here (section IV-C; kernels/README.md). Included
-// once per instruction set.
+// paper-euler: semi-implicit Euler, which is our interpretation of the paper's equations (section IV-C;
+// kernels/README.md). Included once per instruction set.
 #if defined(EVODEVO_CPU_METHODS_PAPER_EULER_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef EVODEVO_CPU_METHODS_PAPER_EULER_INL_HPP
 #undef EVODEVO_CPU_METHODS_PAPER_EULER_INL_HPP

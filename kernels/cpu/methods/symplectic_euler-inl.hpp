@@ -12,8 +12,8 @@ HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
 /// A step: positions ─► forces F; v <- (decay v + damped_dt F/m)/(1 + damped_dt c |v|/m); friction; x <- x + dt v. c is
-/// the coefficient of drag. Damping and drag are exact where no force acts, and under a constant force the velocity
-/// tends to the one at which they balance it, at any dt.
+/// the coefficient of drag. Damping and drag are exact if no force acts. Under a constant force, at any dt, the
+/// velocity tends to the one at which damping and drag balance that force.
 struct SymplecticEuler : StepMethod {
   template <class T>
   static void step(const Stepper<T>& s, std::size_t row) {

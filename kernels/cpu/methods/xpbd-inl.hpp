@@ -125,7 +125,7 @@ struct Xpbd : StepMethod {
     }
   }
 
-  /// Adds the springs' tensions (N) to the sums that are on.
+  /// Adds the springs' tensions (N) to the enabled sums.
   template <class T, class V>
   static void record(const Stepper<T>& s, std::size_t row, std::size_t at, V tension) {
     const hn::ScalableTag<T> d;

@@ -1,5 +1,5 @@
-// Shared code of the methods that move a whole body in one thread block (implicit, xpbd). Positions and velocities are
-// on the chip if there is room.
+// Code shared by the methods that simulate a whole body in one thread block (implicit, xpbd). Positions and velocities
+// are on the chip if there is room.
 #pragma once
 
 #include "cuda/device/streamed.cuh"

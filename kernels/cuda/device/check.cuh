@@ -1,4 +1,4 @@
-// Shared code of the checks for divergence: sums over a block, and the energy guard (analysis/guard.hpp).
+// Code shared by the checks for divergence: sums over a block, and the energy guard (analysis/guard.hpp).
 #pragma once
 
 #include "cuda/device/mass_step.cuh"
@@ -11,7 +11,7 @@ __device__ __forceinline__ double warp_sum(double value) {
   return value;
 }
 
-/// The sum of a value over the block, in an order that depends on the block's size alone; thread 0 gets the result.
+/// The sum of a value over the block, in an order that depends only on the block's size; thread 0 gets the result.
 /// `of_warps` is shared memory that nothing else may use until the block is synchronised again.
 __device__ inline double block_sum(double value, double (&of_warps)[lanes]) {
   const unsigned lane = threadIdx.x % lanes, warp = threadIdx.x / lanes;
@@ -37,7 +37,7 @@ __device__ __forceinline__ Number not_finite(const Vector& position, const Vecto
   return Number(0) * ((position.x + position.y + position.z) + (velocity.x + velocity.y + velocity.z));
 }
 
-/// A mass's part of the first moment of mass over height: mass times height, kg m.
+/// A mass's contribution to the sum of mass times height, kg m.
 __device__ __forceinline__ double height_moment_of(Number mass, const Vector& position,
                                                    const StepConstants<Number>& constants) {
   double height = position.z;
@@ -45,19 +45,19 @@ __device__ __forceinline__ double height_moment_of(Number mass, const Vector& po
   return mass * height;
 }
 
-/// Whether a body is checked when `steps` steps of its piece have been made.
+/// Whether a body is checked after `steps` steps of its piece.
 __device__ __forceinline__ bool is_checked(const RunPiece& piece, std::uint64_t steps) {
   return (piece.since_check + steps) % guard_interval == 0 || (piece.is_last && steps == piece.steps);
 }
 
-/// Updates the most energy that falling below the origin has released. `height_moment`: the sum of mass times height,
-/// kg m.
+/// Updates the largest energy that the body has lost by falling below the origin. `height_moment` is the sum of mass
+/// times height, kg m.
 __device__ __forceinline__ void record_fall(double height_moment, const StepConstants<Number>& constants,
                                             Answer& answer) {
   answer.fallen = physics::maximum(answer.fallen, -static_cast<double>(constants.acceleration) * height_moment);
 }
 
-/// Whether a body, whose energies and steps are in its answer, is above the limit of energy.
+/// Whether a body exceeds the limit of energy. Its energies and steps are in its answer.
 __device__ __forceinline__ bool has_gained(const RunPiece& piece, const StepConstants<Number>& constants,
                                            const Answer& answer) {
   const double elapsed = static_cast<double>(piece.first_step + answer.steps) * constants.exact_dt;

@@ -1,7 +1,8 @@
-// Shared code of all kernels: the features for which they are compiled, the materials as functions of time, and the
+// Code shared by all kernels: the features for which they are compiled, the materials as functions of time, and the
 // parts of a step for one mass.
 //
-// A method's `move` gets a mass with the sum of its spring forces (Moving) and calls, in its own order:
+// A method's `move` gets a mass with the sum of its spring forces (Moving) and calls the following functions, in an
+// order of its own:
 //   add_gravity, add_floor, add_drag, add_damping   position, velocity ─► added to the force
 //   advance_velocity, damp, apply_drag, apply_friction   force ─► velocity
 //   advance_position                                velocity ─► position
@@ -27,10 +28,10 @@ constexpr bool peak_force = EVODEVO_PEAK_FORCE;
 constexpr bool muscle_work = EVODEVO_MUSCLE_WORK;
 constexpr bool mean_tension = EVODEVO_TENSION;
 
-constexpr unsigned rows_per_step = EVODEVO_ROWS_PER_STEP;      // rows of the tables of lengths
+constexpr unsigned rows_per_step = EVODEVO_ROWS_PER_STEP;      // rows per step in the tables of lengths
 constexpr unsigned end_rows = EVODEVO_END_ROWS;                // 1 if a step reads the row at its end, otherwise 0
-constexpr unsigned opening_passes = EVODEVO_OPENING_PASSES;    // over the springs, before the first step after a check
-constexpr unsigned passes_per_step = EVODEVO_PASSES_PER_STEP;  // over the springs
+constexpr unsigned opening_passes = EVODEVO_OPENING_PASSES;    // over springs, before the first step after a check
+constexpr unsigned passes_per_step = EVODEVO_PASSES_PER_STEP;  // over springs, in each step
 
 using Vector = physics::Triple<Number>;
 
@@ -63,17 +64,17 @@ struct Moving {
   Vector force;             ///< N
   Number mass;              ///< kg
   Number inverse_mass;      ///< 1/kg; 0 for masses that never move
-  Number normal_force = 0;  ///< of the floor, N
+  Number normal_force = 0;  ///< normal force of the floor, N
 };
 
 /// A pass over all springs, after which every mass is moved. Passes are numbered from one check to the next.
 struct Pass {
   unsigned index;  ///< from 0
-  bool last;       ///< whether no pass follows before the next check
+  bool last;       ///< whether this is the last pass before the next check
 };
 
-/// The base of an explicit method: defaults that it may override. The method adds `move(constants, pass, kept, m)`,
-/// which moves the mass m by the forces of a pass.
+/// The base of an explicit method, with defaults that the method may override. The method adds
+/// `move(constants, pass, kept, m)`, which moves the mass m by the forces of a pass.
 struct OnePass {
   /// The state that a mass keeps from one pass to the next.
   struct Kept {};
@@ -145,7 +146,7 @@ __device__ __forceinline__ void add_drag(const StepConstants<Number>& constants,
   if constexpr (drag) m.force = sum(m.force, physics::drag_factor(constants.drag_coefficient, m.velocity), m.velocity);
 }
 
-/// Adds damping as a force.
+/// Adds damping to the force.
 __device__ __forceinline__ void add_damping(const StepConstants<Number>& constants, Moving& m) {
   if constexpr (damping) m.force = sum(m.force, physics::damping_factor(constants.damping_rate, m.mass), m.velocity);
 }
@@ -177,7 +178,7 @@ __device__ __forceinline__ void damp(Number decay, Moving& m) {
 /// Reduces a velocity by the floor's friction. `friction_time` is the coefficient of friction times the time, s.
 __device__ __forceinline__ void apply_friction(Number friction_time, const Moving& m, Vector& velocity) {
   if constexpr (friction) {
-    // most masses do not touch the floor, and those keep their velocity
+    // most masses do not touch the floor, and keep their velocity
     if (m.normal_force > 0) {
       const Number kept =
           physics::friction_factor(velocity.x, velocity.y, friction_time * m.normal_force * m.inverse_mass);

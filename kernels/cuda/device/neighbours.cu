@@ -6,7 +6,7 @@
 //   write_pairs       points, reaches, indices ─► pairs
 //
 // Two points are a pair if one is within the reach of the other. The search digit by digit takes the same time for any
-// k and any number of equally distant points. Distances have the same bits as in analysis/neighbours.cpp.
+// k and any number of equally distant points. Distances are the same, to the bit, as in analysis/neighbours.cpp.
 #include "cuda/layout/point_clouds.hpp"
 
 namespace evodevo::cuda {
@@ -47,7 +47,7 @@ __device__ DeviceCloud& cloud_of(const DeviceClouds& all, unsigned point) {
   return all.clouds[low];
 }
 
-/// The sum of the values of this lane and those before it.
+/// The sum of the values of this lane and of all lanes before it.
 template <class T>
 __device__ T sum_up_to_lane(T value) {
   for (unsigned distance = 1; distance < lanes; distance *= 2) {
@@ -149,8 +149,8 @@ __device__ bool reaches(const Reach& reach, std::uint64_t square, unsigned index
   return square < reach.square || (square == reach.square && index <= reach.index);
 }
 
-/// Calls emit(rank, b) for every pair (a, b) with a < b, the ranks counting from 0 with rising b. Returns the number of
-/// pairs.
+/// Calls emit(rank, b) for every pair (a, b) with a < b, in which rank counts from 0 in ascending order of b. Returns
+/// the number of pairs.
 template <class Emit>
 __device__ unsigned for_each_pair(const Points& points, unsigned a, const Emit& emit) {
   const Reach reach = points.reach[a];
@@ -169,7 +169,7 @@ __device__ unsigned for_each_pair(const Points& points, unsigned a, const Emit& 
   return found;
 }
 
-/// The point of this warp; there may be no point of that number.
+/// The number of this warp's point; it may be beyond the last point.
 __device__ __forceinline__ unsigned this_point() { return blockIdx.x * (search_threads / lanes) + threadIdx.x / lanes; }
 
 /// Finds the reach of every point. One warp for each point.

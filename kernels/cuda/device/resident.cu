@@ -1,4 +1,4 @@
-// The run of a body in one thread block. The body's state is on the chip from the first step to the last.
+// Simulates a body in one thread block. The body's state is on the chip from the first step to the last.
 //
 //   load                body in the device's memory ─► shared memory, registers
 //   repeat until the end or a divergence:
@@ -235,7 +235,7 @@ __device__ __forceinline__ void load(const Body& body, Movers& movers) {
     movers.velocity[i] = {m.vx[index], m.vy[index], m.vz[index]};
     set_force(offset, body.start[index]);
   });
-  // the masses that empty slots lead to
+  // the masses to which empty slots refer
   if (threadIdx.x < lanes) {
     const unsigned offset = offset_of_mass(body.groups * lanes + threadIdx.x);
     set_position(offset, {0, 0, 0});
@@ -260,7 +260,7 @@ __device__ __forceinline__ void store(const Body& body, const Movers& movers) {
   });
 }
 
-/// The elastic energy of a thread's springs, units m. The first row of lengths must be that of now.
+/// The elastic energy of a thread's springs, units m. The first row of lengths must be the current one.
 __device__ double elastic_energy(const Body& body, const Share& share) {
   const Lengths lengths(body);
   double sum = 0;
@@ -280,8 +280,8 @@ __device__ double elastic_energy(const Body& body, const Share& share) {
   return sum;
 }
 
-/// A thread's part of the numbers that a check needs. It is passed by value: variables that are passed by reference to
-/// a function that is not inlined would be kept in memory instead of registers everywhere.
+/// A thread's contribution to the numbers that a check needs. It is passed by value: variables that are passed by
+/// reference to a function that is not inlined would be kept in memory instead of registers everywhere.
 struct Check {
   double kinetic = 0;        // J
   double height_moment = 0;  // kg m
@@ -358,8 +358,8 @@ __device__ __forceinline__ void collect(const Body& body, const Share& share, co
   }
 }
 
-/// Makes `count` steps; the table holds their lengths. The sums exist only here, where no function is called that is
-/// not inlined, so they stay in registers. A warp without springs only moves masses.
+/// Computes `count` steps; the table holds their lengths. The sums exist only in this function, which calls only
+/// inlined functions, so they stay in registers. A warp without springs only moves masses.
 template <bool has_springs>
 __device__ __forceinline__ void advance(const Body& body, const StepConstants<Number>& constants, const Share& share,
                                         unsigned group_ends, unsigned count, Movers& movers, Totals& totals) {

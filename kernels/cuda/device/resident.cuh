@@ -1,5 +1,5 @@
-// Shared code of resident.cu and of the two ways to get a spring's material (materials/): the form of the body and
-// access to shared memory.
+// Code shared by resident.cu and the two ways to get a spring's material (materials/): the form of the body and access
+// to shared memory.
 #pragma once
 
 #include "cuda/device/check.cuh"

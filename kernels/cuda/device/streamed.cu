@@ -44,8 +44,9 @@ __device__ __forceinline__ Vector spring_forces(const Body& body, unsigned mass,
   return force;
 }
 
-/// Makes pass `pass` of check span `index` for all bodies that have so many passes. The tables hold the lengths of this
-/// span. Even passes read the first half of the positions and write the second; odd passes do the reverse.
+/// Computes pass `pass` of check span `index` for all bodies whose span has that pass. The tables hold the lengths of
+/// this span. Counted from the beginning of the piece, even passes read the first half of the positions and write the
+/// second; odd passes do the reverse.
 extern "C" __global__ void evodevo_pass_streamed(const Body* bodies, std::uint64_t index, unsigned pass) {
   const Body& body = bodies[blockIdx.y];
   const unsigned mass = blockIdx.x * blockDim.x + threadIdx.x;

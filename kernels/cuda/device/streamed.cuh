@@ -1,4 +1,4 @@
-// Shared code of the kernels that move bodies in the device's memory: the tables of lengths and the check.
+// Code shared by the kernels that simulate bodies in the device's memory: the tables of lengths and the check.
 #pragma once
 
 #include "cuda/device/check.cuh"
@@ -62,7 +62,7 @@ extern "C" __global__ void evodevo_fill_tables(const Body* bodies, std::uint64_t
 }
 
 /// Writes the energies of every body that moved in span `index` into its answer, and marks bodies that have diverged.
-/// Row 0 of the tables must hold the lengths of now.
+/// Row 0 of the tables must hold the current lengths.
 extern "C" __global__ void __launch_bounds__(EVODEVO_CHECK_THREADS)
     evodevo_check_streamed(const Body* bodies, std::uint64_t index) {
   const Body& body = bodies[blockIdx.x];

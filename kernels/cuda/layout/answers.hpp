@@ -1,4 +1,4 @@
-// Conversions between tasks and what the device reads and writes about them.
+// Conversions between tasks and the data about them that the device reads and writes.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace evodevo::cuda {
 
-/// The piece of a run that a task is, as the device reads it. The task's course must have begun.
+/// The description, for the device, of the piece of a run that a task is. The task's course must have begun.
 inline RunPiece run_piece_of(const Task& task) {
   const Course& course = *task.course;
   return {.origin = course.origin,

@@ -9,7 +9,7 @@
 namespace evodevo::cuda {
 namespace {
 
-// few values, because each pair of them is a launch of its own, and bodies of similar size should share a launch
+// few values, because each pair of them needs a separate launch, and bodies of similar size should share a launch
 constexpr unsigned unrolled_rows[] = {4, 8, 12, 15, 16, 20, 24};
 constexpr unsigned blocks[] = {1, 2, 4, 8, 16, 32};
 constexpr unsigned rows_of_a_chunk = 8;
@@ -17,8 +17,8 @@ constexpr unsigned resident_warps = 32;  // of a multiprocessor, at 64 registers
 
 unsigned divided(std::size_t a, std::size_t b) { return static_cast<unsigned>((a + b - 1) / b); }
 
-/// The shape for `rows` rows that wastes least: it weighs empty rows against warps that find no room on a
-/// multiprocessor, because warps hide each other's waiting times.
+/// The shape for `rows` rows that wastes least. It weighs empty rows against warps for which a multiprocessor has no
+/// room, because warps hide each other's waiting times.
 Shape shape_for(std::size_t rows, std::uint32_t groups, unsigned largest_block) {
   Shape best;
   std::size_t best_cost = ~std::size_t{0};
@@ -51,8 +51,8 @@ std::vector<std::uint32_t> indices_by_degree(const Body& body) {
   return index;
 }
 
-/// An index below `padded_masses` for each mass of `body`: its earlier one if the mass was there before, otherwise a
-/// free one.
+/// An index below `padded_masses` for each mass of `body`: its earlier index if the mass existed before, otherwise a
+/// free index.
 std::vector<std::uint32_t> indices_after(const Body& body, std::uint32_t padded_masses,
                                          std::span<const std::uint32_t> earlier_index,
                                          std::span<const Vec3> earlier_rest) {

@@ -2,7 +2,7 @@
 //
 //   body ─► choose_owners (ownership.hpp) ─► shape ─► choose_rows (row_order.hpp) ─► slots
 //
-// kernels/cuda/README.md explains the words.
+// kernels/cuda/README.md explains the terms.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@
 
 namespace evodevo::cuda {
 
-/// The device index of each mass of `body`: masses are sorted by falling degree (number of springs), so that masses in
-/// neighbouring lanes have about equally many springs.
+/// The device index of each mass of `body`: masses are sorted by descending degree (number of springs), so that masses
+/// in neighbouring lanes have about equally many springs.
 std::vector<std::uint32_t> indices_by_degree(const Body& body);
 
 /// The sizes of a block for which a kernel is compiled and a body is arranged.
@@ -30,10 +30,10 @@ struct Shape {
   std::size_t slots() const { return std::size_t{32} * warps * chunks * rows; }
 };
 
-/// What an arrangement depends on: the masses, and which of them the springs join.
+/// The properties of a body on which an arrangement depends: its masses, and the pairs of masses that springs join.
 struct Outline {
   explicit Outline(const Body& body);
-  /// Whether it is the outline of `body`, rest positions apart.
+  /// Whether this is the outline of `body`, except for rest positions.
   bool fits(const Body& body) const;
 
   std::vector<Vec3> rest;  ///< [masses] rest positions, by which masses are recognised later
@@ -42,10 +42,10 @@ struct Outline {
 
 /// A body's masses and springs in the order of a thread block.
 ///
-/// Masses are in groups of 32: each has a lane of a warp and a bank of shared memory to itself. A spring is in a row of
-/// the group of the mass that owns it, in the lane of that mass; the lanes of a row add forces to different banks as
-/// far as possible. The rows of all groups, one group after the other, are divided evenly among the warps. The
-/// arrangement influences only the order in which energies and work are summed, no other result.
+/// Masses are in groups of 32: each mass of a group has its own lane of a warp and its own bank of shared memory. A
+/// spring is in a row of the group of the mass that owns it, in the lane of that mass; the lanes of a row add forces to
+/// different banks as far as possible. The rows of all groups, one group after the other, are divided evenly among the
+/// warps. The arrangement influences only the order in which energies and work are summed, and no other result.
 struct Arrangement {
   static constexpr std::uint32_t none = 0xffffffff;
 
@@ -58,9 +58,9 @@ struct Arrangement {
   /// Arranges `body` for a block of at most `largest_block` warps.
   Arrangement(const Body& body, unsigned largest_block);
 
-  /// Arranges a body that has developed from one with the outline `outline` and the arrangement `earlier`. If masses
-  /// and springs that stay are in the same order as before, most keep their indices, owners and rows, which saves most
-  /// of the work. Any other body is arranged correctly as well.
+  /// Arranges a body that has developed from one with the outline `outline` and the arrangement `earlier`. If the
+  /// remaining masses and springs are in the same order as before, most keep their indices, owners and rows, which
+  /// saves most of the work. Any other body is arranged correctly as well.
   Arrangement(const Body& body, unsigned largest_block, const Arrangement& earlier, const Outline& outline);
 
   Shape shape;
@@ -77,7 +77,8 @@ struct Arrangement {
   /// The number of rows of all warps.
   std::size_t rows() const { return slots.size() / 32; }
 
-  /// How many wavefronts an access of a warp to 32 masses takes on average: 1 if no two masses are in the same bank.
+  /// The average number of wavefronts that an access of a warp to 32 masses takes: 1 if no two masses are in the same
+  /// bank.
   double wavefronts_per_row() const;
 
  private:

@@ -11,18 +11,17 @@
 
 namespace evodevo::cuda {
 
-/// How a method makes steps on the GPU.
+/// How a method computes steps on the GPU.
 struct MethodForm {
-  const char* file;  ///< of an explicit method: the code that moves a mass; otherwise the kernel that moves a body
-  unsigned rows_per_step;         ///< rows of the tables of lengths per step
-  unsigned end_rows;              ///< 1 if a step reads the row at its end, otherwise 0
-  unsigned opening_passes = 0;    ///< of explicit methods: passes over the springs before the first step after a check
-  unsigned passes_per_step = 0;   ///< of explicit methods: passes over the springs in each step
+  const char* file;        ///< explicit methods: code that moves a mass; other methods: kernel that simulates a body
+  unsigned rows_per_step;  ///< rows of the tables of lengths per step
+  unsigned end_rows;       ///< 1 if a step reads the row at its end, otherwise 0
+  unsigned opening_passes = 0;    ///< explicit methods: passes over the springs before the first step after a check
+  unsigned passes_per_step = 0;   ///< explicit methods: passes over the springs in each step
   unsigned numbers_of_mass = 0;   ///< scratch memory of a streamed body, numbers per mass
   unsigned numbers_of_joint = 0;  ///< scratch memory of a streamed body, numbers per joint
-  unsigned points_on_chip =
-      0;                  ///< of methods that move whole bodies: points per mass in shared memory, if there is room
-  bool coloured = false;  ///< whether it needs the springs by colour
+  unsigned points_on_chip = 0;    ///< other methods: points per mass in shared memory, if there is room
+  bool coloured = false;          ///< whether the method needs the springs by colour
 
   /// Rows of the tables for `steps` steps.
   unsigned rows(unsigned steps) const { return steps * rows_per_step + end_rows; }
@@ -47,7 +46,7 @@ struct Features {
   friend auto operator<=>(const Features&, const Features&) = default;
 };
 
-/// The features for a scene and a run. `actuation`: whether the body has a muscle among its materials.
+/// The features for a scene and a run. `actuation` says whether a material of the body is that of a muscle.
 Features features_of(const Scene& scene, const Stepping& stepping, Recording recording, bool actuation);
 
 /// Whether springs on the chip carry codes of their materials. In double precision they do not: the rounded materials

@@ -19,7 +19,7 @@ inline constexpr unsigned plane_bytes = lanes * sizeof(T);
 template <class T>
 inline constexpr unsigned group_bytes = 6 * plane_bytes<T>;
 
-/// A spring as the thread of its owner reads it.
+/// A spring in the format that the thread of its owner reads.
 template <class T>
 struct alignas(2 * sizeof(T)) Record {
   T rest_length;  ///< m
@@ -47,7 +47,7 @@ struct Actuator {
 template <class T>
 struct CodeUnits {
   T stiffness;          ///< as in Entry
-  T amplitude;          ///< 1, of the code's word with only the amplitude's bits set
+  T amplitude;          ///< 1; unit for the code's word with only the amplitude's bits set
   T angular_frequency;  ///< rad/s
   double frequency;     ///< Hz
 };
@@ -56,7 +56,7 @@ struct CodeUnits {
 /// first, ordered so that some are read in pairs.
 template <class T>
 struct StepConstants {
-  T acceleration;      ///< of gravity along -z, m/s^2
+  T acceleration;      ///< acceleration of gravity along -z, m/s^2
   T floor_stiffness;   ///< N/m
   T friction_dt;       ///< friction coefficient times dt, s
   T drag_coefficient;  ///< kg/m
@@ -68,15 +68,15 @@ struct StepConstants {
   T damping_rate;      ///< 1/s
   T grade;             ///< Gravity::grade()
   T roughness;         ///< m
-  T cells;             ///< of rough ground, 1/m
+  T cells;             ///< number of cells of rough ground per metre, 1/m
   std::uint32_t seed;  ///< Floor::first_line()
   double exact_dt;     ///< s
 };
 
-/// The piece of a run that a task makes, and the whole run's Course so far.
+/// The piece of a run that a task simulates, and the whole run's Course so far.
 struct RunPiece {
   double origin;             ///< State::time at the beginning of the whole run, s
-  std::uint64_t first_step;  ///< steps that the whole run has made before this piece
+  std::uint64_t first_step;  ///< steps of the whole run before this piece
   std::uint64_t steps;       ///< steps of this piece
   EnergyBound bound;
   std::uint32_t since_check;  ///< steps between the last check and the beginning of this piece
@@ -86,7 +86,7 @@ struct RunPiece {
 
 /// How a body's piece of a run ended, and its energies at the last check.
 struct Answer {
-  std::uint64_t steps;  ///< steps made
+  std::uint64_t steps;  ///< number of steps simulated
   double kinetic;       ///< J
   double elastic;       ///< J
   double fallen;        ///< Course::fallen, including earlier pieces, J
@@ -128,7 +128,7 @@ struct ResidentBody {
   RunPiece piece;
   double resolution;                             ///< N, a power of two
   T largest_force;                               ///< units; a larger force leaves the range
-  std::uint32_t groups, warps, chunks, entries;  ///< warps: those that have springs
+  std::uint32_t groups, warps, chunks, entries;  ///< numbers of each; warps counts only those that have springs
   std::uint32_t table_steps;                     ///< steps for which the table in shared memory has rows
   std::uint32_t table_offset;                    ///< of the table, bytes from the beginning of shared memory
   std::uint32_t rate_offset;                     ///< of the rates, if work is recorded
@@ -141,8 +141,8 @@ template <class T>
 struct alignas(4 * sizeof(T)) Joint {
   T rest_length;        ///< m
   std::uint32_t other;  ///< index of the mass at the other end
-  std::uint32_t entry;  ///< of the table
-  std::uint32_t owned;  ///< whether sums over springs take the spring at this end
+  std::uint32_t entry;  ///< index into a row of the table
+  std::uint32_t owned;  ///< whether sums over springs count the spring at this end
 };
 
 /// A spring for a method that solves springs by colour.
@@ -150,8 +150,8 @@ template <class T>
 struct ColouredSpring {
   T rest_length;        ///< m
   std::uint32_t a, b;   ///< indices of the masses
-  std::uint32_t entry;  ///< of the table
-  std::uint32_t joint;  ///< the joint where its stress is summed
+  std::uint32_t entry;  ///< index into a row of the table
+  std::uint32_t joint;  ///< the joint at which its stress is summed
 };
 
 /// A position or velocity in the device's memory.
@@ -160,9 +160,9 @@ struct alignas(4 * sizeof(T)) Point {
   T x, y, z, unused;
 };
 
-/// A body that is too large for the chip (streamed.cu), or whose method moves bodies from the device's memory
-/// (implicit, xpbd). Its masses are sorted by falling degree (number of springs), so that those of a group have about
-/// equally many.
+/// A body that is too large for the chip (streamed.cu), or whose method keeps bodies in the device's memory (implicit,
+/// xpbd). Its masses are sorted by descending degree (number of springs), so that those of a group have about equally
+/// many.
 template <class T>
 struct StreamedBody {
   StepConstants<T> constants;

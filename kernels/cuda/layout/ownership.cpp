@@ -6,17 +6,17 @@
 namespace evodevo::cuda {
 namespace {
 
-constexpr int sweeps = 4;    // over all springs; more of them cost more than they gain
+constexpr int sweeps = 4;    // sweeps over all springs; more would cost more time than they save
 constexpr int penalty = 16;  // cost of each spring above a mass's even share
 
-/// How many springs each mass owns, and how many springs of each group lead to each bank.
+/// Counts the springs that each mass owns, and the springs of each group that lead to each bank.
 class Distribution {
  public:
   Distribution(std::uint32_t groups, std::size_t masses, std::size_t springs)
       : lane_(32 * groups), bank_(32 * groups), even_share_(static_cast<int>(springs / masses) + 1) {}
 
-  /// The cost of one more spring from `owner` to `other`: it shares the owner's lane and the bank of `other` with
-  /// others.
+  /// The cost of one more spring from `owner` to `other`, which shares the owner's lane and the bank of `other` with
+  /// other springs.
   int cost_of_adding(std::uint32_t owner, std::uint32_t other) const {
     const int lane = lane_[owner];
     return lane + penalty * std::max(0, lane + 1 - even_share_) + bank_[cell(owner, other)];

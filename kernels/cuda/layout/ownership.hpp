@@ -8,12 +8,12 @@
 
 namespace evodevo::cuda {
 
-/// Stands for an owner or a row that is not chosen yet.
+/// The value of an owner or a row that has not been chosen yet.
 inline constexpr std::uint32_t open = 0xffffffff;
 
 /// Sets `owner` to the index of the mass that owns each spring. Springs are spread evenly over the masses (the lanes of
 /// each group) and over the banks to which each group's springs lead. `index_of` is the device index of each mass. An
-/// owner that is given (not `open`) must be one of the spring's masses; most of those stay.
+/// owner that is given (not `open`) must be one of the spring's masses; most given owners are kept.
 void choose_owners(const Body& body, std::span<const std::uint32_t> index_of, std::uint32_t groups,
                    std::span<std::uint32_t> owner);
 

@@ -30,7 +30,7 @@ class Extent {
 };
 
 /// The sizes (bytes) of a body's four memory regions: `input` is copied to the device; `state` is copied there and
-/// back; `sums` begins as zeros on the device and is copied back; `scratch` exists on the device alone.
+/// back; `sums` is initially zero on the device and is copied back; `scratch` exists only on the device.
 struct Sizes {
   std::size_t input = 0, state = 0, sums = 0, scratch = 0;
 
@@ -45,12 +45,12 @@ struct Sizes {
   std::size_t total() const { return mirrored() + scratch; }
 };
 
-/// Where a body's regions begin, on the host or on the device.
+/// The beginnings of a body's regions, on the host or on the device.
 struct Regions {
   std::byte *input, *state, *sums;
-  std::byte* scratch = nullptr;  ///< on the device alone
+  std::byte* scratch = nullptr;  ///< only on the device
 
-  /// The regions of the next body, behind one of the given sizes.
+  /// Returns the regions of the next body, which follow those of a body with the given sizes.
   Regions behind(const Sizes& sizes) const {
     return {input + sizes.input, state + sizes.state, sums + sizes.sums, scratch ? scratch + sizes.scratch : nullptr};
   }

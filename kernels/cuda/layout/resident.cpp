@@ -21,11 +21,11 @@ std::size_t offset_of_mass(std::uint32_t index) {
 
 template <class T>
 std::size_t masses_bytes(std::size_t groups) {
-  return (groups + 1) * group_bytes<T>;  // one more group for empty slots to lead to
+  return (groups + 1) * group_bytes<T>;  // one more group, to which empty slots refer
 }
 
-/// An upper bound (N) of the force of a spring that stops two masses in motion: 2 v sqrt(k m/2) with the greatest speed
-/// v, stiffness k and mass m of the body.
+/// An upper bound (N) of the force of a spring that stops two moving masses: 2 v sqrt(k m/2), with the largest speed v,
+/// stiffness k and mass m of the body.
 double stopping_force(const Body& body, const State& state) {
   double speed = 0, mass = 0, stiffness = 0;
   for (const Vec3& v : state.velocity) speed = std::max(speed, norm(v));
@@ -70,7 +70,7 @@ ForceRange force_range(const Body& body, const State& state, const Scene& scene)
   largest = std::max(largest, driven ? 2 * doubled : doubled);
   ForceRange range;
   const std::uint32_t terms = degree.empty() ? 1 : std::max(1u, *std::max_element(degree.begin(), degree.end()));
-  // one percent of margin for rounding of the force itself
+  // a margin of one percent for rounding of the force itself
   const double units = 0.99 * std::min(FixedPoint<T>::largest_term, FixedPoint<T>::largest_sum / terms);
   if (largest > 0 && std::isfinite(largest)) range.resolution = std::exp2(std::ceil(std::log2(largest / units)));
   range.largest = units * range.resolution;

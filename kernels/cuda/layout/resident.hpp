@@ -23,14 +23,14 @@ struct ChipMemory {
   std::uint32_t table_steps = 1;
 };
 
-/// The range of forces for a body. The largest force is the greatest of: the force of its strongest spring at twice its
-/// length, or at three times its length if muscles drive the body (in resonance springs stretch by more than their
-/// length); twice the largest force of a spring now; the force that stops the masses' motion; and the body's weight.
-/// The last three can be the greatest where springs are soft or short.
+/// The range of forces for a body. The largest force is the maximum of: the force of its strongest spring at twice its
+/// length, or at three times its length if muscles drive the body (in resonance, springs stretch by more than their
+/// length); twice the largest current force of a spring; the force that stops the masses' motion; and the body's
+/// weight. The last three can be the maximum if springs are soft or short.
 template <class T>
 ForceRange force_range(const Body& body, const State& state, const Scene& scene);
 
-/// A body's arrangement, kept from one run to the next. It depends on the body's outline alone.
+/// A body's arrangement, kept from one run to the next. It depends only on the body's outline.
 class ArrangedBody final : public Preparation {
  public:
   ArrangedBody(const Body& body, Arrangement arrangement, unsigned largest_block);
@@ -54,7 +54,7 @@ class Resident {
   /// Nothing if the body does not fit; whether it fits does not depend on what is recorded.
   static std::optional<Resident> arrange(const Task& task, const Features& features, std::size_t shared_bytes);
 
-  /// The part of `shared_bytes` that a body can have; the kernel and the system need the rest.
+  /// The part of `shared_bytes` that is available to a body; the kernel and the system need the rest.
   static std::size_t largest_chip(std::size_t shared_bytes);
 
   ResidentForm form() const;

@@ -103,7 +103,7 @@ class Colouring {
 }  // namespace
 
 void choose_rows(std::span<Link> links, std::size_t rows) {
-  if (rows > most_rows) {  // so many springs at one mass are rare: take them as they come
+  if (rows > most_rows) {  // so many springs at one mass are rare: bank conflicts are accepted
     std::array<std::uint32_t, 32> next{};
     for (Link& link : links) link.row = next[link.lane]++;
     return;

@@ -15,12 +15,12 @@ namespace evodevo::cuda {
 template <class T>
 class Streamed {
  public:
-  /// `task`: its course must have begun. `largest_chip`: bytes of shared memory that a body can have.
+  /// The course of `task` must have begun. `largest_chip` is the shared memory that is available to a body, bytes.
   Streamed(const Task& task, const Features& features, std::size_t largest_chip);
 
   Sizes sizes() const { return sizes_; }
-  /// Threads of each block that moves the body. If one block moves the whole body, their number depends on the body
-  /// alone, and so does the order of the block's sums.
+  /// The number of threads of each block that simulates the body. If one block simulates the whole body, this number,
+  /// and with it the order of the block's sums, depends only on the body.
   unsigned threads() const;
   std::size_t chip_bytes() const { return chip_bytes_; }  ///< shared memory of the block, if one block moves the body
   std::uint32_t masses() const { return static_cast<std::uint32_t>(task_->body->masses.size()); }
@@ -52,7 +52,7 @@ class Streamed {
   Features features_;
   Sizes sizes_;
   std::size_t chip_bytes_;
-  std::vector<std::uint32_t> index_of_;     ///< [masses] device index of each mass, by falling degree
+  std::vector<std::uint32_t> index_of_;     ///< [masses] device index of each mass, in descending order of degree
   std::vector<std::uint32_t> first_row_;    ///< [groups of 32 masses + 1]
   std::vector<std::uint32_t> owned_joint_;  ///< [springs] the joint at end a, where the spring's stress is summed
   std::vector<std::uint32_t> colour_;       ///< [springs] if the method asks for colours

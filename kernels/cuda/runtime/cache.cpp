@@ -16,14 +16,14 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The folder that an environment variable names. A relative path is ignored, as the XDG Base Directory Specification
-/// demands, because it would mean a different folder in each working directory.
+/// requires, because it would mean a different folder in each working directory.
 std::optional<fs::path> folder_of(const char* variable) {
   const char* value = std::getenv(variable);
   if (value == nullptr || !fs::path(value).is_absolute()) return std::nullopt;
   return value;
 }
 
-/// The cache's folder; none if the environment names none.
+/// The folder of the cache; nothing if the environment names no folder.
 std::optional<fs::path> folder() {
   if (const auto cache = folder_of("XDG_CACHE_HOME")) return *cache / "evodevo" / "kernels";
   if (const auto home = folder_of("HOME")) return *home / ".cache" / "evodevo" / "kernels";

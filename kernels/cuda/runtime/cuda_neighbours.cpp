@@ -30,11 +30,11 @@ struct Job {
 
   std::size_t points() const { return cloud.positions.size(); }
   std::size_t neighbours() const { return std::min<std::size_t>(cloud.k, points() - 1); }
-  /// An upper bound of the number of pairs: every point has that many neighbours, and no pair is there twice.
+  /// An upper bound of the number of pairs: every point has neighbours() neighbours, and no pair occurs twice.
   std::size_t most_pairs() const { return std::min(points() * neighbours(), points() * (points() - 1) / 2); }
 };
 
-/// The arrays of a portion. The first four are copied from the host; the last two exist on the device alone.
+/// The arrays of a portion. The first four are copied from the host; the last two exist only on the device.
 struct Arrays {
   explicit Arrays(std::span<const Job> jobs) {
     for (const Job& job : jobs) points += job.points();
@@ -217,7 +217,7 @@ class CudaNeighbourSearch final : public NeighbourSearch {
   }
 
  private:
-  /// How many of the next jobs make a portion; at least one.
+  /// The number of next jobs that form a portion; at least one.
   std::size_t portion_from(std::span<const Job> jobs) const {
     std::size_t bytes = 0;
     for (std::size_t count = 0; count < jobs.size(); ++count) {

@@ -20,11 +20,11 @@ namespace {
 static_assert(cuda::guard_interval == guard_interval);
 
 constexpr std::size_t most_streams = 12;  // for one batch
-constexpr int batches_at_once = 16;       // while one moves, others are prepared or read
-// of the free memory; other programs may need some too
+constexpr int batches_at_once = 16;       // while one is simulated, others are prepared or their results read
+// share of the free memory that is used; other programs may need some too
 constexpr double share_of_memory = 0.8;
 
-/// The streams that a batch uses alone.
+/// The streams that a single batch uses exclusively.
 struct BatchResources {
   BatchResources() {
     for (std::size_t i = 0; i < most_streams; ++i) urgent.emplace_back(true), patient.emplace_back();
@@ -33,7 +33,7 @@ struct BatchResources {
   std::vector<cuda::Stream> urgent, patient;
 };
 
-/// The resources of batches that have ended, kept for later batches. They are made when there are none.
+/// The resources of batches that have ended, kept for later batches. New resources are created if none are available.
 class BatchResourcePool {
  public:
   /// Holds the resources of one batch until it is destroyed.
@@ -111,8 +111,8 @@ class DeviceSimulator final : public CudaSimulator {
   }
 
  private:
-  /// Clears the answers and returns the tasks that need the device. Tasks without masses or steps end here; only their
-  /// time goes on.
+  /// Clears the results, and returns the tasks that need the device. Tasks without masses or steps end here; only their
+  /// time advances.
   std::vector<Task*> begin(std::span<Task> tasks, Recording recording) const {
     std::vector<Task*> live;
     for (Task& task : tasks) {
@@ -131,7 +131,7 @@ class DeviceSimulator final : public CudaSimulator {
     return live;
   }
 
-  /// The course that a task continues or begins.
+  /// Returns the course that a task continues, or a new course.
   Course begun(const Task& task) const {
     Course course = course_of(task, scene_, stepping_.precision);
     if (!task.course) course.forces = cuda::force_range<T>(*task.body, *task.state, scene_);
@@ -149,13 +149,12 @@ class DeviceSimulator final : public CudaSimulator {
     return plans;
   }
 
-  /// Simulates as many of the next plans as fit the device's memory together, and returns how many. Adds the time of
-  /// the kernels to `seconds`.
+  /// Simulates as many of the next plans as fit the device's memory together, and returns their number. Adds the time
+  /// of the kernels to `seconds`.
   std::size_t simulate_next_portion(std::span<cuda::Plan<T>> plans, const cuda::Run& run, double& seconds) {
     const auto attempt = [&](std::size_t count) {
       const BatchResourcePool::Loan resources(batch_resources_);
-      // runs with records of springs go first: after them the host has work to do, and meanwhile other runs use the
-      // device
+      // runs that record springs have priority: after them, the host has work to do, while other runs use the device
       const std::vector<cuda::Stream>& streams = run.recording.of_springs() ? resources->urgent : resources->patient;
       seconds += cuda::Portion<T>(plans.first(count), run, *memory_).simulate(kernels_, streams, workers_, busy_);
     };
@@ -166,7 +165,7 @@ class DeviceSimulator final : public CudaSimulator {
     }
   }
 
-  /// How many of the next plans should fit the free memory; at least one.
+  /// The number of next plans that should fit the free memory; at least one.
   std::size_t plans_that_fit(std::span<const cuda::Plan<T>> plans) {
     const auto free = static_cast<double>(memory_->available());
     const std::size_t budget = std::min(largest_portion_, static_cast<std::size_t>(share_of_memory * free));

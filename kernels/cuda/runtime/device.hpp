@@ -12,8 +12,9 @@ struct Device {
   std::size_t shared_bytes;  ///< shared memory that one block can have
 };
 
-/// Why a driver for the CUDA version `driver` cannot run a program that was built with the version `runtime`; empty if
-/// it can. A version is 1000 times the major plus 10 times the minor number; driver 0: there is none.
+/// Returns the reason why a driver for the CUDA version `driver` cannot run a program that was built with the version
+/// `runtime`; empty if it can. A version is 1000 times the major plus 10 times the minor number; a driver version of 0
+/// means that there is no driver.
 std::string driver_obstacle(int driver, int runtime);
 
 /// The current CUDA device. Throws std::runtime_error if there is no usable one.

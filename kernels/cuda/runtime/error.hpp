@@ -16,8 +16,8 @@ class OutOfMemory : public DeviceOutOfMemory {
 };
 
 /// Throws if `result` is a failure: OutOfMemory, or std::runtime_error for any other. The message says what was
-/// attempted (`what`, such as "copying bodies to the device"), the runtime's words for the failure, and a remedy if one
-/// is known.
+/// attempted (`what`, such as "copying bodies to the device"), the runtime's description of the failure, and a remedy
+/// if one is known.
 void check(cudaError_t result, const std::string& what);
 
 }  // namespace evodevo::cuda

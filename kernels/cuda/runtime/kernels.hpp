@@ -13,12 +13,12 @@
 
 namespace evodevo::cuda {
 
-/// The kernels of one device. Each is compiled and loaded when it is first asked for, and kept. If there is no memory
-/// to load it, the next call tries again. Several threads may use a store; they compile different kernels at the same
-/// time.
+/// The kernels of one device. Each kernel is compiled and loaded when it is first requested, and kept. If there is too
+/// little memory to load it, the next request tries again. Several threads may use a store; they compile different
+/// kernels at the same time.
 class KernelStore {
  public:
-  /// `more`: source files beside the embedded ones. They must outlive the store.
+  /// `more` holds source files in addition to the embedded ones. They must outlive the store.
   explicit KernelStore(std::string architecture, std::span<const EmbeddedSource> more = {})
       : architecture_(std::move(architecture)), more_(more) {}
   KernelStore(const KernelStore&) = delete;

@@ -17,8 +17,8 @@ inline std::string in_mebibytes(std::size_t bytes) {
   return std::to_string((bytes + (std::size_t{1} << 20) - 1) >> 20) + " MiB";
 }
 
-/// Memory of the device: a mirrored part, with a copy of the same size on the host, and behind it a part that is on the
-/// device alone. The copy on the host cannot be swapped out.
+/// Memory of the device: a mirrored part, with a copy of the same size on the host, followed by a part that exists only
+/// on the device. The copy on the host cannot be swapped out.
 class MirroredMemory {
  public:
   MirroredMemory() = default;
@@ -26,12 +26,12 @@ class MirroredMemory {
   MirroredMemory& operator=(const MirroredMemory&) = delete;
   ~MirroredMemory() { release(); }
 
-  /// Whether there is room for `mirrored` bytes on both sides and `more` bytes on the device alone.
+  /// Whether there is room for `mirrored` bytes on both sides and `more` bytes only on the device.
   bool holds(std::size_t mirrored, std::size_t more) const {
     return mirrored <= host_size_ && mirrored + more <= size_;
   }
 
-  /// Makes room for as much; the old content is lost. Throws OutOfMemory, and then holds no memory.
+  /// Makes room for these sizes; the old content is lost. Throws OutOfMemory, and then holds no memory.
   void resize(std::size_t mirrored, std::size_t more) {
     if (holds(mirrored, more)) return;
     try {
@@ -98,8 +98,8 @@ class Stream {
   cudaStream_t stream_ = nullptr;
 };
 
-/// Its destructor waits until the streams are at rest, even when an exception is thrown, so that memory is not freed
-/// while the device still uses it.
+/// A guard whose destructor waits until the streams are idle, even when an exception is thrown, so that memory is not
+/// freed while the device still uses it.
 class StreamsAtRest {
  public:
   explicit StreamsAtRest(std::span<const Stream> streams) : streams_(streams) {}

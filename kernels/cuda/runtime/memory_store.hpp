@@ -22,7 +22,7 @@ class MemoryStore {
   /// Holds memory until it is destroyed.
   class Loan {
    public:
-    /// Takes `mirrored` bytes on device and host and `more` bytes on the device alone. Throws OutOfMemory.
+    /// Takes `mirrored` bytes on device and host, and `more` bytes only on the device. Throws OutOfMemory.
     Loan(MemoryStore& store, std::size_t mirrored, std::size_t more = 0)
         : store_(store), memory_(store.take(mirrored, more)) {}
     Loan(const Loan&) = delete;
@@ -36,11 +36,11 @@ class MemoryStore {
     std::unique_ptr<MirroredMemory> memory_;
   };
 
-  /// The memory (bytes) of the device that a loan can have: free, or kept by the store.
+  /// The memory of the device that is available to a loan, bytes: memory that is free or kept by the store.
   std::size_t available();
 
-  /// Calls attempt(n), which works on the first n of `count` items, with n = count, and with half of it again and again
-  /// as long as it throws OutOfMemory. The last try with n = 1 waits until no other attempt is running and frees all
+  /// Calls attempt(n), which works on the first n of `count` items. Begins with n = count, and halves n as long as the
+  /// attempt throws OutOfMemory. The last attempt with n = 1 waits until no other attempt is running and frees all
   /// memory that the store keeps; its exception is not caught. Returns the n that succeeded.
   template <class Attempt>
   std::size_t with_fewer(std::size_t count, const Attempt& attempt) {

@@ -23,9 +23,9 @@ Sizes sizes_of(std::span<const Plan<T>> plans) {
   return sizes;
 }
 
-/// Waits until all streams are at rest, and returns the time since `begin`, s. The thread sleeps while it waits,
-/// because other batches need the core. The host waits, not a stream on the device, because launches of other batches
-/// could be queued behind a waiting stream.
+/// Waits until all streams are idle, and returns the time since `begin`, s. The thread sleeps while it waits, because
+/// other batches need the core. The host waits, not a stream on the device, because launches of other batches could be
+/// queued behind a waiting stream.
 double wait_for(std::span<const Stream> streams, const Event& begin) {
   std::deque<Event> ends;
   for (const Stream& stream : streams) check(cudaEventRecord(ends.emplace_back(true), stream), "recording an event");

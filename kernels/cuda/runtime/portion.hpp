@@ -1,10 +1,10 @@
-// A portion: bodies of a batch that fit the device's memory together.
+// A portion: bodies of a batch that fit the device's memory together. Its steps are:
 //
 //   Plan       task ─► layout of the body: Resident (on the chip) or Streamed (in the device's memory)
 //   arrange    sizes of all plans ─► memory on host and device, regions of each body, launches of bodies of equal form
 //   pack       bodies ─► descriptions, inputs and states on the host
 //   upload     host ─► device; the sums are set to zero
-//   launch_resident, launch_streamed   kernels make all steps
+//   launch_resident, launch_streamed   kernels compute all time steps
 //   download   states and sums: device ─► host
 //   unpack     states, sums and answers on the host ─► tasks
 #pragma once
@@ -25,7 +25,7 @@
 
 namespace evodevo::cuda {
 
-/// What all bodies of a run have in common.
+/// Properties that all bodies of a run have in common.
 struct Run {
   Scene scene;
   Stepping stepping;
@@ -51,15 +51,15 @@ class Portion {
   /// Throws OutOfMemory. simulate() may throw it as well.
   Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store);
 
-  /// The device's memory (bytes) that `bodies` bodies with these sizes in total need.
+  /// The memory of the device (bytes) that `bodies` bodies with these total sizes need.
   static std::size_t bytes_for(const Sizes& sizes, std::size_t bodies);
 
-  /// Makes all steps, fills in the answers and returns the time of the kernels, s. `busy` runs while the device works.
-  /// If this throws, no answer is filled in and the streams are at rest.
+  /// Simulates all steps, fills in the results and returns the time of the kernels, s. `busy` runs while the device
+  /// works. If this function throws, no result is filled in and the streams are idle.
   double simulate(KernelStore& kernels, std::span<const Stream> streams, Workers& workers, BusyClock& busy);
 
  private:
-  /// What resident bodies of the same launch have in common.
+  /// Properties that resident bodies of the same launch have in common.
   struct Launch {
     Features features;
     ResidentForm form;
@@ -74,7 +74,7 @@ class Portion {
     const ResidentBody<T>* bodies;  ///< on the device
   };
 
-  /// What streamed bodies of the same launches have in common.
+  /// Properties that streamed bodies of the same launches have in common.
   struct StreamedLaunch {
     Features features;
     unsigned threads;

@@ -11,7 +11,7 @@
 
 namespace evodevo {
 
-/// A place (m), velocity (m/s) or direction (1).
+/// A position (m), velocity (m/s) or direction (1).
 struct Vec3 {
   double x = 0, y = 0, z = 0;
 
@@ -32,8 +32,8 @@ struct Box {
   double longest_side() const { return std::max({high.x - low.x, high.y - low.y, high.z - low.z}); }
 };
 
-/// What a spring is made of: L(t) = L0 (1 + amplitude sin(2 pi frequency t + phase)), force stiffness (|d| - L(t)).
-/// Paper, section IV-A and Table I.
+/// The material of a spring. The actuated rest length is L(t) = L0 (1 + amplitude sin(2 pi frequency t + phase)), and
+/// the force is stiffness (|d| - L(t)). Paper, section IV-A and Table I.
 struct Material {
   double stiffness = 0;  ///< N/m; a spring of stiffness 0 is air and is never created
   double amplitude = 0;  ///< relative change of length, 1
@@ -49,7 +49,7 @@ struct Material {
   }
 };
 
-/// Whether no spring is made of the material.
+/// Whether the material is air, of which no spring is made.
 inline bool is_air(const Material& material) { return !(material.stiffness > 0); }
 
 /// The material of a spring between a mass of `a` and a mass of `b`: the mean of all four parameters
@@ -63,19 +63,19 @@ inline Material mean(const Material& a, const Material& b) {
 inline constexpr std::int32_t no_material = -1;
 
 struct Mass {
-  Vec3 rest;                            ///< place in the undeformed body, m
+  Vec3 rest;                            ///< position in the undeformed body, m
   double mass = 0;                      ///< kg
   std::int32_t material = no_material;  ///< index into Body::materials, or no_material
-  std::uint32_t air_contacts = 0;       ///< neighbours to which a spring of air was left out
-  double payload = 0;                   ///< how much of `mass` it carries for the scene, kg
+  std::uint32_t air_contacts = 0;       ///< number of neighbours to which no spring was made, as it would be air
+  double payload = 0;                   ///< part of `mass` that is payload of the scene, kg
 };
 
 struct Spring {
   std::uint32_t a = 0, b = 0;  ///< indices into Body::masses, a != b
   double rest_length = 0;      ///< L0, m
   std::uint32_t material = 0;  ///< index into Body::materials
-  float growth = 1;            ///< rest length at the end of a ballistic development relative to that at birth, 1
-  double first_length = 0;     ///< L0 when the spring came, at birth or later, m; set by the host
+  float growth = 1;            ///< rest length at the end of ballistic development relative to that at birth, 1
+  double first_length = 0;     ///< L0 when the spring was made, at birth or later, m; set by the host
 };
 
 /// A body without its motion. No two springs join the same pair of masses.
@@ -83,11 +83,11 @@ struct Body {
   std::vector<Mass> masses;
   std::vector<Spring> springs;
   std::vector<Material> materials;
-  /// How many of the materials, the first ones, are the experiment's; set by the host at birth. They stay, and every
-  /// other one goes when no spring and no mass has it any more.
+  /// The number of materials that come from the experiment, which are the first ones; set by the host at birth. They
+  /// are kept; every other material is removed when no spring and no mass uses it any more.
   std::uint32_t base_materials = 0;
 
-  /// The index of `material` in `materials`; appended if it is new. It looks through all of them.
+  /// Returns the index of `material` in `materials`, and appends it if it is new. Searches linearly.
   std::uint32_t material_index(const Material& material) {
     const auto found = std::find(materials.begin(), materials.end(), material);
     if (found != materials.end()) return static_cast<std::uint32_t>(found - materials.begin());
@@ -100,12 +100,12 @@ struct Body {
 struct State {
   std::vector<Vec3> position;  ///< m
   std::vector<Vec3> velocity;  ///< m/s
-  double time = 0;             ///< since birth, s
-  double start_energy = 0;     ///< height + kinetic + elastic energy at most, for the energy guard: what there was at
-                               ///< birth, what development has added and what muscles can have added since, J
+  double time = 0;             ///< time since birth, s
+  double start_energy = 0;     ///< upper bound of gravitational + kinetic + elastic energy, for the energy guard:
+                               ///< energy at birth, plus what development added and muscles can have added since, J
 };
 
-/// The smallest box around `positions`; all zero for none.
+/// The smallest box around `positions`; all zero if there are none.
 inline Box bounding_box(std::span<const Vec3> positions) {
   if (positions.empty()) return {};
   Box box{positions[0], positions[0]};
@@ -127,7 +127,7 @@ inline Vec3 centre_of_mass(const Body& body, std::span<const Vec3> positions) {
   return total > 0 ? (1 / total) * sum : Vec3{};
 }
 
-/// How an evaluation ended. Only `ok` carries a fitness.
+/// How an evaluation ended. Only an evaluation that ended with `ok` has a fitness.
 enum class Status : std::uint8_t { ok, invalid, diverged };
 
 inline const char* name(Status status) {

@@ -25,8 +25,8 @@ struct Lattice {
   std::uint32_t voxels() const { return size[0] * size[1] * size[2]; }
 };
 
-/// The lattice of size[0] x size[1] x size[2] voxels with edges of `edge` metres. Ten voxels a side make the
-/// paper's benchmark body: 1,331 masses and 14,230 springs (section V-A).
+/// The lattice of size[0] x size[1] x size[2] voxels with edges of `edge` metres. Ten voxels per side give the body of
+/// the paper's benchmark: 1,331 masses and 14,230 springs (section V-A).
 inline Lattice make_lattice(std::array<std::uint32_t, 3> size, double edge) {
   Lattice lattice{size, {}, {}};
   const auto corner = [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {

@@ -1,4 +1,4 @@
-// Random numbers that depend on their key alone, not on who drew before.
+// Random numbers that depend only on their key, not on earlier draws of others.
 #pragma once
 
 #include <cmath>
@@ -8,17 +8,17 @@
 
 namespace evodevo {
 
-/// What a stream of random numbers belongs to. Equal keys give equal streams, on any machine and thread.
+/// Identifies a stream of random numbers. Equal keys give equal streams, on any machine and thread.
 struct StreamKey {
-  std::uint64_t seed = 0;        ///< of the run
-  std::uint32_t generation = 0;  ///< in which the numbers are drawn
-  std::uint32_t individual = 0;  ///< for which they are drawn
-  std::uint32_t position = 0;    ///< the operator's place in the pipeline
+  std::uint64_t seed = 0;        ///< seed of the run
+  std::uint32_t generation = 0;  ///< generation in which the numbers are drawn
+  std::uint32_t individual = 0;  ///< individual for which the numbers are drawn
+  std::uint32_t position = 0;    ///< position of the operator in the pipeline
 };
 
-/// A counter-based stream (Philox 4x32-10, Salmon et al. 2011, computed by the host). A
-/// std::uniform_random_bit_generator, but the members below give the same numbers with every standard library, which
-/// <random>'s distributions do not.
+/// A counter-based stream (Philox 4x32-10, Salmon et al. 2011, computed by the host). It is a
+/// std::uniform_random_bit_generator. The members below give the same numbers with every standard library, unlike the
+/// distributions of <random>.
 class Rng {
  public:
   using result_type = std::uint32_t;
@@ -33,7 +33,7 @@ class Rng {
   static constexpr result_type min() { return 0; }
   static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }
 
-  /// 32 random bits.
+  /// Returns 32 random bits.
   result_type operator()() {
     if (used_ == 4) {
       philox_(counter_, key_, block_);
@@ -43,16 +43,16 @@ class Rng {
     return block_[used_++];
   }
 
-  /// Uniform in [0, 1), a multiple of 2^-53.
+  /// Returns a number that is uniform in [0, 1), as a multiple of 2^-53.
   double uniform() {
     const std::uint64_t high = (*this)() >> 5, low = (*this)() >> 6;
     return static_cast<double>(high << 26 | low) * 0x1p-53;
   }
 
-  /// Uniform in [low, high).
+  /// Returns a number that is uniform in [low, high).
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
 
-  /// Uniform among 0 … count-1, without bias; count > 0.
+  /// Returns an integer that is uniform among 0 … count-1, without bias; count > 0.
   std::uint32_t below(std::uint32_t count) {
     const std::uint32_t uneven = (0u - count) % count;
     for (;;) {
@@ -61,10 +61,10 @@ class Rng {
     }
   }
 
-  /// True with the given probability.
+  /// Returns true with the given probability.
   bool chance(double probability) { return uniform() < probability; }
 
-  /// Puts the items in random order, each order equally likely.
+  /// Shuffles the items; all orders are equally likely.
   template <class Items>
   void shuffle(Items& items) {
     for (auto left = static_cast<std::uint32_t>(items.size()); left > 1; --left) {

@@ -13,24 +13,26 @@ constexpr Setting setting{Method::velocity_verlet, Precision::float64, 0.0005};
 
 double end_height(const State& state, std::uint32_t voxels) { return state.position[voxels].z; }
 
-/// How far the end sags under a weight that bends the beam by a thousandth of its length, m.
+/// Simulates the beam until it rests under gravity of `acceleration` (m/s^2); returns how far its free end has sagged,
+/// m. The caller chooses an acceleration at which theory predicts a thousandth of the length.
 double deflection(std::uint32_t voxels, const EulerBernoulli& theory, double acceleration) {
   const Body body = cantilever(voxels, edge, mass, stiffness);
   const double frequency = 2 * pi * theory.first_frequency();
-  const Scene scene{Gravity{acceleration}, {}, {}, Damping{2 * frequency}, {}};  // comes to rest fastest
+  const Scene scene{Gravity{acceleration}, {}, {}, Damping{2 * frequency}, {}};  // critical damping
   const State start = resting(body, scene);
   const Traveller settled = simulate(body, start, scene, setting, 15 / frequency);
   return end_height(start, voxels) - end_height(settled.state, voxels);
 }
 
-/// The shape of the first mode of a beam held at x = 0, x in lengths.
+/// The shape of the first mode of a beam that is clamped at x = 0; x is relative to the length of the beam.
 double first_mode(double x) {
   constexpr double root = 1.8751040687119611;
   const double part = (std::cosh(root) + std::cos(root)) / (std::sinh(root) + std::sin(root));
   return std::cosh(root * x) - std::cos(root * x) - part * (std::sinh(root * x) - std::sin(root * x));
 }
 
-/// The frequency with which the end passes the middle after a push in the shape of the first mode, Hz.
+/// The frequency at which the free end oscillates about its position at rest, Hz. The beam starts with velocities in
+/// the shape of the first mode.
 double frequency(std::uint32_t voxels, const EulerBernoulli& theory) {
   const Body body = cantilever(voxels, edge, mass, stiffness);
   State start = resting(body, {});

@@ -1,4 +1,4 @@
-"""Draws the charts of a folder that tools/accuracy has written. A chart whose data is not there is left out."""
+"""Draws the charts of a folder that tools/accuracy has written. Charts whose data is missing are left out."""
 
 import sys
 
@@ -27,7 +27,7 @@ def is_default(row):
 
 
 def front(points):
-    """Those (cost, error) that no other beats in both."""
+    """Returns the (cost, error) points for which no other point is better in both."""
     best, kept = float("inf"), []
     for point in sorted(points):
         if point[1] < best:
@@ -41,12 +41,12 @@ def column(rows, name):
 
 
 def around(values, factor=1.6):
-    """Limits of a logarithmic axis that leave room around the values."""
+    """Returns limits of a logarithmic axis that leave room around the values."""
     return min(values) / factor, max(values) * factor
 
 
 def draw_method(axes, rows, x, y, method, precision):
-    """The line of one method in one precision, a point for each row."""
+    """Draws the line of one method in one precision, with a point for each row."""
     colour = COLOUR[method]
     inside = "white" if precision == "double" else colour
     across, up = column(rows, x), column(rows, y)
@@ -157,7 +157,7 @@ def draw_convergence(axes, scene, in_contact, rows, order):
     labels = []
     for (method,), line in groups(kept, "method").items():
         axes.plot(column(line, dt), column(line, error), color=COLOUR[method], marker="o", markersize=2.5)
-        # contact scatters errors, so that a slope would say little
+        # with contact, errors scatter too much for a meaningful slope
         name = method if in_contact else f"{method}: order {order[scene, method]:.2f}"
         labels.append((name, (line[0][dt], line[0][error]), COLOUR[method]))
     charts.label_ends(axes, labels)
@@ -204,7 +204,7 @@ def energy(folder, origin):
 
 
 def grid(rows, x, y, value):
-    """The coordinates and the values of rows that fill a grid."""
+    """Returns the x coordinates, the y coordinates and the array of values of rows that fill a grid."""
     xs, ys = sorted({row[x] for row in rows}), sorted({row[y] for row in rows})
     values = {(row[x], row[y]): row[value] for row in rows}
     return xs, ys, numpy.array([[values[across, up] for across in xs] for up in ys])

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double dt = 0.0005;  // s
 
-/// A body without muscles whose masses are pushed in all directions at up to 1 m/s.
+/// The body at its rest positions; each mass has a velocity of its own, with up to 1 m/s along each axis.
 State shaken(const Body& body) {
   State state = resting(body, {});
   for (std::size_t i = 0; i < state.velocity.size(); ++i) {
@@ -20,7 +20,7 @@ State shaken(const Body& body) {
   return with_energy(body, std::move(state), {});
 }
 
-/// Energies relative to the first, after each of `parts` equal parts of `steps`.
+/// Simulates `steps` steps in `parts` equal parts; returns the energy after each part, relative to the initial energy.
 std::vector<double> course(const Body& body, const Setting& setting, double steps, int parts) {
   Traveller traveller{&body, shaken(body)};
   Simulation simulation({}, setting, {"cpu", 1});

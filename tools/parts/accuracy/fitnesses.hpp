@@ -1,4 +1,4 @@
-// What robots score when they are measured with one setting.
+// The fitness of robots when they are simulated with one setting of the time stepping.
 #pragma once
 
 #include <span>
@@ -10,13 +10,13 @@
 namespace evodevo::tools::accuracy {
 
 struct Fitnesses {
-  std::vector<double> values;  ///< not a number for robots that diverge
-  double cost;                 ///< seconds of computing for a simulated second of one robot
-  double diverged;             ///< their share
+  std::vector<double> values;  ///< fitness of each robot; NaN if it has diverged
+  double cost;                 ///< computing time per simulated second of one robot [s]
+  double diverged;             ///< share of the robots that have diverged
 };
 
-/// The first fitness of the experiment, in its scene, of bodies from their birth on. `perturbation`: how far each place
-/// is moved first, m.
+/// Simulates bodies from birth in the scene of the experiment, without development, and scores them by the first
+/// fitness operator of the experiment. Before, each coordinate of each mass is moved by up to `perturbation` m.
 Fitnesses measure(const Experiment& experiment, std::span<const Body> bodies, const Setting& setting,
                   const Device& device, double perturbation = 0);
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// What a step of rk4 makes of exp(z t), dt = 1.
+/// The factor by which one step of rk4, with dt = 1, changes the magnitude of a solution exp(z t).
 double rk4_amplification(std::complex<double> z) {
   return std::abs(1.0 + z + z * z / 2.0 + z * z * z / 6.0 + z * z * z * z / 24.0);
 }
@@ -25,12 +25,13 @@ bool rk4_is_bounded(double phase, double damping_step) {
   return largest <= 1 + 1e-12;
 }
 
-/// Whether both roots of z^2 - trace z + determinant lie in the unit circle (Jury).
+/// Whether both roots of z^2 - trace z + determinant lie in the closed unit disc (Jury's criterion).
 bool roots_are_bounded(double trace, double determinant) {
   return determinant <= 1 && std::abs(trace) <= 1 + determinant;
 }
 
-/// The border between where `holds` and where it does not, to 1e-4 of itself.
+/// Finds, by bisection, the value between `low`, where `holds` is true, and `high`, where it is false, at which `holds`
+/// becomes false; the relative tolerance is 1e-4.
 template <class F>
 double border(double low, double high, const F& holds) {
   while (high - low > 1e-4 * low) {
@@ -40,7 +41,8 @@ double border(double low, double high, const F& holds) {
   return low;
 }
 
-/// The first border above `start`, looked for in steps of `factor` up to `end`.
+/// Finds the first value above `start` at which `holds` becomes false: tries values that grow by `factor`, then
+/// bisects. Returns infinity if `holds` is still true above `end`.
 template <class F>
 double first_border(double start, double end, double factor, const F& holds) {
   double low = start;
@@ -51,7 +53,8 @@ double first_border(double start, double end, double factor, const F& holds) {
   return border(low, low * factor, holds);
 }
 
-/// Near the limit the energy of a bounded motion swings by a factor of 50.
+/// Raises the initial energy that the divergence guard compares with: near the stability limit, the energy of a bounded
+/// motion varies by a factor of 50.
 State with_headroom(const Body& body, State state, const Scene& scene) {
   state = with_energy(body, std::move(state), scene);
   state.start_energy *= 100;
@@ -132,7 +135,7 @@ double contact_gain(Method method, double contact_phase) {
     start.velocity[0].z = -speed;
     masses.push_back({&body, with_headroom(body, std::move(start), scene)});
   }
-  // the time in the floor is half a period, of a soft one several
+  // the contact lasts half a period of the mass on the floor's spring; that is several steps if the floor is soft
   Simulation(scene, {method, Precision::float64, dt}, {"cpu", 1})
       .advance(masses, std::ceil(10 + 20 / contact_phase) * dt);
   double largest = 0;

@@ -1,4 +1,4 @@
-// How far a step may go, in theory and as measured.
+// The largest stable time step, in theory and as measured.
 #pragma once
 
 #include "core/method.hpp"
@@ -6,37 +6,39 @@
 
 namespace evodevo::tools::accuracy {
 
-/// Whether an explicit method keeps a spring bounded that swings with omega = `phase` / dt and is damped with a rate of
-/// `damping_step` / dt: from the characteristic polynomial of one step.
+/// Whether a method keeps the motion of a spring bounded, by the characteristic polynomial of one step. The spring
+/// oscillates with the angular frequency `phase` / dt and is damped at the rate `damping_step` / dt.
 bool is_bounded(Method method, double phase, double damping_step);
 
-/// Between which omega dt that is so; with much damping, rk4 does not bear slow springs either.
+/// The interval of angular frequency times dt in which the motion stays bounded. Its lower end is not always 0: with
+/// strong damping, rk4 is unstable for slow springs too.
 struct Band {
   double low = 0, high = 0;
 };
 Band bounded_phases(Method method, double damping_step);
 
-/// The largest dt (s) for a spring that swings with `frequency` (1/s) and is damped with `rate` (1/s); infinite where
-/// damping keeps up with any.
+/// The largest stable dt (s) for a spring with the angular frequency `frequency` (1/s) that is damped at `rate` (1/s);
+/// infinity if every dt is stable.
 double predicted_limit(Method method, double frequency, double rate);
 
-/// A spring between two masses.
+/// A spring between two equal masses.
 struct Oscillator {
-  double stiffness, mass, rate;  ///< N/m, kg, 1/s
-  double frequency() const;      ///< undamped, 1/s
+  double stiffness, mass, rate;  ///< stiffness [N/m], each mass [kg], damping rate [1/s]
+  double frequency() const;      ///< angular frequency without damping [1/s]
 };
 
-/// Whether a spring that swings a little still does so after many steps, in double.
+/// Simulates a slightly stretched spring in double precision for 1500 steps; returns whether it has not diverged.
 bool stays_bounded(const Oscillator& oscillator, Method method, double dt);
 
-/// Where that ends, s; infinite if not below a hundred times 1/frequency.
+/// The largest dt at which stays_bounded() is true, s; infinity if it is still true at 100 / frequency.
 double measured_limit(const Oscillator& oscillator, Method method);
 
-/// The same for a body that trembles at its rest positions, between `low` and `high` s.
+/// The same for a body whose masses start up to 1e-5 m from their rest positions. The result is searched for between
+/// `low` and `high`, s.
 double measured_limit(const Body& body, Method method, double low, double high);
 
-/// The largest ratio of the energies after and before a mass hits the floor, of all phases of the step at the impact:
-/// dt sqrt(floor stiffness / mass) = `contact_phase`.
+/// The largest ratio of a mass's energy after a bounce on the floor to that before, over 64 instants of the impact
+/// within a time step. The time step follows from dt sqrt(floor stiffness / mass) = `contact_phase`.
 double contact_gain(Method method, double contact_phase);
 
 }  // namespace evodevo::tools::accuracy

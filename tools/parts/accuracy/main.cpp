@@ -1,4 +1,4 @@
-// Writes the tables of the studies that are asked for.
+// Runs the studies that the command line names, and writes their tables.
 #include <chrono>
 #include <iostream>
 #include <stdexcept>

@@ -9,10 +9,10 @@
 namespace evodevo::tools::accuracy {
 namespace {
 
-/// Errors below this are the truth's own and rounding.
+/// Errors below this value are due to rounding and to the error of the reference solution.
 constexpr double smallest_error = 3e-11;
 
-/// Of the smallest dt.
+/// Number of the smallest usable dt over which the order is fitted.
 constexpr std::size_t smallest = 4;
 
 bool contact_bears(double dt) { return dt <= 0.0005; }
@@ -27,8 +27,8 @@ struct Sweep {
   Method method;
   std::vector<double> dt, error;
 
-  /// The slope of log error over log dt by least squares: at the smallest dt whose errors count or, with contact, which
-  /// scatters them, at all dt that the floor bears.
+  /// The slope of log error over log dt by least squares. Without contact, the fit uses the smallest dt whose errors
+  /// are above `smallest_error`. With contact, errors scatter, and the fit uses all dt at which contact is stable.
   double observed_order() const {
     std::size_t end = error.size();
     while (end > smallest && !(error[end - 1] > smallest_error)) --end;
@@ -62,9 +62,9 @@ void run(Sweep& sweep, int halvings) {
 
 std::vector<Table> orders(const Settings& settings) {
   Workers workers(settings.device.threads);
-  const std::vector<std::function<Trial()>> provenances = {spring_trial, lattice_trial, drop_trial, slide_trial};
-  std::vector<Trial> trials(provenances.size());
-  workers.for_each(provenances.size(), [&](std::size_t i) { trials[i] = provenances[i](); });
+  const std::vector<std::function<Trial()>> scenes = {spring_trial, lattice_trial, drop_trial, slide_trial};
+  std::vector<Trial> trials(scenes.size());
+  workers.for_each(scenes.size(), [&](std::size_t i) { trials[i] = scenes[i](); });
   std::vector<Sweep> sweeps;
   for (const Trial& trial : trials)
     for (const Method method : all_methods()) sweeps.push_back({&trial, method, {}, {}});

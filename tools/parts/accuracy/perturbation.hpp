@@ -1,4 +1,4 @@
-// Small pushes from which a chaotic motion does not come back.
+// Small displacements, from which a chaotic motion diverges.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace evodevo::tools::accuracy {
 
-/// A state whose positions are moved by up to `distance` m along each axis, the same way every time.
+/// Returns `state` with its positions moved by up to `distance` m along each axis. The displacements are deterministic.
 inline State perturbed(State state, double distance) {
   for (std::size_t i = 0; i < state.position.size(); ++i) {
     const double angle = 1 + 12.9898 * static_cast<double>(i);

@@ -18,7 +18,7 @@ std::vector<double> time_steps(bool quick) {
   return {1e-4, 2e-4, 5e-4, 1e-3, 2e-3};
 }
 
-/// Bodies of the same genes with fewer masses or springs.
+/// A change of the experiment by which the same genomes grow bodies with fewer masses or springs.
 struct Coarser {
   std::string name;
   std::vector<Override> overrides;
@@ -43,7 +43,8 @@ Experiment experiment_of(const Settings& settings, const std::vector<Override>& 
   return read_experiment({settings.experiment, all});
 }
 
-/// The same robots with coarser bodies; a robot that has none then, has no fitness.
+/// Measures the bodies that the genomes grow in an experiment with coarser bodies. If a genome grows no valid body
+/// there, its fitness is NaN.
 Fitnesses measure_coarser(const Experiment& experiment, const std::vector<Genome>& genomes, const Device& device) {
   std::vector<Body> bodies;
   std::vector<std::size_t> whose;
@@ -59,7 +60,7 @@ Fitnesses measure_coarser(const Experiment& experiment, const std::vector<Genome
   return measured;
 }
 
-/// Rows that compare with the truth.
+/// A table whose rows compare measured fitnesses with those of the reference.
 class Comparison {
  public:
   explicit Comparison(std::vector<double> truth) : truth_(std::move(truth)) {}

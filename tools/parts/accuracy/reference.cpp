@@ -10,7 +10,8 @@
 namespace evodevo::tools::accuracy {
 namespace {
 
-/// The right-hand side for positions and velocities, one after the other, three numbers a mass.
+/// The right-hand side of the equations of motion. The vector y holds all positions and then all velocities, with three
+/// numbers for each mass.
 class EquationOfMotion {
  public:
   EquationOfMotion(const Body& body, const Scene& scene) : body_(body), scene_(scene) {}
@@ -26,18 +27,18 @@ class EquationOfMotion {
       if (mass > 0)
         add_world(mass, y[x + 2], &y[v], &rate[v]);
       else
-        std::fill_n(&rate[v], 3, 0.0);  // a mass of 0 kg stays where it is
+        std::fill_n(&rate[v], 3, 0.0);  // a mass of 0 kg is held in place
     }
   }
 
  private:
   void add_spring(const Spring& spring, const std::vector<double>& y, std::vector<double>& rate, double t) const {
-    constexpr double application = 2 * 3.14159265358979323846;
+    constexpr double full_turn = 2 * 3.14159265358979323846;
     const Material& m = body_.materials[spring.material];
     const std::size_t a = std::size_t{3} * spring.a, b = std::size_t{3} * spring.b, half = y.size() / 2;
     const double d[] = {y[b] - y[a], y[b + 1] - y[a + 1], y[b + 2] - y[a + 2]};
     const double distance = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    const double length = spring.rest_length * (1 + m.amplitude * std::sin(application * m.frequency * t + m.phase));
+    const double length = spring.rest_length * (1 + m.amplitude * std::sin(full_turn * m.frequency * t + m.phase));
     for (std::size_t c = 0; c < 3; ++c) {
       const double force = m.stiffness * (distance - length) * d[c] / distance;
       rate[half + a + c] += force / body_.masses[spring.a].mass;
@@ -45,7 +46,7 @@ class EquationOfMotion {
     }
   }
 
-  /// Adds what the world does to a mass at the height z with the velocity v.
+  /// Adds the acceleration by gravity, floor, damping and drag of a mass at the height z with the velocity v.
   void add_world(double mass, double z, const double* v, double* rate) const {
     const double speed = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     const double drag = scene_.drag ? scene_.drag->coefficient * speed / mass : 0;

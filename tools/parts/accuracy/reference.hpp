@@ -6,9 +6,9 @@
 
 namespace evodevo::tools::accuracy {
 
-/// Where `start`, a state at t = 0, is and how it moves `time` s later, by Boost.Odeint's method of Dormand and Prince
-/// with a tolerance of 1e-13 in every step. A floor may be there; friction may not, since it is no force law: throws
-/// std::invalid_argument.
+/// Returns the state `time` s after `start`, which is a state at t = 0. It is computed by the Dormand-Prince method of
+/// Boost.Odeint with a tolerance of 1e-13 in every step. The scene may have a floor, but no friction, which is not
+/// given by a force law: throws std::invalid_argument if the scene has friction.
 State solution(const Body& body, const State& start, const Scene& scene, double time);
 
 /// The largest distance between the positions of two states, m.

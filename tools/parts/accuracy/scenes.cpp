@@ -17,7 +17,7 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr double mass_of_each = 0.2;  // kg
 
-/// n x n x n voxels with edges of 0.1 m.
+/// A lattice of n x n x n voxels with edges of 0.1 m.
 Body block(std::uint32_t n, const Material& material) {
   const Lattice lattice = make_lattice({n, n, n}, 0.1);
   Body body;
@@ -46,7 +46,7 @@ Body slab(std::uint32_t n, double z, const Material& material) {
   return body;
 }
 
-/// The body of `state` turning about a vertical axis at 2 rad/s.
+/// Gives the body in `state` a rotation about the vertical axis at 2 rad/s, and a vertical velocity that grows with x.
 State turning(const Body& body, State state, const Scene& scene) {
   for (std::size_t i = 0; i < state.velocity.size(); ++i)
     state.velocity[i] = {-2 * state.position[i].y, 2 * state.position[i].x, state.position[i].x};
@@ -86,7 +86,7 @@ Trial lattice_trial() {
   for (std::size_t i = 0; i < body.springs.size(); i += 3) body.springs[i].material = 1;
   const Scene scene{Gravity{}, {}, {}, Damping{2}, Drag{0.1}};
   State start = turning(body, resting(body, scene), scene);
-  start.start_energy += 100;  // it falls
+  start.start_energy += 100;  // lets the divergence guard allow for the energy that the falling body gains
   return integrated({"turning lattice", {}, true, body, scene, std::move(start), 0.2, {}});
 }
 
@@ -148,7 +148,7 @@ double EulerBernoulli::end_deflection(double acceleration) const {
 }
 
 double EulerBernoulli::first_frequency() const {
-  constexpr double root = 1.8751040687119611;  // the first of cos x cosh x = -1
+  constexpr double root = 1.8751040687119611;  // the first root of cos x cosh x = -1
   return root * root / (2 * pi) * std::sqrt(bending_stiffness / (mass_per_length * std::pow(length, 4)));
 }
 

@@ -7,7 +7,7 @@
 namespace evodevo::tools::accuracy {
 namespace {
 
-constexpr std::size_t fewest_robots = 20;  // of which the best is looked for
+constexpr std::size_t fewest_robots = 20;  // size of the groups in which the best robot is searched for
 
 std::vector<std::string> all_studies() {
   std::vector<std::string> names;

@@ -1,4 +1,4 @@
-// What the command line of the studies asks for.
+// The settings that the command line of the studies gives.
 #pragma once
 
 #include <filesystem>
@@ -16,19 +16,19 @@ inline constexpr Program program{
 };
 
 struct Settings {
-  std::string command;  ///< the line itself
+  std::string command;  ///< the command line itself
   std::filesystem::path folder;
-  std::vector<std::string> studies;  ///< by name, in their order
+  std::vector<std::string> studies;  ///< names of the studies, in the order in which they run
   Device device;
   bool quick = false;
-  std::string experiment;  ///< whose random robots are ranked
-  std::size_t robots = 0;  ///< how many of them
+  std::string experiment;  ///< experiment file whose random robots are ranked
+  std::size_t robots = 0;  ///< number of these robots
 };
 
-/// The options and where their values go; help.inc describes them.
+/// Returns the options, whose values are stored in `settings`; help.inc describes them.
 boost::program_options::options_description options(Settings& settings);
 
-/// Throws std::invalid_argument or a boost exception that says what is wrong.
+/// Parses the command line. Throws std::invalid_argument or a Boost exception that says what is wrong.
 Settings parse(const CommandLine& line);
 
 }  // namespace evodevo::tools::accuracy

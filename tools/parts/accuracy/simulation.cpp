@@ -20,10 +20,10 @@ std::unique_ptr<Simulator> make_simulator(const Scene& scene, const Setting& set
   return make_cpu_simulator(scene, stepping, device.threads);
 }
 
-/// The time that all threads of this program have computed, s.
+/// The processor time that all threads of this program have used, s.
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// The time that a GPU took for the steps of the last run, s.
+/// The time that the GPU needed for the steps of the last run, s.
 double device_seconds([[maybe_unused]] const Simulator& simulator) {
 #ifdef EVODEVO_CUDA
   return dynamic_cast<const CudaSimulator&>(simulator).device_seconds();

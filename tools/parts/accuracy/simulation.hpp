@@ -1,4 +1,4 @@
-// Bodies in our simulator and what it costs to move them.
+// Simulation of bodies, with its cost.
 #pragma once
 
 #include <memory>
@@ -13,27 +13,27 @@
 
 namespace evodevo::tools::accuracy {
 
-/// How time is stepped.
+/// How a simulation advances in time.
 struct Setting {
   Method method = Method::paper_euler;
   Precision precision = Precision::float32;
-  double dt = 0.0005;  ///< s
+  double dt = 0.0005;  ///< time step [s]
 };
 
 std::string name(Precision precision);
 
 std::vector<Method> all_methods();
 
-/// Where bodies are moved.
+/// The device on which bodies are simulated.
 struct Device {
-  std::string name = "cpu";  ///< or "cuda"
-  int threads = 0;           ///< of the host; 0: all cores
+  std::string name = "cpu";  ///< "cpu" or "cuda"
+  int threads = 0;           ///< number of threads on the host; 0 means all cores
 
-  /// In words, with the instruction set or the model.
+  /// A description of the device, with its instruction set or model.
   std::string description() const;
 };
 
-/// A body on its way.
+/// A body and its current state.
 struct Traveller {
   const Body* body = nullptr;
   State state;
@@ -42,13 +42,14 @@ struct Traveller {
   bool alive() const { return status == Status::ok; }
 };
 
-/// A scene with one way to step time. Bodies that have diverged stay where they are.
+/// A simulator of one scene with one setting. It does not advance bodies that have diverged.
 class Simulation {
  public:
   Simulation(const Scene& scene, const Setting& setting, const Device& device);
 
-  /// Moves every body by the whole number of steps that is nearest to `duration` s. The seconds of computing: of all
-  /// cores together, whatever else the machine does, or of the GPU for the steps alone.
+  /// Advances every body by `duration` s, rounded to a whole number of steps. Returns the computing time, s: on the
+  /// CPU, the processor time of all threads together, which does not count other programs; on the GPU, the time of the
+  /// steps without copies.
   double advance(std::span<Traveller> travellers, double duration);
 
  private:
@@ -57,13 +58,13 @@ class Simulation {
   std::unique_ptr<Simulator> simulator_;
 };
 
-/// One body alone on one core of this processor.
+/// Simulates a single body with one thread on the CPU.
 Traveller simulate(const Body& body, const State& start, const Scene& scene, const Setting& setting, double duration);
 
-/// A body at its rest positions, at rest, its energy set.
+/// The body at its rest positions without velocity; start_energy is set.
 State resting(const Body& body, const Scene& scene);
 
-/// `state` with its energy set anew, after its velocities have been given.
+/// Returns `state` with start_energy computed from its current positions and velocities.
 State with_energy(const Body& body, State state, const Scene& scene);
 
 }  // namespace evodevo::tools::accuracy

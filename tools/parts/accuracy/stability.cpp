@@ -23,7 +23,7 @@ std::vector<Method> explicit_methods() {
   return methods;
 }
 
-/// Rows that are worked out side by side.
+/// Computes a row for each item, in parallel, and adds the rows to the table.
 template <class Item, class F>
 void add_rows(Table& table, Workers& workers, const std::vector<Item>& items, const F& row_of) {
   std::vector<std::vector<Cell>> rows(items.size());
@@ -73,7 +73,8 @@ Table body_limits(Workers& workers) {
   return table;
 }
 
-/// Where springs stay bounded, over rate dt and omega dt.
+/// Where the motion of a spring stays bounded, over damping rate times dt and angular frequency times dt: a measured
+/// map, and its boundary in theory.
 std::vector<Table> spring_map(Workers& workers, bool quick) {
   struct Item {
     Method method;
@@ -118,7 +119,7 @@ Table contact_gains(Workers& workers) {
   return table;
 }
 
-/// The same for the paper's method and dt over what it depends on.
+/// The gain for the paper's method and dt, over the mass and the stiffness of the floor.
 Table contact_map(Workers& workers, bool quick) {
   struct Item {
     double mass, stiffness;
@@ -140,8 +141,8 @@ Table contact_map(Workers& workers, bool quick) {
   return table;
 }
 
-/// How many random bodies diverge in a walking scene, and what the best ten of the others keep of their distance at a
-/// quarter of dt.
+/// Simulates random bodies in the scene of the experiment with given masses, dt and floor stiffness. Tabulates the
+/// share that diverges, and how much of their fitness the best ten of the others keep at a quarter of dt.
 class RandomBodies {
  public:
   RandomBodies(const Settings& settings)
@@ -162,13 +163,15 @@ class RandomBodies {
   const Table& table() const { return table_; }
 
  private:
-  /// Robots like the paper's, but of 300 masses.
+  /// Robots like the paper's but with 300 masses; a quick study keeps the bodies of the experiment and shortens the
+  /// measurement instead.
   static std::vector<Override> overrides(bool quick) {
     if (quick) return {{"fitness.0.settle", "2"}, {"fitness.0.window", "2"}};
     return {{"encoding.points", "300"}, {"encoding.neighbours", "25"}};
   }
 
-  /// The median over the best ten of fitness at a quarter of dt to fitness.
+  /// The ratio of fitness at a quarter of dt (velocity-verlet in double precision) to the measured fitness; median over
+  /// the best ten.
   double kept_by_champions(const std::vector<double>& values, double dt) const {
     std::vector<std::size_t> order(values.size());
     std::iota(order.begin(), order.end(), std::size_t{0});

@@ -9,7 +9,7 @@
 namespace evodevo::tools::accuracy {
 namespace {
 
-/// With what is not a number below all numbers.
+/// Returns the values with each NaN replaced by minus infinity.
 std::vector<double> ordered(std::span<const double> values) {
   std::vector<double> result(values.begin(), values.end());
   for (double& value : result)
@@ -17,7 +17,8 @@ std::vector<double> ordered(std::span<const double> values) {
   return result;
 }
 
-/// The same numbers with every standard library, which its distributions do not promise.
+/// A random integer below `count` that is the same with every standard library; the distributions of the standard
+/// library do not guarantee this.
 std::size_t below(std::mt19937_64& random, std::size_t count) { return random() % count; }
 
 double correlation(std::span<const double> a, std::span<const double> b) {

@@ -1,4 +1,4 @@
-// How well one ranking of robots tells what another tells.
+// How well two rankings of robots agree.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,10 @@
 
 namespace evodevo::tools::accuracy {
 
-/// The ranks of `values` from 0, equals sharing the mean of theirs; what is not a number counts as less than any.
+/// The ranks of `values`, starting at 0; equal values share the mean of their ranks. NaN ranks below all numbers.
 std::vector<double> ranks(std::span<const double> values);
 
-/// Spearman's rank correlation; 0 where one side is all equal, for then it tells nothing.
+/// Spearman's rank correlation; 0, by convention, if all values on one side are equal.
 double rank_correlation(std::span<const double> a, std::span<const double> b);
 
 struct Interval {
@@ -18,11 +18,11 @@ struct Interval {
 };
 
 /// The interval that holds 95 % of the rank correlations of samples drawn with replacement (Efron's percentile
-/// bootstrap); the same for the same numbers.
+/// bootstrap). The result is deterministic.
 Interval bootstrap_interval(std::span<const double> a, std::span<const double> b, int samples);
 
-/// Of random groups of `group`, how often the best by `estimate` is among the best `top` by `truth`; of equally good
-/// ones, the first of a group drawn in random order is taken.
+/// Draws `draws` random groups of `group` robots; returns the share of groups whose best robot by `estimate` is among
+/// the group's best `top` by `truth`. Ties in `estimate` are decided at random.
 double best_found(std::span<const double> truth, std::span<const double> estimate, std::size_t group, std::size_t top,
                   int draws);
 

@@ -1,4 +1,4 @@
-// What can be studied. Each study gives the tables that its charts are drawn from.
+// The available studies. Each study returns the tables from which its charts are drawn.
 #pragma once
 
 #include <array>
@@ -10,25 +10,27 @@
 
 namespace evodevo::tools::accuracy {
 
-/// The error of each method, precision and dt over its cost, in scenes whose outcome is known.
+/// The error and the cost of each method, precision and dt, in scenes with a reference solution.
 std::vector<Table> work_precision(const Settings& settings);
 
-/// A beam's deflection and first frequency against those of Euler and Bernoulli.
+/// The deflection and the first frequency of a beam, compared with those of Euler-Bernoulli theory.
 std::vector<Table> beam(const Settings& settings);
 
-/// How well each setting, and each coarser body, ranks random robots.
+/// How well the fitness ranking of random robots agrees with that of the reference, for each setting and for coarser
+/// bodies.
 std::vector<Table> ranking(const Settings& settings);
 
-/// The error of each method over dt, and the order that it shows.
+/// The error of each method over dt, and the observed order of convergence.
 std::vector<Table> orders(const Settings& settings);
 
-/// What each method does to the energy of a body that nothing slows down.
+/// How the energy of a body without damping or drag changes with each method.
 std::vector<Table> energies(const Settings& settings);
 
-/// The largest dt of each method against theory, what contact does to energy, and how many random bodies diverge.
+/// The largest stable dt of each method compared with theory, the change of energy by contact, and the share of random
+/// bodies that diverge.
 std::vector<Table> stability(const Settings& settings);
 
-/// What each part of a scene costs.
+/// The computing time that each part of a scene adds.
 std::vector<Table> features(const Settings& settings);
 
 struct Study {

@@ -8,7 +8,7 @@
 namespace evodevo::tools::accuracy {
 namespace {
 
-/// Of all scenes' 0.4 and 1 s, each holds a whole number, s.
+/// Time steps, s. The durations of the scenes, 0.4 and 1 s, are whole multiples of each of them.
 std::vector<double> time_steps(bool quick) {
   if (quick) return {1e-2, 2e-3, 1e-3, 5e-4, 2.5e-4};
   return {4e-2, 2e-2, 1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2.5e-4, 1.25e-4, 6.25e-5, 3.125e-5};
@@ -16,10 +16,10 @@ std::vector<double> time_steps(bool quick) {
 
 std::vector<Trial> trials(bool quick, Workers& workers) {
   const double finest = time_steps(quick).back() / 16;
-  const std::vector<std::function<Trial()>> provenances = {
+  const std::vector<std::function<Trial()>> scenes = {
       spring_trial, beam_trial, drop_trial, slide_trial, [&] { return walker_trial(finest); }, swimmer_trial};
-  std::vector<Trial> made(provenances.size());
-  workers.for_each(provenances.size(), [&](std::size_t i) { made[i] = provenances[i](); });
+  std::vector<Trial> made(scenes.size());
+  workers.for_each(scenes.size(), [&](std::size_t i) { made[i] = scenes[i](); });
   return made;
 }
 
@@ -27,8 +27,8 @@ struct Measured {
   double error, cost;
 };
 
-/// The error, and the seconds of computing for a simulated second of one body: the median of as many runs as make up
-/// for a coarse clock. A GPU is given as many bodies as keep it busy.
+/// Measures the error and the cost, which is the computing time per simulated second of one body, s. The cost is the
+/// median over repeated runs, since the clock is coarse. On a GPU, enough bodies are simulated at once to keep it busy.
 Measured measure(const Trial& trial, const Setting& setting, const Device& device) {
   constexpr double enough = 0.02;  // s
   const bool on_gpu = device.name == "cuda";
@@ -44,7 +44,7 @@ Measured measure(const Trial& trial, const Setting& setting, const Device& devic
           bench::median(seconds) / trial.duration / static_cast<double>(travellers.size())};
 }
 
-/// Compiles a GPU's kernels on all cores at once, which is no part of any cost.
+/// Compiles the GPU kernels in advance, on all cores at once, so that compilation does not count as cost.
 void compile_kernels(const std::vector<Trial>& trials, const Device& device, Workers& workers) {
   struct Kernel {
     const Trial* trial;

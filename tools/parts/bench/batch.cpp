@@ -24,7 +24,7 @@ std::unique_ptr<Simulator> make_simulator(const Settings& settings, const Scene&
   return make_cpu_simulator(scene, stepping, settings.threads);
 }
 
-/// The time that a device took for the steps alone, s; for the CPU, which has nothing to copy, none.
+/// The time that a GPU needed for the steps without copies, s; nothing for the CPU, which copies nothing.
 std::optional<double> device_seconds([[maybe_unused]] const Simulator& simulator) {
 #ifdef EVODEVO_CUDA
   if (const auto* cuda = dynamic_cast<const CudaSimulator*>(&simulator)) return cuda->device_seconds();

@@ -1,4 +1,4 @@
-// Batches of bodies and the time that it takes to move them.
+// Batches of bodies, and the time needed to simulate them.
 #pragma once
 
 #include <cstdint>
@@ -13,17 +13,17 @@
 
 namespace evodevo::tools::bench {
 
-/// The middle one; of an even number, the upper of the two.
+/// The median; for an even number of values, the upper of the two in the middle.
 double median(std::vector<double> values);
 
 /// Spring evaluations per second.
 struct Rate {
-  double whole = 0;   ///< of the whole call
-  double device = 0;  ///< of the device's own time; the same on the CPU
+  double whole = 0;   ///< by the time of the whole call
+  double device = 0;  ///< by the time of the steps on the device; on the CPU the same as `whole`
 };
 
-/// A batch in our simulator, of one body after the other until there are as many as the settings say. They must outlive
-/// it.
+/// A batch in our simulator. The given bodies are repeated in turn until the batch has the size in the settings; they
+/// must outlive the batch.
 class Batch {
  public:
   Batch(const Settings& settings, std::span<const Body> bodies, const Scene& scene,
@@ -31,7 +31,7 @@ class Batch {
 
   std::string device() const { return simulator_->device(); }
 
-  /// The rate of one run from birth. Throws std::runtime_error where a body diverges.
+  /// Simulates the batch from birth once, and returns the rate. Throws std::runtime_error if a body diverges.
   Rate rate(Recording recording = {});
 
  private:

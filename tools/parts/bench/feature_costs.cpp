@@ -7,20 +7,21 @@
 namespace evodevo::tools::bench {
 namespace {
 
-/// What is simulated and recorded.
+/// A body in a scene, and the quantities that are recorded.
 struct Variant {
   const Body* body;
   Scene scene;
   Recording recording;
 };
 
-/// A feature, and two variants that differ in nothing else.
+/// A feature, with two variants that differ only in it.
 struct Feature {
   std::string name;
   Variant with, without;
 };
 
-/// Each feature of the walking scene against the scene without it, and each that it lacks against the scene alone.
+/// For each feature of the walking scene, the scene with and without it; for each feature that the scene lacks, the
+/// scene with it added and as it is.
 std::vector<Feature> features(const Body& body, const Body& still_body) {
   const auto walking = [&](auto... changes) {
     Variant variant{&body, walking_scene(), {}};
@@ -31,7 +32,7 @@ std::vector<Feature> features(const Body& body, const Body& still_body) {
   const auto no_floor = [](Variant& v) { v.scene.floor.reset(); };
   return {
       {"gravity", walking(), walking([](Variant& v) { v.scene.gravity.reset(); })},
-      // there is no friction without a floor
+      // without a floor there is no friction, so both variants leave friction out
       {"floor", walking(no_friction), walking(no_friction, no_floor)},
       {"friction", walking(), walking(no_friction)},
       {"damping", walking(), walking([](Variant& v) { v.scene.damping.reset(); })},
@@ -42,7 +43,7 @@ std::vector<Feature> features(const Body& body, const Body& still_body) {
   };
 }
 
-/// The two rates of a feature, measured side by side.
+/// Measures the rates with and without a feature in turn.
 class Comparison {
  public:
   Comparison(const Settings& settings, const Feature& feature)

@@ -1,4 +1,4 @@
-// Measures how many springs the simulator evaluates in a second, and what the paper's methods would.
+// Measures the spring evaluations per second of our simulator and of the paper's methods.
 #include <hwy/targets.h>
 
 #include <fstream>
@@ -13,7 +13,7 @@
 namespace evodevo::tools::bench {
 namespace {
 
-/// Limits the simulator to older instruction sets, to compare them.
+/// Limits the simulator to the given instruction set and older ones, so that instruction sets can be compared.
 void limit_instructions(const std::string& name) {
   const std::map<std::string, std::int64_t> limits{
       {"best", 0}, {"avx2", HWY_AVX2 | HWY_SSE4 | HWY_SCALAR}, {"sse4", HWY_SSE4 | HWY_SCALAR}, {"none", HWY_SCALAR}};

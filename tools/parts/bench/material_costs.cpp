@@ -7,7 +7,7 @@
 namespace evodevo::tools::bench {
 namespace {
 
-/// The rates of one body with its materials in a table and computed, side by side.
+/// Measures the rates of one body in turn with its materials in a table and with computed materials.
 class Comparison {
  public:
   Comparison(const Settings& settings, const Body& body)

@@ -1,4 +1,4 @@
-// The search for nearest neighbours on the GPU beside the same on the CPU.
+// Compares the search for nearest neighbours on the GPU with that on the CPU.
 #include "analysis/neighbours.hpp"
 
 #include <chrono>
@@ -17,7 +17,7 @@ constexpr std::uint32_t neighbours_of_each = 25;
 
 using Clouds = std::vector<PointCloud>;
 
-/// The time that a search takes for all clouds, s.
+/// The time that a search through all clouds takes, s.
 double seconds(NeighbourSearch& search, const Clouds& clouds, Workers& workers) {
   std::vector<std::size_t> pairs(clouds.size());
   const auto start = std::chrono::steady_clock::now();
@@ -45,7 +45,7 @@ Report neighbours(const Settings& settings) {
     throw std::runtime_error("CPU and GPU do not find the same neighbours");
 
   std::vector<double> cpu_seconds, cuda_seconds, ratios;
-  // in turn, so that whatever else the machine does meets both
+  // in turn, so that other load on the machine affects both alike
   for (int run = 0; run < settings.runs; ++run) {
     cpu_seconds.push_back(seconds(*cpu, clouds, workers));
     cuda_seconds.push_back(seconds(*cuda, clouds, workers));

@@ -8,7 +8,8 @@
 namespace evodevo::tools::bench {
 namespace {
 
-/// Three digits of a measured number; others as they are.
+/// Formats a cell of the table: floats with three significant digits from 1e6 on and with four below, other values
+/// unchanged.
 std::string text_of(const Report& value) {
   if (value.is_null()) return "";
   if (value.is_string()) return value.get<std::string>();

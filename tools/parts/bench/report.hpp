@@ -1,4 +1,4 @@
-// Results as data and as text.
+// Results as JSON and as Markdown.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,11 +11,11 @@ namespace evodevo::tools::bench {
 
 using Report = nlohmann::ordered_json;
 
-/// What a study measured and where, without its figures, so that anyone can repeat it.
+/// Returns a report without rows: the study, the device, the body and the settings, which suffice to repeat it.
 Report conditions(const Settings& settings, const std::string& study, const std::string& device, const NamedBody& body);
 
-/// A report in Markdown: the study, what was measured where, the command, and `rows`, a list of like objects, as a
-/// table.
+/// Formats a report in Markdown: the study, its conditions, the command, and a table of `rows`, which is a list of
+/// objects with the same keys.
 std::string markdown(const Report& report);
 
 }  // namespace evodevo::tools::bench

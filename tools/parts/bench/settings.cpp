@@ -6,7 +6,7 @@
 namespace evodevo::tools::bench {
 namespace {
 
-constexpr std::uint32_t most_bodies = 65535;  // blocks of a grid in its second dimension
+constexpr std::uint32_t most_bodies = 65535;  // CUDA's limit for the second dimension of a grid of blocks
 
 void check(const Settings& s) {
   check_choice("study", s.study, {"speed", "features", "baselines", "stress", "tallies", "neighbours", "materials"});

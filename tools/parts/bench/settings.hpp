@@ -1,4 +1,4 @@
-// What the command line of the benchmark asks for.
+// The settings that the command line of the benchmark gives.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ inline constexpr Program program{
 };
 
 struct Settings {
-  std::string command;  ///< the line itself
+  std::string command;  ///< the command line itself
   std::string study, device, body, robots, method, precision, instructions, tables;
   std::uint32_t masses = 0, materials = 0, bodies = 0;
   std::uint64_t steps = 0;
@@ -25,10 +25,10 @@ struct Settings {
   Stepping stepping() const;
 };
 
-/// The options and where their values go; help.inc describes them.
+/// Returns the options, whose values are stored in `settings`; help.inc describes them.
 boost::program_options::options_description options(Settings& settings);
 
-/// Throws std::invalid_argument or a boost exception that says what is wrong.
+/// Parses the command line. Throws std::invalid_argument or a Boost exception that says what is wrong.
 Settings parse(const CommandLine& line);
 
 }  // namespace evodevo::tools::bench

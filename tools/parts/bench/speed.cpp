@@ -8,7 +8,7 @@
 namespace evodevo::tools::bench {
 namespace {
 
-/// What is measured: one body many times, or the random robots of an experiment.
+/// The bodies that are measured: copies of one body, or random robots of an experiment.
 struct Subjects {
   NamedBody first;
   std::vector<Body> bodies;
@@ -36,12 +36,12 @@ double mean_springs(const std::vector<Body>& bodies) {
 Report speed(const Settings& settings) {
   const Subjects measured = subjects(settings);
   Batch batch(settings, measured.bodies, measured.scene);
-  // warm-up; compiles the kernels of a GPU
+  // warm-up, in which the kernels of a GPU are compiled
   batch.rate();
   batch.rate({.stress = true});
   batch.rate({.work = true});
   std::vector<double> whole, plain, stress, work;
-  // in turn, so that whatever else the machine does meets all of them
+  // in turn, so that other load on the machine affects all of them alike
   for (int run = 0; run < settings.runs; ++run) {
     const Rate rate = batch.rate();
     whole.push_back(rate.whole);

@@ -1,4 +1,4 @@
-// What the benchmark can measure.
+// The studies of the benchmark.
 #pragma once
 
 #include "report.hpp"
@@ -6,27 +6,31 @@
 
 namespace evodevo::tools::bench {
 
-/// Our simulator's rate, and how much of it is left with stress and with work recorded.
+/// Measures our simulator's rate, and the rates while recording stress or work, relative to it.
 Report speed(const Settings& settings);
 
-/// What each force, actuation and each recording costs: the rate with it over the rate without, all else equal.
+/// Measures the cost of each force, of actuation and of each recording: the ratio of the rates with and without it, all
+/// else equal.
 Report feature_costs(const Settings& settings);
 
 #ifdef EVODEVO_CUDA
-/// The paper's baseline and its method beside ours.
+/// Compares the paper's baseline, the paper's method and our simulator.
 Report baselines(const Settings& settings);
 
-/// The rate with materials computed from codes over that with a table, for bodies of few and of many materials.
+/// Measures the ratio of the rate with materials computed from codes to the rate with a table of materials, for bodies
+/// of few and of many materials.
 Report material_costs(const Settings& settings);
 
-/// What recording stress costs: the paper's four ways with its method, the exact sum with ours (paper, Figures 2, 4).
+/// Measures the cost of recording stress: with the paper's method in each of the paper's ways, and with our simulator
+/// as exact sums (paper, Figures 2 and 4).
 Report stress_costs(const Settings& settings);
 
-/// How many of the true 125 least and most stressed springs each of those ways finds (paper, Figure 3).
+/// Measures the shares of the truly 125 least and 125 most stressed springs that each of the paper's ways finds (paper,
+/// Figure 3).
 Report tally_agreement(const Settings& settings);
 
-/// How long the search for nearest neighbours takes on both devices for a population of random balls. Throws
-/// std::runtime_error where they do not find the same.
+/// Measures how long the search for nearest neighbours in a population of random balls takes on CPU and GPU. Throws
+/// std::runtime_error if their results differ.
 Report neighbours(const Settings& settings);
 #endif
 

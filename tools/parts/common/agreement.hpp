@@ -1,4 +1,4 @@
-// How well an estimate finds the springs that matter to development.
+// How well an estimate of stress finds the springs that development would choose.
 #pragma once
 
 #include <cstddef>
@@ -6,9 +6,9 @@
 
 namespace evodevo::tools {
 
-/// The share of the `count` largest of `truth` that are among the `count` largest of `estimate`. Equals in the estimate
-/// that do not all have room take part with the probability of being drawn at random; so the share is the mean over
-/// all ways to decide between them. In [0, 1].
+/// Returns the share, in [0, 1], of the `count` largest elements of `truth` that are among the `count` largest of
+/// `estimate`. If equal values in `estimate` compete for the last places, the result is the mean over all ways to
+/// choose among them.
 double share_found(std::span<const double> truth, std::span<const double> estimate, std::size_t count);
 
 }  // namespace evodevo::tools

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double mass_of_each = 0.2;  // kg
 
-/// The paper's materials but air (Table I), one after the other on the springs.
+/// The paper's materials except air (Table I).
 std::vector<Material> paper_materials() {
   const double half_turn = 3.14159265358979323846;
   return {{5000, 0.14, 1, 0}, {4000, 0, 0, 0}, {5000, 0.14, 1, half_turn}, {10000, 0, 0, 0}};
@@ -31,7 +31,7 @@ Body body_of(const std::vector<Vec3>& positions, const std::vector<std::pair<std
   return body;
 }
 
-/// Gives a body's springs `count` materials instead of their own, of all phases, one after the other.
+/// Replaces a body's materials by `count` materials with evenly spaced phases, which the springs take in turn.
 void give_materials(Body& body, std::uint32_t count) {
   body.materials.clear();
   for (std::uint32_t i = 0; i < count; ++i) {

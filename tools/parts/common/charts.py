@@ -1,5 +1,5 @@
-"""What all charts share: colours, pages of panels, labels that keep clear of each other, and files that come out the same
-each time."""
+"""Code that all charts share: colours, pages of panels, labels that do not overlap, and files that are reproducible
+byte by byte."""
 
 import math
 
@@ -8,18 +8,18 @@ import numpy
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-# told apart by people with any kind of colour vision (Okabe & Ito 2008)
+# distinguishable with any kind of colour vision (Okabe & Ito 2008)
 BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK = (
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"
 )  # fmt: skip
 INK, SOFT, GRID = "#222222", "#767676", "#e6e6e6"
-LINE = 10  # between labels, points
-HEAD, FOOT, ABOVE, BELOW = 0.45, 0.2, 0.3, 0.5  # of a page, and of each panel's surroundings, inches
+LINE = 10  # distance between the lines of labels, in points
+HEAD, FOOT, ABOVE, BELOW = 0.45, 0.2, 0.3, 0.5  # margins of a page, and above and below each panel, in inches
 
 matplotlib.rcParams.update(
     {
-        "svg.fonttype": "none",  # text stays text
-        "svg.hashsalt": "evodevo",  # else identifiers are random
+        "svg.fonttype": "none",  # writes text as text, not as outlines
+        "svg.hashsalt": "evodevo",  # without a salt, identifiers are random
         "font.size": 8,
         "axes.titlesize": 9,
         "axes.titleweight": "bold",
@@ -34,15 +34,16 @@ matplotlib.rcParams.update(
         "text.color": INK,
         "lines.linewidth": 1.2,
         "lines.markersize": 3.5,
-        "text.parse_math": False,  # names may have any characters
+        "text.parse_math": False,  # names may contain any characters, such as $
         "image.composite_image": False,
     }
 )
 
 
 def page(count, columns, size, title="", legend="", footer="", left=0.75, right=1.3):
-    """A figure with `count` panels of `size` (inches), left to right and top to bottom, and text around them: a title, a
-    line that says what marks mean, and where the data is from. `left` and `right` of each panel is room for labels."""
+    """Returns a figure and its `count` panels of `size` (inches), which are arranged from left to right and from top to
+    bottom. Around them is text: a title, a line that explains the marks, and a footer with the origin of the data.
+    `left` and `right` are the widths (inches) of the room for labels beside each panel."""
     rows = -(-count // columns)
     width = min(count, columns) * (left + size[0] + right)
     height = HEAD + rows * (ABOVE + size[1] + BELOW) + FOOT
@@ -67,7 +68,7 @@ def power_of_ten(value, _=None):
 
 
 def make_logarithmic(axes, which):
-    """Makes the axes named in `which` ("x", "y" or "xy") logarithmic, their ticks powers of ten in plain text."""
+    """Makes the axes named in `which` ("x", "y" or "xy") logarithmic. Their ticks are powers of ten in plain text."""
     for name in which:
         axes.set(**{f"{name}scale": "log"})
         axis = {"x": axes.xaxis, "y": axes.yaxis}[name]
@@ -76,7 +77,8 @@ def make_logarithmic(axes, which):
 
 
 def spread(heights, gap, lowest, highest):
-    """Moves heights apart to `gap`, as little as their order allows, between `lowest` and `highest`."""
+    """Returns heights in the same order, moved so that neighbours are at least `gap` apart and all lie between `lowest`
+    and `highest`."""
     order = sorted(range(len(heights)), key=heights.__getitem__)
     placed = list(heights)
     floor = lowest
@@ -91,13 +93,13 @@ def spread(heights, gap, lowest, highest):
 
 
 def label_column(axes, x, labels, align="left"):
-    """Labels (text, point, colour) one above the other at `x`, a share of the panel's width, each with a line to its point.
-    The panel's limits and scales must be final."""
+    """Writes labels (text, point, colour) in a column, each with a line to its point. `x` is the position of the column
+    as a fraction of the panel's width. The panel's limits and scales must be final."""
     if not labels:
         return
     height = 72 * axes.figure.get_figheight() * axes.get_position().height  # points
     shares = axes.transAxes.inverted().transform([axes.transData.transform(point) for _, point, _ in labels])
-    shares = numpy.clip(shares, 0, 1)  # a line may leave the panel
+    shares = numpy.clip(shares, 0, 1)  # the point may lie outside the panel
     heights = spread([height * share for _, share in shares], LINE, 0, height)
     for (name, _, colour), share, placed in zip(labels, shares, heights):
         axes.annotate(
@@ -114,17 +116,17 @@ def label_column(axes, x, labels, align="left"):
 
 
 def label_ends(axes, labels):
-    """Names of lines (text, last point, colour) in the margin on the right."""
+    """Writes the names of lines, given as (text, last point, colour), in the margin on the right."""
     label_column(axes, 1.04, labels)
 
 
 def note(axes, point, content, offset=(6, 0), **style):
-    """Text beside a point, on white so that lines do not cross it."""
+    """Writes text beside a point, on a white background that covers lines behind it."""
     box = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5}
     axes.annotate(content, point, offset, textcoords="offset points", fontsize=7.5, bbox=box, **{"va": "center"} | style)
 
 
 def save(figure, file):
-    """Writes a figure; the same figure gives the same file. The name decides on the format, such as .svg and .png."""
+    """Writes a figure; equal figures give equal files. The extension, such as .svg or .png, determines the format."""
     is_svg = str(file).endswith(".svg")
     figure.savefig(file, dpi=100, metadata={"Date": None, "Creator": None} if is_svg else {"Software": None})

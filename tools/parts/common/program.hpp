@@ -1,4 +1,5 @@
-// What the measuring programs share: how each starts and ends, its command line, and the origin of what it writes.
+// Code that the measuring programs share: their main function, their command line, and the record of where their
+// results come from.
 #pragma once
 
 #include <boost/program_options.hpp>
@@ -11,35 +12,36 @@
 namespace evodevo::tools {
 
 struct Program {
-  std::string_view name;  ///< of its script in tools/
-  std::string_view help;  ///< its page of help, which the script prints as well, before anything is built
+  std::string_view name;  ///< name of its script in tools/
+  std::string_view help;  ///< its page of help; the script can print it too, without building the program
 };
 
-using CommandLine = std::vector<std::string>;  ///< the arguments alone
+using CommandLine = std::vector<std::string>;  ///< the arguments, without the program's name
 
-/// The whole of `main`: prints the page of help where `--help` is among the arguments, calls `run` otherwise. Returns
-/// the exit status: 2 after an exception, whose message it prints.
+/// Implements `main`: prints the page of help if `--help` is among the arguments, and calls `run` otherwise. Returns
+/// the exit status, which is 2 after an exception, whose message it prints.
 int run_program(const Program& program, int argc, const char* const* argv,
                 const std::function<void(const CommandLine&)>& run);
 
-/// Stores the values of `options`. Throws a boost exception that names an option that is unknown or malformed.
+/// Parses the command line and stores the values of `options`. Throws a Boost exception that names an option if it is
+/// unknown or malformed.
 boost::program_options::variables_map read_options(
     const CommandLine& line, const boost::program_options::options_description& options,
     const boost::program_options::positional_options_description& positional = {});
 
-/// The command that repeats a call, without the words in `omitted`.
+/// Returns the command that repeats a call; words in `omitted` are left out.
 std::string command_of(const Program& program, const CommandLine& line, const std::vector<std::string>& omitted = {});
 
-/// Throws std::invalid_argument where the first argument is not a folder for results.
+/// Throws std::invalid_argument if the first argument is not the name of a folder for results.
 void require_folder(const Program& program, const CommandLine& line);
 
-/// Throws std::invalid_argument where `value` is none of `known`.
+/// Throws std::invalid_argument if `value` is not one of `known`.
 void check_choice(const std::string& option, const std::string& value, const std::vector<std::string>& known);
 
-/// Throws std::invalid_argument where this program cannot compute on that device.
+/// Throws std::invalid_argument if this program cannot compute on that device.
 void check_device(const std::string& device);
 
-/// Writes origin.txt, which names the command and the device that made a folder of results.
+/// Writes origin.txt, which names the command and the device that produced the results in a folder.
 void write_origin(const std::filesystem::path& folder, const std::string& command, const std::string& device);
 
 }  // namespace evodevo::tools

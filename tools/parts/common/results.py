@@ -1,4 +1,4 @@
-"""A folder of tables that a measuring program has written, and the charts of it."""
+"""Reads the tables in a folder that a measuring program has written, and draws their charts."""
 
 import csv
 import pathlib
@@ -8,7 +8,8 @@ from common import charts
 
 
 def read(folder, name):
-    """Rows as dictionaries; numbers as numbers, an empty cell as None. Nothing where there is no such table."""
+    """Returns the rows of a table as dictionaries, with numbers as floats and empty cells as None. Returns None if the
+    table does not exist."""
 
     def value(cell):
         try:
@@ -24,7 +25,7 @@ def read(folder, name):
 
 
 def groups(rows, *keys):
-    """Rows by the values of some columns, in the order in which they come."""
+    """Groups rows by the values of some columns; keeps the order of the rows."""
     found = {}
     for row in rows:
         found.setdefault(tuple(row[key] for key in keys), []).append(row)
@@ -32,8 +33,9 @@ def groups(rows, *keys):
 
 
 def draw(figures, tool, arguments):
-    """The whole of a program that draws the charts of a folder: `figures` maps a name to the function that
-    makes that figure from the folder and the origin of its data, or None if the data is not there."""
+    """Implements a program that draws the charts of a folder. `figures` maps the name of each chart to a function. The
+    function takes the folder and a text on the origin of its data; it returns a figure, or None if its data is
+    missing."""
     if len(arguments) != 1:
         sys.exit(f"{tool}: expected the name of one folder that tools/{tool} has written")
     folder = pathlib.Path(arguments[0])

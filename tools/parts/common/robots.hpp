@@ -10,14 +10,14 @@
 
 namespace evodevo::tools {
 
-/// The genome's body, if it can be simulated.
+/// Returns the body that a genome grows, with the payload, or nothing if the body is invalid or cannot be simulated.
 std::optional<Body> robot_of(const Experiment& experiment, const Genome& genome);
 
-/// The genomes of the first `count` random robots of the experiment's encoding that can be simulated, have a muscle and
-/// at least `springs` springs. Throws std::runtime_error where a hundred times as many give too few.
+/// Draws random genomes of the experiment's encoding; returns the first `count` whose bodies can be simulated, have a
+/// muscle and have at least `springs` springs. Throws std::runtime_error if 100 * `count` draws do not suffice.
 std::vector<Genome> random_genomes(const Experiment& experiment, std::size_t count, std::size_t springs);
 
-/// Their bodies.
+/// Returns the bodies of these genomes.
 std::vector<Body> random_robots(const Experiment& experiment, std::size_t count, std::size_t springs);
 
 }  // namespace evodevo::tools

@@ -3,7 +3,7 @@ import sys
 
 from . import arguments
 
-arguments.parse(sys.argv[1:])  # answers --help before SciPy and Matplotlib are loaded, which may not be there
+arguments.parse(sys.argv[1:])  # answers --help before loading SciPy and Matplotlib, which may be missing
 
 from . import command  # noqa: E402
 

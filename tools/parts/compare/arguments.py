@@ -1,12 +1,13 @@
-"""The command line, without what takes long to load."""
+"""The command line. This module imports nothing that takes long to load."""
 
 import argparse
 import pathlib
 
 DESCRIPTION = """\
-Runs experiments over seeds and reports how their best robots compare, at equal evaluations and at equal spring
-evaluations: medians and effect sizes with intervals, rank tests against one of the experiments, failures, a chart.
-A stopped comparison goes on with the same command; more seeds, experiments or values may be added."""
+Runs each experiment with several seeds and compares the fitness of their best robots, after equal numbers of
+evaluations and after equal numbers of spring evaluations. Writes a report with medians and effect sizes, each with its
+interval, with rank tests of all experiments against one of them, with the shares of failed evaluations, and a chart.
+The same command continues a comparison that was stopped; more seeds, experiments or values may be added."""
 EXAMPLE = """\
 example:
   tools/compare experiments/evo.toml experiments/evo-devo.toml --seeds 10 --sweep development.cycle_time=0.5,1,2"""
@@ -28,12 +29,12 @@ def parse(words):
     )
     add = parser.add_argument
     add("experiments", metavar="EXPERIMENT.toml", nargs="+", type=pathlib.Path)
-    add("--seeds", metavar="N", type=positive, default=10, help="runs of each; seeds 1 to N (%(default)s)")
+    add("--seeds", metavar="N", type=positive, default=10, help="runs of each, with seeds 1 to N (%(default)s)")
     add(
-        "--sweep", metavar="KEY=V,V,…", action="append", default=[], help="values in turn, where KEY's table is there"
+        "--sweep", metavar="KEY=V,V,…", action="append", default=[], help="try each value, if KEY's table exists"
     )
-    add("--set", metavar="KEY=VALUE", action="append", default=[], help="a value, where KEY's table is there")
-    add("--against", metavar="NAME", help="what the others are tested against, by its name in the report (the first)")
-    add("--jobs", metavar="N", type=positive, default=1, help="runs at once, which share the cores (%(default)s)")
-    add("--out", metavar="DIR", type=pathlib.Path, help="default: runs/compare-FIRST, FIRST the first experiment")
+    add("--set", metavar="KEY=VALUE", action="append", default=[], help="set a value, if KEY's table exists")
+    add("--against", metavar="NAME", help="experiment to test the others against, as named in the report (the first)")
+    add("--jobs", metavar="N", type=positive, default=1, help="runs in parallel, which share the cores (%(default)s)")
+    add("--out", metavar="DIR", type=pathlib.Path, help="folder for results (runs/compare-FIRST_EXPERIMENT)")
     return parser.parse_args(words)

@@ -1,4 +1,4 @@
-"""The chart of a comparison: the median of the best so far, with its interval, over both kinds of cost."""
+"""The chart of a comparison: the median of the best score so far, with its interval, over both kinds of cost."""
 
 import itertools
 import math
@@ -11,11 +11,12 @@ from .report import AXES, INTERVAL, number
 
 COLOURS = [charts.BLUE, charts.VERMILION, charts.GREEN, charts.PURPLE, charts.ORANGE, charts.SKY, charts.BLACK]
 STYLES = [(colour, dashes) for dashes in ("-", "--", ":") for colour in COLOURS]
-POINTS = 120  # on each curve
+POINTS = 120  # intervals on each curve
 
 
 def curve(runs, axis):
-    """(cost, median, low, high) from where all of a variant's runs have a fitness, until the first of them ends."""
+    """Returns points (cost, median, low, high) of a variant, from the cost at which all of its runs have a fitness to
+    the cost at which the first of them ends."""
     start, end = common_span(runs, axis)
     points = []
     if end < start:
@@ -30,14 +31,14 @@ def curve(runs, axis):
 
 
 def draw_panel(axes, histories, curves, axis):
-    """One panel; `curves` leave out variants in which not every run has a fitness."""
+    """Draws one panel. `curves` does not contain variants of which some run has no fitness."""
     axes.set(xlabel=AXES[axis], xlim=(0, max(common_span(runs, axis)[1] for runs in histories.values())))
     start, end = common_span([run for runs in histories.values() for run in runs], axis)
     if start <= end:
         axes.axvline(end, color=charts.SOFT, linestyle=":", linewidth=0.8, label="compared here")
     for label, points, (colour, dashes) in curves:
         cost, middle, low, high = zip(*points)
-        # what holds at a cost holds until the next
+        # a score holds until the next cost
         axes.fill_between(cost, low, high, step="post", color=colour, alpha=0.15, linewidth=0)
         axes.step(cost, middle, where="post", color=colour, linestyle=dashes, linewidth=1.5, label=label)
     ends = [(f"{label} {number(points[-1][1])}", points[-1][:2], colour) for label, points, (colour, _) in curves]

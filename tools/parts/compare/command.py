@@ -1,4 +1,4 @@
-"""The command: from its arguments to the report."""
+"""Implements the command, from its arguments to the report."""
 
 import pathlib
 import shlex
@@ -13,7 +13,7 @@ from .runs import Failure, Interrupted, Runs, make_variants, parse_setting, pars
 
 
 def first_objective(shown):
-    """The objective that is compared, which must be the same in all runs."""
+    """Returns the first objective, by which runs are compared. It must be the same in all runs."""
     objectives = {Objective(**run["objectives"][0]) for run in shown}
     if len(objectives) > 1:
         names = ", ".join(sorted(f"{o.name} ({o.unit})" for o in objectives))
@@ -22,7 +22,7 @@ def first_objective(shown):
 
 
 def tested_against(name, variants):
-    """The name of the variant that the others are tested against, by default the first."""
+    """Returns the name of the variant that the others are tested against, which is the first by default."""
     names = [variant.name for variant in variants]
     if name is not None and name not in names:
         raise Failure(f"--against {name}: none of the experiments has that name; give one of {', '.join(names)}")

@@ -1,4 +1,4 @@
-"""How runs went: the best score so far over evaluations and over spring evaluations."""
+"""The history of a run: the best score so far over evaluations and over spring evaluations."""
 
 import bisect
 import dataclasses
@@ -18,13 +18,14 @@ class Objective:
         return -math.inf if self.maximise else math.inf
 
     def upwards(self, scores):
-        """The scores, turned so that more is better."""
+        """Returns the scores, negated if less is better, so that more is better."""
         return scores if self.maximise else [-score for score in scores]
 
 
 @dataclasses.dataclass(frozen=True)
 class History:
-    """One run. Each list begins before the first generation; all but `best` add up over generations."""
+    """The history of one run. The first element of each list stands for the time before the first generation. `best` is
+    the best score so far; all other lists are sums over the generations so far."""
 
     generations: list
     evaluations: list
@@ -33,15 +34,15 @@ class History:
     diverged: list
     invalid: list
     seconds: list
-    marks: list | None  # of the whole run's best robot, such as "artefact"; None where it was not verified
+    marks: list | None  # of the run's best robot, such as "artefact"; None if it was not verified
 
     def at(self, axis, cost, what="best"):
-        """`what` after the last generation that was complete at that cost."""
+        """Returns the value of the list `what` after the last generation that was complete at that cost."""
         return getattr(self, what)[bisect.bisect_right(getattr(self, axis), cost) - 1]
 
 
 def history(shown, objective):
-    """The history of a run from what `evodevo show --json` says of it."""
+    """Returns the history of a run, given the output of `evodevo show --json`."""
     generations = shown["generations"]
 
     def summed(key):
@@ -63,5 +64,6 @@ def history(shown, objective):
 
 
 def common_span(histories, axis):
-    """The cost from which on each of these runs has a generation, and that which all reach, which may be less."""
+    """Returns the lowest cost at which each of these runs has completed a generation, and the highest cost that all of
+    them reach, which may be lower."""
     return max(getattr(h, axis)[1] for h in histories), min(getattr(h, axis)[-1] for h in histories)

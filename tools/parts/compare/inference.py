@@ -1,6 +1,6 @@
-"""What can be inferred from few runs: intervals of medians, rank tests and effect sizes.
+"""Statistics for few runs: intervals of medians, rank tests and effect sizes.
 
-Scores may be infinite, as that of a run in which no robot has a fitness, but never NaN.
+Scores may be infinite, for example if no robot of a run has a fitness, but never NaN.
 """
 
 import functools
@@ -10,13 +10,14 @@ import math
 import numpy
 from scipy import optimize, stats
 
-LEVEL = 0.95  # of intervals
-SIGNIFICANT = 0.05  # what p must be below
-# values; of fewer, even the lowest and the highest have the median between them less often than LEVEL says
+LEVEL = 0.95  # confidence level of intervals
+SIGNIFICANT = 0.05  # level of significance: a difference counts as shown if p is below
+# Smallest number of values for an interval of the median. With fewer, the median lies between the lowest and the
+# highest value with a probability below LEVEL.
 INTERVAL_FROM = next(size for size in itertools.count(1) if 2 * 0.5**size <= 1 - LEVEL)
-RESAMPLES = 9999  # of the bootstrap
-EXACT_UP_TO = 40  # scores of both samples without ties
-EXACT_WITH_TIES_UP_TO = 16  # likewise with ties, for which all ways to divide the scores are tried
+RESAMPLES = 9999  # number of bootstrap resamples
+EXACT_UP_TO = 40  # largest total number of scores for the exact test, if there are no ties
+EXACT_WITH_TIES_UP_TO = 16  # likewise with ties; then all ways to split the scores are tried
 
 
 def median(values):
@@ -25,24 +26,26 @@ def median(values):
 
 @functools.cache
 def resampled_medians(values):
-    """Medians of resamples; the same for the same values."""
+    """Returns the medians of bootstrap resamples. The result is deterministic."""
     draws = numpy.random.default_rng(1).choice(values, (RESAMPLES, len(values)))
     return numpy.median(draws, axis=1)
 
 
 def median_interval(values):
-    """The percentile bootstrap interval of the median (Efron & Tibshirani 1993, chapter 13); None of too few values."""
+    """Returns the percentile bootstrap interval of the median (Efron & Tibshirani 1993, chapter 13), or None if there
+    are too few values."""
     if len(values) < INTERVAL_FROM:
         return None
     tails = (1 - LEVEL) / 2, (1 + LEVEL) / 2
-    # scipy.stats.bootstrap goes between neighbours, which infinite ones do not bear; this takes one of them
+    # scipy.stats.bootstrap interpolates between neighbours, which fails for infinite values; inverted_cdf picks one
     medians = resampled_medians(tuple(sorted(values)))
     return tuple(map(float, numpy.quantile(medians, tails, method="inverted_cdf")))
 
 
 def rank_sum_test(a, b):
-    """Two-sided p of the Mann-Whitney U test: whether one sample tends to higher values than the other."""
-    ranks = stats.rankdata([*a, *b])  # finite where scores are not
+    """Returns the two-sided p of the Mann-Whitney U test, which tests whether one sample tends to higher values than
+    the other."""
+    ranks = stats.rankdata([*a, *b])  # ranks are finite even if scores are infinite
     values = len(set(ranks))
     if values == 1:
         return 1.0
@@ -55,26 +58,30 @@ def rank_sum_test(a, b):
 
 
 def distance(a, b, axis):
-    """Of the sum of the first ranks from what it is on average."""
+    """Returns how far the sum of the ranks `a` is from its expected value under the null hypothesis."""
     of_a, of_b = a.shape[axis], b.shape[axis]
     return numpy.abs(a.sum(axis) - of_a * (of_a + of_b + 1) / 2)
 
 
 def runs_for_verdict(tests):
-    """Runs of each sample from which on some p, times `tests` (Holm's), can be below SIGNIFICANT at all."""
+    """Returns the smallest number of runs per sample with which the smallest possible p, times `tests` as in Holm's
+    correction, is below SIGNIFICANT."""
     return next(size for size in itertools.count(1) if 2 * tests / math.comb(2 * size, size) < SIGNIFICANT)
 
 
 def superiority(a, b):
-    """A12, the probability that one of `a` is above one of `b`, ties counting half (Vargha & Delaney 2000)."""
+    """Returns A12, the probability that a random value of `a` is above a random value of `b`; ties count half (Vargha &
+    Delaney 2000)."""
     u = stats.rankdata([*a, *b])[: len(a)].sum() - len(a) * (len(a) + 1) / 2
     return float(u) / (len(a) * len(b))
 
 
 def superiority_interval(a12, size):
-    """Of the A12 of two samples of that size: the values that are not too far from it by their own standard deviation.
+    """Returns the interval of A12 for two samples of `size` values each: all values from which the observed `a12`
+    differs by at most z times the standard deviation that belongs to that value.
 
-    That is of Hanley & McNeil 1982, and the interval method 5 of Newcombe 2006 (Statistics in Medicine 25:559).
+    The standard deviation is that of Hanley & McNeil 1982, and the interval is method 5 of Newcombe 2006 (Statistics in
+    Medicine 25:559).
     """
     z = stats.norm.ppf((1 + LEVEL) / 2)
 
@@ -89,7 +96,8 @@ def superiority_interval(a12, size):
 
 
 def holm(ps):
-    """The p of several tests, raised so that one false finding among all has at most its probability (Holm 1979)."""
+    """Returns the p values of several tests, adjusted so that they bound the probability of at least one false finding
+    among all tests (Holm 1979)."""
     order = numpy.argsort(ps)
     adjusted = numpy.empty(len(ps))
     adjusted[order] = numpy.minimum(1, numpy.maximum.accumulate(numpy.take(ps, order) * numpy.arange(len(ps), 0, -1)))

@@ -1,4 +1,4 @@
-"""A comparison as text: report.md for readers, results.csv for other programs."""
+"""Writes a comparison as text: report.md for people, results.csv for other programs."""
 
 import collections
 import csv
@@ -37,16 +37,17 @@ to {inference.EXACT_WITH_TIES_UP_TO}, and by the normal distribution beyond, cor
 
 @dataclasses.dataclass(frozen=True)
 class Setting:
-    """What a comparison was made by."""
+    """The command line of a comparison, and the builds that made its runs."""
 
     command: str
     seeds: int
     against: str  # the name of the variant that the others are tested against
-    builds: dict  # of devices, evodevo and operators: which there are, and of each how many runs of which variant
+    builds: dict  # for the device, evodevo and each operator: runs of each variant by build
 
 
 def builds(shown):
-    """What runs were made by, from what `evodevo show --json` says of each; one that was resumed, maybe by several."""
+    """Counts the runs of each variant by the device and the builds that made them. `shown` is the output of `evodevo
+    show --json` for each run. A run that was resumed may have been made by several builds; it counts for each."""
     made = collections.defaultdict(lambda: collections.defaultdict(collections.Counter))
     for run, said in shown.items():
         for what, build in dict.fromkeys(by for provenance in provenances_of(said) for by in parts_of(provenance)):
@@ -55,12 +56,12 @@ def builds(shown):
 
 
 def provenances_of(said):
-    """Those by whom any generation of a run was made."""
+    """Returns the provenances of all generations of a run, each once."""
     return [said["provenances"][place] for place in sorted({generation["provenance"] for generation in said["generations"]})]
 
 
 def parts_of(provenance):
-    """Each thing that results depend on, with its build."""
+    """Yields the device, evodevo and each operator of a provenance with its build; results depend on all of them."""
     yield "device", provenance["device"]
     yield "evodevo", f"{provenance['evodevo']} ({provenance['program']})"
     for operator in provenance["operators"]:
@@ -86,7 +87,7 @@ def table(header, rows):
 
 @dataclasses.dataclass(frozen=True)
 class Standing:
-    """One variant at one cost, beside that which it is tested against."""
+    """One variant at one cost, compared with the variant that it is tested against."""
 
     name: str
     scores: list
@@ -95,7 +96,7 @@ class Standing:
     holm: float
 
     def achieved(self, spent, generations):
-        """Its row of a table: what it came to, and at what median cost."""
+        """Returns the first cells of its row in the table: the median score with its interval, and the median costs."""
         bounds = inference.median_interval(self.scores)
         interval = "{} to {}".format(*map(number, bounds)) if bounds else "-"
         score, *costs = (number(inference.median(values)) for values in (self.scores, spent, generations))
@@ -105,11 +106,11 @@ class Standing:
         return "{:.2f} to {:.2f}".format(*inference.superiority_interval(self.a12, len(self.scores)))
 
     def tests(self, judged):
-        """The rest of its row: how it stands beside that which it is tested against."""
+        """Returns the remaining cells of its row: the comparison with the variant that it is tested against."""
         return [f"{self.a12:.2f}", self.interval() if judged else "-", f"{self.p:.2g}", f"{self.holm:.2g}"]
 
     def verdict(self, baseline):
-        """One sentence that claims no more than the test bears."""
+        """Returns a sentence that claims a difference only if the test shows one."""
         beside = f"`{self.name}`, beside `{baseline}`: "
         numbers = f"A12 {self.a12:.2f}, {self.interval()}, p (Holm) {self.holm:.2g}"
         if self.holm >= inference.SIGNIFICANT:
@@ -118,7 +119,7 @@ class Standing:
 
 
 def standings(histories, objective, axis, cost, against):
-    """All variants at one cost, tested against the one of that name."""
+    """Returns the standings of all variants at one cost, tested against the variant with the name `against`."""
     scores = {variant.name: [history.at(axis, cost) for history in runs] for variant, runs in histories.items()}
     upwards = {name: objective.upwards(values) for name, values in scores.items()}
     ps = {name: inference.rank_sum_test(values, upwards[against]) for name, values in upwards.items()}
@@ -135,7 +136,7 @@ def verdicts_possible(seeds, experiments):
 
 
 def too_few_seeds(seeds, experiments):
-    """What is left out because so few runs could not bear it."""
+    """Returns a text on the statistics that are left out because there are too few runs."""
     said = ""
     if seeds < inference.INTERVAL_FROM:
         said += f"No intervals of medians: they take {inference.INTERVAL_FROM} seeds (`--seeds`).\n"
@@ -148,7 +149,7 @@ def too_few_seeds(seeds, experiments):
 
 
 def too_early(histories, axis, cost):
-    """Why nothing is compared at a cost at which some run has no complete generation yet."""
+    """Explains why nothing is compared at a cost at which some run has not completed a generation."""
     late = " and ".join(f"`{variant.name}`" for variant, runs in histories.items() if common_span(runs, axis)[0] > cost)
     ending = min(histories, key=lambda variant: common_span(histories[variant], axis)[1]).name
     return (
@@ -159,7 +160,7 @@ def too_early(histories, axis, cost):
 
 
 def section(histories, objective, axis, against):
-    """The comparison at the cost that every run has reached."""
+    """Returns the section on the comparison at the highest cost that every run has reached."""
     start, cost = common_span([history for runs in histories.values() for history in runs], axis)
     title = f"## After {number(cost)} {AXES[axis]}\n\n"
     if cost < start:
@@ -181,7 +182,8 @@ def section(histories, objective, axis, against):
 
 
 def verified(runs):
-    """Of the best robots that were verified, how many held, are artefacts and are passive."""
+    """Returns table cells with the numbers of best robots that held, were artefacts and were passive, among those that
+    were verified."""
     marks = [history.marks for history in runs if history.marks is not None]
     if not marks:
         return ["not verified", "-", "-"]
@@ -190,7 +192,7 @@ def verified(runs):
 
 
 def whole_runs(histories):
-    """What all runs of each variant came to, at whatever cost."""
+    """Returns the section on the totals of all runs of each variant."""
     rows = []
     for variant, runs in histories.items():
         evaluations = sum(history.evaluations[-1] for history in runs)
@@ -212,7 +214,8 @@ def whole_runs(histories):
 
 
 def differences(made):
-    """Where runs were not all made by the same: there, differences between experiments may come from it."""
+    """Returns a warning if runs were made by different builds or devices, since these may cause differences between
+    experiments."""
     lines = ""
     for what in [what for what, several in made.items() if len(several) > 1]:
         lines += f"- {what}:\n"
@@ -247,7 +250,8 @@ def markdown(histories, objective, setting):
 
 
 def write_csv(file, histories):
-    """One line for each generation of each run; all columns but the best so far add up over generations."""
+    """Writes one line for each generation of each run. `best` is the best score so far; all other numbers are sums over
+    the generations so far."""
     with open(file, "w", newline="") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         columns = ["evaluations", "spring_evaluations", "best", "diverged", "invalid", "seconds"]
@@ -255,7 +259,7 @@ def write_csv(file, histories):
         for variant, runs in histories.items():
             for seed, run in enumerate(runs, 1):
                 generations = zip(*(getattr(run, column) for column in columns))
-                next(generations)  # what was before the first
+                next(generations)  # skips the state before the first generation
                 for evaluations, springs, best, *failures, seconds in generations:
                     best_text = "" if math.isinf(best) else best
                     writer.writerow([variant.name, seed, evaluations, springs, best_text, *failures, f"{seconds:.3f}"])

@@ -1,4 +1,4 @@
-"""Which runs a comparison is made of, and making them."""
+"""The runs of a comparison, and how they are made."""
 
 import collections
 import dataclasses
@@ -12,37 +12,37 @@ import subprocess
 import tomllib
 import urllib.parse
 
-STOPPED = 130  # exit status of a run that finished its generation and can go on
+STOPPED = 130  # exit status of a run that was asked to stop; it has finished its generation and can be resumed
 
-# what these hold has defaults where they are left out, while any other table brings something into being
+# Without these tables, their defaults apply. Any other table adds something to the experiment, such as an operator.
 TABLES_WITH_DEFAULTS = ("materials", "plugins", "simulation")
 
 
 class Failure(Exception):
-    """What keeps a comparison from going on, with the remedy."""
+    """The reason why a comparison cannot continue, with the remedy."""
 
 
 class Interrupted(Exception):
-    """Somebody asked to stop."""
+    """The user has asked the comparison to stop."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Variant:
-    """An experiment with values of the swept keys and of those that are set."""
+    """An experiment with values of the keys that --sweep and --set give."""
 
     experiment: pathlib.Path
-    swept: tuple = ()  # of (key, value)
+    swept: tuple = ()  # pairs (key, value)
     settings: tuple = ()  # likewise
 
     @property
     def name(self):
-        """Also the name of its folder."""
+        """The name of the variant, which is also the name of its folder."""
         parts = [self.experiment.stem, *(f"{key}={value}" for key, value in self.swept)]
         return ",".join(urllib.parse.quote(part, safe="=+ [],") for part in parts)
 
     @property
     def label(self):
-        """The name for a chart: keys without their tables."""
+        """The name of the variant in charts, which gives keys without their tables."""
         return " ".join([self.experiment.stem, *(f"{key.split('.')[-1]}={value}" for key, value in self.swept)])
 
 
@@ -58,7 +58,7 @@ class Run:
 
 
 def split_values(text):
-    """What stands between commas outside brackets and quotes; nothing where one of these is not closed."""
+    """Splits at commas outside brackets and quotes. Returns an empty list if a bracket or quote is not closed."""
     values, depth, quote = [""], 0, ""
     for character in text:
         if quote:
@@ -80,7 +80,7 @@ def refuse_seed(key, option):
 
 
 def parse_sweep(text):
-    """`KEY=VALUE,VALUE,…` as the key and its values."""
+    """Parses `KEY=VALUE,VALUE,…` into the key and its values."""
     key, _, values = text.partition("=")
     values = split_values(values)
     if not key or not values or not all(values):
@@ -92,7 +92,7 @@ def parse_sweep(text):
 
 
 def parse_setting(text):
-    """`KEY=VALUE` as the key and its value."""
+    """Parses `KEY=VALUE` into the key and its value."""
     key, equals, value = text.partition("=")
     if not key or not equals:
         raise Failure(f"--set {text}: expected KEY=VALUE")
@@ -101,7 +101,8 @@ def parse_setting(text):
 
 
 def has_table_of(experiment, key):
-    """Whether the experiment has the table that the key belongs to; it has those with defaults without naming them."""
+    """Returns whether the experiment has the table that the key belongs to. Every experiment has the tables with
+    defaults."""
     if key.split(".")[0] in TABLES_WITH_DEFAULTS:
         return True
     node = experiment
@@ -130,7 +131,7 @@ def read_experiments(files):
 
 
 def refuse_keys(experiments, sweeps, settings):
-    """Refuses a key that is given twice, and one that nothing would come of."""
+    """Refuses a key that is given twice, and a key whose table no experiment has."""
     given = [*((key, "--sweep") for key, _ in sweeps), *((key, "--set") for key, _ in settings)]
     for key, count in collections.Counter(key for key, _ in given).items():
         if count > 1:
@@ -142,7 +143,7 @@ def refuse_keys(experiments, sweeps, settings):
 
 
 def make_variants(files, sweeps, settings):
-    """Each experiment with all combinations of the values of those keys whose table it has."""
+    """Returns each experiment with all combinations of the values of the keys whose tables it has."""
     experiments = read_experiments(files)
     refuse_keys(experiments.values(), sweeps, settings)
     variants = []
@@ -158,12 +159,12 @@ def overrides(variant):
 
 
 class Runs:
-    """The runs of a comparison, in a folder of their own for each variant. What is there is not made again."""
+    """The runs of a comparison. Each variant has a folder for its runs. Runs that exist are not made again."""
 
     def __init__(self, program, out, variants, seeds):
         self._program = str(program)
         self._variants = variants
-        # seed by seed, so that what is there at any time compares all variants
+        # seed by seed, so that at any time there are about equally many runs of all variants
         self.all = [
             Run(variant, seed, out / "runs" / variant.name / f"seed-{seed}")
             for seed in range(1, seeds + 1)
@@ -171,7 +172,7 @@ class Runs:
         ]
 
     def check(self):
-        """Refuses experiments that cannot be run, and folders with runs of something else."""
+        """Refuses experiments that cannot be run, and folders with runs of other experiments or settings."""
         for variant in self._variants:
             self._evodevo("check", variant.experiment, *overrides(variant))
         for variant, folder in {run.variant: run.folder.parent for run in self.all}.items():
@@ -188,7 +189,7 @@ class Runs:
                 )
 
     def make(self, jobs, tell):
-        """Makes or finishes all runs, `jobs` at once."""
+        """Makes or resumes all runs that are not finished, `jobs` at a time."""
         waiting = [run for run in self.all if not self.is_finished(run)]
         active = {}
         try:
@@ -204,7 +205,7 @@ class Runs:
             stop(active.values())
 
     def is_finished(self, run):
-        """To its end, with its best verified where the experiment asks for that."""
+        """Returns whether a run has reached its end and, if the experiment asks for verification, has been verified."""
         if not (run.folder / "run.sqlite").exists():
             return False
         shown = self._shown_if_begun(run)
@@ -217,7 +218,7 @@ class Runs:
         try:
             return self.shown(run)
         except Failure as failure:
-            if "ended before it began" in str(failure):  # killed in its first moments
+            if "ended before it began" in str(failure):  # it was killed just after its start
                 return None
             raise
 
@@ -231,7 +232,7 @@ class Runs:
             options = [*overrides(run.variant), "--seed", run.seed, *threads]
             arguments = ["run", run.variant.experiment, "--out", run.folder, *options]
         with open(run.log, "a") as log:
-            # a group of its own: Ctrl-C reaches this process alone, which then asks each run to stop
+            # in a process group of its own, so that Ctrl-C reaches only this process, which then asks each run to stop
             command = [self._program, *map(str, arguments)]
             return subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, process_group=0)
 
@@ -246,14 +247,15 @@ class Runs:
     def _require_success(run, code):
         if code != 0:
             last = "\n  ".join(run.log.read_text().splitlines()[-3:])
-            # by a signal, or asked to stop; else it has said what was wrong, which would be so again
+            # a run stopped if a signal ended it or it was asked to stop; otherwise it failed, and would fail again
             stopped = code < 0 or code == STOPPED
             remedy = "the same command goes on from there" if stopped else "mend that and give the same command again"
             raise Failure(f"{run.folder}: the run ended with {code}:\n  {last}\n{remedy}")
 
 
 def stop(processes):
-    """Lets each process finish its generation; whoever asks a second time does not wait for that."""
+    """Asks each process to stop after its generation, and waits for it. A second interruption repeats the request, at
+    which the processes stop without finishing their generation."""
     while alive := [process for process in processes if process.poll() is None]:
         try:
             for process in alive:

@@ -4,7 +4,7 @@ import sys
 
 from . import arguments
 
-files = arguments.parse(sys.argv[1:])  # answers --help before Matplotlib is loaded, which may not be there
+files = arguments.parse(sys.argv[1:])  # answers --help before loading Matplotlib, which may be missing
 
 from common import charts  # noqa: E402
 
@@ -13,7 +13,7 @@ from . import environments, run  # noqa: E402
 *read, out = files
 try:
     charts.save(environments.figure(*read) if len(read) == 1 else run.figure(os.environ["EVODEVO_PROGRAM"], *read), out)
-except subprocess.CalledProcessError as failed:  # evodevo has said why
+except subprocess.CalledProcessError as failed:  # evodevo has printed the reason
     sys.exit(failed.returncode)
 except (OSError, ValueError) as error:
     sys.exit(f"figure: {error}")

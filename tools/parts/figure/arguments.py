@@ -1,15 +1,15 @@
-"""The command line, without what takes long to load."""
+"""The command line. This module imports nothing that takes long to load."""
 
 import argparse
 import pathlib
 
 DESCRIPTION = """\
-Draws a run: its fitness over evaluations, and its best robot as it moves, seen from the side. The robot is matured as in
-its life, settles for ten seconds in the experiment's scene, and is shown in the next ten.
+Draws a run: its fitness over evaluations, and the motion of its best robot, seen from the side. The robot develops as
+in its life and settles in the experiment's scene for ten seconds. The figure shows the ten seconds after that.
 
-Given the file that `tools/evodevo environments FILE.toml... --json` prints, draws the bodies that one genome grows in
-several scenes, side by side: under each body its scene's distance from the first, and beside them how far scenes are
-apart after each cycle, and starts within a scene."""
+Given a file with the output of `tools/evodevo environments FILE.toml... --json`, draws side by side the bodies that
+one genome develops in several scenes. Below each body is its distance from the body in the first scene. Beside them, a
+chart shows the distance between bodies after each cycle: between scenes, and between perturbed starts in one scene."""
 EXAMPLE = """\
 examples:
   tools/figure runs/quickstart-1 experiments/quickstart.toml quickstart.svg

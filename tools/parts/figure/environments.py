@@ -1,4 +1,4 @@
-"""The bodies that one genome grows in several scenes, side by side, and how far the scenes are apart."""
+"""Draws the bodies that one genome develops in several scenes, side by side, and the distances between them."""
 
 import json
 import statistics
@@ -13,7 +13,8 @@ COLUMNS = 4
 
 
 def captions(answer):
-    """For each scene, by springs and by mass, how far it is from the first after the last cycle."""
+    """Returns lines of text for each scene: the distance of its body from that in the first scene after the last cycle,
+    by springs and by mass."""
     lines = [[] for _ in answer["scenes"]]
     for pair in answer["pairs"]:
         if pair["scenes"][0] != 0:
@@ -30,7 +31,8 @@ def captions(answer):
 
 
 def extent(bodies):
-    """How far the widest body reaches to either side, and how high the highest one, m."""
+    """Returns the largest distance along x of a mass from the middle of its body, and the height of the highest mass,
+    both in m and at least 0.5."""
     reach, height = 0.5, 0.5
     for body in filter(None, bodies):
         xs = [mass["position"][0] for mass in body["masses"]]
@@ -49,14 +51,15 @@ def draw_body(axes, scene, body, lines, reach, height):
     places = [mass["position"] for mass in body["masses"]]
     drawn = springs(body, places, -statistics.fmean(place[0] for place in places))
     axes.add_collection(drawn)
-    # on a slope +x is downhill
+    # rotates the drawing by the slope, on which +x points downhill
     for artist in (drawn, *axes.lines):
         artist.set_transform(Affine2D().rotate_deg(-scene["slope"]) + axes.transData)
         artist.set_clip_on(False)
 
 
 def draw_distances(axes, pairs):
-    """Springs that only one body has, over cycles: mean of all pairs of scenes, and of starts in one scene."""
+    """Draws the share of springs that only one of two bodies has, over cycles. One line is the mean over all pairs of
+    scenes, the other one the mean over pairs of perturbed starts in the same scene."""
     cycles = range(len(pairs[0]["springs"]))
     axes.set(title="springs that only one body has", xlabel="cycles")
     labels = []
@@ -77,7 +80,7 @@ def draw_distances(axes, pairs):
 
 def figure(file):
     answers = json.loads(file.read_text())
-    # each individual begins a row; a place of the grid for each scene, and one for the distances where there are any
+    # each individual begins a new row; it has a panel for each scene, and one for the distances if there are any
     rows = [-(-(len(answer["scenes"]) + bool(answer["pairs"])) // COLUMNS) for answer in answers]
     page, panels = charts.page(COLUMNS * sum(rows), COLUMNS, (2, 1.8), left=0.4, right=0.8)
     for axes in panels:
@@ -88,7 +91,7 @@ def figure(file):
         reach, height = extent(bodies)
         places = iter(panels[first : first + COLUMNS * used])
         panels[first].set_title(f"individual {answer['individual']}")
-        # `places` comes last, so that none is taken in vain
+        # zip() reads `places` last, so that it skips no panel when the other lists end
         for scene, body, lines, axes in zip(answer["scenes"], bodies, captions(answer), places):
             axes.set_visible(True)
             draw_body(axes, scene, body, lines, reach, height)

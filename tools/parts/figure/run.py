@@ -1,4 +1,4 @@
-"""A run: its fitness over evaluations, and its best robot as it moves."""
+"""Draws a run: its fitness over evaluations, and the motion of its best robot."""
 
 import csv
 import json
@@ -15,7 +15,7 @@ TIMES = [0, 2.5, 5, 7.5, 10]  # s after settling
 
 
 def draw_fitness(axes, run):
-    """Best and median of the living over evaluations."""
+    """Draws the best and the median fitness of the population over evaluations."""
     generations = [generation for generation in run["generations"] if generation["best"] is not None]
     objective = run["objectives"][0]
     evaluations = [generation["evaluations"] for generation in generations]
@@ -30,7 +30,7 @@ def draw_fitness(axes, run):
 
 
 def frames(trajectory, body):
-    """The places of all masses of a matured body at each of TIMES."""
+    """Returns the positions of all masses of a matured body at each of TIMES."""
     wanted = {time: [None] * len(body["masses"]) for time in TIMES}
     settled = body["time"] + SETTLE
     with open(trajectory, newline="") as stream:
@@ -42,7 +42,7 @@ def frames(trajectory, body):
 
 
 def draw_motion(panels, body, wanted):
-    """One side view for each time, below each other, all in the same frame of reference."""
+    """Draws a side view for each time, one below the other, all in the same coordinates."""
     everything = [place for frame in wanted.values() for place in frame]
     low, high = min(place[0] for place in everything), max(place[0] for place in everything)
     top = max(place[2] for place in everything)

@@ -10,7 +10,8 @@ COLOURS = {"least stressed": BLUE, "most stressed": VERMILION}
 
 
 def apart(values):
-    """Those of ascending values that have room for their labels on a logarithmic axis, from the last on."""
+    """Selects from ascending values, starting with the last, those whose labels do not overlap on a logarithmic
+    axis."""
     kept = []
     for value in reversed(values):
         if not kept or value < kept[-1] / 1.8:

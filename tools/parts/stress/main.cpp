@@ -1,4 +1,4 @@
-// Writes how soon it is known which springs are stressed.
+// Measures how long bodies must be simulated until their least and most stressed springs are known, and writes tables.
 #include <iostream>
 
 #include "experiment/device.hpp"
@@ -8,9 +8,9 @@
 namespace evodevo::tools::stress {
 namespace {
 
-constexpr double shares[] = {0.5, 0.7, 0.8, 0.9};  // of the springs that are sought
+constexpr double shares[] = {0.5, 0.7, 0.8, 0.9};  // shares of the springs sought
 
-/// The device of the first experiment, in words.
+/// Returns a description of the device that the first experiment uses.
 std::string device_of(const Settings& settings) {
   const Experiment first =
       read_experiment({settings.experiments.front(), {{"simulation.device", settings.device, ""}}});

@@ -14,7 +14,7 @@
 namespace evodevo::tools::stress {
 namespace {
 
-// that a robot must have for those that are sought to be few
+// minimum number of springs of a robot, so that the springs sought are a small share of them
 constexpr std::size_t fewest_springs = 10 * least_sought;
 
 std::vector<double> negated(std::vector<double> values) {
@@ -22,7 +22,7 @@ std::vector<double> negated(std::vector<double> values) {
   return values;
 }
 
-/// The value below which a share of all lies, between two by what is between them.
+/// The quantile of `values` at `share`, with linear interpolation.
 double quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   const double at = share * static_cast<double>(values.size() - 1);
@@ -31,7 +31,7 @@ double quantile(std::vector<double> values, double share) {
   return std::lerp(values[below], values[above], at - static_cast<double>(below));
 }
 
-/// Robots that live on together, without development; what is recorded of each adds up.
+/// Robots that are simulated together without development, with the stress of their springs since birth.
 class Robots {
  public:
   Robots(const Experiment& experiment, Simulator& simulator, std::vector<Life> born)
@@ -58,7 +58,7 @@ class Robots {
       if (tasks_[i].status == Status::ok) add(tasks_[i].stress, duration, i);
   }
 
-  /// Of those that have not diverged.
+  /// Returns the recordings of the robots that have not diverged.
   std::vector<StressOverTime> take() {
     std::vector<StressOverTime> sound;
     for (std::size_t i = 0; i < tasks_.size(); ++i)
@@ -79,8 +79,8 @@ class Robots {
   Simulator& simulator_;
   std::vector<Life> lives_;
   std::vector<Task> tasks_;
-  double now_ = 0;                         // s since birth
-  std::vector<std::vector<double>> sums_;  // N s
+  double now_ = 0;                         // time since birth [s]
+  std::vector<std::vector<double>> sums_;  // time integral of |force| of each spring [N s]
   std::vector<StressOverTime> over_time_;
 };
 
@@ -92,8 +92,9 @@ void add_row(const Case& one, double time, const char* sought, std::size_t count
              static_cast<double>(shares.size())});
 }
 
-/// The shortest cycle, s, from which on at least `share` is found of what `last` has, the row of the last cycle time of
-/// a scene and kind; NaN where only that finds it.
+/// `last` is the row of the longest cycle time of a scene and kind of springs. Returns the shortest cycle time, s, such
+/// that it and all longer ones find at least `share` of the springs that the longest one finds; NaN if only the longest
+/// one does.
 double shortest_cycle(const Table& overlap, std::size_t last, double share) {
   double shortest = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t row = last; row-- > 0;) {

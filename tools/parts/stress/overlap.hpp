@@ -1,4 +1,4 @@
-// How soon it is known which springs are stressed.
+// How long a body must be simulated until its least and most stressed springs are known.
 #pragma once
 
 #include <cstddef>
@@ -12,41 +12,44 @@
 
 namespace evodevo::tools::stress {
 
-// as in the paper: those that go (section IV-D2), and those beside which springs may come
+// Numbers of springs sought, as in the paper: the least stressed springs, which are removed (section IV-D2), and the
+// most stressed ones, next to which springs may be added.
 inline constexpr std::size_t least_sought = 125, most_sought = 100;
 
-/// The stress of one robot's springs from birth on to each of some times, N.
+/// The stress of one robot's springs, that is their mean |force| from birth to each of several times, N.
 using StressOverTime = std::vector<std::vector<double>>;
 
-/// The shares of the truly least and most stressed springs, by `truth`, that `estimate` finds.
+/// The shares of the truly least and the truly most stressed springs that an estimate finds.
 struct Found {
   double least, most;
 };
 Found found(const std::vector<double>& truth, const std::vector<double>& estimate);
 
-/// Random robots in a scene.
+/// A set of random robots in a scene.
 struct Case {
   std::string scene;
-  std::string experiment;      ///< file
+  std::string experiment;      ///< experiment file
   bool muscles_still = false;  ///< whether muscles keep their length
 };
 
-/// The experiments' own scenes, and that of the first with bodies that only settle.
+/// Returns a case for each experiment, and another one for the first experiment, in which muscles keep their length and
+/// bodies only settle.
 std::vector<Case> cases(const std::vector<std::string>& experiments);
 
-/// Cycle times, s; the last is that which the others are compared with.
+/// Returns the cycle times, s. The others are compared with the last one.
 std::vector<double> cycle_times();
 
-/// The stress of `robots` random robots of a case, which have a muscle and enough springs, from birth on as their
-/// experiment simulates them; of those alone that have not diverged.
+/// Simulates `robots` random robots of a case from birth on, with the time stepping of the experiment. All of them have
+/// a muscle and enough springs. Returns the stress of those that have not diverged.
 std::vector<StressOverTime> simulate(const Case& one, std::size_t robots, const std::string& device);
 
-/// The rows of a case: for each cycle time, the shares found by all its robots.
+/// Adds the rows of a case to the table: for each cycle time, statistics over its robots of the shares found.
 void add_rows(const Case& one, const std::vector<StressOverTime>& robots, Table& table);
 Table overlap_table();
 
-/// For each scene, what is sought and each of `shares`, the shortest cycle from which on at least that share is found,
-/// s; none where only the last does.
+/// Returns a table of the shortest sufficient cycle time, s, for each scene, kind of springs and share in `shares`. A
+/// cycle time is sufficient if it and all longer ones find at least that share; the cell is empty if only the longest
+/// one does.
 Table shortest_cycles(const Table& overlap, std::span<const double> shares);
 
 }  // namespace evodevo::tools::stress

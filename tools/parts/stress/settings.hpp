@@ -1,4 +1,4 @@
-// What the command line of the study asks for.
+// The settings that the command line of the study gives.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ inline constexpr Program program{
 };
 
 struct Settings {
-  std::string command;  ///< the line itself
+  std::string command;  ///< the command line itself
   std::filesystem::path folder;
   std::vector<std::string> experiments;
   std::size_t robots = 0;
@@ -23,10 +23,10 @@ struct Settings {
   bool quick = false;
 };
 
-/// The options and where their values go; help.inc describes them.
+/// Returns the options, whose values are stored in `settings`; help.inc describes them.
 boost::program_options::options_description options(Settings& settings);
 
-/// Throws std::invalid_argument or a boost exception that says what is wrong.
+/// Parses the command line. Throws std::invalid_argument or a Boost exception that says what is wrong.
 Settings parse(const CommandLine& line);
 
 }  // namespace evodevo::tools::stress

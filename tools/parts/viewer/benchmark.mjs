@@ -1,18 +1,18 @@
-// Prints what the page's program takes for each frame of a life: node benchmark.mjs PAGE.html
-// WebGL's drawing and copying is left out, since where there is no GPU the processor does it: what remains is what a
-// laptop's processor has to do while its GPU draws.
+// Prints the time that the page's JavaScript needs for each frame of a life: node benchmark.mjs PAGE.html
+// WebGL's drawing and copying functions are disabled, because without a GPU the processor would execute them. The
+// remaining time is what a laptop's processor spends while its GPU draws.
 import { launch, opened } from "./browser.mjs";
 
 const frames = 600;
 const viewport = { width: 1280, height: 720 };
 
-/** Lets WebGL draw and copy nothing. */
+/** Replaces WebGL's functions that draw and copy by functions that do nothing. */
 function drawNothing() {
   const names = ["drawElements", "drawArrays", "clear", "bufferData", "bufferSubData", "texImage2D", "texSubImage2D"];
   for (const name of names) WebGL2RenderingContext.prototype[name] = () => {};
 }
 
-/** Plays a life frame by frame; ms that each took, those that begin a cycle apart. */
+/** Plays a life frame by frame; returns the time of each frame [ms], with the first frames of cycles separate. */
 async function play(count) {
   const { viewer } = await window.evodevo;
   const { life } = viewer.stages[0];
@@ -23,7 +23,7 @@ async function play(count) {
     viewer.seek(viewer.begin + ((viewer.end - viewer.begin) * i) / count);
     viewer.draw();
     times[life.shotAt(viewer.time) === was ? "within" : "first"].push(performance.now() - before);
-    if (i % 10 === 0) await new Promise((done) => setTimeout(done)); // other work, such as collecting garbage
+    if (i % 10 === 0) await new Promise((done) => setTimeout(done)); // other work, such as garbage collection
   }
   return { ...times, masses: life.massCount, springs: life.shots[0].springs.length };
 }

@@ -1,4 +1,4 @@
-// The headless browser that draws pages without a display.
+// Starts a headless browser, which draws pages without a display.
 import { accessSync, constants, readFileSync, realpathSync, statSync } from "node:fs";
 import { delimiter, isAbsolute, join } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -13,14 +13,14 @@ function isThere(path) {
   }
 }
 
-/** The paths of those of these programs that are there. */
+/** Returns the paths at which programs with these names exist in PATH. */
 function programs(names) {
   const folders = (process.env.PATH ?? "").split(delimiter);
   return names.flatMap((name) => folders.map((folder) => join(folder, name))).filter(isThere);
 }
 
-/** A snap cannot read the pages, which lie in the folder for temporary files; and what Ubuntu's package
- *  chromium-browser holds does no more than ask for one. */
+/** Whether a program is a snap, or a script that asks the user to install one, as in Ubuntu's package chromium-browser.
+ *  A snap cannot read the pages, which lie in the folder for temporary files. */
 function isSnap(path) {
   const target = realpathSync(path);
   if (target.includes("/snap")) return true;
@@ -43,27 +43,29 @@ export function chromiumProgram() {
   );
 }
 
-/** This process's environment without folders that are none: Chromium would write into a relative HOME. */
+/** This process's environment without HOME and XDG folders whose paths are not absolute: Chromium would write into a
+*  relative HOME. */
 function environment() {
   const means = ([name, value]) => !/^(HOME|XDG_[A-Z]+_HOME)$/.test(name) || isAbsolute(value);
   return Object.fromEntries(Object.entries(process.env).filter(means));
 }
 
-/** `more` are switches for Chromium, which count for more than these. */
+/** Starts Chromium. `more` holds additional switches, which override those below. */
 export const launch = async (more = []) =>
   chromium.launch({
     executablePath: chromiumProgram(),
     env: environment(),
-    chromiumSandbox: false, // root has none, nor have many containers; only pages of our own are opened
-    // Mesa draws, by a GPU or without one, then twice as fast as Chromium's own SwiftShader, which steps in where there
-    // is no Mesa
+    chromiumSandbox: false, // it does not work for root and in many containers; we open only our own pages
+    // Mesa draws with a GPU or without one. Without a GPU it is twice as fast as SwiftShader, which Chromium brings
+    // along and uses if there is no Mesa.
     args: ["--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist", "--enable-unsafe-swiftshader", ...more],
   });
 
-/** How long a page may take to load from its file, ms: on a busy machine that draws without a GPU, minutes. */
+/** How long a page may take to load from its file, ms. On a busy machine without a GPU, loading can take minutes. */
 export const patience = 300_000;
 
-/** A page of the viewer, ready. `options` are Playwright's; `before` is what the page does first. */
+/** Opens a page of the viewer and waits until it is ready. `options` are those of Playwright's newPage; the page runs
+ *  the function `before` before its own code. */
 export async function opened(browser, file, options, { hash = "", before } = {}) {
   const tab = await browser.newPage(options);
   if (before) await tab.addInitScript(before);
@@ -73,7 +75,7 @@ export async function opened(browser, file, options, { hash = "", before } = {})
   return tab;
 }
 
-/** Draws a moment. */
+/** Draws the page at a time of the life [s]. */
 export async function draw(tab, time) {
   await tab.evaluate(async (at) => {
     const { viewer } = await window.evodevo;

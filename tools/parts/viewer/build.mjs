@@ -1,4 +1,4 @@
-// Bundles the viewer into one page: node build.mjs SOURCES NODE_MODULES OUT.html
+// Bundles the viewer into a single HTML file: node build.mjs SOURCES NODE_MODULES OUT.html
 import { build } from "esbuild";
 import { readFile, writeFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
@@ -10,7 +10,7 @@ const { outputFiles } = await build({
   outdir: dirname(out),
   bundle: true,
   minify: true,
-  legalComments: "inline", // the licences of what is bundled go with it
+  legalComments: "inline", // keeps the licences of the bundled packages
   target: ["chrome109", "firefox115", "safari16.4"],
   write: false,
 });
@@ -20,7 +20,7 @@ const parts = {
   EVODEVO_PROGRAM: text(".js").replaceAll("</script", "<\\/script"),
 };
 const page = await readFile(join(source, "page.html"), "utf8");
-// a function, since $ in a replacement string has a meaning
+// a function, since $ has a special meaning in replacement strings
 await writeFile(
   out,
   page.replace(/EVODEVO_(STYLE|PROGRAM)/g, (name) => parts[name]),

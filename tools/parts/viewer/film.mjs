@@ -1,4 +1,4 @@
-// Takes a film or a picture of a page of the viewer:
+// Makes a film or a picture of a page of the viewer:
 //   node film.mjs PAGE.html OUT.mp4|OUT.gif|OUT.webp|OUT.png NAME_IN_MESSAGES [--at S | --from S --to S] [--quiet]
 import { execFileSync, spawn } from "node:child_process";
 import { once } from "node:events";
@@ -9,10 +9,10 @@ import { draw, ffmpegProgram, launch, opened } from "./browser.mjs";
 
 const viewport = { width: 1280, height: 720 };
 
-// What is drawn larger than it is shown has smooth edges. "area" makes smaller files than the sharper filters.
+// Frames are drawn larger and scaled down, which smooths edges. "area" makes smaller files than sharper filters.
 const small = "scale=480:-1:flags=area";
 
-/** How ffmpeg makes a film, by the ending of its name. `-loop 0` repeats for ever. */
+/** The ffmpeg options for each file extension. `-loop 0` repeats the film for ever. */
 const formats = {
   ".mp4": {
     encoder: "libx264",
@@ -22,8 +22,8 @@ const formats = {
   ".gif": {
     encoder: "gif",
     framesPerSecond: 20,
-    // One palette for all frames, of colours that move, without dithering, which does not compress: 30 KB a frame. With
-    // 96 colours it would be half as much again.
+    // One palette of 32 colours for all frames, chosen from the pixels that change. Dithering is off, since it
+    // compresses badly. A frame takes 30 KB; with 96 colours it would take one and a half times as much.
     output: [
       "-vf",
       `${small},split[a][b];[a]palettegen=max_colors=32:stats_mode=diff[p];[b][p]paletteuse=dither=none`,
@@ -38,7 +38,7 @@ const formats = {
   },
 };
 
-/** Throws where this ffmpeg was built without the encoder. */
+/** Throws an error if this ffmpeg was built without the encoder. */
 function expectEncoder(name, ending) {
   const listed = execFileSync(ffmpegProgram(), ["-hide_banner", "-encoders"], { encoding: "utf8" });
   if (listed.split("\n").some((line) => line.trim().split(/\s+/)[1] === name)) return;
@@ -51,7 +51,7 @@ function encoder(out, { encoder, framesPerSecond, output }) {
   const ffmpeg = spawn(ffmpegProgram(), ["-y", "-loglevel", "error", ...input, "-c:v", encoder, ...output, out], {
     stdio: ["pipe", "inherit", "inherit"],
   });
-  ffmpeg.stdin.on("error", () => {}); // its exit code says it
+  ffmpeg.stdin.on("error", () => {}); // the exit code reports the failure
   return { ffmpeg, closed: once(ffmpeg, "close") };
 }
 
@@ -71,7 +71,7 @@ async function film(tab, out, { from, to, quiet }) {
   const format = formats[extname(out)];
   expectEncoder(format.encoder, extname(out));
   const { ffmpeg, closed } = encoder(out, format);
-  const camera = await tab.context().newCDPSession(tab); // Playwright's own pictures take longer
+  const camera = await tab.context().newCDPSession(tab); // faster than Playwright's screenshots
   const frames = Math.round((end - begin) * format.framesPerSecond);
   const started = performance.now();
   try {
@@ -84,7 +84,7 @@ async function film(tab, out, { from, to, quiet }) {
         process.stderr.write(`\r${i + 1} of ${frames + 1} frames${i === frames ? "\n" : ""}`);
     }
   } finally {
-    ffmpeg.stdin.end(); // it would keep this process alive
+    ffmpeg.stdin.end(); // an open pipe would keep this process alive
   }
   if ((await closed)[0] !== 0) throw new Error("ffmpeg failed");
   const rate = (1000 * (frames + 1)) / (performance.now() - started);

@@ -1,4 +1,4 @@
-// Takes the README's pictures of a report: node screenshots.mjs REPORT.html FOLDER
+// Takes the pictures of a report for the README: node screenshots.mjs REPORT.html FOLDER
 import { join } from "node:path";
 import { draw, launch, opened } from "./browser.mjs";
 

@@ -9,7 +9,7 @@
 
 namespace evodevo::cuda {
 
-/// The records and codes of the springs, beginning with one of them.
+/// The records and codes of the springs from one spring on.
 struct Records {
   struct Read : Record<Number> {
     unsigned wave;  // MaterialCode::wave

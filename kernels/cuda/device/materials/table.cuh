@@ -8,7 +8,7 @@ namespace evodevo::cuda {
 
 constexpr unsigned entry_shift = EVODEVO_ENTRY_SHIFT;  // left shift that turns offsets of entries into bytes
 
-/// The records of the springs, beginning with one of them.
+/// The records of the springs from one spring on.
 struct Records {
   using Read = Record<Number>;
   const Record<Number>* first;
@@ -30,7 +30,7 @@ struct SpringMaterial {
   Entry<Number> entry;
 };
 
-/// Where the lengths of a pass and their rates of change are in shared memory (offsets).
+/// The offsets in shared memory of the lengths of a pass and of their rates of change.
 struct Lengths {
   unsigned table;
   unsigned rates = 0;

@@ -1,5 +1,5 @@
 // implicit: linearised backward Euler, solved by conjugate gradients. kernels/cpu/methods/implicit-inl.hpp states the
-// equation. One block moves a body:
+// equation. One block simulates a body:
 //
 //   begin   positions, velocities ─► the equation, its residual at no correction
 //   solve   equation ─► correction of the velocities
@@ -41,7 +41,7 @@ struct Memory {
 static_assert(6 * sizeof(Point<Number>) == EVODEVO_NUMBERS_OF_MASS * sizeof(Number));
 static_assert(sizeof(Stiffness) + sizeof(Number) == EVODEVO_NUMBERS_OF_JOINT * sizeof(Number));
 
-/// The product component by component.
+/// The component-wise product.
 __device__ __forceinline__ Vector product(const Vector& a, const Vector& b) {
   return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
@@ -225,7 +225,7 @@ __device__ __forceinline__ void record_tensions(const Body& body, unsigned row) 
   });
 }
 
-/// Makes the steps of check span `index`. Row 0 of the tables holds the lengths at its beginning.
+/// Computes the steps of check span `index`. Row 0 of the tables holds the lengths at its beginning.
 extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS)
     evodevo_advance_streamed(const Body* bodies, std::uint64_t index) {
   advance_span(bodies[blockIdx.x], index, [](const Body& body, unsigned count) {

@@ -13,8 +13,8 @@ struct Method : OnePass {
     Number mean_normal_force;  ///< of the floor, N
   };
 
-  /// There are two rows per step: stage 0 reads that of the beginning, stages 1 and 2 that of the middle, stage 3 that
-  /// of the end, which is the beginning of the next step.
+  /// There are two rows per step: stage 0 reads the row of the beginning, stages 1 and 2 that of the middle, and stage
+  /// 3 that of the end, which is the beginning of the next step.
   static __device__ __forceinline__ unsigned row(unsigned index) { return index / 4 * 2 + (index % 4 + 1) / 2; }
   static __device__ __forceinline__ bool is_recorded(unsigned index) { return index % 4 == 0; }
 

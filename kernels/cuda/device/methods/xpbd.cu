@@ -1,4 +1,4 @@
-// xpbd: extended position-based dynamics. kernels/cpu/methods/xpbd-inl.hpp describes it. One block moves a body and
+// xpbd: extended position-based dynamics. kernels/cpu/methods/xpbd-inl.hpp describes it. One block simulates a body and
 // solves the colours of its springs one after the other; no two springs of a colour share a mass.
 //
 //   apply_gravity   velocities ─► predicted velocities
@@ -25,7 +25,7 @@ __device__ __forceinline__ void solve_spring(const StepConstants<Number>& consta
                                              const ColouredSpring<Number> spring) {
   const Entry<Number> entry = body.table[row * body.entries + spring.entry];
   const Moving a = moving(body, spring.a), b = moving(body, spring.b);
-  // from x and v apart: float32 positions at the end of the step would lose the motion to rounding
+  // x and v are subtracted separately: in float32, rounding of positions at the end of the step would hide the motion
   const Vector apart = difference(b.position, a.position), velocity = difference(b.velocity, a.velocity);
   const auto ends = physics::separation({0, 0, 0}, sum(apart, constants.dt, velocity));
   const Number distance = physics::length(ends);
@@ -71,7 +71,7 @@ __device__ __forceinline__ void move(const StepConstants<Number>& constants, con
   });
 }
 
-/// Makes the steps of check span `index`. Row 0 of the tables holds the lengths at its beginning.
+/// Computes the steps of check span `index`. Row 0 of the tables holds the lengths at its beginning.
 extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS)
     evodevo_advance_streamed(const Body* bodies, std::uint64_t index) {
   advance_span(bodies[blockIdx.x], index, [](const Body& body, unsigned count) {

@@ -1,4 +1,4 @@
-// The paper's two simulators and ours, one after the other on the same bodies.
+// Compares the paper's two simulators with ours on the same bodies.
 #include <string>
 #include <vector>
 

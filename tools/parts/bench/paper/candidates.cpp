@@ -16,7 +16,7 @@ TimedMethod::TimedMethod(const Settings& settings, const Body& body, const Paper
 double TimedMethod::rate() {
   simulator_.restart();
   const double seconds = simulator_.run(steps_);
-  simulator_.state(0);  // throws where the body has diverged
+  simulator_.state(0);  // throws if the body has diverged
   return static_cast<double>(simulator_.springs()) * static_cast<double>(steps_) / seconds;
 }
 

@@ -1,4 +1,4 @@
-// The paper's methods with the clock.
+// Timing of the paper's methods.
 #pragma once
 
 #include <string>
@@ -8,15 +8,16 @@
 
 namespace evodevo::tools::bench {
 
-/// Such as "springs shuffled, blocks of 256 threads".
+/// Returns a description such as "springs shuffled, blocks of 256 threads".
 std::string description(const PaperMethod& method);
 
-/// A batch of equal bodies with one of the paper's methods. The body must outlive it.
+/// A batch of copies of one body, simulated with one of the paper's methods. The body must outlive this object.
 class TimedMethod {
  public:
   TimedMethod(const Settings& settings, const Body& body, const PaperMethod& method);
 
-  /// Spring evaluations per second of one run from birth. Throws std::runtime_error where a body diverges.
+  /// Simulates the batch from birth once, and returns the spring evaluations per second. Throws std::runtime_error if
+  /// the body diverges.
   double rate();
 
  private:
@@ -26,11 +27,11 @@ class TimedMethod {
 
 struct Candidate {
   PaperMethod method;
-  double rate = 0;     ///< of a single run
-  unsigned tried = 0;  ///< methods that it was chosen from
+  double rate = 0;     ///< spring evaluations per second of a single run
+  unsigned tried = 0;  ///< number of methods among which it was the fastest
 };
 
-/// The fastest of all orders of springs and some sizes of a block.
+/// Tries all orders of springs with several block sizes, and returns the fastest combination.
 Candidate fastest(const Settings& settings, const Body& body, MassMemory memory);
 
 }  // namespace evodevo::tools::bench

@@ -1,4 +1,4 @@
-// Arrays on the device.
+// Arrays in the memory of the device.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -11,7 +11,7 @@
 
 namespace evodevo::tools::bench {
 
-/// Numbers on the device, zero at first.
+/// An array in the memory of the device, initially zero.
 template <class T>
 class DeviceArray {
  public:

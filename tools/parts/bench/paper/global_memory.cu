@@ -1,5 +1,5 @@
-// The simulator that the paper compares itself with (section V-A): masses in global memory, and in every step one
-// kernel over all springs, which adds their forces by float atomics, and one over all masses.
+// The baseline that the paper compares its method with (section V-A). Masses are in global memory. In every step, one
+// kernel over all springs adds their forces by float atomics, and another kernel moves all masses.
 #include "paper/spring_force.cuh"
 
 namespace evodevo::tools::bench {
@@ -10,7 +10,7 @@ __device__ __forceinline__ void add(Point<Number>& sum, Number x, Number y, Numb
   atomicAdd(&sum.z, z);
 }
 
-/// Adds the forces of all springs in the step whose lengths are in the table's row `row`.
+/// Adds the forces of all springs. `row` is the row of the material table for this step.
 extern "C" __global__ void evodevo_paper_springs(const PaperBatch batch, unsigned row) {
   const PaperBody body = batch.bodies[blockIdx.y];
   const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
@@ -24,7 +24,7 @@ extern "C" __global__ void evodevo_paper_springs(const PaperBatch batch, unsigne
   add(forces[spring.b], -force.x, -force.y, -force.z);
 }
 
-/// Moves all masses and takes their spring forces away.
+/// Moves all masses and resets their spring forces to zero.
 extern "C" __global__ void evodevo_paper_masses(const StepConstants<Number> constants, const PaperBatch batch) {
   const PaperBody body = batch.bodies[blockIdx.y];
   const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;

@@ -13,7 +13,7 @@
 namespace evodevo::tools::bench {
 namespace {
 
-constexpr unsigned table_steps = 100;  // that one launch fills in
+constexpr unsigned table_steps = 100;  // steps for which one launch fills in the table
 
 std::size_t shared_bytes_of(const PaperLayout& layout) { return 6 * sizeof(float) * layout.most_masses; }
 
@@ -75,7 +75,7 @@ void PaperSimulator::load_kernels(const Scene& scene) {
   cuda::check(cudaFuncSetAttribute(reinterpret_cast<const void*>(step_), cudaFuncAttributeMaxDynamicSharedMemorySize,
                                    static_cast<int>(needed)),
               "asking for " + std::to_string(needed) + " bytes of shared memory");
-  // as many blocks at once as there is room for
+  // prefers shared memory to cache, so that as many blocks as possible are resident
   cuda::check(cudaFuncSetAttribute(reinterpret_cast<const void*>(step_), cudaFuncAttributePreferredSharedMemoryCarveout,
                                    cudaSharedmemCarveoutMaxShared),
               "asking for shared memory");
@@ -93,7 +93,7 @@ void PaperSimulator::restart() {
 
 double PaperSimulator::run(std::uint64_t steps) {
   const cuda::Event begin, end;
-  // what was copied and cleared before is in another stream
+  // earlier copies and clears run in another stream
   cuda::check(cudaDeviceSynchronize(), "waiting for the GPU");
   cuda::check(cudaEventRecord(begin, stream_), "recording an event");
   for (const std::uint64_t last = steps_ + steps; steps_ < last;) {

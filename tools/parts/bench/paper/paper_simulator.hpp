@@ -1,4 +1,4 @@
-// The simulators of the paper, to compare ours with: the same physics, in float32, without guards.
+// The two simulators of the paper, for comparison with ours: the same physics in float32, without the divergence guard.
 #pragma once
 
 #include <cstdint>
@@ -15,48 +15,48 @@
 
 namespace evodevo::tools::bench {
 
-/// Where masses lie while forces are added.
+/// The memory that holds the masses while forces are added.
 enum class MassMemory {
-  global,  ///< of the simulator that the paper compares itself with
-  shared,  ///< of the paper's own
+  global,  ///< global memory, in the baseline that the paper compares its method with
+  shared,  ///< shared memory, in the paper's method
 };
 
 struct PaperMethod {
   MassMemory memory = MassMemory::shared;
   SpringOrder order = SpringOrder::as_built;
-  unsigned threads = 256;                    ///< of a block; with Skip-Shift, the groups that springs are dealt out to
-  StressMethod stress = StressMethod::none;  ///< with shared memory alone
+  unsigned threads = 256;                    ///< threads of a block; with Skip-Shift also the number of spring groups
+  StressMethod stress = StressMethod::none;  ///< available only with shared memory
   std::uint32_t skip = 0;                    ///< steps between two tallies of Skip-Shift
 };
 
-/// What a method has recorded of one body's springs since birth; zeros where it records something else.
+/// The recordings of one body's springs since birth. Quantities that the method does not record are zero.
 struct RecordedStress {
-  std::vector<double> sum;                 ///< of |force|, N
-  std::vector<std::uint32_t> least, most;  ///< tallies
+  std::vector<double> sum;                 ///< sum of |force| over steps [N]
+  std::vector<std::uint32_t> least, most;  ///< number of tallies in which each spring was counted
 };
 
-/// The definitions that a method's kernels are compiled with.
+/// The preprocessor definitions with which a method's kernels are compiled.
 std::vector<std::string> definitions(const PaperMethod& method, const Scene& scene);
 
-/// `copies` of each of some bodies, which must outlive it, from birth on.
+/// Simulates `copies` of each body with one of the paper's methods, from birth on. The bodies must outlive this object.
 class PaperSimulator {
  public:
-  /// Throws std::runtime_error where there is no GPU, or a body's masses are too many for shared memory.
+  /// Throws std::runtime_error if there is no GPU, or if a body has too many masses for shared memory.
   PaperSimulator(std::span<const Body> bodies, std::uint32_t copies, const Scene& scene, double dt,
                  const PaperMethod& method);
 
-  /// Puts all bodies back to birth and forgets their stress.
+  /// Resets all bodies to their state at birth, and their recorded stress to zero.
   void restart();
 
-  /// Makes `steps` steps; returns the device's time for them, s.
+  /// Simulates `steps` steps; returns the time that the device needed for them, s.
   double run(std::uint64_t steps);
 
-  /// Of all bodies.
+  /// The number of springs of all copies of all bodies.
   std::size_t springs() const { return layout_.springs.size(); }
 
-  /// How the first copy of a body moves. Throws std::runtime_error where it has diverged.
+  /// The current state of the first copy of a body. Throws std::runtime_error if it has diverged.
   State state(std::size_t body) const;
-  /// What is recorded of it, in the order of Body::springs.
+  /// The recorded stress of the first copy of a body, in the order of Body::springs.
   RecordedStress stress(std::size_t body) const;
 
  private:
@@ -69,12 +69,12 @@ class PaperSimulator {
   PaperMethod method_;
   PaperLayout layout_;
   cuda::StepConstants<float> constants_;
-  std::uint64_t steps_ = 0;  // since birth
+  std::uint64_t steps_ = 0;  // number of steps since birth
 
   cuda::KernelStore kernels_;
   cudaKernel_t fill_table_ = nullptr;
-  cudaKernel_t add_forces_ = nullptr, move_masses_ = nullptr;  // of global memory's method
-  cudaKernel_t step_ = nullptr;                                // of shared memory's
+  cudaKernel_t add_forces_ = nullptr, move_masses_ = nullptr;  // kernels of the global-memory method
+  cudaKernel_t step_ = nullptr;                                // kernel of the shared-memory method
   cuda::Stream stream_;
   DeviceArray<PaperBody> body_table_;
   DeviceArray<PaperSpring> springs_;

@@ -1,4 +1,4 @@
-// Random orders that a thread can look up without anyone storing them.
+// Random permutations that a thread can evaluate without storing them.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace evodevo::tools::bench {
 
-/// A permutation of 0 .. count-1 that depends on a key alone: a Feistel network of ten rounds with the multiplier and
-/// the key schedule of Philox 2x32-10 (Salmon et al. 2011), its halves cut to fit; what leaves the range goes through
-/// it again, so that it never leaves.
+/// A permutation of 0 .. count-1 that depends only on a key. It is a Feistel network of ten rounds with the multiplier
+/// and the key schedule of Philox 2x32-10 (Salmon et al. 2011). Its halves have just enough bits for `count`; results
+/// outside the range are mapped again until they lie in it (cycle walking).
 class Permutation {
  public:
   EVODEVO_HD Permutation(std::uint32_t count, std::uint32_t key) : count_(count), key_(key) {
@@ -37,10 +37,11 @@ class Permutation {
   }
 
   std::uint32_t count_, key_;
-  unsigned half_ = 1;  // bits of half a number
+  unsigned half_ = 1;  // bits of each half of the network
 };
 
-/// The order in which `springs` of a body are dealt out for its `tally`-th tally: new each time, and the body's own.
+/// The order in which the springs of a body are distributed over threads in a tally; it differs between tallies and
+/// between bodies. `springs` is the number of springs.
 EVODEVO_HD Permutation shifted(std::uint32_t springs, std::uint32_t body, std::uint32_t tally) {
   return {springs, tally * 0x85ebca6bu ^ body * 0xc2b2ae35u};
 }

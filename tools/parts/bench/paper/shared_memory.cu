@@ -1,6 +1,6 @@
-// The paper's method (section IV-C2): in every step a block brings a body's masses into shared memory, adds the
-// springs' forces there by float atomics, and writes the moved masses back. With it, the ways of recording stress that
-// the paper tried (section IV-D1).
+// The paper's method (section IV-C2): in every step, a block loads a body's masses into shared memory, adds the
+// springs' forces there by float atomics, and writes the moved masses back. The kernel also implements the ways of
+// recording stress that the paper tried (section IV-D1).
 #include "paper/permutation.hpp"
 #include "paper/spring_force.cuh"
 
@@ -13,7 +13,8 @@ constexpr bool skip_shift_on = stress_method == StressMethod::skip_shift;
 
 extern __shared__ Number chip[];
 
-/// A body's masses in shared memory: six arrays, so that neighbouring threads use neighbouring banks.
+/// The positions and the forces of a body's masses in shared memory. Six separate arrays let neighbouring threads use
+/// neighbouring memory banks.
 struct OnChip {
   Number *x, *y, *z, *fx, *fy, *fz;
 
@@ -44,8 +45,9 @@ __device__ __forceinline__ void move_masses(const PaperBatch& batch, const Paper
     move(constants, batch, body.first_mass + i, masses.position(i), {masses.fx[i], masses.fy[i], masses.fz[i]});
 }
 
-/// The least and the most stressed of some springs. The upper half of a number is |force|, whose bits are ordered like
-/// its value, the lower half says which spring, and decides between equals.
+/// The least and the most stressed of the springs seen. The upper half of each number holds |force|; the bit patterns
+/// of non-negative floats have the same order as their values. The lower half holds the index of the spring, which
+/// decides ties.
 struct Extremes {
   std::uint64_t least = ~std::uint64_t{0}, most = 0;
 
@@ -56,8 +58,8 @@ struct Extremes {
   }
 };
 
-/// Adds the forces of a thread's springs: every blockDim.x-th in the order of the buffer or, where they are looked at
-/// for their stress after a shift, in a random order.
+/// Adds the forces of a thread's springs, which are every blockDim.x-th spring in `order`: the order of the buffer or,
+/// in a tally of Skip-Shift, a random order. With `looks`, returns the least and the most stressed of them.
 template <bool looks, class Order>
 __device__ __forceinline__ Extremes add_forces(const PaperBatch& batch, const PaperBody& body, const OnChip& masses,
                                                unsigned row, const Order& order) {
@@ -76,7 +78,7 @@ __device__ __forceinline__ Extremes add_forces(const PaperBatch& batch, const Pa
   return extremes;
 }
 
-/// The extremes of the whole block; for thread 0.
+/// Reduces the extremes of all threads of the block; only thread 0 gets the result.
 __device__ __forceinline__ Extremes of_block(Extremes extremes) {
   __shared__ std::uint64_t least_of_warp[cuda::lanes], most_of_warp[cuda::lanes];
   const unsigned lane = threadIdx.x % cuda::lanes, warp = threadIdx.x / cuda::lanes;
@@ -106,8 +108,8 @@ __device__ __forceinline__ void count(const PaperBatch& batch, const PaperBody& 
   atomicAdd(&batch.most[body.first_spring + order(static_cast<unsigned>(extremes.most))], 1u);
 }
 
-/// Makes the step whose lengths are in the table's row `row`. `tally`: of Skip-Shift, the number of the tally in this
-/// step, from 1; 0 where there is none.
+/// Simulates one step. `row` is the row of the material table for this step. `tally` is the number of the Skip-Shift
+/// tally in this step, counted from 1, or 0 if there is none.
 extern "C" __global__ void __launch_bounds__(EVODEVO_THREADS)
     evodevo_paper_step(const StepConstants<Number> constants, const PaperBatch batch, unsigned row, unsigned tally) {
   const PaperBody body = batch.bodies[blockIdx.x];

@@ -1,4 +1,4 @@
-// The sources of the paper's methods as part of the program.
+// The CUDA sources of the paper's methods, embedded in the program.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace evodevo::tools::bench {
 
-/// Generated when the benchmark is built.
+/// Returns the sources. This function is generated when the benchmark is built.
 const std::vector<cuda::EmbeddedSource>& paper_sources();
 
 }  // namespace evodevo::tools::bench

@@ -1,5 +1,5 @@
-// What both of the paper's methods share: the force of one spring, the step of one mass and the
-// materials in time.
+// Code that both of the paper's methods share: the force of one spring, the step of one mass, and the table of the
+// materials' states over time.
 #pragma once
 
 #include "cuda/device/methods/paper_euler.cuh"
@@ -28,7 +28,7 @@ __device__ __forceinline__ Pull pull_of(const PaperSpring& spring, Vector a, Vec
   return {{factor * s.d.x, factor * s.d.y, factor * s.d.z}, factor * physics::length_by_inverse(s, inverse)};
 }
 
-/// Moves the mass at `position` by a step in which springs pull with `force` (N).
+/// Moves the mass at `position` by one step; `force` is the sum of its spring forces (N).
 __device__ __forceinline__ void move(const StepConstants<Number>& constants, const PaperBatch& batch, unsigned mass,
                                      Vector position, Vector force) {
   cuda::Method::Kept nothing;
@@ -38,7 +38,7 @@ __device__ __forceinline__ void move(const StepConstants<Number>& constants, con
   batch.velocities[mass] = {m.velocity.x, m.velocity.y, m.velocity.z, 0};
 }
 
-/// Fills in the table for `count` steps from `step` since birth on.
+/// Fills in the material table for `count` steps; `step` is the number of the first one since birth.
 extern "C" __global__ void evodevo_paper_table(const StepConstants<Number> constants, const cuda::Actuator* actuators,
                                                unsigned entries, std::uint64_t step, unsigned count,
                                                Entry<Number>* table) {

@@ -15,12 +15,12 @@ void shuffle(std::vector<std::uint32_t>& items) {
   for (std::size_t left = items.size(); left > 1; --left) std::swap(items[left - 1], items[random() % left]);
 }
 
-/// Fills one warp after the other with the first springs left that share no mass with those that it has; where there
-/// are none, with the first ones left.
+/// Fills one warp after the other. Each place goes to the first remaining spring that shares no mass with the springs
+/// already in the warp, or, if there is no such spring, to the first remaining one.
 std::vector<std::uint32_t> spread(const Body& body, const std::vector<std::uint32_t>& springs) {
   std::list<std::uint32_t> left(springs.begin(), springs.end());
   std::vector<std::uint32_t> result;
-  std::vector<std::size_t> warp_of_mass(body.masses.size());  // the last warp that a mass is in, from 1
+  std::vector<std::size_t> warp_of_mass(body.masses.size());  // last warp with a spring of this mass, counted from 1
   while (!left.empty()) {
     const std::size_t warp = result.size() / threads_of_a_warp + 1;
     auto next = std::find_if(left.begin(), left.end(), [&](std::uint32_t i) {

@@ -1,4 +1,5 @@
-// In which order the springs of a body lie in the spring buffer, and so which threads add forces at the same time.
+// The order of a body's springs in the spring buffer. It determines which threads add forces to the same mass at the
+// same time.
 #pragma once
 
 #include <array>
@@ -14,14 +15,14 @@ enum class SpringOrder {
   as_built,
   by_first_mass,
   shuffled,
-  spread,  ///< no two of 32 springs in a row share a mass, as far as springs last
+  spread,  ///< no two springs of a warp, that is of 32 in a row, share a mass, as far as possible
 };
 inline constexpr std::array<SpringOrder, 4> spring_orders{SpringOrder::as_built, SpringOrder::by_first_mass,
                                                           SpringOrder::shuffled, SpringOrder::spread};
 
 std::string name(SpringOrder order);
 
-/// The indices of the body's springs in an order.
+/// Returns the indices of the body's springs in the given order.
 std::vector<std::uint32_t> ordered_springs(const Body& body, SpringOrder order);
 
 }  // namespace evodevo::tools::bench

@@ -1,4 +1,4 @@
-// What it costs to know which springs are stressed (paper, section IV-D1, Figures 2 and 4).
+// The cost of recording stress (paper, section IV-D1, Figures 2 and 4).
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,7 +16,7 @@ Report row(const std::string& method, const std::vector<double>& rates, const st
       {"stress", method}, {"spring_evaluations_per_second", median(rates)}, {"of_the_rate_without", median(ratios)}};
 }
 
-/// The rows of the paper's method, `plain` without stress and then with each way of recording it.
+/// Returns the rows of the paper's method: first `plain`, which records no stress, then each way of recording stress.
 Report paper_rows(const Settings& settings, const Body& body, const PaperMethod& plain) {
   TimedMethod without(settings, body, plain);
   std::vector<double> rates_without;

@@ -9,7 +9,7 @@
 
 namespace evodevo::tools::bench {
 
-/// `plain` with each of them, and its name.
+/// Returns the name of each way of recording stress, with a copy of `plain` that records stress in that way.
 inline std::vector<std::pair<std::string, PaperMethod>> stress_methods(PaperMethod plain) {
   std::vector<std::pair<std::string, PaperMethod>> methods;
   plain.stress = StressMethod::sums;

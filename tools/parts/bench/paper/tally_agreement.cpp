@@ -1,4 +1,4 @@
-// How far the paper's tallies agree with exact stress (paper, Figure 3).
+// How well the paper's tallies agree with exact stress (paper, Figure 3).
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -16,11 +16,12 @@ namespace evodevo::tools::bench {
 namespace {
 
 constexpr std::size_t sought = 125;                         // springs at either end (paper, section IV-D4)
-constexpr std::size_t least_springs = 2000;                 // that a robot must have for them to be few
+constexpr std::size_t least_springs = 2000;                 // of a robot, so that 125 are a small share
 constexpr std::uint64_t second = 2000;                      // steps of 0.5 ms
 constexpr std::uint64_t windows[] = {second, 10 * second};  // from birth on
 
-/// Least and most stressed springs have the largest numbers.
+/// Two scores for each spring: the least stressed springs have the largest scores in `least`, the most stressed ones in
+/// `most`.
 struct Ranking {
   std::vector<double> least, most;
 };
@@ -36,9 +37,9 @@ Ranking ranking(const RecordedStress& recorded, StressMethod method) {
   return {{recorded.least.begin(), recorded.least.end()}, {recorded.most.begin(), recorded.most.end()}};
 }
 
-using Rankings = std::vector<Ranking>;  // of each robot
+using Rankings = std::vector<Ranking>;  // one for each robot
 
-/// The stress of all robots over a window, by our simulator.
+/// Ranks the springs of all robots by their exact stress over `steps` steps from birth, computed by our simulator.
 Rankings exact_rankings(const Settings& settings, const Scene& scene, const std::vector<Body>& robots,
                         std::uint64_t steps) {
   const auto simulator = make_cuda_simulator(scene, settings.stepping());
@@ -56,7 +57,7 @@ Rankings exact_rankings(const Settings& settings, const Scene& scene, const std:
   return rankings;
 }
 
-/// Adds the mean shares over all robots to a row.
+/// Adds to a row the shares of the springs sought that the estimate finds, as means over all robots.
 void add_shares(const Rankings& truth, const Rankings& estimate, const std::string& window, Report& row) {
   double least = 0, most = 0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -88,7 +89,7 @@ Report tally_agreement(const Settings& settings) {
       done = windows[window];
       Rankings found;
       for (std::size_t i = 0; i < robots.size(); ++i) {
-        simulator.state(i);  // throws where the robot has diverged
+        simulator.state(i);  // throws if the robot has diverged
         found.push_back(ranking(simulator.stress(i), method.stress));
       }
       add_shares(truth[window], found, seconds(done), row);

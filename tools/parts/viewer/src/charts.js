@@ -5,7 +5,7 @@ import { element, short, style } from "./elements.js";
 const height = 250;
 const nothing = "Nothing to show: no individual has ended with a fitness.";
 
-/** The individuals that no other one beats in both youth and fitness, by age. */
+/** Returns the Pareto front of low age and good fitness, sorted by age. */
 export function paretoFront(population, maximise) {
   const better = (a, b) => (maximise ? a > b : a < b);
   const sorted = [...population].sort((a, b) => a.age - b.age || (better(a.values[0], b.values[0]) ? -1 : 1));
@@ -14,7 +14,8 @@ export function paretoFront(population, maximise) {
   return front;
 }
 
-/** Columns over one list of x, from series that each have their own: null where a series has no value. */
+/** Merges series with different x values into columns over a common list of x values; null where a series has no
+*  value. */
 function joined(series) {
   const xs = [...new Set(series.flatMap(({ x }) => x))].sort((a, b) => a - b);
   const columns = series.map(({ x, y }) => {
@@ -24,9 +25,9 @@ function joined(series) {
   return [xs, ...columns];
 }
 
-/** A value in the legend, which is there while the mouse is over the chart. */
+/** Formats a value in the legend, which shows values only while the mouse is over the chart. */
 const shown = (_, value, series, index) => (index === null ? "" : short(value));
-const counts = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4, 1e5, 2e5, 5e5, 1e6]; // between ticks
+const counts = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4, 1e5, 2e5, 5e5, 1e6]; // steps of ticks
 
 const line = (name, stroke, dash) => ({
   label: name,
@@ -40,7 +41,8 @@ const line = (name, stroke, dash) => ({
 const runColour = (index) => style("--series").split(/\s+/)[index % style("--series").split(/\s+/).length];
 const runName = (run, runs) => (runs.length > 1 ? `${run.label} ` : "");
 
-/** A figure with a chart that fills its width; `describe` gives {data, series, axes}. Kept in `charts` by its name. */
+/** A figure with a chart that fills its width. `describe` returns the data, the series, the names of the axes and
+*  options. */
 class Chart {
   constructor(name, title, describe) {
     this.name = name;
@@ -124,7 +126,8 @@ function agesAndFitness(runs) {
         points: { show: true, size: 7, fill: runColour(index), stroke: "transparent" },
         paths: () => null,
       };
-      // several may have one age, but a chart has one value for each x: the rest of them move by too little to see
+      // A chart has one value for each x, but several individuals can have the same age. They are moved apart by an
+      // invisible distance.
       const seen = new Map();
       const x = run.population.map(({ age }) => {
         const times = seen.get(age) ?? 0;
@@ -152,7 +155,7 @@ function agesAndFitness(runs) {
   });
 }
 
-/** What became of the evaluations of each generation, as shares stacked on each other. */
+/** The status of the evaluations of each generation, as stacked shares. */
 function statuses(run, title) {
   return new Chart("statuses", title, () => {
     const of = run.generations;
@@ -186,7 +189,7 @@ function statuses(run, title) {
   });
 }
 
-/** Bars of where the time went. Phases overlap, so that they may add up to more than the whole. */
+/** Bars that show the time of each phase. Phases overlap, so their sum may exceed the total time. */
 function timeSpent(run, title) {
   const whole = run.time?.whole ?? run.generations.reduce((sum, g) => sum + g.wall_time, 0);
   const row = (name, seconds) =>
@@ -214,7 +217,7 @@ function timeSpent(run, title) {
   );
 }
 
-/** The charts of some runs, as figures; drawn by draw(), and named in `byName`. */
+/** The charts of runs, as figures. draw() draws them; `byName` finds them by their names. */
 export class Charts {
   constructor(runs) {
     const titleOf = (title, run) => (runs.length > 1 ? `${title}: ${run.label}` : title);

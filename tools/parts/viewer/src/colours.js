@@ -1,4 +1,4 @@
-// What the colours of springs mean.
+// The colours of springs, by material, by stress or by the cycle in which they were added.
 import { style } from "./elements.js";
 
 const mix = (a, b, t) => a.map((x, i) => x + (b[i] - x) * t);
@@ -9,7 +9,7 @@ const ramp = (stops, t) => {
 };
 export const css = (colour) => `rgb(${colour.map((x) => Math.round(255 * x)).join(" ")})`;
 
-// read once for every theme
+// read again whenever the theme changes
 let palette;
 export function readPalette() {
   const list = (name) => style(name).split(/\s+/).map(rgb);
@@ -22,7 +22,8 @@ export function readPalette() {
   };
 }
 
-/** Muscles by phase, the more they move the stronger; what does not move by stiffness. */
+/** The colour of a material. A muscle's colour depends on its phase, and is stronger for larger amplitudes; a passive
+*  material's colour depends on its stiffness. */
 export function materialColour(material, all) {
   const most = Math.max(...all.map((m) => m.amplitude));
   const stiffest = Math.max(...all.map((m) => m.stiffness));
@@ -32,17 +33,17 @@ export function materialColour(material, all) {
   return mix(passive, ramp(palette.muscles, phase), 0.35 + 0.65 * (material.amplitude / most));
 }
 
-/** `part` is of the root of the most stress. */
+/** The colour of stress; `part` is the square root of stress relative to the largest stress. */
 export const stressColour = (part) => ramp(palette.stress, part);
 
 export const cycleColour = (cameWith, shots) =>
   cameWith <= 0 ? palette.born : ramp(palette.cycles, shots > 2 ? (cameWith - 1) / (shots - 2) : 1);
 
-/** How many of the first shots hold all in which springs come. */
+/** The number of shots up to the last one in which springs were added. */
 export const developing = (life) => 1 + life.cameWith.reduce((last, index) => Math.max(last, index), 0);
 
-/** A function that gives the colour of the i-th spring of a shot; `scale` holds the stress (N) and the number of cycles
- *  that have the last colours. */
+/** Returns a function that gives the colour of the i-th spring of a shot. `scale` holds the stress (N) and the number
+ *  of shots that correspond to the last colour. */
 export function springColours(life, mode, scale) {
   const { materials, most_stress, stress_levels } = life.robot.film;
   if (mode === "stress") {

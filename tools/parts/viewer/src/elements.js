@@ -1,6 +1,6 @@
-// Small helpers for building the page. Text is always text, never markup.
+// Small helpers for building the page. Text is never interpreted as markup.
 
-/** An element with properties, and children that are elements or text. */
+/** Creates an element with properties, and children that are elements or text. */
 export function element(tag, properties = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(properties)) {
@@ -11,7 +11,7 @@ export function element(tag, properties = {}, ...children) {
   return made;
 }
 
-/** A number with four significant digits, without trailing zeros. */
+/** Formats a number with four significant digits, without trailing zeros. */
 export function short(value) {
   if (value === null || value === undefined) return "–";
   if (value !== 0 && (Math.abs(value) >= 1e5 || Math.abs(value) < 1e-3)) {
@@ -25,7 +25,7 @@ function superscript(number) {
   return [...String(number)].map((c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(c)])).join("");
 }
 
-/** The value of a colour or other variable of the style sheet. */
+/** Returns the value of a variable of the style sheet, such as a colour. */
 export function style(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }

@@ -1,10 +1,10 @@
-// Small pictures of many robots; one renderer draws them all.
+// Small pictures of many robots, all drawn by one renderer.
 import * as THREE from "three";
 import { element } from "./elements.js";
 import { Life } from "./life.js";
 import { Stage } from "./stage.js";
 
-const side = 480; // pixels, twice as many as are seen
+const side = 480; // pixels; twice the size at which pictures are shown
 
 export class Gallery {
   constructor(robots, viewer) {
@@ -27,7 +27,7 @@ export class Gallery {
     this.root = element("section", { className: "gallery" }, ...robots.map(tile));
   }
 
-  /** Draws every robot as it is in the end. */
+  /** Draws every robot at the end of its life. */
   async draw() {
     const canvas = element("canvas");
     const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });

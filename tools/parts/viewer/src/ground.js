@@ -1,17 +1,17 @@
-// Rough ground, from heights at the corners of squares.
+// Rough ground, given by heights on a square grid.
 import * as THREE from "three";
 import { sums } from "./unpack.js";
 
-const level = 127; // of 0 … 254
+const level = 127; // the stored value of height 0; values are 0 … 254
 
 export class Ground {
-  /** Unpacks a scene's ground; where it is level, there is none. */
+  /** Unpacks a scene's ground. Returns undefined if it is level. */
   static async of({ ground }) {
     if (!ground) return undefined;
     return Object.assign(new Ground(), ground, { levels: Uint8Array.from(await sums(ground.heights)) });
   }
 
-  /** The ground as triangles. */
+  /** Returns the ground as triangles. */
   geometry() {
     const { columns, rows, spacing, levels } = this;
     const positions = new Float32Array(3 * columns * rows);
@@ -36,7 +36,7 @@ export class Ground {
 
 const levelGround = { levels: Uint8Array.of(level), columns: 1, rows: 1, x: 0, y: 0, spacing: 1, roughness: 0 };
 
-/** What heightOf() reads. */
+/** The uniforms that heightOf() reads. */
 export function heightUniforms(ground = levelGround) {
   const heights = new THREE.DataTexture(ground.levels, ground.columns, ground.rows, THREE.RedFormat);
   heights.minFilter = heights.magFilter = THREE.LinearFilter;
@@ -47,7 +47,7 @@ export function heightUniforms(ground = levelGround) {
   };
 }
 
-/** GLSL: the height of the ground at a place, m; beyond the edge that of the edge. */
+/** GLSL: the height of the ground at a point, m. Points beyond the edge have the height of the edge. */
 export const heightOf = /* glsl */ `
 uniform sampler2D heights;
 uniform vec4 heightsAt; // x and y of the first, spacing, roughness

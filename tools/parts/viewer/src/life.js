@@ -1,10 +1,10 @@
-// A robot's life: which masses and springs are there at a time, and where.
+// A robot's life: which masses and springs exist at a time, and where they are.
 import { changed, integers, Places, Values } from "./unpack.js";
 
-const smoothing = 0.5; // s, to either side: what follows a robot should not shake with its steps
+const smoothing = 0.5; // s, before and after: the camera that follows a robot should not shake with its steps
 
 export class Life {
-  /** Unpacks a robot of the page's data. */
+  /** Unpacks the life of a robot from the page's data. */
   static async of(robot) {
     const life = new Life();
     const film = robot.film;
@@ -20,7 +20,7 @@ export class Life {
     return life;
   }
 
-  /** Unpacks shots, each of which is told by how it differs from those before. */
+  /** Unpacks shots. Each shot is stored as its differences from the shots before. */
   async #unpacked(packed) {
     const springCount = this.ends.length / 2;
     const materials = new Values(springCount);
@@ -47,8 +47,8 @@ export class Life {
     return shots;
   }
 
-  /** Finds the shot in which each spring came; for each shot which of its springs are new, and which of the one before
-   *  have gone. */
+  /** Finds the shot in which each spring first exists and, for each shot, which of its springs are new and which
+   *  springs of the previous shot are gone. */
   #markArrivals() {
     this.cameWith = new Int32Array(this.ends.length / 2).fill(-1);
     let before = new Map();
@@ -65,7 +65,7 @@ export class Life {
     });
   }
 
-  /** Computes the path of the middle of all masses, and a smooth one of the middle of the box around them. */
+  /** Computes the path of the mean position of all masses, and a smoothed path of the middle of their bounding box. */
   #follow() {
     const step = this.robot.film.step;
     this.path = this.shots.flatMap((shot) =>
@@ -90,7 +90,7 @@ export class Life {
     });
   }
 
-  /** The index of the shot at a time; where one ends and the next begins, the next. */
+  /** Returns the index of the shot at a time. When one shot ends and the next begins, this is the next one. */
   shotAt(time) {
     let index = this.shots.length - 1;
     while (index > 0 && this.shots[index].begin > time + 1e-9) --index;
@@ -103,7 +103,8 @@ export class Life {
     return path[i].middle.map((x, axis) => x + part * (path[Math.min(i + 1, path.length - 1)].middle[axis] - x));
   }
 
-  /** Writes places (m) of all masses at a time, four numbers for each; masses that have just gone stay where they were. */
+  /** Writes the positions (m) of all masses at a time, four numbers for each. Masses that have just been removed keep
+  *  their last position. */
   writePlaces(time, out) {
     const index = this.shotAt(time);
     if (index < 0) return;
@@ -125,7 +126,7 @@ export class Life {
     }
   }
 
-  /** The box around the body at the beginning of a shot: its longest side and its middle, m. */
+  /** Returns the longest side and the middle of the body's bounding box at the beginning of a shot, m. */
   boxIn(index) {
     const shot = this.shots[index];
     if (!shot) return { size: 1, middle: [0, 0, 0] };
@@ -141,7 +142,7 @@ export class Life {
   }
 }
 
-/** The least and the greatest of some numbers. */
+/** Returns the smallest and the largest of the numbers. */
 function rangeOf(numbers) {
   let low = numbers[0];
   let high = low;
@@ -152,7 +153,8 @@ function rangeOf(numbers) {
   return [low, high];
 }
 
-/** The last index whose time is not after `time`, and how much of the way to the next one has passed. */
+/** Returns the last index whose time is not after `time`, and the elapsed fraction of the interval to the next index.
+ *  */
 function between(count, timeOf, time) {
   let low = 0;
   let high = count - 1;

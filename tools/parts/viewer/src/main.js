@@ -1,4 +1,4 @@
-// Builds the page from the data in it.
+// Builds the page from the data that it contains.
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
 import { Charts } from "./charts.js";
@@ -24,7 +24,7 @@ const labelOf = (run, robot) => {
 };
 const robots = runs.flatMap((run) => run.robots.map((robot) => ({ run, robot, label: labelOf(run, robot) })));
 
-/** A share in percent that is 100 only where it is all. */
+/** Formats a share in percent, which is shown as 100 only if it is exactly 100. */
 const share = (part, all) => (part === all ? "100" : Math.min(99.9, (100 * part) / all).toFixed(1));
 
 function facts(run) {
@@ -133,7 +133,8 @@ function robotTable(viewer) {
   );
 }
 
-/** Where the life that is shown went otherwise than the one in the archive, such as on another device. */
+/** Returns a note if the fitness in the life shown differs from that in the archive by more than 1 %, for example
+ *  because it was simulated on another device. */
 function again(robot, name, k) {
   const shown = robot.again[k];
   return shown === undefined || Math.abs(shown - robot.objectives[name]) <= 0.01 * Math.abs(robot.objectives[name])
@@ -191,5 +192,5 @@ async function begin() {
   return page;
 }
 
-// for film.mjs and for tests
+// film.mjs and tests wait for this promise
 window.evodevo = begin();

@@ -1,7 +1,7 @@
-// What the GPU does: springs and masses that face the camera, shadows, the sky, the floor and what drifts in water.
+// The GPU's shaders for springs and masses that face the camera, shadows, the sky, the floor and particles in water.
 import { heightOf } from "./ground.js";
 
-/** Masses in a row of the texture of places. */
+/** Number of masses in a row of the texture that holds positions. */
 export const textureWidth = 256;
 
 const placeOf = /* glsl */ `
@@ -24,8 +24,8 @@ in vec2 ends;
 in vec3 colour;
 in float fresh;
 uniform float radius;
-uniform float pixel; // at a distance of 1
-uniform float glow; // of what is fresh
+uniform float pixel; // size of a pixel at distance 1
+uniform float glow; // brightness of new springs, 0 to 1
 uniform vec3 freshColour;
 out vec3 vColour;
 out vec3 vSide;
@@ -44,7 +44,7 @@ void main() {
   vAcross = position.x;
   vColour = mix(colour, freshColour, glow * fresh);
   vDepth = -at.z;
-  // what is thinner than a pixel would come and go
+  // springs thinner than a pixel would flicker
   float wide = max(radius * (1.0 + 1.2 * glow * fresh), 0.6 * pixel * vDepth);
   gl_Position = projectionMatrix * vec4(at + vSide * position.x * wide, 1.0);
 }`;
@@ -91,7 +91,7 @@ void main() {
   fragment = vec4(shade(vColour, vec3(vAt, sqrt(1.0 - r)), vDepth), 1.0);
 }`;
 
-// springs laid on the floor along the light; the stencil lets each pixel darken once
+// springs projected onto the floor along the light; the stencil buffer darkens each pixel only once
 export const shadowVertex = /* glsl */ `
 in vec2 ends;
 uniform float radius;
@@ -128,7 +128,7 @@ out vec4 fragment;
 void main() { fragment = vec4(mix(near, far, smoothstep(0.0, 1.5, length(vAt - vec2(0.0, 0.2)))), 1.0); }`;
 
 export const floorVertex = /* glsl */ `
-uniform vec3 centre; // of level ground, which goes with what is looked at
+uniform vec3 centre; // of level ground, which moves with the camera's focus
 out vec2 vAt;
 out vec3 vNormal;
 void main() {
@@ -143,7 +143,7 @@ in vec2 vAt;
 in vec3 vNormal;
 uniform vec3 line;
 uniform vec3 earth;
-uniform float relief; // 0: nothing but lines; 1: hills that hide what is behind them
+uniform float relief; // 0: only lines; 1: opaque hills
 uniform vec3 focus;
 uniform float reach;
 out vec4 fragment;
@@ -155,12 +155,12 @@ float grid(float cell, float width) {
 void main() {
   float fade = 1.0 - smoothstep(0.25 * reach, reach, distance(vAt, focus.xy));
   float strength = max(0.32 * grid(0.25, 1.0), 0.85 * grid(1.0, 1.4));
-  float light = dot(normalize(vNormal), vec3(0.5, -0.8, 1.0)); // 1 where it is level
+  float light = dot(normalize(vNormal), vec3(0.5, -0.8, 1.0)); // 1 on level ground
   vec3 hills = earth * clamp(0.3 + 0.7 * light, 0.0, 1.12);
   fragment = vec4(mix(mix(line, hills, relief), line, strength), mix(strength, 1.0, relief) * fade);
 }`;
 
-// motes that drift past: what a swimmer moves through, repeated around the focus
+// particles in the water through which a swimmer moves; their pattern repeats around the focus
 export const moteVertex = /* glsl */ `
 uniform vec3 focus;
 uniform float reach;

@@ -1,7 +1,7 @@
-// One robot in its world, drawn by three.js. Springs and masses are flat pieces that face the camera and are shaded as
-// cylinders and balls: two triangles each, their ends looked up in a texture of places, so that a frame costs the
-// program no more than writing the places of the masses. They are no instances, since without a GPU each instance costs
-// as much as a draw of its own.
+// One robot in its scene, drawn by three.js. Each spring and each mass is a flat square of two triangles, which faces
+// the camera and is shaded as a cylinder or a ball. The shaders read the positions of masses from a texture, so that
+// for each frame the program only has to write these positions. Instancing is not used, since without a GPU each
+// instance costs as much as a separate draw call.
 import * as THREE from "three";
 import { materialColour, springColours } from "./colours.js";
 import { style } from "./elements.js";
@@ -22,13 +22,13 @@ import {
   textureWidth,
 } from "./shaders.js";
 
-const effectTime = 0.7; // s in which vanished springs fade and new ones cool
+const effectTime = 0.7; // s in which removed springs fade and new ones stop glowing
 
 const material = (vertexShader, fragmentShader, uniforms, options = {}) =>
   new THREE.ShaderMaterial({ glslVersion: THREE.GLSL3, vertexShader, fragmentShader, uniforms, ...options });
 
-/** Fills a geometry with squares whose corners are at ±1 across and `low` … 1 along. `attributes` holds for each name
- *  the size of a value and the values, one for each square. */
+/** Fills a geometry with squares that extend from -1 to 1 in x and from `low` to 1 in y. `attributes` maps each name to
+ *  the number of components of a value and the values, one for each square. */
 function setSquares(geometry, low, count, attributes) {
   geometry.dispose();
   const set = (name, size, values) => geometry.setAttribute(name, new THREE.BufferAttribute(values, size));
@@ -49,7 +49,7 @@ function setSquares(geometry, low, count, attributes) {
   geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
 }
 
-/** Each square's value at its four corners. */
+/** Repeats each square's value for its four corners. */
 function atCorners(values, size, count) {
   const all = new Float32Array(4 * size * count);
   for (let i = 0, at = 0; i < size * count; i += size)
@@ -60,8 +60,8 @@ function atCorners(values, size, count) {
 const colour = (name) => new THREE.Color().setStyle(style(name), THREE.LinearSRGBColorSpace);
 
 export class Stage {
-  /** A robot in its scene, which may have a floor, with rough ground or without, or water. On a slope everything is
-   *  turned so that gravity, which leans there, points down. */
+  /** Shows a robot in its scene, which may have a level or rough floor, or water. On a slope, gravity is tilted; the
+   *  whole scene is rotated so that gravity points down. */
   constructor(life, { scene, material_names }, ground) {
     this.life = life;
     this.materialNames = material_names;
@@ -71,8 +71,8 @@ export class Stage {
     const { size, middle } = life.boxIn(0);
     this.size = size;
     this.start = middle;
-    this.focus = new THREE.Vector3(); // what is looked at, in the ground's frame
-    this.target = new THREE.Vector3(); // and as seen
+    this.focus = new THREE.Vector3(); // the point that the camera looks at, in the ground's frame
+    this.target = new THREE.Vector3(); // the same point after rotation by the slope
     const rows = Math.max(1, Math.ceil(life.massCount / textureWidth));
     this.places = new THREE.DataTexture(
       new Float32Array(4 * textureWidth * rows),
@@ -106,7 +106,7 @@ export class Stage {
       line: { value: new THREE.Color() },
       earth: { value: new THREE.Color() },
       focus: { value: this.focus },
-      reach: { value: (ground ? 3 : 6) * this.size }, // rough ground is not known any further
+      reach: { value: (ground ? 3 : 6) * this.size }, // the data of rough ground reaches no further
     };
     this.massRadius = { value: 0 };
     this.shadow = { value: new THREE.Vector4() };
@@ -145,7 +145,7 @@ export class Stage {
     const shown = {
       transparent: true,
       depthWrite: false,
-      depthTest: !ground, // straight shadows would sink into hills
+      depthTest: !ground, // with the test, straight shadows would be hidden inside hills
       side: THREE.DoubleSide,
       stencilWrite: true,
       stencilRef: 0,
@@ -185,7 +185,7 @@ export class Stage {
 
   #addMotes() {
     const geometry = new THREE.BufferGeometry();
-    let seed = 1; // a generator of its own: every page shows the same water
+    let seed = 1; // a random generator with a fixed seed: every page shows the same water
     const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
     geometry.setAttribute("position", new THREE.Float32BufferAttribute(Array.from({ length: 3 * 2500 }, random), 3));
     this.pixels = { value: 1 };
@@ -238,13 +238,13 @@ export class Stage {
       mass: [1, shot.masses],
       colour: [3, this.#massColours(shot)],
     });
-    // points that no springs join have to be seen by themselves
+    // without springs, masses are drawn larger so that they are visible
     const alone = there.length > 0 ? 0 : (0.09 * this.size) / Math.cbrt(shot.masses.length);
     this.massRadius.value = Math.max(1.7 * this.shared.radius.value, alone);
     this.#shown = index;
   }
 
-  /** What the squares of some of a shot's springs have. */
+  /** Returns the attributes of the squares of the springs in `list`. */
   #squares(shot, list, colourOf) {
     const ends = new Float32Array(2 * list.length);
     const colour = new Float32Array(3 * list.length);
@@ -258,7 +258,7 @@ export class Stage {
     return { ends: [2, ends], colour: [3, colour] };
   }
 
-  /** Points that no springs join have the colours of their materials. */
+  /** Returns the colours of masses. In a body without springs, masses have the colours of their materials. */
   #massColours(shot) {
     const { materials } = this.life.robot.film;
     const plain = colour("--mass").toArray();
@@ -266,7 +266,7 @@ export class Stage {
     return Array.from(shot.masses).flatMap((mass) => colours[this.life.massMaterials[mass]] ?? plain);
   }
 
-  /** Lets new springs glow, and vanished ones fade, by the time since the shot began. */
+  /** Sets how strongly new springs glow and removed ones are visible, by the time since the shot began. */
   #light(shot, time) {
     const left =
       1 - Math.min(1, (time - shot.begin) / Math.min(effectTime, 0.7 * (shot.end - shot.begin) || effectTime));
@@ -274,7 +274,7 @@ export class Stage {
     this.shared.glow.value = left;
   }
 
-  /** Puts the robot where it is at a time, and the camera's focus with it. */
+  /** Shows the robot at a time [s]. With `follow`, the camera's focus moves with it. */
   seek(time, follow) {
     const { life } = this;
     if (life.shots.length === 0) return;
@@ -291,7 +291,7 @@ export class Stage {
     this.target.copy(this.focus).applyEuler(this.scene.rotation);
   }
 
-  /** Draws what camera sees to a picture of so many pixels' height. */
+  /** Draws the camera's view into a picture that is `height` pixels high. */
   draw(renderer, camera, height) {
     const distance = camera.position.distanceTo(this.target);
     this.shared.hazeRange.value.set(distance - 0.5 * this.size, distance + 1.1 * this.size);

@@ -1,6 +1,6 @@
-// Undoes framework/report/packing.cpp.
+// Unpacks data packed by framework/report/packing.cpp.
 
-/** The integers in a packed text. */
+/** Returns the integers in a packed text. */
 export async function integers(text) {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
@@ -17,26 +17,28 @@ export async function integers(text) {
   return numbers;
 }
 
-/** Numbers from the differences between them. */
+/** Returns numbers that are packed as differences between neighbours. */
 export async function sums(text) {
   const numbers = await integers(text);
   for (let i = 1; i < numbers.length; ++i) numbers[i] += numbers[i - 1];
   return numbers;
 }
 
-/** Ascending numbers, from those before and from which came or went. */
+/** Returns an ascending list of numbers. `before` is the previous list; the packed text holds the numbers that were
+ *  added or removed. */
 export async function changed(before, text) {
   const changes = new Set(await sums(text));
   return Int32Array.from([...before.filter((number) => !changes.delete(number)), ...changes]).sort();
 }
 
-/** Values shot by shot, from how they differ from what each thing had when it was last there. */
+/** Unpacks one value for each item of each shot. Values are packed as differences from the last value of the same item.
+ *  */
 export class Values {
   constructor(count) {
     this.last = new Int32Array(count);
   }
 
-  /** The values of the things of these numbers, or of none. */
+  /** Returns the values of the items with these numbers; an empty array if the text holds no values. */
   async next(text, numbers) {
     const values = await integers(text);
     for (let i = 0; i < values.length; ++i) values[i] = this.last[numbers[i]] += values[i];
@@ -44,9 +46,9 @@ export class Values {
   }
 }
 
-/** Places in units of the step, shot by shot: frame by frame, in each all x, all y, all z. */
+/** Unpacks positions shot by shot, in units of the step: for each frame all x, then all y, then all z. */
 export class Places {
-  #last = new Map(); // x, y and z of masses that have been there
+  #last = new Map(); // the last x, y and z of each mass that has existed
 
   async next(text, masses, frames) {
     const all = await integers(text);

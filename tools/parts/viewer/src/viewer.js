@@ -1,4 +1,4 @@
-// The 3D viewer: one or two robots, a clock, and what steers them.
+// The 3D viewer: one or two robots, a clock, and the controls.
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { css, cycleColour, developing, materialColour, readPalette, stressColour } from "./colours.js";
@@ -8,10 +8,10 @@ import { Life } from "./life.js";
 import { Stage } from "./stage.js";
 
 const speeds = [0.1, 0.25, 0.5, 1, 2, 4];
-const framing = 2.9; // distance of the camera, in sizes of the body
+const framing = 2.9; // distance of the camera, in multiples of the body's size
 
 export class Viewer {
-  /** A viewer of robots: {label, robot, run} each. */
+  /** Creates a viewer of robots, each given as {label, robot, run}. */
   constructor(robots) {
     this.robots = robots;
     this.lives = new Map();
@@ -22,7 +22,7 @@ export class Viewer {
     this.speed = 1;
     this.follow = true;
     this.mode = "material";
-    this.works = robots.some(({ robot }) => robot.film.most_stress > 0); // random robots are only looked at
+    this.works = robots.some(({ robot }) => robot.film.most_stress > 0); // false if no robot was simulated
     this.#build();
     this.#makeRenderer();
     this.#listen();
@@ -51,7 +51,7 @@ export class Viewer {
     this.#showPlaying();
   }
 
-  /** Which robots are shown. */
+  /** Creates the controls that choose the robots shown. */
   #pickers() {
     const choose = (label, which, options) =>
       element(
@@ -67,7 +67,7 @@ export class Viewer {
     return element("div", { className: "pickers" }, this.first, this.robots.length > 1 ? this.second : null);
   }
 
-  /** What steers the clock. */
+  /** Creates the controls of the clock. */
   #transport() {
     this.play = element("button", { className: "play", type: "button", onclick: () => this.toggle() });
     this.scrub = element("input", {
@@ -88,7 +88,7 @@ export class Viewer {
     return element("div", { className: "transport" }, this.play, this.scrub, this.clock, this.speedSelect);
   }
 
-  /** What goes from cycle to cycle. */
+  /** Creates the controls that go from cycle to cycle. */
   #lifeBar() {
     this.cycle = element("input", {
       type: "range",
@@ -114,7 +114,7 @@ export class Viewer {
     );
   }
 
-  /** The colours to choose from, and what they mean. */
+  /** Creates the choice of colours and their legend. */
   #looks() {
     const choice = ([mode, label]) =>
       element(
@@ -141,7 +141,7 @@ export class Viewer {
 
   #makeRenderer() {
     this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, stencil: true });
-    this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace; // colours are those of the style sheet
+    this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace; // no conversion: colours as in the style sheet
     this.renderer.autoClear = false;
     this.camera = new THREE.PerspectiveCamera(32, 1, 0.01, 1000);
     this.camera.up.set(0, 0, 1);
@@ -150,7 +150,7 @@ export class Viewer {
     new ResizeObserver(() => this.#measure()).observe(this.stage);
   }
 
-  /** Asked for in every frame, the size would lay out the page each time. */
+  /** Stores the size of the stage. Reading it in every frame would cause a layout of the page each time. */
   #measure() {
     this.width = this.stage.clientWidth;
     this.height = this.stage.clientHeight;
@@ -197,16 +197,16 @@ export class Viewer {
     await this.show(chosen[0], chosen[1]);
   }
 
-  /** Shows a robot, and another beside it. */
+  /** Shows a robot and, optionally, a second one beside it. */
   async show(first, second) {
     this.chosen = [first, second];
     const indices = this.chosen.filter((i) => i !== undefined);
     const lives = await Promise.all(indices.map((i) => this.#life(i)));
     const grounds = await Promise.all(indices.map((i) => Ground.of(this.robots[i].run.scene)));
-    if (this.chosen[0] !== first || this.chosen[1] !== second) return; // another choice was faster
+    if (this.chosen[0] !== first || this.chosen[1] !== second) return; // the user has chosen other robots meanwhile
     this.stages.forEach((stage) => stage.dispose());
     this.stages = lives.map((life, k) => new Stage(life, this.robots[indices[k]].run, grounds[k]));
-    // one for both, so that they can be compared
+    // both robots have the same scale, so that they can be compared
     this.scale = {
       stress: Math.max(...lives.map((life) => life.robot.film.most_stress ?? 0)),
       cycles: Math.max(...lives.map(developing)),
@@ -231,7 +231,7 @@ export class Viewer {
     return this.lives.get(index);
   }
 
-  /** The robot whose cycles the slider shows. */
+  /** Returns the life with the most shots, whose cycles the slider shows. */
   #leading() {
     return this.stages.map((stage) => stage.life).reduce((a, b) => (b.shots.length > a.shots.length ? b : a));
   }
@@ -320,14 +320,15 @@ export class Viewer {
     this.dirty = true;
   }
 
-  /** Says what the colours mean, and how exact the picture is. */
+  /** Updates the legend of the colours and the note on the accuracy of the picture. */
   #explain() {
     const shown = this.stages.filter((stage) => stage.life.shots.length > 0);
     this.legend.replaceChildren(...(shown.length > 0 ? this.#legend() : []));
     this.note.textContent = shown.length > 0 ? this.#exactness(shown.map((stage) => stage.life.robot.film.error)) : "";
   }
 
-  /** How far the worse of the films shown may be from what was simulated. */
+  /** Returns a text on how far the films shown may deviate from the simulation; it gives the larger deviation of the
+  *  two. */
   #exactness(errors) {
     const worst = (kind) => Math.max(...errors.map((error) => error[kind]));
     const within = `Places are shown to within ${short(1000 * worst("most"))} mm 99 times in 100, and to within ${short(1000 * worst("largest"))} mm always`;
@@ -371,7 +372,7 @@ export class Viewer {
     return [...materials].map(([name, colour]) => swatch(colour, name));
   }
 
-  /** The name of a robot, and what it does. */
+  /** Returns the name of a robot, and a line on its current state. */
   #caption(k) {
     const { life } = this.stages[k];
     const name = this.robots[this.chosen.filter((i) => i !== undefined)[k]].label;
@@ -396,7 +397,7 @@ export class Viewer {
     });
   }
 
-  /** Draws the moment. */
+  /** Draws the robots at the current time. */
   draw() {
     this.dirty = false;
     if (!this.width) this.#measure();
@@ -427,13 +428,13 @@ export class Viewer {
     this.renderer.clear();
     const camera = this.camera.clone();
     camera.aspect = width / height;
-    // a narrow picture shows as much of the body as a wide one
+    // widens the view of a narrow picture, so that it shows as much of the body as a wide one
     camera.fov =
       camera.aspect < 1
         ? 2 * Math.atan(Math.tan((camera.fov * Math.PI) / 360) / camera.aspect) * (180 / Math.PI)
         : camera.fov;
     camera.position.add(stage.target);
-    camera.position.z += 0.05 * stage.size; // the caption stands above the body
+    camera.position.z += 0.05 * stage.size; // makes room for the caption above the body
     camera.updateProjectionMatrix();
     camera.updateMatrixWorld();
     stage.draw(this.renderer, camera, height * ratio);
