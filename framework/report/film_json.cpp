@@ -276,7 +276,7 @@ class FilmWriter {
     Json shots = Json::array();
     for (std::size_t i = 0; i < film_.size(); ++i) {
       const std::vector<const Frame*> kept = kept_frames(i, motion.every);
-      shots.push_back({{"times", times(kept)}, {"places", positions.next(kept, film_[i].numbers)}});
+      shots.push_back({{"times", times(kept)}, {"positions", positions.next(kept, film_[i].numbers)}});
     }
     return shots;
   }

@@ -36,7 +36,7 @@ struct Title {
 ///   error           ViewError, with positions interpolated linearly between the frames kept
 ///   shots           for each shot: name; times (s); masses and springs: the numbers of those that were added or
 ///                   removed since the previous shot; materials and stress: of the springs present, in the order of
-///                   their numbers; places: positions of the masses present
+///                   their numbers; positions: those of the masses present
 nlohmann::ordered_json film_json(const Film& film, const std::vector<Title>& titles, std::size_t budget);
 
 }  // namespace evodevo

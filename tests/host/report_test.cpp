@@ -314,7 +314,7 @@ TEST(FilmJson, LongLivesTakeNoMoreThanTheirBudget) {
     EXPECT_GT(json.dump().size(), budget / 2) << "what there is room for is kept";
     EXPECT_EQ(times.front(), 0);
     EXPECT_NEAR(times.back(), 60.0 * static_cast<double>(minutes), 1e-6);
-    EXPECT_EQ(unpacked(json["shots"][0]["places"]).size(), times.size() * 3 * 40);
+    EXPECT_EQ(unpacked(json["shots"][0]["positions"]).size(), times.size() * 3 * 40);
   }
 }
 

@@ -148,7 +148,7 @@ test("a gallery shows as many robots as asked for, and how balls become bodies",
   const far = await inPage(page, ({ viewer }) => {
     const { life } = viewer.stages[0];
     const all = new Float32Array(4 * life.massCount);
-    life.writePlaces(0, all);
+    life.writePositions(0, all);
     return Math.max(...Array.from({ length: life.massCount }, (_, i) => Math.hypot(...all.slice(4 * i, 4 * i + 3))));
   });
   assert.ok(far <= 1.001 && far > 0.7, `points of the unit ball lie up to ${far} m away`);

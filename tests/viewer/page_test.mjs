@@ -121,21 +121,21 @@ test("a name with markup in it is shown as text", async () => {
 
 test("masses are where the matured body has them", async () => {
   const body = JSON.parse(evodevo("body", scratch.run, "--matured"));
-  const { places, step, springs } = await inPage(
+  const { positions, step, springs } = await inPage(
     page,
     ({ viewer }, [time, count]) => {
       const { life } = viewer.stages[0];
       const all = new Float32Array(4 * life.massCount);
-      life.writePlaces(time, all);
+      life.writePositions(time, all);
       const shot = life.shots[count];
-      const places = Array.from(shot.masses, (mass) => Array.from(all.slice(4 * mass, 4 * mass + 3)));
-      return { places, step: life.robot.film.step, springs: shot.springs.length };
+      const positions = Array.from(shot.masses, (mass) => Array.from(all.slice(4 * mass, 4 * mass + 3)));
+      return { positions, step: life.robot.film.step, springs: shot.springs.length };
     },
     [cycles * cycleTime, cycles],
   );
   assert.equal(springs, body.springs.length);
-  assert.equal(places.length, body.masses.length);
-  places.forEach((place, i) =>
+  assert.equal(positions.length, body.masses.length);
+  positions.forEach((place, i) =>
     place.forEach((x, axis) => assert.ok(Math.abs(x - body.masses[i].position[axis]) <= 0.501 * step + 1e-6)),
   );
 });
@@ -273,10 +273,10 @@ function gap({ viewer }, time) {
   let columns = 1;
   while (array[3 * columns + 1] === array[1]) ++columns;
   const spacing = array[3] - array[0];
-  const places = new Float32Array(4 * life.massCount);
-  life.writePlaces(time, places);
+  const positions = new Float32Array(4 * life.massCount);
+  life.writePositions(time, positions);
   const above = Array.from(life.shots[life.shotAt(time)].masses, (mass) => {
-    const [x, y, z] = places.subarray(4 * mass);
+    const [x, y, z] = positions.subarray(4 * mass);
     const u = (x - array[0]) / spacing;
     const v = (y - array[1]) / spacing;
     const height = (i, j) => array[3 * (columns * (Math.floor(v) + j) + Math.floor(u) + i) + 2];

@@ -1,5 +1,5 @@
 // A robot's life: which masses and springs exist at a time, and where they are.
-import { changed, integers, Places, Values } from "./unpack.js";
+import { changed, integers, Positions, Values } from "./unpack.js";
 
 const smoothing = 0.5; // s, before and after: the camera that follows a robot should not shake with its steps
 
@@ -25,7 +25,7 @@ export class Life {
     const springCount = this.ends.length / 2;
     const materials = new Values(springCount);
     const stress = new Values(springCount);
-    const places = new Places();
+    const positions = new Positions();
     const shots = [];
     for (const shot of packed) {
       const { name, times } = shot;
@@ -41,7 +41,7 @@ export class Life {
         springs,
         materials: await materials.next(shot.materials, springs),
         stress: await stress.next(shot.stress, springs),
-        places: await places.next(shot.places, masses, times.length),
+        positions: await positions.next(shot.positions, masses, times.length),
       });
     }
     return shots;
@@ -71,7 +71,7 @@ export class Life {
     this.path = this.shots.flatMap((shot) =>
       shot.times.map((time, frame) => {
         const n = shot.masses.length;
-        const rows = [0, 1, 2].map((axis) => shot.places.subarray((3 * frame + axis) * n, (3 * frame + axis + 1) * n));
+        const rows = [0, 1, 2].map((axis) => shot.positions.subarray((3 * frame + axis) * n, (3 * frame + axis + 1) * n));
         return {
           time,
           middle: rows.map((row) => (row.reduce((a, b) => a + b, 0) / n) * step),
@@ -105,7 +105,7 @@ export class Life {
 
   /** Writes the positions (m) of all masses at a time, four numbers for each. Masses that have just been removed keep
   *  their last position. */
-  writePlaces(time, out) {
+  writePositions(time, out) {
     const index = this.shotAt(time);
     if (index < 0) return;
     if (index > 0) this.#write(this.shots[index - 1], this.shots[index - 1].times.length - 1, 0, out);
@@ -122,7 +122,7 @@ export class Life {
       const a = (3 * frame + axis) * n;
       const b = (3 * next + axis) * n;
       for (let i = 0; i < n; ++i)
-        out[4 * shot.masses[i] + axis] = step * (shot.places[a + i] * (1 - part) + shot.places[b + i] * part);
+        out[4 * shot.masses[i] + axis] = step * (shot.positions[a + i] * (1 - part) + shot.positions[b + i] * part);
     }
   }
 
@@ -133,7 +133,7 @@ export class Life {
     const n = shot.masses.length;
     const step = this.robot.film.step;
     const ranges = [0, 1, 2].map((axis) =>
-      rangeOf(shot.places.subarray(axis * n, (axis + 1) * n)).map((bound) => bound * step),
+      rangeOf(shot.positions.subarray(axis * n, (axis + 1) * n)).map((bound) => bound * step),
     );
     return {
       size: Math.max(step, ...ranges.map(([low, high]) => high - low)),

@@ -5,10 +5,10 @@ import { heightOf } from "./ground.js";
 export const textureWidth = 256;
 
 const placeOf = /* glsl */ `
-uniform sampler2D places;
+uniform sampler2D positions;
 vec3 placeOf(float mass) {
   int i = int(mass);
-  return texelFetch(places, ivec2(i % ${textureWidth}, i / ${textureWidth}), 0).xyz;
+  return texelFetch(positions, ivec2(i % ${textureWidth}, i / ${textureWidth}), 0).xyz;
 }`;
 
 const shade = /* glsl */ `

@@ -74,7 +74,7 @@ export class Stage {
     this.focus = new THREE.Vector3(); // the point that the camera looks at, in the ground's frame
     this.target = new THREE.Vector3(); // the same point after rotation by the slope
     const rows = Math.max(1, Math.ceil(life.massCount / textureWidth));
-    this.places = new THREE.DataTexture(
+    this.positions = new THREE.DataTexture(
       new Float32Array(4 * textureWidth * rows),
       textureWidth,
       rows,
@@ -94,7 +94,7 @@ export class Stage {
     const springs = Math.max(1, ...this.life.shots.map((shot) => shot.springs.length));
     const radius = this.size * Math.min(0.0075, 0.09 / Math.sqrt(springs));
     this.shared = {
-      places: { value: this.places },
+      positions: { value: this.positions },
       radius: { value: radius },
       pixel: { value: 0 },
       glow: { value: 0 },
@@ -280,8 +280,8 @@ export class Stage {
     if (life.shots.length === 0) return;
     const index = life.shotAt(time);
     if (index !== this.#shown) this.#fill(index);
-    life.writePlaces(time, this.places.image.data);
-    this.places.needsUpdate = true;
+    life.writePositions(time, this.positions.image.data);
+    this.positions.needsUpdate = true;
     this.#light(life.shots[index], time);
     this.lookAt(follow ? life.middleAt(time, life.smoothPath) : this.start);
   }
@@ -302,7 +302,7 @@ export class Stage {
 
   dispose() {
     this.scene.traverse((object) => (object.geometry?.dispose(), object.material?.dispose()));
-    this.places.dispose();
+    this.positions.dispose();
     this.heights?.heights.value.dispose();
   }
 }

@@ -47,7 +47,7 @@ export class Values {
 }
 
 /** Unpacks positions shot by shot, in units of the step: for each frame all x, then all y, then all z. */
-export class Places {
+export class Positions {
   #last = new Map(); // the last x, y and z of each mass that has existed
 
   async next(text, masses, frames) {

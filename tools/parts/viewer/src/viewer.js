@@ -331,7 +331,7 @@ export class Viewer {
   *  two. */
   #exactness(errors) {
     const worst = (kind) => Math.max(...errors.map((error) => error[kind]));
-    const within = `Places are shown to within ${short(1000 * worst("most"))} mm 99 times in 100, and to within ${short(1000 * worst("largest"))} mm always`;
+    const within = `Positions are shown to within ${short(1000 * worst("most"))} mm 99 times in 100, and to within ${short(1000 * worst("largest"))} mm always`;
     return this.works ? `${within}; stress to within ${short(worst("stress"))} N.` : `${within}.`;
   }
 
