@@ -25,8 +25,8 @@ class DevelopmentLoop {
   DevelopmentLoop(const Experiment& experiment, const LifeSimulation& simulation)
       : experiment_(experiment), simulation_(simulation) {}
 
-  /// Develops lives. Calls `progress` after each cycle, once all lives are changed. Throws InputError if a record does
-  /// not fit its body.
+  /// Develops lives. Calls `progress` after each cycle, once all lives have been changed. Throws InputError if a record
+  /// does not fit its body.
   void run(std::span<Life> lives, const Progress& progress) const;
 
   /// Simulated time of all cycles, s. With the control random-places it is doubled, because each life is simulated

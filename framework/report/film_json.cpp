@@ -21,7 +21,7 @@ constexpr std::size_t measured_finer = 4;  ///< ratio of the frame rate of measu
 struct Detail {
   double parts_of_length;     ///< the unit of positions is the body's longest side divided by this
   int stress_levels;          ///< levels of the root of stress: many springs bear little stress, and few bear much
-  std::size_t most_thinning;  ///< largest n for keeping only every n-th filmed frame, before precision is reduced
+  std::size_t most_thinning;  ///< keep only every n-th filmed frame, with n up to this, before reducing precision
 };
 
 // With 2048 units per body length, errors are smaller than the pixels of a page. Every 16th frame of 60 per second

@@ -16,7 +16,7 @@ std::optional<Cause> cause_at(const Causes& causes, Causes::List list, std::size
   return numbers.empty() || std::isnan(numbers[index]) ? std::nullopt : std::optional(Cause{list, numbers[index]});
 }
 
-/// Collects the events of a life. Its changes must be added in their order.
+/// Collects the events of a life. Its changes must be added in the order in which they were made.
 class EventLog {
  public:
   explicit EventLog(Body born) : body_(std::move(born)), masses_(body_.masses.size()) {}

@@ -22,7 +22,7 @@ class StiffnessMatrix {
       const double length = norm(d);
       const double stiffness = body.materials[spring.material].stiffness;
       const Eigen::Vector3d direction =
-          Eigen::Vector3d(d.x, d.y, d.z).normalized();  // zero for a spring without length
+          Eigen::Vector3d(d.x, d.y, d.z).normalized();  // zero for a spring of zero length
       links_.push_back({spring.a, spring.b, stiffness, length != 0, direction});
     }
   }

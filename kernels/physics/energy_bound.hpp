@@ -14,7 +14,7 @@ struct EnergyBound {
   double allowance = 0;  ///< allowance for muscle strain, rounding, and masses that sink into the floor, J
 
   /// The largest energy (J) that muscles can have added, to gravitational + kinetic + elastic energy, `time` seconds
-  /// after the beginning. `fallen` is the largest energy (J) lost by falling below the origin until then.
+  /// after the beginning. `fallen` is the largest gravitational energy (J) lost so far by falling below the origin.
   EVODEVO_HD double added(double time, double fallen) const {
     const double root = drive * time, before = physics::maximum(start, 0.0) + fallen;
     return root * (root + 2 * physics::square_root(before));

@@ -116,7 +116,7 @@ class SpringTurnover final : public evodevo::Devo {
     const Partners partners(body);
     Candidates candidates(where_, context, stress, partners, count, rng);
     std::set<Pair> taken;
-    // enough attempts to find the free pairs of a body in which nearly all masses are joined; ends if there are none
+    // enough attempts to find free pairs even if only a few are left; the limit ends the search if there are none
     for (std::size_t attempts = evodevo::attempts_per_spring * count; attempts > 0 && taken.size() < count;
          --attempts) {
       const auto [pair, beside] = candidates.next(rng);

@@ -45,7 +45,7 @@ class Workplace {
       fs::create_symlink("/dev/full", scratch_ / link);
   }
 
-  /// Runs a line of shell in the folder.
+  /// Runs a shell command in the folder.
   Finished shell(const std::string& line) const {
     const std::string here = scratch_ / "";
     return testing::run({"sh", "-c", "cd \"$0\" && PATH=\"$0/bin:$0/tools:$PATH\" && export PATH && " + line, here});
@@ -124,8 +124,8 @@ TEST(Output, ARunIsWholeEvenIfNobodyCouldReadHowItWent) {
   EXPECT_EQ(Archive::read(workplace() / "unheard").generations().back().evaluations, 24);
 }
 
-/// Runs a line of shell whose standard output is a pipe without a reader. Returns the exit code, or 128 + the number of
-/// the signal that ended it.
+/// Runs a shell command whose standard output is a pipe that nobody reads. Returns the exit code, or 128 + the number
+/// of the signal that ended it.
 int exit_without_reader(const std::string& line, const std::string& errors) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");

@@ -41,7 +41,7 @@ TEST_F(Surroundings, ClosedStreamsAreNoFault) {
   }
   for (const char* closed : {">&-", "<&- >&-"})
     EXPECT_THAT(in_shell("\"$evodevo\" check \"$file\" " + std::string(closed)).output, Not(HasSubstr("crash")));
-  // no file of the run may get the number of a closed stream, since messages would then be written into it
+  // no file of the run may be opened under the descriptor of a closed stream, or messages would be written into it
   const Finished run = in_shell("\"$evodevo\" run \"$file\" --out \"$folder\" <&- 2>&-");
   EXPECT_EQ(run.exit_code, 0) << run.output;
   EXPECT_EQ(in_shell("\"$evodevo\" show \"$folder\" <&- >/dev/null 2>&-").exit_code, 0);

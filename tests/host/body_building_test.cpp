@@ -102,7 +102,7 @@ TEST(BodyBuilding, SpringsToNeighboursHaveTheMeanSizeOfTheirMasses) {
     EXPECT_DOUBLE_EQ(built.body.springs[spring].rest_length, start);
     EXPECT_FLOAT_EQ(built.body.springs[spring].growth, static_cast<float>(end / start));
   };
-  expect_length(0, 5, 5);  // springs that the encoding gives keep their rest length
+  expect_length(0, 5, 5);  // a spring that the encoding itself made keeps its rest length
   expect_length(1, 1.0 * 1, 0.75 * 1);
   expect_length(2, 0.625 * 2, 1.125 * 2);
   EXPECT_EQ(norm(built.body.masses[2].rest - built.body.masses[1].rest), 2) << "rest places stay";

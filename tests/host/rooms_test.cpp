@@ -37,7 +37,7 @@ const Floors floors{{"kernels/include"},
                     {"framework/commands"},
                     {"framework/main.cpp", "framework/help.inc"}};
 
-/// Returns the folder of the table in which a file lies, such as "framework/life" for framework/life/birth.cpp.
+/// Returns the name by which `floors` lists the folder of a file: "framework/life" for framework/life/birth.cpp.
 std::string room_of(const fs::path& file) {
   const fs::path relative = fs::relative(file, source);
   auto part = relative.begin();

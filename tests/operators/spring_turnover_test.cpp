@@ -186,7 +186,7 @@ TEST(SpringTurnover, EachOfTheMostStressedGetsOneBeside) {
       for (std::size_t s = 0; s < 400; ++s) found |= closes_a_triangle_with(s);
       EXPECT_TRUE(found);
     }
-    after(life, edits);  // throws if the host would refuse
+    after(life, edits);  // throws if the host would refuse the edits
   }
 }
 

@@ -97,7 +97,7 @@ TEST_P(ClosedForm, ADrivenSpringFollowsItsEquation) {
   const double t = 0.7;
   const double stretch = c * (std::sin(drive * t + phase) - std::sin(phase) * std::cos(omega * t) -
                               drive / omega * std::cos(phase) * std::sin(omega * t));
-  const double error = is_explicit(method()) ? 1e-3 : 2e-2;  // the other methods are of first order, and damp
+  const double error = is_explicit(method()) ? 1e-3 : 2e-2;  // the others damp, which is a first-order error
   EXPECT_NEAR(a.state.position[1].x - a.state.position[0].x, 1 + stretch, error);
 }
 
@@ -116,7 +116,7 @@ TEST_P(ClosedForm, DragEndsInTheTerminalVelocity) {
   const Scene scene{Gravity{}, {}, {}, {}, Drag{0.8}};
   const Body body = single_mass(0.2);
   const Answer a = simulate(body, resting(body, scene), scene, stepping(), 6000);
-  const double error = 10 * rounding() + (method() == Method::velocity_verlet ? 1e-5 : 0);  // an error of second order
+  const double error = 10 * rounding() + (method() == Method::velocity_verlet ? 1e-5 : 0);  // a second-order error
   EXPECT_NEAR(a.state.velocity[0].z, -std::sqrt(0.2 * g / 0.8), error);
 }
 

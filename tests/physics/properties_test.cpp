@@ -157,7 +157,8 @@ TEST_P(ExactProperty, MomentumIsWhatGravityAndDampingLeave) {
   }
 }
 
-/// Properties of explicit methods, whose forces act along the springs at the beginning of a step, not at its end.
+/// Properties of explicit methods. Their forces point along the springs as these are at the beginning of a step, not at
+/// its end.
 class ExplicitProperty : public ExactProperty {};
 
 INSTANTIATE_TEST_SUITE_P(Methods, ExplicitProperty, testing::ValuesIn(explicit_methods),

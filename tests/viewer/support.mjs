@@ -85,7 +85,7 @@ export async function opened(browser, file, options = {}) {
   page.complaints = [];
   page.on("request", (request) => page.requests.push(request.url()));
   page.on("console", (message) => {
-    // a renderer's messages on its own speed are not errors of the page
+    // a renderer's messages about its own speed are not errors of the page
     if (!message.text().includes("GL Driver Message (OpenGL, Performance,"))
       page.complaints.push(`${message.type()}: ${message.text()}`);
   });

@@ -1,5 +1,5 @@
-// The SQLite file of a run: opens, locks and writes it, and reads rows with a check of every value. Every error of
-// SQLite becomes an ArchiveError or a StorageError, which names the folder and the remedy.
+// The SQLite file of a run: opens, locks and writes it, and checks every value that it reads. Every SQLite error
+// becomes an ArchiveError or a StorageError, whose message names the folder and the remedy.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>

@@ -19,7 +19,8 @@ class OperatorFactory {
   OperatorFactory(const Registry& registry, const Warnings& registry_faults, Experiment& experiment)
       : registry_(registry), registry_faults_(registry_faults), experiment_(experiment) {}
 
-  /// Makes the operator that the key `name` of a table names. The host's own keys of the table must be read before.
+  /// Makes the operator that the key `name` of a table names. The host's own keys of the table must have been
+  /// read already.
   template <class T>
   std::unique_ptr<T> make(TomlReader& table) const {
     const AvailableOperator& available = named_in(table, T::kind);

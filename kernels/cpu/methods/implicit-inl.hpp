@@ -230,8 +230,8 @@ struct Implicit : StepMethod {
     }
   }
 
-  /// Sets the residual at c = 0, which is the right-hand side of the equation, kg m/s. dt K u has been subtracted from
-  /// the forces before.
+  /// Sets the residual at c = 0, which is the right-hand side of the equation, kg m/s. dt K u has already been
+  /// subtracted from the forces.
   template <class T>
   static void set_residual(const Stepper<T>& s, const Memory<T>& memory) {
     const hn::ScalableTag<T> d;

@@ -11,7 +11,7 @@ using Body = StreamedBody<Number>;
 __device__ __forceinline__ Vector triple(const Point<Number>& p) { return {p.x, p.y, p.z}; }
 __device__ __forceinline__ Point<Number> point(const Vector& p) { return {p.x, p.y, p.z, 0}; }
 
-/// L/L0; 0 for entry 0, which is no material.
+/// L/L0; 0 for entry 0, which belongs to empty joints.
 __device__ __forceinline__ Number relative_length(const Entry<Number>& entry) {
   return entry.rest_force / physics::maximum(entry.stiffness, Number(1e-30));
 }

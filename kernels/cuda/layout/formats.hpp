@@ -94,7 +94,7 @@ struct Answer {
   std::uint32_t diverged, finite, out_of_range;
 };
 
-/// A body in motion: one entry for each mass and each padding entry of the last group. Padding has mass 0 and never
+/// A body in motion: one entry for each mass, then padding that fills the last group. Padding has mass 0 and never
 /// moves.
 template <class T>
 struct Motion {
@@ -112,7 +112,7 @@ struct ResidentBody {
   const std::uint32_t* waves;        ///< likewise, MaterialCode::wave; if materials are computed
   const std::uint32_t* first_group;  ///< [block's warps] the group of each warp's first row
   const std::uint32_t* group_ends;   ///< [block's warps][chunks] bit r: the next group begins after row r
-  const Actuator* actuators;         ///< [entries]; entry 0 is no material
+  const Actuator* actuators;         ///< [entries]; entry 0 is for empty slots
   const T* mass;                     ///< [padded masses] kg
   const T* inverse_mass;             ///< [padded masses] 1/kg; 0 for masses that never move
   const Integer* start;              ///< [padded masses] start value of a force sum, by which its magic numbers cancel

@@ -84,8 +84,8 @@ class Colouring {
     for (const int edge : path_) set(edge, static_cast<std::uint32_t>(taken + open) - links_[edge].row);
   }
 
-  /// The cost of one more spring of `bank` in `row`: first by how many wavefronts an access becomes longer, then by how
-  /// many springs the bank has in that row already.
+  /// The cost of one more spring of `bank` in `row`: above all, how many more wavefronts an access takes; among equals,
+  /// how many springs of the bank are already in that row.
   int row_cost(int row, int bank) const {
     int most = 0;
     for (int other = 0; other < 32; ++other) most = std::max(most, in_bank(row, other));

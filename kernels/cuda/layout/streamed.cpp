@@ -80,7 +80,7 @@ unsigned Streamed<T>::steps_of_span(std::uint64_t span) const {
 template <class T>
 void Streamed<T>::pack_joints(const Regions& host) const {
   Joint<T>* to = joints_.in(host.input);
-  // an empty joint leads to its own mass and has entry 0, which is no material
+  // an empty joint leads to its own mass and has entry 0, which belongs to no material
   for (std::uint32_t index = 0; index < lanes * (first_row_.size() - 1); ++index)
     for (std::uint32_t row = 0; row < first_row_[index / lanes + 1] - first_row_[index / lanes]; ++row)
       to[joint_at(index, row)] = {T(0), std::min(index, masses() - 1), 0, 0};

@@ -27,7 +27,7 @@ struct Sweep {
   Method method;
   std::vector<double> dt, error;
 
-  /// The slope of log error over log dt by least squares. Without contact, the fit uses the smallest dt whose errors
+  /// The least-squares slope of log error against log dt. Without contact, the fit uses the smallest dt whose errors
   /// are above `smallest_error`. With contact, errors scatter, and the fit uses all dt at which contact is stable.
   double observed_order() const {
     std::size_t end = error.size();

@@ -1,4 +1,4 @@
-// The settings that the command line of the studies gives.
+// The settings given on the command line of the studies.
 #pragma once
 
 #include <filesystem>

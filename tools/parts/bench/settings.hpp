@@ -1,4 +1,4 @@
-// The settings that the command line of the benchmark gives.
+// The settings given on the command line of the benchmark.
 #pragma once
 
 #include <cstdint>

@@ -21,12 +21,12 @@ Report baselines(const Settings& settings);
 /// of few and of many materials.
 Report material_costs(const Settings& settings);
 
-/// Measures the cost of recording stress: with the paper's method in each of the paper's ways, and with our simulator
-/// as exact sums (paper, Figures 2 and 4).
+/// Measures the cost of recording stress: with the paper's method, for each of the ways of recording that the paper
+/// tried, and with our simulator, for exact sums (paper, Figures 2 and 4).
 Report stress_costs(const Settings& settings);
 
-/// Measures the shares of the truly 125 least and 125 most stressed springs that each of the paper's ways finds (paper,
-/// Figure 3).
+/// Measures what share of the 125 truly least and the 125 truly most stressed springs each of the paper's ways of
+/// recording finds (paper, Figure 3).
 Report tally_agreement(const Settings& settings);
 
 /// Measures how long the search for nearest neighbours in a population of random balls takes on CPU and GPU. Throws

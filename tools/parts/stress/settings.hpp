@@ -1,4 +1,4 @@
-// The settings that the command line of the study gives.
+// The settings given on the command line of the study.
 #pragma once
 
 #include <filesystem>
