@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 std::string read_input_file(const std::string& file, std::size_t most) {
   std::error_code error;
-  if (fs::is_directory(file, error)) refuse(file, "it is a folder");
+  if (fs::is_directory(file, error)) refuse(file, "it is a folder; give a file");
   // Opening a named pipe would block until another process opens it for writing. The pipes that a shell makes have a
   // writer; they have no canonical path and are therefore not refused here.
   if (const fs::path path = fs::canonical(file, error); !error && fs::is_fifo(path, error))
@@ -36,7 +36,7 @@ std::string read_input_file(const std::string& file, std::size_t most) {
     text.append(buffer.data(), static_cast<std::size_t>(stream.gcount()));
   }
   if (stream.bad()) refuse(file, std::strerror(errno));
-  if (text.size() > most) refuse(file, "it holds more than " + std::to_string(most) + " bytes");
+  if (text.size() > most) refuse(file, "it holds more than " + std::to_string(most) + " bytes; give a smaller file");
   return text;
 }
 

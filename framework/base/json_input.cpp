@@ -44,7 +44,8 @@ class ParserWatch {
       case Json::parse_event_t::object_start:
       case Json::parse_event_t::array_start:
         if (levels_.size() == most_levels)
-          input_.fail(location(), "lies more than " + std::to_string(most_levels) + " levels deep");
+          input_.fail(location(),
+                      "is nested more than " + std::to_string(most_levels) + " levels deep; no body needs that many");
         levels_.push_back({.is_list = event == Json::parse_event_t::array_start});
         break;
       case Json::parse_event_t::object_end:
@@ -73,7 +74,7 @@ class ParserWatch {
 
   void add_key(const std::string& key) {
     if (!levels_.back().keys.insert(key).second)
-      input_.fail(member_of(location_of_level(), unquoted(key)), "stands twice");
+      input_.fail(member_of(location_of_level(), unquoted(key)), "is given twice; remove one of the two");
     levels_.back().key = key;
   }
 
@@ -114,7 +115,7 @@ Json JsonInput::read() const {
   try {
     return Json::parse(text, ParserWatch(*this));
   } catch (const Json::exception& error) {
-    fail("", "is not JSON: " + complaint(error.what()));
+    fail("", "is not valid JSON: " + complaint(error.what()));
   }
 }
 
@@ -122,7 +123,7 @@ void JsonInput::expect(const Json& item, const std::string& at, const std::vecto
   if (!item.is_object()) fail(at, "expected an object, found " + shown(item));
   for (const auto& [key, value] : item.items())
     if (std::find(keys.begin(), keys.end(), key) == keys.end())
-      fail(member_of(at, unquoted(key)), "is not a key" + suggestion(key, keys));
+      fail(member_of(at, unquoted(key)), "is not a known key" + suggestion(key, keys));
 }
 
 const Json& JsonInput::member(const Json& item, const std::string& at, const std::string& key) const {
@@ -147,7 +148,8 @@ std::uint32_t JsonInput::index(const Json& item, const std::string& at, const st
                                std::size_t count) const {
   const Json& value = member(item, at, key);
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= count)
-    fail(member_of(at, key), shown(value) + " is not an index below " + std::to_string(count));
+    fail(member_of(at, key),
+         shown(value) + " is not a valid index; expected a whole number below " + std::to_string(count));
   return value.get<std::uint32_t>();
 }
 

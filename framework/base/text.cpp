@@ -96,7 +96,7 @@ std::string printable(std::string_view text, std::size_t most) {
 
 std::string text_fault(std::string_view text, std::size_t most) {
   if (printable(text, most) == text) return "";
-  return '"' + printable(text) + "\" is not at most " + std::to_string(most) +
+  return '"' + printable(text) + "\" must be at most " + std::to_string(most) +
          " bytes of UTF-8 without control characters";
 }
 

@@ -55,14 +55,13 @@ int body(const Given& given) {
 Command body_command() {
   Options options;
   add_individual_option(options);
-  options.add_options()(
-      "matured", "print the body after the development cycles, with the positions and velocities that it has then");
+  options.add_options()("matured", "print the body after development, with its positions and velocities at that time");
   add_plugin_option(options);
   return {.name = "body",
           .arguments = {{"DIR"}},
           .summary = "Print a robot of a run as JSON",
-          .text = {"The JSON has the masses, springs and materials of the newborn body, or with --matured of the "
-                   "developed one, in SI units. `simulate` reads it."},
+          .text = {"The JSON holds the masses, springs and materials of the body at birth or, with --matured, after "
+                   "development, in SI units. `simulate` reads it."},
           .examples = {"body runs/quickstart-1 > newborn.json", "body runs/quickstart-1 --matured > matured.json"},
           .options = options,
           .function = body};

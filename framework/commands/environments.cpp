@@ -42,7 +42,8 @@ void print(const SceneStudy& study, std::size_t measure, std::size_t cycles) {
 }
 
 void print(const std::vector<SceneStudy>& studies, std::size_t cycles) {
-  std::cout << "between two scenes / by start noise in one of them (means), and p of a permutation test\n";
+  std::cout << "mean distance between two scenes / mean distance by start noise within a scene, and p of a permutation "
+               "test\n";
   for (const SceneStudy& study : studies) {
     std::cout << "\nindividual " << study.individual << '\n';
     for (const Environment& environment : study.environments)
@@ -85,14 +86,14 @@ Json to_json(const SceneStudy& study) {
 /// the same body in all scenes.
 void expect_same_meaning(const Experiment& experiment, const std::string& title, const Experiment& first) {
   if (const auto other = difference(experiment, first, {"encoding", "materials"}); !other.empty())
-    throw ConfigError(title + ": " + other + "; the genome would mean another body: make them equal");
+    throw ConfigError(title + ": " + other + "; the same genome would encode another body: make the values equal");
 }
 
 void warn_of_other_differences(const Experiment& experiment, const std::string& title, const Experiment& first) {
   for (const char* table : {"development", "simulation"})
     if (const auto other = difference(experiment, first, {table}); !other.empty())
       std::cerr << "warning: " << printable(title + ": " + other, 2000)
-                << "; bodies may differ by it, whatever the scene\n";
+                << "; this alone may make bodies differ, whatever the scene\n";
 }
 
 std::vector<Experiment> read_experiments(const std::vector<std::string>& files, const Given& given) {
@@ -100,7 +101,7 @@ std::vector<Experiment> read_experiments(const std::vector<std::string>& files, 
   for (const std::string& file : files) {
     experiments.push_back(given_experiment(file, given));
     if (experiments.back().development.cycles == 0)
-      throw ConfigError(file + ": development.cycles: is 0, so that nothing grows; give 1 or more");
+      throw ConfigError(file + ": development.cycles: is 0, so no body develops; set 1 or more");
     expect_same_meaning(experiments.back(), file, experiments.front());
     warn_of_other_differences(experiments.back(), file, experiments.front());
   }
@@ -167,19 +168,20 @@ Command environments_command() {
   options.add_options()("run", value<std::string>("DIR"),
                         "the run that the genome comes from; default: a random genome")(
       "individual", values<std::int64_t>("ID"),
-      "the individual of the run; default: the best. Without a run, which of the random individuals; default: 0. May "
+      "the individual of the run; default: the best. Without --run, the number of a random individual; default: 0. May "
       "be repeated")("starts", value<std::int64_t>("N")->default_value(6),
-                     "starts in each scene: one as the body is born, the others with masses moved at random by up to "
-                     "1e-4 of its size")("json", "print JSON, with all bodies");
+                     "number of starts in each scene: one with the body as it is born, the others with its masses "
+                     "moved at random by up "
+                     "to 1e-4 of its size")("json", "print JSON, with all bodies");
   add_experiment_options(options);
   return {
       .name = "environments",
       .arguments = {{"EXPERIMENT.toml", Count::one_or_more}},
       .summary = "Compare the bodies that one genome grows in several scenes",
-      .text = {"The genome develops in the scene of each experiment, several times with start noise. The table has, "
-               "for each pair of scenes and each cycle, the mean distance between the bodies of the two scenes, the "
-               "mean distance by start noise within them, and p of a permutation test. All experiments need the "
-               "same [encoding] and [materials]."},
+      .text = {"The genome develops in the scene of each experiment, several times with start noise. For each pair of "
+               "scenes and each cycle, the table gives the mean distance between bodies of the two scenes, the mean "
+               "distance by start noise between bodies of the same scene, and p of a permutation test. All experiments "
+               "need the same [encoding] and [materials]."},
       .examples = {"environments experiments/environments/*.toml --individual 1 --individual 2",
                    "environments experiments/environments/*.toml --run runs/quickstart-1 --json > environments.json"},
       .options = options,

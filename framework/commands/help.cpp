@@ -45,7 +45,7 @@ Command help_command() {
   return {.name = "help",
           .arguments = {{"TOPIC", Count::optional}},
           .summary = "Explain a topic or a command",
-          .text = {"Without a topic it lists all commands and topics."},
+          .text = {"Without a name, it lists all commands and topics."},
           .examples = {"help experiment", "help run"},
           .options = {},
           .function = help};
@@ -54,8 +54,8 @@ Command help_command() {
 Command completion_command() {
   return {.name = "completion",
           .arguments = {{shells}},
-          .summary = "Print a script by which a shell completes commands",
-          .text = {"The script completes commands, options, their values, the names of operators, and files. "
+          .summary = "Print a completion script for a shell",
+          .text = {"The script completes commands, options, their values, names of operators, and files. "
                    "`cmake --install` puts it where each shell looks for it. Elsewhere, load it when the shell starts, "
                    "as in the examples below; the first one is for ~/.bashrc."},
           .examples = {"completion bash >> ~/.bashrc", "completion zsh > ~/.zfunc/_evodevo",
@@ -68,7 +68,7 @@ Command man_command() {
   return {.name = "man",
           .arguments = {},
           .summary = "Print the manual page",
-          .text = {"The page is in roff, as `man` reads it. `cmake --install` puts it in share/man/man1."},
+          .text = {"The page is in roff, the format that `man` reads. `cmake --install` puts it in share/man/man1."},
           .examples = {"man | man -l -"},
           .options = {},
           .function = man};

@@ -67,7 +67,7 @@ void print(const Event& event, const std::vector<Narrated>& operators) {
       op == nullptr ? by_none : op->name + (op->is_unique ? "" : " (operator " + std::to_string(*event.op) + ")");
   fmt::print(std::cout, "cycle {}  {}: ", event.cycle, title);
   if (const auto& growth = event.growth)
-    fmt::print(std::cout, "springs grow from {:.4g} to {:.4g} of their way", growth->from / growth->whole,
+    fmt::print(std::cout, "springs grow from {:.4g} to {:.4g} of their full growth", growth->from / growth->whole,
                growth->to / growth->whole);
   else
     fmt::print(std::cout, "{} {}", who(event), event.what);
@@ -106,10 +106,12 @@ class LifeReport {
                matured_.springs.size(), name(result.status), result.reason.empty() ? "" : ": " + result.reason);
     switch (experiment_.development.control) {
       case Control::random_places:
-        std::cout << "under the control \"random-places\": each operator's changes, but anywhere\n";
+        std::cout
+            << "under the control \"random-places\": as many changes as each operator made, but at random places\n";
         break;
       case Control::shuffled_stress:
-        std::cout << "under the control \"shuffled-stress\": what caused an edit was measured at another spring\n";
+        std::cout
+            << "under the control \"shuffled-stress\": the stress that caused an edit was measured at another spring\n";
         break;
       default:
         break;
@@ -161,9 +163,10 @@ Command life_command() {
       .name = "life",
       .arguments = {{"DIR"}},
       .summary = "Tell how the body of a robot developed",
-      .text = {"It simulates the development again and prints every mass and spring that came, changed or went: after "
-               "which cycle, by which operator, and the number that caused it. Masses keep their numbers; a spring "
-               "is named by the two masses that it joins."},
+      .text =
+          {"It simulates the development again and prints every mass and spring that was added, changed or removed: "
+           "after which cycle, by which operator, and because of which measured value. Masses keep their numbers; a "
+           "spring is named by the two masses that it joins."},
       .examples = {"life runs/quickstart-1", "life runs/quickstart-1 --individual 531 --json"},
       .options = options,
       .function = life};

@@ -134,14 +134,14 @@ int describe(const Given& given) {
 Command operators_command() {
   Options options;
   options.add_options()("kind", value<std::string>("KIND"),
-                        "only encoding, mutation, crossover, devo, fitness or selection operators")(
-      "failed", "the libraries that cannot be used, and why")("json", "print JSON, with all parameters")(
+                        "list only operators of one kind: encoding, mutation, crossover, devo, fitness or selection")(
+      "failed", "list the libraries that cannot be used, and why")("json", "print JSON, with all parameters")(
       "markdown", "print the reference page of all operators and parameters");
   add_plugin_option(options);
   return {.name = "operators",
           .arguments = {},
           .summary = "List the operators that experiments can name",
-          .text = {"`help plugins` says where they are looked for."},
+          .text = {"`help plugins` says where evodevo looks for them."},
           .examples = {"operators --kind devo", "operators --failed"},
           .options = options,
           .function = operators};
@@ -149,7 +149,7 @@ Command operators_command() {
 
 Command describe_command() {
   Options options;
-  options.add_options()("markdown", "print a section of a Markdown page");
+  options.add_options()("markdown", "print the description as a section of a Markdown page");
   add_plugin_option(options);
   return {.name = "describe",
           .arguments = {{"OPERATOR"}},

@@ -139,8 +139,8 @@ int gallery(const Given& given) {
 Command report_command() {
   Options options;
   options.add_options()("best", value<std::int64_t>("N")->default_value(3),
-                        "how many of the best to show, of each run")(
-      "individual", values<std::int64_t>("ID"), "one more individual to show, of each run; may be repeated")(
+                        "how many of the best individuals of each run to show")(
+      "individual", values<std::int64_t>("ID"), "another individual of each run to show; may be repeated")(
       "out", value<std::string>("FILE")->default_value("report.html"), "the page to write");
   add_plugin_option(options);
   return {
@@ -148,8 +148,8 @@ Command report_command() {
       .arguments = {{"DIR", Count::one_or_more}},
       .summary = "Write a page that shows runs and their robots",
       .text = {"The page is one HTML file that needs neither network nor server. It shows fitness, the Pareto front, "
-               "the experiment, and the best robots, some ancestors and the named individuals in 3D. Several runs "
-               "give one page that compares them."},
+               "the experiment, and the best robots, some of their ancestors and the named individuals in 3D. For "
+               "several runs, it is one page that compares them."},
       .examples = {"report runs/quickstart-1 --out report.html"},
       .options = options,
       .function = report};
@@ -160,19 +160,20 @@ Command film_command() {
   add_individual_option(options);
   options.add_options()("out", value<std::string>("FILE")->default_value("film.mp4"),
                         "the file to write; its name ends in .mp4, .gif, .webp or .png")(
-      "from", value<double>("S"), "where a film begins, s since birth; default: at birth")(
-      "to", value<double>("S"), "where a film ends, s since birth; default: at the end of the life")(
-      "at", value<double>("S"), "the time of a picture, s since birth; default: midway in the last measurement");
+      "from", value<double>("S"), "time at which a film begins, in s since birth; default: at birth")(
+      "to", value<double>("S"), "time at which a film ends, in s since birth; default: at the end of the life")(
+      "at", value<double>("S"), "time of a picture, in s since birth; default: midway through the last measurement");
   add_plugin_option(options);
   return {
       .name = "film",
       .arguments = {{"DIR"}},
       .summary = "Write a film or a picture of a robot of a run",
-      .text = {"A name ending in .mp4 is a film of 1280 by 720 pixels and 30 frames a second. One ending in .webp or "
-               ".gif is an animated picture of 480 by 270 pixels and 20 frames a second for web pages; as WebP it "
-               "takes some 0.1 MB a second, as GIF 0.6 MB. "
-               "One ending in .png is a single picture.",
-               "Chromium draws and ffmpeg encodes; without a GPU a frame takes 0.2 to 0.5 s of processor time."},
+      .text =
+          {"A name ending in .mp4 gives a film of 1280 by 720 pixels and 30 frames a second. A name ending in .webp "
+           "or .gif gives an animated picture of 480 by 270 pixels and 20 frames a second for web pages; each second "
+           "takes some 0.1 MB as WebP and 0.6 MB as GIF. A name ending in .png gives a single picture.",
+           "Chromium draws the frames and ffmpeg encodes them; without a GPU, a frame takes 0.2 to 0.5 s of processor "
+           "time."},
       .examples = {"film runs/quickstart-1 --out champion.mp4",
                    "film runs/quickstart-1 --from 14 --to 20 --out walk.webp",
                    "film runs/quickstart-1 --individual 531 --at 14 --out another.png"},
@@ -189,7 +190,7 @@ Command gallery_command() {
   return {.name = "gallery",
           .arguments = {{"EXPERIMENT.toml"}},
           .summary = "Write a page of random robots of an experiment",
-          .text = {"The page shows how the encoding makes each body."},
+          .text = {"The page shows how the encoding builds each body."},
           .examples = {"gallery experiments/paper.toml --count 24 --out gallery.html"},
           .options = options,
           .function = gallery};

@@ -43,9 +43,10 @@ std::string checked_name(const std::string& name) {
   static const std::regex allowed("[a-z][a-z0-9]*([-.][a-z][a-z0-9]*)*");
   constexpr std::size_t longest = 100;  // bytes; limits the recursion of std::regex_match, one level for each byte
   if (name.size() > longest || !std::regex_match(name, allowed))
-    throw UsageError("new " + printable(name) +
-                     ": is no name for an operator; expected at most 100 small letters and digits, joined by - or ., "
-                     "such as my-lab.growth");
+    throw UsageError(
+        "new " + printable(name) +
+        ": is not a valid operator name; expected at most 100 lowercase letters and digits, in words joined by - or "
+        "., such as my-lab.growth");
   return name;
 }
 
@@ -88,7 +89,7 @@ std::string for_kind(std::istream& source, const std::string& kind) {
 
 void write_from(const fs::path& from, const fs::path& to, const std::string& kind, const std::string& name) {
   std::ifstream source(from);
-  if (!source) throw std::runtime_error(from.string() + ": cannot be read; install evodevo anew");
+  if (!source) throw std::runtime_error(from.string() + ": cannot be read; install evodevo again");
   std::string text = for_kind(source, kind);
   replace_all(text, "@NAME@", name);
   replace_all(text, "@FILE@", file_name(name));
@@ -102,8 +103,8 @@ int create(const Given& given) {
   const std::string name = checked_name(given["NAME"].as<std::string>());
   std::error_code error;
   if (!fs::create_directory(name, error))
-    throw UsageError(name + ": cannot be made: " + (error ? error.message() : "it is there already") +
-                     "; give another name, or go elsewhere");
+    throw UsageError(name + ": cannot be created: " + (error ? error.message() : "it exists already") +
+                     "; give another name, or call this in another folder");
   try {
     for (const char* file : {"CMakeLists.txt", "README.md", "experiment.toml"})
       write_from(template_folder() / file, fs::path(name) / file, kind, name);
@@ -154,7 +155,7 @@ int conform(const Given& given) {
   if (as_json)
     std::cout << json_text(list) << '\n';
   else
-    std::cout << cases << " cases, " << bad << " not kept; --seed " << seed << " repeats them\n";
+    std::cout << cases << " cases, " << bad << " failed; --seed " << seed << " repeats them\n";
   return bad == 0 ? 0 : 1;
 }
 
@@ -164,7 +165,7 @@ Command new_command() {
   return {
       .name = "new",
       .arguments = {{"KIND"}, {"NAME"}},
-      .summary = "Write the project of a plugin",
+      .summary = "Write the project of a new plugin",
       .text = {"KIND is encoding, mutation, crossover, devo, fitness or selection. The project is a new folder NAME "
                "with an operator that works, an experiment that uses it, and tests. It builds against the installed "
                "evodevo."},
@@ -179,10 +180,10 @@ Command conform_command() {
   return {
       .name = "conform",
       .arguments = {{"LIBRARY", Count::one_or_more}},
-      .summary = "Check whether plugins keep to the rules",
-      .text = {"It calls the operators of each library with many inputs and checks what the host relies on, such as "
-               "the same answer to the same question. Each case runs in a process of its own, so that a crash is one "
-               "failed case."},
+      .summary = "Check whether plugins follow the rules for operators",
+      .text =
+          {"It calls the operators of each library with many inputs and checks what evodevo relies on, such as "
+           "equal results for equal inputs. Each case runs in a process of its own, so a crash fails only one case."},
       .examples = {"conform build/lib/evodevo/growth.evodevo.so"},
       .options = options,
       .function = conform,

@@ -52,7 +52,7 @@ fs::path new_run_folder(const std::string& name) {
     fs::path folder = fs::path("runs") / (name + "-" + std::to_string(number));
     if (fs::create_directory(folder, error)) return folder;
   }
-  throw ArchiveError("runs: no folder can be made there: " + error.message() + "; give another place with --out");
+  throw ArchiveError("runs: no folder can be created in it: " + error.message() + "; give another place with --out");
 }
 
 std::string resume_command_for(const Archive& archive) {
@@ -67,13 +67,14 @@ std::string state_of(const Archive& archive) {
   return (generations.empty()
               ? "\nno generation is complete; "
               : "\nthe run is complete up to generation " + std::to_string(generations.back().generation) + "; ") +
-         resume_command_for(archive) + " goes on from there";
+         "continue the run with `" + resume_command_for(archive) + "`";
 }
 
 void add_journal_option(Options& options) {
-  options.add_options()("journal", value<std::string>("wal|delete"),
-                        "how SQLite keeps what is being written: with wal nobody waits for anybody, delete also works "
-                        "on file systems of other machines; default: what the file system can do");
+  options.add_options()(
+      "journal", value<std::string>("wal|delete"),
+      "journal mode of SQLite: with wal, the run and its readers never wait for each other; delete also "
+      "works on network file systems; default: wal if the file system can do it");
 }
 
 /// Returns the value of --journal, if given. Throws UsageError if it is neither wal nor delete.
@@ -89,7 +90,8 @@ std::optional<Journal> given_journal(const Given& given) {
 void remember_folders_of(const Experiment& experiment) {
   if (const std::string fault = remember_plugin_folders(experiment.plugin_folders); !fault.empty())
     std::cerr << "warning: " << fault
-              << ", so that the folders of operators are not remembered; `resume` and others need --plugin-path\n";
+              << ", so the folders of operators are not remembered; give them to `resume` and other commands with "
+                 "--plugin-path\n";
 }
 
 void print_warnings(const Experiment& experiment) {
@@ -118,14 +120,14 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
   if (is_finished(experiment, archive.generations())) {
     const auto count = static_cast<std::size_t>(experiment.verify);
     if (count > 0)
-      remarks() << "verifying the best " << count << "; Ctrl-C leaves that to `" << program_name() << " verify "
-                << archive.folder().string() << "`" << std::endl;
+      remarks() << "verifying the best " << count << "; Ctrl-C stops this, and it can be done later by `"
+                << program_name() << " verify " << archive.folder().string() << "`" << std::endl;
     end_on_interrupt();
     for (const Verification& verification : verify_best(experiment, simulator, archive, count))
       print(verification, experiment.objectives.front());
     return 0;
   }
-  std::cout << "interrupted; to go on: " << resume_command_for(archive) << std::endl;
+  std::cout << "interrupted; to continue: " << resume_command_for(archive) << std::endl;
   return interrupted;
 }
 
@@ -147,7 +149,7 @@ int resume(const Given& given) {
   Archive archive = Archive::resume(given["DIR"].as<std::string>(), given_journal(given));
   const Experiment experiment = timed("reading the record of the run and loading its operators",
                                       [&] { return recorded_experiment(archive, given_plugin_path(given)); });
-  timed("checking that the run can go on", [&] { check_resumable(archive, experiment); });
+  timed("checking that the run can be continued", [&] { check_resumable(archive, experiment); });
   if (!given.contains("allow-other-versions")) refuse_other_versions(experiment, archive);
   const auto simulator = opened_simulator(experiment);
   warn_of_another_device(*simulator, archive);
@@ -175,7 +177,7 @@ Command run_command() {
       .summary = "Evolve robots",
       .text = {"The run writes all individuals of all generations into its folder, and verifies its best individual "
                "at the end. Ctrl-C ends it after the current generation, a second Ctrl-C ends it at once; `resume` "
-               "goes on with it. Results do not depend on the number of threads."},
+               "continues it. Results do not depend on the number of threads."},
       .examples = {"run experiments/quickstart.toml",
                    "run experiments/quickstart.toml --seed 2 --set selection.name=elitist --out runs/elitist"},
       .options = options,
@@ -185,12 +187,12 @@ Command run_command() {
 Command resume_command() {
   Options options;
   options.add_options()("allow-other-versions",
-                        "go on even where an operator has another version than when the run began");
+                        "continue even if an operator has another version than when the run began");
   add_journal_option(options);
   add_plugin_option(options);
   return {.name = "resume",
           .arguments = {{"DIR"}},
-          .summary = "Go on with a run that was interrupted",
+          .summary = "Continue an interrupted run",
           .text = {"The run ends as if it had never been interrupted. It warns if the device, or the build of "
                    "evodevo or of an operator, differs from the one that the run began with."},
           .examples = {"resume runs/quickstart-1"},

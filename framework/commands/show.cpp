@@ -121,7 +121,7 @@ Command show_command() {
           .arguments = {{"DIR"}},
           .summary = "Show the progress and the best robots of a run",
           .text = {"It prints the best and the median fitness by generation, why individuals have no fitness, and the "
-                   "best individuals with their ancestors. The run may be going on at the same time."},
+                   "best individuals with their ancestors. The run may still be in progress."},
           .examples = {"show runs/quickstart-1", "show runs/quickstart-1 --json"},
           .options = options,
           .function = show};

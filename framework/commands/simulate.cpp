@@ -88,7 +88,7 @@ Life life_of(const std::string& file, const Evaluation& evaluation) {
   throw ConfigError(
       file + ": " + name(life.result.status) + ": " + life.result.reason +
       (is_step ? "; set a smaller simulation.dt, or \"auto\""
-               : "; leave out \"time\", \"start_energy\" and the velocities, and the body is born on the ground"));
+               : "; leave out \"time\", \"start_energy\" and the velocities, so that the body is born on the ground"));
 }
 
 void print_end(const Life& life, Vec3 start, double length) {
@@ -114,7 +114,7 @@ int simulate(const Given& given) {
   Life life = life_of(body_file, evaluation);
   const Pace pace = pace_over(duration, experiment.step, life.living.longest_dt);
   if (pace.steps == 0)
-    throw UsageError("--duration " + to_text(duration) + ": is less than half a step; expected at least " +
+    throw UsageError("--duration " + to_text(duration) + ": is less than half a time step; expected at least " +
                      to_text(pace.dt) + " s");
   std::optional<TrajectoryFile> trajectory;
   if (given.contains("trajectory")) {
@@ -152,14 +152,14 @@ Command simulate_command() {
   Options options;
   options.add_options()("duration", value<double>("S")->default_value(10), "simulated time, s")(
       "trajectory", value<std::string>("FILE"),
-      "CSV file for the motion, with a frame every 0.01 s or the nearest whole number of steps");
+      "CSV file for the motion, with a frame every 0.01 s or the nearest whole number of time steps");
   add_experiment_options(options);
   return {
       .name = "simulate",
       .arguments = {{"BODY.json"}, {"EXPERIMENT.toml"}},
       .summary = "Simulate one body in the scene of an experiment",
-      .text = {"The body comes from `body`, or is your own. One without \"time\" is born on the ground of the scene; "
-               "one with it goes on from the positions and velocities in the file."},
+      .text = {"The body is one that `body` has printed, or your own. A body without \"time\" is born on the ground of "
+               "the scene; a body with it continues from the positions and velocities in the file."},
       .examples = {"simulate newborn.json experiments/quickstart.toml --trajectory fall.csv"},
       .options = options,
       .function = simulate};

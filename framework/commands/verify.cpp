@@ -22,7 +22,8 @@ int verify(const Given& given) {
     throw UsageError("--best " + std::to_string(best) + ": expected 1 to " + std::to_string(most_verified));
   Archive archive = Archive::annotate(given["DIR"].as<std::string>());
   if (archive.best(1).empty())
-    throw ArchiveError(archive.folder().string() + ": no individual has a fitness to verify");
+    throw ArchiveError(archive.folder().string() + ": no individual has a fitness that could be verified; see `" +
+                       program_name() + " show " + archive.folder().string() + "`");
   const Experiment experiment = experiment_of_run(archive, given);
   const auto simulator = opened_simulator(experiment);
   warn_of_other_builds(experiment, *simulator, archive);
@@ -46,15 +47,16 @@ Command verify_command() {
   options.add_options()("best", value<std::int64_t>("N")->default_value(3),
                         "how many of the best individuals to verify")("json", "print JSON");
   add_plugin_option(options);
-  return {.name = "verify",
-          .arguments = {{"DIR"}},
-          .summary = "Check whether the best robots of a run keep their fitness",
-          .text = {"It simulates each of them again with a smaller time step, with another method, from perturbed "
-                   "starts, without muscles, and for longer, and stores what came out in the run. The run may be going "
-                   "on at the same time. `help verification` explains the trials."},
-          .examples = {"verify runs/quickstart-1 --best 10"},
-          .options = options,
-          .function = verify};
+  return {
+      .name = "verify",
+      .arguments = {{"DIR"}},
+      .summary = "Check whether the best robots of a run keep their fitness",
+      .text = {"It simulates each of them again with a smaller time step, with another method, from perturbed "
+               "starts, without muscles, and for longer, and stores the results in the run. The run may still be in "
+               "progress. `help verification` explains the trials."},
+      .examples = {"verify runs/quickstart-1 --best 10"},
+      .options = options,
+      .function = verify};
 }
 
 }  // namespace evodevo

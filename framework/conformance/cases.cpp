@@ -25,9 +25,11 @@ void declarations(const AvailableOperator& subject, std::uint64_t) {
   if (const std::string fault = wrong_default(*op); !fault.empty()) throw Violation("the default " + fault);
   if (const auto faults = declaration_faults(*op); !faults.empty()) throw Violation(joined(faults, "; "));
   if (!std::string_view(subject.entry->summary).ends_with('.'))
-    throw Violation("its summary is no sentence that ends with a full stop");
+    throw Violation("its summary is not a sentence that ends with a full stop: \"" +
+                    std::string(subject.entry->summary) + "\"");
   const std::string_view version = subject.manifest->version, licence = subject.manifest->license;
-  if (version.empty() || licence.empty()) throw Violation("its library names no version or no licence");
+  if (version.empty() || licence.empty())
+    throw Violation("its library gives no version or no licence; give both in EVODEVO_PLUGIN(...)");
 }
 
 /// Collects, for every declared parameter, values that must be refused.
@@ -80,14 +82,15 @@ bool accepts(const AvailableOperator& subject, const toml::table& table) {
 }
 
 void refusals(const AvailableOperator& subject, std::uint64_t) {
-  if (!accepts(subject, {})) throw Violation("it does not accept its own defaults");
-  if (accepts(subject, toml::table{{"a-key-that-nobody-knows", 1}})) throw Violation("it accepts an unknown key");
+  if (!accepts(subject, {})) throw Violation("it does not accept its own defaults; correct parameters()");
+  if (accepts(subject, toml::table{{"a-key-that-nobody-knows", 1}}))
+    throw Violation("it accepts an unknown key, a-key-that-nobody-knows");
   Refusable refusable;
   create<Operator>(subject)->parameters(refusable);
   for (const auto& [name, table] : refusable.tables)
     if (accepts(subject, table))
       throw Violation("it accepts " + name + " = " + value_text(*table.get(name)) +
-                      "; what the host throws out of parameters() must pass");
+                      ", which is not allowed; parameters() must not catch what the host throws");
 }
 
 // ---- calls ----
@@ -95,8 +98,9 @@ void refusals(const AvailableOperator& subject, std::uint64_t) {
 void same_seed(const AvailableOperator& subject, std::uint64_t seed) {
   for (std::uint32_t input = 0; input < inputs_for(subject); ++input)
     if (!same(try_new(subject, seed, input), try_new(subject, seed, input)))
-      throw Violation("two calls with input " + std::to_string(input) +
-                      " and equal random numbers differ; draw from the Rng that is given and from nothing else");
+      throw Violation(
+          "two calls with input " + std::to_string(input) +
+          " and equal random numbers give different results; draw random numbers only from the Rng that is passed in");
 }
 
 void threads(const AvailableOperator& subject, std::uint64_t seed) {
@@ -115,8 +119,9 @@ void threads(const AvailableOperator& subject, std::uint64_t seed) {
     const auto results = other.get();
     for (std::size_t i = 0; i < alone.size(); ++i)
       if (!same(results[i], alone[i]))
-        throw Violation("input " + std::to_string(i) +
-                        " gives one result on one thread and another on eight; an operator holds parameters alone");
+        throw Violation(
+            "input " + std::to_string(i) +
+            " gives one result on one thread and another on eight threads; an operator may hold only parameters");
   }
 }
 
@@ -125,8 +130,9 @@ void batch(const AvailableOperator& subject, std::uint64_t seed) {
   for (std::uint32_t left = inputs_for(subject); left > 0; --left) {
     const std::uint32_t input = left - 1;
     if (!same(try_out(kind_of(subject), *op, seed, input), try_new(subject, seed, input)))
-      throw Violation("input " + std::to_string(input) +
-                      " alone and after others gives different results; an operator holds parameters alone");
+      throw Violation(
+          "input " + std::to_string(input) +
+          " gives one result by itself and another after other inputs; an operator may hold only parameters");
   }
 }
 
@@ -176,9 +182,9 @@ void instances(const AvailableOperator& subject, std::uint64_t seed) {
   Changer changer;
   other->parameters(changer);
   if (values(*one) != defaults)
-    throw Violation("a parameter set in one instance changes in another; no static members");
+    throw Violation("a parameter that is set in one instance changes in another; use no static members");
   if (!same(try_out(kind_of(subject), *one, seed, 0), before))
-    throw Violation("parameters set in one instance change what another does; no static members");
+    throw Violation("parameters that are set in one instance change the results of another; use no static members");
 }
 
 // ---- a run ----
@@ -228,7 +234,9 @@ struct RunFolder {
   fs::path path;
   RunFolder() {
     std::string pattern = (fs::temp_directory_path() / "evodevo-conform-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error(pattern + ": cannot be made");
+    if (mkdtemp(pattern.data()) == nullptr)
+      throw std::runtime_error(pattern +
+                               ": cannot be created; make its parent folder writable, or set TMPDIR to another folder");
     path = pattern;
   }
   ~RunFolder() { fs::remove_all(path); }
@@ -255,7 +263,9 @@ void resuming(const AvailableOperator& subject, std::uint64_t seed) {
     live(recorded_experiment(archive, {subject.file}), archive, false);
     return transcript(archive);
   });
-  if (straight != resumed) throw Violation("a run that was stopped and resumed ends otherwise than one that was not");
+  if (straight != resumed)
+    throw Violation(
+        "a run that was stopped and resumed ends differently from one that was not; keep nothing between calls");
 }
 
 }  // namespace

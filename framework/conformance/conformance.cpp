@@ -26,7 +26,7 @@ std::string tell(const std::function<void()>& check) {
   } catch (const std::exception& error) {
     return std::string("failed\n") + error.what();
   } catch (...) {
-    return "failed\nit threw something that is no std::exception";
+    return "failed\nit threw something that is not a std::exception";
   }
 }
 
@@ -45,14 +45,14 @@ void loads(const fs::path& library) {
     throw Violation("it changes " + changed + " while it is loaded; build it without -ffast-math");
   const Registry registry({library});
   if (!registry.failed().empty()) throw Violation(registry.failed().front().reason);
-  if (registry.operators().empty()) throw Violation("it brings no operator");
+  if (registry.operators().empty()) throw Violation("it has no operator; name one in EVODEVO_PLUGIN(...)");
 }
 
 void exports_one_function(const fs::path& library) {
   const std::vector<std::string> found = exports(library);
   if (found != std::vector<std::string>{"evodevo_plugin"})
     throw Violation("exports " + joined(found) +
-                    "; expected evodevo_plugin alone: build it with evodevo_add_plugin or -fvisibility=hidden");
+                    "; expected only evodevo_plugin: build it with evodevo_add_plugin or -fvisibility=hidden");
 }
 
 void lists_quickly(const fs::path& library) {
@@ -60,8 +60,8 @@ void lists_quickly(const fs::path& library) {
   const Registry registry({library});
   const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   if (seconds > listing_limit)
-    throw Violation("listing it takes " + to_text(seconds * 1000) +
-                    " ms; expected less than 100: work belongs into the calls, not into constructors");
+    throw Violation("listing its operators takes " + to_text(seconds * 1000) +
+                    " ms; expected less than 100 ms: do the work in the calls, not in constructors");
 }
 
 }  // namespace

@@ -23,13 +23,14 @@ class Bytes {
   template <class T>
   T at(std::size_t offset) const {
     T value;
-    if (offset > bytes_.size() || bytes_.size() - offset < sizeof value) throw std::runtime_error("it is cut off");
+    if (offset > bytes_.size() || bytes_.size() - offset < sizeof value)
+      throw std::runtime_error("the library is truncated");
     std::memcpy(&value, bytes_.data() + offset, sizeof value);
     return value;
   }
 
   std::string text(std::size_t offset) const {
-    if (offset >= bytes_.size()) throw std::runtime_error("it is cut off");
+    if (offset >= bytes_.size()) throw std::runtime_error("the library is truncated");
     const auto begin = bytes_.begin() + static_cast<std::ptrdiff_t>(offset);
     return {begin, std::find(begin, bytes_.end(), '\0')};
   }

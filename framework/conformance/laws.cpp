@@ -21,7 +21,7 @@ std::string numbered(const char* what, std::uint32_t input) { return std::string
 void require_sound(const Blueprint& blueprint, const EncodingContext& context) {
   check_blueprint(blueprint, context);
   for (const Mass& mass : blueprint.body.masses)
-    if (!std::isfinite(norm(mass.rest))) throw Violation("a mass has a position that is not finite");
+    if (!std::isfinite(norm(mass.rest))) throw Violation("the position of a mass is not finite");
 }
 
 bool springs_grow(const Blueprint& blueprint) {
@@ -49,12 +49,13 @@ void decodes(const AvailableOperator& subject, std::uint64_t seed) {
     const Blueprint blueprint = op->decode(genome, context);
     reason = blueprint.failure;
     if (!reason.empty()) continue;
-    if (blueprint.body.masses.empty()) throw Violation("there is neither a body nor a reason why there is none");
+    if (blueprint.body.masses.empty()) throw Violation("a blueprint has neither masses nor a failure that says why");
     require_sound(blueprint, context);
-    if (springs_grow(blueprint) && !op->sets_growth()) throw Violation("springs may grow, but sets_growth() denies it");
+    if (springs_grow(blueprint) && !op->sets_growth())
+      throw Violation("it lets springs grow, but sets_growth() returns false");
     ++bodies;
   }
-  if (bodies == 0) throw Skipped("none of its genomes gives a body: " + reason);
+  if (bodies == 0) throw Skipped("none of the genomes that were tried gives a body: " + reason);
 }
 
 void layout_is_whole(const AvailableOperator& subject, std::uint64_t) {
@@ -62,9 +63,12 @@ void layout_is_whole(const AvailableOperator& subject, std::uint64_t) {
   std::vector<int> groups(layout.genes.size(), 0);
   for (const GeneGroup& group : layout.groups)
     for (std::uint32_t i = group.first; i < group.first + group.count; ++i)
-      if (i >= groups.size() || ++groups[i] > 1) throw Violation("its groups overlap or go beyond the genes");
+      if (i >= groups.size() || ++groups[i] > 1)
+        throw Violation("groups of its layout overlap or go beyond the last gene");
   for (const GeneSpec& gene : layout.genes)
-    if (!gene.is_choice() && !(gene.low <= gene.high)) throw Violation("a gene's bounds are no range");
+    if (!gene.is_choice() && !(gene.low <= gene.high))
+      throw Violation("a gene of its layout has the bounds " + to_text(gene.low) + " and " + to_text(gene.high) +
+                      "; expected the lower one first");
 }
 
 // ---- variation ----
@@ -75,7 +79,7 @@ void nothing_stays_nothing(const AvailableOperator& subject, std::uint64_t seed)
   Genome nothing;
   Rng rng = stream(seed, 0);
   create<Mutation>(subject)->mutate(nothing, Layout{}, rng);
-  if (!nothing.empty()) throw Violation("it makes genes of no genes");
+  if (!nothing.empty()) throw Violation("it adds genes to a genome that has no genes");
 }
 
 /// Checks that the mutation changes at least one of many genomes. If it never changes any, all of its children are
@@ -90,8 +94,7 @@ void mutates(const AvailableOperator& subject, std::uint64_t seed) {
     op->mutate(mutant, layout, rng);
     if (mutant != genome) return;
   }
-  throw Violation("it changes none of " + std::to_string(tries_to_change) +
-                  " genomes, so that its children are clones");
+  throw Violation("it changes none of " + std::to_string(tries_to_change) + " genomes, so its children are clones");
 }
 
 void mutants_fit(const AvailableOperator& subject, std::uint64_t seed) {
@@ -113,7 +116,8 @@ void twins_stay_twins(const AvailableOperator& subject, std::uint64_t seed) {
     const Genome genome = random_genome(layout, rng);
     Genome one = genome, other = genome;
     op->cross(one, other, layout, rng);
-    if (one != genome || other != genome) throw Violation("of two equal genomes it makes others");
+    if (one != genome || other != genome)
+      throw Violation("it changes two equal genomes; it must leave them as they are");
   }
 }
 
@@ -129,8 +133,8 @@ void crosses(const AvailableOperator& subject, std::uint64_t seed) {
     op->cross(one, other, layout, rng);
     if (one != genome) return;
   }
-  throw Violation("of " + std::to_string(tries_to_change) +
-                  " pairs of genomes it changes the first in none, so that its children are clones");
+  throw Violation("in none of " + std::to_string(tries_to_change) +
+                  " pairs of genomes does it change the first genome, so its children are clones");
 }
 
 void children_fit(const AvailableOperator& subject, std::uint64_t seed) {
@@ -150,7 +154,7 @@ void children_fit(const AvailableOperator& subject, std::uint64_t seed) {
 void require_measures(const Devo& op) {
   for (const Causes::List list : Causes::lists)
     if (const Measure measure = op.measure(list); measure.name.empty() || measure.unit.empty())
-      throw Violation("a measure has no name or no unit; \"1\" is that of a pure number");
+      throw Violation("measure() returns no name or no unit; the unit of a pure number is \"1\"");
 }
 
 /// Checks over several cycles that the host can apply all edits, and that new masses are within the bounds.
@@ -166,12 +170,12 @@ void bodies_stay_sound(const AvailableOperator& subject, std::uint64_t seed) {
       const DevoContext context = life.context(op->observes());
       op->develop(context, edits, rng);
       edited = edited || !numbers_of(edits).empty();
-      if (edits.growth && !op->uses_growth()) throw Violation("it lets springs grow, but uses_growth() denies it");
+      if (edits.growth && !op->uses_growth()) throw Violation("it lets springs grow, but uses_growth() returns false");
       for (const NewMass& mass : edits.new_masses) {
         const Vec3 p = mass.position, low = life.bounds.low, high = life.bounds.high;
         // written so that NaN fails
         if (!(p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z))
-          throw Violation(numbered("body", input) + ": a new mass lies beyond the bounds");
+          throw Violation(numbered("body", input) + ": a new mass lies outside the bounds of the context");
       }
       try {
         apply(resolved(edits, context), life.living);
@@ -199,7 +203,8 @@ void unmoved_by_translation(const AvailableOperator& subject, std::uint64_t seed
     const auto a = op->score(here), b = op->score(there);
     for (std::size_t i = 0; i < a.size(); ++i)
       if (!(std::abs(a[i] - b[i]) <= 1e-9 * (1 + std::abs(a[i]))) && (std::isfinite(a[i]) || std::isfinite(b[i])))
-        throw Violation("a body that does the same elsewhere scores " + to_text(b[i]) + " instead of " + to_text(a[i]));
+        throw Violation("a body that moves in the same way at another place scores " + to_text(b[i]) + " instead of " +
+                        to_text(a[i]));
   }
 }
 
@@ -207,26 +212,31 @@ void honest_about_nan(const AvailableOperator& subject, std::uint64_t) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Vec3 nowhere{nan, nan, nan};
   for (const double score : create<Fitness>(subject)->score({{nowhere, nowhere}, nowhere, nowhere, 1, nan}))
-    if (std::isfinite(score)) throw Violation("an observation without a single number scores " + to_text(score));
+    if (std::isfinite(score))
+      throw Violation("an observation in which everything measured is NaN scores " + to_text(score) +
+                      "; expected a score that is not finite");
 }
 
 void scores_every_objective(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Fitness>(subject);
   const Request request = op->observes();
-  if (!(request.settle >= 0) || !(request.window > 0)) throw Violation("it asks for a window that is none");
+  if (!(request.settle >= 0) || !(request.window > 0))
+    throw Violation("observes() gives settle = " + to_text(request.settle) +
+                    " and window = " + to_text(request.window) + "; expected settle of at least 0 and window above 0");
   const auto objectives = op->objectives();
   const auto scores = op->score(sample_observation(seed, 0));
-  if (objectives.empty()) throw Violation("it has no objective");
+  if (objectives.empty()) throw Violation("objectives() returns none; expected one or more");
   if (scores.size() != objectives.size())
     throw Violation("it gives " + std::to_string(scores.size()) + " scores for " + std::to_string(objectives.size()) +
                     " objectives");
   for (const Objective& objective : objectives)
-    if (objective.name.empty() || objective.unit.empty()) throw Violation("an objective has no name or no unit");
+    if (objective.name.empty() || objective.unit.empty())
+      throw Violation("objectives() returns an objective without a name or a unit; the unit of a pure number is \"1\"");
   constexpr std::uint32_t bodies = 20;
   for (std::uint32_t input = 0; input < bodies; ++input)
     if (std::ranges::all_of(op->score(sample_observation(seed, input)), [](double s) { return std::isfinite(s); }))
       return;
-  throw Violation("none of " + std::to_string(bodies) + " bodies gets finite scores, so that all would be invalid");
+  throw Violation("none of " + std::to_string(bodies) + " bodies gets finite scores, so all would be invalid");
 }
 
 // ---- selection ----
@@ -260,11 +270,11 @@ void order_does_not_matter(const AvailableOperator& subject, std::uint64_t seed)
     for (std::uint32_t& row : living_too) row = order.at(row);
     std::sort(living.begin(), living.end());
     std::sort(living_too.begin(), living_too.end());
-    if (living != living_too) throw Violation("who lives on depends on the order of birth");
+    if (living != living_too) throw Violation("the choice of survivors depends on the order of birth");
     const auto pairs = op->parents(table.rows, 20, rng), pairs_too = op->parents(other.rows, 20, same_rng);
     for (std::size_t i = 0; i < pairs.size(); ++i)
       if (pairs[i] != std::pair(order.at(pairs_too.at(i).first), order.at(pairs_too.at(i).second)))
-        throw Violation("who breeds depends on the order of birth");
+        throw Violation("the choice of parents depends on the order of birth");
   }
 }
 
@@ -274,8 +284,8 @@ std::vector<std::uint32_t> survivors(const Selection& op, const SampleTable& tab
   const std::set<std::uint32_t> different(living.begin(), living.end());
   if (living.empty() || living.size() > 10 || different.size() != living.size() ||
       *different.rbegin() >= table.rows.size())
-    throw Violation("of " + std::to_string(table.rows.size()) + " rows it lets " + std::to_string(living.size()) +
-                    " live on, not 1 to 10 different ones");
+    throw Violation("it chooses " + std::to_string(living.size()) + " survivors of " +
+                    std::to_string(table.rows.size()) + " rows; expected 1 to 10 different ones");
   return living;
 }
 
@@ -287,7 +297,7 @@ void keeps_its_elite(const AvailableOperator& subject, std::uint64_t seed) {
     Rng rng = stream(seed, input, 1);
     const auto living = survivors(*op, table, rng);
     if (std::find(living.begin(), living.end(), best - table.scores.begin()) == living.end())
-      throw Violation("the row with the best first score does not live on");
+      throw Violation("the row with the best first score does not survive");
   }
 }
 
@@ -299,15 +309,16 @@ void failed_rows_lose(const AvailableOperator& subject, std::uint64_t seed) {
     const SampleTable table = sample_table(seed, input, 20, 8);
     Rng rng = stream(seed, input, 1);
     for (const std::uint32_t row : survivors(*op, table, rng))
-      if (!table.rows[row].ok()) throw Violation("a failed row lives on instead of a sound one");
+      if (!table.rows[row].ok()) throw Violation("a failed row survives in place of a sound one");
     for (const auto& [parent, mate] : op->parents(table.rows, 20, rng))
       if (!table.rows.at(parent).ok() || !table.rows.at(mate).ok())
-        throw Violation("a failed row breeds instead of a sound one");
+        throw Violation("a failed row is a parent in place of a sound one");
   }
   const SampleTable hopeless = sample_table(seed, 0, 20, 20);
   Rng rng = stream(seed, 0, 1);
   survivors(*op, hopeless, rng);
-  if (op->parents(hopeless.rows, 5, rng).size() != 5) throw Violation("where all rows failed there are no parents");
+  if (op->parents(hopeless.rows, 5, rng).size() != 5)
+    throw Violation("if all rows have failed, it does not choose as many parents as asked for");
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ void no_hidden_state(const AvailableOperator& subject, std::uint64_t seed) {
     if (bytes_of(try_new(subject, seed, input)) != first[input])
       throw Violation("input " + std::to_string(input) + " gives one result as the first call of a process and " +
                       "another after " + std::to_string(call) +
-                      " calls; keep nothing between calls, in no variable of the library either");
+                      " calls; keep nothing between calls, not even in a variable of the library");
   }
 }
 
@@ -62,7 +62,7 @@ bool is_letter(char letter) { return std::isalnum(static_cast<unsigned char>(let
 void require_name(const std::string& what, std::string_view name, std::string_view besides) {
   const auto is_allowed = [&](char letter) { return is_letter(letter) || besides.find(letter) != besides.npos; };
   if (name.empty() || !std::all_of(name.begin(), name.end(), is_allowed))
-    throw Violation(what + " \"" + std::string(name) + "\" is no name; expected letters, digits and " +
+    throw Violation(what + " \"" + std::string(name) + "\" is not a valid name; expected letters, digits and " +
                     std::string(besides));
 }
 
@@ -70,9 +70,9 @@ void require_name(const std::string& what, std::string_view name, std::string_vi
 void require_plain(const std::string& what, std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto letter = static_cast<unsigned char>(text[i]);
-    if (letter < ' ' || letter == 0x7f) throw Violation(what + " has a control character");
+    if (letter < ' ' || letter == 0x7f) throw Violation(what + " has a control character; remove it");
     if (letter == '<' && i + 1 < text.size() && (is_letter(text[i + 1]) || text[i + 1] == '/' || text[i + 1] == '!'))
-      throw Violation(what + " has markup: " + std::string(text.substr(i)));
+      throw Violation(what + " looks like markup of a web page: " + std::string(text.substr(i)));
   }
 }
 

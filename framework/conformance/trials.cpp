@@ -164,14 +164,15 @@ Layout sample_layout() {
 
 void require_within(const Genome& genome, const Layout& layout) {
   if (genome.size() != layout.genes.size())
-    throw Violation("a genome has " + std::to_string(genome.size()) + " genes where the layout has " +
+    throw Violation("a genome has " + std::to_string(genome.size()) + " genes, but the layout has " +
                     std::to_string(layout.genes.size()));
   for (std::size_t i = 0; i < genome.size(); ++i) {
     const GeneSpec& spec = layout.genes[i];
     const bool fits = spec.is_choice() ? genome[i] >= 0 && genome[i] < static_cast<float>(spec.choices) &&
                                              genome[i] == std::floor(genome[i])
                                        : genome[i] >= spec.low && genome[i] <= spec.high;
-    if (!fits) throw Violation("gene " + std::to_string(i) + " = " + to_text(genome[i]) + " is not of the layout");
+    if (!fits)
+      throw Violation("gene " + std::to_string(i) + " = " + to_text(genome[i]) + " is not allowed by the layout");
   }
 }
 

@@ -40,7 +40,7 @@ std::string difference(const Experiment& experiment, const Experiment& first,
   all.insert(there.begin(), there.end());
   for (const auto& [key, _] : all)
     if (value(here, key) != value(there, key))
-      return key + " is " + value(here, key) + ", in the first experiment " + value(there, key);
+      return key + " is " + value(here, key) + ", but " + value(there, key) + " in the first experiment";
   return {};
 }
 

@@ -59,8 +59,8 @@ std::optional<SceneEffect> compare(const Environment& a, const Environment& b, s
 }  // namespace
 
 const std::vector<BodyDistance> body_distances = {
-    {"springs", "springs that only one body has", spring_distance},
-    {"mass", "how far mass lies apart, body lengths at birth", mass_distance}};
+    {"springs", "share of springs that only one of two bodies has", spring_distance},
+    {"mass", "distance between the mass distributions of two bodies, in body lengths at birth", mass_distance}};
 
 SceneStudy study_scenes(const std::vector<Experiment>& experiments, const Newborn& newborn, std::uint32_t starts,
                         std::size_t cycles) {

@@ -113,12 +113,13 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> chosen_parents(const Experi
                                                                     Rng& rng) {
   auto pairs = experiment.selection->parents(table.rows(), count, rng);
   if (pairs.size() != count)
-    throw std::runtime_error("chose " + std::to_string(pairs.size()) + " pairs of parents where " +
-                             std::to_string(count) + " were asked for");
+    throw std::runtime_error("chose " + std::to_string(pairs.size()) + " pairs of parents, expected " +
+                             std::to_string(count));
   for (const auto& [parent, mate] : pairs)
     if (std::max(parent, mate) >= table.rows().size())
-      throw std::runtime_error("chose row " + std::to_string(std::max(parent, mate)) + " of " +
-                               std::to_string(table.rows().size()));
+      throw std::runtime_error("chose row " + std::to_string(std::max(parent, mate)) +
+                               " as a parent, but the table has " + std::to_string(table.rows().size()) +
+                               " rows, numbered from 0");
   return pairs;
 }
 
@@ -126,7 +127,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> chosen_parents(const Experi
 
 std::string genome_fault(const Genome& genome, const Layout& layout) {
   if (genome.size() != layout.genes.size())
-    return std::to_string(genome.size()) + " genes where there are " + std::to_string(layout.genes.size());
+    return std::to_string(genome.size()) + " genes, expected " + std::to_string(layout.genes.size());
   for (std::size_t i = 0; i < genome.size(); ++i) {
     const GeneSpec& spec = layout.genes[i];
     const bool fits = spec.is_choice() ? genome[i] >= 0 && genome[i] < static_cast<float>(spec.choices) &&

@@ -27,8 +27,9 @@ std::vector<std::uint32_t> chosen_survivors(const Experiment& experiment, const 
   std::sort(rows.begin(), rows.end());
   const bool twice = std::adjacent_find(rows.begin(), rows.end()) != rows.end();
   if (rows.empty() || rows.size() > population || twice || rows.back() >= table.rows().size())
-    throw std::runtime_error("must choose 1 to " + std::to_string(population) + " different survivors of " +
-                             std::to_string(table.rows().size()));
+    throw std::runtime_error("chose " + std::to_string(rows.size()) + " survivors, expected 1 to " +
+                             std::to_string(population) + " different rows of " + std::to_string(table.rows().size()) +
+                             ", numbered from 0");
   return rows;
 }
 

@@ -25,7 +25,7 @@ std::string fault_of(const Change& change, std::uint32_t before, const Experimen
            std::to_string(cycles);
   if (change.op && *change.op >= experiment.devo.size())
     return "operator " + std::to_string(*change.op) + " of " + std::to_string(experiment.devo.size());
-  if (!change.op && has_causes(change.edits.causes)) return "causes, but no operator that had them";
+  if (!change.op && has_causes(change.edits.causes)) return "causes of edits, but no operator that made the edits";
   return "";
 }
 

@@ -24,7 +24,7 @@ Newborn for_resimulation(const Archive& archive, const Experiment& experiment, c
                                      ? "on " + now.device + ", not on " + then.device + " as in the run"
                                      : "by another build of evodevo or of an operator than in the run";
   std::cerr << "warning: individual " << individual.id << " was simulated again " << difference
-            << ", which has no record of its edits; it may have developed otherwise\n";
+            << "; the run has no record of its edits, so it may have developed differently\n";
   return newborn;
 }
 

@@ -15,7 +15,7 @@ std::unique_ptr<Simulator> make_simulator(const Experiment& experiment) {
     if (obstacle.empty())
       return make_cuda_simulator(experiment.scene, experiment.stepping, static_cast<int>(experiment.threads));
 #else
-    const std::string obstacle = "this evodevo was built without CUDA; build it where the CUDA toolkit is";
+    const std::string obstacle = "this evodevo was built without CUDA; build it where the CUDA toolkit is installed";
 #endif
     if (experiment.device == Device::cuda)
       throw ConfigError(experiment.device_location + ": simulation.device = \"cuda\": " + obstacle +

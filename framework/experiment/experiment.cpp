@@ -28,7 +28,7 @@ EncodingContext encoding_context(const Settings& settings) {
 Registry registry_of(const PluginsTable& plugins, Warnings& warnings) {
   Registry registry(plugins.search_path());
   for (const FailedLibrary& failed : registry.failed())
-    warnings.push_back("not usable: " + printable(failed.file.string()) + ": " + failed.reason);
+    warnings.push_back("unusable library " + printable(failed.file.string()) + ": " + failed.reason);
   return registry;
 }
 

@@ -46,7 +46,7 @@ toml::table parse_override_value(const Override& change) {
     if (parsed.size() == 1) return parsed;  // otherwise the value has further lines that set more keys
   } catch (const ConfigError&) {
     if (is_whole_number(change.value))
-      refuse(change, printable(change.value) + " does not fit a whole number of 64 bits; give one with fewer digits");
+      refuse(change, printable(change.value) + " does not fit into 64 bits; give a whole number with fewer digits");
   }
   toml::table parsed = parse_toml("value = ''", change.origin);
   *parsed.get_as<std::string>("value") = change.value;
@@ -80,7 +80,8 @@ void set(toml::node& parent, const std::string& key, Value&& value, const Overri
   } else if (child(parent, key) != nullptr) {
     array->replace(array->cbegin() + std::stol(key), std::forward<Value>(value));
   } else {
-    refuse(change, "there is no item " + printable(key));
+    refuse(change,
+           "there is no item " + printable(key) + "; items are numbered from 0, and only the next one can be added");
   }
 }
 
@@ -99,7 +100,9 @@ void apply_override(const Override& change, toml::table& root) {
   for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
     if (is_next(*parent, keys[i])) set(*parent, keys[i], table_on_the_way(*parent, change), change);
     parent = child(*parent, keys[i]);
-    if (parent == nullptr) refuse(change, "there is no item " + printable(keys[i]));
+    if (parent == nullptr)
+      refuse(change, "there is no item " + printable(keys[i]) +
+                         "; items are numbered from 0, and only the next one can be added");
   }
   toml::table parsed = parse_override_value(change);
   parsed.get("value")->visit([&](auto& value) { set(*parent, keys.back(), std::move(value), change); });

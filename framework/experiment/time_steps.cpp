@@ -34,8 +34,9 @@ LongestStep longest_step(const StepRule& rule, const Body& body, std::span<const
                          Method method) {
   if (rule.dt) return longest_fixed_step(rule, body, positions, scene, method);
   const double dt = safe_dt(body, positions, scene, method);
-  if (!(dt > 0)) return failed("the body is too large, too stiff or too light for one to be computed");
-  if (dt < shortest_dt) return failed("the body would need steps of " + to_text(dt) + " s");
+  if (!(dt > 0)) return failed("the body is too large, too stiff or too light for a time step to be computed");
+  if (dt < shortest_dt)
+    return failed("the body would need steps of " + to_text(dt) + " s, less than " + to_text(shortest_dt) + " s");
   return {dt, ""};
 }
 

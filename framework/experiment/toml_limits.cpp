@@ -68,7 +68,7 @@ class LevelCounter {
     here.begin.column = static_cast<toml::source_index>(1 + std::count_if(line.begin(), line.end(), begins_character));
     here.path = std::make_shared<const std::string>(origin_);
     throw ConfigError(location_of(here) + ": more than " + std::to_string(most_toml_levels) + " " + what +
-                      "; no experiment needs as many");
+                      "; no experiment needs so many");
   }
 
   std::string_view text_;

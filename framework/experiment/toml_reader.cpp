@@ -174,7 +174,8 @@ void TomlReader::materials(std::vector<std::string>& value, std::string_view nam
   for (const std::string& material : value) {
     if (std::find(materials_->begin(), materials_->end(), material) == materials_->end())
       fail(name, "\"" + material + "\" is not a material" + suggestion(material, *materials_));
-    if (std::count(value.begin(), value.end(), material) > 1) fail(name, "names \"" + material + "\" twice");
+    if (std::count(value.begin(), value.end(), material) > 1)
+      fail(name, "names \"" + material + "\" twice; remove one of the two");
   }
 }
 
@@ -195,7 +196,7 @@ void TomlReader::real_or_auto(std::optional<double>& value, std::string_view nam
 
 std::string TomlReader::text(std::string_view name, const char* fallback) {
   const toml::node* node = look_up(name);
-  if (node == nullptr && fallback == nullptr) fail(name, "is missing");
+  if (node == nullptr && fallback == nullptr) fail(name, "is missing; add it with a text in quotes");
   if (node != nullptr && !node->is_string()) fail_at(*node, name, "expected a text in quotes");
   return node != nullptr ? node->value<std::string>().value() : fallback;
 }
@@ -250,7 +251,8 @@ void TomlReader::refuse_unknown_keys() const {
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
     const auto renamed = renamed_keys.find(full_name(name));
     if (renamed != renamed_keys.end())
-      throw ConfigError(location_of(key.source()) + ": " + full_name(name) + ": is called " + renamed->second + " now");
+      throw ConfigError(location_of(key.source()) + ": " + full_name(name) + ": is now called " + renamed->second +
+                        "; rename it");
     const std::string where = path_.empty() ? "an experiment" : "[" + printable(path_) + "]";
     throw ConfigError(location_of(key.source()) + ": " + full_name(name) + ": is not a key of " + where +
                       suggestion(name, known_));

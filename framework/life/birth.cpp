@@ -30,8 +30,9 @@ std::string throw_by_ground(const LivingBody& living, const Scene& scene) {
   const double brought = std::max(0.0, total_energy(living.body, living.state, scene)) + weight * size;
   if (held <= brought) return {};
   return fmt::format(
-      "inside the ground, up to {:.3g} m deep: the floor would throw it out with {:.3g} J, and it can have brought "
-      "{:.3g} J there",
+      "inside the ground, up to {:.3g} m deep: the floor would throw it out with {:.3g} J, but it can have entered "
+      "with "
+      "only {:.3g} J",
       deepest, held, brought);
 }
 

@@ -122,13 +122,13 @@ bool is_sound(const Size& size) {
 std::string blueprint_failure(const Blueprint& blueprint) {
   const std::vector<Mass>& masses = blueprint.body.masses;
   if (!blueprint.failure.empty()) return "no body: " + printable(blueprint.failure);
-  if (masses.empty()) return "no body: no masses";
+  if (masses.empty()) return "no body: the encoding made no masses";
   if (!std::all_of(masses.begin(), masses.end(), [](const Mass& mass) { return is_finite(mass.rest); }))
-    return "no body: a position that is not finite";
+    return "no body: the position of a mass is not finite";
   if (!std::all_of(blueprint.paired_at.begin(), blueprint.paired_at.end(), is_finite))
-    return "no body: a position to pair masses at that is not finite";
+    return "no body: the position at which a mass is paired with its neighbours is not finite";
   if (!std::all_of(blueprint.sizes.begin(), blueprint.sizes.end(), is_sound))
-    return "no body: a size that is not finite or not above 0";
+    return "no body: the size of a mass is not finite or not above 0";
   return "";
 }
 
@@ -185,23 +185,34 @@ void check_blueprint(const Blueprint& blueprint, const EncodingContext& context)
   const auto require = [](bool holds, const char* what, std::size_t index, const char* fault) {
     if (!holds) throw std::invalid_argument(std::string(what) + " " + std::to_string(index) + " " + fault);
   };
+  const auto require_below = [](std::int64_t count, std::int64_t number, const char* what, std::size_t index,
+                                const char* has, const char* counted) {
+    if (number >= count)
+      throw std::invalid_argument(std::string(what) + " " + std::to_string(index) + " " + has + " " +
+                                  std::to_string(number) + ", but there are only " + std::to_string(count) + " " +
+                                  counted + ", numbered from 0");
+  };
   const Body& body = blueprint.body;
-  const auto materials = static_cast<std::int64_t>(body.materials.size());
+  const auto materials = static_cast<std::int64_t>(body.materials.size()),
+             masses = static_cast<std::int64_t>(body.masses.size());
   for (std::size_t i = 0; i < context.materials.size(); ++i)
     require(i < body.materials.size() && body.materials[i] == context.materials[i], "material", i,
-            "is not the context's");
+            "is not that of the encoding context");
   for (std::size_t i = 0; i < body.masses.size(); ++i) {
     const Mass& mass = body.masses[i];
-    require(mass.mass > 0 && std::isfinite(mass.mass), "mass", i, "weighs nothing, or has no finite mass");
-    require(mass.material >= no_material && mass.material < materials, "mass", i, "is of a material that is not there");
+    require(mass.mass > 0 && std::isfinite(mass.mass), "mass", i, "has a mass that is not finite or not above 0 kg");
+    require(mass.material >= no_material, "mass", i, "has a negative material");
+    require_below(materials, mass.material, "mass", i, "has material", "materials");
   }
   for (std::size_t i = 0; i < body.springs.size(); ++i) {
     const Spring& spring = body.springs[i];
-    require(std::max(spring.a, spring.b) < body.masses.size(), "spring", i, "dangles");
+    require_below(masses, std::max(spring.a, spring.b), "spring", i, "joins mass", "masses");
     require(spring.a != spring.b, "spring", i, "joins a mass to itself");
-    require(spring.rest_length >= 0 && std::isfinite(spring.rest_length), "spring", i, "has no finite rest length");
-    require(spring.material < materials, "spring", i, "is of a material that is not there");
-    require(spring.growth > 0 && std::isfinite(spring.growth), "spring", i, "has no finite growth above 0");
+    require(spring.rest_length >= 0 && std::isfinite(spring.rest_length), "spring", i,
+            "has a rest length that is not finite or is below 0");
+    require_below(materials, spring.material, "spring", i, "has material", "materials");
+    require(spring.growth > 0 && std::isfinite(spring.growth), "spring", i,
+            "has a growth that is not finite or not above 0");
   }
   if (const std::optional<std::size_t> twin = doubled_spring(body)) {
     const Spring& spring = body.springs[*twin];
@@ -211,7 +222,7 @@ void check_blueprint(const Blueprint& blueprint, const EncodingContext& context)
   const auto require_one_for_each_mass = [&](const auto& list, const char* what) {
     if (!list.empty() && list.size() != body.masses.size())
       throw std::invalid_argument(std::to_string(list.size()) + " " + what + " for " +
-                                  std::to_string(body.masses.size()) + " masses");
+                                  std::to_string(body.masses.size()) + " masses; expected one for each mass, or none");
   };
   require_one_for_each_mass(blueprint.paired_at, "positions to pair at");
   require_one_for_each_mass(blueprint.sizes, "sizes");

@@ -55,7 +55,7 @@ class BodyReader {
       if (!is_alive_ && item.contains("velocity")) refuse_of_newborn(at + ".velocity");
       state_.velocity.push_back(item.contains("velocity") ? vector(item, at, "velocity") : Vec3{});
     });
-    if (body_.masses.empty()) input_.fail("masses", "a body has at least one");
+    if (body_.masses.empty()) input_.fail("masses", "is empty; a body has at least one mass");
   }
 
   void read_springs(const Json& root) {
@@ -83,7 +83,8 @@ class BodyReader {
   }
 
   [[noreturn]] void refuse_of_newborn(const std::string& at) const {
-    input_.fail(at, "a body that is yet to be born has none; give its \"time\" since birth, or leave this out");
+    input_.fail(
+        at, "a body without \"time\" is born at rest; add \"time\", its time since birth in s, or leave this key out");
   }
 
   JsonInput input_;

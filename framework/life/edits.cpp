@@ -22,7 +22,8 @@ std::vector<std::uint8_t> marked(const std::vector<std::uint32_t>& indices, std:
   std::vector<std::uint8_t> marks(count, 0);
   for (const std::uint32_t index : indices) {
     if (index >= count)
-      refuse("removes " + what + " " + std::to_string(index) + " of a body that has " + std::to_string(count));
+      refuse("removes " + what + " " + std::to_string(index) + ", but the body has only " + std::to_string(count) +
+             ", numbered from 0");
     marks[index] = 1;
   }
   return marks;
@@ -96,7 +97,8 @@ class Editor {
     const Causes& causes = edits_.causes;
     const auto check = [](std::size_t causes_given, std::size_t edits_made, const char* what) {
       if (causes_given != 0 && causes_given != edits_made)
-        refuse("names " + std::to_string(causes_given) + " causes for " + std::to_string(edits_made) + " " + what);
+        refuse("gives " + std::to_string(causes_given) + " causes for " + std::to_string(edits_made) + " " + what +
+               "; expected one for each, or none");
     };
     check(causes.removed_springs.size(), edits_.removed_springs.size(), "removed springs");
     check(causes.removed_masses.size(), edits_.removed_masses.size(), "removed masses");
@@ -108,7 +110,7 @@ class Editor {
   static void check_material(const std::string& what, const Material& material) {
     if (is_air(material) || !std::isfinite(material.stiffness))
       refuse(what + " by a spring whose stiffness is " + to_text(material.stiffness) +
-             "; expected a finite one above 0");
+             "; expected a finite value above 0");
     if (!(material.amplitude >= 0 && material.amplitude < 1))
       refuse(what + " by a spring whose amplitude is " + to_text(material.amplitude) + "; expected 0 to below 1");
     if (!std::isfinite(material.frequency) || !std::isfinite(material.phase))
@@ -119,15 +121,15 @@ class Editor {
 
   static void check_rest_length(const std::string& what, double length) {
     if (!is_rest_length(length))
-      refuse(what + " by a spring whose rest length is " + to_text(length) + "; expected a finite one, at least 0");
+      refuse(what + " by a spring whose rest length is " + to_text(length) + "; expected a finite value, at least 0");
   }
 
   static void check_growth(const Growth& growth) {
     // written so that NaN fails
     const auto on_the_way = [&](double gone) { return gone >= 0 && gone <= growth.whole; };
     if (!(growth.whole > 0) || !std::isfinite(growth.whole) || !on_the_way(growth.from) || !on_the_way(growth.to))
-      refuse("grows springs from " + to_text(growth.from) + " to " + to_text(growth.to) + " of a way of " +
-             to_text(growth.whole) + "; expected 0 to all of a finite one");
+      refuse("grows springs from " + to_text(growth.from) + " to " + to_text(growth.to) + " of a whole of " +
+             to_text(growth.whole) + "; expected a finite whole above 0, and both numbers from 0 to it");
   }
 
   void grow_springs(const Growth& growth) {
@@ -138,8 +140,8 @@ class Editor {
     for (Spring& spring : body_.springs) {
       spring.rest_length *= relative_length(spring, growth.to) / relative_length(spring, growth.from);
       if (!is_rest_length(spring.rest_length))
-        refuse("grows a spring whose rest length then is " + to_text(spring.rest_length) +
-               "; expected a finite one, at least 0");
+        refuse("grows a spring to a rest length of " + to_text(spring.rest_length) +
+               "; expected a finite value, at least 0");
     }
   }
 
@@ -149,9 +151,9 @@ class Editor {
     for (const ChangedSpring& change : edits_.changed_springs) {
       const std::string what = "replaces spring " + std::to_string(change.spring);
       if (change.spring >= body.springs.size())
-        refuse(what + " of a body that has " + std::to_string(body.springs.size()));
+        refuse(what + ", but the body has only " + std::to_string(body.springs.size()) + ", numbered from 0");
       Spring& spring = body.springs[change.spring];
-      if (spring_gone_[change.spring] || goes(spring)) refuse(what + ", which goes");
+      if (spring_gone_[change.spring] || goes(spring)) refuse(what + ", which the same edits remove");
       if (std::exchange(changed[change.spring], 1)) refuse(what + " twice");
       if (change.material) check_material(what, *change.material);
       if (change.rest_length) check_rest_length(what, *change.rest_length);
@@ -164,14 +166,14 @@ class Editor {
     if (end >= old_masses() + edits_.new_masses.size())
       refuse(pair_text(spring) + ", but there is no mass " + std::to_string(end));
     if (end < old_masses() && mass_gone_[end])
-      refuse(pair_text(spring) + ", but mass " + std::to_string(end) + " goes");
+      refuse(pair_text(spring) + ", but mass " + std::to_string(end) + " is removed by the same edits");
   }
 
   void check_new_springs() const {
     for (const NewSpring& spring : edits_.new_springs) {
       check_end(spring, spring.a);
       check_end(spring, spring.b);
-      if (spring.a == spring.b) refuse(pair_text(spring) + ", which are one");
+      if (spring.a == spring.b) refuse(pair_text(spring) + ", which are the same mass");
       check_material(pair_text(spring), spring.material);
       check_rest_length(pair_text(spring), spring.rest_length.value());
     }
@@ -206,11 +208,11 @@ class Editor {
   }
 
   void check_new_mass(const NewMass& mass) const {
-    if (!std::isfinite(norm(mass.position))) refuse("adds a mass at a position that is not finite");
+    if (!std::isfinite(norm(mass.position))) refuse("adds a mass whose position is not finite");
     if (!(mass.mass > 0) || !std::isfinite(mass.mass))
-      refuse("adds a mass whose weight is " + to_text(mass.mass) + "; expected a finite one above 0 kg");
+      refuse("adds a mass that weighs " + to_text(mass.mass) + " kg; expected a finite value above 0 kg");
     if (mass.material < no_material || mass.material >= static_cast<std::int64_t>(old_materials_))
-      refuse("adds a mass of material " + std::to_string(mass.material) + " to a body that has " +
+      refuse("adds a mass of material " + std::to_string(mass.material) + ", but the body has " +
              std::to_string(old_materials_) + " materials");
   }
 

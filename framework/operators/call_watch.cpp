@@ -63,14 +63,13 @@ class Looks {
   static void warn(const OperatorCall& call, Seconds lasted, bool is_run) {
     Line line;
     line << "\nwarning: " << described(call, lasted).text() << "; Ctrl-C ends the process"
-         << (is_run ? ", and the generations that are complete are kept\n" : "\n");
+         << (is_run ? ", and the complete generations are kept\n" : "\n");
     line.write_to(STDERR_FILENO);
   }
 
   [[noreturn]] static void end(const OperatorCall& call, Seconds lasted) {
     Line line;
-    line << "\nevodevo: interrupted: " << described(call, lasted).text()
-         << "; the generations that are complete are kept\n";
+    line << "\nevodevo: interrupted: " << described(call, lasted).text() << "; the complete generations are kept\n";
     line.write_to(STDERR_FILENO);
     _exit(interrupted);
   }

@@ -24,7 +24,7 @@ void say(const OperatorCall& call, std::string_view what) {
     while (true) pause();  // another thread ends the process
   Line line;
   line << "\nevodevo: " << call << ": " << what << "; `evodevo conform " << call.title->file
-       << "` tests it. The generations of a run that are complete are kept.\n";
+       << "` tests the operator. The complete generations of a run are kept.\n";
   line.write_to(STDERR_FILENO);
 }
 
@@ -54,7 +54,7 @@ void refuse_to_exit(int status) {
   const OperatorCall call = current_call();
   if (!names_exits || call.title == nullptr) return;
   Line what;
-  what << "it ended the process with exit code " << status << ", which no operator may";
+  what << "it ended the process with exit code " << status << ", which operators must not do";
   say(call, what.text());
   syscall(SYS_exit_group, 1);
 }

@@ -27,7 +27,7 @@ class DeclarationCheck final : public Parameters {
     declare(name, text);
     if (std::find(options.begin(), options.end(), value) == options.end())
       wrong_defaults.push_back(std::string(name) + " = \"" + value +
-                               "\" is none of its options; correct the default or the options");
+                               "\" is not one of its options; correct the default or the options");
   }
   void vector(Vec3& value, std::string_view name, Range range, std::string_view text) override {
     declare(name, text);
@@ -43,7 +43,7 @@ class DeclarationCheck final : public Parameters {
   void require(bool holds, std::string_view name, std::string_view text) override {
     if (!holds)
       wrong_defaults.push_back(std::string(name) + ": " + std::string(text) +
-                               "; correct the defaults or what is required of them");
+                               "; correct the defaults or the requirement");
   }
 
  private:
@@ -52,7 +52,8 @@ class DeclarationCheck final : public Parameters {
     names_.emplace_back(name);
     if (host_key::is_reserved(name)) taken_names.emplace_back(name);
     if (name.empty()) fault(name, "has no name");
-    if (text.size() <= 10 || !text.ends_with('.')) fault(name, "has no sentence, ending with a full stop");
+    if (text.size() <= 10 || !text.ends_with('.'))
+      fault(name, "is not described by a sentence that ends with a full stop");
   }
 
   void check(std::string_view name, double value, Range range) {
@@ -60,8 +61,8 @@ class DeclarationCheck final : public Parameters {
     if (!(value >= range.low && value <= range.high))
       wrong_defaults.push_back(std::string(name) + " = " + to_text(value) + ", expected " + to_text(range) +
                                "; correct the default or the range");
-    if (!std::isfinite(range.low) || !std::isfinite(range.high)) fault(name, "has no bounds");
-    if (range.unit.empty()) fault(name, "has no unit; \"1\" is that of a pure number");
+    if (!std::isfinite(range.low) || !std::isfinite(range.high)) fault(name, "has a range without finite bounds");
+    if (range.unit.empty()) fault(name, "has no unit; the unit of a pure number is \"1\"");
   }
 
   void fault(std::string_view name, const std::string& what) {

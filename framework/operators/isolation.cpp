@@ -71,7 +71,7 @@ void write_all(int pipe, const void* data, std::size_t size) {
   } catch (const std::exception& error) {
     text = std::string("\"") + error.what() + '"';
   } catch (...) {
-    text = "something that is no std::exception";
+    text = "something that is not a std::exception";
   }
   const Header header{text.size(), thrown};
   write_all(pipe, &header, sizeof header);
@@ -133,7 +133,7 @@ ChildEnd in_child(const std::function<std::string()>& work, unsigned seconds) {
   close(ends[0]);
   kill(-child, SIGKILL);  // the status of a child that has already ended stays the same
   const int status = wait_for(child);
-  if (got == Read::late) return {"", "not done after " + std::to_string(seconds) + " s", true};
+  if (got == Read::late) return {"", "it did not finish within " + std::to_string(seconds) + " s", true};
   if (got == Read::ended) return {"", crash_text(status)};
   if (header.thrown) return {"", "it threw " + text};
   return {std::move(text), ""};

@@ -61,7 +61,7 @@ boost::dll::shared_library open(const fs::path& file) {
     const std::string sentence = loader_sentence(error);
     const bool lacks = sentence.find("undefined symbol") != std::string::npos;
     refuse("cannot be loaded: " + sentence +
-           (lacks ? "; link it with all that it uses (-Wl,-z,defs tells what is missing)"
+           (lacks ? "; link it with all libraries that it uses (-Wl,-z,defs shows what is missing)"
                   : "; build it for this system, or remove it"));
   } catch (const std::exception& error) {
     // A static object threw this through the dynamic linker, which does not support exceptions. The check in
@@ -88,7 +88,7 @@ const PluginManifest* read_manifest(const boost::dll::shared_library& library, c
 }
 
 void check_given(const std::string& what, const char* text) {
-  if (text == nullptr || *text == '\0') refuse(what + " is missing; say it in EVODEVO_PLUGIN(...)");
+  if (text == nullptr || *text == '\0') refuse(what + " is missing; give it in EVODEVO_PLUGIN(...)");
 }
 
 /// Throws std::runtime_error if a manifest does not fit this host. The order matters: each check makes it safe to read
@@ -138,7 +138,8 @@ void check_texts(const OperatorEntry& entry, std::size_t index) {
   check_given(which + "the kind", entry.kind);
   check_given(which + "the name", entry.name);
   check_given(which + "the summary", entry.summary);
-  if (entry.create == nullptr) refuse(which + "it has no function that creates it; use operator_entry<Class>(...)");
+  if (entry.create == nullptr)
+    refuse(which + "it has no function that creates an operator; use operator_entry<Class>(...)");
 }
 
 void check_entry(const OperatorEntry& entry, const OperatorTitle* named) {
@@ -158,15 +159,16 @@ void check_entry(const OperatorEntry& entry, const OperatorTitle* named) {
       taken = taken_name(*op);
     });
   } catch (const std::exception& error) {
-    refuse(title(entry) + " cannot be made: \"" + error.what() + "\"; its constructor and parameters() must not throw");
+    refuse(title(entry) + " cannot be created: \"" + error.what() +
+           "\"; its constructor and parameters() must not throw");
   }
   if (!is_right)
     refuse(title(entry) +
-           " is no object of the class of this kind; use operator_entry<Class>(...) with a class that is");
+           " is not an object of the class of its kind; use operator_entry<Class>(...) with a class of this kind");
   if (!fault.empty()) refuse(title(entry) + " has a default that it does not allow: " + fault);
   if (!taken.empty())
     refuse(title(entry) + " calls a parameter \"" + taken +
-           "\", which is a key of the host's own in every operator's table; rename the parameter");
+           "\", but evodevo itself has a key of this name in the table of an operator; rename the parameter");
 }
 
 /// Returns the operators of an opened library. Throws std::runtime_error if the library or one of them is faulty.
@@ -219,7 +221,7 @@ std::vector<fs::path> Registry::libraries_at(const fs::path& path) {
       if (entry.is_regular_file(error))
         files.push_back(fs::absolute(entry.path()));
       else
-        failed_.push_back({entry.path(), "is no file that can be loaded; remove it"});
+        failed_.push_back({entry.path(), "is not a file; remove it"});
     }
   } catch (const fs::filesystem_error& failure) {
     failed_.push_back({path, "cannot be read: " + failure.code().message() +
@@ -260,7 +262,7 @@ void Registry::load(const fs::path& file) {
   std::vector<AvailableOperator> brought;
   for (const OperatorEntry& entry : entries) {
     if (const AvailableOperator* twin = find(entry.kind, entry.name))
-      refuse(title(entry) + " is already brought by " + twin->file.string() +
+      refuse(title(entry) + " is already provided by " + twin->file.string() +
              ", which comes first; rename one of them, or take one off the plugin path");
     const AvailableOperator candidate{&entry, manifest, file, lasting_title(entry.kind, entry.name, file.string())};
     const auto same = [&](const AvailableOperator& other) { return sort_key(other) == sort_key(candidate); };

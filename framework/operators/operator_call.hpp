@@ -78,7 +78,7 @@ decltype(auto) in_operator(const OperatorCall& whose, const Call& call) {
   } catch (const std::exception&) {
     throw;
   } catch (...) {
-    throw std::runtime_error("it threw something that is no std::exception");
+    throw std::runtime_error("it threw something that is not a std::exception");
   }
 }
 

@@ -25,7 +25,7 @@ class TemporaryFolder {
   TemporaryFolder() {
     std::string name = (fs::temp_directory_path() / "evodevo-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr)
-      throw std::runtime_error(name + ": no temporary folder can be made: " + std::strerror(errno));
+      throw std::runtime_error(name + ": no temporary folder can be created: " + std::strerror(errno));
     path_ = name;
   }
   TemporaryFolder(const TemporaryFolder&) = delete;
@@ -77,7 +77,7 @@ void shoot(const std::string& page, OutputFile& output, const fs::path& file, co
   add("--from", shooting.from);
   add("--to", shooting.to);
   if (shooting.quiet) words.emplace_back("--quiet");
-  if (run_program(std::move(words)) != 0) throw std::runtime_error(file.string() + ": has not been made");
+  if (run_program(std::move(words)) != 0) throw std::runtime_error(file.string() + ": has not been written");
   output.write(content_of(film));
   output.finish();
 }

@@ -38,7 +38,7 @@ fs::path viewer_folder() {
                              ": the viewer has not been built. It needs Node.js 18 or newer with npm (Debian: apt-get "
                              "install nodejs npm); then `cmake --build " +
                              (is_build ? prefix.string() : "BUILD") + " --target evodevo_viewer`" +
-                             (is_build ? "" : " where evodevo was built, and install it anew") +
+                             (is_build ? "" : " where evodevo was built, and install it again") +
                              ", or use tools/evodevo, which does both");
   return folder;
 }
@@ -52,7 +52,7 @@ std::string page_template() {
 
 std::string filled_page(const std::string& page, const nlohmann::ordered_json& data) {
   const auto at = page.find(place_of_data);
-  if (at == std::string::npos) throw std::runtime_error("the page of the viewer has no place for data; build it anew");
+  if (at == std::string::npos) throw std::runtime_error("the page of the viewer has no place for data; build it again");
   const std::string json = data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   return page.substr(0, at) + escaped(json) + page.substr(at + place_of_data.size());
 }
@@ -60,7 +60,7 @@ std::string filled_page(const std::string& page, const nlohmann::ordered_json& d
 std::string size_note(const std::string& file, std::size_t bytes, const std::string& option) {
   if (bytes <= largest_page) return {};
   return "evodevo: " + file + ": has " + std::to_string(bytes / 1'000'000) + " MB, though only the beginning and the " +
-         "end of each motion are kept: more than " + std::to_string(largest_page / 1'000'000) +
+         "end of each motion are kept: pages of more than " + std::to_string(largest_page / 1'000'000) +
          " MB load slowly; show fewer robots with " + option + "\n";
 }
 

@@ -12,8 +12,8 @@ namespace {
 class @CLASS@ final : public evodevo::Encoding {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.integer(masses_, "masses", {4, 1000, "1"}, "Masses of a body.");
-    p.real(side_, "side", {0.01, 100, "m"}, "Side of the cube in which the masses lie.");
+    p.integer(masses_, "masses", {4, 1000, "1"}, "Number of masses of a body.");
+    p.real(side_, "side", {0.01, 100, "m"}, "Side length of the cube in which the masses lie.");
   }
 
   evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
@@ -45,7 +45,7 @@ class @CLASS@ final : public evodevo::Encoding {
 class @CLASS@ final : public evodevo::Mutation {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.real(rate_, "rate", {0, 1, "1"}, "Probability with which a gene is drawn anew.");
+    p.real(rate_, "rate", {0, 1, "1"}, "Probability that a gene gets a new random value.");
   }
 
   void mutate(evodevo::Genome& genome, const evodevo::Layout& layout, evodevo::Rng& rng) const override {
@@ -61,7 +61,7 @@ class @CLASS@ final : public evodevo::Mutation {
 class @CLASS@ final : public evodevo::Crossover {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.real(rate_, "rate", {0, 1, "1"}, "Probability with which a gene is swapped.");
+    p.real(rate_, "rate", {0, 1, "1"}, "Probability that a gene is swapped.");
   }
 
   void cross(evodevo::Genome& one, evodevo::Genome& other, const evodevo::Layout&, evodevo::Rng& rng) const override {
@@ -78,7 +78,7 @@ class @CLASS@ final : public evodevo::Crossover {
 class @CLASS@ final : public evodevo::Devo {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.integer(springs_, "springs", {0, 1000, "1"}, "Springs that go in each cycle.");
+    p.integer(springs_, "springs", {0, 1000, "1"}, "Number of random springs that are removed in each cycle.");
   }
 
   void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, evodevo::Rng& rng) const override {
@@ -95,7 +95,7 @@ class @CLASS@ final : public evodevo::Fitness {
  public:
   void parameters(evodevo::Parameters& p) override {
     p.real(settle_, "settle", {0, 3600, "s"}, "Time in which the body settles before it is measured.");
-    p.real(window_, "window", {0.001, 3600, "s"}, "Time in which it is measured.");
+    p.real(window_, "window", {0.001, 3600, "s"}, "Time in which the body is measured.");
   }
 
   evodevo::Request observes() const override { return {settle_, window_, false}; }
@@ -119,7 +119,7 @@ using evodevo::Candidate;
 class @CLASS@ final : public evodevo::Selection {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.real(breeders_, "breeders", {0, 1, "1"}, "Part of the population that breeds, the best first.");
+    p.real(breeders_, "breeders", {0, 1, "1"}, "Fraction of the population that breeds, the best first.");
   }
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
@@ -165,16 +165,17 @@ EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
 @encoding@
                evodevo::operator_entry<@CLASS@>("@NAME@", "Every mass has a place and a material of its own."))
 @mutation@
-               evodevo::operator_entry<@CLASS@>("@NAME@", "Draws every gene anew with a small probability."))
+               evodevo::operator_entry<@CLASS@>("@NAME@",
+                                                "Gives every gene a new random value with a small probability."))
 @crossover@
-               evodevo::operator_entry<@CLASS@>("@NAME@", "Swaps every gene with a probability."))
+               evodevo::operator_entry<@CLASS@>("@NAME@", "Swaps every gene with a given probability."))
 @devo@
-               evodevo::operator_entry<@CLASS@>("@NAME@", "A few random springs go."))
+               evodevo::operator_entry<@CLASS@>("@NAME@", "Removes a few random springs."))
 @fitness@
                evodevo::operator_entry<@CLASS@>("@NAME@",
-                                                "How fast the centre of mass moves, in any direction along the ground."))
+                                                "Speed of the centre of mass in any direction along the ground."))
 @selection@
                evodevo::operator_entry<@CLASS@>("@NAME@",
-                                                "The best by the first objective live on, and the best part of them "
-                                                "breed."))
+                                                "The best by the first objective survive, and the best fraction of "
+                                                "them breeds."))
 @end@

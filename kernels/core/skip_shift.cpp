@@ -19,8 +19,8 @@ double force(const Body& body, const State& state, const Spring& spring) {
 
 void refuse(Task& task, std::uint64_t skip) {
   task.status = Status::invalid;
-  task.reason = "no tally in a cycle of " + std::to_string(task.steps) + " steps, because skip is " +
-                std::to_string(skip) + "; choose a smaller one";
+  task.reason = "no tally in a cycle of " + std::to_string(task.steps) + " steps, because development.skip is " +
+                std::to_string(skip) + "; choose a smaller value";
   task.clear({}, 0);
 }
 

@@ -16,7 +16,7 @@ thread_local int priority_of_thread = 0;
 void warn_of_fewer_threads(std::size_t wanted, std::size_t taken) {
   static std::atomic_flag said;
   if (!said.test_and_set())
-    std::cerr << "warning: the system does not grant " + std::to_string(wanted) + " threads; going on with " +
+    std::cerr << "warning: the system does not grant " + std::to_string(wanted) + " threads; continuing with " +
                      std::to_string(taken) + "; ask for fewer threads, or raise the system's limits (ulimit)\n";
 }
 

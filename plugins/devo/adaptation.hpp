@@ -33,11 +33,13 @@ class Adaptation : public evodevo::Devo {
   Adaptation(double factor, double low, double high) : factor_(factor), low_(low), high_(high) {}
 
   void declare(evodevo::Parameters& p, evodevo::Range range, std::string_view low_text, std::string_view high_text) {
-    p.integer(springs_, "springs", {1, 1'000'000, "1"}, "Most stressed springs that change at each application.");
-    p.real(factor_, "factor", {0.5, 2, "1"}, "By what the property is multiplied, above or below 1.");
+    p.integer(springs_, "springs", {1, 1'000'000, "1"},
+              "Number of most stressed springs that are changed at each application.");
+    p.real(factor_, "factor", {0.5, 2, "1"},
+           "Factor by which the property of a spring is multiplied, below or above 1.");
     p.real(low_, "low", range, low_text);
     p.real(high_, "high", range, high_text);
-    p.require(factor_ != 1, "factor", "changes nothing; expected less or more than 1");
+    p.require(factor_ != 1, "factor", "changes nothing; expected a factor below or above 1");
     p.require(low_ <= high_, "low", "expected at most `high`");
     measure_.declare(p);
   }

@@ -11,8 +11,8 @@ class AmplitudeAdaptation final : public Adaptation {
   AmplitudeAdaptation() : Adaptation(1.05, 0.02, 0.3) {}
 
   void parameters(evodevo::Parameters& p) override {
-    declare(p, {0, 0.9, "1"}, "Relative amplitude below which no muscle is weakened.",
-            "Relative amplitude above which no muscle is strengthened.");
+    declare(p, {0, 0.9, "1"}, "Amplitude, relative to the rest length, below which no muscle is weakened.",
+            "Amplitude, relative to the rest length, above which no muscle is strengthened.");
   }
 
  private:
@@ -29,7 +29,8 @@ class AmplitudeAdaptation final : public Adaptation {
 
 }  // namespace
 
-EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
-               evodevo::operator_entry<AmplitudeAdaptation>("amplitude-adaptation",
-                                                            "The most stressed muscles get stronger or weaker (paper, "
-                                                            "section VII)."))
+EVODEVO_PLUGIN(
+    EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
+    evodevo::operator_entry<AmplitudeAdaptation>("amplitude-adaptation",
+                                                 "Makes the most stressed muscles stronger or weaker (paper, "
+                                                 "section VII)."))

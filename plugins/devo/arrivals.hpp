@@ -14,11 +14,13 @@ struct ArrivalRule {
   StressMeasure measure;
 
   void declare(evodevo::Parameters& p) {
-    p.integer(springs, "springs", {1, 100'000, "1"}, "Springs of a new mass, to masses that stay.");
-    p.real(min_distance, "min_distance", {0, 100, "m"}, "Distance of a new mass from any other at least.");
+    p.integer(springs, "springs", {1, 100'000, "1"}, "Number of springs that join a new mass to masses that stay.");
+    p.real(min_distance, "min_distance", {0, 100, "m"}, "Smallest distance of a new mass from all other masses.");
     p.choice(where, "where", {"random", "by-stress"},
-             "Where a new mass comes: anywhere in the body's box, or on a spring drawn with probability by stress.");
-    p.choice(join, "join", {"random", "nearest"}, "Which masses a new one is joined to.");
+             "Where a new mass is placed: anywhere in the body's bounding box, or on a spring drawn with probability "
+             "by stress.");
+    p.choice(join, "join", {"random", "nearest"},
+             "Which masses a new mass is joined to: random ones or the nearest ones.");
     measure.declare(p);
   }
 

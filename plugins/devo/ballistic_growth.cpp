@@ -23,7 +23,8 @@ class BallisticGrowth final : public evodevo::Devo {
 
 }  // namespace
 
-EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
-               evodevo::operator_entry<BallisticGrowth>("ballistic-growth",
-                                                        "Springs go linearly from the length at birth to the one that "
-                                                        "genes set (Kriegman et al. 2017)."))
+EVODEVO_PLUGIN(
+    EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
+    evodevo::operator_entry<BallisticGrowth>("ballistic-growth",
+                                             "Changes rest lengths linearly from those at birth to those that "
+                                             "the genes set (Kriegman et al. 2017)."))

@@ -11,8 +11,8 @@ class LengthAdaptation final : public Adaptation {
   LengthAdaptation() : Adaptation(0.98, 0.7, 1.3) {}
 
   void parameters(evodevo::Parameters& p) override {
-    declare(p, {0.01, 100, "1"}, "Shortest rest length, relative to that with which the spring came.",
-            "Longest rest length, relative to that with which the spring came.");
+    declare(p, {0.01, 100, "1"}, "Shortest rest length, relative to the first rest length of the spring.",
+            "Longest rest length, relative to the first rest length of the spring.");
   }
 
  private:
@@ -30,5 +30,5 @@ class LengthAdaptation final : public Adaptation {
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<LengthAdaptation>("length-adaptation",
-                                                         "The most stressed springs get shorter or longer (paper, "
+                                                         "Makes the most stressed springs shorter or longer (paper, "
                                                          "section VII)."))

@@ -9,8 +9,8 @@ namespace {
 class MassGrowth final : public evodevo::Devo {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.integer(masses_, "masses", {0, 100'000, "1"}, "Masses that come at each application.");
-    p.integer(limit_, "limit", {0, 10'000'000, "1"}, "Masses beyond which a body does not grow.");
+    p.integer(masses_, "masses", {0, 100'000, "1"}, "Number of masses that are added at each application.");
+    p.integer(limit_, "limit", {0, 10'000'000, "1"}, "Largest number of masses to which a body grows.");
     arrival_.declare(p);
   }
 
@@ -36,5 +36,5 @@ class MassGrowth final : public evodevo::Devo {
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<MassGrowth>("mass-growth",
-                                                   "Masses come and none goes, so that a body outgrows its start "
+                                                   "Adds masses and removes none, so that bodies grow "
                                                    "(paper, section VII)."))

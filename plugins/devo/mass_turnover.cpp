@@ -18,8 +18,8 @@ using evodevo::Rng;
 class MassTurnover final : public evodevo::Devo {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.integer(threshold_, "threshold", {0, 100'000, "1"}, "Masses with fewer springs than these go.");
-    p.integer(limit_, "limit", {0, 100'000, "1"}, "Masses that go in one cycle at most.");
+    p.integer(threshold_, "threshold", {0, 100'000, "1"}, "Masses with fewer springs than this number are removed.");
+    p.integer(limit_, "limit", {0, 100'000, "1"}, "Largest number of masses that are removed in one cycle.");
     arrival_.declare(p);
   }
 
@@ -80,5 +80,5 @@ class MassTurnover final : public evodevo::Devo {
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<MassTurnover>("mass-turnover",
-                                                     "Masses with few springs go, and as many come elsewhere "
+                                                     "Removes masses with few springs and adds as many elsewhere "
                                                      "(paper, section IV-D3)."))

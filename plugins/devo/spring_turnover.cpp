@@ -97,10 +97,12 @@ class Candidates {
 class SpringTurnover final : public evodevo::Devo {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.integer(springs_, "springs", {1, 1'000'000, "1"}, "Least stressed springs that go, and springs that come.");
-    p.choice(where_, "where", {"random", "most-stressed", "by-stress"},
-             "Where springs come: between random masses, beside each of as many most stressed springs, or beside "
-             "springs drawn with probability by stress; one beside another closes a triangle with it.");
+    p.integer(springs_, "springs", {1, 1'000'000, "1"},
+              "Number of least stressed springs that are removed, and of springs that are added.");
+    p.choice(
+        where_, "where", {"random", "most-stressed", "by-stress"},
+        "Where springs are added: between random masses, beside each of as many most stressed springs, or beside "
+        "springs drawn with probability by stress. A spring that is added beside another closes a triangle with it.");
     measure_.declare(p);
   }
 
@@ -151,5 +153,5 @@ class SpringTurnover final : public evodevo::Devo {
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<SpringTurnover>("spring-turnover",
-                                                       "The least stressed springs go and as many come elsewhere "
+                                                       "Removes the least stressed springs and adds as many elsewhere "
                                                        "(paper, section IV-D2)."))

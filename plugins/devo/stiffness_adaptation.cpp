@@ -32,5 +32,5 @@ class StiffnessAdaptation final : public Adaptation {
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<StiffnessAdaptation>("stiffness-adaptation",
-                                                            "The most stressed springs get stiffer or softer (paper, "
+                                                            "Makes the most stressed springs stiffer or softer (paper, "
                                                             "section VII)."))

@@ -44,7 +44,7 @@ class StressMeasure {
   void declare(evodevo::Parameters& p) {
     p.choice(by_, "by", {"mean-force", "peak", "work", "tension", "compression"},
              "What counts as stress: a spring's mean or largest absolute force over the cycle, the work of its muscle, "
-             "or the mean force by which it pulled or pushed.");
+             "or the mean force with which it pulls (tension) or pushes (compression).");
   }
 
   evodevo::SpringRequest request() const {

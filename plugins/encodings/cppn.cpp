@@ -62,5 +62,5 @@ class Cppn final : public NetworkEncoding {
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<Cppn>("cppn",
-                                             "A network whose neurons' functions evolve gives every point of a ball "
-                                             "a place and a material (Stanley 2007)."))
+                                             "A network whose neurons' functions evolve maps every point of a ball "
+                                             "to a place and a material (Stanley 2007)."))

@@ -9,9 +9,9 @@
 class LatticeEncoding : public evodevo::Encoding {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.counts(size_, "size", {1, 32, "1"}, "Voxels along x, y and z.");
-    p.real(edge_, "edge", {0.001, 100, "m"}, "Edge of a voxel.");
-    p.materials(materials_, "materials", "Materials to choose from; an empty list stands for all.");
+    p.counts(size_, "size", {1, 32, "1"}, "Number of voxels along x, y and z.");
+    p.real(edge_, "edge", {0.001, 100, "m"}, "Edge length of a voxel.");
+    p.materials(materials_, "materials", "Materials that genes choose from; an empty list stands for all.");
   }
 
  protected:

@@ -15,17 +15,18 @@
 class NetworkEncoding : public evodevo::Encoding {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.integer(points_, "points", {2, 100'000, "1"}, "Points in the ball, each of which becomes a mass.");
-    p.integer(points_seed_, "points_seed", {0, 4294967295.0, "1"}, "Seed from which the points are drawn.");
-    p.integer(neighbours_, "neighbours", {1, 1000, "1"}, "Nearest neighbours that every mass is joined to.");
+    p.integer(points_, "points", {2, 100'000, "1"}, "Number of points in the ball, each of which becomes a mass.");
+    p.integer(points_seed_, "points_seed", {0, 4294967295.0, "1"}, "Seed of the random points in the ball.");
+    p.integer(neighbours_, "neighbours", {1, 1000, "1"}, "Number of nearest neighbours that every mass is joined to.");
     p.choice(pairing_, "pairing", {"after-mapping", "before-mapping"},
-             "Whether masses whose places are near are joined, or masses whose points are near in the ball.");
-    p.integer(hidden_, "hidden", {1, 1000, "1"}, "Neurons in each of the two hidden layers.");
-    p.real(side_, "side", {0.001, 1000, "m"}, "Side of the cube in which the masses lie.");
+             "Which masses count as neighbours: those whose places in the body are near, or those whose points in the "
+             "ball are.");
+    p.integer(hidden_, "hidden", {1, 1000, "1"}, "Number of neurons in each of the two hidden layers.");
+    p.real(side_, "side", {0.001, 1000, "m"}, "Side length of the cube in which the masses lie.");
     p.materials(materials_, "materials", "Materials that a mass may have; an empty list stands for all.");
     p.real(size_range_, "size_range", {0, 0.9, "1"},
-           "By how much of their length a mass may make its springs longer or shorter, at birth and, with "
-           "ballistic-growth, at the end of development; 0: no genes for that.");
+           "Largest fraction by which a mass can make its springs longer or shorter, at birth and, with "
+           "ballistic-growth, at the end of development; 0: no genes for this.");
   }
 
   evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::EncodingContext& context) const final {

@@ -39,5 +39,5 @@ class Neural final : public NetworkEncoding {
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<Neural>(
                    "neural",
-                   "A neural network gives every point of a ball a place and a material, and nearest neighbours are "
+                   "A neural network maps every point of a ball to a place and a material, and nearest neighbours are "
                    "joined (paper, section IV-A1)."))

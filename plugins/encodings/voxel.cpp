@@ -15,8 +15,8 @@ class Voxel final : public LatticeEncoding {
   void parameters(evodevo::Parameters& p) override {
     LatticeEncoding::parameters(p);
     p.real(size_range_, "size_range", {0, 0.9, "1"},
-           "By how much of its edge a voxel may be larger or smaller, at birth and, with ballistic-growth, at the end "
-           "of development; 0: no genes for that.");
+           "Largest fraction by which a voxel can be larger or smaller than its edge, at birth and, with "
+           "ballistic-growth, at the end of development; 0: no genes for this.");
   }
 
   evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
@@ -96,5 +96,5 @@ class Voxel final : public LatticeEncoding {
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<Voxel>("voxel",
-                                              "Every voxel of a block has one material or is air, and springs take "
-                                              "the mean of their voxels (paper, section II)."))
+                                              "Every voxel of a block has one material or is air, and each spring has "
+                                              "the mean material of its voxels (paper, section II)."))

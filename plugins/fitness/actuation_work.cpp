@@ -9,8 +9,8 @@ namespace {
 class ActuationWork final : public evodevo::Fitness {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.real(settle_, "settle", {0, 3600, "s"}, "Time in which the body settles before work counts.");
-    p.real(window_, "window", {0.001, 3600, "s"}, "Time in which work counts.");
+    p.real(settle_, "settle", {0, 3600, "s"}, "Time in which the body settles before the work is measured.");
+    p.real(window_, "window", {0.001, 3600, "s"}, "Time in which the work is measured.");
   }
 
   evodevo::Request observes() const override { return {settle_, window_, true}; }
@@ -27,6 +27,5 @@ class ActuationWork final : public evodevo::Fitness {
 }  // namespace
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
-               evodevo::operator_entry<ActuationWork>("actuation-work",
-                                                      "The work that the muscles do on the body, the less the better "
-                                                      "(each spring's positive part)."))
+               evodevo::operator_entry<ActuationWork>(
+                   "actuation-work", "The positive work that muscles do on the body, to be minimised."))

@@ -11,13 +11,14 @@ namespace {
 class Distance final : public evodevo::Fitness {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.vector(direction_, "direction", {-1000, 1000, "1"}, "Direction in which the way counts, of any length but 0.");
-    p.real(settle_, "settle", {0, 3600, "s"}, "Time in which the body settles before the way counts.");
-    p.real(window_, "window", {0.001, 3600, "s"}, "Time in which the way counts.");
+    p.vector(direction_, "direction", {-1000, 1000, "1"},
+             "Direction in which the distance is measured: a vector of any length above 0.");
+    p.real(settle_, "settle", {0, 3600, "s"}, "Time in which the body settles before the distance is measured.");
+    p.real(window_, "window", {0.001, 3600, "s"}, "Time in which the distance is measured.");
   }
 
   evodevo::Request observes() const override {
-    if (!(norm(direction_) > 0)) throw std::invalid_argument("direction must not be zero");
+    if (!(norm(direction_) > 0)) throw std::invalid_argument("direction must be longer than 0");
     return {settle_, window_, false};
   }
 
@@ -39,7 +40,8 @@ class Distance final : public evodevo::Fitness {
 
 }  // namespace
 
-EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
-               evodevo::operator_entry<Distance>("distance",
-                                                 "How many body lengths the centre of mass moves in a direction "
-                                                 "(paper, section IV-E)."))
+EVODEVO_PLUGIN(
+    EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
+    evodevo::operator_entry<Distance>("distance",
+                                      "The distance that the centre of mass moves in a direction, in body lengths "
+                                      "(paper, section IV-E)."))

@@ -39,5 +39,5 @@ class AgeFitnessPareto final : public evodevo::Selection {
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<AgeFitnessPareto>("age-fitness-pareto",
-                                                         "The best Pareto layers of the objectives and of youth live "
-                                                         "on (Schmidt & Lipson 2011; paper, section IV-F)."))
+                                                         "The best Pareto layers by the objectives and by low age "
+                                                         "survive (Schmidt & Lipson 2011; paper, section IV-F)."))

@@ -10,7 +10,8 @@ using evodevo::Candidate;
 class Elitist final : public evodevo::Selection {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.integer(tournament_, "tournament", {1, 1000, "1"}, "Rows drawn for each parent, the best of which breeds.");
+    p.integer(tournament_, "tournament", {1, 1000, "1"},
+              "Number of individuals drawn for each parent, of which the best breeds.");
   }
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
@@ -38,5 +39,5 @@ class Elitist final : public evodevo::Selection {
 EVODEVO_PLUGIN(
     EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
     evodevo::operator_entry<Elitist>("elitist",
-                                     "The best live on, and the winners of small tournaments breed (Goldberg "
+                                     "The best individuals survive, and winners of tournaments breed (Goldberg "
                                      "& Deb 1991)."))

@@ -17,7 +17,7 @@ using evodevo::Point;
 class ParetoLayers final : public evodevo::Selection {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.flag(age_, "age", "Whether youth is an objective beside those of the fitness.");
+    p.flag(age_, "age", "Whether a low age is an objective in addition to those of the fitness operators.");
   }
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
@@ -92,6 +92,6 @@ class ParetoLayers final : public evodevo::Selection {
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<ParetoLayers>("pareto-layers",
-                                                     "A child takes its parent's place if it lies in a higher Pareto "
-                                                     "layer, or in the same one with higher fitness (paper, section "
+                                                     "A child replaces its parent if it lies in a better Pareto "
+                                                     "layer, or in the same layer with higher fitness (paper, section "
                                                      "IV-F)."))

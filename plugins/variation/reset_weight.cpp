@@ -10,7 +10,7 @@ namespace {
 class ResetWeight final : public evodevo::Mutation {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.integer(genes_, "genes", {1, 1'000'000, "1"}, "Genes that are drawn anew, all different.");
+    p.integer(genes_, "genes", {1, 1'000'000, "1"}, "Number of different genes that get new random values.");
   }
 
   void mutate(evodevo::Genome& genome, const evodevo::Layout& layout, evodevo::Rng& rng) const override {
@@ -39,4 +39,5 @@ class ResetWeight final : public evodevo::Mutation {
 }  // namespace
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
-               evodevo::operator_entry<ResetWeight>("reset-weight", "Draws a random gene anew (paper, section IV-B)."))
+               evodevo::operator_entry<ResetWeight>("reset-weight",
+                                                    "Gives random genes new random values (paper, section IV-B)."))

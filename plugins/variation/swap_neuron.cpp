@@ -19,5 +19,5 @@ class SwapNeuron final : public evodevo::Crossover {
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<SwapNeuron>("swap-neuron",
-                                                   "Swaps one random group of genes, such as a neuron's bias and "
-                                                   "weights (paper, section IV-B)."))
+                                                   "Swaps one random group of genes, such as the bias and weights "
+                                                   "of a neuron (paper, section IV-B)."))

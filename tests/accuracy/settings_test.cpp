@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-
 #include "../common/help.hpp"
 #include "studies.hpp"
 
@@ -25,8 +24,9 @@ TEST(AccuracySettings, NameTheCommandThatRepeatsThem) {
 
 TEST(AccuracySettings, RefuseWhatCannotBeStudied) {
   EXPECT_THAT(complaint({"--quick"}), HasSubstr("name the folder"));
-  EXPECT_THAT(complaint({"charts", "--study", "order"}), HasSubstr("\"order\" is none of work-precision, beam"));
-  EXPECT_THAT(complaint({"charts", "--device", "gpu"}), HasSubstr("\"gpu\" is none of cpu, cuda"));
+  EXPECT_THAT(complaint({"charts", "--study", "order"}),
+              AllOf(HasSubstr("\"order\""), HasSubstr("work-precision, beam")));
+  EXPECT_THAT(complaint({"charts", "--device", "gpu"}), AllOf(HasSubstr("\"gpu\""), HasSubstr("cpu, cuda")));
   EXPECT_THAT(complaint({"charts", "--robots", "3"}), HasSubstr("at least 20"));
 }
 

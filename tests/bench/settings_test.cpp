@@ -25,11 +25,11 @@ TEST(Settings, NameTheMethod) {
 }
 
 TEST(Settings, RefuseWhatCannotBeMeasured) {
-  EXPECT_THAT(complaint({"--study", "speeed"}), HasSubstr("\"speeed\" is none of speed, features"));
+  EXPECT_THAT(complaint({"--study", "speeed"}), AllOf(HasSubstr("\"speeed\""), HasSubstr("speed, features")));
   EXPECT_THAT(complaint({"--study", "baselines"}), HasSubstr("--device cuda"));
   EXPECT_THAT(complaint({"--study", "features", "--robots", "some.toml"}), HasSubstr("--robots"));
   EXPECT_THAT(complaint({"--bodies", "0"}), HasSubstr("bodies from 1 to 65535"));
-  EXPECT_THAT(complaint({"--method", "rk5"}), HasSubstr("\"rk5\" is none of paper-euler, "));
+  EXPECT_THAT(complaint({"--method", "rk5"}), AllOf(HasSubstr("\"rk5\""), HasSubstr("paper-euler, ")));
   EXPECT_THAT(complaint({"--study", "materials"}), HasSubstr("add --device cuda"));
 #ifdef EVODEVO_CUDA
   EXPECT_THAT(complaint({"--study", "stress", "--device", "cuda", "--method", "rk4"}), HasSubstr("leave --method out"));

@@ -11,6 +11,7 @@
 #include "evolution/evolution.hpp"
 #include "support/elsewhere.hpp"
 #include "support/experiments.hpp"
+#include "support/messages.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"
 
@@ -79,7 +80,7 @@ TEST_F(Command, ShowAgreesWithTheArchive) {
   EXPECT_EQ(text.exit_code, 0);
   EXPECT_THAT(text.output, HasSubstr("24 evaluations"));
   EXPECT_EQ(json.at("clones"), clones);
-  EXPECT_THAT(text.output, HasSubstr("; " + std::to_string(clones) + " of them clones\n"));
+  EXPECT_THAT(text.output, HasSubstr(std::to_string(clones) + " of them clones"));
   EXPECT_THAT(text.output, HasSubstr("best individuals\n  " + champion.at("individual").dump() + ": distance"));
   EXPECT_THAT(text.output, ::testing::Not(HasSubstr("nan")));
 }
@@ -90,7 +91,7 @@ TEST_F(Command, FailedBodiesNeverReachAReportAsNumbers) {
                                      "scene.gravity.acceleration=1000"});
   EXPECT_EQ(finished.exit_code, 0) << finished.output;
   EXPECT_THAT(finished.output, HasSubstr("best none  median none"));
-  EXPECT_THAT(finished.output, HasSubstr("no individual ended with a fitness"));
+  EXPECT_THAT(finished.output, testing::naming("no individual", "fitness", " show " + folder_));
   const auto json = nlohmann::json::parse(evodevo({"show", folder_, "--json"}).output);
   EXPECT_TRUE(json.at("best").is_null());
   EXPECT_TRUE(json.at("generations")[0].at("best").is_null());
@@ -103,7 +104,6 @@ TEST_F(Command, FailedBodiesNeverReachAReportAsNumbers) {
   EXPECT_LT(json.at("failures").size(), 5u);
   const Finished shown = evodevo({"show", folder_});
   EXPECT_EQ(shown.exit_code, 0);
-  EXPECT_THAT(shown.output, HasSubstr("without a fitness\n  "));
   EXPECT_THAT(shown.output, HasSubstr(" diverged: " + json.at("failures")[0].at("reason").get<std::string>()));
   EXPECT_THAT(shown.output, Not(HasSubstr("best individuals")));
   EXPECT_EQ(evodevo({"body", folder_}).exit_code, 2);
@@ -218,8 +218,8 @@ TEST_F(Command, LifeTellsWhyMassesGoAndHowFarSpringsGrow) {
   const std::string life = evodevo({"life", folder_}).output;
   EXPECT_THAT(life, ContainsRegex("cycle 1  mass-turnover: mass [0-9]+ gone, degree [0-9]+ springs\n"));
   EXPECT_THAT(life, ContainsRegex("cycle 1  mass-turnover: mass 12 come, skip-shift -?[0-9]+ points at "));
-  EXPECT_THAT(life, HasSubstr("cycle 1  ballistic-growth: springs grow from 0 to 0.5 of their way\n"));
-  EXPECT_THAT(life, HasSubstr("cycle 2  ballistic-growth: springs grow from 0.5 to 1 of their way\n"));
+  EXPECT_THAT(life, ContainsRegex("cycle 1  ballistic-growth: springs .*from 0 to 0.5 "));
+  EXPECT_THAT(life, ContainsRegex("cycle 2  ballistic-growth: springs .*from 0.5 to 1 "));
   int masses_gone = 0, growth = 0;
   const auto json = nlohmann::json::parse(evodevo({"life", folder_, "--json"}).output);
   for (const auto& edit : json.at("edits")) {
@@ -246,10 +246,11 @@ TEST_F(Command, LifeSaysWhereItCannotBeSure) {
   for (std::uint32_t id = 0; id < 24; ++id) {
     const Finished finished = evodevo({"life", folder_, "--individual", std::to_string(id)});
     EXPECT_EQ(finished.exit_code, 0);
-    const bool warns = finished.output.find(" was simulated again on cpu") != std::string::npos;
+    const std::string warning = "warning: individual " + std::to_string(id) + " ";
+    const bool warns = finished.output.find(warning) != std::string::npos;
     EXPECT_EQ(warns, !archive.life(id).has_value()) << finished.output;
     const Finished body = evodevo({"body", folder_, "--matured", "--individual", std::to_string(id)});
-    EXPECT_EQ(body.output.find(" was simulated again on cpu") != std::string::npos, warns) << body.output;
+    EXPECT_EQ(body.output.find(warning) != std::string::npos, warns) << body.output;
   }
 }
 
@@ -301,7 +302,7 @@ TEST_F(Command, ARunVerifiesItsBestAndMoreAreVerifiedAtWill) {
   EXPECT_THAT(text.output, HasSubstr("  quarter-step "));
   const std::string mark = of_run.at("marks").empty() ? "verified" : of_run.at("marks")[0].get<std::string>();
   EXPECT_THAT(evodevo({"show", folder_}).output, HasSubstr(", " + mark));
-  EXPECT_THAT(evodevo({"verify", folder_, "--best", "0"}).output, HasSubstr("--best 0: expected 1 to 1000"));
+  EXPECT_THAT(evodevo({"verify", folder_, "--best", "0"}).output, testing::naming("--best 0: ", "1 to 1000"));
 }
 
 TEST_F(Command, BodyComesOutAndGoesIntoAScene) {
@@ -394,8 +395,8 @@ TEST_F(Command, UsageErrors) {
   EXPECT_EQ(evodevo({}).exit_code, 2);
   EXPECT_THAT(evodevo({"rum"}).output, AllOf(HasSubstr("\"rum\""), HasSubstr("did you mean \"run\"?")));
   EXPECT_THAT(evodevo({"run"}).output,
-              AllOf(HasSubstr("EXPERIMENT.toml is missing"), HasSubstr("usage: evodevo run EXPERIMENT.toml")));
-  EXPECT_THAT(evodevo({"conform"}).output, HasSubstr("LIBRARY is missing"));
+              testing::naming("EXPERIMENT.toml", "missing", "usage: evodevo run EXPERIMENT.toml"));
+  EXPECT_THAT(evodevo({"conform"}).output, testing::naming("LIBRARY", "missing", "usage: evodevo conform LIBRARY"));
   EXPECT_EQ(evodevo({"run", file_, "--sead", "3"}).exit_code, 2);
   EXPECT_THAT(evodevo({"run", file_, "--set", "seed"}).output, AllOf(HasSubstr("--set seed"), HasSubstr("key=value")));
   EXPECT_EQ(evodevo({"check", file_}).output, file_ + ": ok\n");
@@ -411,22 +412,22 @@ TEST_F(Command, FaultyBodiesAreRefusedByPlace) {
   };
   const std::string masses = R"("masses": [{"position": [0,0,0], "mass": 1}, {"position": [1,0,0], "mass": 1}])";
   const std::string materials = R"("materials": [{"stiffness": 1, "amplitude": 0, "frequency": 0, "phase": 0}])";
-  EXPECT_THAT(refusal("{"), HasSubstr(": is not JSON: "));
-  EXPECT_THAT(refusal("{\x1b\n\xff"), AllOf(HasSubstr(": is not JSON: "), HasSubstr("<U+001B>")));
+  EXPECT_THAT(refusal("{"), testing::at_place(": ", "JSON"));
+  EXPECT_THAT(refusal("{\x1b\n\xff"), testing::at_place(": ", "JSON", "<U+001B>"));
   const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
-  EXPECT_THAT(refusal(deep), HasSubstr("more than 16 levels deep"));
-  EXPECT_EQ(refusal("{}"), ": \"materials\" is missing\n");
-  EXPECT_EQ(refusal("{" + materials + R"(, "masses": [{"position": [0,0], "mass": 1}], "springs": []})"),
-            ": masses[0].position: expected three numbers\n");
-  EXPECT_EQ(
-      refusal("{" + materials + R"(, "masses": [{"position": [0,0,0], "mass": -1}], "springs": []})").substr(0, 40),
-      ": masses[0].mass: -1 is out of range; ex");
-  EXPECT_EQ(
+  EXPECT_THAT(refusal(deep), testing::at_place(": ", "16 levels"));
+  EXPECT_THAT(refusal("{}"), testing::at_place(": ", "\"materials\"", "missing"));
+  EXPECT_THAT(refusal("{" + materials + R"(, "masses": [{"position": [0,0], "mass": 1}], "springs": []})"),
+              testing::at_place(": masses[0].position: ", "three numbers"));
+  EXPECT_THAT(refusal("{" + materials + R"(, "masses": [{"position": [0,0,0], "mass": -1}], "springs": []})"),
+              testing::at_place(": masses[0].mass: ", "-1", "expected at least"));
+  EXPECT_THAT(
       refusal("{" + materials + "," + masses + R"(, "springs": [{"a": 0, "b": 2, "rest_length": 1, "material": 0}]})"),
-      ": springs[0].b: 2 is not an index below 2\n");
-  EXPECT_EQ(refusal("{" + materials + "," + masses + R"(, "springs": [{"a": 0, "b": 1, "rest_length": 1, "material": 0},
+      testing::at_place(": springs[0].b: ", "2", "index"));
+  EXPECT_THAT(
+      refusal("{" + materials + "," + masses + R"(, "springs": [{"a": 0, "b": 1, "rest_length": 1, "material": 0},
                     {"a": 1, "b": 0, "rest_length": 1, "material": 0}]})"),
-            ": springs[1]: masses 1 and 0 are joined already\n");
+      testing::at_place(": springs[1]: ", "masses 1 and 0", "joined already"));
 }
 
 TEST_F(Command, OperatorsDescribeThemselves) {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "operators/loader.hpp"
+#include "support/messages.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"
 
@@ -40,7 +41,7 @@ TEST_P(BuiltIn, KeepsToAllRules) {
   const auto outcomes = verdicts(GetParam(), 0);
   EXPECT_GE(outcomes.size(), 12u);
   for (const auto& [name, outcome] : outcomes)
-    EXPECT_THAT(outcome, ::testing::AnyOf("passed ", "skipped it has no parameters")) << name;
+    EXPECT_THAT(outcome, ::testing::AnyOf("passed ", testing::at_place("skipped ", "no parameters"))) << name;
 }
 
 std::set<fs::path> built_in_libraries() {
@@ -57,7 +58,8 @@ INSTANTIATE_TEST_SUITE_P(Conformance, BuiltIn, ::testing::ValuesIn(built_in_libr
 struct Broken {
   const char* plugin;
   const char* rule;
-  const char* verdict;  ///< beginning of the expected verdict
+  std::string outcome;             ///< expected outcome
+  std::vector<std::string> named;  ///< what the reason must name
 };
 
 class Wrong : public ::testing::TestWithParam<Broken> {};
@@ -65,47 +67,44 @@ class Wrong : public ::testing::TestWithParam<Broken> {};
 TEST_P(Wrong, IsCaughtByTheCaseMeantForIt) {
   const auto outcomes = verdicts(wrong(GetParam().plugin), 1);
   EXPECT_EQ(outcomes.at("loads"), "passed ");
-  EXPECT_THAT(outcomes.at(GetParam().rule), ::testing::StartsWith(GetParam().verdict));
+  EXPECT_THAT(outcomes.at(GetParam().rule), ::testing::StartsWith(GetParam().outcome + " "));
+  for (const std::string& part : GetParam().named)
+    EXPECT_THAT(outcomes.at(GetParam().rule), ::testing::HasSubstr(part));
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Conformance, Wrong,
     ::testing::Values(
-        Broken{"exports", "exports", "failed exports another_export, evodevo_plugin; expected evodevo_plugin alone"},
-        Broken{"listing", "listing", "failed listing it takes "},
-        Broken{"declarations", "declarations", "failed parameter \"genes\" has no sentence"},
-        Broken{"refusals", "refusals", "failed it accepts genes = 0.5"},
-        Broken{"same_seed", "same-seed", "failed two calls with input "},
-        Broken{"threads", "threads", "failed input 0 gives one result on one thread and another on eight"},
-        Broken{"batch", "batch", "failed input 12 alone and after others gives different results"},
-        Broken{"inputs", "inputs", "failed it changes the layout, which it may only read"},
-        Broken{"instances", "instances", "failed a parameter set in one instance changes in another"},
-        Broken{"resuming", "resuming", "failed a run that was stopped and resumed ends otherwise"},
-        Broken{"nothing", "nothing", "failed it makes genes of no genes"},
-        Broken{"layout", "layout", "failed gene 0 = 2 is not of the layout"},
-        Broken{"changes", "changes", "failed it changes none of 200 genomes"},
-        Broken{"changes_crossover", "changes", "failed of 200 pairs of genomes it changes the first in none"},
-        Broken{"twins", "twins", "failed of two equal genomes it makes others"},
-        Broken{"decoding", "decoding", "failed spring 0 dangles"},
-        Broken{"decoding_growth", "decoding", "failed springs may grow, but sets_growth() denies it"},
-        Broken{"bodies", "bodies", "failed body 0, cycle 1: it joins masses "},
-        Broken{"bodies_dangling", "bodies", "failed body 0, cycle 1: it joins masses 0 and "},
-        Broken{"bodies_nan", "bodies",
-               "failed body 0, cycle 1: it joins masses 0 and 1 by a spring whose stiffness is not a number"},
-        Broken{"bodies_beyond", "bodies", "failed body 0: a new mass lies beyond the bounds"},
-        Broken{"bodies_growth", "bodies", "failed it lets springs grow, but uses_growth() denies it"},
-        Broken{"translation", "translation", "failed a body that does the same elsewhere scores "},
-        Broken{"nan_hidden", "nan", "failed an observation without a single number scores 0"},
-        Broken{"objectives", "objectives", "failed it gives 2 scores for 1 objectives"},
-        Broken{"objectives_nan", "objectives", "failed none of 20 bodies gets finite scores"},
-        Broken{"order", "order", "failed who lives on depends on the order of birth"},
-        Broken{"elite", "elite", "failed the row with the best first score does not live on"},
-        Broken{"failed", "failed", "failed a failed row lives on instead of a sound one"},
-        Broken{"hidden_state", "hidden-state", "failed input "},
-        Broken{"surroundings", "surroundings", "failed it changes the locale in its calls"},
-        Broken{"names", "names", "failed the declaration of parameter \"genes\" has markup: <script>"},
-        Broken{"names_control", "names", "failed the parameter \"ge"},
-        Broken{"crashing", "same-seed", "crashed Segmentation fault"}),
+        Broken{"exports", "exports", "failed", {"another_export, evodevo_plugin", "evodevo_add_plugin"}},
+        Broken{"listing", "listing", "failed", {"ms", "100"}},
+        Broken{"declarations", "declarations", "failed", {"parameter \"genes\"", "full stop"}},
+        Broken{"refusals", "refusals", "failed", {"genes = 0.5", "parameters()"}},
+        Broken{"same_seed", "same-seed", "failed", {"input ", "Rng"}},
+        Broken{"threads", "threads", "failed", {"input 0 ", "thread"}},
+        Broken{"batch", "batch", "failed", {"input 12 "}}, Broken{"inputs", "inputs", "failed", {"the layout"}},
+        Broken{"instances", "instances", "failed", {"instance", "static"}},
+        Broken{"resuming", "resuming", "failed", {"resumed"}}, Broken{"nothing", "nothing", "failed", {"no genes"}},
+        Broken{"layout", "layout", "failed", {"gene 0 = 2 "}},
+        Broken{"changes", "changes", "failed", {"200 genomes", "clones"}},
+        Broken{"changes_crossover", "changes", "failed", {"200 pairs", "clones"}},
+        Broken{"twins", "twins", "failed", {"equal genomes"}}, Broken{"decoding", "decoding", "failed", {"spring 0 "}},
+        Broken{"decoding_growth", "decoding", "failed", {"sets_growth()"}},
+        Broken{"bodies", "bodies", "failed", {"body 0, cycle 1: ", "masses "}},
+        Broken{"bodies_dangling", "bodies", "failed", {"body 0, cycle 1: ", "masses 0 and "}},
+        Broken{"bodies_nan", "bodies", "failed", {"body 0, cycle 1: ", "masses 0 and 1 ", "stiffness is not a number"}},
+        Broken{"bodies_beyond", "bodies", "failed", {"body 0: ", "bounds"}},
+        Broken{"bodies_growth", "bodies", "failed", {"uses_growth()"}},
+        Broken{"translation", "translation", "failed", {"scores "}},
+        Broken{"nan_hidden", "nan", "failed", {"scores 0"}},
+        Broken{"objectives", "objectives", "failed", {"2 scores", "1 objectives"}},
+        Broken{"objectives_nan", "objectives", "failed", {"20 bodies", "finite scores"}},
+        Broken{"order", "order", "failed", {"order of birth"}},
+        Broken{"elite", "elite", "failed", {"best first score"}}, Broken{"failed", "failed", "failed", {"failed row"}},
+        Broken{"hidden_state", "hidden-state", "failed", {"input ", "calls"}},
+        Broken{"surroundings", "surroundings", "failed", {"the locale", "calls"}},
+        Broken{"names", "names", "failed", {"parameter \"genes\"", "<script>"}},
+        Broken{"names_control", "names", "failed", {"parameter \"ge"}},
+        Broken{"crashing", "same-seed", "crashed", {"Segmentation fault"}}),
     [](const auto& broken) { return std::string(broken.param.plugin); });
 
 TEST(Conformance, AScoreThatIsNoNumberIsTheSameElsewhere) {
@@ -115,16 +114,15 @@ TEST(Conformance, AScoreThatIsNoNumberIsTheSameElsewhere) {
 TEST(Conformance, ALibraryThatDoesNotLoadIsToldAlone) {
   const auto outcomes = verdicts(fs::path(EVODEVO_FAULTY_PLUGINS) / "undefined_symbol" / "plugin.evodevo.so", 1);
   ASSERT_EQ(outcomes.size(), 1u);
-  EXPECT_THAT(outcomes.at("loads"), ::testing::StartsWith("failed cannot be loaded: "));
+  EXPECT_THAT(outcomes.at("loads"), testing::at_place("failed ", "loaded", "nobody"));
   const Finished none = testing::run({EVODEVO_PROGRAM, "conform", "/no/such"});
   EXPECT_EQ(none.exit_code, 2);
-  EXPECT_THAT(none.output,
-              ::testing::AllOf(::testing::HasSubstr("conform /no/such: "), ::testing::HasSubstr("NAME.evodevo.so")));
+  EXPECT_THAT(none.output, testing::naming("conform /no/such: ", "NAME.evodevo.so"));
 }
 
 TEST(Conformance, WhatLoadingChangesIsAFault) {
   const auto outcomes = verdicts(fs::path(EVODEVO_FAULTY_PLUGINS) / "rounds" / "plugin.evodevo.so", 1);
-  EXPECT_THAT(outcomes.at("loads"), ::testing::StartsWith("failed it changes the rounding mode while it is loaded"));
+  EXPECT_THAT(outcomes.at("loads"), testing::at_place("failed ", "the rounding mode", "loaded", "-ffast-math"));
 }
 
 TEST(Conformance, ACaseThatNeverEndsIsNotKept) {
@@ -133,13 +131,13 @@ TEST(Conformance, ACaseThatNeverEndsIsNotKept) {
     outcomes[verdict.name] = verdict.outcome + " " + verdict.reason;
   };
   conformance::examine(wrong("endless"), 1, note, 1);
-  EXPECT_THAT(outcomes.at("nothing"), ::testing::StartsWith("failed not done after 1 s"));
+  EXPECT_THAT(outcomes.at("nothing"), testing::at_place("failed ", " 1 s"));
   EXPECT_EQ(outcomes.at("layout"), "passed ") << "and the next case comes";
 }
 
 TEST(Conformance, ACaseThatCannotSayAnythingIsSkipped) {
   const auto outcomes = verdicts(builtin_plugin_folder() / "swap-neuron.evodevo.so", 0);
-  EXPECT_EQ(outcomes.at("instances"), "skipped it has no parameters");
+  EXPECT_THAT(outcomes.at("instances"), testing::at_place("skipped ", "no parameters"));
 }
 
 TEST(Reference, ThePageIsWhatThePluginsSay) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/experiments.hpp"
+#include "support/messages.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"
 
@@ -88,8 +89,8 @@ TEST_F(Environments, TheTableNamesScenesAndCycles) {
   const std::string weak = other("weak.toml", "[scene.gravity]", "[scene.gravity]\nacceleration = 1.62");
   const testing::Finished finished = environments({flat_, weak, "--starts", "2"});
   EXPECT_EQ(finished.exit_code, 0) << finished.output;
-  for (const char* part : {"individual 4", "flat", "weak", "after cycle  6", "springs that only one body has",
-                           "how far mass lies apart, body lengths at birth"})
+  for (const char* part :
+       {"individual 4", "flat", "weak", "after cycle  6", "springs that only one", "body lengths at birth"})
     EXPECT_THAT(finished.output, HasSubstr(part));
 }
 
@@ -105,16 +106,16 @@ TEST_F(Environments, OneGenomeNeedsOneMeaning) {
   const std::string sized = other("sized.toml", "edge = 0.5", "edge = 0.6");
   const testing::Finished finished = environments({flat_, sized});
   EXPECT_EQ(finished.exit_code, 2);
-  EXPECT_THAT(finished.output, HasSubstr("sized.toml: encoding.edge is 0.6, in the first experiment 0.5"));
+  EXPECT_THAT(finished.output, testing::naming("sized.toml: encoding.edge ", "0.6", "0.5"));
   const std::string soft = other("soft.toml", "[development]", "[materials.bone]\nstiffness = 100\n\n[development]");
-  EXPECT_THAT(environments({flat_, soft}).output, HasSubstr("soft.toml: materials.bone.stiffness is 100"));
+  EXPECT_THAT(environments({flat_, soft}).output, testing::naming("soft.toml: materials.bone.stiffness ", "100"));
 }
 
 TEST_F(Environments, WarnsOfWhatElseDiffers) {
   const std::string eager = other("eager.toml", "springs = 2", "springs = 3");
   const testing::Finished finished = environments({flat_, eager, "--starts", "1"});
   EXPECT_EQ(finished.exit_code, 0);
-  EXPECT_THAT(finished.output, HasSubstr("warning: " + eager + ": development.operator.0.springs is 3"));
+  EXPECT_THAT(finished.output, testing::naming("warning: " + eager + ": development.operator.0.springs ", "3", "2"));
 }
 
 TEST_F(Environments, WithoutDevelopmentThereIsNothingToShow) {
@@ -124,8 +125,8 @@ TEST_F(Environments, WithoutDevelopmentThereIsNothingToShow) {
 }
 
 TEST_F(Environments, BadNumbersAreRefused) {
-  EXPECT_THAT(environments({}).output, HasSubstr("EXPERIMENT.toml is missing"));
-  EXPECT_THAT(environments({flat_, "--starts", "0"}).output, HasSubstr("--starts 0: expected 1 to 50"));
+  EXPECT_THAT(environments({}).output, testing::naming("EXPERIMENT.toml", "missing"));
+  EXPECT_THAT(environments({flat_, "--starts", "0"}).output, testing::naming("--starts 0: ", "1 to 50"));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "evolution/archive/archive.hpp"
 #include "report/report.hpp"
 #include "support/experiments.hpp"
+#include "support/messages.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"
 
@@ -15,7 +16,6 @@ namespace evodevo {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::Process;
@@ -110,7 +110,7 @@ TEST_F(Interruption, AJournalThatThereIsNotIsRefused) {
   command.insert(command.end(), {"--journal", "off"});
   const testing::Finished finished = testing::run(command);
   EXPECT_EQ(finished.exit_code, 2);
-  EXPECT_THAT(finished.output, HasSubstr("--journal off: expected wal or delete"));
+  EXPECT_THAT(finished.output, testing::naming("--journal off: ", "wal or delete"));
 }
 
 TEST_F(Interruption, AFolderThatGoesEndsTheRun) {
@@ -123,8 +123,8 @@ TEST_F(Interruption, AFolderThatGoesEndsTheRun) {
   fs::remove_all(folder);
   EXPECT_EQ(process.wait(), 1);
   EXPECT_THAT(process.output(),
-              HasSubstr("evodevo: " + folder.string() + ": run.sqlite was removed, moved or replaced"));
-  EXPECT_THAT(process.output(), Not(HasSubstr("goes on from there")));
+              testing::naming("evodevo: " + folder.string() + ": run.sqlite", "removed", "moved", "replaced"));
+  EXPECT_THAT(process.output(), Not(HasSubstr("resume " + folder.string())));
   EXPECT_FALSE(fs::exists(folder)) << "and nothing is left behind";
 }
 
@@ -169,7 +169,7 @@ TEST_F(Interruption, CtrlCCommitsAndSaysHowToGoOn) {
   process.send(SIGINT);
   EXPECT_EQ(process.wait(), 130) << process.output();
   const std::string folder = (scratch_ / "stopped").string();
-  EXPECT_THAT(process.output(), HasSubstr("interrupted; to go on: evodevo resume " + folder));
+  EXPECT_THAT(process.output(), testing::naming("interrupted", "evodevo resume " + folder));
   const auto finished = [&] {
     return nlohmann::json::parse(testing::run({EVODEVO_PROGRAM, "show", folder, "--json"}).output).at("finished");
   };
@@ -233,11 +233,10 @@ TEST_F(Interruption, GoingOnElsewhereOrByAnotherBuildWarns) {
   const std::string begun_by = Archive::read(scratch_ / "run").provenances().front().program;
   const testing::Finished resumed = testing::run(resume_command("run"));
   EXPECT_EQ(resumed.exit_code, 0);
-  EXPECT_THAT(resumed.output, HasSubstr("warning: the run began on cpu, an older one and goes on on "));
+  EXPECT_THAT(resumed.output, testing::naming("warning: ", "cpu, an older one", " on cpu, "));
   const Provenance now = Archive::read(scratch_ / "run").provenance(0);
   EXPECT_NE(now.device, "cpu, an older one");
-  EXPECT_THAT(resumed.output, AllOf(HasSubstr("warning: the run began with evodevo " EVODEVO_VERSION " (" + begun_by),
-                                    HasSubstr("another build of it, " + now.program + "; results may differ\n")));
+  EXPECT_THAT(resumed.output, testing::naming("warning: ", "evodevo " EVODEVO_VERSION " (" + begun_by, now.program));
 }
 
 TEST_F(Interruption, GoingOnTheSameWayWarnsOfNothing) {

@@ -4,6 +4,7 @@
 
 #include "evolution/archive/archive.hpp"
 #include "support/experiments.hpp"
+#include "support/messages.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"
 
@@ -64,7 +65,7 @@ TEST_F(Misbehaviour, ACallThatNeverEndsIsNamedAndOneCtrlCEndsIt) {
   process.send(SIGINT);
   EXPECT_EQ(process.wait(), 130) << process.output();
   EXPECT_THAT(process.output(), HasSubstr("evodevo: interrupted: " + named("mutation") + ", individual "));
-  EXPECT_THAT(process.output(), HasSubstr(", seed 7: has not returned for "));
+  EXPECT_THAT(process.output(), HasSubstr(", seed 7: "));
   EXPECT_EQ(generations_kept(), 1u);
 }
 
@@ -83,9 +84,7 @@ TEST_F(Misbehaviour, AnOperatorThatExitsIsNoSuccess) {
     fs::remove_all(folder_);
     const Finished finished = testing::run(mutating(how));
     EXPECT_EQ(finished.exit_code, 1) << how << finished.output;
-    EXPECT_THAT(finished.output,
-                HasSubstr(named("mutation") + ", individual 6, seed 7: it ended the process with exit code 0"))
-        << how;
+    EXPECT_THAT(finished.output, testing::naming(named("mutation") + ", individual 6, seed 7: ", "exit code 0")) << how;
     EXPECT_EQ(generations_kept(), 1u);
   }
 }
@@ -93,11 +92,11 @@ TEST_F(Misbehaviour, AnOperatorThatExitsIsNoSuccess) {
 TEST_F(Misbehaviour, AStackThatOverflowsIsNamed) {
   const Finished on_main_thread = testing::run(mutating("overflow"));
   EXPECT_EQ(on_main_thread.exit_code, 128 + SIGSEGV);
-  EXPECT_THAT(on_main_thread.output, HasSubstr(named("mutation") + ", individual 6, seed 7: its stack overflowed"));
+  EXPECT_THAT(on_main_thread.output, testing::naming(named("mutation") + ", individual 6, seed 7: ", "stack overflow"));
   fs::remove_all(folder_);
   const Finished on_another = testing::run(run_with("development.operator.0", "overflow"));
   EXPECT_EQ(on_another.exit_code, 128 + SIGSEGV);
-  EXPECT_THAT(on_another.output, ::testing::ContainsRegex("devo operator .*, cycle 2, seed 7: its stack overflowed"));
+  EXPECT_THAT(on_another.output, ::testing::ContainsRegex("devo operator .*, cycle 2, seed 7: .*stack overflow"));
 }
 
 TEST_F(Misbehaviour, ACrashIsNamedWithIndividualCycleAndSeed) {
@@ -127,7 +126,7 @@ TEST_F(Misbehaviour, WhatItChangesForAllIsPutBackAndNamed) {
     fs::remove_all(folder_);
     const Finished finished = testing::run(mutating(how));
     EXPECT_EQ(finished.exit_code, 0) << how << finished.output;
-    EXPECT_THAT(finished.output, HasSubstr("warning: " + named("mutation") + ": it changed ")) << how;
+    EXPECT_THAT(finished.output, HasSubstr("warning: " + named("mutation") + ": ")) << how;
     EXPECT_EQ(*Archive::read(folder_).generations().back().best, best) << how;
   }
 }
@@ -143,13 +142,13 @@ TEST_F(Misbehaviour, WhatNoLifeCanBeMeasuredByIsRefused) {
   for (const auto& [how, reason] : cases) {
     const Finished finished = testing::run(run_with("fitness.0", how));
     EXPECT_EQ(finished.exit_code, 2) << how << finished.output;
-    EXPECT_THAT(finished.output, HasSubstr("fitness.0.name = \"misbehaves\": this operator ")) << how;
+    EXPECT_THAT(finished.output, HasSubstr("fitness.0.name = \"misbehaves\": ")) << how;
     EXPECT_THAT(finished.output, HasSubstr(reason)) << how;
     EXPECT_FALSE(fs::exists(folder_));
   }
   const Finished scores = testing::run(run_with("fitness.0", "one-score-too-many"));
   EXPECT_EQ(scores.exit_code, 1);
-  EXPECT_THAT(scores.output, HasSubstr("gave 2 scores for 1 objectives"));
+  EXPECT_THAT(scores.output, testing::naming("2 scores", "1 objectives"));
   EXPECT_THAT(scores.output, HasSubstr(named("fitness") + ", individual "));
 }
 
@@ -158,7 +157,7 @@ TEST_F(Misbehaviour, WhatItThrowsIsNamedWhereverItIsCalled) {
        {std::pair("encoding", "throw-in-layout"), std::pair("development.operator.0", "throw-when-asked")}) {
     const Finished finished = testing::run(run_with(table, how));
     EXPECT_EQ(finished.exit_code, 2) << finished.output;
-    EXPECT_THAT(finished.output, HasSubstr(std::string(table) + ".name = \"misbehaves\": it threw something"));
+    EXPECT_THAT(finished.output, testing::naming(std::string(table) + ".name = \"misbehaves\": ", "std::exception"));
   }
 }
 
@@ -170,9 +169,9 @@ TEST_F(Misbehaviour, ABlueprintWithDoubledSpringsIsRefused) {
     EXPECT_THAT(finished.output, HasSubstr(named("encoding") + ", individual "));
     return finished.output;
   };
-  EXPECT_THAT(refused("twin"), HasSubstr("spring 3 joins masses 1 and 2, which are joined already"));
-  EXPECT_THAT(refused("turned-twin"), HasSubstr("spring 3 joins masses 2 and 1, which are joined already"));
-  EXPECT_THAT(refused("loop"), HasSubstr("spring 3 joins a mass to itself"));
+  EXPECT_THAT(refused("twin"), testing::naming("spring 3 ", "masses 1 and 2", "joined already"));
+  EXPECT_THAT(refused("turned-twin"), testing::naming("spring 3 ", "masses 2 and 1", "joined already"));
+  EXPECT_THAT(refused("loop"), testing::naming("spring 3 ", "itself"));
 }
 
 }  // namespace

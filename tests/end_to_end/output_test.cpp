@@ -218,7 +218,7 @@ TEST(Output, AGalleryBlamesTheEncodingForBodiesThatAreNone) {
       library + "'");
   EXPECT_EQ(finished.exit_code, 1) << finished.output;
   EXPECT_THAT(finished.output,
-              AllOf(HasSubstr("encoding operator \"wrong\""), HasSubstr(library), HasSubstr("dangles")));
+              AllOf(HasSubstr("encoding operator \"wrong\""), HasSubstr(library), HasSubstr("spring 0 ")));
 }
 
 TEST(Output, PagesAndFilmsArriveWhole) {

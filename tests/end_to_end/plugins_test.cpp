@@ -11,6 +11,7 @@
 #include "evolution/archive/archive.hpp"
 #include "operators/loader.hpp"
 #include "support/experiments.hpp"
+#include "support/messages.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"
 
@@ -111,13 +112,13 @@ TEST_F(Plugins, ResumeRefusesAnotherVersionUnlessTold) {
   const std::string now = library_.lexically_normal().string();
   const Finished refused = evodevo({"resume", folder_});
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.output, AllOf(HasSubstr(folder_ + ": "), HasSubstr("mutation operator \"nothing\" 1.0.0"),
-                                    HasSubstr(now + " is version 2.0.0"), HasSubstr("(it was " + library_.string()),
-                                    HasSubstr("--allow-other-versions")));
+  EXPECT_THAT(refused.output,
+              AllOf(HasSubstr(folder_ + ": "), HasSubstr("mutation operator \"nothing\" 1.0.0"), HasSubstr(now),
+                    HasSubstr("2.0.0"), HasSubstr(library_.string()), HasSubstr("--allow-other-versions")));
   const Finished allowed = evodevo({"resume", folder_, "--allow-other-versions"});
   EXPECT_EQ(allowed.exit_code, 0) << allowed.output;
-  EXPECT_THAT(allowed.output, AllOf(HasSubstr("warning: the run began with mutation operator \"nothing\" 1.0.0"),
-                                    HasSubstr("version 2.0.0, " + now + "; results may differ\n")));
+  EXPECT_THAT(allowed.output,
+              testing::naming("warning: ", "mutation operator \"nothing\" 1.0.0", "version 2.0.0", now));
 }
 
 TEST_F(Plugins, AnUnusableLibraryStopsNoRunThatDoesNotUseIt) {
@@ -125,12 +126,11 @@ TEST_F(Plugins, AnUnusableLibraryStopsNoRunThatDoesNotUseIt) {
   const Finished finished =
       evodevo({"run", file_, "--out", folder_, "--plugin-path", own(), "--set", "experiment.evaluations=6"});
   EXPECT_EQ(finished.exit_code, 0) << finished.output;
-  EXPECT_THAT(finished.output, HasSubstr("warning: not usable: " + library_.string() + ": crashes while it is loaded"));
+  EXPECT_THAT(finished.output, testing::naming("warning: ", library_.string() + ": ", "crashes"));
   const Finished failed = evodevo({"operators", "--failed", "--plugin-path", own()});
   EXPECT_EQ(failed.exit_code, 0);
-  EXPECT_EQ(failed.output, library_.string() +
-                               ": crashes while it is loaded: Segmentation fault; look at its static objects, "
-                               "constructors and parameters() in a debugger, or remove it\n");
+  EXPECT_THAT(failed.output,
+              testing::at_place(library_.string() + ": ", "crashes", "Segmentation fault", "static objects", "remove"));
   EXPECT_EQ(evodevo({"operators", "--failed"}).output, "");
 }
 
@@ -139,10 +139,8 @@ TEST_F(Plugins, OfTwoLibrariesWithOneNameTheFirstIsUsedAndTheOtherNamed) {
   const Finished finished = run_with("reset-weight", {"--plugin-path", own()});
   EXPECT_EQ(finished.exit_code, 0) << finished.output;
   EXPECT_THAT(finished.output,
-              HasSubstr("warning: not usable: " + (builtin_plugin_folder() / "reset-weight.evodevo.so").string() +
-                        ": its mutation operator \"reset-weight\" is already brought by " + library_.string() +
-                        ", which comes first; rename one of them, or take one "
-                        "off the plugin path\n"));
+              testing::naming("warning: ", (builtin_plugin_folder() / "reset-weight.evodevo.so").string() + ": ",
+                              "mutation operator \"reset-weight\"", library_.string(), "rename", "plugin path"));
   const auto uses = Archive::read(folder_).provenances().front().operators;
   const auto mutation = std::find_if(uses.begin(), uses.end(), [](const auto& use) { return use.kind == "mutation"; });
   ASSERT_NE(mutation, uses.end());
@@ -173,34 +171,29 @@ TEST_F(Plugins, TextsOfOperatorsReachNoTerminalAsTheyAre) {
   install("controls_in_objective");
   const Finished refused = evodevo({"check", file_, "--plugin-path", own(), "--set", "fitness.1.name=way"});
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.output,
-              HasSubstr("fitness.1.name = \"way\": its objective's name or unit \"way\\x1b[31m\" is not"));
+  EXPECT_THAT(refused.output, testing::naming("fitness.1.name = \"way\": ", "\"way\\x1b[31m\"", "control characters"));
   expect_clean(refused.output);
 }
 
 TEST_F(Plugins, AnOperatorThatErrsIsNamedWithItsFile) {
-  const std::string remedy = "; correct the operator and build it again, or begin a new run without it\n";
+  const std::string place = "mutation operator \"nothing\" of " + library_.string() + ", individual 6, seed 7: ";
   install("throws");
   const Finished thrown = run_with("nothing", {"--plugin-path", own()});
   EXPECT_EQ(thrown.exit_code, 1);
-  EXPECT_THAT(thrown.output, HasSubstr("mutation operator \"nothing\" of " + library_.string() +
-                                       ", individual 6, seed 7: nothing to mutate" + remedy));
+  EXPECT_THAT(thrown.output, testing::naming(place + "nothing to mutate", "correct the operator", "new run"));
   install("nan");
   const Finished poisoned = run_with("nothing", {"--plugin-path", own(), "--out", folder_ + "2"});
   EXPECT_EQ(poisoned.exit_code, 1);
-  EXPECT_THAT(
-      poisoned.output,
-      HasSubstr("mutation operator \"nothing\" of " + library_.string() +
-                ", individual 6, seed 7: made a genome with gene 0 = not a number, which is not allowed" + remedy));
+  EXPECT_THAT(poisoned.output, testing::naming(place, "gene 0 = not a number", "correct the operator", "new run"));
 }
 
 TEST_F(Plugins, AnOperatorThatCrashesIsNamedWithItsFile) {
   install("crash_in_use");
   const Finished crashed = run_with("nothing", {"--plugin-path", own()});
   EXPECT_NE(crashed.exit_code, 0);
-  EXPECT_THAT(crashed.output, HasSubstr("evodevo: mutation operator \"nothing\" of " + library_.string() +
-                                        ", individual 6, seed 7: crashed: Segmentation fault; `evodevo conform " +
-                                        library_.string() + "` tests it."));
+  EXPECT_THAT(crashed.output, testing::naming("evodevo: mutation operator \"nothing\" of " + library_.string() +
+                                                  ", individual 6, seed 7: crashed: Segmentation fault",
+                                              "`evodevo conform " + library_.string() + "`"));
 }
 
 TEST_F(Plugins, ARunOutlivesTheFolderOfItsOperators) {
@@ -210,9 +203,7 @@ TEST_F(Plugins, ARunOutlivesTheFolderOfItsOperators) {
   std::filesystem::rename(own(), moved);
   const Finished missed = evodevo({"life", folder_});
   EXPECT_EQ(missed.exit_code, 2);
-  EXPECT_THAT(missed.output, HasSubstr("no mutation operator has this name"));
-  EXPECT_THAT(missed.output, HasSubstr(" is no folder and no library of operators any more; name the one that has "
-                                       "replaced it with --plugin-path"));
+  EXPECT_THAT(missed.output, testing::naming("mutation.0.name = \"nothing\"", recorded_own(), "--plugin-path"));
   const Finished found = evodevo({"life", folder_, "--plugin-path", moved});
   EXPECT_EQ(found.exit_code, 0) << found.output;
 }
@@ -245,9 +236,9 @@ TEST_F(Plugins, ARecordOfAnotherLoadsNothingThatTheUserHasNotNamed) {
   become_user("another");
   for (const std::vector<std::string>& command : readers_of(folder_, file_)) {
     const Finished refused = evodevo(command);
-    if (refused.output.find("the viewer has not been built") != std::string::npos) continue;
+    if (refused.output.find("evodevo_viewer") != std::string::npos) continue;  // it is not built
     EXPECT_EQ(refused.exit_code, 2) << command.front();
-    EXPECT_THAT(refused.output, HasSubstr("no mutation operator has this name")) << command.front();
+    EXPECT_THAT(refused.output, HasSubstr("mutation.0.name = \"nothing\"")) << command.front();
     EXPECT_THAT(refused.output, HasSubstr("--plugin-path " + recorded_own())) << command.front();
   }
   EXPECT_EQ(evodevo({"show", folder_, "--json"}).exit_code, 0) << "numbers are printed without operators";
@@ -273,9 +264,7 @@ TEST_F(Plugins, ALibraryBesideARecordIsNotLoaded) {
     const Finished there =
         testing::run({"sh", "-c", "cd '" + here + "' && exec " EVODEVO_PROGRAM " life '" + folder_ + "'"});
     EXPECT_EQ(there.exit_code, 2);
-    EXPECT_THAT(there.output, HasSubstr("no mutation operator has this name"));
-    EXPECT_THAT(there.output, HasSubstr("own is relative"));
-    EXPECT_THAT(there.output, HasSubstr("--plugin-path"));
+    EXPECT_THAT(there.output, testing::naming("mutation.0.name = \"nothing\"", "own ", "relative", "--plugin-path"));
   }
 }
 
@@ -289,7 +278,7 @@ TEST_F(Plugins, WithoutAHomeNothingIsRememberedOrWritten) {
                       "cd '" + here.string() + "' && exec env " + homes + " " EVODEVO_PROGRAM " run '" + file_ +
                           "' --set mutation.0.name=nothing --plugin-path '" + own() + "' --out '" + folder_ + "'"});
     EXPECT_EQ(finished.exit_code, 0) << finished.output;
-    EXPECT_THAT(finished.output, HasSubstr("warning: neither HOME nor XDG_STATE_HOME names a place"));
+    EXPECT_THAT(finished.output, testing::naming("warning: ", "HOME", "XDG_STATE_HOME", "--plugin-path"));
     EXPECT_TRUE(fs::is_empty(here)) << homes;
     fs::remove_all(folder_);
   }
@@ -299,9 +288,8 @@ TEST_F(Plugins, AnOperatorOfAnUnusableLibraryIsMissedWithTheReason) {
   install("epoch");
   const Finished finished = run_with("nothing", {"--plugin-path", own()});
   EXPECT_EQ(finished.exit_code, 2);
-  EXPECT_THAT(finished.output, HasSubstr("no mutation operator has this name"));
-  EXPECT_THAT(finished.output, HasSubstr(library_.string() + ": its ABI epoch is 99, this evodevo's is " +
-                                         std::to_string(plugin_epoch)));
+  EXPECT_THAT(finished.output, testing::naming("mutation.0.name = \"nothing\"", library_.string() + ": ", "ABI epoch",
+                                               "99", std::to_string(plugin_epoch)));
 }
 
 }  // namespace

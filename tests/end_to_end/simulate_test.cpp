@@ -10,6 +10,7 @@
 #include "evolution/archive/archive.hpp"
 #include "life/evaluation.hpp"
 #include "support/experiments.hpp"
+#include "support/messages.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"
 
@@ -207,7 +208,7 @@ TEST_F(Simulate, AStateInsideTheGroundIsInvalid) {
   const auto at = [&](double z) { return simulate(tetrahedron("0.2", 500, "", R"(, "time": 1.5)", z)); };
   const Finished deep = at(-0.4);
   EXPECT_EQ(deep.exit_code, 2);
-  EXPECT_THAT(deep.output, AllOf(HasSubstr("own.json: invalid: inside the ground"), HasSubstr("J"),
+  EXPECT_THAT(deep.output, AllOf(HasSubstr("own.json: invalid: "), HasSubstr("ground"), HasSubstr(" J"),
                                  HasSubstr("leave out \"time\"")));
   EXPECT_EQ(at(0.5).exit_code, 0) << "it falls";
 }
@@ -230,7 +231,7 @@ TEST_F(Simulate, TheStepIsJudgedByTheBodysOwnMassesAndMaterials) {
 TEST_F(Simulate, WhatIsUnstableRunsWhereTheFileAsksForIt) {
   const std::vector<std::string> run = {"--set", "simulation.unstable=run"};
   const Finished light = simulate(tetrahedron("0.002", 500), run);
-  EXPECT_THAT(light.output, HasSubstr("4 masses, 6 springs on cpu")) << "whatever becomes of it";
+  EXPECT_THAT(light.output, testing::naming("4 masses, 6 springs", "cpu")) << "whatever becomes of it";
   std::vector<std::string> of_encoding = run;
   of_encoding.insert(of_encoding.end(), {"--set", "encoding.mass=0.002"});
   EXPECT_EQ(simulate(tetrahedron("0.5", 500), of_encoding).exit_code, 0);
@@ -275,7 +276,7 @@ TEST_F(Simulate, KeysThatAreUnknownOrStandTwiceAreRefused) {
   EXPECT_THAT(refusal(tetrahedron("0.2", 500, "", ", \"" + std::string(5000, 'k') + "\": 1")), HasSubstr("kkk..."));
   EXPECT_THAT(refusal(tetrahedron("0.2", 500, "", ", \"time\": " + std::string(100000, '['))), HasSubstr("levels"));
   EXPECT_THAT(refusal(tetrahedron("0.2", 500, "", R"(, "time": -1)")), AllOf(HasSubstr("time"), HasSubstr("-1")));
-  EXPECT_THAT(refusal("[1]"), HasSubstr("expected an object"));
+  EXPECT_THAT(refusal("[1]"), testing::naming("object"));
 }
 
 TEST_F(Simulate, ADurationBelowAStepIsRefused) {

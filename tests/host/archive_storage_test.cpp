@@ -14,6 +14,7 @@
 #include "evolution/archive/archive.hpp"
 #include "evolution/archive/database.hpp"
 #include "support/experiments.hpp"
+#include "support/messages.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo {
@@ -91,7 +92,7 @@ TEST_P(LostFile, EndsTheRunAtTheNextCommit) {
     commit(archive, 0);
     GetParam().happen(folder_);
     EXPECT_THAT(refusal<StorageError>([&] { commit(archive, 1); }),
-                AllOf(StartsWith(folder_.string() + ": run.sqlite"), HasSubstr("removed, moved or replaced")));
+                testing::at_place(folder_.string() + ": run.sqlite", "removed", "moved", "replaced", " resume"));
     EXPECT_FALSE(archive.is_in_place());
     for (const char* end : {"", " elsewhere"}) fs::remove_all(folder_.string() + end);
   }
@@ -253,17 +254,19 @@ TEST_F(ArchiveStorage, WhatIsNoRunIsRefusedWithTheFolder) {
   };
   fs::create_directories(folder_);
   ASSERT_EQ(mkfifo(file_.c_str(), 0600), 0);
-  for (const std::string& said : refused()) EXPECT_THAT(said, StartsWith(folder_.string() + ": there is no run here"));
+  for (const std::string& said : refused())
+    EXPECT_THAT(said, testing::at_place(folder_.string() + ": ", "no run", "`evodevo run`"));
   fs::remove(file_);
   fs::create_directory(file_);
-  for (const std::string& said : refused()) EXPECT_THAT(said, StartsWith(folder_.string() + ": there is no run here"));
+  for (const std::string& said : refused())
+    EXPECT_THAT(said, testing::at_place(folder_.string() + ": ", "no run", "`evodevo run`"));
   fs::remove(file_);
   std::ofstream(file_) << std::string(5000, 'x');
   for (const std::string& said : refused())
-    EXPECT_THAT(said, AllOf(StartsWith(folder_.string()), HasSubstr("is no SQLite database")));
+    EXPECT_THAT(said, testing::at_place(folder_.string() + ": run.sqlite ", "SQLite database"));
   fs::remove(file_);
   SQLite::Database(file_.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec("CREATE TABLE mine(a)");
-  for (const std::string& said : refused()) EXPECT_THAT(said, AllOf(StartsWith(folder_.string()), HasSubstr("lacks")));
+  for (const std::string& said : refused()) EXPECT_THAT(said, testing::at_place(folder_.string() + ": ", "lacks"));
 }
 
 TEST_F(ArchiveStorage, WhatStandsInTheTablesPlaceIsNotRun) {

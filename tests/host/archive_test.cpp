@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "support/experiments.hpp"
+#include "support/messages.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo {
@@ -124,8 +125,7 @@ TEST_F(ArchiveTest, TellsWhoMadeAGeneration) {
     ASSERT_EQ(provenance.operators.size(), experiment_.uses.size()) << generation;
     EXPECT_EQ(provenance.operators.back().version, experiment_.uses.back().version);
   }
-  EXPECT_THAT(refusal([&] { archive.provenance(6); }),
-              AllOf(StartsWith(folder_.string()), HasSubstr("there is no generation 6")));
+  EXPECT_THAT(refusal([&] { archive.provenance(6); }), testing::at_place(folder_.string() + ": ", "generation 6"));
 }
 
 TEST_F(ArchiveTest, TakesVerificationsWhileAnotherWrites) {
@@ -152,9 +152,9 @@ TEST_F(ArchiveTest, TakesVerificationsWhileAnotherWrites) {
 
 TEST_F(ArchiveTest, NeverWritesOverARun) {
   { Archive::create(folder_, experiment_, "cpu"); }
-  EXPECT_EQ(refusal([&] { Archive::create(folder_, experiment_, "cpu"); }),
-            folder_.string() + ": is not empty; give another --out, or continue the run in it with `evodevo resume " +
-                folder_.string() + "`");
+  EXPECT_THAT(
+      refusal([&] { Archive::create(folder_, experiment_, "cpu"); }),
+      testing::at_place(folder_.string() + ": ", "not empty", "--out", "`evodevo resume " + folder_.string() + "`"));
 }
 
 TEST_F(ArchiveTest, NeverTouchesAFolderOfOtherThings) {
@@ -166,8 +166,8 @@ TEST_F(ArchiveTest, NeverTouchesAFolderOfOtherThings) {
 }
 
 TEST_F(ArchiveTest, SaysWhereThereIsNoRun) {
-  EXPECT_EQ(refusal([&] { Archive::read(folder_); }),
-            folder_.string() + ": there is no run here (no run.sqlite); give a folder that `evodevo run` has written");
+  EXPECT_THAT(refusal([&] { Archive::read(folder_); }),
+              testing::at_place(folder_.string() + ": ", "no run.sqlite", "`evodevo run`"));
   EXPECT_EQ(refusal([&] { Archive::resume(folder_); }), refusal([&] { Archive::read(folder_); }));
   EXPECT_FALSE(fs::exists(folder_)) << "looking leaves nothing behind";
 }
@@ -182,8 +182,8 @@ TEST_F(ArchiveTest, ARunThatEndedBeforeItBeganIsTold) {
 
 TEST_F(ArchiveTest, AnotherFormatIsRefused) {
   { Archive::create(folder_, experiment_, "cpu").set_record("format", "99"); }
-  EXPECT_EQ(refusal([&] { Archive::read(folder_); }),
-            folder_.string() + ": has format 99, this evodevo reads format 6; use the evodevo that wrote it, 0.1.0");
+  EXPECT_THAT(refusal([&] { Archive::read(folder_); }),
+              testing::at_place(folder_.string() + ": ", "format 99", "format 6", "0.1.0"));
 }
 
 TEST_F(ArchiveTest, ReadsOfOneMomentWhileAnotherWrites) {

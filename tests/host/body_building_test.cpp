@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "analysis/neighbours.hpp"
+#include "support/messages.hpp"
 
 namespace evodevo {
 namespace {
@@ -70,7 +71,7 @@ TEST(BodyBuilding, AFailureOfTheEncodingIsCleanText) {
   Blueprint blueprint;
   blueprint.failure = "no\x1b[31m\nroom for ü\xff" + std::string(1'000'000, '!');
   const std::string failure = build_body(blueprint).failure;
-  EXPECT_EQ(failure.substr(0, 40), "no body: no\\x1b[31m\\nroom for ü\\xff!!!!");
+  EXPECT_THAT(failure, testing::at_place("no body: ", "no\\x1b[31m\\nroom for ü\\xff!!!!"));
   EXPECT_LT(failure.size(), 400u);
 }
 
@@ -89,7 +90,7 @@ TEST(BodyBuilding, NeighboursAreThoseOfThePlacesToPairAt) {
   EXPECT_EQ(pairs, (std::set<std::pair<std::uint32_t, std::uint32_t>>{{0, 1}, {0, 3}, {1, 2}, {0, 2}, {1, 3}}));
 
   blueprint.paired_at.back() = {std::numeric_limits<double>::infinity(), 0, 0};
-  EXPECT_EQ(build_body(blueprint).failure, "no body: a position to pair masses at that is not finite");
+  EXPECT_THAT(build_body(blueprint).failure, testing::at_place("no body: ", "pair", "not finite"));
 }
 
 TEST(BodyBuilding, SpringsToNeighboursHaveTheMeanSizeOfTheirMasses) {
@@ -109,9 +110,9 @@ TEST(BodyBuilding, SpringsToNeighboursHaveTheMeanSizeOfTheirMasses) {
 
   for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), HUGE_VAL}) {
     blueprint.sizes[1] = {1, bad};
-    EXPECT_EQ(build_body(blueprint).failure, "no body: a size that is not finite or not above 0");
+    EXPECT_THAT(build_body(blueprint).failure, testing::at_place("no body: ", "size", "not finite", "not above 0"));
     blueprint.sizes[1] = {bad, 1};
-    EXPECT_EQ(build_body(blueprint).failure, "no body: a size that is not finite or not above 0");
+    EXPECT_THAT(build_body(blueprint).failure, testing::at_place("no body: ", "size", "not finite", "not above 0"));
   }
 }
 
@@ -128,9 +129,9 @@ TEST(BodyBuilding, ListsHoldAnEntryForEachMass) {
     }
     return "";
   };
-  EXPECT_EQ(fault(&Blueprint::sizes, 2), "2 sizes for 3 masses");
-  EXPECT_EQ(fault(&Blueprint::paired_at, 4), "4 positions to pair at for 3 masses");
-  EXPECT_EQ(fault(&Blueprint::origins, 1), "1 origins for 3 masses");
+  EXPECT_THAT(fault(&Blueprint::sizes, 2), testing::naming("2 ", "sizes", "3 masses"));
+  EXPECT_THAT(fault(&Blueprint::paired_at, 4), testing::naming("4 ", "pair", "3 masses"));
+  EXPECT_THAT(fault(&Blueprint::origins, 1), testing::naming("1 ", "origin", "3 masses"));
   for (const std::size_t entries : {0u, 3u}) EXPECT_EQ(fault(&Blueprint::sizes, entries), "");
 }
 
@@ -147,10 +148,10 @@ TEST(BodyBuilding, NoTwoSpringsJoinOnePair) {
     return "";
   };
   EXPECT_EQ(fault({{0, 1, 1, 0}, {2, 0, 1, 0}, {1, 2, 1, 0}, {3, 1, 1, 0}, {2, 3, 1, 0}}), "");
-  EXPECT_EQ(fault({{0, 1, 1, 0}, {3, 2, 1, 0}, {2, 3, 1, 0}, {1, 0, 1, 0}}),
-            "spring 2 joins masses 2 and 3, which are joined already");
-  EXPECT_EQ(fault({{0, 3, 1, 0}, {1, 3, 1, 0}, {0, 2, 1, 0}, {3, 0, 1, 0}}),
-            "spring 3 joins masses 3 and 0, which are joined already");
+  EXPECT_THAT(fault({{0, 1, 1, 0}, {3, 2, 1, 0}, {2, 3, 1, 0}, {1, 0, 1, 0}}),
+              testing::naming("spring 2 ", "masses 2 and 3", "joined already"));
+  EXPECT_THAT(fault({{0, 3, 1, 0}, {1, 3, 1, 0}, {0, 2, 1, 0}, {3, 0, 1, 0}}),
+              testing::naming("spring 3 ", "masses 3 and 0", "joined already"));
 }
 
 TEST(BodyBuilding, NeighboursThatAreJoinedAlreadyAreNotJoinedAgain) {
@@ -193,11 +194,11 @@ TEST(BodyBuilding, ALoadLiesOnTheTop) {
 }
 
 TEST(BodyBuilding, SaysWhyThereIsNoBody) {
-  EXPECT_EQ(build_body(row({}, 3)).failure, "no body: no masses");
-  EXPECT_EQ(build_body(row({{0, 0}}, 3)).failure, "no springs");
-  EXPECT_EQ(build_body(row({{0, 1}, {1, 1}, {2, 1}}, 2)).failure, "no springs") << "all air";
-  EXPECT_EQ(build_body(row({{0, 0}, {std::numeric_limits<double>::quiet_NaN(), 0}}, 1)).failure,
-            "no body: a position that is not finite");
+  EXPECT_THAT(build_body(row({}, 3)).failure, testing::at_place("no body: ", "masses"));
+  EXPECT_THAT(build_body(row({{0, 0}}, 3)).failure, testing::naming("no springs"));
+  EXPECT_THAT(build_body(row({{0, 1}, {1, 1}, {2, 1}}, 2)).failure, testing::naming("no springs")) << "all air";
+  EXPECT_THAT(build_body(row({{0, 0}, {std::numeric_limits<double>::quiet_NaN(), 0}}, 1)).failure,
+              testing::at_place("no body: ", "position", "not finite"));
   Blueprint failed;
   failed.failure = "nothing but air";
   EXPECT_EQ(build_body(failed).failure, "no body: nothing but air");
@@ -207,7 +208,7 @@ TEST(BodyBuilding, CoincidentMassesMakeABodyUnlessAllAre) {
   const BuiltBody built = build_body(row({{1, 0}, {1, 0}, {2, 0}}, 2));
   EXPECT_EQ(built.failure, "");
   EXPECT_EQ(built.body.springs.size(), 3u);
-  EXPECT_EQ(build_body(row({{1, 0}, {1, 0}, {1, 0}}, 2)).failure, "no extent");
+  EXPECT_THAT(build_body(row({{1, 0}, {1, 0}, {1, 0}}, 2)).failure, testing::naming("no extent"));
 }
 
 TEST(BodyBuilding, APopulationIsBuiltAsEachBodyAlone) {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "support/experiments.hpp"
+#include "support/messages.hpp"
 
 namespace evodevo {
 namespace {
@@ -118,10 +119,9 @@ TEST(Breeding, AnOperatorThatLeavesTheLayoutIsNamed) {
     breed(experiment, population, 1, 2, 2);
     FAIL() << "the fault went unnoticed";
   } catch (const std::runtime_error& error) {
-    EXPECT_EQ(error.what(), "mutation operator \"reset-weight\" of " + experiment.uses[1].file.string() +
-                                ", individual 2, seed 7: made a genome with gene 0 = not a number, which is not "
-                                "allowed; correct the operator and "
-                                "build it again, or begin a new run without it");
+    EXPECT_THAT(error.what(), testing::at_place("mutation operator \"reset-weight\" of " +
+                                                    experiment.uses[1].file.string() + ", individual 2, seed 7: ",
+                                                "gene 0 = not a number", "correct the operator", "new run"));
   }
 }
 

@@ -1,4 +1,4 @@
-// The exact text of every error message about an experiment.
+// Checks for every error message about an experiment that it has the place, the value and the remedy.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 
 #include "experiment/toml_reader.hpp"
 #include "support/experiments.hpp"
+#include "support/messages.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo {
@@ -57,15 +58,14 @@ TEST(Configuration, DevelopmentHasSchedulesAndAControl) {
                                       {"random-places", Control::random_places},
                                       {"shuffled-stress", Control::shuffled_stress}})
     EXPECT_EQ(testing::read(small_experiment, {{"development.control", name, ""}}).development.control, control);
-  EXPECT_EQ(
-      complaint(with("cycles = 2", "cycles = 2\ncontrol = \"shuffled\"")),
-      "test.toml:31:11: development.control = \"shuffled\": is not an option; known: off, no-change, random-places, "
-      "shuffled-stress");
-  EXPECT_EQ(complaint(with("springs = 2", "every = 0")),
-            "test.toml:35:9: development.operator.0.every = 0: expected 1 to 16777215");
+  EXPECT_THAT(complaint(with("cycles = 2", "cycles = 2\ncontrol = \"shuffled\"")),
+              testing::at_place("test.toml:31:11: development.control = \"shuffled\": ",
+                                "off, no-change, random-places, shuffled-stress"));
+  EXPECT_THAT(complaint(with("springs = 2", "every = 0")),
+              testing::at_place("test.toml:35:9: development.operator.0.every = 0: ", "1 to 16777215"));
   const Experiment never = testing::read(small_experiment, {{"development.operator.0.from", "3", ""}});
   ASSERT_EQ(never.warnings.size(), 1u);
-  EXPECT_EQ(never.warnings[0], "development.operator.0.from = 3 to 2: the operator is never applied in 2 cycles");
+  EXPECT_THAT(never.warnings[0], testing::at_place("development.operator.0.from = 3", "2", "never applied"));
 }
 
 TEST(Configuration, GrowthWithoutSizesWarns) {
@@ -76,10 +76,8 @@ TEST(Configuration, GrowthWithoutSizesWarns) {
     return testing::read(text, std::move(overrides)).warnings;
   };
   for (const char* name : {"voxel", "direct", "neural", "cppn"})
-    EXPECT_THAT(warnings(name), ::testing::ElementsAre(
-                                    "development.operator.0.name = \"ballistic-growth\": the encoding lets no spring "
-                                    "grow, so that nothing changes; set encoding.size_range, or take an encoding "
-                                    "that has it"))
+    EXPECT_THAT(warnings(name), ::testing::ElementsAre(testing::at_place(
+                                    "development.operator.0.name = \"ballistic-growth\": ", "encoding.size_range")))
         << name;
   for (const char* name : {"voxel", "neural", "cppn"})
     EXPECT_THAT(warnings(name, {{"encoding.size_range", "0.25", ""}}), ::testing::IsEmpty()) << name;
@@ -91,15 +89,13 @@ TEST(Configuration, DevelopmentWithoutOperatorsWarnsAndHasNoControl) {
   text.erase(first, text.find("[[fitness]]") - first);
   const Experiment still = testing::read(text);
   ASSERT_EQ(still.warnings.size(), 1u);
-  EXPECT_EQ(still.warnings[0],
-            "development.cycles = 2: no operator develops anything; add a table [[development.operator]], or leave "
-            "[development] out");
+  EXPECT_THAT(still.warnings[0],
+              testing::at_place("development.cycles = 2: ", "[[development.operator]]", "[development]"));
   EXPECT_TRUE(testing::read(text, {{"development.cycles", "0", "--set"}}).warnings.empty());
   for (const char* control : {"no-change", "random-places", "shuffled-stress"})
     EXPECT_THAT(complaint(text, {{"development.control", control, "--set"}}),
-                ::testing::HasSubstr("development.control = \"" + std::string(control) +
-                                     "\": no operator develops anything; add a table [[development.operator]], or set "
-                                     "control = \"off\""));
+                testing::naming("development.control = \"" + std::string(control) + "\": ", "[[development.operator]]",
+                                "control = \"off\""));
 }
 
 TEST(Configuration, DevelopmentHasAProbe) {
@@ -109,16 +105,16 @@ TEST(Configuration, DevelopmentHasAProbe) {
   const Experiment paper = testing::read(tallied);
   EXPECT_EQ(paper.development.probe, Probe::skip_shift);
   EXPECT_EQ(paper.development.skip, 100);
-  EXPECT_EQ(complaint(with("cycles = 2", "cycles = 2\nprobe = \"skip-shift\"\nskip = 101")),
-            "test.toml:32:8: development.skip = 101: a cycle of 100 steps has no tally; expected at most as many");
+  EXPECT_THAT(complaint(with("cycles = 2", "cycles = 2\nprobe = \"skip-shift\"\nskip = 101")),
+              testing::at_place("test.toml:32:8: development.skip = 101: ", "100 steps"));
   EXPECT_THAT(complaint(tallied, {{"development.operator.0.by", "peak", ""}}),
-              ::testing::HasSubstr("asks for more of the springs than the tallies"));
+              testing::naming("development.operator.0.name", "skip-shift", "development.probe = \"exact\""));
 }
 
 TEST(Configuration, WhatDoesNotGoTogetherIsReportedAtItsKey) {
-  EXPECT_EQ(complaint(with("springs = 2", "low = 0.9\nhigh = 0.8"),
-                      {{"development.operator.0.name", "length-adaptation", ""}}),
-            "test.toml:35:7: development.operator.0.low = 0.9: expected at most `high`");
+  EXPECT_THAT(complaint(with("springs = 2", "low = 0.9\nhigh = 0.8"),
+                        {{"development.operator.0.name", "length-adaptation", ""}}),
+              testing::at_place("test.toml:35:7: development.operator.0.low = 0.9: ", "high"));
 }
 
 TEST(Configuration, ResolvedTextReadsBackAsItself) {
@@ -145,8 +141,8 @@ TEST(Configuration, AMethodByItsName) {
     EXPECT_EQ(name(experiment.stepping.method), method);
     EXPECT_NE(experiment.resolved.find("method = '" + std::string(method) + "'"), std::string::npos);
   }
-  EXPECT_EQ(complaint(with("[simulation]", "[simulation]\nmethod = \"rk5\"")),
-            "test.toml:27:10: simulation.method = \"rk5\": is not an option; did you mean \"rk4\"?");
+  EXPECT_THAT(complaint(with("[simulation]", "[simulation]\nmethod = \"rk5\"")),
+              testing::at_place("test.toml:27:10: simulation.method = \"rk5\": ", "\"rk4\""));
 }
 
 TEST(Configuration, AccuracyChoosesWhatIsLeftOut) {
@@ -171,9 +167,9 @@ TEST(Configuration, AccuracyChoosesWhatIsLeftOut) {
          Precision::float64, 0.00025);
   EXPECT_NE(read("accuracy = \"fast\"").resolved.find("dt = 'auto'"), std::string::npos);
   EXPECT_NE(read("accuracy = \"fast\"").resolved.find("method = 'symplectic-euler'"), std::string::npos);
-  EXPECT_EQ(
+  EXPECT_THAT(
       complaint(with("[simulation]", "[simulation]\naccuracy = \"best\"")),
-      "test.toml:27:12: simulation.accuracy = \"best\": is not an option; known: paper, fast, balanced, reference");
+      testing::at_place("test.toml:27:12: simulation.accuracy = \"best\": ", "paper, fast, balanced, reference"));
 }
 
 TEST(Configuration, MaterialsAreComputedWhereThatIsAskedForAndPossible) {
@@ -183,14 +179,12 @@ TEST(Configuration, MaterialsAreComputedWhereThatIsAskedForAndPossible) {
   EXPECT_EQ(computed.stepping.materials, Materials::computed);
   EXPECT_EQ(computed.stepping.method, Method::symplectic_euler);
   EXPECT_EQ(testing::read(computed.resolved).stepping.materials, Materials::computed);
-  EXPECT_EQ(complaint(with_keys("materials = \"computer\"")),
-            "test.toml:27:13: simulation.materials = \"computer\": is not an option; known: table, computed");
-  const std::string impossible =
-      "test.toml:27:13: simulation.materials = \"computed\": only explicit methods in single precision compute "
-      "materials; expected \"table\", or another method, precision or accuracy";
-  EXPECT_EQ(complaint(with_keys("materials = \"computed\"\nprecision = \"double\"")), impossible);
-  EXPECT_EQ(complaint(with_keys("materials = \"computed\"\nmethod = \"xpbd\"")), impossible);
-  EXPECT_EQ(complaint(with_keys("materials = \"computed\"\naccuracy = \"reference\"")), impossible);
+  EXPECT_THAT(complaint(with_keys("materials = \"computer\"")),
+              testing::at_place("test.toml:27:13: simulation.materials = \"computer\": ", "table, computed"));
+  for (const char* other : {"precision = \"double\"", "method = \"xpbd\"", "accuracy = \"reference\""})
+    EXPECT_THAT(complaint(with_keys("materials = \"computed\"\n" + std::string(other))),
+                testing::at_place("test.toml:27:13: simulation.materials = \"computed\": ", "\"table\"", "method",
+                                  "precision", "accuracy"));
 }
 
 TEST(Configuration, AStepOfItsOwnForEveryBody) {
@@ -200,11 +194,10 @@ TEST(Configuration, AStepOfItsOwnForEveryBody) {
   EXPECT_FALSE(experiment.step.dt.has_value()) << "whatever the scene, and for any duration";
   EXPECT_EQ(testing::read(small_experiment, {{"simulation.dt", "auto", "--set"}}).resolved.find("dt = 0"),
             std::string::npos);
-  EXPECT_EQ(complaint(with("[simulation]", "[simulation]\ndt = \"automatic\"")),
-            "test.toml:27:6: simulation.dt = \"automatic\": expected a number or \"auto\"");
-  EXPECT_EQ(complaint(automatic, {{"simulation.method", "implicit", ""}}),
-            "test.toml:27:6: simulation.dt = \"auto\": \"implicit\" is stable at any step, so none follows from "
-            "stability; give a number of s");
+  EXPECT_THAT(complaint(with("[simulation]", "[simulation]\ndt = \"automatic\"")),
+              testing::at_place("test.toml:27:6: simulation.dt = \"automatic\": ", "number", "\"auto\""));
+  EXPECT_THAT(complaint(automatic, {{"simulation.method", "implicit", ""}}),
+              testing::at_place("test.toml:27:6: simulation.dt = \"auto\": ", "\"implicit\"", "number"));
   EXPECT_EQ(complaint(with("[simulation]", "[simulation]\ndt = 0.001\nrefine = 2")), "no complaint")
       << "half of it is borne";
 }
@@ -221,64 +214,66 @@ TEST(Configuration, TheLargestStepIsThatOfTheMethod) {
     return complaint(airborne, overrides);
   };
   EXPECT_EQ(objection("velocity-verlet", "0.005"), "no complaint");
-  EXPECT_NE(objection("velocity-verlet", "0.008").find("the step 0.008 s is too long"), std::string::npos);
+  EXPECT_THAT(objection("velocity-verlet", "0.008"),
+              testing::naming("simulation.dt = 0.008: ", "stiffness", "at most"));
   EXPECT_EQ(objection("rk4", "0.008"), "no complaint");
-  EXPECT_NE(objection("rk4", "0.01").find("the step 0.01 s is too long"), std::string::npos);
+  EXPECT_THAT(objection("rk4", "0.01"), testing::naming("simulation.dt = 0.01: ", "stiffness", "at most"));
   EXPECT_EQ(objection("implicit", "0.01"), "no complaint");
   EXPECT_EQ(objection("xpbd", "0.01"), "no complaint");
 }
 
 TEST(Configuration, UnknownKeys) {
-  EXPECT_EQ(complaint(with("evaluations", "evalutions")),
-            "test.toml:4:1: experiment.evalutions: is not a key of [experiment]; did you mean \"evaluations\"?");
-  EXPECT_EQ(complaint(with("[selection]", "[sellection]")),
-            "test.toml:47:2: sellection: is not a key of an experiment; did you mean \"selection\"?");
-  EXPECT_EQ(
-      complaint(small_experiment + "\n[wind]\n"),
-      "test.toml:50:2: wind: is not a key of an experiment; known: experiment, encoding, mutation, crossover, scene, "
-      "simulation, development, fitness, selection, materials, plugins");
-  EXPECT_EQ(complaint(with("[scene.floor]", "[scene.flor]")),
-            "test.toml:22:8: scene.flor: is not a key of [scene]; did you mean \"floor\"?");
-  EXPECT_EQ(complaint(with("edge = 0.5", "edgy = 0.5")),
-            "test.toml:11:1: encoding.edgy: is not a key of [encoding]; did you mean \"edge\"?");
-  EXPECT_EQ(complaint(with("springs = 2", "spring = 2")),
-            "test.toml:35:1: development.operator.0.spring: is not a key of [development.operator.0]; did you mean "
-            "\"springs\"?");
+  EXPECT_THAT(complaint(with("evaluations", "evalutions")),
+              testing::at_place("test.toml:4:1: experiment.evalutions: ", "\"evaluations\""));
+  EXPECT_THAT(complaint(with("[selection]", "[sellection]")),
+              testing::at_place("test.toml:47:2: sellection: ", "\"selection\""));
+  EXPECT_THAT(complaint(small_experiment + "\n[wind]\n"),
+              testing::at_place("test.toml:50:2: wind: ",
+                                "experiment, encoding, mutation, crossover, scene, simulation, development, fitness, "
+                                "selection, materials, plugins"));
+  EXPECT_THAT(complaint(with("[scene.floor]", "[scene.flor]")),
+              testing::at_place("test.toml:22:8: scene.flor: ", "[scene]", "\"floor\""));
+  EXPECT_THAT(complaint(with("edge = 0.5", "edgy = 0.5")),
+              testing::at_place("test.toml:11:1: encoding.edgy: ", "[encoding]", "\"edge\""));
+  EXPECT_THAT(
+      complaint(with("springs = 2", "spring = 2")),
+      testing::at_place("test.toml:35:1: development.operator.0.spring: ", "[development.operator.0]", "\"springs\""));
 }
 
 TEST(Configuration, WrongTypes) {
-  EXPECT_EQ(complaint(with("seed = 7", "seed = \"7\"")),
-            "test.toml:3:8: experiment.seed = \"7\": expected a whole number, 0 to 9007199254740991");
-  EXPECT_EQ(complaint(with("seed = 7", "seed = 7.5")),
-            "test.toml:3:8: experiment.seed = 7.5: expected a whole number, 0 to 9007199254740991");
-  EXPECT_EQ(complaint(with("edge = 0.5", "edge = true")).substr(0, 52),
-            "test.toml:11:8: encoding.edge = true: expected a num");
-  EXPECT_EQ(complaint(with("size = [2, 1, 1]", "size = [2, 1]")),
-            "test.toml:10:8: encoding.size = [ 2, 1 ]: expected a list of three numbers");
-  EXPECT_EQ(complaint(with("cycles = 2", "reset = 1")),
-            "test.toml:30:9: development.reset = 1: expected true or false");
-  EXPECT_EQ(complaint(with("[scene.gravity]\n[scene.floor]", "[scene]\nfloor = 3\n[scene.gravity]")),
-            "test.toml:22:9: scene.floor = 3: expected a table, [scene.floor]");
-  EXPECT_EQ(complaint(with("[[mutation]]", "[mutation]")),
-            "test.toml:13:1: mutation = a table: expected an array of tables, [[mutation]]");
-  EXPECT_EQ(complaint(with("name = \"voxel\"", "name = 1")),
-            "test.toml:9:8: encoding.name = 1: expected a text in quotes");
+  EXPECT_THAT(complaint(with("seed = 7", "seed = \"7\"")),
+              testing::at_place("test.toml:3:8: experiment.seed = \"7\": ", "whole number", "0 to 9007199254740991"));
+  EXPECT_THAT(complaint(with("seed = 7", "seed = 7.5")),
+              testing::at_place("test.toml:3:8: experiment.seed = 7.5: ", "whole number", "0 to 9007199254740991"));
+  EXPECT_THAT(complaint(with("edge = 0.5", "edge = true")),
+              testing::at_place("test.toml:11:8: encoding.edge = true: ", "number", "0.001 to 100 m"));
+  EXPECT_THAT(complaint(with("size = [2, 1, 1]", "size = [2, 1]")),
+              testing::at_place("test.toml:10:8: encoding.size = [ 2, 1 ]: ", "three numbers"));
+  EXPECT_THAT(complaint(with("cycles = 2", "reset = 1")),
+              testing::at_place("test.toml:30:9: development.reset = 1: ", "true or false"));
+  EXPECT_THAT(complaint(with("[scene.gravity]\n[scene.floor]", "[scene]\nfloor = 3\n[scene.gravity]")),
+              testing::at_place("test.toml:22:9: scene.floor = 3: ", "[scene.floor]"));
+  EXPECT_THAT(complaint(with("[[mutation]]", "[mutation]")),
+              testing::at_place("test.toml:13:1: mutation = a table: ", "[[mutation]]"));
+  EXPECT_THAT(complaint(with("name = \"voxel\"", "name = 1")),
+              testing::at_place("test.toml:9:8: encoding.name = 1: ", "quotes"));
 }
 
 TEST(Configuration, OutOfRange) {
-  EXPECT_EQ(complaint(with("evaluations = 24", "evaluations = 0")),
-            "test.toml:4:15: experiment.evaluations = 0: expected 1 to 1000000000");
-  EXPECT_EQ(complaint(with("edge = 0.5", "edge = -1")).substr(0, 41), "test.toml:11:8: encoding.edge = -1: expec");
-  EXPECT_EQ(complaint(with("probability = 0.8", "probability = 1.1")),
-            "test.toml:15:15: mutation.0.probability = 1.1: expected 0 to 1");
-  EXPECT_EQ(complaint(with("probability = 0.8", "probability = nan")),
-            "test.toml:15:15: mutation.0.probability = nan: expected 0 to 1");
-  EXPECT_EQ(complaint(with("[simulation]", "[simulation]\ndt = 0.2")),
-            "test.toml:27:6: simulation.dt = 0.2: expected 1e-07 to 0.1 s");
-  EXPECT_EQ(complaint(with("random_individuals = 1", "random_individuals = 7")),
-            "test.toml:6:22: experiment.random_individuals = 7: expected at most the population, 6");
-  EXPECT_EQ(complaint(with("[simulation]", "[simulation]\ndevice = \"tpu\"")),
-            "test.toml:27:10: simulation.device = \"tpu\": is not an option; known: auto, cpu, cuda");
+  EXPECT_THAT(complaint(with("evaluations = 24", "evaluations = 0")),
+              testing::at_place("test.toml:4:15: experiment.evaluations = 0: ", "1 to 1000000000"));
+  EXPECT_THAT(complaint(with("edge = 0.5", "edge = -1")),
+              testing::at_place("test.toml:11:8: encoding.edge = -1: ", "0.001 to 100 m"));
+  EXPECT_THAT(complaint(with("probability = 0.8", "probability = 1.1")),
+              testing::at_place("test.toml:15:15: mutation.0.probability = 1.1: ", "0 to 1"));
+  EXPECT_THAT(complaint(with("probability = 0.8", "probability = nan")),
+              testing::at_place("test.toml:15:15: mutation.0.probability = nan: ", "0 to 1"));
+  EXPECT_THAT(complaint(with("[simulation]", "[simulation]\ndt = 0.2")),
+              testing::at_place("test.toml:27:6: simulation.dt = 0.2: ", "1e-07 to 0.1 s"));
+  EXPECT_THAT(complaint(with("random_individuals = 1", "random_individuals = 7")),
+              testing::at_place("test.toml:6:22: experiment.random_individuals = 7: ", "population", "6"));
+  EXPECT_THAT(complaint(with("[simulation]", "[simulation]\ndevice = \"tpu\"")),
+              testing::at_place("test.toml:27:10: simulation.device = \"tpu\": ", "auto, cpu, cuda"));
 }
 
 TEST(Configuration, WholeNumbersMayHaveAPointOrAnExponent) {
@@ -291,17 +286,17 @@ TEST(Configuration, WholeNumbersMayHaveAPointOrAnExponent) {
   EXPECT_EQ(read("experiment.seed", "9007199254740991.0").seed, 9007199254740991);
   EXPECT_EQ(read("experiment.population", "7.0").resolved, read("experiment.population", "7").resolved);
   EXPECT_EQ(read("encoding.size", "[3.0, 2, 1e0]").layout.genes.size(), 6u);
-  EXPECT_EQ(complaint(with("population = 6", "population = 6.5")),
-            "test.toml:5:14: experiment.population = 6.5: expected a whole number, 1 to 1000000");
-  EXPECT_EQ(complaint(with("size = [2, 1, 1]", "size = [2, 1.5, 1]")).substr(0, 63),
-            "test.toml:10:12: encoding.size = 1.5: expected a whole number, ");
+  EXPECT_THAT(complaint(with("population = 6", "population = 6.5")),
+              testing::at_place("test.toml:5:14: experiment.population = 6.5: ", "whole number", "1 to 1000000"));
+  EXPECT_THAT(complaint(with("size = [2, 1, 1]", "size = [2, 1.5, 1]")),
+              testing::at_place("test.toml:10:12: encoding.size = 1.5: ", "whole number", "1 to 32"));
   EXPECT_THAT(complaint(small_experiment, {{"experiment.population", "99999999999999999999", "--set"}}),
               ::testing::AllOf(::testing::HasSubstr("experiment.population"),
                                ::testing::HasSubstr("99999999999999999999"), ::testing::HasSubstr("64 bits")));
-  EXPECT_EQ(complaint(with("population = 6", "population = 1e300")),
-            "test.toml:5:14: experiment.population = 1e+300: expected 1 to 1000000");
-  EXPECT_EQ(complaint(with("population = 6", "population = \"6\"")),
-            "test.toml:5:14: experiment.population = \"6\": expected a whole number, 1 to 1000000");
+  EXPECT_THAT(complaint(with("population = 6", "population = 1e300")),
+              testing::at_place("test.toml:5:14: experiment.population = 1e+300: ", "1 to 1000000"));
+  EXPECT_THAT(complaint(with("population = 6", "population = \"6\"")),
+              testing::at_place("test.toml:5:14: experiment.population = \"6\": ", "whole number", "1 to 1000000"));
 }
 
 TEST(Configuration, NumbersThatAreNotFiniteAreRefusedWhereverTheyStand) {
@@ -337,42 +332,43 @@ TEST(Configuration, ARangeWithoutAnEndAsksForAFiniteNumber) {
     return "accepted";
   };
   const double none = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(complaint_of("a = nan", {}), "x:1:5: t.a = nan: expected a finite number");
-  EXPECT_EQ(complaint_of("a = inf", {0, none, "s"}), "x:1:5: t.a = inf: expected a finite number, at least 0 s");
-  EXPECT_EQ(complaint_of("a = -inf", {-none, 3}), "x:1:5: t.a = -inf: expected a finite number, at most 3");
+  EXPECT_THAT(complaint_of("a = nan", {}), testing::at_place("x:1:5: t.a = nan: ", "finite number"));
+  EXPECT_THAT(complaint_of("a = inf", {0, none, "s"}),
+              testing::at_place("x:1:5: t.a = inf: ", "finite number", "at least 0 s"));
+  EXPECT_THAT(complaint_of("a = -inf", {-none, 3}),
+              testing::at_place("x:1:5: t.a = -inf: ", "finite number", "at most 3"));
   EXPECT_EQ(complaint_of("a = -1e308", {}), "accepted");
 }
 
 TEST(Configuration, UnknownOperators) {
-  EXPECT_EQ(complaint(with("\"voxel\"", "\"voxels\"")),
-            "test.toml:9:8: encoding.name = \"voxels\": no encoding operator has this name; did you mean \"voxel\"?");
-  EXPECT_EQ(complaint(with("\"two-point\"", "\"blend\"")),
-            "test.toml:18:8: crossover.0.name = \"blend\": no crossover operator has this name; known: swap-neuron, "
-            "two-point; [plugins] paths and --plugin-path name folders with more");
+  EXPECT_THAT(complaint(with("\"voxel\"", "\"voxels\"")),
+              testing::at_place("test.toml:9:8: encoding.name = \"voxels\": ", "encoding operator", "\"voxel\""));
+  EXPECT_THAT(complaint(with("\"two-point\"", "\"blend\"")),
+              testing::at_place("test.toml:18:8: crossover.0.name = \"blend\": ", "crossover operator",
+                                "swap-neuron, two-point", "[plugins] paths", "--plugin-path"));
 }
 
 TEST(Configuration, UnknownMaterials) {
-  EXPECT_EQ(
+  EXPECT_THAT(
       complaint(with("edge = 0.5", "materials = [\"muscle\", \"bones\"]")),
-      "test.toml:11:13: encoding.materials = [ \"muscle\", \"bones\" ]: \"bones\" is not a material; did you mean "
-      "\"bone\"?");
+      testing::at_place("test.toml:11:13: encoding.materials = [ \"muscle\", \"bones\" ]: ", "\"bones\"", "\"bone\""));
 }
 
 TEST(Configuration, AMaterialNamedTwice) {
-  EXPECT_EQ(complaint(with("edge = 0.5", "materials = [\"bone\", \"bone\"]")),
-            "test.toml:11:13: encoding.materials = [ \"bone\", \"bone\" ]: names \"bone\" twice");
+  EXPECT_THAT(complaint(with("edge = 0.5", "materials = [\"bone\", \"bone\"]")),
+              testing::at_place("test.toml:11:13: encoding.materials = [ \"bone\", \"bone\" ]: ", "\"bone\" twice"));
 }
 
 TEST(Configuration, WarnsOfWhatMayNotBeMeant) {
   EXPECT_TRUE(testing::read(small_experiment).warnings.empty());
-  EXPECT_EQ(testing::read(small_experiment + "\n[materials.muscel]\nstiffness = 3\n").warnings,
-            std::vector<std::string>{"[materials.muscel] is a new material beside \"muscle\""});
+  EXPECT_THAT(testing::read(small_experiment + "\n[materials.muscel]\nstiffness = 3\n").warnings,
+              ::testing::ElementsAre(testing::naming("[materials.muscel]", "new material", "\"muscle\"")));
   const testing::Scratch scratch;
   const std::string library = scratch.write("junk.evodevo.so", "this is no library");
   const auto warnings =
       testing::read(small_experiment + "\n[plugins]\npaths = ['" + (scratch / "").string() + "']\n").warnings;
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_EQ(warnings[0].substr(0, 12 + library.size()), "not usable: " + library);
+  EXPECT_THAT(warnings[0], testing::naming(library + ": "));
 }
 
 TEST(Configuration, MaterialsOfOnesOwn) {
@@ -383,18 +379,17 @@ TEST(Configuration, MaterialsOfOnesOwn) {
   ASSERT_EQ(index.size(), 2u);
   EXPECT_EQ(experiment.context.materials[static_cast<std::size_t>(index[0])], (Material{5000, 0, 1, 0}));
   EXPECT_EQ(experiment.context.materials[static_cast<std::size_t>(index[1])], (Material{800, 0, 0, 0}));
-  EXPECT_EQ(complaint(small_experiment + "\n[materials.rubber]\nstifness = 800\n"),
-            "test.toml:51:1: materials.rubber.stifness: is not a key of [materials.rubber]; did you mean "
-            "\"stiffness\"?");
+  EXPECT_THAT(complaint(small_experiment + "\n[materials.rubber]\nstifness = 800\n"),
+              testing::at_place("test.toml:51:1: materials.rubber.stifness: ", "[materials.rubber]", "\"stiffness\""));
 }
 
 TEST(Configuration, MissingParts) {
-  EXPECT_EQ(complaint(""), "test.toml:1:1: experiment: is missing; add a table [experiment]");
-  EXPECT_EQ(complaint(with("name = \"voxel\"", "")), "test.toml:8:1: encoding.name: is missing");
-  EXPECT_EQ(complaint("[experiment]\n[encoding]\nname = 'voxel'\n"),
-            "test.toml:1:1: mutation: is missing; add a table [[mutation]] or [[crossover]]");
-  EXPECT_EQ(complaint("[experiment]\n[encoding]\nname = 'voxel'\n[[mutation]]\nname = 'reset-weight'\n"),
-            "test.toml:1:1: fitness: is missing; add a table [[fitness]]");
+  EXPECT_THAT(complaint(""), testing::at_place("test.toml:1:1: experiment: ", "missing", "[experiment]"));
+  EXPECT_THAT(complaint(with("name = \"voxel\"", "")), testing::at_place("test.toml:8:1: encoding.name: ", "missing"));
+  EXPECT_THAT(complaint("[experiment]\n[encoding]\nname = 'voxel'\n"),
+              testing::at_place("test.toml:1:1: mutation: ", "missing", "[[mutation]]", "[[crossover]]"));
+  EXPECT_THAT(complaint("[experiment]\n[encoding]\nname = 'voxel'\n[[mutation]]\nname = 'reset-weight'\n"),
+              testing::at_place("test.toml:1:1: fitness: ", "missing", "[[fitness]]"));
 }
 
 TEST(Configuration, ItsOwnOperatorsComeBeforeThoseBuiltIn) {
@@ -403,40 +398,37 @@ TEST(Configuration, ItsOwnOperatorsComeBeforeThoseBuiltIn) {
   EXPECT_EQ(experiment.uses.at(1).name, "reset-weight");
   EXPECT_EQ(experiment.uses.at(1).file.parent_path(), folder);
   ASSERT_EQ(experiment.warnings.size(), 1u);
-  EXPECT_THAT(experiment.warnings[0], ::testing::HasSubstr("reset-weight.evodevo.so: its mutation operator"));
+  EXPECT_THAT(experiment.warnings[0],
+              testing::naming("reset-weight.evodevo.so: ", "mutation operator \"reset-weight\""));
 }
 
 TEST(Configuration, ContradictoryParts) {
-  EXPECT_EQ(complaint(small_experiment + "\n[plugins]\npaths = ['/no/such/folder']\n"),
-            "test.toml:51:9: plugins.paths = [ \"/no/such/folder\" ]: /no/such/folder is no folder and no library of "
-            "operators");
-  EXPECT_EQ(
-      complaint(small_experiment, {{"mutation.0.probability", "0", ""}, {"crossover.0.probability", "0", ""}}),
-      "test.toml:13:1: mutation = a list with tables: no operator has a probability above 0, so no child would differ "
-      "from its parent");
-  EXPECT_EQ(complaint(with("[scene.floor]", "")),
-            "test.toml:23:1: scene.friction = a table: there is nothing to rub on; add [scene.floor] or remove "
-            "[scene.friction]");
-  EXPECT_EQ(complaint(with("\"actuation-work\"", "\"distance\"")),
-            "test.toml:43:8: fitness.1.name = \"distance\": there is an objective \"distance\" already");
+  EXPECT_THAT(complaint(small_experiment + "\n[plugins]\npaths = ['/no/such/folder']\n"),
+              testing::at_place("test.toml:51:9: plugins.paths = [ \"/no/such/folder\" ]: ", "folder", "library"));
+  EXPECT_THAT(complaint(small_experiment, {{"mutation.0.probability", "0", ""}, {"crossover.0.probability", "0", ""}}),
+              testing::at_place("test.toml:13:1: mutation = a list with tables: ", "probability above 0"));
+  EXPECT_THAT(
+      complaint(with("[scene.floor]", "")),
+      testing::at_place("test.toml:23:1: scene.friction = a table: ", "add [scene.floor]", "remove [scene.friction]"));
+  EXPECT_THAT(complaint(with("\"actuation-work\"", "\"distance\"")),
+              testing::at_place("test.toml:43:8: fitness.1.name = \"distance\": ", "objective \"distance\""));
 }
 
 TEST(Configuration, StepsThatTheSceneOrAMaterialCannotBear) {
-  EXPECT_EQ(complaint(with("[simulation]", "[simulation]\ndt = 0.001")),
-            "test.toml:27:6: simulation.dt = 0.001: the step 0.001 s is too long for scene.floor.stiffness = 1000000 "
-            "N/m on masses of 0.2 kg; expected at most 0.0005366563145999495 s");
-  EXPECT_EQ(complaint(with("[simulation]", "[materials.bone]\nstiffness = 1e7\n[simulation]\ndt = 0.0005")),
-            "test.toml:29:6: simulation.dt = 0.0005: the step 0.0005 s is too long for materials.bone.stiffness = "
-            "10000000 N/m on masses of 0.2 kg; expected at most 0.0002 s");
-  EXPECT_EQ(complaint(with("[simulation]\nthreads = 2", "[scene.drag]"), {{"scene.floor.stiffness", "1e9", ""}})
-                .substr(0, 60),
-            "test.toml:1:1: simulation.dt: the step 0.0005 s is too long ");
-  EXPECT_EQ(complaint(with("[simulation]", "[materials.muscle]\nfrequency = 1999\n[simulation]\ndt = 0.0005")),
-            "test.toml:29:6: simulation.dt = 0.0005: the step 0.0005 s is too long for materials.muscle.frequency = "
-            "1999 Hz; expected at most 0.0002501250625312656 s");
-  EXPECT_EQ(complaint(with("cycle_time = 0.05", "cycle_time = 0.0507")),
-            "test.toml:31:14: development.cycle_time = 0.0507: 0.0507 s is not a whole number of steps of 0.0005 s; "
-            "the nearest that is: 0.0505 s");
+  EXPECT_THAT(complaint(with("[simulation]", "[simulation]\ndt = 0.001")),
+              testing::at_place("test.toml:27:6: simulation.dt = 0.001: ", "scene.floor.stiffness = 1000000 N/m",
+                                "masses of 0.2 kg", "at most 0.0005366563145999495 s"));
+  EXPECT_THAT(complaint(with("[simulation]", "[materials.bone]\nstiffness = 1e7\n[simulation]\ndt = 0.0005")),
+              testing::at_place("test.toml:29:6: simulation.dt = 0.0005: ", "materials.bone.stiffness = 10000000 N/m",
+                                "masses of 0.2 kg", "at most 0.0002 s"));
+  EXPECT_THAT(
+      complaint(with("[simulation]\nthreads = 2", "[scene.drag]"), {{"scene.floor.stiffness", "1e9", ""}}),
+      testing::at_place("test.toml:1:1: simulation.dt: ", "0.0005 s", "scene.floor.stiffness = 1000000000 N/m"));
+  EXPECT_THAT(complaint(with("[simulation]", "[materials.muscle]\nfrequency = 1999\n[simulation]\ndt = 0.0005")),
+              testing::at_place("test.toml:29:6: simulation.dt = 0.0005: ", "materials.muscle.frequency = 1999 Hz",
+                                "at most 0.0002501250625312656 s"));
+  EXPECT_THAT(complaint(with("cycle_time = 0.05", "cycle_time = 0.0507")),
+              testing::at_place("test.toml:31:14: development.cycle_time = 0.0507: ", "0.0005 s", "0.0505 s"));
 }
 
 TEST(Configuration, SyntaxAndFiles) {
@@ -449,8 +441,9 @@ TEST(Configuration, SyntaxAndFiles) {
     }
     return "no complaint";
   };
-  EXPECT_EQ(from_file("no/such/file.toml"), "no/such/file.toml: cannot be read: No such file or directory");
-  EXPECT_EQ(from_file("/"), "/: cannot be read: it is a folder");
+  EXPECT_THAT(from_file("no/such/file.toml"),
+              testing::at_place("no/such/file.toml: cannot be read: ", "No such file or directory"));
+  EXPECT_THAT(from_file("/"), testing::at_place("/: cannot be read: ", "folder"));
 }
 
 TEST(Configuration, Overrides) {
@@ -463,15 +456,15 @@ TEST(Configuration, Overrides) {
   EXPECT_EQ(read("scene.drag.coefficient", "2").scene.drag->coefficient, 2) << "a table may come into being";
   EXPECT_EQ(read("fitness.1.name", "actuation-work").fitness.size(), 2u) << "and so may the next item of a list";
 
-  EXPECT_EQ(complaint(small_experiment, {{"experiment.population", "-1", "--set experiment.population=-1"}}),
-            "--set experiment.population=-1: experiment.population = -1: expected 1 to 1000000");
-  EXPECT_EQ(complaint(small_experiment, {{"experiment.size", "3", "--set experiment.size=3"}}),
-            "--set experiment.size=3: experiment.size: is not a key of [experiment]; known: seed, evaluations, "
-            "spring_evaluations, population, random_individuals, verify");
-  EXPECT_EQ(complaint(small_experiment, {{"fitness.7.window", "3", "--set fitness.7.window=3"}}),
-            "--set fitness.7.window=3: fitness.7.window: there is no item 7");
-  EXPECT_EQ(complaint(small_experiment, {{"fitness.0", "3", "--set fitness.0=3"}}),
-            "test.toml:37:1: fitness = a list with tables: expected an array of tables, [[fitness]]");
+  EXPECT_THAT(complaint(small_experiment, {{"experiment.population", "-1", "--set experiment.population=-1"}}),
+              testing::at_place("--set experiment.population=-1: experiment.population = -1: ", "1 to 1000000"));
+  EXPECT_THAT(complaint(small_experiment, {{"experiment.size", "3", "--set experiment.size=3"}}),
+              testing::at_place("--set experiment.size=3: experiment.size: ", "[experiment]",
+                                "seed, evaluations, spring_evaluations, population, random_individuals, verify"));
+  EXPECT_THAT(complaint(small_experiment, {{"fitness.7.window", "3", "--set fitness.7.window=3"}}),
+              testing::at_place("--set fitness.7.window=3: fitness.7.window: ", "item 7"));
+  EXPECT_THAT(complaint(small_experiment, {{"fitness.0", "3", "--set fitness.0=3"}}),
+              testing::at_place("test.toml:37:1: fitness = a list with tables: ", "[[fitness]]"));
 }
 
 }  // namespace

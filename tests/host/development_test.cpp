@@ -6,9 +6,12 @@
 
 #include "base/philox.hpp"
 #include "life/edits.hpp"
+#include "support/messages.hpp"
 
 namespace evodevo {
 namespace {
+
+using testing::naming;
 
 const Material bone{10000, 0, 0, 0};
 const Material muscle{5000, 0.14, 1, 0};
@@ -106,7 +109,7 @@ TEST(Development, AMassGoesWithItsSpringsAndOneComes) {
   EXPECT_EQ(living.state.velocity[3], (Vec3{0, 0, 0})) << "it starts at rest";
   EXPECT_EQ(living.state.velocity[1], (Vec3{0, 0, 2})) << "the others keep their motion";
   ASSERT_EQ(living.body.springs.size(), 3u);
-  EXPECT_EQ(living.body.springs[0].a, 1u) << "old mass 2 is mass 1 context";
+  EXPECT_EQ(living.body.springs[0].a, 1u) << "old mass 2 is mass 1 now";
   EXPECT_EQ(living.body.springs[0].b, 2u);
   EXPECT_EQ(living.body.springs[1].a, 3u);
   EXPECT_EQ(living.body.springs[1].b, 2u);
@@ -164,58 +167,51 @@ TEST(Development, NothingChangesNothing) {
 TEST(Development, FaultyEditsAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto join = [](std::uint32_t a, std::uint32_t b) { return NewSpring{a, b, bone, std::nullopt}; };
-  EXPECT_EQ(Line().refusal({.removed_springs = {3}}), "removes spring 3 of a body that has 3");
-  EXPECT_EQ(Line().refusal({.removed_masses = {4}}), "removes mass 4 of a body that has 4");
-  EXPECT_EQ(Line().refusal({.removed_springs = {0, 1}, .causes = {.removed_springs = {5}}}),
-            "names 1 causes for 2 removed springs");
-  EXPECT_EQ(Line().refusal({.removed_springs = {0}, .causes = {.new_masses = {5}}}), "names 1 causes for 0 new masses");
-  EXPECT_EQ(Line().refusal({.new_springs = {join(0, 4)}}), "joins masses 0 and 4, but there is no mass 4");
-  EXPECT_EQ(Line().refusal({.removed_masses = {2}, .new_springs = {join(0, 2)}}),
-            "joins masses 0 and 2, but mass 2 goes");
-  EXPECT_EQ(Line().refusal({.new_springs = {join(2, 2)}}), "joins masses 2 and 2, which are one");
-  EXPECT_EQ(Line().refusal({.new_springs = {join(1, 0)}}), "joins masses 1 and 0, which are joined already");
-  EXPECT_EQ(Line().refusal({.new_springs = {join(0, 2), join(2, 0)}}),
-            "joins masses 2 and 0, which are joined already");
+  EXPECT_THAT(Line().refusal({.removed_springs = {3}}), naming("removes spring 3", "only 3"));
+  EXPECT_THAT(Line().refusal({.removed_masses = {4}}), naming("removes mass 4", "only 4"));
+  EXPECT_THAT(Line().refusal({.removed_springs = {0, 1}, .causes = {.removed_springs = {5}}}),
+              naming("1 ", "2 removed springs"));
+  EXPECT_THAT(Line().refusal({.removed_springs = {0}, .causes = {.new_masses = {5}}}), naming("1 ", "0 new masses"));
+  EXPECT_THAT(Line().refusal({.new_springs = {join(0, 4)}}), naming("masses 0 and 4", "no mass 4"));
+  EXPECT_THAT(Line().refusal({.removed_masses = {2}, .new_springs = {join(0, 2)}}), naming("masses 0 and 2", "mass 2"));
+  EXPECT_THAT(Line().refusal({.new_springs = {join(2, 2)}}), naming("masses 2 and 2"));
+  EXPECT_THAT(Line().refusal({.new_springs = {join(1, 0)}}), naming("masses 1 and 0", "joined already"));
+  EXPECT_THAT(Line().refusal({.new_springs = {join(0, 2), join(2, 0)}}), naming("masses 2 and 0", "joined already"));
   EXPECT_EQ(Line().refusal({.removed_springs = {0}, .new_springs = {join(0, 1)}}), "accepted");
-  EXPECT_EQ(Line().refusal({.new_springs = {{0, 2, Material{}, std::nullopt}}}),
-            "joins masses 0 and 2 by a spring whose stiffness is 0; expected a finite one above 0");
-  EXPECT_EQ(Line().refusal({.new_springs = {{0, 2, bone, nan}}}),
-            "joins masses 0 and 2 by a spring whose rest length is not a number; expected a finite one, at least 0");
-  EXPECT_EQ(Line().refusal({.new_springs = {{0, 2, {-1e-9, 0, 0, 0}, std::nullopt}}}),
-            "joins masses 0 and 2 by a spring whose stiffness is -1e-09; expected a finite one above 0");
-  EXPECT_EQ(Line().refusal({.new_masses = {{{nan, 0, 0}, 0.2, 0}}}), "adds a mass at a position that is not finite");
-  EXPECT_EQ(Line().refusal({.new_masses = {{{}, -nan, 0}}}),
-            "adds a mass whose weight is not a number; expected a finite one above 0 kg");
-  EXPECT_EQ(Line().refusal({.new_masses = {{{}, 0.2, 1}}}), "adds a mass of material 1 to a body that has 1 materials");
-  EXPECT_EQ(Line().refusal({.new_springs = {{0, 2, {1, 1, 0, 0}, std::nullopt}}}),
-            "joins masses 0 and 2 by a spring whose amplitude is 1; expected 0 to below 1");
-  EXPECT_EQ(Line().refusal({.new_springs = {{0, 2, {1, 0, 0, nan}, std::nullopt}}}),
-            "joins masses 0 and 2 by a spring whose frequency or phase is not finite");
+  EXPECT_THAT(Line().refusal({.new_springs = {{0, 2, Material{}, std::nullopt}}}),
+              naming("masses 0 and 2", "stiffness is 0;", "above 0"));
+  EXPECT_THAT(Line().refusal({.new_springs = {{0, 2, bone, nan}}}),
+              naming("masses 0 and 2", "rest length is not a number", "at least 0"));
+  EXPECT_THAT(Line().refusal({.new_springs = {{0, 2, {-1e-9, 0, 0, 0}, std::nullopt}}}),
+              naming("masses 0 and 2", "stiffness is -1e-09", "above 0"));
+  EXPECT_THAT(Line().refusal({.new_masses = {{{nan, 0, 0}, 0.2, 0}}}), naming("adds a mass", "position", "not finite"));
+  EXPECT_THAT(Line().refusal({.new_masses = {{{}, -nan, 0}}}), naming("adds a mass", "not a number", "above 0 kg"));
+  EXPECT_THAT(Line().refusal({.new_masses = {{{}, 0.2, 1}}}), naming("adds a mass", "material 1", "1 materials"));
+  EXPECT_THAT(Line().refusal({.new_springs = {{0, 2, {1, 1, 0, 0}, std::nullopt}}}),
+              naming("masses 0 and 2", "amplitude is 1;", "below 1"));
+  EXPECT_THAT(Line().refusal({.new_springs = {{0, 2, {1, 0, 0, nan}, std::nullopt}}}),
+              naming("masses 0 and 2", "frequency or phase", "not finite"));
 
   const auto grow = [](double from, double to, double whole) { return Edits{.growth = Growth{from, to, whole}}; };
   EXPECT_EQ(Line().refusal(grow(0, 1, 1)), "accepted");
-  EXPECT_EQ(Line().refusal(grow(0, 2, 1)),
-            "grows springs from 0 to 2 of a way of 1; expected 0 to all of a finite one");
-  EXPECT_EQ(Line().refusal(grow(-1, 0, 3)),
-            "grows springs from -1 to 0 of a way of 3; expected 0 to all of a finite one");
-  EXPECT_EQ(Line().refusal(grow(nan, 1, 1)),
-            "grows springs from not a number to 1 of a way of 1; expected 0 to all of a finite one");
-  EXPECT_EQ(Line().refusal(grow(0, 0, 0)),
-            "grows springs from 0 to 0 of a way of 0; expected 0 to all of a finite one");
+  EXPECT_THAT(Line().refusal(grow(0, 2, 1)), naming("0 to 2 of", "1;"));
+  EXPECT_THAT(Line().refusal(grow(-1, 0, 3)), naming("-1 to 0 of", "3;"));
+  EXPECT_THAT(Line().refusal(grow(nan, 1, 1)), naming("not a number to 1 of", "1;"));
+  EXPECT_THAT(Line().refusal(grow(0, 0, 0)), naming("0 to 0 of", "0;"));
   Line shrunk;  // to zero length, since 1 + (growth - 1) rounds to 0
   shrunk.living.body.springs[1].growth = 1e-30f;
   EXPECT_EQ(shrunk.refusal(grow(0, 1, 1)), "accepted");
-  EXPECT_THAT(shrunk.refusal(grow(1, 1, 1)), testing::HasSubstr("whose rest length then is not a number"));
+  EXPECT_THAT(shrunk.refusal(grow(1, 1, 1)), naming("rest length", "not a number"));
 
   const auto change = [](std::uint32_t spring) { return ChangedSpring{.spring = spring, .rest_length = 2.0}; };
-  EXPECT_EQ(Line().refusal({.changed_springs = {change(3)}}), "replaces spring 3 of a body that has 3");
-  EXPECT_EQ(Line().refusal({.changed_springs = {change(1), change(1)}}), "replaces spring 1 twice");
-  EXPECT_EQ(Line().refusal({.removed_springs = {1}, .changed_springs = {change(1)}}), "replaces spring 1, which goes");
-  EXPECT_EQ(Line().refusal({.removed_masses = {1}, .changed_springs = {change(1)}}), "replaces spring 1, which goes");
-  EXPECT_EQ(Line().refusal({.changed_springs = {{.spring = 1, .rest_length = -1.0}}}),
-            "replaces spring 1 by a spring whose rest length is -1; expected a finite one, at least 0");
-  EXPECT_EQ(Line().refusal({.changed_springs = {{.spring = 1, .material = Material{}}}}),
-            "replaces spring 1 by a spring whose stiffness is 0; expected a finite one above 0");
+  EXPECT_THAT(Line().refusal({.changed_springs = {change(3)}}), naming("spring 3", "only 3"));
+  EXPECT_THAT(Line().refusal({.changed_springs = {change(1), change(1)}}), naming("spring 1", "twice"));
+  EXPECT_THAT(Line().refusal({.removed_springs = {1}, .changed_springs = {change(1)}}), naming("spring 1", "remove"));
+  EXPECT_THAT(Line().refusal({.removed_masses = {1}, .changed_springs = {change(1)}}), naming("spring 1", "remove"));
+  EXPECT_THAT(Line().refusal({.changed_springs = {{.spring = 1, .rest_length = -1.0}}}),
+              naming("spring 1", "rest length is -1;", "at least 0"));
+  EXPECT_THAT(Line().refusal({.changed_springs = {{.spring = 1, .material = Material{}}}}),
+              naming("spring 1", "stiffness is 0;", "above 0"));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "evolution/breeding.hpp"
 #include "life/body_building.hpp"
 #include "support/experiments.hpp"
+#include "support/messages.hpp"
 
 namespace evodevo {
 namespace {
@@ -122,7 +123,7 @@ TEST(Evaluation, AFitnessThatIsNotANumberIsNoFitness) {
     experiment.objectives = experiment.fitness[0]->objectives();
     const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
     EXPECT_EQ(result.status, Status::invalid);
-    EXPECT_EQ(result.reason, "fitness not finite: constant");
+    EXPECT_THAT(result.reason, testing::naming("not finite", "constant"));
     EXPECT_TRUE(result.objectives.empty());
   }
 }
@@ -192,7 +193,7 @@ TEST(Evaluation, AnUnstableBodyIsInvalidOrRunsAsTheFileAsks) {
     return evaluate(experiment, {{.genome = {1, 1}}}).front();
   };
   EXPECT_EQ(status("invalid").status, Status::invalid);
-  EXPECT_EQ(status("invalid").reason, "unstable dt: 0.0005 s is too long for the body's springs");
+  EXPECT_THAT(status("invalid").reason, testing::at_place("unstable dt: ", "0.0005 s", "springs"));
   EXPECT_EQ(status("invalid").spring_evaluations, 0u);
   EXPECT_GT(status("run").spring_evaluations, 0u);
   EXPECT_NE(status("run").status, Status::invalid);
@@ -240,7 +241,7 @@ TEST(Evaluation, DevelopmentThatAFixedStepCannotBearIsInvalid) {
   experiment.devo[0].op = std::make_unique<Stiffener>(false);
   const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
   EXPECT_EQ(result.status, Status::invalid);
-  EXPECT_EQ(result.reason, "unstable dt: 0.0005 s is too long for the body's springs");
+  EXPECT_THAT(result.reason, testing::at_place("unstable dt: ", "0.0005 s", "springs"));
 }
 
 TEST(Evaluation, ALoadSinksTheFasterInWater) {
@@ -387,7 +388,7 @@ TEST(Evaluation, ABodyThatDevelopmentEmptiesIsInvalid) {
   experiment.devo[0].op = std::make_unique<Destroyer>();
   const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
   EXPECT_EQ(result.status, Status::invalid);
-  EXPECT_EQ(result.reason, "no springs");
+  EXPECT_THAT(result.reason, testing::naming("no springs"));
 }
 
 std::string file_of(const Experiment& experiment, std::string_view kind) {
@@ -402,10 +403,9 @@ TEST(Evaluation, AFaultyOperatorIsNamed) {
     evaluate(experiment, {{.id = 5, .genome = {1, 1}}});
     FAIL() << "the fault went unnoticed";
   } catch (const std::runtime_error& error) {
-    EXPECT_EQ(error.what(),
-              "devo operator \"spring-turnover\" of " + file_of(experiment, "devo") +
-                  ", individual 5, cycle 1, seed 7: joins masses 0 and 0, which are one; correct the operator "
-                  "and build it again, or begin a new run without it");
+    EXPECT_THAT(error.what(), testing::at_place("devo operator \"spring-turnover\" of " + file_of(experiment, "devo") +
+                                                    ", individual 5, cycle 1, seed 7: ",
+                                                "masses 0 and 0", "correct the operator", "new run"));
   }
 }
 
@@ -425,9 +425,9 @@ TEST(Evaluation, AFaultyEncodingIsNamed) {
     evaluate(experiment, {{.genome = {1, 1}}});
     FAIL() << "the fault went unnoticed";
   } catch (const std::runtime_error& error) {
-    EXPECT_EQ(error.what(), "encoding operator \"voxel\" of " + file_of(experiment, "encoding") +
-                                ", individual 0, seed 7: spring 0 dangles; correct the operator and build it again, or "
-                                "begin a new run without it");
+    EXPECT_THAT(error.what(), testing::at_place("encoding operator \"voxel\" of " + file_of(experiment, "encoding") +
+                                                    ", individual 0, seed 7: ",
+                                                "spring 0", "correct the operator", "new run"));
   }
 }
 
@@ -466,7 +466,7 @@ TEST(Evaluation, OnlyABodyInOnePointHasNoExtent) {
     for (const double rest_length : {0.0, 0.1}) {
       const Result point = result({here, here, here}, rest_length);
       EXPECT_EQ(point.status, Status::invalid);
-      EXPECT_EQ(point.reason, "no extent");
+      EXPECT_THAT(point.reason, testing::naming("no extent"));
       EXPECT_EQ(point.spring_evaluations, 0u) << "it is not simulated";
     }
     EXPECT_EQ(result({{0, 0, 0}, {0.3, 0, 0}}, 0.3).reason, "") << "straight";
@@ -475,7 +475,7 @@ TEST(Evaluation, OnlyABodyInOnePointHasNoExtent) {
     // without a floor on which it could lie, its springs pull it into a single point
     experiment.scene = {.damping = Damping{}};
     const Result shrunk = result({{0, 0, 0}, {0.3, 0, 0}}, 0);
-    EXPECT_EQ(shrunk.reason, "no extent");
+    EXPECT_THAT(shrunk.reason, testing::naming("no extent"));
     EXPECT_GT(shrunk.spring_evaluations, 0u);
     EXPECT_TRUE(shrunk.objectives.empty());
   }

@@ -16,6 +16,7 @@
 #include "experiment/toml_reader.hpp"
 #include "report/report.hpp"
 #include "support/experiments.hpp"
+#include "support/messages.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo {
@@ -154,14 +155,14 @@ TEST_F(ForeignRecord, WhatDoesNotFitTogetherIsNamed) {
     const char *change, *named;
   } cases[] = {
       {"UPDATE individuals SET parent = id", "individuals.parent"},
-      {"UPDATE individuals SET genes = x'00000000'", "1 genes where there are"},
+      {"UPDATE individuals SET genes = x'00000000'", "1 genes"},
       {"UPDATE individuals SET genes = (SELECT replace(hex(zeroblob(length(genes) / 4)), '00', '0000c07f') "
        "FROM individuals)",
        "individuals.genes"},
-      {"DELETE FROM individuals", "0 individuals live"},
+      {"DELETE FROM individuals", "0 individuals"},
       {"DELETE FROM scores", "scores"},
-      {"DELETE FROM provenances", "it has no provenance"},
-      {"DELETE FROM objectives", "there are no objectives"},
+      {"DELETE FROM provenances", "provenance"},
+      {"DELETE FROM objectives", "objectives"},
       {"UPDATE objectives SET maximise = 1 - maximise", "objective 0"},
       {"UPDATE generations SET evaluations = 3 WHERE generation = 1", "generations.evaluations"},
       {"UPDATE generations SET provenance = 7", "generations.provenance"},

@@ -8,6 +8,7 @@
 #include "experiment/toml_limits.hpp"
 #include "experiment/toml_reader.hpp"
 #include "support/experiments.hpp"
+#include "support/messages.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo {
@@ -86,11 +87,9 @@ TEST(HostileInput, NestedToAnyDepth) {
 TEST(HostileInput, TooManyLevelsAreRefusedByPlace) {
   const std::string levels = std::to_string(most_toml_levels);
   const auto message = [](const std::string& text) { return complaint("# ü\nx = 'ü' # [[\n" + text); };
-  EXPECT_THAT(message("a" + times(21, ".a") + " = 1"),
-              StartsWith("test.toml:3:42: more than " + levels + " dots in one key"));
-  EXPECT_THAT(message("ü = " + times(21, "[")),
-              StartsWith("test.toml:3:25: more than " + levels + " brackets within brackets"));
-  EXPECT_THAT(message("a" + times(20, ".a") + " = 1"), HasSubstr("a: is not a key")) << "as many are read";
+  EXPECT_THAT(message("a" + times(21, ".a") + " = 1"), testing::at_place("test.toml:3:42: ", levels, "dots"));
+  EXPECT_THAT(message("ü = " + times(21, "[")), testing::at_place("test.toml:3:25: ", levels, "brackets"));
+  EXPECT_THAT(message("a" + times(20, ".a") + " = 1"), ::testing::Not(HasSubstr(levels))) << "as many are read";
 }
 
 TEST(HostileInput, DotsAndBracketsCountOnlyWhereTheyMeanLevels) {
@@ -99,7 +98,8 @@ TEST(HostileInput, DotsAndBracketsCountOnlyWhereTheyMeanLevels) {
   for (const std::string& name :
        {"\"" + many + "\\\"" + many + "\"", "'" + many + "'", "'''\n" + many + "\n''" + many + "'''",
         "\"\"\"" + many + "\\\"\"\"" + many + "\"\"\"\""})
-    EXPECT_THAT(complaint("[selection]\nname = " + name), ::testing::Not(HasSubstr("more than"))) << name.substr(0, 9);
+    EXPECT_THAT(complaint("[selection]\nname = " + name), testing::at_place("test.toml:1:1: experiment: ", "missing"))
+        << name.substr(0, 9);
   EXPECT_THAT(complaint("[experiment]\nseed = [" + times(1000, "1.5, ") + "]"),
               HasSubstr("experiment.seed = [ 1.5, 1.5, "));
 }
@@ -119,9 +119,9 @@ TEST(HostileInput, OfAnySize) {
   }
   std::string materials = small_experiment;
   for (int i = 0; i < 20'000; ++i) materials += "[materials.m" + std::to_string(i) + "]\n";
-  EXPECT_THAT(complaint(materials), HasSubstr(": materials = a table: expected at most 1000 of them"));
+  EXPECT_THAT(complaint(materials), testing::naming(": materials = a table: ", "at most 1000"));
   EXPECT_THAT(complaint(small_experiment + "[plugins]\npaths = [" + times(1001, "'.',") + "]"),
-              HasSubstr("expected at most 1000 texts"));
+              testing::naming("plugins.paths", "at most 1000"));
 }
 
 TEST(HostileInput, OfAnyBytes) {
@@ -132,9 +132,9 @@ TEST(HostileInput, OfAnyBytes) {
   EXPECT_EQ(complaint(crlf), "");
   EXPECT_THAT(complaint(with("seed = 7", std::string("seed = \0", 8))), StartsWith("test.toml:3:"));
   EXPECT_THAT(complaint(small_experiment + "\n\"a\\u001b[31m\\n\\u009b\" = 1"),
-              HasSubstr("a\\x1b[31m\\n\\u009b: is not a key of [selection]"));
+              testing::naming("a\\x1b[31m\\n\\u009b: ", "[selection]"));
   EXPECT_THAT(complaint(small_experiment + "\n[materials.\"\\u001bbone\"]"),
-              HasSubstr("materials.\\x1bbone = a table: the name \"\\x1bbone\" is not"));
+              testing::naming("materials.\\x1bbone = a table: ", "\"\\x1bbone\"", "control characters"));
   std::mt19937_64 random(20'261);
   for (int i = 0; i < 300; ++i) {
     std::string text = small_experiment;
@@ -272,27 +272,29 @@ TEST(HostileInput, PlacesAreThoseOfTheFileWhateverOptionsSet) {
   EXPECT_THAT(complaint(without, {{"simulation.device", "tpu", "--device tpu"}}),
               StartsWith("--device tpu: simulation.device"));
   EXPECT_THAT(complaint(without, {{"simulation.speed", "1", "--set simulation.speed=1"}}),
-              StartsWith("--set simulation.speed=1: simulation.speed: is not a key"));
+              testing::at_place("--set simulation.speed=1: simulation.speed: ", "[simulation]"));
   EXPECT_THAT(complaint(without, {{"fitness.2.window", "1", "--set fitness.2.window=1"}}),
-              StartsWith("--set fitness.2.window=1: fitness.2.name: is missing"));
+              testing::at_place("--set fitness.2.window=1: fitness.2.name: ", "missing"));
 }
 
 TEST(HostileInput, FilesThatAreNone) {
   const testing::Scratch scratch;
-  EXPECT_EQ(complaint_of_file("/dev/zero"),
-            "/dev/zero: cannot be read: it holds more than " + std::to_string(most_toml_file_bytes) + " bytes");
-  EXPECT_EQ(complaint_of_file((scratch / "").string()), (scratch / "").string() + ": cannot be read: it is a folder");
-  EXPECT_THAT(complaint_of_file(""), StartsWith("\"\": cannot be read: "));
-  EXPECT_THAT(complaint_of_file(std::string(5000, 'x')), HasSubstr("...: cannot be read: File name too long"));
-  EXPECT_EQ(complaint_of_file("no\x1b[31m\nfile"), "no\\x1b[31m\\nfile: cannot be read: No such file or directory");
+  const std::string most = std::to_string(most_toml_file_bytes) + " bytes";
+  EXPECT_THAT(complaint_of_file("/dev/zero"), testing::at_place("/dev/zero: ", "cannot be read", most));
+  EXPECT_THAT(complaint_of_file((scratch / "").string()),
+              testing::at_place((scratch / "").string() + ": ", "cannot be read", "folder"));
+  EXPECT_THAT(complaint_of_file(""), testing::at_place("\"\": ", "cannot be read", "No such file"));
+  EXPECT_THAT(complaint_of_file(std::string(5000, 'x')), testing::naming("...: ", "File name too long"));
+  EXPECT_THAT(complaint_of_file("no\x1b[31m\nfile"),
+              testing::at_place("no\\x1b[31m\\nfile: ", "No such file or directory"));
   const std::string pipe = (scratch / "pipe").string(), link = (scratch / "link").string();
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   std::filesystem::create_symlink(pipe, link);
   for (const std::string& file : {pipe, link})
-    EXPECT_EQ(complaint_of_file(file), file + ": cannot be read: it is a named pipe; give a file, or /dev/stdin");
-  EXPECT_THAT(complaint_of_file("/dev/null"), StartsWith("/dev/null:1:1: experiment: is missing"));
+    EXPECT_THAT(complaint_of_file(file), testing::at_place(file + ": ", "named pipe", "/dev/stdin"));
+  EXPECT_THAT(complaint_of_file("/dev/null"), testing::at_place("/dev/null:1:1: experiment: ", "missing"));
   const std::string large = scratch.write("large.toml", small_experiment + std::string(most_toml_file_bytes, ' '));
-  EXPECT_THAT(complaint_of_file(large), HasSubstr(": cannot be read: it holds more than "));
+  EXPECT_THAT(complaint_of_file(large), testing::at_place(large + ": ", "cannot be read", most));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <fstream>
 
+#include "support/messages.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo {
@@ -28,8 +29,8 @@ TEST(Isolation, SaysHowAProcessEnded) {
     return in_child([&] { return work(), std::string("done"); }, seconds).crash;
   };
   EXPECT_EQ(crash([] { std::raise(SIGSEGV); }), "Segmentation fault");
-  EXPECT_EQ(crash([] { std::exit(0); }), "it ended the process with exit code 0");
-  EXPECT_EQ(crash([] { _exit(7); }), "it ended the process with exit code 7");
+  EXPECT_THAT(crash([] { std::exit(0); }), testing::naming("exit code 0"));
+  EXPECT_THAT(crash([] { _exit(7); }), testing::naming("exit code 7"));
   EXPECT_EQ(crash([] { std::abort(); }), "Aborted");
 }
 
@@ -40,8 +41,8 @@ TEST(Isolation, NothingUnwindsIntoTheParentsCode) {
     EXPECT_EQ(getpid(), parent) << "a child has come back";
     return end.crash;
   };
-  EXPECT_EQ(crash([] { throw std::runtime_error("no licence"); }), "it threw \"no licence\"");
-  EXPECT_EQ(crash([] { throw 7; }), "it threw something that is no std::exception");
+  EXPECT_THAT(crash([] { throw std::runtime_error("no licence"); }), testing::naming("\"no licence\""));
+  EXPECT_THAT(crash([] { throw 7; }), testing::naming("std::exception"));
   EXPECT_NE(crash([] { pthread_exit(nullptr); }), "");
 }
 
@@ -54,7 +55,7 @@ TEST(Isolation, EndsWhatDoesNotEndByItself) {
       },
       1);
   EXPECT_TRUE(end.timed_out);
-  EXPECT_EQ(end.crash, "not done after 1 s");
+  EXPECT_THAT(end.crash, testing::naming("1 s"));
 }
 
 TEST(Isolation, WaitsForNoProcessThatAChildLeavesBehind) {

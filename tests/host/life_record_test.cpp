@@ -14,6 +14,7 @@
 #include "evolution/resimulation.hpp"
 #include "support/elsewhere.hpp"
 #include "support/experiments.hpp"
+#include "support/messages.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo {
@@ -543,11 +544,8 @@ TEST_F(GoneOn, OnAnotherDeviceWarnsByTheGenerationOfBirth) {
     warned_here += !warning("here").empty();
     warned_there += !warning("there").empty();
     if (of_first && !recorded) {
-      EXPECT_EQ(
-          warning("there"),
-          "warning: individual " + std::to_string(one.id) +
-              " was simulated again on there, not on here as in the run, which has no record of its edits; it may have "
-              "developed otherwise\n");
+      EXPECT_THAT(warning("there"),
+                  testing::at_place("warning: individual " + std::to_string(one.id) + " ", "on there", "on here"));
     }
   }
   EXPECT_GT(warned_here, 0);
@@ -569,9 +567,9 @@ TEST_F(GoneOn, WithAnotherOperatorWarnsToo) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << "by those that made it";
   ::testing::internal::CaptureStderr();
   for_resimulation(archive, second, *unrecorded, "here");
-  EXPECT_THAT(
-      ::testing::internal::GetCapturedStderr(),
-      ::testing::HasSubstr(" was simulated again by another build of evodevo or of an operator than in the run, "));
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
+              testing::at_place("warning: individual " + std::to_string(unrecorded->id) + " ",
+                                "build of evodevo or of an operator"));
 }
 
 }  // namespace

@@ -9,10 +9,13 @@
 #include <cfenv>
 
 #include "operators/declarations.hpp"
+#include "support/messages.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo {
 namespace {
+
+using testing::naming;
 
 namespace fs = std::filesystem;
 
@@ -25,7 +28,7 @@ std::string refusal(const std::string& fault, std::vector<fs::path> others_first
   return registry.failed()[0].reason;
 }
 
-const std::string remedy = "; rebuild the plugin against this evodevo with the same compiler";
+constexpr const char* rebuild = "rebuild the plugin";
 
 TEST(Loader, ASoundLibraryIsUsed) {
   const Registry registry({fs::path(EVODEVO_FAULTY_PLUGINS) / "sound"});
@@ -38,33 +41,27 @@ TEST(Loader, ASoundLibraryIsUsed) {
 }
 
 TEST(Loader, LibrariesThatDoNotFit) {
-  EXPECT_EQ(refusal("magic"), "its evodevo_plugin does not return an evodevo manifest; use EVODEVO_PLUGIN(...)");
-  EXPECT_EQ(refusal("epoch"), "its ABI epoch is 99, this evodevo's is " + std::to_string(plugin_epoch) + remedy);
-  EXPECT_EQ(refusal("manifest_size"),
-            "its manifest size is 8, this evodevo's is " + std::to_string(sizeof(PluginManifest)) + remedy);
-  EXPECT_EQ(refusal("structs"),
-            "its digest of struct sizes is 5, this evodevo's is " + std::to_string(plugin_struct_digest) + remedy);
-  EXPECT_EQ(refusal("toolchain"),
-            "its toolchain is another compiler, this evodevo's is " + std::string(plugin_toolchain) + remedy);
-  EXPECT_EQ(refusal("switches"), "its list of build switches is -fpacked, this evodevo's is none" + remedy);
-  EXPECT_EQ(refusal("no_entry"), "has no function evodevo_plugin; end one of its sources with EVODEVO_PLUGIN(...)");
-  EXPECT_EQ(refusal("unknown_kind"),
-            "its operator \"nothing\" is of the unknown kind \"wing\"; rebuild the plugin against this evodevo");
-  EXPECT_EQ(refusal("twin"), "its mutation operator \"nothing\" is in it twice; rename one of them");
-  EXPECT_EQ(refusal("default"),
-            "its mutation operator \"nothing\" has a default that it does not allow: genes = 7, expected 0 to 5; "
-            "correct the default or the range");
-  EXPECT_EQ(refusal("constructor"),
-            "its mutation operator \"nothing\" cannot be made: \"no licence\"; its constructor and parameters() must "
-            "not throw");
+  EXPECT_THAT(refusal("magic"), naming("evodevo_plugin", "manifest", "EVODEVO_PLUGIN(...)"));
+  EXPECT_THAT(refusal("epoch"), naming("ABI epoch", "99", std::to_string(plugin_epoch), rebuild));
+  EXPECT_THAT(refusal("manifest_size"), naming("manifest", "8", std::to_string(sizeof(PluginManifest)), rebuild));
+  EXPECT_THAT(refusal("structs"), naming("struct", "5", std::to_string(plugin_struct_digest), rebuild));
+  EXPECT_THAT(refusal("toolchain"), naming("toolchain", "another compiler", plugin_toolchain, rebuild));
+  EXPECT_THAT(refusal("switches"), naming("build switches", "-fpacked", "none", rebuild));
+  EXPECT_THAT(refusal("no_entry"), naming("evodevo_plugin", "EVODEVO_PLUGIN(...)"));
+  EXPECT_THAT(refusal("unknown_kind"), naming("operator \"nothing\"", "\"wing\"", rebuild));
+  EXPECT_THAT(refusal("twin"), naming("mutation operator \"nothing\"", "twice", "rename"));
+  EXPECT_THAT(refusal("default"), naming("mutation operator \"nothing\"", "genes = 7", "0 to 5", "correct"));
+  EXPECT_THAT(refusal("constructor"),
+              naming("mutation operator \"nothing\"", "\"no licence\"", "constructor", "parameters()"));
 }
 
 TEST(Loader, TextsThatDisturbATerminalAreRefused) {
-  const std::string fault = " is not at most 300 bytes of UTF-8 without control characters; correct it";
-  EXPECT_EQ(refusal("controls_in_name"), "the name of its mutation operator \"noth\\x1b[31ming\"" + fault);
-  EXPECT_EQ(refusal("controls_in_summary"),
-            "the summary of its mutation operator \"nothing\" \"Changes\\nnothing.\"" + fault);
-  EXPECT_EQ(refusal("controls_in_version"), "its version \"1.0\\x07\"" + fault);
+  const auto of_text = [](const char* place, const char* value) {
+    return naming(place, value, "300 bytes", "UTF-8", "control characters", "correct");
+  };
+  EXPECT_THAT(refusal("controls_in_name"), of_text("mutation operator", "\"noth\\x1b[31ming\""));
+  EXPECT_THAT(refusal("controls_in_summary"), of_text("summary", "\"Changes\\nnothing.\""));
+  EXPECT_THAT(refusal("controls_in_version"), of_text("version", "\"1.0\\x07\""));
 }
 
 TEST(Loader, OnlyFilesAreLoaded) {
@@ -74,28 +71,29 @@ TEST(Loader, OnlyFilesAreLoaded) {
   ASSERT_EQ(mkfifo((scratch / "pipe.evodevo.so").c_str(), 0600), 0);
   const Registry registry({scratch / ""});
   EXPECT_EQ(registry.failed().size(), 3u);
-  for (const FailedLibrary& failed : registry.failed()) EXPECT_THAT(failed.reason, ::testing::StartsWith("is no file"));
+  for (const FailedLibrary& failed : registry.failed()) EXPECT_THAT(failed.reason, naming("file", "remove"));
 }
 
 TEST(Loader, WhatAManifestLacksIsNamedAndDisturbsNoOther) {
-  const std::pair<const char*, const char*> faults[] = {
-      {"null_kind", "its operator 0: the kind is missing"},
-      {"null_name", "its operator 0: the name is missing"},
-      {"empty_name", "its operator 0: the name is missing"},
-      {"null_summary", "its operator 0: the summary is missing"},
-      {"null_create", "its operator 0: it has no function that creates it"},
-      {"creates_null", "its mutation operator \"nothing\" is no object of the class of this kind"},
-      {"other_class", "its devo operator \"nothing\" is no object of the class of this kind"},
-      {"null_toolchain", "its toolchain is nothing, this evodevo's is "},
-      {"null_version", "its version is missing"},
-      {"null_entries", "it has no list of operators"},
-      {"constructor_throws_a_number",
-       "its mutation operator \"nothing\" cannot be made: \"it threw something that is no std::exception\""},
-      {"static_throws", "crashes while it is loaded: "}};
+  struct Fault {
+    const char *library, *place, *what, *remedy;
+  };
+  const Fault faults[] = {
+      {"null_kind", "operator 0", "kind", "EVODEVO_PLUGIN(...)"},
+      {"null_name", "operator 0", "name", "EVODEVO_PLUGIN(...)"},
+      {"empty_name", "operator 0", "name", "EVODEVO_PLUGIN(...)"},
+      {"null_summary", "operator 0", "summary", "EVODEVO_PLUGIN(...)"},
+      {"null_create", "operator 0", "creates", "operator_entry<Class>(...)"},
+      {"creates_null", "mutation operator \"nothing\"", "class", "operator_entry<Class>(...)"},
+      {"other_class", "devo operator \"nothing\"", "class", "operator_entry<Class>(...)"},
+      {"null_toolchain", "toolchain", plugin_toolchain, rebuild},
+      {"null_version", "version", "missing", "EVODEVO_PLUGIN(...)"},
+      {"null_entries", "list of operators", "no", "EVODEVO_PLUGIN(...)"},
+      {"constructor_throws_a_number", "mutation operator \"nothing\"", "std::exception", "must not throw"},
+      {"static_throws", "while it is loaded", "crashes", "remove"}};
   std::vector<fs::path> all;
-  for (const auto& [fault, reason] : faults) {
-    EXPECT_THAT(refusal(fault), ::testing::StartsWith(reason)) << fault;
-    EXPECT_THAT(refusal(fault), ::testing::HasSubstr("; ")) << fault << " lacks a remedy";
+  for (const auto& [fault, place, what, to_do] : faults) {
+    EXPECT_THAT(refusal(fault), naming(place, what, "; ", to_do)) << fault;
     all.emplace_back(fs::path(EVODEVO_FAULTY_PLUGINS) / fault);
   }
   all.emplace_back(fs::path(EVODEVO_FAULTY_PLUGINS) / "sound");
@@ -112,9 +110,7 @@ struct Named final : Operator {
 };
 
 TEST(Loader, NoParameterTakesAKeyOfTheHost) {
-  EXPECT_THAT(refusal("reserved"),
-              ::testing::StartsWith("its mutation operator \"nothing\" calls a parameter \"every\", which is a key of "
-                                    "the host's own in every operator's table; rename"));
+  EXPECT_THAT(refusal("reserved"), naming("mutation operator \"nothing\"", "parameter \"every\"", "rename"));
   Named op;
   for (const char* key : {"name", "mass", "probability", "from", "to", "every", "label", "over"}) {
     op.name = key;
@@ -131,27 +127,24 @@ TEST(Loader, WhatALibraryChangesWhileItIsLoadedIsPutBackAndNamed) {
   const std::string said = ::testing::internal::GetCapturedStderr();
   EXPECT_EQ(std::fegetround(), FE_TONEAREST);
   EXPECT_NE(registry.find("mutation", "nothing"), nullptr) << "it is used";
-  EXPECT_THAT(said, ::testing::HasSubstr("rounds/plugin.evodevo.so: it changed the rounding mode, which has been put"));
+  EXPECT_THAT(said, naming("warning: ", "rounds/plugin.evodevo.so: ", "the rounding mode"));
 }
 
 TEST(Loader, ALibraryThatLacksASymbolIsRefusedWithItsName) {
   EXPECT_THAT(refusal("undefined_symbol"), ::testing::MatchesRegex("cannot be loaded: .*undefined symbol.*nobody.*"));
-  EXPECT_THAT(refusal("undefined_symbol"),
-              ::testing::EndsWith("; link it with all that it uses (-Wl,-z,defs tells what "
-                                  "is missing)"));
+  EXPECT_THAT(refusal("undefined_symbol"), naming("link", "-Wl,-z,defs"));
 }
 
 TEST(Loader, TheEntryOfALinkedLibraryIsNotItsOwn) {
-  EXPECT_EQ(refusal("borrowed_entry"), "has no function evodevo_plugin of its own, only that of " +
-                                           (fs::path(EVODEVO_FAULTY_PLUGINS) / "sound/plugin.evodevo.so").string() +
-                                           " which it links; end one of its sources with EVODEVO_PLUGIN(...)");
+  EXPECT_THAT(refusal("borrowed_entry"),
+              naming("evodevo_plugin of its own",
+                     (fs::path(EVODEVO_FAULTY_PLUGINS) / "sound/plugin.evodevo.so").string(), "EVODEVO_PLUGIN(...)"));
 }
 
 TEST(Loader, ALibraryThatCrashesIsRefusedAndDisturbsNoOther) {
-  const std::string look = "; look at its static objects, constructors and parameters() in a debugger, or remove it";
   const fs::path sound = fs::path(EVODEVO_FAULTY_PLUGINS) / "sound";
-  EXPECT_EQ(refusal("crash", {sound}), "crashes while it is loaded: Segmentation fault" + look);
-  EXPECT_EQ(refusal("exit", {sound}), "crashes while it is loaded: it ended the process with exit code 3" + look);
+  EXPECT_THAT(refusal("crash", {sound}), naming("crashes", "Segmentation fault", "static objects", "remove"));
+  EXPECT_THAT(refusal("exit", {sound}), naming("crashes", "exit code 3", "static objects", "remove"));
   const testing::Scratch scratch;
   fs::copy_file(fs::path(EVODEVO_FAULTY_PLUGINS) / "crash/plugin.evodevo.so", scratch / "a.evodevo.so");
   fs::copy_file(sound / "plugin.evodevo.so", scratch / "b.evodevo.so");
@@ -184,14 +177,13 @@ TEST(Loader, OfTwoLibrariesWithOneNameTheSecondIsRefusedWithBothFiles) {
   const fs::path own = fs::path(EVODEVO_FAULTY_PLUGINS) / "taken_name";
   const fs::path built_in = builtin_plugin_folder() / "reset-weight.evodevo.so";
   const auto twin = [](const fs::path& first) {
-    return "its mutation operator \"reset-weight\" is already brought by " + first.string() +
-           ", which comes first; rename one of them, or take one off the plugin path";
+    return naming("mutation operator \"reset-weight\"", first.string(), "rename", "plugin path");
   };
-  EXPECT_EQ(refusal("taken_name", {builtin_plugin_folder()}), twin(built_in));
+  EXPECT_THAT(refusal("taken_name", {builtin_plugin_folder()}), twin(built_in));
   const Registry registry({own, builtin_plugin_folder()});
   ASSERT_EQ(registry.failed().size(), 1u);
   EXPECT_EQ(registry.failed()[0].file, built_in);
-  EXPECT_EQ(registry.failed()[0].reason, twin(own / "plugin.evodevo.so"));
+  EXPECT_THAT(registry.failed()[0].reason, twin(own / "plugin.evodevo.so"));
   EXPECT_EQ(registry.find("mutation", "reset-weight")->file, own / "plugin.evodevo.so");
 }
 
@@ -202,7 +194,7 @@ TEST(Loader, AFileThatIsNoLibraryDisturbsNoOther) {
   ASSERT_EQ(registry.failed().size(), 1u);
   EXPECT_EQ(registry.failed()[0].file, scratch / "text.evodevo.so");
   EXPECT_THAT(registry.failed()[0].reason, ::testing::MatchesRegex("cannot be loaded: .*text.evodevo.so.*"));
-  EXPECT_THAT(registry.failed()[0].reason, ::testing::EndsWith("; build it for this system, or remove it"));
+  EXPECT_THAT(registry.failed()[0].reason, naming("; ", "build", "remove"));
   EXPECT_NE(registry.find("mutation", "nothing"), nullptr);
 }
 
@@ -218,17 +210,14 @@ TEST(Loader, AFolderWithoutPermissionIsNamed) {
   ASSERT_TRUE(!root || seteuid(0) == 0);
   ASSERT_EQ(registry.failed().size(), 1u);
   EXPECT_EQ(registry.failed()[0].file, scratch / "closed");
-  EXPECT_EQ(registry.failed()[0].reason,
-            "cannot be read: Permission denied; make it readable, or leave it "
-            "out of the plugin path");
+  EXPECT_THAT(registry.failed()[0].reason, naming("Permission denied", "readable", "plugin path"));
 }
 
 TEST(Loader, AFolderThatIsNotThereIsNamed) {
   const Registry registry({"/no/such/folder"});
   ASSERT_EQ(registry.failed().size(), 1u);
   EXPECT_EQ(registry.failed()[0].file, "/no/such/folder");
-  EXPECT_EQ(registry.failed()[0].reason,
-            "cannot be read: No such file or directory; make it readable, or leave it out of the plugin path");
+  EXPECT_THAT(registry.failed()[0].reason, naming("No such file or directory", "plugin path"));
 }
 
 TEST(Loader, AllBuiltInOperatorsAreThere) {

@@ -12,11 +12,10 @@
 
 #include "experiment/experiment.hpp"
 #include "support/experiments.hpp"
+#include "support/messages.hpp"
 
 namespace evodevo {
 namespace {
-
-using ::testing::HasSubstr;
 
 const OperatorTitle* title(const char* name) { return lasting_title("devo", name, "/a folder (1)/ö.evodevo.so"); }
 
@@ -71,13 +70,9 @@ std::string said_of(const char* name, void (*change)()) {
 }
 
 TEST(OperatorCall, WhatItChangesForAllIsPutBackAndNamedOnce) {
-  const auto once = [](const char* name, const std::string& what) {
-    return "warning: " + title(name)->whole + ": it changed " + what +
-           ", which has been put back; remove what changes it";
-  };
   const auto expect_named_once = [&](const char* name, const std::string& what, void (*change)()) {
     const std::string said = said_of(name, change);
-    EXPECT_THAT(said, ::testing::StartsWith(once(name, what)));
+    EXPECT_THAT(said, testing::at_place("warning: " + title(name)->whole + ": ", what, "remove"));
     EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
   };
   const std::string locale_before = std::setlocale(LC_ALL, nullptr);
@@ -113,7 +108,7 @@ TEST(OperatorCall, KnowsWhoseLifeItIs) {
     call_operator(experiment.call_of(Fitness::kind, 1, {.individual = 3}), [] { throw 7; });
     FAIL() << "nothing was thrown";
   } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("individual 3, seed 7: it threw something that is no std::exception; correct"));
+    EXPECT_THAT(error.what(), testing::naming("individual 3, seed 7: ", "std::exception", "correct the operator"));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/json_text.hpp"
+#include "support/messages.hpp"
 
 namespace evodevo {
 namespace {
@@ -50,7 +51,7 @@ TEST(Printable, CutsWhatIsTooLongBetweenCharacters) {
 }
 
 TEST(Printable, SaysWhyATextCanBeNoName) {
-  EXPECT_EQ(text_fault("a\x1b"), "\"a\\x1b\" is not at most 300 bytes of UTF-8 without control characters");
+  EXPECT_THAT(text_fault("a\x1b"), testing::at_place("\"a\\x1b\" ", "300 bytes", "UTF-8", "control characters"));
   EXPECT_NE(text_fault(std::string(301, 'a')), "");
   EXPECT_EQ(text_fault(std::string(300, 'a')), "");
 }

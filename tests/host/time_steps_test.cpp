@@ -6,6 +6,7 @@
 #include "analysis/ground.hpp"
 #include "analysis/stability.hpp"
 #include "core/simulator.hpp"
+#include "support/messages.hpp"
 
 namespace evodevo {
 namespace {
@@ -26,17 +27,17 @@ LongestStep longest(const StepRule& rule, const Scene& scene = {}, Method method
 }
 
 TEST(TimeSteps, ABodyThatAloneExceedsAFixedStepIsTold) {
-  EXPECT_EQ(longest({.dt = 0.0005}).failure, "unstable dt: 0.0005 s is too long for the body's springs");
+  EXPECT_THAT(longest({.dt = 0.0005}).failure, testing::at_place("unstable dt: ", "0.0005 s", "springs"));
   EXPECT_EQ(longest({.dt = 0.0002}).failure, "");
   EXPECT_EQ(longest({.dt = 0.0005, .refine = 2}).failure, "") << "half of it is borne";
   Scene floor;
   floor.floor = Floor{1e8};
-  EXPECT_EQ(longest({.dt = 0.0002}, floor).failure,
-            "unstable dt: 0.0002 s is too long for the body's lightest mass on this floor");
+  EXPECT_THAT(longest({.dt = 0.0002}, floor).failure,
+              testing::at_place("unstable dt: ", "0.0002 s", "lightest mass", "floor"));
   Body fast = star();
   fast.materials[0] = {1, 0.1, 1001, 0};
-  EXPECT_EQ(longest_step({.dt = 0.0005}, fast, state_at_birth(fast, {}).position, {}, Method::implicit).failure,
-            "unstable dt: 0.0005 s is too long for the body's fastest muscles");
+  EXPECT_THAT(longest_step({.dt = 0.0005}, fast, state_at_birth(fast, {}).position, {}, Method::implicit).failure,
+              testing::at_place("unstable dt: ", "0.0005 s", "muscle"));
   EXPECT_EQ(longest({.dt = 0.0005, .run_unstable = true}, floor).failure, "") << "as the file asks";
 }
 
@@ -48,8 +49,7 @@ TEST(TimeSteps, WithoutAFixedStepABodyHasItsOwn) {
   floor.floor = Floor{1e8};
   EXPECT_DOUBLE_EQ(longest({.dt = std::nullopt}, floor).dt, 1.2 * std::sqrt(0.2 / 1e8));
   floor.floor = Floor{1e18};
-  EXPECT_EQ(longest({.dt = std::nullopt}, floor).failure.substr(0, 54),
-            "unstable dt: the body would need steps of 5.3665631459");
+  EXPECT_THAT(longest({.dt = std::nullopt}, floor).failure, testing::at_place("unstable dt: ", "5.3665631459"));
 }
 
 TEST(TimeSteps, MaterialsThatNoSpringHasShortenNone) {
@@ -75,7 +75,7 @@ TEST(TimeSteps, AStepThatCannotBeComputedIsNotTold) {
   const std::string far = longest_step({.dt = std::nullopt}, body, positions, {}, Method::paper_euler).failure;
   positions[7].y = std::nan("");
   const std::string nowhere = longest_step({.dt = std::nullopt}, body, positions, {}, Method::rk4).failure;
-  EXPECT_EQ(nowhere.substr(0, 13), "unstable dt: ");
+  EXPECT_THAT(nowhere, testing::at_place("unstable dt: "));
   for (const std::string& failure : {far, nowhere}) {
     EXPECT_EQ(failure.find("nan"), std::string::npos) << failure;
     EXPECT_EQ(failure.find("inf"), std::string::npos) << failure;

@@ -12,6 +12,7 @@
 #include "evolution/evolution.hpp"
 #include "support/elsewhere.hpp"
 #include "support/experiments.hpp"
+#include "support/messages.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo {
@@ -231,10 +232,10 @@ TEST(Verify, WarnsOfLivesThatMayHaveDevelopedOtherwise) {
   EXPECT_EQ(warnings(*run.simulator), "");
   testing::Elsewhere elsewhere(run.experiment, "another device");
   const std::string warned = warnings(elsewhere);
+  EXPECT_THAT(warned, testing::naming("on another device", "on " + run.simulator->device()));
   std::size_t unsure = 0, sure = 0;
   for (const std::uint32_t id : run.archive.best(24)) {
-    const bool warns =
-        warned.find("individual " + std::to_string(id) + " was simulated again on another device") != std::string::npos;
+    const bool warns = warned.find("warning: individual " + std::to_string(id) + " ") != std::string::npos;
     EXPECT_EQ(warns, !run.archive.life(id).has_value()) << warned;
     ++(warns ? unsure : sure);
   }

@@ -121,10 +121,11 @@ TEST_P(Adaptation, RefusesParametersThatDoNotGoTogether) {
     }
     return std::string("accepted");
   };
-  EXPECT_EQ(complaint("factor = 1.0"),
-            "test.toml:1:10: test.factor = 1: changes nothing; expected less or more than 1");
+  EXPECT_THAT(complaint("factor = 1.0"),
+              testing::AllOf(testing::StartsWith("test.toml:1:10: test.factor = 1: "), testing::HasSubstr("expected")));
   const std::string low = std::to_string(GetParam().high), high = std::to_string(GetParam().low);
-  EXPECT_EQ(complaint("high = " + high + "\nlow = " + low).substr(0, 25), "test.toml:2:7: test.low =");
+  EXPECT_THAT(complaint("high = " + high + "\nlow = " + low),
+              testing::AllOf(testing::StartsWith("test.toml:2:7: test.low = "), testing::HasSubstr("high")));
   EXPECT_EQ(complaint("high = " + low + "\nlow = " + low), "accepted") << "a bound from both sides";
 }
 

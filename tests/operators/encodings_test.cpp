@@ -61,7 +61,7 @@ TEST_P(AnyEncoding, AirAloneIsNoBody) {
   const auto encoding = make<Encoding>(GetParam(), "materials = ['air']");
   Rng rng = stream(3);
   const Genome genome = encoding->random(encoding->layout(context()), rng);
-  EXPECT_EQ(encoding->decode(genome, context()).failure, "all materials to choose from are air");
+  EXPECT_THAT(encoding->decode(genome, context()).failure, testing::HasSubstr("air"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Encodings, AnyEncoding, testing::Values("neural", "cppn", "voxel", "direct"));
@@ -222,7 +222,8 @@ TEST(Neural, GenesThatAreNoNumbersAreNoBody) {
   for (const float value : {std::nanf(""), std::numeric_limits<float>::infinity()}) {
     Genome genome(958, 0.5f);
     genome[500] = value;
-    EXPECT_EQ(encoding->decode(genome, context()).failure, "a gene is not finite");
+    EXPECT_THAT(encoding->decode(genome, context()).failure,
+                testing::AllOf(testing::HasSubstr("gene"), testing::HasSubstr("not finite")));
   }
 }
 

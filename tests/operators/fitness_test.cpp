@@ -61,7 +61,7 @@ TEST(Distance, AsksForItsWindow) {
 TEST(Distance, RefusesNoDirection) {
   const auto fitness = make<Fitness>("distance", "direction = [0, 0, 0]");
   EXPECT_THAT([&] { fitness->observes(); },
-              testing::ThrowsMessage<std::invalid_argument>("direction must not be zero"));
+              testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("direction")));
 }
 
 TEST(Distance, IsToBeGreat) {

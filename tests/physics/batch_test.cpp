@@ -133,7 +133,7 @@ TEST(Guard, EnergyFromNothingIsDivergence) {
   for (Vec3& v : state.velocity) v = {0, 0, 3.6};  // 10.4 J
   const Answer a = simulate(body, state, {}, stepping, 1000);
   EXPECT_EQ(a.task.status, Status::diverged);
-  EXPECT_EQ(a.task.reason.find("energy of 10.4 J above the bound of 10"), 0u) << a.task.reason;
+  EXPECT_NE(a.task.reason.find("10.4 J"), std::string::npos) << a.task.reason;
   EXPECT_DOUBLE_EQ(a.task.ended_at, 150 * stepping.dt);
   EXPECT_EQ(a.state.time, a.task.ended_at);
   for (Vec3& v : state.velocity) v = {0, 0, 3.4};  // 9.2 J

@@ -26,9 +26,9 @@ void for_each_changed_operator(const Experiment& experiment, const Provenance& f
 
 void warn_of_other_builds(const Experiment& experiment, const Simulator& simulator, const Archive& archive) {
   const auto warn = [](const auto& then, const auto& now, const std::string& which) {
-    std::cerr << "warning: the run began with " << title(then) << "; now it is "
-              << (then.version == now.version ? "another build of it" : "version " + now.version) << ", " << which
-              << "; results may differ\n";
+    std::cerr << "warning: the run began with " << title(then) << "; now "
+              << (then.version == now.version ? "another build of it" : "version " + now.version) << " is used, "
+              << which << "; results may differ\n";
   };
   const Provenance first = archive.provenances().front(), here = this_provenance(experiment, simulator.device());
   if (first.program != here.program) warn(first, here, here.program);
@@ -38,7 +38,7 @@ void warn_of_other_builds(const Experiment& experiment, const Simulator& simulat
 
 void warn_of_another_device(const Simulator& simulator, const Archive& archive) {
   if (const std::string before = archive.provenances().front().device; before != simulator.device())
-    std::cerr << "warning: the run began on " << before << " and goes on on " << simulator.device()
+    std::cerr << "warning: the run began on " << before << " and continues on " << simulator.device()
               << "; results may differ, at first in the last bit\n";
 }
 
@@ -48,8 +48,8 @@ void refuse_other_versions(const Experiment& experiment, const Archive& archive)
                               if (then.version == now.version) return;
                               throw ArchiveError(archive.folder().string() + ": the run began with " + title(then) +
                                                  ", but " + now.file.string() + " is version " + now.version +
-                                                 "; put back the version that it began with (it was " +
-                                                 then.file.string() + "), or go on with --allow-other-versions");
+                                                 "; put back the version that the run began with (it was " +
+                                                 then.file.string() + "), or continue with --allow-other-versions");
                             });
 }
 

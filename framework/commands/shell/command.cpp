@@ -27,7 +27,7 @@ void refuse_to_print_into(const std::string& input) {
     if (stat(file.c_str(), &read) == 0 && read.st_dev == output.st_dev && read.st_ino == output.st_ino)
       throw UsageError(file.string() +
                        ": the command reads this file, so its output cannot go there; send the "
-                       "standard output elsewhere");
+                       "standard output to another file");
 }
 
 std::vector<std::string> values_of(const Given& given, const Argument& argument) {
@@ -52,7 +52,7 @@ const Options& common_options() {
   static const Options options = [] {
     Options common;
     common.add_options()("quiet", "print nothing but results, warnings and errors")(
-        "verbose", "say what slow steps do and how long they take")("help", "show this text");
+        "verbose", "also print what slow steps do and how long they take")("help", "show this text");
     return common;
   }();
   return options;

@@ -231,7 +231,7 @@ std::string completion_script(const std::string& shell, std::span<const Command>
   if (shell == "bash") return bash_script(commands);
   if (shell == "zsh") return zsh_script(commands);
   if (shell == "fish") return fish_script(commands);
-  throw UsageError("completion " + printable(shell) + ": is not a shell that can be completed" +
+  throw UsageError("completion " + printable(shell) + ": is not a supported shell" +
                    suggestion(shell, vocabulary_of(shells, commands).words));
 }
 

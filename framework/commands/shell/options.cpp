@@ -42,8 +42,8 @@ struct Shorthand {
 
 constexpr Shorthand shorthands[] = {
     {"seed", "experiment.seed", "N", "seed of all random numbers"},
-    {"device", "simulation.device", "auto|cpu|cuda", "where to simulate; auto: on a GPU where there is one"},
-    {"threads", "simulation.threads", "N", "threads on the CPU; 0: one for each core"},
+    {"device", "simulation.device", "auto|cpu|cuda", "where to simulate; auto: on a GPU if there is one"},
+    {"threads", "simulation.threads", "N", "number of threads on the CPU; 0: one for each core"},
 };
 
 /// Returns an option with its value, for messages.

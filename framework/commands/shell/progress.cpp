@@ -104,8 +104,8 @@ void print_outcome(const Experiment& experiment, const Archive& archive, const P
               << "\n      its body:        " << program_name() << " body " << archive.folder().string()
               << " --individual " << individual.id << '\n';
   } else {
-    std::cout << "no individual ended with a fitness; to see why: " << program_name() << " show "
-              << archive.folder().string() << '\n';
+    std::cout << "no individual has a fitness; to see why: " << program_name() << " show " << archive.folder().string()
+              << '\n';
   }
   const auto springs = static_cast<double>(progress.spring_evaluations());
   remarks() << "speed: " << short_number(springs / progress.seconds()) << " spring evaluations/s ("
@@ -120,7 +120,7 @@ void print_time_spent(const TimeSpent& time, const Simulator& simulator) {
   if (const std::optional<DeviceUse> device = simulator.device_use()) {
     remarks() << "; device idle " << share(time.whole - device->busy);
     if (device->portions > 1)
-      remarks() << ", a batch in up to " << device->portions << " portions for lack of device memory";
+      remarks() << ", each batch split into up to " << device->portions << " portions to fit into device memory";
   }
   remarks() << std::endl;
 }

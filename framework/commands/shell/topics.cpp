@@ -9,46 +9,47 @@ Topic experiment() {
       .summary = "The tables and keys of an experiment",
       .text = {"An experiment is one TOML file. A force that has no table is not computed. A key that is left out has "
                "its default. A key that does not exist is an error that names the file, the line, the column and the "
-               "nearest key that exists.",
+               "most similar key that exists.",
                "Every key can also be set on the command line: --set experiment.population=100. The items of lists "
-               "have numbers from 0: --set fitness.0.window=5. The number behind the last item adds an item.",
+               "have numbers from 0: --set fitness.0.window=5. The number after the last one adds an item.",
                "`evodevo check FILE` says whether an experiment can be run, `evodevo operators` lists the operators "
                "that it can name, and `evodevo describe OPERATOR` explains the keys of one operator. `evodevo describe "
                "experiment` prints the keys of all tables with their ranges."},
-      .definitions = {{"[experiment]",
-                       "How long the run takes: seed, evaluations, spring_evaluations, population, and verify, the "
-                       "number of best individuals that are verified at the end."},
-                      {"[encoding]",
-                       "The operator that grows a body from a genome: name, and the parameters of that operator. The "
-                       "neural encoding has points, neighbours and mass (kg), among others."},
-                      {"[[mutation]], [[crossover]]",
-                       "The operators that make children: name, probability, and parameters. A "
-                       "child goes through each with its probability, crossovers first."},
-                      {"[scene.gravity]", "acceleration (m/s^2, downwards) and slope (degrees)."},
-                      {"[scene.floor]", "stiffness (N/m); roughness (m), wavelength (m) and seed of rough ground."},
-                      {"[scene.friction]", "coefficient of Coulomb friction with the floor."},
-                      {"[scene.damping]", "rate (1/s) at which all velocities decay."},
-                      {"[scene.drag]", "coefficient (kg/m) of quadratic drag on each mass."},
-                      {"[scene.payload]",
-                       "A payload: its share of the body's mass, and the top part of the body that carries it."},
-                      {"[simulation]",
-                       "accuracy (paper, fast, balanced or reference), or each of method, precision, dt (s, or "
-                       "auto) and refine; materials (table or computed); unstable (invalid or run); device "
-                       "(auto, cpu or cuda) and threads (0: all cores)."},
-                      {"[development]",
-                       "cycles, and cycle_time (s) of each; reset; control, for control experiments; probe and "
-                       "skip, which say how stress is measured."},
-                      {"[[development.operator]]",
-                       "The operators that change a body after a cycle: name, parameters, and the "
-                       "schedule from, to and every, counted in cycles."},
-                      {"[[fitness]]",
-                       "The operators that score a life: name, and parameters such as settle and window (s). Several "
-                       "make a Pareto front."},
-                      {"[selection]", "The operator that chooses who survives: name, and parameters."},
-                      {"[materials.NAME]",
-                       "A material: stiffness (N/m), amplitude, frequency (Hz) and phase (rad). The names "
-                       "muscle, muscle2, tissue, bone and air exist already and can be changed."},
-                      {"[plugins]", "paths: folders with operators, relative to the file."}},
+      .definitions =
+          {{"[experiment]",
+            "How long the run takes: seed, evaluations, spring_evaluations, population, and verify, the "
+            "number of best individuals that are verified at the end."},
+           {"[encoding]",
+            "The operator that builds a body from a genome: name, and the parameters of that operator. The "
+            "neural encoding has points, neighbours and mass (kg), among others."},
+           {"[[mutation]], [[crossover]]",
+            "The operators that make children: name, probability, and parameters. Each "
+            "is applied to a child with its probability, crossovers first."},
+           {"[scene.gravity]", "acceleration (m/s^2, downwards) and slope (degrees)."},
+           {"[scene.floor]", "stiffness (N/m); roughness (m), wavelength (m) and seed of rough ground."},
+           {"[scene.friction]", "coefficient of Coulomb friction with the floor."},
+           {"[scene.damping]", "rate (1/s) at which all velocities decay."},
+           {"[scene.drag]", "coefficient (kg/m) of quadratic drag on each mass."},
+           {"[scene.payload]",
+            "A payload: share, its mass relative to the body's; top, the upper fraction of the body that carries it."},
+           {"[simulation]",
+            "accuracy (paper, fast, balanced or reference), a preset for method, precision, dt (s, or "
+            "auto) and refine; materials (table or computed); unstable (invalid or run); device "
+            "(auto, cpu or cuda) and threads (0: all cores)."},
+           {"[development]",
+            "cycles, and cycle_time (s) of each; reset; control, for control experiments; probe and "
+            "skip, which say how stress is measured."},
+           {"[[development.operator]]",
+            "The operators that change a body after a cycle: name, parameters, and the "
+            "schedule from, to and every, counted in cycles."},
+           {"[[fitness]]",
+            "The operators that score a life: name, and parameters such as settle and window (s). Several "
+            "define a Pareto front."},
+           {"[selection]", "The operator that chooses survivors and parents: name, and parameters."},
+           {"[materials.NAME]",
+            "A material: stiffness (N/m), amplitude, frequency (Hz) and phase (rad). The names "
+            "muscle, muscle2, tissue, bone and air exist already and can be changed."},
+           {"[plugins]", "paths: folders with operators, relative to the file."}},
       .example = R"([experiment]
 evaluations = 600
 population = 30
@@ -81,11 +82,11 @@ Topic plugins() {
       .summary = "How to write, check and use operators of your own",
       .text = {"Every encoding, mutation, crossover, devo operator, fitness and selection is a plugin: a shared "
                "library NAME.evodevo.so with one operator or more. To use another operator, change a name in the "
-               "experiment; evodevo is not built again.",
-               "evodevo looks for operators in the folders that [plugins] paths of the experiment names, then in "
+               "experiment; evodevo need not be built again.",
+               "evodevo looks for operators in the folders that [plugins] paths in the experiment names, then in "
                "those of --plugin-path, then in those of EVODEVO_PLUGIN_PATH, and then in its own folder. A run "
                "records the folders, and `run` remembers them for `resume` and the other commands.",
-               "The host checks a library before it calls it and says why it refuses one: see "
+               "evodevo checks a library before it uses it, and says why it refuses one: see "
                "`evodevo operators --failed`. It names an operator that crashes, throws or takes too long.",
                "share/doc/evodevo/plugins.md, which is framework/sdk/README.md in the sources, teaches how to write "
                "an operator."},
@@ -106,16 +107,17 @@ Topic archive() {
                "lie in run.sqlite-wal beside it: copy and move these files together.",
                "A generation is one transaction. Ctrl-C ends a run after the current generation, a second Ctrl-C "
                "ends it at once; `evodevo resume` goes on in both cases, and ends with the same genes and scores as "
-               "a run that was never interrupted. One process at a time writes a run, and any number may read it."},
-      .definitions = {{"record", "Texts about the whole run by their key, such as experiment, name and seed."},
+               "a run that was never interrupted. Only one process at a time can write a run; any number can read it."},
+      .definitions = {{"record", "Texts about the whole run, each under a key, such as experiment, name and seed."},
                       {"individuals",
                        "Id, generation of birth and of death, parents, operators that made it, genes, "
                        "status and reason."},
                       {"scores", "The value of each objective of each individual with a fitness."},
                       {"objectives", "Name, unit and direction of each objective."},
                       {"generations", "Best, median and counts of each generation."},
-                      {"members", "Who was in the population after each generation, and how old its genes were."},
-                      {"lives", "What development did to the individuals of the front."},
+                      {"members",
+                       "The individuals in the population after each generation, and the ages of their genes."},
+                      {"lives", "The edits that development made to individuals that reached the Pareto front."},
                       {"verifications", "The trials of verified individuals (see `evodevo help verification`)."}},
       .example = "sqlite3 runs/quickstart-1/run.sqlite \"SELECT generation, best FROM generations\"\n"};
 }
@@ -124,15 +126,15 @@ Topic verification() {
   return {
       .name = "verification",
       .summary = "How the best individuals of a run are verified",
-      .text = {"A simulation can reward what is not there, such as energy that a time step adds. At its end a run "
-               "therefore simulates its best again ([experiment] verify, 1 by default), and `evodevo verify` does it "
-               "for more of them. The body develops as in the run; then its final evaluation is repeated in eight "
-               "trials.",
-               "A trial has held where the first objective keeps at least half of its value. An individual is an "
-               "artefact where quarter-step or other-method did not hold. It is passive where it keeps over half of "
-               "its fitness without muscles, or has lost over half of it after ten more seconds. Otherwise it is "
-               "verified."},
-      .definitions = {{"again", "Nothing is changed."},
+      .text =
+          {"Fitness can come from an error of the simulation, such as energy that too long a time step adds. At its "
+           "end, a run therefore simulates its best individuals again ([experiment] verify, 1 by default), and "
+           "`evodevo verify` does so for more of them. The body develops as in the run; then its final evaluation "
+           "is repeated in eight trials.",
+           "A trial has held if the first objective keeps at least half of its value. An individual is an artefact "
+           "if quarter-step or other-method did not hold. It is passive if it keeps more than half of its fitness "
+           "without muscles, or has lost more than half of it after ten more seconds. Otherwise it is verified."},
+      .definitions = {{"again", "The final evaluation as it was in the run."},
                       {"quarter-step", "A quarter of the time step, in double precision."},
                       {"other-method",
                        "Another integration method, in double precision, with a quarter of the "
@@ -140,7 +142,7 @@ Topic verification() {
                       {"perturbed-1, perturbed-2, perturbed-3",
                        "A perturbation: each mass is moved at random by up "
                        "to 1e-4 of the longest side of the body."},
-                      {"no-muscles", "All springs keep their length."},
+                      {"no-muscles", "No muscle changes its length."},
                       {"settled", "The measurement begins ten seconds later."}},
       .example = "evodevo verify runs/quickstart-1 --best 10\n"};
 }
@@ -151,34 +153,34 @@ Topic environment() {
           .text = {},
           .definitions = {{"EVODEVO_PLUGIN_PATH", "Folders with operators, separated by colons."},
                           {"EVODEVO_PATIENCE",
-                           "After how many seconds a call of an operator is named as slow; 10 by default."},
+                           "Number of seconds after which a call of an operator is reported as slow; 10 by default."},
                           {"EVODEVO_CHROMIUM",
                            "The browser that draws films and pictures; by default chromium, chromium-browser or "
-                           "google-chrome of the search path."},
-                          {"EVODEVO_COMMAND", "How messages call the program; tools/evodevo sets it."},
+                           "google-chrome, as found in PATH."},
+                          {"EVODEVO_COMMAND", "The name by which messages call the program; tools/evodevo sets it."},
                           {"EVODEVO_PRESET",
                            "What tools/evodevo builds: cpu or cuda; by default cuda where a CUDA toolkit is "
                            "found. tools/test also takes asan and tsan."},
                           {"XDG_CACHE_HOME",
-                           "Compiled kernels are kept in evodevo/kernels in this folder; ~/.cache by default."},
+                           "The folder in which compiled kernels are kept, in evodevo/kernels; ~/.cache by default."},
                           {"XDG_STATE_HOME",
-                           "The folders whose operators you have run are listed in evodevo/plugin-folders in this "
-                           "folder, one on each line; ~/.local/state by default."}},
+                           "The folder of the list evodevo/plugin-folders, which names the folders whose operators you "
+                           "have run, one on each line; ~/.local/state by default."}},
           .example = ""};
 }
 
 Topic exit_codes() {
-  return {
-      .name = "exit-codes",
-      .summary = "What the exit codes mean",
-      .text = {"Messages go to standard error, so that results can be piped. A reader that ends early, as in "
-               "`evodevo operators | head -1`, ends the command without a message."},
-      .definitions =
-          {{"0", "The command has done what it was asked for."},
-           {"1", "It failed: a simulation or a run failed, output could not be written, or plugins do not conform."},
-           {"2", "The command line, an experiment, a body or a run is not valid. Nothing was written."},
-           {"130", "The run was interrupted, and `evodevo resume` can go on with it."}},
-      .example = ""};
+  return {.name = "exit-codes",
+          .summary = "What the exit codes mean",
+          .text = {"Messages go to standard error, so that results can be piped. A reader that ends early, as in "
+                   "`evodevo operators | head -1`, ends the command without a message."},
+          .definitions = {{"0", "The command succeeded."},
+                          {"1",
+                           "The command failed: a simulation or a run failed, output could not be written, or plugins "
+                           "do not conform."},
+                          {"2", "The command line, an experiment, a body or a run is not valid. Nothing was written."},
+                          {"130", "The run was interrupted, and `evodevo resume` can continue it."}},
+          .example = ""};
 }
 
 }  // namespace

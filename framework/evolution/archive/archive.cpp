@@ -72,7 +72,7 @@ Archive Archive::create(const fs::path& folder, const Experiment& experiment, co
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)
-    throw ArchiveError(folder.string() + ": cannot be made: " + error.message() + "; give another place with --out");
+    throw ArchiveError(folder.string() + ": cannot be created: " + error.message() + "; give another place with --out");
   require_empty(folder);  // before locked(), which creates a file, and again when no other process can write
   auto lock = locked(folder);
   require_empty(folder);

@@ -30,23 +30,23 @@ struct Meaning {
 };
 
 constexpr Meaning meanings[] = {
-    {SQLITE_NOTADB, false, "is no SQLite database", "give a folder that `evodevo run` has written"},
+    {SQLITE_NOTADB, false, "is not a SQLite database", "give a folder that `evodevo run` has written"},
     {SQLITE_CORRUPT, false, "is damaged", "put back an undamaged copy of it"},
-    {SQLITE_BUSY, false, "is locked by another process", "wait until that is done, or stop it, and try again"},
-    {SQLITE_LOCKED, false, "is locked by another process", "wait until that is done, or stop it, and try again"},
+    {SQLITE_BUSY, false, "is locked by another process", "wait until it is done, or stop it, and try again"},
+    {SQLITE_LOCKED, false, "is locked by another process", "wait until it is done, or stop it, and try again"},
     {SQLITE_READONLY, false, "cannot be written", "make the folder and its files writable, or work on a copy of it"},
     {SQLITE_PERM, false, "may not be opened", "make the folder and its files readable and writable"},
-    {SQLITE_CANTOPEN, false, "cannot be opened, or the files beside it",
+    {SQLITE_CANTOPEN, false, "or a file beside it cannot be opened",
      "make the folder and its files readable and writable; if it lies on another machine, give --journal delete to "
      "`run` or `resume`, or work on a copy"},
-    {SQLITE_TOOBIG, false, "holds a value of more than 256 MiB, or was to", "put back an undamaged copy of it"},
-    {SQLITE_CONSTRAINT, false, "does not fit together: what is to be added cannot be",
+    {SQLITE_TOOBIG, false, "has a value of more than 256 MiB, or would get one", "put back an undamaged copy of it"},
+    {SQLITE_CONSTRAINT, false, "is inconsistent: new rows contradict those that it has",
      "put back an undamaged copy of it"},
-    {SQLITE_FULL, true, "cannot be written: the disk is full, or that of temporary files",
-     "make room there, or let TMPDIR name a larger one"},
+    {SQLITE_FULL, true, "cannot be written: the disk, or that of temporary files, is full",
+     "free some space, or set TMPDIR to a folder on a larger disk"},
     {SQLITE_IOERR, true, "cannot be read or written: the storage fails",
-     "see that its disk is sound, connected and not full"},
-    {SQLITE_NOMEM, true, "needs more memory than there is", "let other programs end first"},
+     "check that its disk is sound, connected and not full"},
+    {SQLITE_NOMEM, true, "needs more memory than is free", "close other programs, then try again"},
 };
 
 constexpr Meaning unknown{0, false, "cannot be used", "put back an undamaged copy of it"};
@@ -146,7 +146,7 @@ void RunDatabase::take_snapshot() {
   guarded([&] {
     SQLite::Database copy("", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);  // a temporary file
     if (SQLite::Backup(copy, database_).executeStep() != SQLITE_DONE)
-      throw SQLite::Exception("no moment to copy it", SQLITE_BUSY);
+      throw SQLite::Exception("it could not be copied, because it was being written all the time", SQLITE_BUSY);
     database_ = std::move(copy);
   });
   limit();
@@ -165,8 +165,8 @@ void RunDatabase::require_in_place() const {
   const bool log_is_gone = journal_ == Journal::wal && !fs::exists(database_file(folder_) + "-wal", error);
   if (moved == 0 && !log_is_gone) return;
   throw StorageError(folder_.string() + ": " + database_name + (moved != 0 ? "" : "-wal") +
-                     " was removed, moved or replaced by another file while it was in use, so that nothing more can be "
-                     "kept; if it was moved, put it back, or give the place where it is now to `" +
+                     " was removed, moved or replaced by another file while it was in use, so nothing more can be "
+                     "stored; if it was moved, put it back, or give the folder where it is now to `" +
                      program_name() + " resume`");
 }
 
@@ -186,7 +186,7 @@ void RunDatabase::execute(const char* sql) {
 }
 
 void RunDatabase::refuse(const std::string& what) const {
-  throw ArchiveError(folder_.string() + ": its record does not fit together: " + what +
+  throw ArchiveError(folder_.string() + ": the record of the run is inconsistent: " + what +
                      "; put back an undamaged copy of " + database_name);
 }
 

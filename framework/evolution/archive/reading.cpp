@@ -90,7 +90,7 @@ class Individuals {
       const std::string table(name.substr(0, name.find('.'))), key(name.substr(table.size() + 1));
       Statement last(run_, table, "SELECT max(" + key + ") AS " + key + " FROM " + table);
       if (last.step() && !last.is_null(0) && last.index(0) >= evaluations)
-        last.refuse(0, "less than the evaluations, " + std::to_string(evaluations));
+        last.refuse(0, "less than the number of evaluations, " + std::to_string(evaluations));
     }
   }
 
@@ -99,7 +99,7 @@ class Individuals {
     for (const int column : {3, 4}) {
       if (row_.is_null(column)) continue;
       individual.parents.push_back(row_.index(column));
-      if (individual.parents.back() >= individual.id) row_.refuse(column, "less than its own id");
+      if (individual.parents.back() >= individual.id) row_.refuse(column, "less than the id of the individual itself");
     }
   }
 
@@ -156,7 +156,7 @@ std::optional<Verification> Archive::verification(std::uint32_t id) const {
 
 std::string Archive::record(const std::string& key) const {
   auto value = find_record(key);
-  if (!value) refuse("there is no \"" + key + "\"");
+  if (!value) refuse("the table record has no key \"" + key + "\"");
   return std::move(*value);
 }
 
@@ -184,7 +184,7 @@ std::vector<Provenance> Archive::provenances() const {
     row.integer(0, position, position);
     provenances.push_back({line(row, 1), line(row, 2), line(row, 3), {}});
   }
-  if (provenances.empty()) refuse("it has no provenance");
+  if (provenances.empty()) refuse("the table provenances is empty");
   Statement use(*run_, "operators", "SELECT provenance, kind, name, version, file, hash FROM operators ORDER BY rowid");
   while (use.step())
     provenances[use.index(0, static_cast<std::uint32_t>(provenances.size() - 1))].operators.push_back(
@@ -196,7 +196,7 @@ Provenance Archive::provenance(std::uint32_t generation) const {
   const std::vector<Provenance> all = provenances();
   Statement row(*run_, "generations", "SELECT provenance FROM generations WHERE generation = ?");
   row.bind(generation);
-  if (!row.step()) refuse("there is no generation " + std::to_string(generation));
+  if (!row.step()) refuse("there is no row of generation " + std::to_string(generation));
   return all[row.index(0, static_cast<std::uint32_t>(all.size() - 1))];
 }
 
@@ -207,7 +207,7 @@ std::vector<Objective> Archive::objectives() const {
     row.integer(0, position, position);
     objectives.push_back({line(row, 1), line(row, 2), row.integer(3, 0, 1) != 0});
   }
-  if (objectives.empty()) refuse("there are no objectives");
+  if (objectives.empty()) refuse("the table objectives is empty");
   return objectives;
 }
 
@@ -275,7 +275,7 @@ std::optional<ArchivedIndividual> Archive::individual(std::uint32_t id) const {
 
 ArchivedIndividual Archive::known_individual(std::uint32_t id) const {
   auto known = individual(id);
-  if (!known) refuse("there is no individual " + std::to_string(id) + ", which it names");
+  if (!known) refuse("it refers to individual " + std::to_string(id) + ", which it does not have");
   return std::move(*known);
 }
 

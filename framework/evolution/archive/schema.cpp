@@ -65,7 +65,7 @@ const Things& things_of_a_run() {
 }
 
 [[noreturn]] void refuse_foreign(const RunDatabase& run, const std::string& what) {
-  throw ArchiveError(run.folder().string() + ": is not as a run leaves it: " + database_name + " " + what +
+  throw ArchiveError(run.folder().string() + ": is not the folder of a run: " + database_name + " " + what +
                      "; give a folder that `" + program_name() + " run` has written");
 }
 
@@ -90,13 +90,13 @@ void check_tables(const RunDatabase& run) {
   const Things here = run.guarded([&] { return things_in(run.sqlite()); });
   // Archive::create() writes the tables in one transaction, so a file without tables is one that was never committed.
   if (here.empty())
-    throw ArchiveError(run.folder().string() + ": the run in it ended before it began; if there was a " +
+    throw ArchiveError(run.folder().string() + ": the run in it ended before it stored anything; if there was a " +
                        database_name + "-wal beside " + database_name +
-                       ", put that back, or else begin the run anew in another folder");
+                       ", put that back; otherwise begin the run again in another folder");
   const auto check = [&](const std::string& name) {
     const auto found = here.find(name);
     if (found == here.end()) refuse_foreign(run, "lacks \"" + name + "\"");
-    if (found->second != things_of_a_run().at(name)) refuse_foreign(run, "has another \"" + name + "\"");
+    if (found->second != things_of_a_run().at(name)) refuse_foreign(run, "defines \"" + name + "\" in another way");
   };
   check("record");  // first, because the format in it says whether this program knows the other tables
   check_format(run);

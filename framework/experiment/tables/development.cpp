@@ -13,7 +13,7 @@ void check_skip(const TomlReader& t, const Settings& settings) {
   if (development.probe != Probe::skip_shift || !settings.step.fixed()) return;
   const double steps = std::round(development.cycle_time / *settings.step.fixed());
   if (static_cast<double>(development.skip) > steps)
-    t.fail("skip", "a cycle of " + to_text(steps) + " steps has no tally; expected at most as many");
+    t.fail("skip", "a cycle of " + to_text(steps) + " steps would have no tally; expected at most " + to_text(steps));
 }
 
 }  // namespace

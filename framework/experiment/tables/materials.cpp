@@ -13,7 +13,8 @@ void warn_of_near_material(const std::string& name, Warnings& warnings) {
   std::vector<std::string> known;
   for (const auto& [known_name, material] : base_materials()) known.push_back(known_name);
   if (const std::string near = nearest(name, known); !near.empty())
-    warnings.push_back("[materials." + name + "] is a new material beside \"" + near + "\"");
+    warnings.push_back("[materials." + name + "] defines a new material; if \"" + near +
+                       "\" is meant, correct the name");
 }
 
 }  // namespace
@@ -22,7 +23,7 @@ void read_materials(TomlReader& top, Settings& settings, Warnings& warnings) {
   read_table(top, "materials", false, [&](TomlReader& materials) {
     const std::vector<std::string> names = materials.keys();
     if (names.size() > most_materials)
-      top.fail("materials", "expected at most " + std::to_string(most_materials) + " of them");
+      top.fail("materials", "expected at most " + std::to_string(most_materials) + " materials");
     for (const std::string& name : names) {
       if (const std::string fault = text_fault(name); !fault.empty()) materials.fail(name, "the name " + fault);
       if (!settings.materials.contains(name)) warn_of_near_material(name, warnings);

@@ -15,7 +15,8 @@ const AvailableOperator& OperatorFactory::named_in(TomlReader& table, std::strin
   if (available == nullptr) {
     const std::vector<std::string> known = registry_.names(kind);
     std::string message = "no " + std::string(kind) + " operator has this name" + suggestion(name, known);
-    if (nearest(name, known).empty()) message += "; [plugins] paths and --plugin-path name folders with more";
+    if (nearest(name, known).empty())
+      message += "; give the folder of another operator in [plugins] paths or with --plugin-path";
     if (!registry_faults_.empty()) message += "; " + registry_faults_.front();
     if (registry_faults_.size() > 1)
       message += " (and " + std::to_string(registry_faults_.size() - 1) + " more such warnings)";
@@ -75,7 +76,7 @@ class OperatorTables {
     toml::array written;
     const auto tables = parent.tables(name);
     if (tables.size() > rng_stream::most_operators)
-      parent.fail(name, "expected at most " + std::to_string(rng_stream::most_operators) + " of them");
+      parent.fail(name, "expected at most " + std::to_string(rng_stream::most_operators) + " of these tables");
     for (std::size_t i = 0; i < tables.size(); ++i) {
       TomlReader reader(*tables[i], parent.full_name(name) + "." + std::to_string(i), materials());
       TomlWriter writer;
@@ -116,7 +117,9 @@ class OperatorTables {
     for (const auto& mutation : out_.mutations) sum += mutation.probability;
     for (const auto& crossover : out_.crossovers) sum += crossover.probability;
     if (sum == 0)
-      top_.fail("mutation", "no operator has a probability above 0, so no child would differ from its parent");
+      top_.fail("mutation",
+                "no operator has a probability above 0, so every child would be a clone; give one of them a higher "
+                "probability");
   }
 
   void read_development_operators(TomlReader& t) {
@@ -124,7 +127,7 @@ class OperatorTables {
     toml::table& record = *record_["development"].as_table();
     read_array(t, "operator", record, [&](TomlReader& entry, TomlWriter& writer) { read_devo(entry, writer); });
     if (!out_.devo.empty()) return;
-    const std::string remedy = "no operator develops anything; add a table [[development.operator]]";
+    const std::string remedy = "there is no devo operator; add a table [[development.operator]]";
     if (out_.development.control != Control::off) t.fail("control", remedy + ", or set control = \"off\"");
     if (out_.development.cycles > 0)
       out_.warnings.push_back("development.cycles = " + std::to_string(out_.development.cycles) + ": " + remedy +
@@ -140,8 +143,8 @@ class OperatorTables {
     check_request(t, factory_.ask(t, [&] { return op.observes(); }));
     if (factory_.ask(t, [&] { return op.uses_growth() && !out_.encoding->sets_growth(); }))
       out_.warnings.push_back(t.full_name("name") + " = \"" + out_.uses.back().name +
-                              "\": the encoding lets no spring grow, so that nothing changes; set encoding.size_range, "
-                              "or take an encoding that has it");
+                              "\": the encoding lets no spring grow, so this operator changes nothing; set "
+                              "encoding.size_range, or choose an encoding that has this key");
   }
 
   /// Reads the schedule of a devo operator; by default the operator is applied after every cycle.
@@ -151,9 +154,9 @@ class OperatorTables {
     schedule.to = std::max<std::int64_t>(1, cycles);
     declare_schedule(t, schedule);
     if (schedule.applications(cycles) == 0 && cycles > 0)
-      out_.warnings.push_back(t.full_name("from") + " = " + std::to_string(schedule.from) + " to " +
-                              std::to_string(schedule.to) + ": the operator is never applied in " +
-                              std::to_string(cycles) + " cycles");
+      out_.warnings.push_back(t.full_name("from") + " = " + std::to_string(schedule.from) + ", to = " +
+                              std::to_string(schedule.to) + ": the operator is never applied, because there are " +
+                              std::to_string(cycles) + " cycles; correct from or to");
     return schedule;
   }
 
@@ -162,8 +165,8 @@ class OperatorTables {
   void check_request(const TomlReader& t, const SpringRequest& request) const {
     if (out_.development.probe == Probe::skip_shift && (request.peak_force || request.muscle_work || request.tension))
       t.fail("name",
-             "this operator asks for more of the springs than the tallies of development.probe = \"skip-shift\" "
-             "tell; set development.probe = \"exact\", or let it go by the mean force");
+             "this operator needs measurements of springs that development.probe = \"skip-shift\" does not make; set "
+             "development.probe = \"exact\", or let the operator use the mean force alone");
   }
 
   void read_fitness(TomlReader& t, TomlWriter& writer) {
@@ -186,8 +189,8 @@ class OperatorTables {
     // written so that NaN fails
     if (!(request.settle >= 0 && request.settle <= longest) || !(request.window > 0 && request.window <= longest))
       t.fail("name", "this operator observes settle = " + text(request.settle) +
-                         " and window = " + text(request.window) + "; expected 0 to " + text(longest) +
-                         ", and above 0 to " + text(longest));
+                         " and window = " + text(request.window) + "; expected settle from 0 to " + text(longest) +
+                         ", and window above 0 and at most " + text(longest));
   }
 
   void add_objective(const TomlReader& t, Objective objective) {
@@ -198,7 +201,7 @@ class OperatorTables {
         t.fail("name", "its objective's name or unit " + fault);
     const auto same = [&](const Objective& other) { return other.name == objective.name; };
     if (std::any_of(out_.objectives.begin(), out_.objectives.end(), same))
-      t.fail("name", "there is an objective \"" + objective.name + "\" already");
+      t.fail("name", "there is already an objective \"" + objective.name + "\"; remove one of the two operators");
     out_.objectives.push_back(std::move(objective));
   }
 

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 NamedPath path_in_experiment(const fs::path& named, const ExperimentSource& source) {
   const fs::path path = fs::absolute(source.file).parent_path() / named;
   if (is_plugin_path(path)) return {path, ""};
-  return {path, path.lexically_normal().string() + " is no folder and no library of operators"};
+  return {path, path.lexically_normal().string() + " is neither a folder nor a library of operators"};
 }
 
 /// Checks a path that the record of a run names. It must be absolute, and the user must have named it, because the
@@ -23,16 +23,16 @@ NamedPath path_in_experiment(const fs::path& named, const ExperimentSource& sour
 NamedPath path_in_record(const fs::path& named, const ExperimentSource& source) {
   if (!named.is_absolute())
     return {named, named.string() +
-                       " is relative, which no run records; if you trust the operators that are meant, name their "
-                       "folder with --plugin-path"};
+                       " is a relative path, and runs record only absolute ones; if you trust the operators that "
+                       "the path means, give their folder with --plugin-path"};
   if (!is_plugin_path(named))
-    return {named, named.string() +
-                       " is no folder and no library of operators any more; name the one that has replaced it with "
-                       "--plugin-path"};
+    return {named,
+            named.string() + " is no longer a folder or a library of operators; give its new place with --plugin-path"};
   if (!is_named_by_user(named, source.plugin_path))
-    return {named, named.string() +
-                       " is named by the record alone; if you trust the operators in it, give --plugin-path " +
-                       named.string()};
+    return {named,
+            named.string() +
+                " is named only by the record of the run; if you trust the operators in it, give --plugin-path " +
+                named.string()};
   return {named, ""};
 }
 

@@ -33,7 +33,7 @@ std::string section_of(const std::string& name, const std::string& sentence) {
 
 std::string section_of_scene() {
   return section_of<Gravity>("`[scene.gravity]`", "Gravity. On a slope the floor stays level and gravity is tilted.") +
-         section_of<Floor>("`[scene.floor]`", "A floor at height 0, which pushes masses up; level, or rough ground.") +
+         section_of<Floor>("`[scene.floor]`", "A floor at height 0 that pushes masses up: level or rough ground.") +
          section_of<Friction>("`[scene.friction]`", "Friction between masses and the floor.") +
          section_of<Damping>("`[scene.damping]`", "Damping that acts on all velocities alike.") +
          section_of<Drag>("`[scene.drag]`", "The drag of a fluid on each mass.") +
@@ -50,22 +50,23 @@ std::string experiment_reference() {
   std::string text;
   text += section("`[experiment]`", "How long the run takes, and how many individuals live at once.",
                   [&](SettingsVisitor& v) { declare_run(v, s); });
-  text += section("`[encoding]`", "The key that every encoding has beside `name` and its own parameters.",
+  text += section("`[encoding]`", "The key that every encoding has in addition to `name` and its own parameters.",
                   [&](SettingsVisitor& v) { declare_mass(v, s); });
-  text += section("`[[mutation]]` and `[[crossover]]`",
-                  "The key that every variation operator has beside `name` and its own parameters.",
-                  [&](SettingsVisitor& v) { declare_probability(v, probability); });
+  text +=
+      section("`[[mutation]]` and `[[crossover]]`",
+              "The key that every mutation and crossover operator has in addition to `name` and its own parameters.",
+              [&](SettingsVisitor& v) { declare_probability(v, probability); });
   text += section_of_scene();
   text += section("`[simulation]`", "How motion is computed, and on which device.", [&](SettingsVisitor& v) {
     declare_accuracy(v, s);
     declare_simulation(v, s);
   });
-  text += section("`[development]`", "How long a body develops. Without this table bodies do not develop.",
+  text += section("`[development]`", "How long a body develops. Without this table, bodies do not develop.",
                   [&](SettingsVisitor& v) { declare_development(v, s); });
   text += section("`[[development.operator]]`",
-                  "The keys that every devo operator has beside `name` and its own parameters.",
+                  "The keys that every devo operator has in addition to `name` and its own parameters.",
                   [&](SettingsVisitor& v) { declare_schedule(v, schedule); });
-  text += section_of<Material>("`[materials.NAME]`", "A material; the defaults are those of a new one.");
+  text += section_of<Material>("`[materials.NAME]`", "A material. The defaults apply to materials that evodevo does not know.");
   return text;
 }
 

@@ -10,7 +10,7 @@ void read_scene(TomlReader& top, Settings& settings) {
       read_table(scene, name, false, [&](TomlReader& t) { declare(t, force.emplace()); });
     });
     if (settings.scene.friction && !settings.scene.floor)
-      scene.fail("friction", "there is nothing to rub on; add [scene.floor] or remove [scene.friction]");
+      scene.fail("friction", "there is no floor for friction to act on; add [scene.floor] or remove [scene.friction]");
   });
 }
 

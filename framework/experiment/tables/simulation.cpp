@@ -15,8 +15,8 @@ void check_step(const TomlReader& t, const Settings& settings) {
   const double mass = settings.mass, dt = *settings.step.fixed();
   const Method method = settings.stepping.method;
   const auto refuse = [&](const std::string& what, double largest) {
-    t.fail("dt",
-           "the step " + to_text(dt) + " s is too long for " + what + "; expected at most " + to_text(largest) + " s");
+    t.fail("dt", "the time step " + to_text(dt) + " s is too long for " + what + "; expected at most " +
+                     to_text(largest) + " s");
   };
   const std::string on_masses = " N/m on masses of " + to_text(mass) + " kg";
   const double contact = largest_contact_dt(settings.scene, mass, method);
@@ -44,21 +44,21 @@ void read_simulation(TomlReader& top, Settings& settings, Bodies bodies) {
   if (stepping.materials == Materials::computed &&
       (stepping.precision != Precision::float32 || !is_explicit(stepping.method)))
     t.fail("materials",
-           "only explicit methods in single precision compute materials; expected \"table\", or another method, "
+           "only explicit methods in single precision can compute materials; set \"table\", or choose another method, "
            "precision or accuracy");
   const StepRule& step = settings.step;
   if (step.dt && bodies == Bodies::grown && !step.run_unstable) check_step(t, settings);
   if (!step.dt && !is_explicit(stepping.method))
     t.fail("dt", "\"" + std::string(name(stepping.method)) +
-                     "\" is stable at any step, so none follows from stability; give a number of s");
+                     "\" is stable at any time step, so stability gives no time step; set dt to a number of seconds");
   t.finish();
 }
 
 void check_duration(const TomlReader& t, std::string_view name, double duration, const StepRule& step) {
   if (!step.dt || is_whole_number_of_steps(duration, *step.dt)) return;
   const double dt = *step.dt, steps = std::max(1.0, std::round(duration / dt));
-  t.fail(name, to_text(duration) + " s is not a whole number of steps of " + to_text(dt) +
-                   " s; the nearest that is: " + to_text(steps * dt) + " s");
+  t.fail(name, to_text(duration) + " s is not a whole number of steps of " + to_text(dt) + " s; the nearest one is " +
+                   to_text(steps * dt) + " s");
 }
 
 }  // namespace evodevo

@@ -56,8 +56,8 @@ class MirroredMemory {
     release();
     const std::size_t size = mirrored + more;
     try {
-      check(cudaMalloc(&device_, size), "taking " + in_mebibytes(size) + " of the GPU's memory");
-      check(cudaMallocHost(&host_, mirrored), "taking " + in_mebibytes(mirrored) + " of the host's memory");
+      check(cudaMalloc(&device_, size), "allocating " + in_mebibytes(size) + " of the GPU's memory");
+      check(cudaMallocHost(&host_, mirrored), "allocating " + in_mebibytes(mirrored) + " of the host's memory");
     } catch (const OutOfMemory&) {
       release();
       throw;

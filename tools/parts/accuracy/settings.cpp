@@ -19,8 +19,8 @@ void check(const Settings& s) {
   for (const std::string& study : s.studies) check_choice("study", study, all_studies());
   check_device(s.device.name);
   if (s.robots < fewest_robots)
-    throw std::invalid_argument("--robots must be at least " + std::to_string(fewest_robots) +
-                                ", of which the best is looked for");
+    throw std::invalid_argument("--robots " + std::to_string(s.robots) + ": expected at least " +
+                                std::to_string(fewest_robots) + ", so that there are best ones to find");
 }
 
 }  // namespace

@@ -91,8 +91,10 @@ Report feature_costs(const Settings& settings) {
   }
   Report report = conditions(settings, "What each feature costs", device, body);
   report["note"] =
-      "Spring evaluations per second of the steps alone; medians, the ratio's of each run's two rates. All else is as "
-      "the scene says, except that the floor is compared without friction, and drag is 1 kg/m.";
+      "Rates are medians of spring evaluations per second, for the time steps alone; a cost is the median of the "
+      "ratios "
+      "within each run. The rest of the scene is unchanged, except that the floor is compared without friction, and "
+      "drag is 1 kg/m.";
   report["rows"] = std::move(rows);
   return report;
 }

@@ -38,7 +38,7 @@ Report read_reports(const std::string& file) {
   try {
     return Report::parse(stream);
   } catch (const Report::exception& error) {
-    throw std::runtime_error(file + ": is not JSON of this program: " + error.what());
+    throw std::runtime_error(file + ": is not JSON that this program has written: " + error.what());
   }
 }
 

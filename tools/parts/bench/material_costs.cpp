@@ -53,8 +53,8 @@ Report material_costs(const Settings& settings) {
   Report report = conditions(settings, "Materials from a table and computed", device, own);
   report.erase("materials");
   report["note"] =
-      "Spring evaluations per second of the steps alone; medians, the ratio's of each run's two rates. The springs "
-      "take as many materials as each row says, one after the other.";
+      "Rates are medians of spring evaluations per second, for the time steps alone; a ratio is the median of the "
+      "ratios within each run. Each row says how many materials there are; the springs take them in turn.";
   report["rows"] = std::move(rows);
   return report;
 }

@@ -59,7 +59,7 @@ Report neighbours(const Settings& settings) {
           {"bodies", settings.bodies},
           {"threads", thread_count(settings.threads)},
           {"runs", settings.runs},
-          {"note", "Both find the same; copies are included."},
+          {"note", "CPU and GPU find the same neighbours; copies to and from the GPU are included."},
           {"rows", Report::array({{{"cpu_seconds", median(cpu_seconds)},
                                    {"cuda_seconds", median(cuda_seconds)},
                                    {"times_faster", median(ratios)}}})}};

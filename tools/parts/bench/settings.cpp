@@ -16,19 +16,20 @@ void check(const Settings& s) {
   check_choice("instructions", s.instructions, {"best", "avx2", "sse4", "none"});
   if (s.study == "materials" && (s.device != "cuda" || s.precision != "float32" || !is_explicit(s.stepping().method)))
     throw std::invalid_argument(
-        "--study materials is of what a GPU computes in single precision and with explicit methods; add --device "
-        "cuda, leave --precision out, and take another --method");
+        "--study materials measures a GPU in single precision with explicit methods; add --device cuda, leave "
+        "--precision out, and choose another --method");
   const bool beside_cuda = s.study != "speed" && s.study != "features" && s.study != "materials";
   if (beside_cuda && s.device != "cuda")
     throw std::invalid_argument("--study " + s.study + " compares methods on a GPU; add --device cuda");
   if (beside_cuda && s.method != name(Method::paper_euler))
-    throw std::invalid_argument("--study " + s.study + " has the paper's method of time stepping; leave --method out");
+    throw std::invalid_argument("--study " + s.study +
+                                " always uses the paper's time-stepping method; leave --method out");
   if (beside_cuda && s.precision != "float32")
-    throw std::invalid_argument("--study " + s.study + " has one precision; leave --precision out");
+    throw std::invalid_argument("--study " + s.study + " always uses single precision; leave --precision out");
   if (s.study == "tallies" && s.robots.empty())
-    throw std::invalid_argument("--study tallies takes random robots; name their experiment with --robots");
+    throw std::invalid_argument("--study tallies needs random robots; give their experiment with --robots");
   if (s.study != "tallies" && s.study != "speed" && !s.robots.empty())
-    throw std::invalid_argument("--robots goes with --study speed and tallies alone");
+    throw std::invalid_argument("--robots can be given only with --study speed and --study tallies");
   if (s.bodies < 1 || s.bodies > most_bodies || s.steps < 1 || s.runs < 1 || s.masses < 2)
     throw std::invalid_argument("steps and runs must be at least 1, masses at least 2, bodies from 1 to " +
                                 std::to_string(most_bodies));

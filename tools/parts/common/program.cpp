@@ -60,7 +60,7 @@ void check_choice(const std::string& option, const std::string& value, const std
   if (contains(known, value)) return;
   std::string names;
   for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
-  throw std::invalid_argument("--" + option + " \"" + value + "\" is none of " + names);
+  throw std::invalid_argument("--" + option + " \"" + value + "\": expected one of " + names);
 }
 
 void check_device(const std::string& device) {

@@ -35,7 +35,7 @@ std::vector<Genome> random_genomes(const Experiment& experiment, std::size_t cou
   for (std::uint64_t seed = 1; genomes.size() < count; ++seed) {
     if (seed > 100 * count)
       throw std::runtime_error("too few random robots of " + experiment.name + " have a muscle and " +
-                               std::to_string(springs) + " springs; name an experiment with larger ones");
+                               std::to_string(springs) + " springs; give an experiment with larger robots");
     Rng rng = experiment.context.rng(seed);
     Genome genome = call_operator(experiment.call_of(Encoding::kind, 0),
                                   [&] { return experiment.encoding->random(experiment.layout, rng); });

@@ -1,6 +1,7 @@
 """The runs of a comparison, and how they are made."""
 
 import collections
+import contextlib
 import dataclasses
 import itertools
 import json
@@ -8,6 +9,7 @@ import os
 import pathlib
 import shutil
 import signal
+import sqlite3
 import subprocess
 import tomllib
 import urllib.parse
@@ -206,25 +208,25 @@ class Runs:
 
     def is_finished(self, run):
         """Returns whether a run has reached its end and, if the experiment asks for verification, has been verified."""
-        if not (run.folder / "run.sqlite").exists():
+        if not self._has_begun(run):
             return False
-        shown = self._shown_if_begun(run)
-        return shown is not None and shown["finished"] and shown["verified"]
+        shown = self.shown(run)
+        return shown["finished"] and shown["verified"]
 
     def shown(self, run):
         return json.loads(self._evodevo("show", run.folder, "--json"))
 
-    def _shown_if_begun(self, run):
-        try:
-            return self.shown(run)
-        except Failure as failure:
-            if "ended before it began" in str(failure):  # it was killed just after its start
-                return None
-            raise
+    @staticmethod
+    def _has_begun(run):
+        """Returns whether a run has stored anything; it has not if it was killed just after its start."""
+        database = run.folder / "run.sqlite"
+        if not database.exists():
+            return False
+        with contextlib.closing(sqlite3.connect(database)) as connection:
+            return connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0] > 0
 
     def _start(self, run, jobs):
-        begun = (run.folder / "run.sqlite").exists() and self._shown_if_begun(run) is not None
-        if begun:
+        if self._has_begun(run):
             arguments = ["resume", run.folder]
         else:
             shutil.rmtree(run.folder, ignore_errors=True)

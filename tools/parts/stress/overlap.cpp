@@ -144,7 +144,7 @@ Table overlap_table() {
 
 void add_rows(const Case& one, const std::vector<StressOverTime>& robots, Table& table) {
   if (robots.empty())
-    throw std::runtime_error("all robots of " + one.experiment + " have diverged; choose another one");
+    throw std::runtime_error("all robots of " + one.experiment + " have diverged; give another experiment");
   double springs = 0;
   for (const StressOverTime& robot : robots)
     springs += static_cast<double>(robot.back().size()) / static_cast<double>(robots.size());

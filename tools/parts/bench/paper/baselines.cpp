@@ -31,10 +31,12 @@ Report baselines(const Settings& settings) {
   Report report = conditions(settings, "The paper's simulators and ours", ours.device(), body);
   report["ours_over_the_paper's_method"] = median(over_shared);
   report["note"] =
-      "Device time of the steps alone, medians, ratios of each run's rates. The first two are plain versions of what "
-      "the paper describes, without guards, each with the fastest of " +
+      "Rates are medians, from the device time of the time steps alone; a ratio is the median of the ratios within "
+      "each "
+      "run. The first two simulators are plain versions of what the paper describes, without guards, each with the "
+      "fastest of " +
       std::to_string(global.tried) +
-      " orders of its springs and sizes of a block, tried in this run; ours has its guards on.";
+      " combinations of spring order and block size that this run tried; ours has its guards on.";
   report["rows"] = Report::array(
       {row("masses in global memory, a kernel for the springs and one for the masses in each step, float atomics; " +
                description(global.method),

@@ -16,7 +16,8 @@ template <class T>
 class DeviceArray {
  public:
   explicit DeviceArray(std::size_t count) : count_(count) {
-    cuda::check(cudaMalloc(&data_, bytes()), "taking " + std::to_string(bytes() >> 20) + " MiB of the GPU's memory");
+    cuda::check(cudaMalloc(&data_, bytes()),
+                "allocating " + std::to_string(bytes() >> 20) + " MiB of the GPU's memory");
     clear();
   }
   explicit DeviceArray(const std::vector<T>& values) : DeviceArray(values.size()) { upload(values); }

@@ -69,9 +69,9 @@ void PaperSimulator::load_kernels(const Scene& scene) {
   step_ = kernel("evodevo_paper_step");
   const std::size_t needed = shared_bytes_of(layout_), available = cuda::current_device().shared_bytes;
   if (needed > available)
-    throw std::runtime_error(
-        "the paper's method keeps a body's masses in shared memory: " + std::to_string(layout_.most_masses) + " need " +
-        std::to_string(needed) + " of " + std::to_string(available) + " bytes; choose a smaller body");
+    throw std::runtime_error("the paper's method keeps a body's masses in shared memory: " +
+                             std::to_string(layout_.most_masses) + " masses need " + std::to_string(needed) + " of " +
+                             std::to_string(available) + " bytes; choose a smaller body");
   cuda::check(cudaFuncSetAttribute(reinterpret_cast<const void*>(step_), cudaFuncAttributeMaxDynamicSharedMemorySize,
                                    static_cast<int>(needed)),
               "asking for " + std::to_string(needed) + " bytes of shared memory");

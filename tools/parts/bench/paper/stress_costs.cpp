@@ -59,8 +59,10 @@ Report stress_costs(const Settings& settings) {
   Report report = conditions(settings, "What stress costs", ours.device(), body);
   report["the_paper's_method"] = description(plain);
   report["note"] =
-      "Device time of the steps alone, medians, ratios of each run's two rates. Skip-Shift deals out the springs to as "
-      "many groups as a block has threads, and looks up their random order in steps with a tally alone.";
+      "Rates are medians, from the device time of the time steps alone; a ratio is the median of the ratios within "
+      "each "
+      "run. Skip-Shift divides the springs into as many groups as a block has threads, and looks up their random order "
+      "only in steps with a tally.";
   report["rows"] = std::move(rows);
   return report;
 }

@@ -109,12 +109,13 @@ Report tally_agreement(const Settings& settings) {
       {"method", "paper-euler"},
       {"precision", settings.precision},
       {"dt", time_step},
-      {"note", "The share of the " + std::to_string(sought) +
-                   " truly least and most stressed springs, by exact stress of our simulator, that are among the " +
-                   std::to_string(sought) +
-                   " with the highest tallies of the paper's method in the same seconds from birth on; means over the "
-                   "robots, ties between tallies decided at random. 256 groups. Atomic sums differ from exact stress "
-                   "because rounding makes two simulators drift apart: no tally can be expected to do better."},
+      {"note",
+       "Each number is the share of the " + std::to_string(sought) +
+           " truly least or most stressed springs, by the exact stress of our simulator, that are among the " +
+           std::to_string(sought) +
+           " with the highest tallies of the paper's method in the same seconds from birth on; shares are means over "
+           "the robots, ties between tallies are decided at random, and there are 256 groups. Atomic sums differ from "
+           "exact stress because rounding makes two simulators drift apart: no tally can be expected to do better."},
       {"rows", std::move(rows)}};
 }
 

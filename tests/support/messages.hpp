@@ -1,0 +1,22 @@
+// Matchers for messages to people: a test holds a message to its place, its value and its remedy, not to its wording.
+#pragma once
+
+#include <gmock/gmock.h>
+
+#include <string>
+
+namespace evodevo::testing {
+
+/// Matches a text that holds each of `parts`, such as a file, a key, a value, or the option to give.
+template <class... Parts>
+auto naming(const Parts&... parts) {
+  return ::testing::AllOf(::testing::HasSubstr(parts)...);
+}
+
+/// Matches a message that begins with `place`, such as "file:line:column: key = value: ", and holds each of `parts`.
+template <class... Parts>
+auto at_place(const std::string& place, const Parts&... parts) {
+  return ::testing::AllOf(::testing::StartsWith(place), ::testing::HasSubstr(parts)...);
+}
+
+}  // namespace evodevo::testing
