@@ -17,7 +17,8 @@ METHOD = f"""\
 
 A run's score is the best first objective of any robot so far, counted at the end of each generation: at a given cost it
 is that of the last generation complete by then, without interpolation between generations. A run without a fitness is
-below all others. One spring evaluation is the computation of one spring in one time step, so the simulation of development counts as cost.
+below all others. One spring evaluation is the computation of one spring in one time step, so the simulation of
+development counts as cost.
 
 Intervals of medians over seeds are by the percentile bootstrap, from {inference.RESAMPLES:,} resamples of the runs.
 
