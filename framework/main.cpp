@@ -34,7 +34,7 @@ int dispatch(const Arguments& arguments) {
   return call(command, {arguments.begin() + 1, arguments.end()});
 }
 
-/// Some failures have several lines.
+/// Prints an error message, which may have several lines, and returns `exit_code`.
 int complain(const std::exception& error, int exit_code) {
   std::istringstream lines(error.what() + remedy_for(error));
   std::string line;
@@ -54,7 +54,7 @@ int complain(const std::exception& error, int exit_code) {
 int main(int argc, char** argv) {
   evodevo::open_standard_streams();
   evodevo::name_crashing_operators();
-  std::signal(SIGPIPE, SIG_DFL);  // a reader that has gone, such as `head`, ends this program without a word
+  std::signal(SIGPIPE, SIG_DFL);  // if the reader of its output has ended, such as `head`, this program ends silently
   try {
     const int code = evodevo::dispatch({argv + 1, argv + argc});
     evodevo::finish_standard_output();

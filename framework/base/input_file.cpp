@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 std::string read_input_file(const std::string& file, std::size_t most) {
   std::error_code error;
   if (fs::is_directory(file, error)) refuse(file, "it is a folder; give a file");
-  // Opening a named pipe would block until another process opens it for writing. The pipes that a shell makes have a
-  // writer; they have no canonical path and are therefore not refused here.
+  // Opening a named pipe would block until another process opens it for writing. A pipe that a shell makes has a writer
+  // already; it has no canonical path and is therefore not refused here.
   if (const fs::path path = fs::canonical(file, error); !error && fs::is_fifo(path, error))
     refuse(file, "it is a named pipe; give a file, or /dev/stdin");
   std::ifstream stream(file, std::ios::binary);

@@ -15,7 +15,7 @@ using Json = JsonInput::Json;
 
 constexpr std::size_t most_levels = 16;
 constexpr std::size_t most_bytes = std::size_t{1} << 30;  // 1 GiB, enough for about ten million springs
-constexpr std::size_t longest_quote = 60;                 ///< bytes that a message quotes from the file
+constexpr std::size_t longest_quote = 60;  ///< largest number of bytes that a message quotes from the file
 
 std::string cut(std::string text, std::size_t longest) {
   if (text.size() > longest) text.replace(longest, std::string::npos, "...");
@@ -33,7 +33,8 @@ std::string unquoted(const std::string& text) {
 
 std::string member_of(const std::string& at, const std::string& key) { return at.empty() ? key : at + "." + key; }
 
-/// Callback of the JSON parser. It tracks the place in the file, and refuses duplicate keys and too many levels.
+/// Callback of the JSON parser. It tracks the place in the file, and refuses duplicate keys and too many levels of
+/// nesting.
 class ParserWatch {
  public:
   explicit ParserWatch(const JsonInput& input) : input_(input) {}
@@ -67,7 +68,7 @@ class ParserWatch {
   /// A list or an object that the parser has not finished.
   struct Level {
     bool is_list = false;
-    std::size_t items = 0;            ///< items of a list read so far
+    std::size_t items = 0;            ///< number of items of a list read so far
     std::string key = {};             ///< last key of an object
     std::set<std::string> keys = {};  ///< all keys of an object read so far
   };

@@ -7,25 +7,25 @@
 
 namespace evodevo {
 
-/// One JSON file. All functions throw ConfigError if the file is faulty. The message begins with the file's name and
-/// `at`, which is a place in the file such as "masses[3].mass".
+/// One JSON file. All functions throw ConfigError if the file is faulty. The message begins with the name of the file
+/// and `at`, the place in the file, such as "masses[3].mass".
 class JsonInput {
  public:
   using Json = nlohmann::ordered_json;
 
   explicit JsonInput(std::string file) : file_(std::move(file)) {}
 
-  /// Parses the whole file. Throws ConfigError if the file is not JSON, has a key twice in one object, has more than 16
-  /// levels of nesting, or is larger than 1 GiB.
+  /// Parses the whole file. Throws ConfigError if the file is not JSON, has the same key twice in one object, has more
+  /// than 16 levels of nesting, or is larger than 1 GiB.
   Json read() const;
 
   /// Throws ConfigError if `item` is not an object, or has a key that is not one of `keys`.
   void expect(const Json& item, const std::string& at, const std::vector<std::string>& keys) const;
   /// Returns the value of a key of `item`. Throws ConfigError if `item` has no such key.
   const Json& member(const Json& item, const std::string& at, const std::string& key) const;
-  /// Returns `value` as a number. Throws ConfigError if it is not a finite number of at least `least`.
+  /// Returns `value` as a number. Throws ConfigError if it is not a finite number or is less than `least`.
   double finite(const Json& value, const std::string& at, double least) const;
-  /// Returns the value of a key as finite() does.
+  /// Returns the value of a key as a number. Throws like member() and finite().
   double number(const Json& item, const std::string& at, const std::string& key, double least) const;
   /// Returns the value of a key as an index. Throws ConfigError if it is not a whole number from 0 to count-1.
   std::uint32_t index(const Json& item, const std::string& at, const std::string& key, std::size_t count) const;

@@ -30,7 +30,7 @@ class Line {
   void write_to(int file) const { [[maybe_unused]] const ssize_t written = write(file, text_.data(), size_); }
 
  private:
-  std::array<char, 8192> text_;  // enough for two paths of the greatest length that Linux allows
+  std::array<char, 8192> text_;  // enough for two paths of the maximum length that Linux allows
   std::size_t size_ = 0;
 };
 

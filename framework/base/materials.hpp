@@ -16,7 +16,7 @@ struct MaterialHash {
 
 using MaterialNumbers = std::unordered_map<Material, std::uint32_t, MaterialHash>;
 
-/// Returns the index of each material; for equal materials, that of the first.
+/// Returns the index of each material. Equal materials share the index of the first of them.
 MaterialNumbers numbered(const std::vector<Material>& materials);
 
 /// Finds and adds materials in a list by hashing, without a linear search. While this object exists, nothing else may

@@ -8,11 +8,11 @@
 
 namespace evodevo {
 
-/// A file that is written completely or not at all. The text goes to a temporary file NAME.unfinished-PID in the same
-/// folder, which finish() renames. Thus nobody can mistake a part of the text for the whole, and an earlier file of
-/// this name survives if writing fails. Pipes, devices, paths under /dev or /proc, and files in folders where no file
-/// can be created are written in place. Symbolic links are followed. If something cannot be written, every call throws
-/// a std::runtime_error that names `title` and the cause.
+/// A file that is written completely or not at all. The text is written to the temporary file NAME.unfinished-PID in
+/// the same folder, and finish() renames this file. Thus an incomplete text is never mistaken for a complete one, and
+/// an earlier file of this name survives if writing fails. Pipes, devices, paths under /dev or /proc, and files in
+/// folders where no file can be created are written in place. Symbolic links are followed. Every function throws a
+/// std::runtime_error that names `title` and the cause if the file cannot be written.
 class OutputFile {
  public:
   /// `title` is the name of the file in messages, such as "--out page.html".
@@ -30,7 +30,7 @@ class OutputFile {
   [[noreturn]] void fail(int error) const;
 
   std::string title_;
-  std::filesystem::path target_, beside_;  ///< `beside_`: temporary file; empty if written in place
+  std::filesystem::path target_, beside_;  ///< `beside_`: temporary file; empty if the target is written in place
   std::FILE* stream_ = nullptr;
 };
 

@@ -5,7 +5,7 @@
 
 namespace evodevo {
 
-/// Computes one block of Philox 4x32 with 10 rounds (Salmon et al. 2011), with the library Random123.
+/// Computes one block of Philox 4x32 with 10 rounds (Salmon et al. 2011), using the library Random123.
 void philox(const std::uint32_t* counter, const std::uint32_t* key, std::uint32_t* out);
 
 /// The numbers of the RNG streams (StreamKey::position). Each part of the pipeline draws from its own stream. Each
@@ -18,14 +18,15 @@ inline constexpr std::uint32_t variation = 4;        ///< choice of the operator
 inline constexpr std::uint32_t perturbation = 0x10;  ///< first of the streams of perturbations
 inline constexpr std::uint32_t crossover = 0x100;    ///< stream of the first crossover operator
 inline constexpr std::uint32_t mutation = 0x200;     ///< stream of the first mutation operator
-/// Returns the stream to use instead of `stream` for a newborn that is made again after `times` attempts were clones.
+/// Returns the stream to use instead of `stream` for a newborn that is made again after `times` attempts have produced
+/// clones.
 constexpr std::uint32_t again(std::uint32_t stream, std::uint32_t times) { return stream + (times << 16); }
 constexpr std::uint32_t devo(std::size_t op, std::int64_t cycle) {
   return static_cast<std::uint32_t>(op + 1) << 24 | static_cast<std::uint32_t>(cycle);
 }
 inline constexpr std::int64_t most_cycles = (1 << 24) - 1;
 inline constexpr std::size_t most_operators = 0xfc;
-/// The streams of the controls and of the tallies of stress follow those of the last possible devo operator.
+/// The streams of the controls and of the stress tallies come after those of the last possible devo operator.
 constexpr std::uint32_t random_places(std::int64_t cycle) { return devo(most_operators, cycle); }
 constexpr std::uint32_t stress_tallies(std::int64_t cycle) { return devo(most_operators + 1, cycle); }
 constexpr std::uint32_t stress_shuffle(std::int64_t cycle) { return devo(most_operators + 2, cycle); }

@@ -57,7 +57,7 @@ Character first_character(std::string_view text) {
   return {};
 }
 
-/// Whether a character is a control character, separates lines or paragraphs, or changes the direction of writing.
+/// Whether a character is a control character, separates lines or paragraphs, or changes the text direction.
 bool disturbs(char32_t code) {
   const auto within = [&](char32_t low, char32_t high) { return code >= low && code <= high; };
   return code < 0x20 || within(0x7f, 0x9f) || within(0x2028, 0x202e) || within(0x2066, 0x2069);
@@ -78,7 +78,7 @@ std::string escape(char32_t code) {
 std::string printable(std::string_view text, std::size_t most) {
   constexpr std::string_view cut = "...";
   std::string clean;
-  std::size_t room = 0;  // length of the longest beginning after which `cut` still fits
+  std::size_t room = 0;  // length of the longest prefix after which `cut` still fits
   while (!text.empty()) {
     const Character next = first_character(text);
     if (!next.code)
@@ -126,7 +126,7 @@ std::string joined(std::span<const std::string> items, std::string_view separato
 
 namespace {
 
-/// The Levenshtein distance: how many letters must at least be added, dropped or replaced to turn `a` into `b`.
+/// Returns the Levenshtein distance: the smallest number of letters to add, drop or replace to turn `a` into `b`.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});

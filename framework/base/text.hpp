@@ -15,23 +15,24 @@ namespace evodevo {
 std::string program_name();
 
 /// Returns `text` in a form that cannot break lines of a message, table or log, or disturb a terminal. Control
-/// characters, characters that change the direction of writing, and bytes that are not UTF-8 become escapes such as \n
-/// and \x1b; all other UTF-8 stays as it is. A result of more than `most` bytes is cut and ends with "...".
+/// characters, characters that change the text direction, and bytes that are not UTF-8 become escapes such as \n and
+/// \x1b; all other UTF-8 stays as it is. A result of more than `most` bytes is cut and ends with "...".
 std::string printable(std::string_view text, std::size_t most = 300);
 
 /// Checks a name or another text that will be printed and recorded unchanged. Returns a sentence that begins with the
 /// text and says what is wrong, or an empty text if printable() would change nothing.
 std::string text_fault(std::string_view text, std::size_t most = 300);
 
-/// Returns a decimal text that reads back as the same number, with no more digits than needed; "not a number",
-/// "infinity" or "-infinity" if the value is not finite.
+/// Returns a decimal text that reads back as the same number, with no more digits than needed. If the value is not
+/// finite, returns "not a number", "infinity" or "-infinity".
 std::string to_text(double value);
 
-/// Returns a text of four significant digits, such as "0.1234" or "1.235e+08"; like to_text() if the value is not
-/// finite.
+/// Returns a number with four significant digits, such as "0.1234" or "1.235e+08". If the value is not finite, returns
+/// the same text as to_text().
 std::string short_number(double value);
 
-/// Returns "0 to 1", "at least 0" or "at most 1", without the unit; empty if every value is allowed.
+/// Returns a text such as "0 to 1", "at least 0" or "at most 1", without the unit, or an empty text if every value is
+/// allowed.
 std::string to_text(const Range& range);
 
 /// Joins texts, for example to "a, b, c".
@@ -40,7 +41,7 @@ std::string joined(std::span<const std::string> items, std::string_view separato
 /// Replaces every `mark` in `text` with `value`.
 void replace_all(std::string& text, std::string_view mark, std::string_view value);
 
-/// Returns the candidate that is most similar to `word`; empty if none is similar.
+/// Returns the candidate that is most similar to `word`, or an empty text if none is similar.
 std::string nearest(std::string_view word, std::span<const std::string> candidates);
 
 /// Returns `; did you mean "x"?` with the nearest candidate. If none is similar, or if there are at most three

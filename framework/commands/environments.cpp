@@ -82,8 +82,8 @@ Json to_json(const SceneStudy& study) {
   return {{"individual", study.individual}, {"scenes", std::move(scenes)}, {"pairs", std::move(pairs)}};
 }
 
-/// Throws ConfigError if encoding or materials differ from those of the first experiment, because a genome must encode
-/// the same body in all scenes.
+/// Throws ConfigError if the encoding or the materials differ from those of the first experiment, because a genome must
+/// encode the same body in all scenes.
 void expect_same_meaning(const Experiment& experiment, const std::string& title, const Experiment& first) {
   if (const auto other = difference(experiment, first, {"encoding", "materials"}); !other.empty())
     throw ConfigError(title + ": " + other + "; the same genome would encode another body: make the values equal");
@@ -115,9 +115,9 @@ Individual random_individual(const Experiment& experiment, std::int64_t id) {
   return breed(experiment, {}, 0, static_cast<std::uint32_t>(id), 1).front();
 }
 
-/// Returns the individuals that the user chose: of a run if --run is given, else random ones. Sets the seed of all
-/// experiments to that of the run or of the first experiment, so that development draws the same random numbers in all
-/// scenes.
+/// Returns the individuals that the user chose: those of a run if --run is given, otherwise random ones. Sets the seed
+/// of all experiments to that of the run or of the first experiment, so that development draws the same random numbers
+/// in all scenes.
 std::vector<Individual> chosen_genomes(std::vector<Experiment>& experiments, const Given& given) {
   const auto ids =
       given.contains("individual") ? given["individual"].as<std::vector<std::int64_t>>() : std::vector<std::int64_t>();

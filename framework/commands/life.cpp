@@ -49,7 +49,7 @@ Json to_json(const Event& event, const std::vector<Narrated>& operators) {
   return json;
 }
 
-/// Returns the name of the mass or spring, with its numbers.
+/// Returns the mass or spring of an event as text, such as "mass 5" or, with the numbers of its masses, "spring 3-7".
 std::string who(const Event& event) {
   if (event.is_spring()) return "spring " + std::to_string(event.masses[0]) + "-" + std::to_string(event.masses[1]);
   return "mass " + std::to_string(event.masses[0]);

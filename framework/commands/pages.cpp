@@ -68,8 +68,8 @@ int report(const Given& given) {
   return 0;
 }
 
-/// Returns the value of an option that is a time since birth, s, if given. Throws UsageError if it is negative or not
-/// finite.
+/// Returns the value of an option that takes a time since birth (s), or nullopt if the option is not given. Throws
+/// UsageError if the time is negative or not finite.
 std::optional<double> given_moment(const Given& given, const char* option) {
   if (!given.contains(option)) return std::nullopt;
   const double moment = given[option].as<double>();

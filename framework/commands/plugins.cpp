@@ -41,7 +41,7 @@ std::string checked_kind(const std::string& kind) {
 
 std::string checked_name(const std::string& name) {
   static const std::regex allowed("[a-z][a-z0-9]*([-.][a-z][a-z0-9]*)*");
-  constexpr std::size_t longest = 100;  // bytes; limits the recursion of std::regex_match, one level for each byte
+  constexpr std::size_t longest = 100;  // bytes; std::regex_match recurses once for each byte
   if (name.size() > longest || !std::regex_match(name, allowed))
     throw UsageError(
         "new " + printable(name) +

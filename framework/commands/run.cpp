@@ -77,7 +77,8 @@ void add_journal_option(Options& options) {
       "works on network file systems; default: wal if the file system can do it");
 }
 
-/// Returns the value of --journal, if given. Throws UsageError if it is neither wal nor delete.
+/// Returns the value of --journal, or nullopt if the option is not given. Throws UsageError if the value is neither wal
+/// nor delete.
 std::optional<Journal> given_journal(const Given& given) {
   if (!given.contains("journal")) return std::nullopt;
   const auto text = given["journal"].as<std::string>();

@@ -20,8 +20,8 @@ namespace {
 
 constexpr double frame_time = 0.01;  ///< time between two frames of a trajectory, s
 
-/// Writes a body's motion as CSV, frame by frame: time, mass, x, y, z, vx, vy, vz in SI units. Numbers have as many
-/// digits as are needed to read back the same bits.
+/// Writes a body's motion as CSV, frame by frame: time, mass, x, y, z, vx, vy, vz in SI units. Numbers have enough
+/// digits to read back as the same bits.
 class TrajectoryFile {
  public:
   explicit TrajectoryFile(const std::string& file) : output_(file, "--trajectory " + file) {
@@ -56,7 +56,8 @@ struct Motion {
   double seconds = 0;  ///< wall-clock time, s
 };
 
-/// Continues a life for `duration` (s): in one run or, if there is a trajectory to write, from frame to frame.
+/// Continues a life for `duration` (s): in one run of the simulator or, if there is a trajectory to write, frame by
+/// frame.
 Motion go_on(const Evaluation& evaluation, Simulator& simulator, Life& life, double duration,
              std::uint64_t steps_of_frame, TrajectoryFile* trajectory) {
   const auto start = std::chrono::steady_clock::now();
@@ -77,8 +78,8 @@ std::string vector_text(Vec3 v) {
   return "(" + short_number(v.x) + ", " + short_number(v.y) + ", " + short_number(v.z) + ")";
 }
 
-/// Returns the life of the body in a file. Throws ConfigError if the body cannot live in the scene or with the time
-/// step.
+/// Returns the life of the body in a file. Throws ConfigError if the body cannot be simulated in the scene or with the
+/// time step.
 Life life_of(const std::string& file, const Evaluation& evaluation) {
   GivenBody given = read_body(file);
   Life life = given.state ? evaluation.birth.amid_life(std::move(given.body), std::move(*given.state))

@@ -140,7 +140,7 @@ void untouched_inputs(const AvailableOperator& subject, std::uint64_t seed) {
   for (std::uint32_t input = 0; input < inputs_for(subject); ++input) try_new(subject, seed, input);
 }
 
-/// Sets every parameter to another allowed value.
+/// Sets every parameter to a different allowed value.
 class Changer final : public Parameters {
  public:
   void real(double& value, std::string_view, Range range, std::string_view) override { value = other(value, range); }

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr double listing_limit = 0.1;  ///< longest CPU time for listing a library, s
 
-/// Runs a check and returns its outcome, a newline and the reason. It is called in a child process.
+/// Runs a check and returns its outcome, a newline and the reason. Must be called in a child process.
 std::string tell(const std::function<void()>& check) {
   try {
     check();

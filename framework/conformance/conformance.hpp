@@ -12,7 +12,7 @@
 
 namespace evodevo::conformance {
 
-/// Thrown by a case that fails. what() names the violation of the rule.
+/// Thrown by a case that fails. what() describes the violation of the rule.
 struct Violation : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -30,8 +30,8 @@ struct Case {
 
 /// Returns cases for operators of every kind.
 std::vector<Case> general_cases();
-/// Returns further cases for operators of every kind: that operators keep no hidden state, leave the process as it is,
-/// and have plain names and texts.
+/// Returns further cases for operators of every kind: they check that operators keep no hidden state, leave the process
+/// as it is, and have plain names and texts.
 std::vector<Case> process_cases();
 /// Returns the cases for operators of one kind.
 std::vector<Case> laws_of(std::string_view kind);
@@ -47,7 +47,7 @@ struct Verdict {
 constexpr unsigned seconds_per_case = 60;
 
 /// Runs all cases on all operators of a library, and reports each verdict as soon as it is known. `seed` determines all
-/// inputs. A case that is not done after `seconds` has failed.
+/// inputs. A case that has not finished after `seconds` s counts as failed.
 void examine(const std::filesystem::path& library, std::uint64_t seed,
              const std::function<void(const Verdict&)>& report, unsigned seconds = seconds_per_case);
 

@@ -46,7 +46,7 @@ bool is_export(const Elf64_Sym& symbol) {
 }
 
 /// Returns whether a mangled name (Itanium C++ ABI, 5.1) belongs to an instance of a template of the standard library.
-/// Such symbols are exported whatever visibility the compiler was told to use.
+/// Such symbols are exported regardless of the visibility that the compiler was told to use.
 bool is_of_standard_library(const std::string& name) {
   static const std::regex mangled("_Z(GV|T[A-Z])?Z?N?[VK]*(S[abdiost]|9__gnu_cxx).*");
   return std::regex_match(name, mangled);

@@ -278,7 +278,7 @@ void order_does_not_matter(const AvailableOperator& subject, std::uint64_t seed)
   }
 }
 
-/// Returns the rows that live on. Throws Violation unless they are 1 to 10 different rows of the table.
+/// Returns the rows that survive. Throws Violation unless they are 1 to 10 different rows of the table.
 std::vector<std::uint32_t> survivors(const Selection& op, const SampleTable& table, Rng& rng) {
   const auto living = op.survivors(table.rows, 10, rng);
   const std::set<std::uint32_t> different(living.begin(), living.end());
@@ -301,8 +301,8 @@ void keeps_its_elite(const AvailableOperator& subject, std::uint64_t seed) {
   }
 }
 
-/// Checks that no failed row lives on or breeds. Twelve of the twenty rows did not fail and only ten live on, so there
-/// is no need for a failed one. If all rows failed, there must be survivors and parents nevertheless.
+/// Checks that no failed row survives or breeds. Twelve of the twenty rows did not fail and only ten survive, so no
+/// failed row is needed. If all rows failed, there must be survivors and parents nevertheless.
 void failed_rows_lose(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Selection>(subject);
   for (std::uint32_t input = 0; input < 20; ++input) {

@@ -18,7 +18,7 @@ std::string bytes_of(const Numbers& numbers) {
   return bytes;
 }
 
-/// Checks that every call gives the same result as if it were the first call of a process, whatever calls came before.
+/// Checks that every call gives the same result as if it were the first call in a process, regardless of earlier calls.
 void no_hidden_state(const AvailableOperator& subject, std::uint64_t seed) {
   constexpr std::uint32_t rounds = 16;
   const std::uint32_t inputs = inputs_for(subject);
@@ -34,7 +34,7 @@ void no_hidden_state(const AvailableOperator& subject, std::uint64_t seed) {
   }
 }
 
-/// Checks that the operator leaves the rounding mode, flush-to-zero and the locale as they are, because they hold for
+/// Checks that the operator leaves the rounding mode, flush-to-zero and the locale as they are, because they apply to
 /// the whole process.
 void same_surroundings(const AvailableOperator& subject, std::uint64_t seed) {
   const Surroundings before;
@@ -42,7 +42,7 @@ void same_surroundings(const AvailableOperator& subject, std::uint64_t seed) {
     if (const std::string changed = before.restore(); !changed.empty())
       throw Violation("it changes " + changed + " in " + where);
   };
-  // not by create<Operator>(), which would restore what the constructor changes
+  // not made by create<Operator>(), which would restore what the constructor changes
   const std::unique_ptr<Operator> op(subject.entry->create());
   require_same("its constructor");
   describe_parameters(*op);
@@ -57,8 +57,8 @@ void same_surroundings(const AvailableOperator& subject, std::uint64_t seed) {
 
 bool is_letter(char letter) { return std::isalnum(static_cast<unsigned char>(letter)) != 0; }
 
-/// Checks a name, which users must be able to type, and which must be a key of TOML. `besides` are the characters that
-/// are allowed besides letters and digits.
+/// Checks that users can type a name and use it as a TOML key. `besides` has the characters that are allowed in
+/// addition to letters and digits.
 void require_name(const std::string& what, std::string_view name, std::string_view besides) {
   const auto is_allowed = [&](char letter) { return is_letter(letter) || besides.find(letter) != besides.npos; };
   if (name.empty() || !std::all_of(name.begin(), name.end(), is_allowed))

@@ -39,10 +39,11 @@ struct SampleLife {
   int cycle = 1;
   bool resets = false;
 
-  /// Returns the context with only those records of the springs that `request` asks for.
+  /// Returns the context with only those spring records that `request` asks for.
   DevoContext context(const SpringRequest& request) const;
 };
-/// Returns a random life. Depending on `input`, the masses have materials or not, and the body has many masses or two.
+/// Returns a random life. `input` determines whether the masses have materials, and whether the body has many masses or
+/// only two.
 SampleLife sample_life(std::uint64_t seed, std::uint32_t input);
 
 Observation sample_observation(std::uint64_t seed, std::uint32_t input);
@@ -52,17 +53,17 @@ struct SampleTable {
   std::vector<Numbers> scores;
   std::vector<Candidate> rows;  ///< refer to `scores`
 };
-/// Returns a random table in which all scores differ. `failed` of the rows, at random positions, have no scores.
+/// Returns a random table in which all scores differ. `failed` of its rows, chosen at random, have no scores.
 SampleTable sample_table(std::uint64_t seed, std::uint32_t input, std::size_t rows, std::size_t failed);
 
-/// Calls the functions of an operator with input number `input`, and returns all results as numbers. Throws Violation
-/// if the operator changes inputs that it may only read.
+/// Calls the functions of an operator with the input that has the number `input`, and returns all results as numbers.
+/// Throws Violation if the operator changes inputs that it may only read.
 Numbers try_out(std::string_view kind, const Operator& op, std::uint64_t seed, std::uint32_t input);
 
 std::string kind_of(const AvailableOperator& subject);
-/// Returns how many inputs the cases use for an operator of this kind.
+/// Returns the number of inputs that the cases use for an operator of this kind.
 std::uint32_t inputs_for(const AvailableOperator& subject);
-/// Does the same as try_out(), with a new instance of the operator with its default parameters.
+/// Does the same as try_out(), but with a new instance of the operator that has the default parameters.
 Numbers try_new(const AvailableOperator& subject, std::uint64_t seed, std::uint32_t input);
 
 /// Returns what `work` returns in a child process, in which the operator has not been called yet. Throws Violation if

@@ -9,7 +9,7 @@
 namespace evodevo {
 
 /// Returns a text such as "simulation.dt is 0.001, but 0.0005 in the first experiment" for the first value in one of
-/// these tables that differs from that in `first`, or an empty text if no value differs.
+/// these tables that differs from the one in `first`, or an empty text if no value differs.
 std::string difference(const Experiment& experiment, const Experiment& first,
                        std::initializer_list<const char*> tables);
 

@@ -12,7 +12,7 @@ namespace {
 
 Eigen::Vector3d vector(Vec3 v) { return {v.x, v.y, v.z}; }
 
-/// Returns the best rotation without reflection (Kabsch 1976). `covariance` is the sum of to * from^T.
+/// Returns the best rotation without reflection (Kabsch 1976). `covariance` is the weighted sum of to * from^T.
 Eigen::Matrix3d best_rotation(const Eigen::Matrix3d& covariance) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d u = svd.matrixU();

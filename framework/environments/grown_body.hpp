@@ -1,4 +1,5 @@
-// Developing bodies with the rest positions of their masses, in a frame in which bodies of one genome can be compared.
+// Developing bodies with the rest positions of their masses, in a frame of reference in which bodies of one genome can
+// be compared.
 #pragma once
 
 #include <map>
@@ -16,7 +17,7 @@ struct GrownBody {
   std::vector<Vec3>
       rest_positions;  ///< positions of the masses in the undeformed body, body lengths at birth; see GrowthObserver
   std::vector<std::uint32_t> numbers;  ///< numbers of the masses (MassNumbers)
-  std::size_t born = 0;                ///< number of masses at birth; these masses have the numbers below it
+  std::size_t born = 0;                ///< number of masses at birth; these masses have the numbers 0 to born-1
 
   /// Returns whether a mass was added after birth.
   bool came_later(std::size_t mass) const { return numbers[mass] >= born; }
@@ -29,10 +30,11 @@ struct GrownBody {
 /// masses.
 Vec3 undeformed(Vec3 position, std::span<const Vec3> positions, std::span<const Vec3> rest_positions);
 
-/// Follows one life and keeps the rest position of every mass. The rest position of a mass of birth is the one that it
-/// has at birth; that of a later mass is undeformed() of the position at which it was added, by the masses that were in
-/// the body before. Rest positions are relative to the lower corner of the body's bounding box at birth, in units of
-/// the longest side of that box, because each scene puts the body at another position.
+/// Follows one life and keeps the rest position of every mass. For a mass that exists at birth, this is its rest
+/// position at birth. For a mass that is added later, undeformed() computes it from the position at which the mass was
+/// added and from the masses that were in the body before. Rest positions are relative to the lower corner of the
+/// body's bounding box at birth, in units of the longest side of that box, because each scene puts the body at another
+/// position.
 class GrowthObserver {
  public:
   explicit GrowthObserver(const Body& born);
@@ -43,7 +45,7 @@ class GrowthObserver {
 
  private:
   Vec3 corner_;        ///< lower corner of the bounding box at birth, m
-  double length_ = 1;  ///< body length at birth, m; 1 if the body has none
+  double length_ = 1;  ///< body length at birth, m; 1 if the body has no extent
   std::size_t born_;
   std::map<std::uint32_t, Vec3> rest_;  ///< rest positions by the numbers of the masses, m
 };

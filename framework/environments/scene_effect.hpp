@@ -17,8 +17,8 @@ struct SceneEffect {
 /// Compares the bodies of two scenes. `distances[i][j]`, i < j, is the distance between bodies i and j. The first
 /// `first` bodies belong to one scene, the others to the other scene; each scene has at least one body. The test
 /// statistic is `between` - `within` (the energy statistic of Székely and Rizzo 2004). The permutation test assigns
-/// bodies to scenes at random 9,999 times, and p is the fraction of assignments, including the actual one, with a
-/// statistic at least as large. The random assignments are the same in every call.
+/// bodies to scenes at random 9,999 times, and p is the fraction of assignments whose statistic is at least as large as
+/// that of the actual assignment, which counts as one of them. The random assignments are the same in every call.
 SceneEffect scene_effect(const std::vector<std::vector<double>>& distances, std::size_t first);
 
 }  // namespace evodevo

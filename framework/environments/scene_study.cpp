@@ -35,7 +35,7 @@ Environment grow(const Experiment& experiment, const Newborn& newborn, std::uint
   return environment;
 }
 
-/// Returns the bodies of the lives that had not failed after a cycle. Cycles are counted from 0.
+/// Returns the bodies of the lives that had not failed by the end of a cycle. Cycles are counted from 0.
 std::vector<const GrownBody*> bodies_after(std::size_t cycle, const Environment& environment) {
   std::vector<const GrownBody*> bodies;
   for (const Grown& grown : environment.grown)

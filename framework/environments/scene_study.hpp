@@ -26,7 +26,7 @@ struct Environment {
   std::string name;
   double slope = 0;                    ///< degrees
   std::vector<std::string> materials;  ///< names of the materials
-  std::vector<Grown> grown;            ///< one for each start
+  std::vector<Grown> grown;            ///< one development for each start
 };
 
 /// A distance between two bodies.
@@ -42,20 +42,20 @@ extern const std::vector<BodyDistance> body_distances;
 /// The comparison of two scenes.
 struct ScenePair {
   std::size_t a, b;  ///< indices into SceneStudy::environments
-  /// effects[d][c]: difference of the bodies by body_distances[d] after cycle c, counted from 0; none if all bodies of
-  /// a scene had failed by then
+  /// effects[d][c]: difference of the bodies, measured by body_distances[d], after cycle c, counted from 0; none if all
+  /// bodies of a scene had failed by then
   std::vector<std::vector<std::optional<SceneEffect>>> effects;
 };
 
 /// The development of one genome in all scenes.
 struct SceneStudy {
-  std::uint32_t individual;               ///< id
+  std::uint32_t individual;               ///< id of the individual
   std::vector<Environment> environments;  ///< one for each scene; Grown::after is empty
   std::vector<ScenePair> pairs;           ///< all pairs of scenes
 };
 
-/// Lets a newborn develop in the scene of each experiment from `starts` starts, of which all but the first are
-/// perturbed (perturb() in life/birth.hpp), and compares the bodies after each of the first `cycles` cycles.
+/// Develops a newborn in the scene of each experiment, once from each of `starts` starts, and compares the bodies after
+/// each of the first `cycles` cycles. All starts except the first are perturbed (perturb() in life/birth.hpp).
 SceneStudy study_scenes(const std::vector<Experiment>& experiments, const Newborn& newborn, std::uint32_t starts,
                         std::size_t cycles);
 

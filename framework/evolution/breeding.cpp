@@ -13,13 +13,14 @@
 namespace evodevo {
 namespace {
 
-constexpr std::uint32_t most_repeats = 16;  ///< largest number of times that a newborn is made anew if it is a clone
+constexpr std::uint32_t most_repeats = 16;  ///< largest number of times that a newborn is made again if it is a clone
 
 Rng stream(const Experiment& experiment, std::uint32_t generation, std::uint32_t individual, std::uint32_t where) {
   return Rng(philox, {static_cast<std::uint64_t>(experiment.seed), generation, individual, where});
 }
 
-/// Throws std::runtime_error if the layout does not allow the genome, so that the error names the faulty operator.
+/// Throws std::runtime_error if the layout does not allow the genome, so that the error message names the faulty
+/// operator.
 void check_genome(const Genome& genome, const Layout& layout) {
   if (const std::string fault = genome_fault(genome, layout); !fault.empty())
     throw std::runtime_error("made a genome with " + fault);
@@ -41,7 +42,7 @@ Individual random_individual(const Experiment& experiment, std::uint32_t generat
 
 /// Draws the variation operators that are applied to a child. Returns their indices in the list of all crossovers
 /// followed by all mutations. Each operator is drawn with its own probability. If none is drawn, one operator is chosen
-/// with probabilities in proportion to theirs, so that each child is varied.
+/// with a chance in proportion to its probability, so that each child is varied.
 std::vector<std::size_t> draw_variation(const Experiment& experiment, Rng& rng) {
   std::vector<double> probabilities;
   for (const auto& crossover : experiment.crossovers) probabilities.push_back(crossover.probability);
@@ -97,7 +98,7 @@ Individual child(const Experiment& experiment, const Individual& parent, const I
 }
 
 /// Returns a newborn made by `make(repeat)`, with a genome that is not in `known` if possible. As long as the genome is
-/// in `known`, the newborn is made anew with other random numbers, but at most `most_repeats` times, because there may
+/// in `known`, the newborn is made again with other random numbers, but at most `most_repeats` times, because there may
 /// be no other genomes. Adds the genome to `known`.
 template <class Make>
 Individual distinct(GenomeSet& known, const Make& make) {

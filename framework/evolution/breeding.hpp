@@ -8,9 +8,9 @@
 
 namespace evodevo {
 
-/// The table that a selection operator works on, with the scores that its rows refer to. Row i is that of
-/// `individuals[i]`. Ages are those in `generation`. An individual that was born in `generation` challenges its parent,
-/// if the parent is in the table.
+/// The table that a selection operator works on, with the scores that its rows refer to. Row i belongs to
+/// `individuals[i]`. Ages are those that the individuals have in `generation`. An individual that was born in
+/// `generation` challenges its parent, if the parent is in the table.
 class SelectionTable {
  public:
   SelectionTable(const std::vector<Individual>& individuals, const std::vector<Objective>& objectives,
@@ -24,12 +24,12 @@ class SelectionTable {
   std::vector<Candidate> rows_;
 };
 
-/// Returns what in a genome the layout does not allow, or an empty text if the layout allows all of it.
+/// Returns a description of a value in the genome that the layout does not allow, or an empty text if there is none.
 std::string genome_fault(const Genome& genome, const Layout& layout);
 
 /// Makes the `count` newborns of a generation, with ids from `first_id`: children of the population, and as many random
 /// individuals as the experiment asks for. If the population is empty, all newborns are random individuals. A newborn
-/// that is genetically equal to a member of the population or to an earlier newborn is made anew with other random
+/// that is genetically equal to a member of the population or to an earlier newborn is made again with other random
 /// numbers, at most 16 times; if it is equal even then, it is a clone. The result depends only on the arguments.
 std::vector<Individual> breed(const Experiment& experiment, const std::vector<Individual>& population,
                               std::uint32_t generation, std::uint32_t first_id, std::size_t count);

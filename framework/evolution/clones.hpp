@@ -17,7 +17,7 @@ class GenomeSet {
   explicit GenomeSet(const std::vector<Individual>& individuals);
 
   bool contains(const Genome& genome) const { return genomes_.contains(genome); }
-  /// Adds a genome; returns false if the set has an equal one already.
+  /// Adds a genome; returns false if the set already has an equal one.
   bool add(const Genome& genome) { return genomes_.insert(genome).second; }
 
   using Genes = std::span<const float>;

@@ -61,9 +61,9 @@ class FrontLives {
   }
 
   /// Keeps the records of the individuals on the front. A few older individuals reach the front only now, because
-  /// selection has removed the individuals that dominated them. Their records are gone, so they are simulated again.
-  /// Individuals of another provenance are not simulated again, because the new life might differ from the one that was
-  /// scored.
+  /// selection has removed the individuals that dominated them. Their records no longer exist, so they are simulated
+  /// again. Individuals with another provenance are not simulated again, because the new life might differ from the one
+  /// that was scored.
   void keep_front(const std::vector<Individual>& everyone, std::uint32_t generation) {
     std::vector<Newborn> elders;
     for (const Individual* individual : front(everyone, experiment_, generation)) {
@@ -186,7 +186,7 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
   TimeSpent time;
   const Evaluation evaluation(experiment, simulator);
   std::vector<Summary> summaries = archive.generations();
-  if (is_finished(experiment, summaries)) return {};  // no provenance is recorded, because this process makes nothing
+  if (is_finished(experiment, summaries)) return {};  // no provenance is recorded, as this process makes nothing new
   auto generation = static_cast<std::uint32_t>(summaries.size());
   std::int64_t evaluations = summaries.empty() ? 0 : summaries.back().evaluations;
   std::vector<Individual> population = archive.population();

@@ -13,7 +13,7 @@ namespace evodevo {
 struct Observer {
   /// Called after each generation.
   std::function<void(const Summary&)> generation_done = [](const Summary&) {};
-  /// Called with the part of the current generation that has been simulated, 0 to 1.
+  /// Called with the fraction of the current generation that has been simulated, 0 to 1.
   std::function<void(double)> generation_progress = [](double) {};
 };
 
@@ -26,14 +26,16 @@ struct TimeSpent {
 /// Adds the time that this process has spent to the times in the run's record. The time of a process that is killed is
 /// not recorded.
 void record_time_spent(Archive& archive, const TimeSpent& time);
-/// Returns the recorded times, summed over all processes that worked on the run; none if no time was recorded yet.
+/// Returns the recorded times, summed over all processes that worked on the run; nullopt if no time has been recorded
+/// yet.
 std::optional<TimeSpent> recorded_time_spent(const Archive& archive);
 
 /// Returns whether a run with these generations has used up the experiment's evaluations or spring evaluations.
 bool is_finished(const Settings& settings, const std::vector<Summary>& generations);
 
-/// Continues the run in the archive until the run is finished. If `stop` is set meanwhile, finishes and commits the
-/// current generation and returns. A run that was interrupted and continued gives the same results as one that was not.
+/// Continues the run in the archive until the run is finished. If `stop` is set in the meantime, finishes and commits
+/// the current generation, then returns. A run that was interrupted and continued gives the same results as one that
+/// was not interrupted.
 TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& archive, const std::atomic<bool>& stop,
                  const Observer& observer);
 

@@ -12,7 +12,7 @@ namespace evodevo {
 struct Individual {
   std::uint32_t id = 0;                ///< consecutive number from 0, in the order of birth
   std::uint32_t born = 0;              ///< generation in which the individual was born
-  std::uint32_t origin = 0;            ///< generation in which its oldest genes were drawn; its age counts from there
+  std::uint32_t origin = 0;            ///< generation in which its oldest genes were drawn; its age counts from then
   std::vector<std::uint32_t> parents;  ///< ids of the parent, which it may replace, and the mate; empty if random
   std::string made_by;                 ///< names of the variation operators that made it, joined by '+', or "random"
   Genome genome;
@@ -25,8 +25,8 @@ struct Individual {
 struct Summary {
   std::uint32_t generation = 0;
   std::int64_t evaluations = 0;            ///< number of evaluations since the run began
-  std::optional<double> best, median;      ///< first objective, over the survivors that ended `ok`
-  std::int64_t diverged = 0, invalid = 0;  ///< numbers of this generation's evaluations that ended so
+  std::optional<double> best, median;      ///< of the first objective, over the survivors whose status is `ok`
+  std::int64_t diverged = 0, invalid = 0;  ///< numbers of this generation's evaluations with this status
   std::int64_t clones = 0;  ///< newborns genetically equal to a member of the population or to an earlier newborn
   std::uint64_t spring_evaluations = 0;  ///< spring evaluations of this generation
   double wall_time = 0;                  ///< wall-clock time of this generation, s

@@ -18,7 +18,7 @@ struct Provenance {
 /// Returns the provenance of this process: this program, `device` and the operators loaded for the experiment.
 Provenance this_provenance(const Experiment& experiment, const std::string& device);
 
-/// Returns whether both have the same builds of the program and of all operators, wherever the files lie.
+/// Returns whether both have the same builds of the program and of all operators, regardless of where their files are.
 bool are_same_builds(const Provenance& a, const Provenance& b);
 
 /// Returns whether both have the same device and the same builds, so that their results are equal to the last bit.

@@ -1,6 +1,6 @@
 // Checks whether the record of a run fits the run's experiment. All functions throw ArchiveError if it does not. They
 // run before operators see the record, because a record may come from anywhere, and operators must not be blamed for
-// what it holds.
+// the errors in it.
 #pragma once
 
 #include "evolution/archive/archive.hpp"

@@ -12,11 +12,11 @@ struct Steps {
 };
 
 /// Returns the values of those keys of [simulation] that the file leaves out. `paper` is the default and has the
-/// paper's time step. With the others, each body has its own time step; they lie on the Pareto front of speed and
-/// accuracy that the accuracy study measured (experiments/results/accuracy). `fast` is the cheapest setting that still
-/// ranks robots correctly. `balanced` divides each step by three, because in contact with the floor shorter steps
-/// reduce the error more than better methods do; its method is of second order, which costs no more and is accurate
-/// without contact. `reference` divides by four and uses a method of fourth order in double precision.
+/// paper's time step. With the other values, each body has its own time step; these settings lie on the Pareto front of
+/// speed and accuracy that the accuracy study measured (experiments/results/accuracy). `fast` is the cheapest setting
+/// that still ranks robots correctly. `balanced` divides each step by three, because in contact with the floor shorter
+/// steps reduce the error more than better methods do; it uses a second-order method, which costs no more and is
+/// accurate without contact. `reference` divides each step by four and uses a fourth-order method in double precision.
 inline Steps steps_of(Accuracy accuracy) {
   switch (accuracy) {
     case Accuracy::fast:

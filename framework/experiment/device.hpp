@@ -13,8 +13,8 @@ namespace evodevo {
 /// CUDA and CUDA cannot be used.
 std::unique_ptr<Simulator> make_simulator(const Experiment& experiment);
 
-/// Returns how an experiment can avoid a failure of its device, to be appended to the failure's message; empty if it
-/// cannot.
+/// Returns a text that says how an experiment can avoid a failure of its device, to be appended to the failure's
+/// message. The text is empty if there is no way to avoid the failure.
 std::string remedy_for(const std::exception& failure);
 
 }  // namespace evodevo

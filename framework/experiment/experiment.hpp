@@ -15,7 +15,7 @@
 
 namespace evodevo {
 
-/// A variation operator and the probability that a child goes through it.
+/// A variation operator and the probability that it is applied to a child.
 template <class T>
 struct Varied {
   std::unique_ptr<T> op;
@@ -42,11 +42,11 @@ struct Experiment : Settings {
   std::vector<Varied<Crossover>> crossovers;
   std::vector<Scheduled> devo;
   std::vector<std::unique_ptr<Fitness>> fitness;
-  std::vector<Objective> objectives;  ///< those of all fitness operators, in their order
+  std::vector<Objective> objectives;  ///< objectives of all fitness operators, in the order of the operators
   std::unique_ptr<Selection> selection;
 
   std::vector<OperatorUse> uses;
-  std::vector<std::filesystem::path> plugin_folders;  ///< search path of operators without the program's own folder
+  std::vector<std::filesystem::path> plugin_folders;  ///< search path of operators, except the program's own folder
   std::vector<std::string> warnings;                  ///< warnings for the user
   std::string device_location;                        ///< place of [simulation] in the file, for messages
   std::string resolved;  ///< TOML that reads back as the same experiment, with every default written out
@@ -55,20 +55,21 @@ struct Experiment : Settings {
   OperatorCall call_of(std::string_view kind, std::size_t index, CallSubject subject = {}) const;
 };
 
-/// What the devo operator with this index (from 0) asks to be recorded.
+/// Returns the records that the devo operator with this index (from 0) asks for.
 SpringRequest devo_request(const Experiment& experiment, std::size_t index);
-/// What the fitness operator with this index (from 0) asks to observe.
+/// Returns what the fitness operator with this index (from 0) asks to observe.
 Request fitness_request(const Experiment& experiment, std::size_t index);
-/// What must be recorded in a cycle of development for the devo operators that are applied after this cycle.
+/// Returns what must be recorded in a cycle of development for the devo operators that are applied after this cycle.
 Recording recording(const Experiment& experiment, std::int64_t cycle);
 
 /// Where an experiment is read from, and how.
 struct ExperimentSource {
-  std::string file;                                     ///< name in messages; its folder is that of relative paths
-  std::vector<Override> overrides;                      ///< applied in order
-  std::vector<std::filesystem::path> plugin_path = {};  ///< searched for operators after the paths that the file names
-  /// Whether the text is the record of a run, which somebody else may have made. Folders of operators that it names are
-  /// then left out, with a warning, if they no longer exist or if the user has never named them (plugin_folders.hpp).
+  std::string file;                 ///< file name, as messages show it; relative paths are relative to its folder
+  std::vector<Override> overrides;  ///< applied in order
+  std::vector<std::filesystem::path> plugin_path = {};  ///< paths to search for operators after those named in the file
+  /// Whether the text is the record of a run, which somebody else may have made. If so, folders of operators that the
+  /// text names are ignored with a warning if they no longer exist or if the user has never named them
+  /// (plugin_folders.hpp).
   bool is_record = false;
   /// Whether the experiment's own encoding makes the bodies. If so, a dt that is too long for the experiment's masses
   /// and materials is an error. Otherwise the dt is only checked for the body that is given.
@@ -79,9 +80,9 @@ struct ExperimentSource {
 ///
 ///   file -> overrides -> settings (tables/*) -> libraries of operators -> operators (tables/operators) -> Experiment
 ///
-/// Throws ConfigError with the location, the value and the remedy.
+/// Throws ConfigError with the location, the value and a remedy.
 Experiment read_experiment(const ExperimentSource& source);
-/// The same from a text, such as Experiment::resolved in the record of a run.
+/// Does the same with a text, such as Experiment::resolved in the record of a run.
 Experiment read_experiment(std::string_view text, const ExperimentSource& source);
 
 }  // namespace evodevo

@@ -1,4 +1,4 @@
-// Keys of an experiment that command-line options set in place of its file.
+// Overrides: values of keys that are given on the command line instead of in the file of an experiment.
 #pragma once
 
 #include <toml++/toml.h>
@@ -15,7 +15,8 @@ struct Override {
 };
 
 /// Sets one key. Creates missing tables that contain it. An index equal to the length of a list appends an item; any
-/// other item must exist. Throws ConfigError, also if key or value exceed the limits of toml_limits.hpp.
+/// other item must exist. Throws ConfigError if the key cannot be set, or if the key or the value exceeds the limits of
+/// toml_limits.hpp.
 void apply_override(const Override& change, toml::table& root);
 
 }  // namespace evodevo

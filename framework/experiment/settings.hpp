@@ -20,15 +20,15 @@ struct Schedule {
   std::int64_t from = 1, to = rng_stream::most_cycles, every = 1;
 
   bool contains(std::int64_t cycle) const { return cycle >= from && cycle <= to && (cycle - from) % every == 0; }
-  /// How often the operator is applied in the cycles 1 to `cycle`.
+  /// Returns the number of times that the operator is applied in the cycles 1 to `cycle`.
   std::int64_t applications(std::int64_t cycle) const {
     const std::int64_t last = std::min(cycle, to);
     return last < from ? 0 : (last - from) / every + 1;
   }
 };
 
-/// The controls: each replaces development by the operators with something that it is compared with. Everything else
-/// stays the same, including the simulated time of a life.
+/// The controls. Each replaces the development by operators with something else, so that the two can be compared.
+/// Everything else stays the same, including the simulated time of a life.
 enum class Control { off, no_change, random_places, shuffled_stress };
 template <>
 inline constexpr std::array<std::string_view, 4> names_of<Control>{"off", "no-change", "random-places",
@@ -45,7 +45,7 @@ enum class Device { automatic, cpu, cuda };
 template <>
 inline constexpr std::array<std::string_view, 3> names_of<Device>{"auto", "cpu", "cuda"};
 
-/// Names of sets of defaults for the other settings of the simulation; see accuracy.hpp.
+/// Named sets of default values for the other simulation settings; see accuracy.hpp.
 enum class Accuracy { paper, fast, balanced, reference };
 template <>
 inline constexpr std::array<std::string_view, 4> names_of<Accuracy>{"paper", "fast", "balanced", "reference"};
@@ -66,7 +66,7 @@ struct DevelopmentSettings {
 /// A payload that every body carries from birth on. If masses are removed, other masses take over their payload.
 struct Payload {
   double share = 0.5;  ///< mass of the payload relative to the body's mass at birth, 1
-  double top = 0.1;    ///< upper fraction of the body's height; the masses in it carry the payload, 1
+  double top = 0.1;    ///< upper fraction of the body's height; masses in this part carry the payload, 1
 
   bool operator==(const Payload&) const = default;
 };
@@ -78,9 +78,9 @@ struct Settings {
   std::string name;  ///< file name without folder and extension
   std::int64_t seed = 1;
   std::int64_t evaluations = 1000;  ///< number of evaluations in the whole run
-  double spring_evaluations = 0;    ///< number after which the run ends early; 0: no limit
+  double spring_evaluations = 0;    ///< number of spring evaluations after which the run ends early; 0: no limit
   std::int64_t population = 50;
-  std::int64_t random_individuals = 1;  ///< number that enters each generation
+  std::int64_t random_individuals = 1;  ///< number of random individuals that enter each generation
   std::int64_t verify = 1;              ///< number of best individuals to verify when the run ends
 
   double mass = 0.2;  ///< mass of one point mass, kg

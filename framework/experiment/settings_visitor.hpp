@@ -11,7 +11,7 @@ namespace evodevo {
 
 class SettingsVisitor : public Parameters {
  public:
-  /// A number, or the word "auto", for which `value` is empty.
+  /// A number or the word "auto". If it is "auto", `value` is empty.
   virtual void real_or_auto(std::optional<double>& value, std::string_view name, Range range,
                             std::string_view text) = 0;
 

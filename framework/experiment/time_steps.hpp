@@ -38,7 +38,8 @@ LongestStep longest_step(const StepRule& rule, const Body& body, std::span<const
                          Method method);
 
 /// Returns the time steps for a duration (s). With a fixed dt, their number is the nearest whole number; otherwise it
-/// is the least for which equal steps are no longer than `longest` (s). In both cases `rule.refine` divides the steps.
+/// is the smallest number for which equal steps are no longer than `longest` (s). In both cases, each of these steps is
+/// divided by `rule.refine`.
 Pace pace_over(double duration, const StepRule& rule, double longest);
 
 /// Whether a duration (s) is a whole number of steps of `dt` (s), apart from rounding.

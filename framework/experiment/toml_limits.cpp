@@ -8,7 +8,7 @@
 namespace evodevo {
 namespace {
 
-/// Counts levels outside comments and strings. The count is right up to the first syntax error, where a parser stops.
+/// Counts levels outside comments and strings. The count is correct up to the first syntax error, where a parser stops.
 class LevelCounter {
  public:
   LevelCounter(std::string_view text, const std::string& origin) : text_(text), origin_(origin) {}
@@ -41,8 +41,8 @@ class LevelCounter {
 
   void skip_comment() { at_ = std::min(text_.find('\n', at_), text_.size()); }
 
-  /// Skips a string. If it begins with one quote, it ends with its line at the latest; if it begins with three quotes,
-  /// it may have several lines. In a string with double quotes, a backslash escapes a quote.
+  /// Skips a string. If it begins with one quote, it ends no later than its line; if it begins with three quotes, it
+  /// may have several lines. In a string with double quotes, a backslash escapes a quote.
   void skip_string(char quote) {
     const std::string three(3, quote);
     const bool many_lines = text_.substr(at_).starts_with(three);

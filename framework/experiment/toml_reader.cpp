@@ -35,7 +35,7 @@ toml::table parse_toml_file(const std::string& file) {
 
 std::string location_of(const toml::source_region& source) {
   const std::string file = source.path ? printable(*source.path, longest_shown_path) : "";
-  if (!source.begin || file.starts_with("--")) return file;  // a command-line option has no lines
+  if (!source.begin || file.starts_with("--")) return file;  // a command-line option has no line numbers
   return file + ":" + std::to_string(source.begin.line) + ":" + std::to_string(source.begin.column);
 }
 
@@ -49,7 +49,7 @@ std::string value_text(const toml::node& node) {
   std::ostringstream text;
   node.visit([&](const auto& n) { text << toml::toml_formatter(n, toml::format_flags::none); });
   std::string one_line = text.str();
-  std::replace(one_line.begin(), one_line.end(), '\n', ' ');  // line ends between items of a long list
+  std::replace(one_line.begin(), one_line.end(), '\n', ' ');  // line breaks between items of a long list
   return one_line;
 }
 

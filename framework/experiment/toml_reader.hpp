@@ -21,7 +21,7 @@ toml::table parse_toml(std::string_view text, const std::string& origin);
 /// Reads and parses a file. Throws ConfigError like parse_toml(), and if the file cannot be read.
 toml::table parse_toml_file(const std::string& file);
 
-/// Returns "file:line:column" of a node or key. If a command-line option has set it, returns the option.
+/// Returns "file:line:column" of a node or key. If a command-line option has set the value, returns the option.
 std::string location_of(const toml::source_region& source);
 
 /// Returns a node's value as messages show it: `"text"`, `3`, `[1, 2]`, `a table`.
@@ -51,7 +51,7 @@ class TomlReader final : public SettingsVisitor {
   std::string text(std::string_view name, const char* fallback = nullptr);
   std::vector<std::string> texts(std::string_view name);
   std::vector<std::string> keys() const;
-  /// Returns an empty table that messages locate in the same file as this one.
+  /// Returns an empty table. Messages about it name the same file as messages about this table.
   toml::table empty_table() const;
   /// Returns the sub-table `name`; nullptr if it is absent.
   const toml::table* table(std::string_view name);

@@ -12,9 +12,10 @@
 namespace evodevo {
 namespace {
 
-/// Returns why a body in the middle of its life must not be simulated; empty if it may be. It must not be if the floor
-/// would throw it out of the ground: the elastic energy of the floor below its masses is larger than the energy that
-/// the body can have put there, which is its total energy plus the energy of a fall by its own size.
+/// Returns the reason why a body in the middle of its life must not be simulated, or an empty text if it may be
+/// simulated. It must not be simulated if the floor would fling it out, that is, if the elastic energy of the floor
+/// below its masses is larger than the energy that the body can have put into the floor: its total energy plus the
+/// energy of a fall by its own size.
 std::string throw_by_ground(const LivingBody& living, const Scene& scene) {
   if (!scene.floor) return {};
   const std::vector<Vec3>& positions = living.state.position;
@@ -82,7 +83,7 @@ Life Birth::of(Body body) const {
 }
 
 Life Birth::amid_life(Body body, State state) const {
-  // if the scene is not the one of the body's earlier life, its forces may have added energy
+  // if the body lived in another scene before, the forces of this scene may add energy
   state.start_energy = std::max(state.start_energy, total_energy(body, state, experiment_.scene));
   Life life;
   life.living.body = std::move(body);

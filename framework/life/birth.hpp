@@ -1,4 +1,4 @@
-// Birth: makes lives from genomes and from bodies of files. Every life begins here.
+// Birth: makes lives from genomes and from bodies in files. Every life begins here.
 #pragma once
 
 #include <span>
@@ -22,14 +22,14 @@ class Birth {
   Birth(const Experiment& experiment, const LifeSimulation& simulation)
       : experiment_(experiment), simulation_(simulation) {}
 
-  /// Only decodes genomes and builds bodies, without payload, state and time step.
+  /// Only decodes genomes and builds bodies, without a payload, a state or a time step.
   std::vector<BuiltBody> build(std::span<const Newborn> newborns) const;
   /// Returns the lives of newborns, in the same order.
   std::vector<Life> of(std::span<const Newborn> newborns) const;
   /// Returns the life of a body that no genome of the experiment describes, such as one from a file.
   Life of(Body body) const;
-  /// Returns the life of a body in the middle of its life, in the given state. The life ends as invalid if the floor
-  /// would throw the body out of the ground.
+  /// Returns the life of a body in the middle of its life, in the given state. The life ends as invalid if the body is
+  /// so deep in the floor that the floor would fling it out.
   Life amid_life(Body body, State state) const;
 
   double seconds() const { return clock_.seconds(); }  ///< wall-clock time spent on making bodies from genomes, s

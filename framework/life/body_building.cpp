@@ -77,7 +77,8 @@ std::vector<std::uint32_t> pieces(const Body& body) {
   return leader;
 }
 
-/// Returns the leader of the piece with the most masses; the lowest leader if several pieces have as many.
+/// Returns the leader of the piece with the most masses; if several pieces have equally many masses, returns the lowest
+/// of their leaders.
 std::uint32_t largest_piece(const std::vector<std::uint32_t>& leader) {
   std::vector<std::uint32_t> size(leader.size(), 0);
   for (const std::uint32_t i : leader) ++size[i];
@@ -118,7 +119,7 @@ bool is_sound(const Size& size) {
   return size.start > 0 && size.end > 0 && std::isfinite(size.start) && std::isfinite(size.end);
 }
 
-/// Returns why a blueprint cannot become a body; empty if nothing prevents it so far.
+/// Returns the reason why a blueprint cannot become a body, or an empty text if no such reason is known yet.
 std::string blueprint_failure(const Blueprint& blueprint) {
   const std::vector<Mass>& masses = blueprint.body.masses;
   if (!blueprint.failure.empty()) return "no body: " + printable(blueprint.failure);
@@ -137,7 +138,7 @@ std::vector<Vec3> pairing_positions(const Blueprint& blueprint) {
   return blueprint.paired_at.empty() ? rest_positions(blueprint.body) : blueprint.paired_at;
 }
 
-/// Completes a body whose neighbours are joined.
+/// Completes a body whose neighbours have been joined.
 BuiltBody finish(Body body) {
   leave_out_air(body);
   if (body.springs.empty()) return {{}, "no springs", {}};
@@ -148,11 +149,11 @@ BuiltBody finish(Body body) {
   return {std::move(body), "", std::move(kept)};
 }
 
-/// Returns the first spring whose pair of masses an earlier spring joins already. Groups the springs by their lower
-/// mass and marks their upper masses; sorting all springs would take several times as long.
+/// Returns the first spring that joins a pair of masses which an earlier spring already joins. Groups the springs by
+/// their lower mass and marks their upper masses; sorting all springs would take several times as long.
 std::optional<std::size_t> doubled_spring(const Body& body) {
   constexpr auto nobody = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::size_t> first(body.masses.size() + 1, 0);  // start in `by_mass` of the springs of a lower mass
+  std::vector<std::size_t> first(body.masses.size() + 1, 0);  // where the springs of a lower mass start in `by_mass`
   const auto lower = [](const Spring& spring) { return std::min(spring.a, spring.b); };
   for (const Spring& spring : body.springs) ++first[lower(spring) + 1];
   std::partial_sum(first.begin(), first.end(), first.begin());

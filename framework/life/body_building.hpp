@@ -15,7 +15,7 @@ namespace evodevo {
 struct BuiltBody {
   Body body;
   std::string failure;              ///< empty if there is a body
-  std::vector<std::uint32_t> kept;  ///< indices in the blueprint of the body's masses, ascending
+  std::vector<std::uint32_t> kept;  ///< indices that the body's masses have in the blueprint, ascending
 };
 
 /// Throws a std::invalid_argument that names the fault if a blueprint is malformed: for example, if an index is out of
@@ -28,7 +28,7 @@ void check_blueprint(const Blueprint& blueprint, const EncodingContext& context)
 /// z = 0 and the centre of mass is over the origin.
 BuiltBody build_body(Blueprint blueprint);
 
-/// The same for several blueprints. Their neighbours are searched for together.
+/// Does the same for several blueprints. Searches for the neighbours of all of them together.
 std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, Workers& workers);
 
 /// Adds a payload of `share` times the body's mass, spread evenly over the masses in the upper fraction `top` of the
@@ -37,7 +37,7 @@ void add_payload(Body& body, double share, double top);
 
 std::vector<Vec3> rest_positions(const Body& body);
 
-/// Whether not all positions are at the same point. True also for flat and straight bodies.
+/// Returns whether at least two positions differ. This is also true for flat and straight bodies.
 bool has_extent(std::span<const Vec3> positions);
 
 /// Returns the masses that no springs connect to the largest piece, in ascending order.

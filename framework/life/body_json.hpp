@@ -30,9 +30,9 @@ struct GivenBody {
 /// energy that the body has in the scene).
 std::string body_to_json(const GivenBody& given, const std::vector<std::string>& material_names);
 
-/// Reads such a file. Throws a ConfigError that names file, place and remedy if the file cannot be read or is not such
-/// JSON: a key is unknown or occurs twice, an index is out of range, a pair of masses is joined twice, or a number is
-/// not finite or has the wrong sign.
+/// Reads a body from a file in this format. Throws a ConfigError that gives the file, the place and a remedy if the
+/// file cannot be read or its JSON is not as described above: for example, if a key is unknown or occurs twice, an
+/// index is out of range, a pair of masses is joined twice, or a number is not finite or has the wrong sign.
 GivenBody read_body(const std::string& file);
 
 }  // namespace evodevo

@@ -30,7 +30,8 @@ class Pools {
     ++left_;
   }
 
-  /// Draws an item of this material, or of any material if none of this one is left. Returns none if no item is left.
+  /// Draws an item of this material, or of any material if no item of this one is left. Returns nullopt if no item is
+  /// left.
   std::optional<std::uint32_t> draw(std::int32_t material, Rng& rng) {
     if (left_ == 0) return std::nullopt;
     const std::size_t own = index(material);

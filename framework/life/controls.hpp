@@ -1,12 +1,12 @@
-// The control random-places: as much change as by the operators, but at random places in the body.
+// The control random-places: it changes a body as much as the operators would, but at random places.
 #pragma once
 
 #include "life/life_record.hpp"
 
 namespace evodevo {
 
-/// How much an operator changed at one application, without the places in the body. It has no indices of masses or
-/// springs, so that it can be applied to any body.
+/// How much an operator changed in one application, regardless of where in the body. It has no indices of masses or
+/// springs, so it can be applied to any body.
 struct Amount {
   struct SpringChange {
     Material before;                ///< material before the change
@@ -25,7 +25,7 @@ struct Amount {
   std::uint32_t op = 0;                              ///< index into the experiment's devo operators
   std::optional<Growth> growth;                      ///< growth of all springs
   std::vector<Material> springs_gone;                ///< materials of removed springs and of springs of removed masses
-  std::vector<std::optional<Material>> masses_gone;  ///< materials of removed masses; none for a mass without one
+  std::vector<std::optional<Material>> masses_gone;  ///< materials of removed masses; nullopt for no material
   std::vector<SpringChange> springs_changed;
   std::vector<MassCome> masses_come;
   std::vector<SpringCome> springs_come;
@@ -37,26 +37,28 @@ Amount amount_of(const Edits& edits, const Body& body, std::uint32_t op);
 /// Returns edits that make the same amount of change at random places:
 ///
 /// - For each removed or changed spring and for each removed mass of `amount`, one of the same material is drawn at
-///   random, or one of any material if none of that material is left. Rest lengths change by the same factors.
-/// - A new mass is placed at random within the bounds. It has no material if the body does not have that material.
-/// - A new spring joins two random masses that stay and are not joined yet. If it joined a new mass in `amount`, that
-///   end joins the corresponding new mass. It is born without force. If no free pair is found, it is left out.
+///   random, or, if none of that material is left, one of any material. Rest lengths change by the same factors.
+/// - A new mass is placed at random within the bounds. It has the material given in `amount`, or no material if the
+///   body does not have that one.
+/// - A new spring joins two random masses that stay and are not joined yet. An end that is at a new mass in `amount` is
+///   at the corresponding new mass here. The spring exerts no force at first. If no free pair is found, the spring is
+///   left out.
 /// - Growth stays the same, because it applies to all springs.
 ///
 /// The springs of a removed mass count as removed springs. `surplus` is the number of springs that have been removed in
-/// this way beyond the amounts, now and at earlier applications. That many fewer springs are removed as soon as
-/// possible. Limits that an operator keeps, such as on the degree of masses, do not hold here.
+/// this way beyond the amounts, now and at earlier applications. To compensate, that many fewer springs are removed as
+/// soon as possible. Limits that an operator observes, such as those on the degree of masses, do not apply here.
 Edits at_random_places(const Amount& amount, const DevoContext& context, std::size_t& surplus, Rng& rng);
 
-/// The amounts of change in one life. A second life with the same start is yoked to it: it changes as much at each
-/// application.
+/// The amounts of change in one life. A second life with the same start is yoked to it: at each application, the second
+/// life is changed by the same amounts.
 class Yoke {
  public:
   Yoke(Body born, const LifeRecord& record) : body_(std::move(born)), changes_(record.changes()) {}
 
   /// Returns the amounts that the operators changed after a cycle. To be called for each cycle in ascending order.
-  /// Pieces that were torn off do not count. Amounts with removed masses come first: if these masses take too many
-  /// springs with them, the other amounts compensate for it in the same cycle.
+  /// Pieces that were torn off do not count. Amounts with removed masses come first: if too many springs are removed
+  /// together with these masses, the other amounts compensate for that in the same cycle.
   std::vector<Amount> amounts_after(int cycle);
 
   std::size_t surplus = 0;  ///< surplus of the second life; see at_random_places()

@@ -45,7 +45,7 @@ void DevelopmentLoop::run(std::span<Life> lives, const Progress& progress) const
     else
       apply_operators(lives[i], cycle);
   };
-  // Lives with a record are observed as well, so that their re-simulation equals the original to the bit.
+  // Lives with a record are observed as well, so that their re-simulation equals the original bit for bit.
   run_cycles(lives, !yoked, change, progress);
 }
 
@@ -220,7 +220,7 @@ void DevelopmentLoop::return_to_rest(Life& life) const {
     state.position[i] = life.living.body.masses[i].rest;
     state.velocity[i] = {};
   }
-  // rest positions are for level ground
+  // rest positions assume level ground
   if (const auto& floor = experiment_.scene.floor; floor && floor->rough())
     put_on_ground(state.position, experiment_.scene);
 }

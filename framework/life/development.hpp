@@ -62,13 +62,14 @@ class DevelopmentLoop {
   void shed_loose_pieces(Life& life, int cycle) const;
   /// Shuffles the recorded values among the springs. All values of one spring stay together.
   void shuffle_records(Life& life, int cycle) const;
-  /// Calls `action`, which changes a body, and adds the energy that it brings to the energy that the guard allows.
+  /// Calls `action`, which changes a body, and raises the energy that the guard allows by the energy that the change
+  /// adds.
   template <class Action>
   void allow_energy(Life& life, const Action& action) const;
-  /// Moves a body back to its rest positions, without velocities.
+  /// Moves a body back to its rest positions and sets its velocities to zero.
   void return_to_rest(Life& life) const;
-  /// Returns the box around the positions at which the next cycle starts, cut off below at the greatest height of the
-  /// floor.
+  /// Returns the box around the positions at which the next cycle starts, cut off below at the height of the highest
+  /// point of the floor.
   Box bounds(const LivingBody& living) const;
   /// Returns the RNG stream `id` of a life.
   Rng stream(const Life& life, std::uint32_t id) const;

@@ -51,7 +51,8 @@ void put_in_order(std::vector<std::uint32_t>& indices, std::vector<double>& caus
   }
 }
 
-/// Returns the rest length (m) with which a new spring is born without force; none if one of its masses does not exist.
+/// Returns the rest length (m) at which a new spring exerts no force at first; nullopt if one of its masses does not
+/// exist.
 std::optional<double> forceless_length(const NewSpring& spring, const Edits& edits, const DevoContext& context) {
   const std::size_t old_masses = context.body.masses.size();
   if (std::max(spring.a, spring.b) >= old_masses + edits.new_masses.size()) return std::nullopt;
@@ -261,8 +262,8 @@ class Editor {
 
   std::uint64_t new_key(const NewSpring& spring) const { return pair_key(new_index_[spring.a], new_index_[spring.b]); }
 
-  /// Throws if a new spring joins a pair that is joined already. New springs are few and others many; hence the new
-  /// ones are sorted, and each of the others is looked up among them.
+  /// Throws if a new spring joins a pair that is joined already. There are few new springs and many others; hence the
+  /// new ones are sorted, and each of the others is looked up among them.
   void refuse_joined_pairs() const {
     const std::vector<NewSpring>& arrivals = edits_.new_springs;
     std::vector<std::uint64_t> keys;

@@ -28,10 +28,10 @@ Edits resolved(const Edits& edits, const DevoContext& context);
 /// pair of masses is joined twice, a spring is changed twice or is both changed and removed, a spring is of air, a
 /// number is not finite, or there are more or fewer causes than edits.
 void apply(const Edits& resolved, LivingBody& living);
-/// The same for a body alone, without its state and records.
+/// Does the same for a body alone, without its state and records.
 void apply(const Edits& resolved, Body& body);
 
-/// Makes those spring records visible in an operator's context that the operator asked for, and no others.
+/// Makes only those spring records visible in an operator's context that the operator asked for.
 void show_records(const SpringRecords& records, const SpringRequest& request, DevoContext& context);
 
 }  // namespace evodevo

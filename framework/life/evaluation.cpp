@@ -9,7 +9,7 @@
 namespace evodevo {
 namespace {
 
-// least number of bodies in each of several cohorts; smaller cohorts would use a device badly
+// smallest number of bodies in a cohort if there are several; smaller cohorts would use a device inefficiently
 constexpr std::size_t smallest_cohort = 64;
 
 }  // namespace
@@ -31,7 +31,7 @@ std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, cons
   std::vector<double> done(cohorts, 0.0);
   on_own_threads(cohorts, [&](std::size_t i) {
     // Earlier cohorts have priority throughout. Thus the first one reaches its long final evaluation while the others
-    // still develop.
+    // are still developing.
     const Priority priority(static_cast<int>(i));
     const std::size_t begin = i * newborns.size() / cohorts, end = (i + 1) * newborns.size() / cohorts;
     std::vector<Result> of_cohort = evaluate_cohort(newborns.subspan(begin, end - begin), [&](double part) {

@@ -24,8 +24,8 @@ struct PhaseTimes {
 ///                  \_______ all three use _______/
 ///                            simulation
 ///
-/// A batch is divided into cohorts, as many as keep the simulator busy at the same time. Experiment and simulator must
-/// outlive this object.
+/// A large batch is divided into as many cohorts as are needed to keep the simulator busy. Experiment and simulator
+/// must outlive this object.
 class Evaluation {
  public:
   Evaluation(const Experiment& experiment, Simulator& simulator);
@@ -33,8 +33,8 @@ class Evaluation {
   Evaluation(const Evaluation&) = delete;  // the stages refer to each other
   Evaluation& operator=(const Evaluation&) = delete;
 
-  /// Returns the results in the order of the newborns. They do not depend on the batch. Calls `progress` with the part
-  /// of the simulation that is done, 0 to 1, from one thread at a time.
+  /// Returns the results in the order of the newborns. The result of a newborn does not depend on the others in the
+  /// batch. Calls `progress` with the fraction of the simulation that is done, 0 to 1, from one thread at a time.
   std::vector<Result> evaluate(std::span<const Newborn> newborns, const Progress& progress) const;
 
   PhaseTimes phase_times() const { return {birth.seconds(), simulation.seconds(), development.seconds()}; }

@@ -19,7 +19,7 @@ struct Newborn {
   std::uint32_t id = 0;
   std::uint32_t generation = 0;
   const Genome* genome = nullptr;
-  /// For a re-simulation: the changes to apply to the body, instead of calling the operators.
+  /// For a re-simulation: the changes to apply to the body instead of calling the operators.
   std::optional<LifeRecord> record = std::nullopt;
   std::string recorded_in = {};  ///< the run and individual that the record belongs to, for messages
 };
@@ -59,7 +59,7 @@ struct Conditions {
   double later = 0;  ///< delay of the windows of the fitness operators, s
 };
 
-/// A function that is told which part of a job is done, 0 to 1.
+/// A function that is told what fraction of a job is done, 0 to 1.
 using Progress = std::function<void(double)>;
 
 }  // namespace evodevo

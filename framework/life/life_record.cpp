@@ -15,8 +15,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
 
-/// Bits that say whether springs grow and whether Change::lengths_given. They come after the bits for the lists of
-/// causes.
+/// Bits that say whether springs grow and whether Change::lengths_given is true. They come after the bits for the lists
+/// of causes.
 constexpr std::uint32_t growth_bit = 1u << Causes::lists.size(), lengths_given_bit = growth_bit << 1;
 
 /// Appends changes to a string of bytes. A whole number is written with seven bits in each byte, the lowest bits first;
@@ -48,8 +48,8 @@ class Writer {
   }
 
  private:
-  /// Writes first which lists of causes are not empty (bit i stands for the i-th list) and the two other bits, then the
-  /// lists and the growth.
+  /// First writes bits: one for each list of causes, which says whether the list is not empty, and the two other bits.
+  /// Then writes the lists and the growth.
   void causes_and_growth(const Change& change) {
     const Edits& edits = change.edits;
     std::uint32_t given = (edits.growth ? growth_bit : 0) | (change.lengths_given ? lengths_given_bit : 0);

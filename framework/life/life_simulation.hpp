@@ -13,7 +13,7 @@ namespace evodevo {
 /// A function that runs tasks on the simulator. The i-th task belongs to the i-th life.
 using Move = std::function<void(std::span<Task>, std::span<Life* const>)>;
 
-/// Simulates the bodies of lives for a given time, and stores the new states and what was recorded in the lives.
+/// Simulates the bodies of lives for a given time, and stores in each life its new state and what was recorded.
 /// Experiment and simulator must outlive this object.
 class LifeSimulation {
  public:
@@ -22,7 +22,7 @@ class LifeSimulation {
 
   /// Chooses the time step for a body in its present state. If the body cannot be simulated, its life ends as invalid.
   void choose_step(Life& life) const;
-  /// Simulates all lives that have not ended yet. The simulated time is `duration` s, and `move` runs the tasks.
+  /// Simulates all lives that have not ended yet for `duration` (s). `move` runs the tasks.
   void run(std::span<Life> lives, double duration, const Move& move) const;
 
   Simulator& simulator() const { return simulator_; }

@@ -48,7 +48,7 @@ class Measurement {
   const Experiment& experiment_;
   const LifeSimulation& simulation_;
   std::vector<double> marks_;    ///< times of the marks since the start of the final evaluation, s
-  std::vector<Window> windows_;  ///< of each fitness operator
+  std::vector<Window> windows_;  ///< window of each fitness operator
 };
 
 }  // namespace evodevo

@@ -9,7 +9,7 @@
 namespace evodevo {
 namespace {
 
-constexpr double enough = 0.5;  ///< part of the fitness that an individual must keep, 1
+constexpr double enough = 0.5;  ///< fraction of the fitness that an individual must keep, 1
 constexpr int perturbed_starts = 3;
 constexpr double more_settling = 10;  ///< delay of the windows in the trial settled, s
 constexpr std::int64_t step_parts = 4;
@@ -28,7 +28,7 @@ void still_muscles(Life& life) {
   for (Material& material : life.living.body.materials) material.amplitude = 0;
 }
 
-/// Makes the trials of matured champions and collects the results.
+/// Runs the trials of matured champions and collects the results.
 class Trials {
  public:
   Trials(const Experiment& experiment, std::span<const Champion> champions, std::vector<Life> lives)

@@ -1,4 +1,4 @@
-// Verification: whether the best individuals keep their fitness when they are simulated in other ways.
+// Verification: checks whether the best individuals keep their fitness when they are simulated in other ways.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@ namespace evodevo {
 
 /// The result of repeating the final evaluation of a matured body with one thing changed.
 struct Trial {
-  std::string name;  ///< one of those that verify() lists
+  std::string name;  ///< name of one of the trials listed at verify()
   Status status = Status::ok;
   std::string reason;           ///< reason for a status other than ok
   std::optional<double> value;  ///< the first objective; none unless ok
@@ -52,7 +52,7 @@ std::vector<Verification> verify(const Experiment& experiment, Simulator& simula
 bool held(const Verification& verification, const Trial& trial, bool maximise);
 
 /// Returns the marks of an individual, which are found from its trials:
-///   artefact  its fitness depends on the time step or the method: it did not hold in quarter-step or other-method;
+///   artefact  its fitness depends on the time step or the method: it is lost in quarter-step or other-method;
 ///   passive   it keeps over half its fitness in no-muscles, or loses over half in settled; only if the objective is
 ///             maximised and the fitness is above 0.
 std::vector<std::string> marks(const Verification& verification, bool maximise);

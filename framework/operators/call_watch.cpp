@@ -28,7 +28,7 @@ Seconds patience() {
   return given > 0 ? Seconds(std::min(given, 1e6)) : usual;
 }
 
-/// Looks at the calls of all threads, and remembers since when it has seen each.
+/// Looks at the calls of all threads, and remembers when it first saw each call.
 class Looks {
  public:
   void look() {
@@ -90,7 +90,7 @@ CallWatch::CallWatch() {
   try {
     thread_ = std::jthread(watch);
   } catch (const std::system_error&) {
-    // without a thread, long calls are not reported
+    // if no thread can be created, long calls are not reported
   }
 }
 

@@ -8,9 +8,9 @@
 
 namespace evodevo {
 
-/// While this object exists, a thread warns on stderr of each operator that has a call longer than the environment
-/// variable EVODEVO_PATIENCE says (s; 10 by default). It warns of the same operator again each time that one of its
-/// calls has lasted twice as long as at the warning before.
+/// While this object exists, a thread warns on stderr of each operator that has a call lasting longer than the value of
+/// the environment variable EVODEVO_PATIENCE (s; 10 by default). It warns of the same operator again each time that one
+/// of its calls has lasted twice as long as at the previous warning.
 class CallWatch {
  public:
   CallWatch();

@@ -21,7 +21,7 @@ std::atomic<bool> names_exits = false;
 void say(const OperatorCall& call, std::string_view what) {
   static std::atomic_flag said;
   if (said.test_and_set())
-    while (true) pause();  // another thread ends the process
+    while (true) pause();  // the thread that came first ends the process
   Line line;
   line << "\nevodevo: " << call << ": " << what << "; `evodevo conform " << call.title->file
        << "` tests the operator. The complete generations of a run are kept.\n";
@@ -48,8 +48,8 @@ void blame_and_die(int signal, siginfo_t* info, void*) {
   std::raise(signal);
 }
 
-/// Called when the process exits with `status`. If an operator's code has caused that, reports it and ends the process
-/// with exit code 1.
+/// Called when the process exits with `status`. If an operator's code has caused the exit, reports it and ends the
+/// process with exit code 1.
 void refuse_to_exit(int status) {
   const OperatorCall call = current_call();
   if (!names_exits || call.title == nullptr) return;

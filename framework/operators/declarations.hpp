@@ -8,16 +8,16 @@
 
 namespace evodevo {
 
-/// Describes the first default value that the operator's own declaration does not allow, with a remedy; empty if there
-/// is none.
+/// Returns a description of the first default value that the operator's own declaration does not allow, with a remedy,
+/// or an empty text if all default values are allowed.
 std::string wrong_default(Operator& op);
 
-/// Returns the name of the first parameter that has the name of one of the host's keys (host_keys.hpp); empty if there
-/// is none.
+/// Returns the name of the first parameter that has the name of one of the host's keys (host_keys.hpp), or an empty
+/// text if there is no such parameter.
 std::string taken_name(Operator& op);
 
-/// Describes what is wrong with the declarations: names that are missing or repeated, and missing bounds, units and
-/// descriptions.
+/// Returns descriptions of the faults of the declarations: names that are missing or repeated, and missing bounds,
+/// units and descriptions.
 std::vector<std::string> declaration_faults(Operator& op);
 
 }  // namespace evodevo

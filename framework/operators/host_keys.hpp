@@ -14,7 +14,7 @@ inline constexpr std::string_view label = "label", over = "over";
 
 inline constexpr std::array all{name, mass, probability, from, to, every, label, over};
 
-/// Whether no operator may have a parameter of this name.
+/// Returns whether a key is reserved, so that no operator may have a parameter of this name.
 constexpr bool is_reserved(std::string_view key) { return std::find(all.begin(), all.end(), key) != all.end(); }
 
 }  // namespace evodevo::host_key

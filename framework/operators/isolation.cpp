@@ -41,8 +41,8 @@ void become_silent() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, stream);
 }
 
-/// Lets this child be killed when its parent ends, and makes it the leader of a process group, so that the parent can
-/// kill it together with the processes that it starts.
+/// Makes the system kill this child when its parent ends, and makes the child the leader of a process group, so that
+/// the parent can kill it together with the processes that it starts.
 void join_fate(pid_t parent) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -81,7 +81,7 @@ void write_all(int pipe, const void* data, std::size_t size) {
 
 enum class Read { whole, ended, late };
 
-/// Reads until `size` bytes have come (whole), the pipe has ended (ended), or `deadline` has passed (late).
+/// Reads until `size` bytes have arrived (whole), the pipe has ended (ended), or `deadline` has passed (late).
 Read read_all(int pipe, void* data, std::size_t size, Clock::time_point deadline) {
   for (std::size_t done = 0; done < size;) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();

@@ -14,9 +14,9 @@ struct ChildEnd {
 };
 
 /// Runs `work` in a child process that is a copy of this one, so that `work` can neither change nor crash this process.
-/// What the child prints is dropped. The child is killed after `seconds` s, or when this process ends. Once its work is
-/// done or it is killed, processes that it has started are killed too. Throws std::system_error if no child process can
-/// be made.
+/// What the child prints is discarded. The child is killed after `seconds` s, or when this process ends. Once the child
+/// has finished its work or has been killed, the processes that it started are killed too. Throws std::system_error if
+/// no child process can be created.
 ChildEnd in_child(const std::function<std::string()>& work, unsigned seconds);
 
 }  // namespace evodevo

@@ -183,7 +183,7 @@ std::span<const OperatorEntry> checked_entries(const boost::dll::shared_library&
   return entries;
 }
 
-/// Loads the files in a child process. Returns what crashed the child; empty if nothing did.
+/// Loads the files in a child process. Returns what crashed the child, or an empty text if nothing did.
 std::string crash_of_loading(std::span<const fs::path> files) {
   const auto load_and_forget = [&] {
     for (const fs::path& file : files) {
@@ -232,7 +232,7 @@ std::vector<fs::path> Registry::libraries_at(const fs::path& path) {
 }
 
 void Registry::load_all(const std::vector<fs::path>& files) {
-  // libraries that a child has loaded without a crash; they need no further trial
+  // libraries that a child has loaded without a crash; they need not be tried again
   static std::set<fs::path> survived;
   std::vector<fs::path> unknown;
   for (const fs::path& file : files)

@@ -33,11 +33,11 @@ struct FailedLibrary {
 /// The operators of all libraries in a list of folders.
 class Registry {
  public:
-  /// Loads every *.evodevo.so in the folders: the folders in the given order, the files of each folder in the order of
-  /// their names. A path may also be that of one library. A library that does not fit this host, that crashes while it
-  /// is loaded, or that provides an operator of the same kind and name as an earlier library, is listed in failed() and
-  /// does not affect the others. Libraries stay loaded until the process ends, because an object must not outlive its
-  /// code.
+  /// Loads every *.evodevo.so in the folders. Folders are loaded in the given order, and the files in a folder in the
+  /// order of their names. An item of `path` may also be a single library. A library that does not fit this host, that
+  /// crashes while it is loaded, or that provides an operator of the same kind and name as an earlier library, is
+  /// listed in failed() and does not affect the others. Libraries stay loaded until the process ends, because an object
+  /// must not outlive its code.
   explicit Registry(const std::vector<std::filesystem::path>& path);
 
   /// The operators, sorted by kind and name.

@@ -15,11 +15,11 @@
 namespace evodevo {
 namespace {
 
-/// Bytes of the alternate stack of signal handlers, which they need if a thread's own stack has overflowed.
+/// Size of the alternate stack for signal handlers, bytes. They need it if a thread's own stack has overflowed.
 constexpr std::size_t handler_stack_size = 1 << 16;
 
-/// What a thread is calling, readable from other threads and from signal handlers. There is no lock, since the process
-/// may fork at any time and a signal handler may interrupt the thread anywhere.
+/// The call that a thread is executing. Other threads and signal handlers may read it. There is no lock, since the
+/// process may fork at any time and a signal handler may interrupt the thread anywhere.
 struct Slot {
   std::atomic<std::uint64_t> version = 0;  ///< odd while the other members are being written
   std::atomic<const OperatorTitle*> title = nullptr;
@@ -46,7 +46,7 @@ struct Slot {
   }
 };
 
-/// The list of all slots. Slots are never freed; a new thread takes the slot of one that has ended.
+/// The list of all slots. Slots are never freed; a new thread takes over the slot of a thread that has ended.
 std::atomic<Slot*> slots = nullptr;
 thread_local Slot* slot_of_thread = nullptr;
 
@@ -71,7 +71,7 @@ const char* find_lowest_of_stack() {
   return static_cast<const char*>(lowest);
 }
 
-/// Holds a thread's slot from its first call of an operator until the thread ends.
+/// Holds a thread's slot from the thread's first call of an operator until the thread ends.
 class SlotOfThread {
  public:
   SlotOfThread() : slot_(free_slot()) {

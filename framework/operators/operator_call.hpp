@@ -1,5 +1,5 @@
-// Calls of operators' code. Error messages can name the call in which a thread is. Settings of the program that a call
-// changes are restored after the call.
+// Calls of operators' code. Error messages can name the call that a thread is executing. Settings of the program that a
+// call changes are restored after the call.
 #pragma once
 
 #include <cstdint>
@@ -30,10 +30,10 @@ struct CallSubject {
 
 /// A call of an operator's code.
 struct OperatorCall {
-  const OperatorTitle* title = nullptr;  ///< nullptr if the operator is not from a library
+  const OperatorTitle* title = nullptr;  ///< nullptr if the operator does not come from a library
   CallSubject subject = {};
   std::int64_t seed = CallSubject::none;  ///< seed of the experiment
-  std::string_view kind = {};             ///< kind of an operator without a title; empty in what current_call() returns
+  std::string_view kind = {};  ///< kind of an operator without a title; empty in the result of current_call()
 };
 
 /// Returns a text such as: devo operator "erosion" of FILE, individual 5, cycle 3, seed 7. Unknown parts are left out.
@@ -42,20 +42,21 @@ std::string text_of(const OperatorCall& call);
 class Line;
 Line& operator<<(Line& line, const OperatorCall& call);
 
-/// The call that this thread is in; it has no title if the thread is in no operator's code. A signal handler may call
-/// this function.
+/// Returns the call that this thread is executing. The call has no title if the thread is not in an operator's code. A
+/// signal handler may call this function.
 OperatorCall current_call();
 
 /// Calls `see(thread, number, call)` for each thread that is in an operator's code at this moment. `thread` and
 /// `number` together identify the call.
 void for_each_call(const std::function<void(const void*, std::uint64_t, const OperatorCall&)>& see);
 
-/// The lowest address of this thread's stack, towards which the stack grows; nullptr before the thread's first call of
-/// an operator. A signal handler may call this function.
+/// Returns the lowest address of this thread's stack, towards which the stack grows, or nullptr before the thread's
+/// first call of an operator. A signal handler may call this function.
 const char* lowest_of_stack();
 
-/// While this object exists, its thread counts as being in the code of an operator. The destructor restores what that
-/// code has changed of the program's Surroundings. It warns of each such change on stderr, once for each operator.
+/// While this object exists, its thread counts as being in the code of an operator. The destructor restores those of
+/// the program's Surroundings that the code has changed. It warns of each such change on stderr, once for each
+/// operator.
 class InOperator {
  public:
   explicit InOperator(const OperatorCall& call);

@@ -15,7 +15,8 @@ std::filesystem::path plugin_memory();
 /// The folders and libraries with which this user has run experiments.
 std::vector<std::filesystem::path> remembered_plugin_folders();
 
-/// Adds the existing folders among `folders` to the remembered ones. Returns why that failed; empty if it succeeded.
+/// Adds those of `folders` that exist to the remembered folders. Returns the reason if that failed, or an empty text if
+/// it succeeded.
 std::string remember_plugin_folders(const std::vector<std::filesystem::path>& folders);
 
 /// Whether the user has named this folder or library: it is one of `given`, it is in EVODEVO_PLUGIN_PATH, or the user

@@ -38,7 +38,7 @@ std::uint32_t scalar_control() { return 0; }
 void set_controls(std::uint32_t vector, std::uint32_t) { std::fesetround(static_cast<int>(vector)); }
 #endif
 
-/// The locale at the start of the program. The program itself never changes it.
+/// The locale when the program started. The program itself never changes it.
 struct Locale {
   std::string c = std::setlocale(LC_ALL, nullptr);
   std::locale cpp;

@@ -1,5 +1,5 @@
-// Settings on which the whole program relies and which the code of any library can change: those of floating-point
-// arithmetic, and the locale.
+// Settings on which the whole program relies and which the code of any library can change: the settings of
+// floating-point arithmetic and the locale.
 #pragma once
 
 #include <clocale>
@@ -8,14 +8,14 @@
 
 namespace evodevo {
 
-/// The settings at the time when the object was made: this thread's rounding, flush-to-zero and traps of floating-point
-/// arithmetic, and the locale.
+/// The settings at the time when the object was made: this thread's rounding mode, flush-to-zero mode and
+/// floating-point traps, and the locale.
 class Surroundings {
  public:
   Surroundings();
 
-  /// Restores the settings that have changed since. Returns their names, such as "the rounding mode"; empty if none has
-  /// changed.
+  /// Restores the settings that have changed since then. Returns their names, such as "the rounding mode", or an empty
+  /// text if none has changed.
   std::string restore() const {
     if (same_arithmetic() && same_locale()) [[likely]]
       return {};

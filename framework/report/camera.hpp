@@ -16,8 +16,8 @@ struct Shooting {
   bool quiet = false;                        ///< whether to print only errors
 };
 
-/// Writes to `output`, whose name is `file`, what `page` plays: a film (.mp4, .gif or .webp) or a picture (.png),
-/// depending on the ending of the name. Throws std::runtime_error if the file cannot be written, or if Node.js,
+/// Renders what `page` plays, and writes it to `output`, whose name is `file`. The ending of the name selects a film
+/// (.mp4, .gif or .webp) or a picture (.png). Throws std::runtime_error if the file cannot be written, or if Node.js,
 /// Chromium or ffmpeg is missing or fails; these programs write the reason to standard error.
 void shoot(const std::string& page, OutputFile& output, const std::filesystem::path& file, const Shooting& shooting);
 

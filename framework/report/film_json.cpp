@@ -14,21 +14,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t least_thinning = 2;  ///< keeps every second frame at most, because 30 frames/s look smooth
+constexpr std::size_t least_thinning = 2;  ///< at most every second frame is kept, because 30 frames/s look smooth
 constexpr std::size_t measured_finer = 4;  ///< ratio of the frame rate of measured shots to that of others
 
 /// A level of detail: the precision of numbers, and how many frames may be left out at this precision.
 struct Detail {
   double parts_of_length;     ///< the unit of positions is the body's longest side divided by this
-  int stress_levels;          ///< levels of the root of stress: many springs bear little stress, and few bear much
+  int stress_levels;          ///< number of levels of sqrt(stress); many springs bear little stress, and few much
   std::size_t most_thinning;  ///< keep only every n-th filmed frame, with n up to this, before reducing precision
 };
 
-// With 2048 units per body length, errors are smaller than the pixels of a page. Every 16th frame of 60 per second
-// leaves four frames of a muscle's period of one second.
+// With 2048 units per body length, errors are smaller than the pixels of a page. If every 16th of 60 frames per second
+// is kept, a muscle's period of one second has about four frames.
 constexpr Detail details[] = {{8192, 255, 4}, {2048, 63, 16}, {1024, 15, std::numeric_limits<std::size_t>::max()}};
 
-/// Numbers springs through a film, by the masses that they join.
+/// Assigns numbers to springs by the masses that they join. A spring keeps its number throughout the film.
 class SpringNumbers {
  public:
   /// The springs of a shot.
@@ -141,7 +141,7 @@ class FilmMaterials {
         positions.push_back(list.index(material));
   }
 
-  /// Returns the index in the film of a material of a shot's body.
+  /// Returns the film's index of a material in the body of a shot.
   std::int64_t position(std::size_t shot, std::size_t material) const { return positions_[shot][material]; }
 
   Json json() const {
@@ -182,7 +182,7 @@ struct Motion {
   Json shots;             ///< times and positions of each shot
   double step = 0;        ///< unit of positions, m
   std::size_t every = 0;  ///< n, if every n-th filmed frame is kept
-  bool fits = false;      ///< whether it fits the budget
+  bool fits = false;      ///< whether it fits into the budget
 };
 
 class FilmWriter {
@@ -206,7 +206,7 @@ class FilmWriter {
             {"shots", shots_json(detail.stress_levels)}};
   }
 
-  /// Returns the motion. Leaves out only as many frames as necessary for at most `budget` bytes, and no more than
+  /// Returns the motion. Leaves out only as many frames as necessary to fit into `budget` bytes, and no more than
   /// `detail` allows.
   Motion motion(const Detail& detail, std::size_t budget) const {
     std::size_t most = least_thinning;
@@ -230,7 +230,7 @@ class FilmWriter {
       still["shots"][i].update(motion.shots[i]);
     }
     const ViewError error = errors.error();
-    // half the distance of the two highest levels, which are furthest apart
+    // half the distance between the two highest levels, which are furthest apart
     const double stress = most_stress_ / still["stress_levels"].get<double>();
     still["step"] = motion.step;
     still["error"] = {{"largest", error.largest}, {"most", error.most}, {"stress", stress}};
@@ -281,8 +281,8 @@ class FilmWriter {
     return shots;
   }
 
-  /// Returns every n-th frame of the i-th shot for n = `every`, or more frames if the shot is measured, and the last
-  /// frame.
+  /// Returns every n-th frame of the i-th shot, with n = `every`, and the last frame. If the shot is measured, returns
+  /// more frames.
   std::vector<const Frame*> kept_frames(std::size_t i, std::size_t every) const {
     const std::vector<Frame>& frames = film_[i].frames;
     if (titles_.at(i).measured && every < frames.size()) every = std::max(least_thinning, every / measured_finer);

@@ -20,11 +20,11 @@ struct Title {
   bool measured = false;  ///< whether the shot lies within the window of a fitness
 };
 
-/// Converts a film to JSON of at most `budget` bytes, if possible. Masses and springs keep their numbers through the
-/// whole life. If the film is too large, frames are left out (fewer from measured shots than from others), and
-/// positions and stress are stored with lower precision. The masses and springs of each shot, and the first and the
-/// last frame of each shot, are always kept, even if they exceed the budget. `titles` has one title for each shot. The
-/// JSON of an empty film has only an empty list of shots.
+/// Converts a film to JSON of at most `budget` bytes, if possible. Masses and springs keep their numbers throughout the
+/// life. If the film is too large, frames are left out (fewer from measured shots than from others), and positions and
+/// stress are stored with lower precision. The masses and springs of each shot, and the first and the last frame of
+/// each shot, are always kept, even if they exceed the budget. `titles` has one title for each shot. The JSON of an
+/// empty film has only an empty list of shots.
 ///
 ///   masses          number of masses that are ever in the body
 ///   mass_materials  material of each mass; packed (packing.hpp), as are all lists of numbers below except times

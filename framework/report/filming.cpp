@@ -46,7 +46,7 @@ class Take {
     add_frame(shot().frames, *task.state, rate);
   }
 
-  /// Returns the number of steps of the next part; all parts are equally long, up to one step.
+  /// Returns the number of steps of the next part; the lengths of the parts differ by at most one step.
   std::uint64_t next_steps() {
     ++begun_;
     return whole_.steps * begun_ / parts_ - done_;

@@ -14,7 +14,7 @@ struct Narrated {
   std::string name;
   const Experiment* experiment = nullptr;
   std::size_t index = 0;    ///< index among the experiment's devo operators
-  bool is_tallied = false;  ///< whether the operator sees stress in points of skip-shift instead of N
+  bool is_tallied = false;  ///< whether the operator sees stress as Skip-Shift points instead of in N
   bool is_unique = true;    ///< whether no other devo operator of the experiment has this name
 
   /// Returns the name and unit of the causes in a list.
@@ -26,7 +26,7 @@ std::vector<Narrated> narrated_operators(const Experiment& experiment);
 
 /// The number that caused an edit.
 struct Cause {
-  Causes::List list;  ///< the list that the number comes from, which determines its name and unit
+  Causes::List list;  ///< the list that has the number; it determines the name and unit of the number
   double number;
 };
 

@@ -11,7 +11,7 @@
 namespace evodevo {
 
 /// Packs integers: zigzag and LEB128 encode them as bytes, zlib compresses the bytes, and base64 turns them into text.
-/// All of this can be undone with functions that browsers have built in and a few lines of code.
+/// A page can undo all of this with the built-in functions of a browser and a few lines of code.
 std::string packed(std::span<const std::int64_t> numbers);
 
 /// Packs the differences between successive numbers. The text is short if the numbers mostly ascend.
@@ -25,7 +25,7 @@ std::string packed_changes(std::span<const std::uint32_t> before, std::span<cons
 /// same mass or spring.
 class ValuePacking {
  public:
-  /// `count` is the number of masses or springs. The last value of each is 0 at first.
+  /// `count` is the number of masses or springs. Before the first shot, all last values count as 0.
   explicit ValuePacking(std::size_t count) : last_(count) {}
 
   /// Packs the values of one shot; values[i] is that of the mass or spring with number numbers[i]. Packs nothing if
@@ -36,7 +36,8 @@ class ValuePacking {
   std::vector<std::int64_t> last_;
 };
 
-/// Packs the positions of masses, shot by shot. Within a shot, frame by frame; within a frame, all x, all y, all z.
+/// Packs the positions of masses, shot by shot. A shot is packed frame by frame; a frame is packed as all x, then all
+/// y, then all z.
 class PlacePacking {
  public:
   /// `count` is the number of masses, `step` the unit of positions (m).

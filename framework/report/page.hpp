@@ -14,7 +14,7 @@ std::filesystem::path viewer_folder();
 /// Returns the built page without data. Throws like viewer_folder().
 std::string page_template();
 
-/// Inserts `data` into the page. Data are escaped so that a browser does not read any of them as markup.
+/// Inserts `data` into the page. Data are escaped so that a browser does not interpret any of them as markup.
 std::string filled_page(const std::string& page, const nlohmann::ordered_json& data);
 
 /// If a page is larger than 30 MB, returns a line that says how large it is and names the option that reduces the

@@ -9,7 +9,7 @@
 
 namespace evodevo {
 
-/// Largest size of the films of all robots on a page, bytes. It keeps the page under 30 MB.
+/// Largest total size of the films of all robots on a page, bytes. It keeps the page under 30 MB.
 inline constexpr std::size_t page_budget = 27'000'000;
 
 /// The robots of a run that a page shows.
@@ -20,8 +20,8 @@ struct Cast {
 };
 
 /// Returns the data of a run for a report: numbers of the run, its population, and the robots of `cast` with films.
-/// `simulator` simulates the robots again (evolution/resimulation.hpp). `budget` is the largest size of all films,
-/// bytes.
+/// `simulator` simulates the robots again (evolution/resimulation.hpp). `budget` is the largest total size of the
+/// films, bytes.
 nlohmann::ordered_json reported_run(const Archive& archive, const Experiment& experiment, Simulator& simulator,
                                     const Cast& cast, std::size_t budget);
 

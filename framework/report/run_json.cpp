@@ -38,7 +38,7 @@ Json provenances_json(const std::vector<Provenance>& provenances) {
   return list;
 }
 
-/// Returns whether the best individuals, as many as the experiment asks to verify, have been verified.
+/// Returns whether all of the best individuals that the experiment asks to verify have been verified.
 bool is_verified(const Archive& archive, const Settings& settings) {
   const auto best = archive.best(static_cast<std::size_t>(settings.verify));
   return std::all_of(best.begin(), best.end(), [&](std::uint32_t id) { return archive.verification(id).has_value(); });

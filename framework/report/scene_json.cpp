@@ -11,14 +11,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double margin = 3;                  ///< width of the ground shown around all bodies, in largest body lengths
-constexpr double samples_in_wavelength = 12;  ///< linear interpolation errs by at most 1/25 of the roughness
+constexpr double margin = 3;  ///< width of the ground shown around all bodies, relative to the largest body length
+constexpr double samples_in_wavelength = 12;  ///< error of linear interpolation: at most 1/25 of the roughness
 constexpr double most_samples = 256;          ///< largest number of samples along each side
 
 Vec3 position(const SeenPlace& p) { return {p[0], p[1], p[2]}; }
 
-/// Returns the bounding box of all positions in the films, extended horizontally by the margin, m. Of a life that
-/// failed only the first frame counts, because a diverging body may move arbitrarily far.
+/// Returns the bounding box of all positions in the films, extended horizontally by the margin, m. For a life that
+/// failed, only the first frame counts, because a diverging body may move arbitrarily far.
 Box seen_box(const std::vector<FilmedLife>& lives) {
   std::vector<Vec3> corners;
   double side = 0;

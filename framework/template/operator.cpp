@@ -41,7 +41,7 @@ class @CLASS@ final : public evodevo::Encoding {
   double side_ = 1;
 };
 @mutation@
-/// Draws each gene anew with probability `rate`. Any number of genes may change, or none.
+/// Draws each gene anew with probability `rate`. Several genes may change, or none.
 class @CLASS@ final : public evodevo::Mutation {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -73,8 +73,8 @@ class @CLASS@ final : public evodevo::Crossover {
   double rate_ = 0.5;
 };
 @devo@
-/// Removes random springs after each cycle, fewer than `springs` if the same spring is drawn twice.
-/// evodevo::Edits in evodevo/devo.hpp lists all changes that a devo operator can make.
+/// Removes `springs` random springs after each cycle, or fewer if the same spring is drawn twice. evodevo::Edits in
+/// evodevo/devo.hpp lists all changes that a devo operator can make.
 class @CLASS@ final : public evodevo::Devo {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -115,7 +115,7 @@ class @CLASS@ final : public evodevo::Fitness {
 @selection@
 using evodevo::Candidate;
 
-/// Truncation selection: the best part of the population breeds. Failed rows have no scores and come last.
+/// Truncation selection: only the best part of the population breeds. Failed rows have no scores and come last.
 class @CLASS@ final : public evodevo::Selection {
  public:
   void parameters(evodevo::Parameters& p) override {

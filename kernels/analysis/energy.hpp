@@ -7,7 +7,7 @@
 namespace evodevo {
 
 /// The sum of a body's kinetic energy, elastic energy and, in a scene with gravity, gravitational energy relative to
-/// the origin, J. A State that is not made by state_at_birth() gets this value as its start_energy.
+/// the origin, J. This value is the start_energy of a State that is not made by state_at_birth().
 double total_energy(const Body& body, const State& state, const Scene& scene);
 
 }  // namespace evodevo

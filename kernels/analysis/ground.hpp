@@ -9,7 +9,7 @@
 namespace evodevo {
 
 /// The state of a body at the start of its life: its rest positions, moved so that the lowest mass is on the ground and
-/// the centre of mass is over the origin; no velocities; t = 0; `start_energy` for the scene.
+/// the centre of mass is over the origin; velocities and time are 0; `start_energy` is set for the scene.
 State state_at_birth(const Body& body, const Scene& scene);
 
 /// The height of the ground under a point, m; 0 without a floor.

@@ -45,8 +45,8 @@ double strain_allowance(const Body& body) {
   return sum;
 }
 
-/// The energy (J) of all springs if rounding strains each of them by 16,384 rounding units of its length and of the
-/// largest coordinate.
+/// The energy (J) of all springs if rounding strains each of them by 16,384 times the machine epsilon times the sum of
+/// its rest length and the largest coordinate.
 double rounding_allowance(const Body& body, const State& state, Precision precision) {
   const double rounding = 16384 * epsilon(precision), positions = extent(state);
   double sum = 0;
@@ -66,7 +66,7 @@ double sag_allowance(const Body& body, const Scene& scene, double dt) {
   return sum;
 }
 
-/// The first moment of mass over height: the sum of mass times height, kg m.
+/// The sum of mass times height over all masses, kg m.
 double height_moment_of(const Body& body, const State& state, const Scene& scene) {
   const double grade = scene.gravity ? scene.gravity->grade() : 0;
   double sum = 0;

@@ -51,7 +51,8 @@ double fallen_energy(const Scene& scene, double height_moment);
 /// energies (J); `finite` says whether all its positions and velocities are finite. `course.fallen` must be up to date.
 std::string divergence_reason(const Course& course, double dt, double kinetic, double elastic, bool finite);
 
-/// Why a body has diverged whose springs' forces left the range that the device can represent.
+/// Returns the reason for the divergence of a body in which a spring force has left the range that the device can
+/// represent.
 std::string force_range_reason(const Course& course);
 
 /// Writes the end of a run into its task: the time and start_energy of its state, and the course for the next piece.

@@ -20,7 +20,7 @@ struct Points {
   }
   template <class Bounds>
   bool kdtree_get_bbox(Bounds&) const {
-    return false;  // nanoflann computes it
+    return false;  // nanoflann computes the bounding box itself
   }
 };
 

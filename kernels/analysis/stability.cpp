@@ -10,8 +10,8 @@
 namespace evodevo {
 namespace {
 
-/// The mass-weighted stiffness matrix A = M^-1/2 K M^-1/2 of a body, 1/s^2; K is the sum of k e e^T
-/// over the springs, e a spring's direction. Its eigenvalues are the squares of the body's angular frequencies.
+/// The mass-weighted stiffness matrix A = M^-1/2 K M^-1/2 of a body, 1/s^2; K is the sum of k e e^T over the springs,
+/// with e the direction of a spring. Its eigenvalues are the squares of the body's angular frequencies.
 class StiffnessMatrix {
  public:
   StiffnessMatrix(const Body& body, std::span<const Vec3> positions)
@@ -58,9 +58,9 @@ class StiffnessMatrix {
 };
 
 /// An upper bound of the matrix's largest eigenvalue, 1/s^2. Because |xb - xa|^2 <= 2 |xa|^2 + 2 |xb|^2, K is at most
-/// twice its diagonal blocks. The bound is therefore the largest 2 lambda/m over the masses, lambda being the largest
-/// eigenvalue of the sum of k e e^T over the mass's springs. Gershgorin's bound, 2 sum(k)/m, is larger because it
-/// ignores that springs have different directions.
+/// twice its diagonal blocks. The bound is therefore the maximum of 2 lambda/m over the masses, where lambda is the
+/// largest eigenvalue of the sum of k e e^T over the mass's springs. Gershgorin's bound, 2 sum(k)/m, is larger because
+/// it ignores that springs have different directions.
 double eigenvalue_bound(const Body& body, std::span<const Vec3> positions) {
   std::vector<Eigen::Matrix3d> block(body.masses.size(), Eigen::Matrix3d::Zero());
   for (const Spring& spring : body.springs) {
@@ -93,7 +93,7 @@ Eigen::VectorXd scattered(Eigen::Index size) {
   return v.normalized();
 }
 
-/// The tridiagonal matrix that Lanczos' iteration builds, one row per step.
+/// The tridiagonal matrix that the Lanczos iteration builds, one row per step.
 class Tridiagonal {
  public:
   void add_row(double diagonal, double off_diagonal) {
@@ -115,10 +115,10 @@ class Tridiagonal {
   std::vector<double> diagonal_, off_diagonal_;  // the first off-diagonal element is outside the matrix
 };
 
-/// The largest eigenvalue (1/s^2) of `matrix` by Lanczos' iteration; if it is above `enough`, some number between
-/// `enough` and the eigenvalue. The estimates rise towards the eigenvalue. The iteration ends when the residual is
-/// below 1 % (after about 15 iterations for a body of a thousand masses) or after 60 iterations; a margin of 2 %, which
-/// is 1 % in frequency, covers the remaining error.
+/// The largest eigenvalue (1/s^2) of `matrix` by the Lanczos iteration; if the eigenvalue is above `enough`, some
+/// number between `enough` and the eigenvalue. The estimates rise towards the eigenvalue. The iteration ends when the
+/// residual is below 1 % of the estimate (after about 15 iterations for a body of a thousand masses) or after 60
+/// iterations; a margin of 2 %, which is 1 % in frequency, covers the remaining error.
 double largest_eigenvalue(const StiffnessMatrix& matrix, double enough) {
   constexpr int iterations = 60, between_looks = 3;
   constexpr double margin = 1.02, residual = 0.01;
@@ -145,8 +145,8 @@ double largest_eigenvalue(const StiffnessMatrix& matrix, double enough) {
   return margin * estimate;
 }
 
-/// The cheapest upper bound of the largest eigenvalue (1/s^2), by Gershgorin's discs on blocks of one mass: the largest
-/// 2 sum(k)/m. NaN if a position is not finite.
+/// The cheapest upper bound of the largest eigenvalue (1/s^2), by Gershgorin discs on blocks of one mass: the largest 2
+/// sum(k)/m. NaN if a position is not finite.
 double disc_bound(const Body& body, std::span<const Vec3> positions) {
   std::vector<double> sum(body.masses.size());
   for (const Spring& spring : body.springs) {

@@ -38,7 +38,7 @@ double largest_muscle_dt(const Body& body);
 /// cheaper to determine, and also if it has no springs or the method is not explicit. NaN if a position is not finite.
 ///
 /// If an upper bound of the frequency shows that `wanted` is stable, no more is computed; for random robots, this bound
-/// is 1.35 times the true frequency on average and 1.40 times at most. Otherwise Lanczos' iteration finds the
+/// is 1.35 times the true frequency on average and 1.40 times at most. Otherwise the Lanczos iteration finds the
 /// frequency. The result is then at most 2 % below the true limit; only for bodies whose highest frequencies are close
 /// together, such as long chains, is it above the limit, by at most half a percent.
 double largest_dt(const Body& body, std::span<const Vec3> positions, Method method,

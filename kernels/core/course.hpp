@@ -14,10 +14,11 @@ struct ForceRange {
 };
 
 /// The progress of a run, and values that were computed at its beginning. Times, checks and bounds refer to the
-/// beginning of the whole run, so that a run in pieces gives the same result, to the bit, as the run as a whole.
+/// beginning of the whole run, so that a run in pieces gives results that are bit-identical to those of an undivided
+/// run.
 struct Course {
   double origin = 0;        ///< State::time at the beginning of the run, s
-  std::uint64_t steps = 0;  ///< number of steps since the beginning
+  std::uint64_t steps = 0;  ///< number of steps since the beginning of the run
   EnergyBound bound;
   double fallen = 0;        ///< largest energy lost by falling below the origin so far, J
   ForceRange forces;        ///< range of forces, on devices that limit forces

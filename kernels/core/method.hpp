@@ -13,11 +13,11 @@ namespace evodevo {
 /// (analysis/stability.hpp). implicit is stable at any step; it damps oscillations that are faster than the step.
 ///
 /// xpbd damps these oscillations as well. At steps longer than about three times the explicit methods' limit, bodies
-/// sag under their weight; at steps longer than about seven times the limit, one Gauss-Seidel pass leaves so large a
+/// sag under their weight; at steps longer than about seven times the limit, one Gauss-Seidel pass leaves such a large
 /// residual that bodies with few springs gain energy. At any step, xpbd rotates bodies with active muscles by an angle
 /// of order dt^2, because later springs in the pass use velocities that earlier springs have changed. Reversing the
-/// order in every second step would reduce the angle to order dt^4, but then bodies would gain energy already at twice
-/// the explicit methods' limit.
+/// order in every second step would reduce the angle to order dt^4, but then bodies would gain energy even at twice the
+/// explicit methods' limit.
 enum class Method {
   paper_euler,       ///< semi-implicit Euler, the new velocity multiplied by exp(-rate dt); order 1
   symplectic_euler,  ///< semi-implicit Euler with damping and drag that give the exact terminal velocity; order 1

@@ -22,8 +22,8 @@ struct Gravity {
  private:
   double radians() const { return slope * (3.14159265358979323846 / 180); }
 };
-/// The plane z = 0, or rough ground around it. It pushes a mass that is below it up with a force of `stiffness` times
-/// the depth (paper, section IV-C1).
+/// The plane z = 0, or rough ground around it. It pushes a mass below it upwards with a force of `stiffness` times the
+/// depth (paper, section IV-C1).
 struct Floor {
   double stiffness = 1e6;  ///< N/m
   double roughness = 0;    ///< largest height of hills and largest depth of hollows, m

@@ -25,8 +25,8 @@ namespace evodevo {
 enum class Precision { float32, float64 };
 
 /// How a GPU gets the material of a spring: from a table of the body's materials, or by decoding a short code that each
-/// spring carries (paper, section V). The codes round materials (analysis/computed_materials.hpp); a simulator on any
-/// device uses the rounded materials.
+/// spring carries (paper, section V). The codes round materials (analysis/computed_materials.hpp); simulators on all
+/// devices use the rounded materials.
 enum class Materials { table, computed };
 
 /// How time steps are computed. The length of the step is given by each task.
@@ -54,13 +54,13 @@ struct Recording {
 struct SpringRecords {
   std::vector<double> stress;       ///< mean absolute force over the run, N
   std::vector<double> peak_force;   ///< largest absolute force, N
-  std::vector<double> muscle_work;  ///< energy that the spring's muscle put into the body, J; losses not subtracted
+  std::vector<double> muscle_work;  ///< energy that the muscle put into the body, J; energy taken out does not count
   std::vector<double> tension;      ///< mean force, N: positive if the spring pulled, negative if it pushed
 
   static constexpr std::array lists{&SpringRecords::stress, &SpringRecords::peak_force, &SpringRecords::muscle_work,
                                     &SpringRecords::tension};
 
-  /// Sets the lists that `recording` requests to zeros for `springs` springs, and empties the others.
+  /// Sets each list that `recording` requests to `springs` zeros, and empties the other lists.
   void clear(Recording recording, std::size_t springs) {
     stress.assign(recording.stress ? springs : 0, 0.0);
     peak_force.assign(recording.peak_force ? springs : 0, 0.0);
@@ -81,9 +81,9 @@ class Preparation {
 /// empty after a divergence.
 ///
 /// A run can be divided into pieces with the same body and dt: each piece except the last gives the number of
-/// `later_steps` that follow, and the caller passes its `course` to the next piece. State and status are then the same
-/// as in one run, to the bit. Records and work are those of the piece only; their sums over the pieces may differ from
-/// those of one run by rounding.
+/// `later_steps` that follow, and the caller passes its `course` to the next piece. State and status are then
+/// bit-identical to those of an undivided run. Records and work cover the piece only; combined over all pieces, they
+/// may differ from those of an undivided run by rounding.
 struct Task : SpringRecords {
   const Body* body = nullptr;
   State* state = nullptr;  ///< updated in place
@@ -91,11 +91,12 @@ struct Task : SpringRecords {
   std::uint64_t steps = 0;
   std::uint64_t later_steps = 0;  ///< steps of the same run in later pieces
   std::optional<Course> course;   ///< in: from the run's earlier piece, if any; out: for the next piece, if any
-  /// In: from the body's last run, or null; out: of this run. A preparation that no longer fits the body is ignored.
+  /// In: the preparation from the body's last run, or null; out: that of this run. A preparation that no longer fits
+  /// the body is ignored.
   std::shared_ptr<const Preparation> preparation;
 
   Status status = Status::ok;            ///< in: tasks that are not ok are skipped; out: ok or diverged
-  double ended_at = 0;                   ///< time of the divergence since birth, s; detected up to 100 steps late
+  double ended_at = 0;                   ///< time since birth at which a check found the divergence, s
   std::string reason;                    ///< why the body has diverged
   double work = 0;                       ///< work of the muscles on the body, J; 0 unless recorded
   std::uint64_t spring_evaluations = 0;  ///< springs times steps, whatever the number of passes per step
@@ -113,8 +114,8 @@ struct DeviceUse {
   std::size_t portions = 1;  ///< largest number of portions into which a batch was divided to fit the device's memory
 };
 
-/// Simulates bodies in a scene. Masses of 0 kg are held in place. The result for a body is the same, to the bit,
-/// whether the body is alone or in any batch, and for any number of threads.
+/// Simulates bodies in a scene. Masses of 0 kg are held in place. The result for a body is bit-identical whether the
+/// body is alone or in any batch, and for any number of threads.
 class Simulator {
  public:
   virtual ~Simulator() = default;
@@ -131,7 +132,7 @@ class Simulator {
   /// that no more threads than cores compete and priorities (threads/parallel.hpp) apply to all work.
   virtual Workers& workers() = 0;
 
-  /// The number of simultaneous calls of run() that keep the device busy: while one batch is simulated, others are
+  /// The number of simultaneous calls to run() that keep the device busy: while one batch is simulated, others are
   /// prepared.
   virtual int concurrency() const { return 1; }
 

@@ -11,14 +11,14 @@
 namespace evodevo {
 
 /// The number of groups into which a body's springs are divided, which is the number of threads in the paper's blocks.
-/// Bodies of fewer than 512 springs have half as many groups as springs, because the only spring of a group would gain
-/// and lose a point.
+/// Bodies of fewer than 512 springs have half as many groups as springs, because in a group of one, the same spring
+/// would both gain and lose a point.
 inline constexpr std::size_t most_tally_groups = 256;
 
 /// Simulates every task, with a tally of its springs after every `skip` steps. A tally divides the springs among the
 /// groups in a new random order. In each group, the spring with the largest absolute force gains one point, and the
 /// spring with the smallest absolute force loses one; ties are decided at random. The points become the task's
-/// `stress`: the springs with the most points are the most stressed. A task of fewer than `skip` steps would have no
+/// `stress`: the springs with the most points are the most stressed. A task with fewer than `skip` steps would have no
 /// tally; it ends as invalid before its first step. `random` has one stream per task, which alone determines the
 /// orders.
 ///

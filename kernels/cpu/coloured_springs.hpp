@@ -13,7 +13,7 @@ struct ColouredSprings {
   ColouredSprings(const Body& body, const Layout<T>& layout);
 
   std::size_t size = 0;
-  Array<std::uint32_t> a, b;                ///< position_stride times the indices (in Layout's order) of the masses
+  Array<std::uint32_t> a, b;                ///< position_stride times the masses' indices in Layout::mass_at
   Array<std::uint32_t> slot;                ///< Layout::slot_of the spring
   Array<T> stiffness;                       ///< N/m
   Array<T> rest_length;                     ///< m

@@ -15,8 +15,8 @@ namespace evodevo::cpu {
 template <class T>
 using Index = std::conditional_t<sizeof(T) == sizeof(float), std::int32_t, std::int64_t>;
 
-/// Numbers per mass in an interleaved array of positions: x, y, z and one of padding, so that one load instruction
-/// reads the position of a neighbour.
+/// Numbers per mass in an interleaved array of positions: x, y, z and one number of padding, so that one load
+/// instruction reads the position of a neighbour.
 inline constexpr std::size_t position_stride = 4;
 
 /// A body's springs, listed by mass. Masses are sorted by descending degree (number of springs) and divided into groups
@@ -30,13 +30,13 @@ struct Layout {
 
   std::size_t lanes, masses, springs;
   std::size_t groups;                    ///< ceil(masses / lanes)
-  std::vector<std::uint32_t> mass_at;    ///< [masses] in this order: index into Body::masses
+  std::vector<std::uint32_t> mass_at;    ///< [masses] index into Body::masses of each sorted mass
   std::vector<std::uint32_t> slot_of;    ///< [springs] one of the two slots of each spring
   std::vector<std::uint32_t> first_row;  ///< [groups + 1] the rows of group g are first_row[g] .. first_row[g + 1] - 1
   Array<std::uint32_t>
-      neighbour;       ///< [slots + lanes] position_stride times the index, in this order, of the mass at the other end
-  Array<T> stiffness;  ///< [slots] N/m
-  Array<T> rest_length;      ///< [slots] m
+      neighbour;         ///< [slots + lanes] position_stride times the index in mass_at of the mass at the other end
+  Array<T> stiffness;    ///< [slots] N/m
+  Array<T> rest_length;  ///< [slots] m
   Array<Index<T>> material;  ///< [slots] index into Body::materials
 
   std::size_t padded_masses() const { return groups * lanes; }

@@ -139,7 +139,7 @@ HWY_INLINE void damp(const cpu::Motion<T>& m, T decay_, std::size_t masses) {
     for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) hn::Store(hn::Load(d, v + i) * decay, d, v + i);
 }
 
-/// Reduces the tangential velocities vx, vy (m/s) by the friction of a time `time` (s) under the normal forces
+/// Reduces the tangential velocities vx, vy (m/s) by the friction that acts for `time` seconds under the normal forces
 /// m.floor_force.
 template <class T>
 HWY_INLINE void apply_friction(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, T time, T* vx_, T* vy_,

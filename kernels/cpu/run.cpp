@@ -145,8 +145,8 @@ class MovingBody {
             .tension_sum = data_of(tension_sum_)};
   }
 
-  /// Adds the sums of the slots to the task's records and sets them to zero. A sum over the steps between two checks is
-  /// short enough for float32.
+  /// Adds the sums of the slots to the task's records and sets them to zero. The sums between two checks have few
+  /// enough terms for float32.
   void collect(Task& task) {
     for (std::size_t i = 0; i < layout_.springs; ++i) {
       const std::uint32_t slot = layout_.slot_of[i];

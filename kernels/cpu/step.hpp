@@ -80,7 +80,7 @@ struct Motion {
   T* slot_scratch;           ///< Integrator::slot_arrays arrays, one number for each slot
   std::size_t slots;
 
-  // [slots]; null if Sums does not ask for them
+  // [slots]; null if not enabled in Sums
   T* force_sum;    ///< N
   T* power_sum;    ///< W
   T* peak;         ///< N
@@ -98,7 +98,7 @@ struct Actuation {
 
 struct Energies {
   double kinetic, elastic;  ///< J
-  double height_moment;     ///< first moment of mass over height: sum of mass times height, kg m
+  double height_moment;     ///< sum of mass times height over all masses, kg m
   bool finite;              ///< whether all positions and velocities are finite
 };
 
@@ -109,7 +109,8 @@ struct Integrator {
   std::size_t mass_arrays;    ///< scratch arrays, one number per mass each; their content is not kept between calls
   std::size_t slot_arrays;    ///< scratch arrays, one number per slot each
   bool coloured;              ///< whether the method needs the springs by colour
-  /// Advances the body by `steps` steps. `actuation` holds the relative lengths from the first to the last of them.
+  /// Advances the body by `steps` steps. `actuation` holds the relative lengths from the beginning of the first step to
+  /// the end of the last step.
   void (*advance)(const Motion<T>&, const StepConstants<T>&, const Actuation<T>& actuation, std::size_t steps, Sums);
 };
 

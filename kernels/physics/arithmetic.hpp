@@ -71,8 +71,7 @@ EVODEVO_HD T round_down(T a) {
   return std::floor(a);
 }
 
-/// A hash of 32 bits: every bit of `n` influences every bit of the result (Wellons, Prospecting for hash functions,
-/// 2018).
+/// A 32-bit hash: every bit of `n` influences every bit of the result (Wellons, Prospecting for hash functions, 2018).
 EVODEVO_HD std::uint32_t mix_bits(std::uint32_t n) {
   n = (n ^ n >> 16) * 0x7feb352du;
   n = (n ^ n >> 15) * 0x846ca68bu;

@@ -1,4 +1,4 @@
-// The 48-bit code by which a spring carries its material when materials are computed. The host writes it, the GPU
+// The 48-bit code that gives a spring its material when materials are computed. The host writes the code, and the GPU
 // decodes it.
 #pragma once
 

@@ -62,7 +62,7 @@ EVODEVO_HD T spring_factor(T distance, T stiffness, T spring_length) {
   return stiffness - stiffness * spring_length / distance;
 }
 
-/// 1/|d|, 1/m; finite.
+/// 1/|d|, 1/m; always finite.
 template <class T>
 EVODEVO_HD T inverse_length(const Separation<T>& s) {
   return inverse_square_root(s.squared);
@@ -133,10 +133,11 @@ EVODEVO_HD Triple<T> spring_force_rate(const Separation<T>& s, T stiffness, T fa
           multiply_add(pull, s.d.z, transverse * velocity.z)};
 }
 
-/// The force (N) that a constraint of stiffness k has at the end of a step: k violation/(1 + k dt damped_dt w).
-/// `violation` (m) is how far the step would end from the rest length if the constraint did not act, w (`inverse_mass`,
-/// 1/kg) the sum of the inverse masses that the constraint moves, and `dt_squared` = dt damped_dt (s^2; damped_dt as in
-/// drag_retention()). This is lambda/dt^2 of a constraint of compliance 1/k (Macklin et al., XPBD, 2016, equation 18).
+/// The force (N) that a constraint of stiffness k exerts at the end of a step: k violation/(1 + k dt damped_dt w).
+/// `violation` (m) is how far the length would be from the rest length at the end of the step if the constraint did not
+/// act, w (`inverse_mass`, 1/kg) is the sum of the inverse masses that the constraint moves, and `dt_squared` is dt
+/// damped_dt (s^2; damped_dt as in drag_retention()). This is lambda/dt^2 of a constraint of compliance 1/k (Macklin et
+/// al., XPBD, 2016, equation 18).
 template <class T>
 EVODEVO_HD T compliant_force(T stiffness, T violation, T dt_squared, T inverse_mass) {
   return stiffness * violation / multiply_add(stiffness * dt_squared, inverse_mass, constant<T>(1));
@@ -227,7 +228,7 @@ EVODEVO_HD T along_normal(const Ground<T>& ground, const Triple<T>& v) {
   return negative_multiply_add(ground.slope_x, v.x, negative_multiply_add(ground.slope_y, v.y, v.z));
 }
 
-/// The squared length of that normal, 1.
+/// The squared length of the normal (-slope_x, -slope_y, 1), 1.
 template <class T>
 EVODEVO_HD T normal_squared(const Ground<T>& ground) {
   return multiply_add(ground.slope_x, ground.slope_x, multiply_add(ground.slope_y, ground.slope_y, constant<T>(1)));
@@ -271,8 +272,8 @@ EVODEVO_HD T advanced_velocity(T velocity, T force, T dt_over_mass) {
 }
 
 /// The fraction, from 0 to 1, of a tangential velocity (vx, vy; m/s) that Coulomb friction leaves (paper, section
-/// IV-C1). Friction takes at most `loss` = mu N dt/m (m/s) and never reverses the velocity, so a mass inside the
-/// friction cone sticks.
+/// IV-C1). Friction reduces the speed by at most `loss` = mu N dt/m (m/s) and never reverses the velocity, so a mass
+/// inside the friction cone sticks.
 template <class T>
 EVODEVO_HD T friction_factor(T vx, T vy, T loss) {
   const T speed = square_root(multiply_add(vy, vy, vx * vx));

@@ -62,7 +62,7 @@ class Workers {
 };
 
 /// While this object exists, loops that its thread starts have the given priority number; otherwise they have 0, the
-/// number that comes first.
+/// highest priority.
 class Priority {
  public:
   explicit Priority(int priority);

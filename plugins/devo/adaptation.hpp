@@ -6,7 +6,7 @@
 #include "stress.hpp"
 
 /// Multiplies a property of the most stressed springs by a factor, within bounds. Springs without the property are
-/// passed over. A value that is already beyond its bound stays as it is.
+/// skipped. A value that is already beyond its bound stays as it is.
 class Adaptation : public evodevo::Devo {
  public:
   evodevo::SpringRequest observes() const final { return measure_.request(); }

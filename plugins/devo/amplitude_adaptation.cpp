@@ -5,7 +5,7 @@
 
 namespace {
 
-/// Springs with an amplitude of zero are not muscles; the operator passes over them.
+/// Springs with an amplitude of zero are not muscles; the operator skips them.
 class AmplitudeAdaptation final : public Adaptation {
  public:
   AmplitudeAdaptation() : Adaptation(1.05, 0.02, 0.3) {}

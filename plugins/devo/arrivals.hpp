@@ -4,8 +4,8 @@
 #include "evodevo/devo.hpp"
 #include "stress.hpp"
 
-/// The parameters by which new masses are placed and joined: as in the paper (section IV-D3), or as the paper proposes
-/// for future work (section VII).
+/// The parameters that determine how new masses are placed and joined: as in the paper (section IV-D3), or as the paper
+/// proposes for future work (section VII).
 struct ArrivalRule {
   std::int64_t springs = 25;
   double min_distance = 0.02;  ///< m
@@ -115,7 +115,8 @@ class Arrivals {
     }
   }
 
-  /// Sorts `partners` by distance, nearest first, ties by index; sorts only as many as the new mass gets springs.
+  /// Sorts `partners` by distance, nearest first, ties by index; sorts only as many partners as the new mass gets
+  /// springs.
   void sort_by_distance(std::vector<std::uint32_t>& partners, const evodevo::Vec3& position) const {
     std::vector<std::pair<double, std::uint32_t>> order;
     for (const std::uint32_t i : partners) order.emplace_back(norm(context_.position(i) - position), i);
@@ -144,9 +145,9 @@ class Arrivals {
 
   const ArrivalRule& rule_;
   const evodevo::DevoContext& context_;
-  std::vector<double> stress_;  ///< stress of every spring; empty unless it decides where masses come
+  std::vector<double> stress_;  ///< stress of every spring; empty unless it determines where masses are placed
   StressLottery lottery_;
   std::vector<bool> stays_;
   std::vector<evodevo::Vec3> positions_;
-  std::vector<double> causes_;  ///< for each position, the stress of the spring that it is on; empty as `stress_` is
+  std::vector<double> causes_;  ///< for each position, the stress of the spring that it is on; empty if `stress_` is
 };

@@ -1,6 +1,6 @@
 // Ballistic development: genes set the sizes at birth and at the end of development, and the body grows linearly from
-// one to the other, whatever it experiences (Kriegman, Cheney, Corucci & Bongard 2017, "A minimal developmental model
-// can increase evolvability in soft robots"; paper, section II).
+// one to the other, regardless of what it experiences (Kriegman, Cheney, Corucci & Bongard 2017, "A minimal
+// developmental model can increase evolvability in soft robots"; paper, section II).
 #include "evodevo/plugin.hpp"
 
 namespace {

@@ -10,11 +10,11 @@ using evodevo::DevoContext;
 using evodevo::Edits;
 using evodevo::Rng;
 
-/// The paper's operation, which the paper calls "currently partially implemented". The paper leaves open these choices:
-/// The operator determines the degree of all masses once, before it removes any. Contacts to air count as springs,
-/// because a body with much air would be wiped out otherwise. One application removes the masses with the fewest
-/// springs, at most `limit` and at most half of the body. The operator removes a mass only if it finds a free position
-/// for a new one.
+/// The paper's operation, which the paper calls "currently partially implemented". The paper leaves some choices open.
+/// Here, the operator determines the degree of all masses once, before it removes any. Contacts to air count as
+/// springs, because a body with much air would be wiped out otherwise. One application removes the masses with the
+/// fewest springs, at most `limit` masses and at most half of the body's masses. The operator removes a mass only if it
+/// finds a free position for a new one.
 class MassTurnover final : public evodevo::Devo {
  public:
   void parameters(evodevo::Parameters& p) override {

@@ -74,7 +74,7 @@ class Candidates {
 
  private:
   /// Suggests a pair that closes a triangle with a spring: one end of the spring and a random partner of its other end.
-  /// If that partner is the first end itself, the suggested pair is that of the spring.
+  /// If that partner is the first end itself, the pair consists of the spring's own two masses.
   Candidate beside(std::uint32_t index, Rng& rng) const {
     std::uint32_t from = context_.body.springs[index].a, past = context_.body.springs[index].b;
     if (rng.chance(0.5)) std::swap(from, past);

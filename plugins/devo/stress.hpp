@@ -76,7 +76,7 @@ class StressMeasure {
 /// negative or not finite counts as zero.
 class StressLottery {
  public:
-  /// Makes a lottery without springs, from which draw() must not be called.
+  /// Makes a lottery without springs, for which draw() must not be called.
   StressLottery() = default;
   explicit StressLottery(std::span<const double> stress) {
     double sum = 0;

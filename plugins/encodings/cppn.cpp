@@ -1,5 +1,5 @@
 // A compositional pattern-producing network (Stanley 2007): the activation functions of the neurons evolve together
-// with the weights, and with the functions the symmetries and repetitions of the pattern. Here the topology of the
+// with the weights. The functions determine the symmetries and repetitions of the pattern. Here the topology of the
 // network is fixed.
 #include <array>
 #include <cmath>
@@ -9,8 +9,8 @@
 
 namespace {
 
-/// The activation functions that a neuron may have. They are Stanley's; the value of each is of the order of 1 if its
-/// argument is.
+/// The activation functions that a neuron may have. They are the ones that Stanley used. The value of each is of the
+/// order of 1 if its argument is.
 constexpr std::array<double (*)(double), 5> functions = {
     [](double x) { return x; },           [](double x) { return std::tanh(x); },
     [](double x) { return std::sin(x); }, [](double x) { return std::exp(-x * x); },

@@ -31,7 +31,7 @@ class LatticeEncoding : public evodevo::Encoding {
     return {0, 0, std::max(1u, static_cast<std::uint32_t>(chosen(context).size()))};
   }
 
-  /// Returns a body of the lattice's masses, centred on the origin, without springs.
+  /// Returns a body that consists of the lattice's masses, centred on the origin, without springs.
   evodevo::Body masses(const evodevo::Lattice& lattice, const evodevo::EncodingContext& context) const {
     evodevo::Body body;
     body.materials = context.materials;
@@ -40,8 +40,8 @@ class LatticeEncoding : public evodevo::Encoding {
     return body;
   }
 
-  /// Adds a spring of the lattice to the body, with the given material. If the material is air, counts a contact to air
-  /// for both masses instead, and returns false.
+  /// Adds a spring of the lattice to the body, with the given material. If the material is air, counts a contact with
+  /// air for both masses instead, and returns false.
   static bool join(evodevo::Body& body, const evodevo::LatticeSpring& spring, const evodevo::Material& material) {
     evodevo::Mass &a = body.masses[spring.a], &b = body.masses[spring.b];
     if (is_air(material)) {

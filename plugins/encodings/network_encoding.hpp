@@ -1,4 +1,4 @@
-// Shared by the encodings that map points to masses by a network (paper, section IV-A1).
+// Shared by the encodings that map points to masses with a network (paper, section IV-A1).
 #pragma once
 
 #include <Eigen/Core>
@@ -7,11 +7,11 @@
 #include "chosen.hpp"
 #include "evodevo/encoding.hpp"
 
-/// A network that maps each point of a ball to a mass: to its position in a cube and its material. Nearest neighbours
-/// are joined. The paper leaves open these choices: the points are uniformly distributed in the ball, and the positions
-/// lie in [-side/2, side/2]^3. Neighbours are determined among the positions or, as the paper proposes in section VII,
-/// among the points. If sizes develop, each mass has a size at birth and a size at the end of development (Kriegman et
-/// al. 2017).
+/// A network that maps each point of a ball to a mass, that is, to a position in a cube and a material. Nearest
+/// neighbours are joined. The paper leaves two choices open: here, the points are uniformly distributed in the ball,
+/// and the positions lie in [-side/2, side/2]^3. Neighbours are determined among the positions or, as the paper
+/// proposes in section VII, among the points. If `size_range` is above 0, each mass has a size at birth and a size at
+/// the end of development (Kriegman et al. 2017).
 class NetworkEncoding : public evodevo::Encoding {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -63,7 +63,7 @@ class NetworkEncoding : public evodevo::Encoding {
   /// Returns the number of neurons in each of the two hidden layers.
   std::int64_t hidden() const { return hidden_; }
   /// Returns the number of outputs of the network: x, y and z; one value for each material to choose from, the greatest
-  /// of which selects the material; and, if sizes develop, the size at birth and the size at the end.
+  /// of which selects the material; and, if `size_range` is above 0, the size at birth and the size at the end.
   std::int64_t outputs_in(const evodevo::EncodingContext& context) const {
     return 3 + static_cast<std::int64_t>(context.material_indices(materials_).size()) + (size_range_ > 0 ? 2 : 0);
   }

@@ -6,9 +6,9 @@ namespace {
 
 using evodevo::Material;
 
-/// Each voxel has one gene group: its material and, if sizes develop, its size at birth and its size at the end of
-/// development (Kriegman et al. 2017; in the paper's words, "a start and end volume"). Voxels of air are absent. A
-/// spring that belongs to several voxels has the mean of their materials and sizes. The positions of the masses at
+/// Each voxel has one gene group: its material and, if `size_range` is above 0, its size at birth and its size at the
+/// end of development (Kriegman et al. 2017; in the paper's words, "a start and end volume"). Voxels of air are absent.
+/// A spring that belongs to several voxels has the mean of their materials and sizes. The positions of the masses at
 /// birth are those of a lattice of equal voxels.
 class Voxel final : public LatticeEncoding {
  public:

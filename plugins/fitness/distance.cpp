@@ -26,7 +26,7 @@ class Distance final : public evodevo::Fitness {
 
   std::vector<double> score(const evodevo::Observation& observation) const override {
     const evodevo::Box& box = observation.box;
-    // a body whose masses all lie in one point has no length, and neither has a body with a position of NaN
+    // a body whose masses all lie at one point has no length, and neither does a body with a NaN position
     if (!(norm(box.high - box.low) > 0)) return {std::numeric_limits<double>::quiet_NaN()};
     const evodevo::Vec3 way = observation.centre_after - observation.centre_before;
     return {dot(way, direction_) / norm(direction_) / box.longest_side()};

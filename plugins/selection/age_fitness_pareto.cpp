@@ -8,8 +8,8 @@ namespace {
 using evodevo::Candidate;
 
 /// Youth is an additional objective, so that old champions do not displace new individuals at once. Whole Pareto layers
-/// live on, the front first. Of the first layer that does not fit into the population as a whole, the least crowded
-/// members live on (Deb et al. 2002).
+/// survive, the front first. Of the first layer that does not fit into the population as a whole, the least crowded
+/// members survive (Deb et al. 2002).
 class AgeFitnessPareto final : public evodevo::Selection {
  public:
   std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,

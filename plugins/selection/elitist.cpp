@@ -1,4 +1,4 @@
-// Simple elitist selection: the best individuals live on, and parents are the winners of small tournaments.
+// Simple elitist selection: the best individuals survive, and parents are the winners of small tournaments.
 #include "evodevo/plugin.hpp"
 #include "rows.hpp"
 

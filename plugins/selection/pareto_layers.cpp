@@ -9,11 +9,11 @@ namespace {
 using evodevo::Candidate;
 using evodevo::Point;
 
-/// The paper's replacement. The paper leaves open these choices: A child competes with its parent for the parent's
-/// place; if a parent has several children, only the best of them can win. Individuals without a parent compete with
-/// the worst. "Fitness" is the first objective. The whole front lives on; if it is larger than the population, its most
-/// crowded members do not. Individuals that lost against their parent or child live on only if places are left, and
-/// failed individuals only after all others.
+/// The paper's replacement. The paper leaves some choices open. Here, a child competes with its parent for the parent's
+/// place; if a parent has several children, only the best of them can win. Individuals without a parent compete for the
+/// places of the worst individuals. "Fitness" is the first objective. The whole front survives; if it is larger than
+/// the population, its most crowded members do not survive. Individuals that lost against their parent or child survive
+/// only if places are left, and failed individuals only after all others.
 class ParetoLayers final : public evodevo::Selection {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -66,8 +66,8 @@ class ParetoLayers final : public evodevo::Selection {
     return parents;
   }
 
-  /// Returns which rows lost: a parent if its best child is better, and a child if it is not better than its parent or
-  /// not the best of several children.
+  /// Returns which rows lost: a parent if its best child is better, and a child if it is not better than its parent, or
+  /// if it is not the best of its parent's children.
   static std::vector<bool> losers(const std::vector<Candidate>& rows, const std::vector<std::size_t>& parents,
                                   const std::vector<std::uint32_t>& layer, const std::vector<std::uint32_t>& ranked) {
     const auto better = [&](std::size_t a, std::size_t b) {

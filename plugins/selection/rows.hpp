@@ -9,7 +9,7 @@
 
 #include "evodevo/selection.hpp"
 
-/// Returns the rows from best to worst: by the first score, ties by the further scores in their order, then by youth,
+/// Returns the rows from best to worst: by the first score, ties by the other scores in their order, then by youth,
 /// then by the order of birth. Failed rows come last. An operator that works in this order gives a result that depends
 /// on the order of birth only for exact ties.
 inline std::vector<std::uint32_t> best_first(std::span<const evodevo::Candidate> rows) {

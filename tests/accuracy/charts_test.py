@@ -1,4 +1,4 @@
-"""Tests that tools/accuracy draws each of its charts, from small tables."""
+"""Tests that tools/accuracy draws each of its charts when given small tables."""
 
 import pathlib
 import tempfile

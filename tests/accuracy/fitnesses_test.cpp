@@ -1,4 +1,4 @@
-// The study's fitnesses equal those that evolution uses.
+// The fitness values in the study equal those that evolution uses.
 #include "fitnesses.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The largest stable dt: predictions by theory and measurements of springs and bodies.
+// The largest stable dt of springs and bodies: theoretical predictions and measurements.
 #include "limits.hpp"
 
 #include <gtest/gtest.h>
@@ -67,13 +67,13 @@ TEST(LimitsOfDamping, AreThoseOfTheCharacteristicPolynomials) {
   for (const double c : {0.1, 1.0, 2.5}) {
     const double decay = std::exp(-c);
     // The limits follow from z = -1 as a root of z^2 - (1 + decay - decay h^2) z + decay; for symplectic-euler, the
-    // factor decay of h^2 is (1 - decay)/c instead.
+    // coefficient of h^2 is (1 - decay)/c instead of decay.
     EXPECT_NEAR(bounded_phases(Method::paper_euler, c).high, std::sqrt(2 * (1 + decay) / decay), 1e-3);
     EXPECT_NEAR(bounded_phases(Method::symplectic_euler, c).high, std::sqrt(2 * (1 + decay) * c / (1 - decay)), 1e-3);
     EXPECT_NEAR(bounded_phases(Method::velocity_verlet, c).high, 2, 1e-3);
   }
-  // rk4 integrates damping like a force, so damping has a limit as well: 2.785 is the real root of
-  // 1 - z/2 + z^2/6 - z^3/24
+  // rk4 integrates damping like a force, so the product of damping rate and dt has a limit as well: 2.785, the real
+  // root of 1 - z/2 + z^2/6 - z^3/24
   EXPECT_EQ(bounded_phases(Method::rk4, 2.78).low, 0);
   EXPECT_GT(bounded_phases(Method::rk4, 2.79).low, 0);
 }

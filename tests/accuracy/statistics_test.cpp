@@ -36,7 +36,7 @@ TEST(BootstrapInterval, HoldsTheCorrelationAndIsNarrowerForMore) {
     EXPECT_GT(interval.high, rank_correlation(a, b));
     return interval.high - interval.low;
   };
-  // widths shrink in proportion to one over the square root of the number of values
+  // the width of an interval is inversely proportional to the square root of the number of values
   const double ratio = interval_of(30) / interval_of(480);
   EXPECT_GT(ratio, 2);
   EXPECT_LT(ratio, 8);

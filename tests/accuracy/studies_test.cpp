@@ -1,4 +1,4 @@
-// The results that the studies claim.
+// Checks of the results that the studies claim.
 #include "studies.hpp"
 
 #include <gtest/gtest.h>

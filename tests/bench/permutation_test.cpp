@@ -35,7 +35,8 @@ TEST(Permutation, GivesEveryPlaceEverySpring) {
 }
 
 TEST(Permutation, PutsSpringsThatWereInOneGroupIntoOthers) {
-  // springs whose positions in an order are equal modulo 256 share a group; two given springs do so once in 256 times
+  // springs whose positions in an order are equal modulo 256 share a group; for two given springs, the probability of
+  // this is about 1/256
   int together = 0;
   for (std::uint32_t tally = 1; tally <= 500; ++tally) {
     const Permutation now = shifted(springs, 1, tally), next = shifted(springs, 1, tally + 1);

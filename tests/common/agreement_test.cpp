@@ -22,7 +22,7 @@ TEST(ShareFound, IsChanceWhereTheEstimateKnowsNothing) {
 }
 
 TEST(ShareFound, SharesTheRoomAmongEquals) {
-  // 5 is found; the estimates of 4, 3, 2 and 0 are equal, and compete for two places
+  // the estimate finds 5; its values for 4, 3, 2 and 0 are equal, so these four compete for two places
   EXPECT_DOUBLE_EQ(share_found(truth, std::vector<double>{9, 0, 1, 1, 1, 1}, 3), (1 + 0.5 + 0.5) / 3);
 }
 

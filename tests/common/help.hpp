@@ -1,5 +1,5 @@
-// Shared by the tests of several tools' command lines: the check that a page of help describes exactly the options that
-// a program takes, and the message of a refusal.
+// Helpers for testing the command lines of several tools: a check that a help page describes exactly the options that a
+// program takes, and a function that returns the error message about a command line.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,15 +14,16 @@
 
 namespace evodevo::tools {
 
-/// Returns the entry of an option: its line and the lines below it, up to the next option or an empty line.
+/// Returns the entry of an option in a help page: its line and the lines below it, up to the next option or an empty
+/// line.
 inline std::string described(const std::string& help, const std::string& option) {
   std::smatch found;
   const std::regex entry("\n  --" + option + "[ \n](?:.*)(?:\n   .*)*");
   return std::regex_search(help, found, entry) ? found.str() : "";
 }
 
-/// Expects that every option has an entry that names its default, except positional ones, and that there are no other
-/// entries.
+/// Expects that every option except positional ones has an entry, which names the default if there is one, and that
+/// there are no other entries.
 inline void expect_page_of_options(const Program& program, const boost::program_options::options_description& options,
                                    const std::set<std::string>& positional = {}) {
   const std::string help(program.help), name(program.name);
@@ -46,7 +47,7 @@ inline void expect_page_of_options(const Program& program, const boost::program_
   EXPECT_NE(help.find("\n  tools/" + name + " "), help.npos) << "there is no example";
 }
 
-/// Returns the message with which `parse` refuses a command line, or an empty string if it accepts the line.
+/// Returns the message with which `parse` refuses a command line, or an empty string if it accepts the command line.
 template <class Parse>
 std::string complaint_about(const Parse& parse, const CommandLine& line) {
   try {

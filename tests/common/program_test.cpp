@@ -1,4 +1,4 @@
-// Code that the measuring programs share.
+// Tests of code that the measuring programs share.
 #include "common/program.hpp"
 
 #include <gmock/gmock.h>

@@ -94,8 +94,8 @@ class Comparison(unittest.TestCase):
         self.assertEqual(len(rows), len(names) * 2 * 4)  # variants, seeds, generations
         springs = header.index("spring_evaluations")
         cost = {name: sum(int(row[springs]) for row in rows if (row[0], row[2]) == (name, "20")) for name in names}
-        # a life takes 0.15 s without development, and two cycles of 0.05 s or 0.1 s more with it; bodies have about the
-        # same number of springs
+        # without development, 0.15 s of each life are simulated; with development, two cycles of 0.05 s or 0.1 s are
+        # added; bodies have about the same number of springs
         self.assertLess(cost[names[0]], cost[names[1]])
         self.assertLess(cost[names[1]], cost[names[2]])
 

@@ -74,7 +74,7 @@ class Reports(unittest.TestCase):
             histories = self.histories(objective, first=worse, second=better)
             first, second = report.standings(histories, objective, "evaluations", 10, "first")
             self.assertEqual((first.a12, first.p, second.a12), (0.5, 1, 1))
-            self.assertAlmostEqual(second.p, 2 / 12870, places=14)  # the two most extreme of C(16, 8) ways
+            self.assertAlmostEqual(second.p, 2 / 12870, places=14)  # 2 of the C(16, 8) splits
             self.assertRegex(second.verdict("first"), "`second`, beside `first`: better")
 
     def test_any_experiment_may_be_tested_against(self):
@@ -88,7 +88,7 @@ class Reports(unittest.TestCase):
         rows = [line for line in text.split("## After ")[1].splitlines() if line.startswith("| `")]
         self.assertEqual([row.split(" | ")[0] for row in rows], ["| `low`", "| `middle`", "| `high`"])
         self.assertEqual([row.endswith("| - | - | - | - |") for row in rows], [False, True, False])
-        # 2 of C(16, 8) = 12870 ways are as extreme; Holm's correction for two tests doubles p
+        # 2 of the C(16, 8) = 12870 ways to split the scores are this extreme; Holm's correction for two tests doubles p
         self.assertEqual([row.split(" | ")[-2:] for row in (rows[0], rows[2])], [["0.00016", "0.00031 |"]] * 2)
 
     def test_a_small_difference_is_no_finding(self):
@@ -103,7 +103,8 @@ class Reports(unittest.TestCase):
         return report.markdown(histories, FAR, report.Setting("tools/compare", seeds, against, made))
 
     def test_too_few_seeds_bear_neither_interval_nor_verdict(self):
-        # the smallest p of 3 and 3 values is 2/C(6, 3) = 2/20; that of 4 and 4 values is 2/70, which two tests double
+        # for samples of 3 values, the smallest p is 2/C(6, 3) = 2/20; for samples of 4 values, it is 2/C(8, 4) = 2/70,
+        # which the correction for two tests doubles
         cases = ((3, 2, "that takes 4."), (4, 2, None), (4, 3, "that takes 5."), (5, 3, None), (6, 3, None))
         for seeds, experiments, need in cases:
             some = {f"e{i}": [[i + seed / 10] for seed in range(seeds)] for i in range(experiments)}
@@ -123,7 +124,7 @@ class Reports(unittest.TestCase):
             self.assertNotIn(absent, text)
 
     def test_no_cost_is_compared_at_which_a_run_has_no_generation(self):
-        # every run of the first ends before the first generation of the second is complete
+        # every run of `small` ends at a lower cost than that at which `large` completes its first generation
         histories = {
             Variant(pathlib.Path("small")): [history(shown([1, 2], springs=10), FAR)] * 6,
             Variant(pathlib.Path("large")): [history(shown([5, 6], springs=30), FAR)] * 6,
@@ -192,14 +193,16 @@ class Reports(unittest.TestCase):
         self.assertIn("- device:\n  - cpu: 1 of `evo`, 2 of `devo`\n  - cuda: 1 of `evo`\n", text)
         self.assertIn("- evodevo:\n  - 0.1.0 (p): 2 of `evo`, 1 of `devo`\n  - 0.1.0 (q): 1 of `devo`\n", text)
         self.assertNotIn("distance", text)
-        # all runs were resumed on another device, with generations by both; then, with no generation by the second
+        # all runs were resumed on another device: first a case with generations by both devices, then one with no
+        # generation by the second device
         resumed = made(a, provenance("aa", device="cuda"))
         text = differences(*[resumed] * 4)
         self.assertIn("- device:\n  - cpu: 2 of `evo`, 2 of `devo`\n  - cuda: 2 of `evo`, 2 of `devo`\n", text)
         self.assertEqual(differences(*[made(a, provenance("aa", device="cuda"), by=[0, 0])] * 4), "")
 
     def test_costs_differ_between_the_axes(self):
-        # a generation of the second costs three times as much, so at equal cost it has a third of the generations
+        # a generation of the second variant costs three times as much, so at equal cost this variant has a third of the
+        # generations
         first = [history(shown([1, 2, 3], springs=10), FAR)]
         second = [history(shown([10, 20, 30], springs=30), FAR)]
         histories = {Variant(pathlib.Path("first")): first, Variant(pathlib.Path("second")): second}

@@ -16,7 +16,7 @@ def samples_with(u, m, n):
 
 class RankSumTest(unittest.TestCase):
     def test_published_critical_values(self):
-        # two-tailed critical values at 0.05, as in the tables of Mann-Whitney's U in most textbooks
+        # two-tailed critical values at 0.05, as in the tables of the Mann-Whitney U in most textbooks
         published = ((5, 5, 2), (6, 8, 8), (7, 9, 12), (8, 10, 17), (10, 10, 23), (15, 15, 64), (20, 20, 127))
         for m, n, critical in published:
             with self.subTest(m=m, n=n):
@@ -43,7 +43,8 @@ class RankSumTest(unittest.TestCase):
         self.assertAlmostEqual(inference.rank_sum_test(a, b), expected, places=14)
 
     def test_many_values_without_ties_by_the_normal_distribution(self):
-        # U of 21 and 21 values has mean 220.5 and variance 21 * 21 * 43 / 12; the continuity correction is 0.5
+        # for two samples of 21 values, U has mean 220.5 and variance 21 * 21 * 43 / 12; the continuity correction is
+        # 0.5
         z = (220.5 - 140 - 0.5) / math.sqrt(21 * 21 * 43 / 12)
         self.assertAlmostEqual(inference.rank_sum_test(*samples_with(140, 21, 21)), math.erfc(z / math.sqrt(2)), places=12)
 
@@ -83,7 +84,7 @@ class Medians(unittest.TestCase):
         self.assertEqual(inference.median([-math.inf, -math.inf, 1]), -math.inf)
 
     def test_resamples_have_their_medians_as_often_as_the_binomial_says(self):
-        # a resample's median is at most the k-th of 11 values if at least 6 of the 11 draws are
+        # a resample's median is at most the k-th of 11 values if at least 6 of the 11 draws are at most that value
         medians = inference.resampled_medians(tuple(range(1, 12)))
         for k in range(1, 12):
             share = sum(math.comb(11, n) * k**n * (11 - k) ** (11 - n) for n in range(6, 12)) / 11**11
@@ -128,7 +129,7 @@ class Superiority(unittest.TestCase):
             self.assertLess(inference.superiority_interval(0.5 + 0.999 * step, size)[0], 0.5)
 
     def test_it_holds_the_truth_as_often_as_it_says(self):
-        # exponential samples have a known A12: the rate of the second sample over the sum of both rates
+        # exponential samples have a known A12: the rate of the second sample divided by the sum of both rates
         draw = random.Random(1)
         size, samples = 10, 2000
         for rate in (1, 3, 10):

@@ -1,4 +1,4 @@
-"""Tests which variants sweeps produce, and their names."""
+"""Tests the variants that sweeps produce, and the names of these variants."""
 
 import pathlib
 import re

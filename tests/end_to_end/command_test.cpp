@@ -110,7 +110,7 @@ TEST_F(Command, FailedBodiesNeverReachAReportAsNumbers) {
 }
 
 TEST_F(Command, FailedBodiesLoseToAnyFiniteOne) {
-  // at this stiffness of bone, a pair of masses is stable and a block of bone is not
+  // with bone this stiff, a pair of masses is stable but a block of bone is not
   for (const std::string selection : {"age-fitness-pareto", "pareto-layers", "elitist"}) {
     const std::string folder = folder_ + selection;
     const Finished finished = evodevo({"run", file_, "--out", folder, "--set", "materials.bone.stiffness=1e6", "--set",
@@ -148,7 +148,7 @@ TEST_F(Command, LifeTellsEveryEditFromBirthToTheMaturedBody) {
     for (const auto& spring : body.at("springs")) pairs.insert(pair_of(spring.at("a"), spring.at("b")));
     return pairs;
   };
-  Pairs pairs = pairs_of(born);  // no masses are added or removed, so numbers of masses are indices
+  Pairs pairs = pairs_of(born);  // no masses are added or removed, so each mass's number equals its index
   ASSERT_EQ(life.at("edits").size(), 2u * (2 + 2)) << "two springs for two others in each of two cycles";
   for (const auto& edit : life.at("edits")) {
     EXPECT_EQ(edit.at("operator"), "spring-turnover");

@@ -59,7 +59,7 @@ struct Broken {
   const char* plugin;
   const char* rule;
   std::string outcome;             ///< expected outcome
-  std::vector<std::string> named;  ///< what the reason must name
+  std::vector<std::string> named;  ///< texts that the reason must contain
 };
 
 class Wrong : public ::testing::TestWithParam<Broken> {};

@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::Process;
 
-/// A run of thirteen generations, each of which takes some tens of milliseconds.
+/// A run of thirteen generations, each of which takes a few tens of milliseconds.
 class Interruption : public ::testing::Test {
  protected:
   testing::Scratch scratch_;
@@ -44,8 +44,8 @@ class Interruption : public ::testing::Test {
   }
 };
 
-/// Expects that all individuals are the same in genes, ancestry and result, and all generations in their numbers,
-/// except the wall time.
+/// Expects that the individuals of both runs have the same genes, ancestry, results and recorded lives, and that the
+/// generations have the same statistics, except for the wall time.
 void expect_same_runs(const Archive& a, const Archive& b) {
   const auto generations_a = a.generations(), generations_b = b.generations();
   ASSERT_EQ(generations_a.size(), generations_b.size());
@@ -84,7 +84,7 @@ TEST_P(InterruptedJournal, KilledAtEachLineAndResumedEndsTheSame) {
   ASSERT_EQ(testing::run(run_command("straight")).exit_code, 0);
   std::vector<std::string> command = run_command("killed");
   command.insert(command.end(), {"--journal", GetParam()});
-  std::set<std::size_t> complete;  // numbers of complete generations at which the run was killed
+  std::set<std::size_t> complete;  // how many generations were complete each time the run was killed
   const auto run_to_line = [&](int line) {
     Process process(command);
     // once the first line, which names the folder, is printed, the run can be resumed
@@ -207,7 +207,7 @@ TEST_F(Interruption, ReportsOfARunThatGoesOnDisturbItNotAtAll) {
     const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
     const auto run = reported_run(archive, std::move(experiment), *simulator, {.best = 1}, 1'000'000);
     seen.insert(run["evaluations"].get<std::int64_t>());
-    // all numbers must belong to the same moment
+    // all numbers in a report must belong to the same moment
     std::int64_t evaluations = 0;
     for (const auto& count : run["statuses"]) evaluations += count.get<std::int64_t>();
     EXPECT_EQ(run["evaluations"], evaluations);
@@ -228,7 +228,7 @@ TEST_F(Interruption, AFinishedRunHasNothingToResume) {
 }
 
 TEST_F(Interruption, GoingOnElsewhereOrByAnotherBuildWarns) {
-  // this test program begins the run
+  // the run is created by this test program, which is another build than the program that resumes it
   { Archive::create(scratch_ / "run", testing::read(testing::small_experiment), "cpu, an older one"); }
   const std::string begun_by = Archive::read(scratch_ / "run").provenances().front().program;
   const testing::Finished resumed = testing::run(resume_command("run"));
@@ -256,7 +256,7 @@ TEST_F(Interruption, ThreadsDoNotChangeARun) {
 }
 
 TEST_F(Interruption, TwoRunsAtOnceTakeFoldersOfTheirOwn) {
-  // without --out, each makes a folder of its own in runs/
+  // without --out, each run makes a folder of its own in runs/
   const std::string command = "cd '" + (scratch_ / "").string() + "' && exec '" + EVODEVO_PROGRAM + "' run small.toml";
   Process one({"sh", "-c", command}), two({"sh", "-c", command});
   EXPECT_EQ(one.wait(), 0) << one.output();

@@ -24,7 +24,7 @@ class Misbehaviour : public ::testing::Test {
   std::string folder_ = (scratch_ / "run").string();
   std::string library_ = (fs::path(EVODEVO_FAULTY_PLUGINS) / "misbehaving/plugin.evodevo.so").string();
 
-  /// Returns the command of a run in which the operator of table `table` misbehaves as `how` says.
+  /// Returns the command for a run in which the operator in the table `table` misbehaves in the way that `how` names.
   std::vector<std::string> run_with(const std::string& table, const std::string& how,
                                     const std::string& more = "") const {
     return {EVODEVO_PROGRAM,
@@ -37,7 +37,7 @@ class Misbehaviour : public ::testing::Test {
             "--plugin-path",
             library_};
   }
-  /// Returns the same for a mutation that is applied to every child.
+  /// Returns such a command for a mutation operator that is applied to every child.
   std::vector<std::string> mutating(const std::string& how) const {
     return run_with("mutation.0", how, ",probability=1.0");
   }

@@ -1,4 +1,4 @@
-// The output of commands: to full devices, to pipes whose reader is gone, and over their own input files.
+// Commands whose output goes to a full device, to a pipe that nobody reads, or into their own input file.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,8 +24,8 @@ using ::testing::AllOf;
 using testing::Finished;
 using ::testing::HasSubstr;
 
-/// A folder with a finished run, a body of that run, and stand-ins for the viewer and its programs, which accept data
-/// and write a film.
+/// A folder with a finished run, a body of that run, and stand-ins for the page of the viewer and for Node.js; the
+/// latter writes a file instead of a film.
 class Workplace {
  public:
   Workplace() {

@@ -29,7 +29,7 @@ cmake -B build >/dev/null
 cmake --build build
 ctest --test-dir build --output-on-failure
 evodevo run experiment.toml --out run
-# not through a pipe, which grep would close at the first match
+# does not use a pipe to grep, since grep would close the pipe at the first match
 [[ $(evodevo show run --json) == *'"my-lab.growth"'* ]] || { echo "the run does not use the operator"; exit 1; }
 
 # after a change, only one file is compiled

@@ -1,5 +1,5 @@
-// Plugins as users experience them: where they are found, what the record keeps of them, and how a faulty plugin
-// affects a run.
+// Plugins from the point of view of users: the folders in which plugins are found, the data about plugins in the record
+// of a run, and the effect of faulty plugins on a run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ class Plugins : public ::testing::Test {
   }
   void TearDown() override { unsetenv("XDG_STATE_HOME"); }
 
-  /// Switches to another user's state folder; folders of operators are remembered for each user.
+  /// Switches to another user's state folder, in which evodevo remembers that user's folders of operators.
   void become_user(const std::string& name) const { setenv("XDG_STATE_HOME", (scratch_ / name).c_str(), 1); }
 
   /// Copies a library from tests/plugins to the folder in which the user keeps plugins.
@@ -46,7 +46,7 @@ class Plugins : public ::testing::Test {
     fs::copy_file(plugins / which / "plugin.evodevo.so", library_, fs::copy_options::overwrite_existing);
   }
   std::string own() const { return (scratch_ / "own").string(); }
-  /// The same folder as a record names it.
+  /// The path of the same folder in the form in which a record stores it.
   std::string recorded_own() const { return fs::path(own()).lexically_normal().string(); }
 
   static Finished evodevo(std::vector<std::string> arguments) {
@@ -208,7 +208,7 @@ TEST_F(Plugins, ARunOutlivesTheFolderOfItsOperators) {
   EXPECT_EQ(found.exit_code, 0) << found.output;
 }
 
-/// Returns all commands that load code which a record names.
+/// Returns all commands that load the plugins named in a record.
 std::vector<std::vector<std::string>> readers_of(const std::string& folder, const std::string& file) {
   return {{"resume", folder},
           {"life", folder},
@@ -236,7 +236,7 @@ TEST_F(Plugins, ARecordOfAnotherLoadsNothingThatTheUserHasNotNamed) {
   become_user("another");
   for (const std::vector<std::string>& command : readers_of(folder_, file_)) {
     const Finished refused = evodevo(command);
-    if (refused.output.find("evodevo_viewer") != std::string::npos) continue;  // it is not built
+    if (refused.output.find("evodevo_viewer") != std::string::npos) continue;  // the viewer is not built
     EXPECT_EQ(refused.exit_code, 2) << command.front();
     EXPECT_THAT(refused.output, HasSubstr("mutation.0.name = \"nothing\"")) << command.front();
     EXPECT_THAT(refused.output, HasSubstr("--plugin-path " + recorded_own())) << command.front();

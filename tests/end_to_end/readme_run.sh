@@ -12,7 +12,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 copy="$scratch/a (clean) copy & ü"
 mkdir "$copy"
-# leaves out what .gitignore names; its lines are either /NAME, which is in the same folder, or NAME, which is anywhere
+# excludes the files named in .gitignore, whose lines have the form /NAME (in the same folder) or NAME (in any folder)
 without=(--no-wildcards-match-slash --anchored --exclude=./.git)
 while IFS= read -r line; do
   case $line in

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs the commands of the README's section "Ten minutes to an operator of your own", from the installation of evodevo
-# on. The test ReadmeRun covers the commands before.
+# Runs the commands of the README's section "Ten minutes to an operator of your own", starting with the installation of
+# evodevo. The test ReadmeRun covers the preceding commands.
 #
 #   readme_tutorial.sh SOURCE_FOLDER BUILD_FOLDER
 set -euo pipefail
@@ -24,7 +24,7 @@ if [ ! -d "$build/share/evodevo/viewer" ]; then
   commands=$(grep -v '^evodevo report' <<<"$commands")
 fi
 
-# before the second build, replaces the loop of the template by that of the README
+# before the second build, replaces the loop of the template with that of the README
 change='sed -i -e "/^    for (.*springs_/{r $scratch/loop" -e "d}" growth.cpp'
 commands=${commands/$'\n'cmake --build build$'\n'/$'\n'"$change"$'\n'cmake --build build$'\n'}
 grep -qF 'sed -i' <<<"$commands" || { echo "README.md does not build the operator again"; exit 1; }

@@ -85,7 +85,8 @@ fail() {
   exit 1
 }
 succeeded() { [ "$status" = 0 ] || fail "it failed"; }
-# failed_in_a_line WORDS...   expects a failure with one line of error; before it, only messages on installations
+# failed_in_a_line WORDS...   expects a failure with a one-line error message; only messages about installations may
+# precede it
 failed_in_a_line() {
   [ "$status" = 1 ] || fail "the exit status is not 1"
   local line
@@ -174,7 +175,7 @@ case_no_charts() {
   rm "$scratch/bin/apt-get" "$scratch/bin/dpkg-query"
   call tools/compare some.toml
   failed_in_a_line "there is no apt-get" "python3-matplotlib python3-scipy"
-  # the measurements, which take long, are written nevertheless
+  # the results of the measurements, which take a long time, are written nevertheless
   call tools/accuracy charts --quick
   succeeded
   [[ $output = "evodevo-accuracy charts --quick" && $errors == *"data without charts: "*"python3-matplotlib"* ]] ||

@@ -94,7 +94,8 @@ class Simulate : public ::testing::Test {
     return scratch_.write("body.json", finished.output);
   }
 
-  /// Simulates a body for 14 steps; returns the first and the last frame, which have one frame between them.
+  /// Simulates a body for 14 steps, which is less than the time between two frames; returns the first and the last
+  /// state.
   std::pair<Seen, Seen> simulated(const std::string& body) {
     const Finished finished = evodevo({"simulate", body, file_, "--duration", "0.0098", "--trajectory", csv_});
     EXPECT_EQ(finished.exit_code, 0) << finished.output;

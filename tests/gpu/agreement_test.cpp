@@ -1,4 +1,5 @@
-// The GPU computes the same as the CPU, up to rounding; runs are short enough that rounding errors have not grown much.
+// The GPU gives the same results as the CPU, up to rounding. The runs are so short that rounding errors do not grow
+// much.
 #include "analysis/energy.hpp"
 #include "analysis/ground.hpp"
 #include "analysis/stability.hpp"
@@ -9,7 +10,7 @@
 namespace evodevo::testing_gpu {
 namespace {
 
-/// Returns the tolerance of positions after 0.1 s, m; about ten times the deviations seen on an H200. Near 1 m, the
+/// Returns the tolerance of positions after 0.1 s, m; about ten times the deviations observed on an H200. Near 1 m, the
 /// resolution of float32 is 1e-7 m. A mass that touches the floor one step earlier or later amplifies earlier rounding.
 double bound(const Way& way, bool contact) {
   if (std::get<Precision>(way) == Precision::float32) return contact ? 3e-3 : 5e-5;
@@ -88,7 +89,8 @@ TEST_P(AgreementOfRecords, StressAndWorkOf150Steps) {
               std::abs(gpu.answer.work - cpu.answer.work), cpu.answer.work);
   EXPECT_GT(cpu.answer.work, 0);
   const double accuracy = bound(way, scene.floor.has_value());
-  // N; deviations seen are at most 0.2 in float32 and 6e-9 in float64, except where one contact begins a step later
+  // tolerances, N; observed deviations are at most 0.2 in float32 and 6e-9 in float64, except where one contact begins
+  // a step later
   const bool late_touch = way == Way{Method::symplectic_euler, Precision::float64};
   EXPECT_LT(largest, std::get<Precision>(way) == Precision::float32 ? 3 : late_touch ? 1e-3 : 3e-5);
   EXPECT_LT(largest_peak, std::get<Precision>(way) == Precision::float32 ? 60 : 1e-1);
@@ -143,7 +145,7 @@ TEST_P(AgreementOfLargeSteps, After100Steps) {
 INSTANTIATE_TEST_SUITE_P(Gpu, AgreementOfLargeSteps, testing::Values(Method::implicit, Method::xpbd),
                          [](const auto& test) { return std::string(evodevo::name(test.param)); });
 
-/// A mass that is thrown: positions must be those of the closed form of each method's steps.
+/// A thrown mass, whose positions must equal the closed-form solution of each method's steps.
 class FreeFall : public testing::TestWithParam<Way> {};
 
 TEST_P(FreeFall, IsThatOfTheMethod) {

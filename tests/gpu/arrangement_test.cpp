@@ -53,8 +53,8 @@ void expect_sound(const Body& body, unsigned largest_block) {
   expect_sound(Arrangement(body, largest_block), body, largest_block);
 }
 
-/// Removes `masses` random masses and `springs` random springs and appends as many, as the host does when it applies
-/// edits.
+/// Removes `masses` random masses and `springs` random springs, and appends the same numbers of new ones, like the host
+/// when it applies edits.
 void turn_over(Body& body, std::uint32_t masses, std::uint32_t springs, std::mt19937& random) {
   const auto below = [&](std::size_t n) {
     return std::uniform_int_distribution<std::uint32_t>(0, static_cast<std::uint32_t>(n - 1))(random);

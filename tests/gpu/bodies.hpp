@@ -34,7 +34,7 @@ inline std::vector<Material> paper_materials() {
 }
 
 /// `masses` random points in a cube of side 2 m with masses from 0.15 kg to 0.25 kg, each joined to its `neighbours`
-/// nearest ones; springs take the materials in turn.
+/// nearest ones; the springs cycle through the materials.
 inline Body random_body(std::uint32_t masses, std::uint32_t neighbours, std::uint64_t seed,
                         std::vector<Material> materials = paper_materials()) {
   Random random(seed);
@@ -63,14 +63,14 @@ inline State moving_state(const Body& body, const Scene& scene, std::uint64_t se
 
 inline Scene walking_scene() { return {Gravity{}, Floor{}, Friction{}, Damping{}, std::nullopt}; }
 
-/// The run of a body, and its result.
+/// A body with its start state, and the result of its simulation.
 struct Robot {
   Robot(const Body& body_, const State& state_) : body(&body_), state(state_) {}
   Task task(std::uint64_t steps) { return {.body = body, .state = &state, .dt = dt, .steps = steps}; }
 
   const Body* body;
   State state;
-  double dt = 0.0005;  ///< s
+  double dt = 0.0005;  ///< time step [s]
   Task answer;
 };
 

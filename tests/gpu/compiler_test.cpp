@@ -52,7 +52,7 @@ const Features every_feature{.gravity = true,
                              .muscle_work = true,
                              .tension = true};
 
-/// Whether a method's kernels for bodies of any size compile.
+/// Whether the kernels that simulate bodies of any size compile with the given features and method.
 bool compiles_streamed(const Features& features) {
   const char* source = is_explicit(features.method) ? "cuda/device/streamed.cu" : form_of(features.method).file;
   return !compile(source, definitions(features), "sm_90").empty();
@@ -123,7 +123,7 @@ TEST_F(Compiler, KeepsNothingWhereNoVariableNamesAFolder) {
   const fs::path before = fs::current_path();
   fs::create_directories(cache_ / "here");
   fs::current_path(cache_ / "here");
-  // a relative path would mean another folder for each current folder
+  // a relative path would refer to a different folder for each working directory
   for (const char* relative : {"", ".", "cache"}) {
     ::setenv("XDG_CACHE_HOME", relative, 1);
     const auto expect_nothing_kept = [&] {

@@ -101,7 +101,8 @@ TEST_P(ComputedMaterials, Masses20000BeyondTheChip) {
 
 INSTANTIATE_TEST_SUITE_P(Gpu, ComputedMaterials, all_ways(), [](const auto& test) { return name(test.param); });
 
-/// Between masses that never move, forces at any time since birth must be those of the materials in the codes.
+/// Springs between masses that never move: at any time since birth, their forces must be those of the materials in
+/// their codes.
 class ComputedForces : public testing::TestWithParam<double> {};
 
 TEST_P(ComputedForces, AreThoseOfTheCodes) {

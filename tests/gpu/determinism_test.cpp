@@ -1,4 +1,4 @@
-// The result of a body is the same to the bit, whatever its position in a batch and however often it is computed.
+// The result of a body is bit-identical, whatever its position in a batch and however often it is computed.
 #include "analysis/ground.hpp"
 #include "gpu.hpp"
 
@@ -84,7 +84,7 @@ TEST_P(Determinism, BesideBodiesWithAndWithoutMuscles) {
   const Scene scene = walking_scene();
   const Recording all{.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};
   const auto simulator = make_cuda_simulator(scene, stepping(GetParam()));
-  // on the chip; with its springs in the device's memory; completely in the device's memory
+  // a body on the chip, one with its springs in the device's memory, and one completely in the device's memory
   for (const std::uint32_t masses : {60u, 1500u, 12000u}) {
     if (masses > 1500 && !is_explicit(std::get<Method>(GetParam()))) continue;
     const Body still = random_body(masses, 8, 3, {{4000, 0, 0, 0}, {10000, 0, 0, 0}});
@@ -123,7 +123,7 @@ TEST_P(Determinism, InternalForcesLeaveTheMomentumAlone) {
   Vec3 momentum;
   for (const Vec3& velocity : run.state.velocity) momentum = momentum + 0.25 * velocity;
   const auto [method, precision] = GetParam();
-  // implicit solves the equation of each step only up to a relative residual of 1e-6
+  // the method `implicit` solves the equation of each step only up to a relative residual of 1e-6
   const double rest = method == Method::implicit ? 1e-5 : 1e-12;
   EXPECT_LT(norm(momentum), precision == Precision::float32 ? 1e-4 : rest);
 }

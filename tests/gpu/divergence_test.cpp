@@ -1,4 +1,4 @@
-// Bodies whose energy has no source are stopped, and other bodies are not affected.
+// Bodies whose energy grows without a source are stopped, and other bodies are not affected.
 #include <gmock/gmock.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Messages on failures of driver and device say what happened and what to do.
+// Error messages about the driver and the device say what happened and what to do.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

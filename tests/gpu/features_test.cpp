@@ -1,4 +1,4 @@
-// Features that a scene does not use cost no instruction: a kernel with a feature switched off has the same operations
+// Features that a scene does not use cost no instructions: a kernel with a feature switched off has the same operations
 // as a kernel whose source does not contain the feature.
 #include "cuda/layout/features.hpp"
 
@@ -44,8 +44,8 @@ const std::vector<Subject> subjects{
     {"damping", &Features::damping, {"damping"}, {}, {}},
     {"drag", &Features::drag, {"drag"}, {}, {"drag_factor"}},
     {"actuation", &Features::actuation, {"actuation"}, {}, {"half_turns"}},
-    // row_stress stays, although it is unused then: it leaves no instruction, but without it the compiler would number
-    // registers differently
+    // the variable row_stress is not removed, although it becomes unused: it produces no instruction, but without it
+    // the compiler would number registers differently
     {"stress", &Features::stress, {"stress"}, {}, {}},
     // the work of single muscles is recorded only together with the work of the body
     {"work",
@@ -87,10 +87,11 @@ class Sources {
     }
   }
 
-  /// Removes the code of a feature. Throws if there is none, or if a part of it is left.
+  /// Removes the code of a feature. Throws if there is no such code, or if part of it remains.
   void remove(const Subject& subject) {
     for (const char* constant : subject.constants) {
-      // replaced by another constant, because the compiler numbers constants and uses the numbers in instructions
+      // replaces the constant by another one, because the compiler numbers constants and uses the numbers in
+      // instructions
       replace_all("constexpr bool " + std::string(constant) + " = \\w+;",
                   "constexpr bool no_" + std::string(constant) + " = true;");
       if (remove_statements(constant) == 0) throw std::runtime_error("nothing is for " + std::string(constant));

@@ -1,4 +1,4 @@
-// Evolution sees the same ranking of robots on both devices. Values of fitness need not agree, since contact is
+// On both devices, evolution sees nearly the same ranking of robots. Fitness values need not agree, since contact is
 // chaotic.
 #include <algorithm>
 #include <numeric>
@@ -56,7 +56,7 @@ std::vector<double> ranks(const std::vector<double>& values) {
   return ranks;
 }
 
-/// Returns Spearman's coefficient of distinct values, which is the correlation of their ranks.
+/// Returns Spearman's rank correlation coefficient. All values in a list must be distinct.
 double rank_correlation(const std::vector<double>& a, const std::vector<double>& b) {
   const std::vector<double> x = ranks(a), y = ranks(b);
   const double mean = (static_cast<double>(a.size()) - 1) / 2;
@@ -84,9 +84,9 @@ TEST(Fitness, Of500RandomRobotsRanksAlike) {
     on_gpu.push_back(gpu[i].objectives[0]);
   }
   ASSERT_GT(on_cpu.size(), 400u);
-  // Rank correlations seen on the CPU: 0.953 to 0.961 for three starts that differ in the last bit of float32, and
-  // 0.956 for float64, since half of random robots hardly move and chaos changes their order. Real differences give
-  // less: 0.909 with 10 % less friction, 0.927 with a floor that is 10 % less stiff, 0.892 with 5 % less damping.
+  // Rank correlations observed on the CPU: 0.953 to 0.961 for three starts that differ in the last bit of float32, and
+  // 0.956 for float64, since half of the random robots hardly move, so that chaos changes their order. Real differences
+  // give less: 0.909 with 10 % less friction, 0.927 with a floor that is 10 % less stiff, 0.892 with 5 % less damping.
   const double correlation = rank_correlation(on_cpu, on_gpu);
   std::printf("           rank correlation %.4f\n", correlation);
   EXPECT_GT(correlation, 0.94);

@@ -1,4 +1,4 @@
-// Bodies of all sizes are simulated by the kernels for their size, and so are unusual bodies.
+// The kernels for each size of body, and for unusual bodies, give the same results as the CPU.
 #include "analysis/ground.hpp"
 #include "gpu.hpp"
 

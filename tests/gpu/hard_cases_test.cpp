@@ -15,7 +15,7 @@ INSTANTIATE_TEST_SUITE_P(Gpu, HardCases, all_ways(),
 TEST_P(HardCases, AreRightOrFlagged) {
   EVODEVO_NEEDS_GPU();
   const auto [method, precision] = GetParam();
-  // forces are multiples of 2^-23 of the largest force; near the limit of dt, each step adds energy by this rounding
+  // forces are rounded to multiples of 2^-23 of the largest force; near the limit of dt, this adds energy in each step
   const double rounding = precision == Precision::float32 ? 1e-2 : 1e-6;
   test::expect_outcomes(
       test::hard_cases(method),

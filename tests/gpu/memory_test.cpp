@@ -1,4 +1,4 @@
-// If the device's memory is scarce, batches are divided, down to single bodies, and results are the same to the bit.
+// If the device's memory is scarce, batches are divided, down to single bodies, and results stay bit-identical.
 #include "cuda/runtime/memory.hpp"
 
 #include <cuda_runtime_api.h>

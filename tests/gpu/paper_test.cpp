@@ -1,4 +1,4 @@
-// The paper's methods, with which ours is compared in speed, compute the same motion, and record stress correctly.
+// The paper's methods, whose speed is compared with that of ours, compute the same motion and record stress correctly.
 #include <algorithm>
 #include <numeric>
 
@@ -17,7 +17,7 @@ using tools::bench::RecordedStress;
 using tools::bench::SpringOrder;
 using tools::bench::StressMethod;
 
-constexpr double dt = 0.0005;  // s
+constexpr double dt = 0.0005;  // time step, s
 
 Robot simulated(const Body& body, const Scene& scene, std::uint64_t steps, Recording recording = {}) {
   Robot robot(body, state_at_birth(body, scene));

@@ -1,4 +1,5 @@
-// On the GPU, a run in several pieces equals the run as a whole, and the guard decides as on the CPU.
+// On the GPU, a simulation in several pieces equals the simulation as a whole, and the guard makes the same decisions
+// as on the CPU.
 #include "physics/pieces.hpp"
 
 #include "gpu.hpp"
@@ -19,7 +20,7 @@ INSTANTIATE_TEST_SUITE_P(Gpu, GpuRuns, all_ways(), [](const auto& test) { return
 
 TEST_P(GpuRuns, InPiecesEndInTheBitsOfTheWhole) {
   EVODEVO_NEEDS_GPU();
-  // on the chip; with its springs in the device's memory; completely in the device's memory
+  // a body on the chip, one with its springs in the device's memory, and one completely in the device's memory
   std::vector<Body> bodies{test::random_body(107, 9, 5, 6), test::random_body(41, 6, 23, 7), test::single_mass(0.2),
                            test::random_body(1701, 14, 5, 8)};
   if (is_explicit(method())) bodies.push_back(test::random_body(12001, 6, 5, 9));

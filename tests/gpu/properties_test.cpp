@@ -17,7 +17,7 @@ class Property : public testing::TestWithParam<test::Arithmetic> {
   static Stepping stepping() { return {std::get<Method>(GetParam()), std::get<Precision>(GetParam())}; }
   static std::unique_ptr<Simulator> simulator(const Scene& scene) { return make_cuda_simulator(scene, stepping()); }
 
-  /// How far different rounding may move positions apart, m; about ten times the deviations seen.
+  /// How far different rounding may move positions apart, m; about ten times the deviations observed.
   static double rounding() { return stepping().precision == Precision::float32 ? 1e-2 : 1e-9; }
 
   /// Calls `check(scene, lives)` for each of 16 random scenes.

@@ -18,8 +18,8 @@ namespace {
 constexpr std::size_t shared_bytes = 227 << 10;  // shared memory of a block on an H200
 const Features features{.gravity = true, .floor = true, .friction = true, .damping = true};
 
-/// A body of 1,000 masses, each joined to 25 neighbours, whose springs take `materials` materials in turn; if 0, each
-/// spring has a material of its own.
+/// A body of 1,000 masses, each joined to 25 neighbours, whose springs cycle through `materials` materials. If
+/// `materials` is 0, each spring has a material of its own.
 Body body_of(std::size_t materials) {
   Body body = testing_gpu::random_body(1000, 25, 1);
   if (materials == 0) materials = body.springs.size();
@@ -47,7 +47,7 @@ TEST(Resident, RecordsLeadToTheirMaterials) {
     const Task task = task_of<float>(body, state, scene);
     const auto resident = Resident<float>::arrange(task, features, shared_bytes);
     ASSERT_TRUE(resident) << materials;
-    const bool wide = body.materials.size() > 8190;  // entries of 8 bytes in 64 KiB, besides that for empty slots
+    const bool wide = body.materials.size() > 8190;  // 16-bit offsets reach 8,191 entries; one is for empty slots
     EXPECT_EQ(resident->form().wide_table, wide) << materials;
 
     std::vector<std::byte> input(resident->sizes().input), motion(resident->sizes().state);

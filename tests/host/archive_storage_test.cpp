@@ -116,7 +116,7 @@ TEST_F(ArchiveStorage, AReaderKeepsNobodyFromGoingOn) {
   for (const Journal journal : {Journal::wal, Journal::rollback}) {
     SCOPED_TRACE(name(journal));
     { created(journal); }
-    const Archive before = Archive::read(folder_);  // such as for a report that takes long
+    const Archive before = Archive::read(folder_);  // for example, for a report that takes a long time
     EXPECT_EQ(before.generations().size(), 0u);
     Archive archive = Archive::resume(folder_);
     const Archive beside = Archive::read(folder_);

@@ -77,7 +77,7 @@ TEST(BodyBuilding, AFailureOfTheEncodingIsCleanText) {
 
 TEST(BodyBuilding, NeighboursAreThoseOfThePlacesToPairAt) {
   Blueprint blueprint = row({{0, 0}, {1, 0}, {5, 0}, {6, 0}}, 1);
-  // masses 0 and 3 are close, so are 1 and 2, and next closest are 0 and 1
+  // masses 0 and 3 are close, and so are 1 and 2; the next closest pair is 0 and 1
   blueprint.paired_at = {{0, 0, 0}, {2, 0, 0}, {3, 0, 0}, {0, 1, 0}};
   blueprint.neighbours = 2;
   const BuiltBody built = build_body(blueprint);

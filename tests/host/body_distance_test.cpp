@@ -63,7 +63,7 @@ TEST(BodyDistance, OfSpringsToMassesThatCameLaterGoesByWhereTheyCame) {
 }
 
 TEST(BodyDistance, OfTwoMassesThatCameNearOneTheNearerIsTheSame) {
-  // each mass added later is joined to a different mass of birth
+  // each mass added later is joined to a different one of the masses present at birth
   const auto body = [](const std::vector<double>& later) {
     GrownBody grown = cloud({{0, 0, 0}, {5, 0, 0}, {9, 0, 0}});
     grown.born = 3;
@@ -115,7 +115,8 @@ TEST(BodyDistance, OfMassHeedsNeitherOrderNorNumberNorPose) {
 
 TEST(BodyDistance, OfMassIsTheCheapestWayToCarryItAlongEachAxis) {
   Rng rng(philox, {.seed = 5});
-  // 2 and 3 masses are equivalent to 6 and 6 masses of a third and half of the mass
+  // 2 masses are equivalent to 6 masses with a third of the mass each, and 3 masses to 6 masses with half of the mass
+  // each
   const std::vector<Vec3> a = random_places(2, rng), b = random_places(3, rng);
   double expected = 0;
   for (const auto axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
@@ -204,7 +205,7 @@ TEST(BodyDistance, OfBodiesThatDidNotDevelopIsZeroWhateverTheScene) {
   EXPECT_NE(flat.positions, on_slope.positions);
   EXPECT_EQ(mass_distance(flat, on_slope), 0);
   EXPECT_EQ(spring_distance(flat, on_slope), 0);
-  // the payload shifts the body, and is added to masses and later subtracted from them, with rounding
+  // the payload shifts the body; adding the payload to masses and later subtracting it causes rounding errors
   EXPECT_NE(flat.body.masses.back().rest, loaded.body.masses.back().rest);
   EXPECT_NEAR(mass_distance(flat, loaded), 0, 1e-14);
   EXPECT_EQ(spring_distance(flat, loaded), 0);

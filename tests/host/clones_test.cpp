@@ -100,7 +100,7 @@ class Run : public ::testing::TestWithParam<const char*> {
     return few_genomes(std::move(overrides));
   }
 
-  /// Starts or resumes the run in a folder, up to the given number of generations.
+  /// Starts or resumes the run in a folder; stops it after the given number of generations.
   Archive live(const std::string& folder, const Experiment& experiment, std::size_t generations = 100) const {
     const bool there = std::filesystem::exists(scratch_ / folder);
     Archive archive =
@@ -120,7 +120,7 @@ class Run : public ::testing::TestWithParam<const char*> {
     return everyone;
   }
 
-  /// Returns the individuals among which the selection of a generation chose.
+  /// Returns the individuals from which the selection of a generation chose.
   static std::vector<ArchivedIndividual> candidates(const std::vector<ArchivedIndividual>& everyone,
                                                     std::uint32_t generation) {
     std::vector<ArchivedIndividual> candidates;

@@ -1,4 +1,4 @@
-// Checks for every error message about an experiment that it has the place, the value and the remedy.
+// Checks that every error message about an experiment contains the place, the value and the remedy.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -21,7 +21,8 @@ const Material muscle{5000, 0.14, 1, 0};
 
 // changes at random places -------------------------------------------------------------------------------------------
 
-/// A ring of 40 masses, each joined to the two nearest ones on either side by springs of bone and muscle in turn.
+/// A ring of 40 masses, each joined to the two nearest ones on either side by springs that are alternately of bone and
+/// of muscle.
 struct Ring {
   LivingBody living;
   Genome genome;
@@ -351,7 +352,7 @@ TEST(Control, OperatorsSeeTheLifeBeforeAloneAndItsCostDoesNotCount) {
   EXPECT_NEAR(life.living.state.time, 0.1, 1e-12);
 }
 
-/// The edits of a cycle, counted by comparing bodies.
+/// Numbers of springs and masses that were removed and added in a cycle.
 struct Total {
   std::size_t springs_gone = 0, springs_come = 0, masses_gone = 0, masses_come = 0;
   friend bool operator==(const Total&, const Total&) = default;
@@ -450,7 +451,8 @@ TEST(Control, YokedLivesDoNotDependOnThreadsOrCompany) {
 }
 
 TEST(Control, NothingMoreChangesAfterTheYokesEnd) {
-  /// A simulator that lets a body diverge in its second run, which is the second cycle of the yoke.
+  /// A simulator in whose second run a body diverges. That run simulates the second cycle of the life that serves as
+  /// yoke.
   class Breaking final : public Simulator {
    public:
     explicit Breaking(std::unique_ptr<Simulator> simulator) : simulator_(std::move(simulator)) {}

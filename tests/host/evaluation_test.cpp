@@ -169,7 +169,7 @@ TEST(Evaluation, EveryFitnessSeesItsOwnWindow) {
 }
 
 TEST(Evaluation, ABodysOwnStepEndsWithItsWindow) {
-  // the body only falls; a method of first order overshoots its path by g t dt/2
+  // the body only falls; a first-order method overshoots the path by g t dt/2
   Experiment experiment = testing::read(testing::small_experiment, {{"simulation.dt", "auto", ""}});
   experiment.scene = {};
   experiment.scene.gravity = Gravity{};
@@ -299,7 +299,7 @@ TEST(Evaluation, TheEnergyThatGrowthBringsIsAllowed) {
 TEST(Evaluation, ABodysLengthIsThatOfTheStartOfTheWindow) {
   Experiment experiment = testing::read(testing::small_experiment);
   experiment.scene.gravity.reset();
-  experiment.scene.damping->rate = 100;  // so that it reaches its new length soon
+  experiment.scene.damping->rate = 100;  // so that the body soon reaches its new length
   experiment.devo[0].op = std::make_unique<Stretcher>();
   experiment.development.cycles = 1;
   Observation born, grown;
@@ -313,7 +313,7 @@ TEST(Evaluation, ABodysLengthIsThatOfTheStartOfTheWindow) {
   EXPECT_NEAR(grown.box.longest_side(), 3, 0.05);
 }
 
-/// An experiment of robots with ballistic growth in those of four cycles that `schedule` selects.
+/// An experiment with ballistic growth in those of its four cycles that `schedule` selects.
 Experiment ballistic(const std::string& encoding, const std::string& schedule) {
   std::string text = testing::small_experiment;
   const auto replace = [&](const char* from, const char* to, const std::string& by) {

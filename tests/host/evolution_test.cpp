@@ -118,7 +118,7 @@ TEST(SpringEvaluations, EndTheRunWithTheGenerationThatReachesThem) {
   };
   const auto all = run("all");
   ASSERT_EQ(all.size(), 4u);
-  // exactly the number of spring evaluations in two generations, and then one more
+  // first exactly the number of spring evaluations in two generations, then one more
   experiment.spring_evaluations = static_cast<double>(all[0].spring_evaluations + all[1].spring_evaluations);
   EXPECT_EQ(run("two").size(), 2u);
   experiment.spring_evaluations += 1;

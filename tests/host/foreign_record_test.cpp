@@ -27,7 +27,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Provides half of a small run, which can be resumed.
+/// Provides a small run that was stopped halfway and can be resumed.
 class ForeignRecord : public ::testing::Test {
  protected:
   ForeignRecord() {
@@ -45,8 +45,8 @@ class ForeignRecord : public ::testing::Test {
       if (archive.life(id) && !archive.life(id)->empty()) recorded_ = id;
   }
 
-  /// Returns the message with which a command refuses the run, or an empty text if the command succeeds. Any other end
-  /// of the command is a failure of the test.
+  /// Returns the message with which a command refuses the run, or an empty text if the command succeeds. If the command
+  /// ends in any other way, the test fails.
   std::string refusal(const std::function<void()>& command) const {
     ::testing::internal::CaptureStdout();
     ::testing::internal::CaptureStderr();

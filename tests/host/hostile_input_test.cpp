@@ -1,4 +1,5 @@
-// Malicious experiments and options: each is read, or refused in one clean line that names the location.
+// Malicious experiments and options: each is either read or refused with a clean one-line message that names the
+// location.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -60,7 +61,7 @@ std::string with(const std::string& from, const std::string& to, std::string tex
   return text.replace(at, from.size(), to);
 }
 
-/// Returns texts with `depth` levels of nesting, each of another kind.
+/// Returns texts with `depth` levels of nesting, each of a different kind.
 std::vector<std::string> nested(std::size_t depth) {
   return {"a" + times(depth, ".a") + " = 1",
           "\"a\"" + times(depth, " . 'a'") + " = 1",

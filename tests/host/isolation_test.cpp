@@ -63,7 +63,7 @@ TEST(Isolation, WaitsForNoProcessThatAChildLeavesBehind) {
   const auto leave_one_behind = [&] {
     const pid_t left = fork();
     if (left == 0) {
-      setpgid(0, 0);  // so that it is not ended together with the child
+      setpgid(0, 0);  // so that this process is not killed together with the child
       while (access((scratch / "").c_str(), F_OK) == 0) usleep(1000);
       _exit(0);
     }

@@ -1,5 +1,5 @@
-// Records of lives: edits that are written can be read again, re-simulation gives the matured body to the bit, and runs
-// keep the records of individuals on the front.
+// Records of lives: edits that are written can be read again, re-simulation gives a bit-identical matured body, and
+// runs keep the records of individuals on the front.
 #include "life/life_record.hpp"
 
 #include <gmock/gmock.h>
@@ -250,7 +250,7 @@ TEST(LifeRecord, CausesStayWithTheirEdits) {
   EXPECT_TRUE(change.edits.causes.removed_masses.empty());
 }
 
-/// The number of causes that the changes of several lives name.
+/// The number of causes named in the records of several lives.
 std::size_t causes_named(const Experiment& experiment) {
   std::size_t count = 0;
   for (const Lived& lived : matured(experiment, 6))
@@ -277,7 +277,7 @@ void expect_same_life(const Life& a, const Life& b) {
   EXPECT_EQ(a.result.record, b.result.record);
 }
 
-/// Re-simulates the last of several lives under `control` by its record, in an experiment in which development would
+/// Re-simulates the last of several lives under `control` from its record, in an experiment in which development would
 /// decide differently.
 void expect_that_a_life_follows_its_record(Control control) {
   const auto experiment = [&] {
@@ -346,7 +346,7 @@ TEST(LifeRecord, ALifeLivedAgainIsAllowedTheEnergyThatItHadThen) {
   EXPECT_GT(energies[1], energies[0]) << "what an operator strains is allowed";
 }
 
-/// Simulates lives with and without a record in one batch, in which development decides differently than in the
+/// Simulates lives with and without a record in one batch. Development decides differently in this batch than in the
 /// records.
 void expect_that_each_life_goes_its_own_way(Control control) {
   Experiment experiment = all_operators(false);
@@ -486,7 +486,7 @@ class GoneOn : public ::testing::Test {
 
   GoneOn() { experiment_.selection = std::make_unique<Levelling>(); }
 
-  /// Returns all individuals of the run, whose second half is made by the experiment `second` on `device`.
+  /// Returns all individuals of a run whose second half is made by the experiment `second` on `device`.
   std::vector<ArchivedIndividual> evolved_by_two(const Experiment& second, const std::string& device) {
     std::atomic<bool> stop = false;
     const Observer observer{

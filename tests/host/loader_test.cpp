@@ -1,4 +1,4 @@
-// The border between host and plugins: which libraries are refused, and with which messages.
+// The border between host and plugins: the libraries that are refused, and the messages about them.
 #include "operators/loader.hpp"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ using testing::naming;
 
 namespace fs = std::filesystem;
 
-/// Returns the message with which the only library in tests/plugins' folder `fault` is refused.
+/// Returns the message with which the only library in the folder `fault` of tests/plugins is refused.
 std::string refusal(const std::string& fault, std::vector<fs::path> others_first = {}) {
   others_first.emplace_back(fs::path(EVODEVO_FAULTY_PLUGINS) / fault);
   const Registry registry(others_first);

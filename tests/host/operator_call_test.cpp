@@ -97,7 +97,7 @@ TEST(OperatorCall, WhatItChangesForAllIsPutBackAndNamedOnce) {
   EXPECT_EQ(said_of("behaves", [] { std::feraiseexcept(FE_INEXACT); }), "");
 }
 
-/// All calls of an experiment's operators name operator, individual, cycle and seed.
+/// Every call of an experiment's operators states its operator, individual, cycle and seed.
 TEST(OperatorCall, KnowsWhoseLifeItIs) {
   const Experiment experiment = testing::read(testing::small_experiment);
   const auto asked =

@@ -1,4 +1,4 @@
-// All declarations that cross the border to plugins: a change of them requires a higher ABI epoch.
+// All declarations that cross the border to plugins. Changing any of them requires a higher ABI epoch.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -76,7 +76,7 @@ std::string declarations(std::string text) {
   return lines;
 }
 
-/// Appends the declarations of a header after those of all headers of the SDK that it includes.
+/// Appends the declarations of all SDK headers that a header includes, and then those of the header itself.
 void add_declarations(const std::string& header, std::set<std::string>& seen, std::string& all) {
   if (!seen.insert(header).second) return;
   for (const char* folder : {"framework/sdk", "kernels/include"}) {

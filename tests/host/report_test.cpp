@@ -170,7 +170,7 @@ TEST(Filming, ACycleOfManyRunsIsOneShot) {
     EXPECT_GE(frames.size(), exact[i].frames.size());
     EXPECT_LE(frames.size(), 2 * exact[i].frames.size());
   }
-  // the body at birth is the same, so its stress is the same
+  // the body at birth is the same, so its stress is the same up to rounding
   ASSERT_EQ(tallied.front().stress.size(), exact.front().stress.size());
   for (std::size_t s = 0; s < exact.front().stress.size(); ++s)
     EXPECT_NEAR(tallied.front().stress[s], exact.front().stress[s], 1e-4 * exact.front().stress[s] + 1e-6);
@@ -389,7 +389,7 @@ Film long_life(int cycles) {
 
 TEST(FilmJson, ThirteenLivesOfAHundredCyclesFitIntoAPage) {
   constexpr int cycles = 100;
-  constexpr std::size_t budget = page_budget / 13 / 5;  // a page has ten champions and three ancestors
+  constexpr std::size_t budget = page_budget / 13 / 5;  // a page has 10 + 3 lives, five times as large
   const Film film = long_life(cycles);
   std::vector<Title> titles(cycles, {"cycle"});
   titles.insert(titles.end(), {{"settling"}, {"measured", true}});
@@ -406,7 +406,7 @@ TEST(FilmJson, ThirteenLivesOfAHundredCyclesFitIntoAPage) {
     }
     ASSERT_EQ(springs.size(), film[static_cast<std::size_t>(i)].body.springs.size());
   }
-  const double measured = json["shots"].back()["times"].size() / 10.0;  // 1/s
+  const double measured = json["shots"].back()["times"].size() / 10.0;  // frames per second
   EXPECT_GE(measured, 3 * static_cast<double>(json["shots"][0]["times"].size() - 1));
   EXPECT_LT(json["stress_levels"], 255) << "or else this life is not long";
 }

@@ -28,7 +28,8 @@ TEST(SceneEffect, HoldsTheMeans) {
 }
 
 TEST(SceneEffect, IsAsRareAsItsDeal) {
-  // of the 20 ways to assign six bodies to two scenes, 2 give at least this effect; of ten bodies, 2 of 252
+  // of the 20 ways to assign six bodies to two scenes, 2 give at least this effect; for ten bodies, it is 2 of the 252
+  // ways
   EXPECT_NEAR(scene_effect(distances({0, 0.01, 0.02, 0.9, 0.91, 0.92}), 3).p.value(), 0.1, 0.015);
   EXPECT_NEAR(scene_effect(distances({0, 0.1, 0.2, 0.3, 0.4, 1, 1.1, 1.2, 1.3, 1.4}), 5).p.value(), 2.0 / 252, 0.004);
 }

@@ -104,7 +104,7 @@ TEST(Verify, WhatFallsIsPassive) {
 
 constexpr double mass = 0.2, strain = 0.1;
 
-/// An encoding of two masses 1 m apart, whose spring has a rest length that is longer by `strain`.
+/// An encoding of two masses 1 m apart, joined by a spring whose length without force is 1 + `strain` m.
 class StrainedPair final : public Encoding {
  public:
   explicit StrainedPair(double stiffness) : stiffness_(stiffness) {}
@@ -122,7 +122,8 @@ class StrainedPair final : public Encoding {
   double stiffness_;
 };
 
-/// A fitness operator that measures by how much more than its strain a body is stretched at a given time.
+/// A fitness operator that returns the length of the body at a given time minus the length of its spring without force,
+/// m.
 class Stretch final : public Fitness {
  public:
   explicit Stretch(double time) : time_(time) {}
@@ -137,7 +138,7 @@ class Stretch final : public Fitness {
 /// A step just below the limit increases the amplitude of an oscillation by 1/sqrt(1 - (omega dt)^2/4); the exact
 /// amplitude is the strain.
 TEST(Verify, WhatOnlyTheStepBringsForthIsAnArtefact) {
-  constexpr double h = 1.9, dt = 0.001;  // omega dt, s
+  constexpr double h = 1.9, dt = 0.001;  // h is omega dt; dt is in s
   double x = -strain, v = 0, furthest = 0;
   int when = 0;
   for (int step = 1; step < 200; ++step) {

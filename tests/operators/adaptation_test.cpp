@@ -7,7 +7,7 @@
 namespace evodevo::test {
 namespace {
 
-/// A chain of 40 springs, in turn of bone and muscle; spring s has a stress of s N.
+/// A chain of 40 springs, alternately of bone and muscle. Spring s has a stress of s N.
 Life chain() {
   Life life = life_of_masses(41, false);
   for (std::uint32_t s = 0; s < 40; ++s) life.add_spring(s, s + 1, s % 2 ? muscle : bone, s);
@@ -25,7 +25,7 @@ struct Property {
   const char* name;
   double (*value)(const Body&, std::uint32_t);
   bool of_muscles_alone;
-  double low, high;  ///< bounds in the tests, around the values in the chain
+  double low, high;  ///< bounds set in the tests; the values in the chain lie between them
 };
 
 class Adaptation : public testing::TestWithParam<Property> {

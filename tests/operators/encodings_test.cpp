@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(Encodings, AnyEncoding, testing::Values("neural", "cppn
 
 TEST(Neural, HasThePapersGenes) {
   const Layout layout = make<Encoding>("neural")->layout(context());
-  // genes: 25 neurons with 1 + 3, 25 with 1 + 25, and 3 + 5 with 1 + 25
+  // genes (bias + weights): 25 neurons with 1 + 3, 25 with 1 + 25, and 3 + 5 outputs with 1 + 25
   ASSERT_EQ(layout.genes.size(), 958u);
   ASSERT_EQ(layout.groups.size(), 58u);
   for (std::size_t n = 0; n < 58; ++n) EXPECT_EQ(layout.groups[n].count, n < 25 ? 4u : 26u);
@@ -112,7 +112,8 @@ TEST(Neural, BiasesOfTheOutputsAloneSetPlaceAndMaterial) {
   }
 }
 
-/// Returns the points themselves, as outputs of a network whose six hidden neurons compute x = relu(x) - relu(-x).
+/// Returns the points at which the encoding evaluates its network. The weights make the network output its input: its
+/// six hidden neurons compute x = relu(x) - relu(-x).
 std::vector<Vec3> points_of(const std::string& toml) {
   const auto encoding = make<Encoding>("neural", "hidden = 6\n" + toml);
   const Layout layout = encoding->layout(context());
@@ -372,7 +373,8 @@ TEST(Voxel, VoxelsOfAirAreAbsent) {
   const Body body = encoding->decode(choices({muscle, air}), context()).body;
   EXPECT_EQ(stiffnesses(body), (std::map<double, int>{{5000, 28}}));
   for (const Mass& mass : body.masses) {
-    // a corner that belongs only to air has 7 contacts; a corner of the shared face has 4, with the far corners
+    // a corner that belongs only to the air voxel has 7 contacts; a corner of the shared face has 4, with the corners
+    // of the opposite face
     const unsigned expected = mass.rest.x < -0.05 ? 0 : mass.rest.x < 0.05 ? 4 : 7;
     EXPECT_EQ(mass.air_contacts, expected);
   }

@@ -16,7 +16,7 @@ struct Life {
   LivingBody living;
   double time = 3.3;
   Box bounds = {{-2, -2, 0}, {2, 2, 2}};
-  double mass = 0.35;  // differs from that of the body's masses
+  double mass = 0.35;  // differs from the mass of each of the body's masses
   bool resets = false;
   int application = 3, applications = 100;
   Genome genome;
@@ -42,7 +42,7 @@ struct Life {
   }
 };
 
-/// A life of `masses` masses at random positions, with the world's materials in turn.
+/// A life of `masses` masses at random positions; the masses cycle through the world's materials.
 inline Life life_of_masses(std::uint32_t masses, bool with_materials = true) {
   Life life;
   life.living.body.materials = context().materials;

@@ -149,7 +149,7 @@ TEST(MassTurnover, NewMassesAreJoinedToDifferentMassesThatStay) {
       partners_of_all.insert(old);
     }
     for (const auto& own : partners) EXPECT_EQ(own.size(), 25u);
-    after(life, edits);  // throws if the host would refuse
+    after(life, edits);  // throws if the host would refuse the edits
   }
   EXPECT_EQ(partners_of_all.size(), masses - 4);
 }
@@ -172,7 +172,7 @@ TEST(MassTurnover, NewMassesAreJoinedToTheNearestThatStay) {
         EXPECT_EQ(ordered(edits.new_springs[7 * m + s].a, edits.new_springs[7 * m + s].b),
                   Pair(order[s].second, masses + m));
     }
-    after(life, edits);  // throws if the host would refuse
+    after(life, edits);  // throws if the host would refuse the edits
   }
 }
 

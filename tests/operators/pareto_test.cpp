@@ -114,8 +114,8 @@ TEST(LeastCrowded, AreThoseThatStayWhenTheMostCrowdedGoOneByOne) {
 }
 
 TEST(LeastCrowded, EndsStayAndCrowdsThin) {
-  // points on a line: 0 and 10 are the ends; 5 and 5.1 are close, and the other neighbour of 5.1 is closer than that of
-  // 5
+  // points on a line: 0 and 10 are the ends; 5 and 5.1 are close, and the other neighbour of 5.1 is closer to it than
+  // the other neighbour of 5 is to 5
   const std::vector<Point> points{{0, 10}, {2, 8}, {5, 5}, {5.1, 4.9}, {7, 3}, {10, 0}};
   EXPECT_THAT(least_crowded(points, {0, 1, 2, 3, 4, 5}, 5), testing::ElementsAre(0, 1, 2, 4, 5));
   EXPECT_THAT(least_crowded(points, {0, 1, 2, 3, 4, 5}, 2), testing::ElementsAre(0, 5));

@@ -188,7 +188,7 @@ TEST_P(AnySelection, DependsOnItsKeyAlone) {
 
 INSTANTIATE_TEST_SUITE_P(Selections, AnySelection, testing::Values("age-fitness-pareto", "pareto-layers", "elitist"));
 
-/// Returns how often each of ten rows, best first, is a parent, in per cent.
+/// Returns how often each of ten rows, best first, is a parent, in percent.
 std::vector<double> shares(const Selection& selection) {
   std::vector<Row> rows;
   for (int i = 0; i < 10; ++i) rows.push_back({{10.0 - i}, 1});
@@ -259,7 +259,7 @@ const Row champion{{100}, 0};
 
 TEST(ParetoLayers, AChildTakesItsParentsPlaceOnlyIfBetter) {
   const auto selection = make<Selection>("pareto-layers");
-  // row 1 loses to its child 3; row 2 keeps its place against its child 4, although 1 is better than both
+  // row 1 loses to its child 3; row 2 keeps its place against its child 4, although row 1 is better than both of them
   EXPECT_THAT(survivors(*selection, {champion, {{50}, 3}, {{10}, 3}, {{60}, 3, 1}, {{9}, 3, 2}}, 3),
               testing::UnorderedElementsAre(0, 3, 2));
 }

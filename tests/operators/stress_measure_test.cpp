@@ -4,7 +4,7 @@
 namespace evodevo::test {
 namespace {
 
-/// A chain of five springs; different measures give different orders of them.
+/// A chain of five springs, which different measures put into different orders.
 Life chain() {
   Life life = life_of_masses(6, false);
   for (std::uint32_t s = 0; s < 5; ++s) life.add_spring(s, s + 1, bone, s == 0 ? 9 : 5 - s * 0.1);

@@ -46,7 +46,7 @@ std::unique_ptr<T> make(const std::string& name, const std::string& toml = "") {
 
 inline Rng stream(std::uint64_t seed) { return Rng(philox, {seed, 1, 2, 3}); }
 
-/// Returns the result of `call`, and checks that eight simultaneous calls give the same.
+/// Returns the result of `call`, and checks that eight simultaneous calls give the same result.
 template <class Call>
 auto from_eight_threads(const Call& call) {
   const auto alone = call();

@@ -53,7 +53,7 @@ TEST(ResetWeight, ChangesExactlyOneGeneAndEveryGeneAlike) {
     ASSERT_EQ(changed.size(), 1u);
     ++hits[changed[0]];
   }
-  // expected are 1,000; five standard deviations are 150
+  // the expected count is 1,000; five standard deviations are 150
   for (const int count : hits) EXPECT_NEAR(count, 1000, 150);
 }
 

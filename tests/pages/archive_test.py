@@ -11,7 +11,7 @@ from pathlib import Path
 from pages import ROOT, blocks, make_small_run
 
 PAGE = ROOT / "framework/evolution/archive/README.md"
-MAY_BE_EMPTY = "status <> 'ok'"  # part of the query for failures; a run may have none
+MAY_BE_EMPTY = "status <> 'ok'"  # part of the query for failures; a run may have no failures
 
 
 def tables_on_page():

@@ -51,7 +51,7 @@ class Command(NamedTuple):
 
 
 def commands_in(line):
-    """Splits a line of shell into simple commands, as (words, output)."""
+    """Splits a shell command line into simple commands, as (words, output)."""
     lexer = shlex.shlex(line, posix=True, punctuation_chars=True)
     lexer.whitespace_split = True
     lexer.commenters = "#"
@@ -81,14 +81,14 @@ def commands_of(page):
 
 @cache
 def help_of(program, command=None):
-    """Returns the help of a program, or None if it fails."""
+    """Returns the help of a program, or None if the program fails."""
     call = [PROGRAM, command, "--help"] if program == "evodevo" else [str(ROOT / program), "--help"]
     finished = subprocess.run(call, capture_output=True, text=True, stdin=subprocess.DEVNULL)
     return finished.stdout if finished.returncode == 0 else None
 
 
 def missing_files(command):
-    """Yields the files of the source tree that a command names and that do not exist. {a,b} and * are expanded as in
+    """Yields the files of the source tree that a command names and that do not exist. {a,b} and * are expanded as in a
     shell."""
     for word in command.words:
         if not re.match(r"(tools/[\w/]+|(experiments|framework|kernels|plugins|tests)/.*\.\w+)$", word):

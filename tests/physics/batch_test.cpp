@@ -1,4 +1,4 @@
-// The result of a body does not depend on the other bodies of its batch, nor on threads.
+// The result of a body does not depend on the other bodies of its batch or on the number of threads.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,8 @@ class Bodies {
       alone.push_back(simulate(body, state_at_birth(body, full_scene()), full_scene(), steps_, 333, recording));
   }
 
-  /// Simulates the bodies with the indices in `order` in one batch, and expects the results that they have alone.
+  /// Simulates the bodies with the indices in `order` in one batch, and expects the same results as for each body
+  /// alone.
   void expect_the_same(const std::vector<std::size_t>& order, int threads) const {
     std::vector<State> states;
     for (const std::size_t i : order) states.push_back(state_at_birth(bodies[i], full_scene()));

@@ -211,7 +211,7 @@ TEST_P(ClosedForm, FrictionHoldsInsideTheConeAndOnlyThere) {
                                                                   : slipping.masses[1].rest.x));
 }
 
-/// A scene with a slope, in degrees.
+/// A scene with a slope of `slope` degrees.
 Scene inclined(double slope, double friction) { return {Gravity{g, slope}, Floor{}, Friction{friction}, {}, {}}; }
 
 TEST_P(ClosedForm, AMassGoesDownASlopeFasterThanFrictionHolds) {

@@ -34,12 +34,12 @@ TEST_P(Conservation, InternalForcesKeepLinearAndAngularMomentum) {
   ASSERT_EQ(a.task.status, Status::ok) << a.task.reason;
   const Momentum after = momentum(body, a.state);
   const double error = precision() == Precision::float32 ? 2e-5 : 1e-13;
-  // conjugate gradients leave a residual
+  // the method `implicit` uses conjugate gradients, which leave a residual
   const double residual = method() == Method::implicit ? 1e-6 : 0;
   EXPECT_LT(norm(after.linear - before.linear), (error + residual) * after.scale);
   // Explicit methods use forces along the springs at the beginning of a step, which conserves angular momentum; rk4
-  // also uses intermediate positions, with an error of fourth order. Backward Euler slows a rotation at omega down by
-  // omega^2 dt per second, and xpbd by much more if muscles pull.
+  // also uses intermediate positions, which causes a fourth-order error. Backward Euler slows a rotation at omega down
+  // by omega^2 dt per second, and xpbd by much more if muscles pull.
   const double lost = method() == Method::rk4 ? 1e-6 : method() == Method::implicit ? 2 * 1.16 * 0.0005 : 0;
   if (method() != Method::xpbd) {
     EXPECT_LT(norm(after.angular - before.angular), 2 * (error + lost) * after.scale);

@@ -90,7 +90,7 @@ TEST_P(Convergence, WithFloorAndFrictionAllTendToOneMotion) {
   };
   const double coarse = error(600), fine = error(9600);
   EXPECT_LT(coarse, 0.01);
-  EXPECT_LT(fine, coarse / 6);  // `fine` has a sixteenth of the step
+  EXPECT_LT(fine, coarse / 6);  // the step for `fine` is a sixteenth of that for `coarse`
 }
 
 /// The terminal speed (m/s), at which damping and drag balance the weight: rate m v + c v^2 = m g.

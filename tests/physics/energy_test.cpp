@@ -1,4 +1,4 @@
-// The change of energy by each method, for a body without damping and drag.
+// The change of energy that each method causes, for a body without damping and drag.
 #include "analysis/energy.hpp"
 
 #include <gtest/gtest.h>

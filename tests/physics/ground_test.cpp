@@ -129,7 +129,8 @@ TEST_P(OnRoughGround, AMassRestsInAHollow) {
   }
 }
 
-/// A point of the ground with a gradient of about `slope`, lowered by the depth to which the weight sinks in.
+/// A point of the ground with a gradient of about `slope`, lowered by the depth to which a mass of 0.2 kg sinks into
+/// it.
 Vec3 place_of_slope(const Floor& floor, double slope) {
   for (double x = 0;; x += 1e-3) {
     const auto here = ground(floor, x, 0.3);
@@ -165,8 +166,8 @@ TEST_P(OnRoughGround, AMassWithoutFrictionKeepsItsEnergy) {
   EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
   EXPECT_GT(norm(a.state.position[0] - start.position[0]), 0.05);
   const double gained = whole_energy(body, a.state, scene) - whole_energy(body, start, scene);
-  // methods of first order conserve an energy that deviates by dt F v/2; it is largest on the steepest slope, at the
-  // speed that a fall from the highest to the lowest point gives
+  // first-order methods conserve an energy that deviates by dt F v/2; this deviation is largest on the steepest slope,
+  // at the speed reached by a fall from the highest to the lowest point
   const double force = 0.2 * g * scene.floor->steepest(), speed = std::sqrt(2 * g * 2 * scene.floor->roughness);
   EXPECT_NEAR(gained, 0, dt * force * speed / 2);
 }

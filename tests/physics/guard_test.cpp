@@ -1,4 +1,4 @@
-// On the CPU, the guard does not end bodies that muscles drive, and ends bodies whose energy grows without a source.
+// On the CPU, the guard does not stop bodies driven by muscles, but stops bodies whose energy grows without a source.
 #include <gtest/gtest.h>
 
 #include "guard_cases.hpp"

@@ -12,7 +12,7 @@
 namespace evodevo::test {
 namespace {
 
-constexpr double g = 9.81;  // m/s^2
+constexpr double g = 9.81;  // gravitational acceleration, m/s^2
 
 std::vector<Vec3> rest_positions(const Body& body) {
   std::vector<Vec3> places;

@@ -105,7 +105,7 @@ TEST(Workers, DoWhatHasAnEarlierTurnFirst) {
   Workers workers(1);
   std::promise<void> begun;
   std::atomic<bool> urgent_done = false;
-  std::size_t items = 0, items_before = 0;  // items of the loop that can wait; counted by its only worker
+  std::size_t items = 0, items_before = 0;  // finished items of the less urgent loop, counted by the only worker
   on_own_threads(2, [&](std::size_t caller) {
     const Priority priority(caller == 0 ? 1 : 0);
     if (caller == 0) {

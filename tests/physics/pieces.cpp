@@ -13,8 +13,8 @@
 namespace evodevo::test {
 namespace {
 
-constexpr double dt = 0.0007;     // s
-constexpr double birthday = 3.1;  // s
+constexpr double dt = 0.0007;     // time step, s
+constexpr double birthday = 3.1;  // start time of the simulation, s
 const std::vector<std::uint64_t> uneven{1, 7, 100, 0, 137, 255};
 
 Scene rough_slope() { return {Gravity{9.81, 12}, Floor{1e5, 0.05}, Friction{}, Damping{}, Drag{0.05}}; }
@@ -108,7 +108,7 @@ void expect_one_verdict(const SimulatorFactory& simulator_for, Method method) {
   for (Material& material : unstable.materials) material.stiffness *= 4000;
   const Scene scene = walking_scene();
   expect_one_verdict_on(unstable, late(unstable, scene), 0.0005, simulator_for, scene);
-  // the initial energy switches the guard off, so that on the GPU only the range of forces can end the body
+  // the initial energy switches the guard off, so that on the GPU only the range of forces can stop the body
   State start = late(sound, {});
   for (std::size_t i = 0; i < start.velocity.size(); ++i) start.velocity[i].x = 0.001 * static_cast<double>(i % 7);
   start.start_energy = 1e300;

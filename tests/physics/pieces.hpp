@@ -1,4 +1,4 @@
-// A run in several pieces must equal the run as a whole.
+// A simulation in several pieces must equal the simulation as a whole.
 #pragma once
 
 #include <vector>
@@ -9,14 +9,14 @@
 namespace evodevo::test {
 
 /// Simulates every body as a whole and in uneven pieces, with a start time and a time step that are not exact binary
-/// fractions. Expects the same state to the bit.
+/// fractions. Expects bit-identical states.
 void expect_pieces_to_be_the_whole(const SimulatorFactory& simulator_for, const std::vector<Body>& bodies);
 
-/// Expects the same of a run with tallies, whose pieces are the steps between two tallies.
+/// Expects the same state after a simulation with tallies, whose pieces are the steps between two tallies.
 void expect_tallies_to_leave_the_motion_alone(const SimulatorFactory& simulator_for, const Body& body);
 
-/// Expects that bodies diverge at the same time and for the same reason as a whole and in pieces, and whatever is
-/// recorded.
+/// Expects that bodies diverge at the same time and for the same reason whether they are simulated as a whole or in
+/// pieces, and whichever quantities are recorded.
 void expect_one_verdict(const SimulatorFactory& simulator_for, Method method);
 
 /// Expects that the guard checks energy at the end of the whole run, but not at the end of a piece.

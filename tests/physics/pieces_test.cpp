@@ -1,4 +1,4 @@
-// On the CPU, a run in several pieces equals the run as a whole.
+// On the CPU, a simulation in several pieces equals the simulation as a whole.
 #include "pieces.hpp"
 
 #include <gtest/gtest.h>

@@ -150,15 +150,15 @@ TEST_P(ExactProperty, MomentumIsWhatGravityAndDampingLeave) {
       Vec3 expected = before.linear;
       if (scene.gravity) expected.z -= total_mass(body) * 9.81 * n * dt;
       if (scene.damping) expected = std::pow(kept_by_damping(GetParam(), scene.damping->rate * dt), n) * expected;
-      // conjugate gradients leave a residual
+      // the method `implicit` uses conjugate gradients, which leave a residual
       const double error = (GetParam() == Method::implicit ? 1e-6 : 1e-12) * n * (before.scale + after.scale);
       EXPECT_LE(norm(after.linear - expected), error);
     }
   }
 }
 
-/// Properties of explicit methods. Their forces point along the springs as these are at the beginning of a step, not at
-/// its end.
+/// Properties of explicit methods. Their forces point along the directions that the springs have at the beginning of a
+/// step, not at its end.
 class ExplicitProperty : public ExactProperty {};
 
 INSTANTIATE_TEST_SUITE_P(Methods, ExplicitProperty, testing::ValuesIn(explicit_methods),
@@ -172,7 +172,7 @@ TEST_P(ExplicitProperty, AngularMomentumIsKept) {
     for (std::size_t i = 0; i < lives.size(); ++i) {
       const Momentum before = momentum(lives[i].body, lives[i].start),
                      after = momentum(lives[i].body, answers[i].state);
-      // rk4 also uses forces at intermediate positions, which gives an error of fourth order
+      // rk4 also uses forces at intermediate positions, which causes a fourth-order error
       const double error = (GetParam() == Method::rk4 ? 1e-6 : 1e-11) * (before.scale + after.scale);
       EXPECT_LE(norm(after.angular - before.angular), error) << trace(lives[i]);
     }

@@ -112,7 +112,7 @@ std::vector<Answer> simulate(Simulator& simulator, const std::vector<Life>& live
   simulator.run(tasks, recording);
   for (std::size_t i = 0; i < lives.size(); ++i) {
     answers[i].task = std::move(tasks[i]);
-    answers[i].task.state = nullptr;  // the state moves with the answer
+    answers[i].task.state = nullptr;  // this pointer would dangle if the answer were moved
   }
   return answers;
 }

@@ -13,18 +13,18 @@ struct Life {
   std::uint64_t seed = 0;
   Body body;
   State start;
-  double dt = 0.0005;  ///< s
+  double dt = 0.0005;  ///< time step [s]
   std::uint64_t steps = 60;
 };
 
 /// Returns a scene with random forces of random strength.
 Scene random_scene(std::uint64_t seed);
 
-/// Returns `count` lives of up to 16 masses in one scene. Springs have random materials and strains, and some have no
+/// Returns `count` lives of up to 16 masses in one scene. Springs have random materials and strains, and some have zero
 /// length. There are masses of 0 kg, masses at the same position, and masses without springs.
 std::vector<Life> random_lives(const Scene& scene, std::uint64_t seed, std::size_t count);
 
-/// Mirrors the x axis of a state, and of a scene.
+/// Returns the mirror image of a state, or of a scene, with the x axis reversed.
 State mirrored(State state);
 Scene mirrored(Scene scene);
 

@@ -22,7 +22,7 @@ class OnlyTarget {
 
 struct Set {
   std::int64_t target;
-  const char* name;    ///< name in the names of tests
+  const char* name;    ///< part of the names of tests
   const char* device;  ///< name in the text of Simulator::device()
 };
 
@@ -33,7 +33,7 @@ constexpr Set scalar{HWY_SCALAR, "scalar", "cpu, no vectors"};
 
 bool is_there(const Set& set) { return set.target == HWY_SCALAR || (hwy::SupportedTargets() & set.target) != 0; }
 
-using Case = std::tuple<Set, Precision, std::uint32_t>;  // the number is that of materials
+using Case = std::tuple<Set, Precision, std::uint32_t>;  // the integer is the number of materials
 
 std::string name_of_case(const testing::TestParamInfo<Case>& info) {
   const auto& [set, precision, materials] = info.param;
@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(Sets, AgainstReference,
                                           testing::Values(16u, 40u)),
                          name_of_case);
 
-/// A state of `body` in rotation and moving downwards, at birth.
+/// Returns a state in which `body` is at its position at birth, rotates and moves downwards.
 State turning(const Body& body, const Scene& scene) {
   State state = state_at_birth(body, scene);
   for (std::size_t i = 0; i < state.velocity.size(); ++i)
@@ -122,7 +122,7 @@ TEST_P(ExactInstructionSets, ThatFuseMultiplyAndAddAgreeToTheBit) {
 
 TEST_P(InstructionSets, AllAgreeToRounding) {
   const bool single = std::get<Precision>(GetParam()) == Precision::float32;
-  const bool residual = std::get<Method>(GetParam()) == Method::implicit;  // of conjugate gradients, which differ
+  const bool residual = std::get<Method>(GetParam()) == Method::implicit;  // of the conjugate gradients
   const double error = (single ? 1e-4 : 1e-10) + (residual ? 1e-6 : 0);
   const Answer plain = simulated_with(scalar, 200);
   for (const Set& set : {avx512, avx2, sse4}) {

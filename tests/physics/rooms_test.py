@@ -1,5 +1,5 @@
-"""Tests that folders of the simulation core include only those that they may include (kernels/README.md), and that the
-core names no key of an experiment."""
+"""Tests that files of the simulation core include only files of those folders that they may include
+(kernels/README.md), and that the core names no key of an experiment."""
 
 import pathlib
 import re

@@ -1,4 +1,4 @@
-// The largest stable step, compared with dense eigenvalues and with the behaviour of the simulator.
+// The largest stable step, compared with the eigenvalues of dense matrices and with the behaviour of the simulator.
 #include "analysis/stability.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace evodevo::test {
 namespace {
 
-/// The highest angular frequency of a body at its rest positions, by dense eigenvalues, 1/s.
+/// The highest angular frequency of a body at its rest positions, from the eigenvalues of a dense matrix, 1/s.
 double highest_frequency(const Body& body) {
   const auto n = static_cast<Eigen::Index>(3 * body.masses.size());
   Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n, n);

@@ -85,7 +85,7 @@ Answer simulate(const Body& body, State state, const Scene& scene, const Steps& 
   answer.task.dt = stepping.dt;
   answer.task.steps = steps;
   make_cpu_simulator(scene, stepping, 1)->run({&answer.task, 1}, recording);
-  answer.task.state = nullptr;  // the state moves with the answer
+  answer.task.state = nullptr;  // this pointer would dangle if the answer were moved
   return answer;
 }
 

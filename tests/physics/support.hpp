@@ -20,7 +20,7 @@ inline constexpr double pi = 3.14159265358979323846;
 struct Steps {
   Method method = Method::paper_euler;
   Precision precision = Precision::float32;
-  double dt = 0.0005;  ///< s
+  double dt = 0.0005;  ///< time step [s]
 
   operator Stepping() const { return {method, precision}; }
 };
@@ -35,10 +35,10 @@ static_assert(all_methods.size() == method_names.size());
 inline constexpr std::array explicit_methods = {Method::paper_euler, Method::symplectic_euler, Method::velocity_verlet,
                                                 Method::rk4};
 
-/// The name in the names of tests.
+/// Returns the name of a method for use in the names of tests.
 std::string name_of(Method method);
 
-/// The combinations that most tests run with.
+/// The combinations of method and precision for which most tests run.
 using Arithmetic = std::tuple<Method, Precision>;
 std::string name_of(const Arithmetic& arithmetic);
 
@@ -48,7 +48,7 @@ Body single_mass(double mass, Vec3 place = {});
 /// Two masses of `mass` kg on the x axis, `distance` m apart, with a spring of rest length 1 m between them.
 Body pair_of_masses(double mass, const Material& material, double distance = 1);
 
-/// Random points in the unit ball joined to their nearest neighbours, with masses from 0.1 to 0.3 kg. Spring i has
+/// Random points in the unit ball, each joined to its nearest neighbours, with masses from 0.1 to 0.3 kg. Spring i has
 /// material i modulo `materials`; the first five materials are the paper's and a mean of two of them.
 Body random_body(std::uint32_t masses, std::uint32_t neighbours, std::uint32_t materials, std::uint64_t seed);
 
@@ -60,7 +60,7 @@ Scene full_scene();
 /// A scene with gravity, floor, friction and damping.
 Scene walking_scene();
 
-/// The state of a body at its rest positions without velocity; start_energy is set.
+/// The state of a body at its rest positions with zero velocity; start_energy is set.
 State resting(const Body& body, const Scene& scene);
 
 struct Answer {
@@ -76,15 +76,15 @@ Answer simulate(const Body& body, State state, const Scene& scene, const Steps& 
 /// spring after the other, and adds the force at both ends.
 struct Reference {
   State state;
-  std::vector<double> stress;  ///< N
-  double work = 0;             ///< J
+  std::vector<double> stress;  ///< stress of each spring [N]
+  double work = 0;             ///< work of all muscles [J]
 };
 Reference reference(const Body& body, State state, const Scene& scene, double dt, std::uint64_t steps);
 
 /// The largest distance between the positions of two states, m.
 double largest_difference(const State& a, const State& b);
 
-/// Whether two states are equal to the bit.
+/// Whether two states are bit-identical.
 bool same_bits(const State& a, const State& b);
 
 }  // namespace evodevo::test

@@ -1,4 +1,5 @@
-// Libraries with one fault each, which FAULT names. The host must refuse the library, or stop when its operator fails.
+// Libraries with one fault each, which a macro FAULT_... selects. The host must refuse the library, or stop when its
+// operator fails.
 #include <cfenv>
 #include <csignal>
 #include <cstdlib>

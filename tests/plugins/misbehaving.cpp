@@ -30,7 +30,7 @@ int deeper(int depth) {
   return endless ? deeper(depth + 1) + room[0] : depth;
 }
 
-/// Prints a line for waiting tests, and never returns.
+/// Prints a line for which tests wait, and never returns.
 [[noreturn]] void hang() {
   constexpr std::string_view text = "it hangs\n";
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());

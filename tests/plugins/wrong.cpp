@@ -1,4 +1,4 @@
-// Plugins that load, but break one rule each, which WRONG names.
+// Plugins that load, but break one rule each, which a macro WRONG_... selects.
 #include <unistd.h>
 
 #include <algorithm>
@@ -212,7 +212,7 @@ struct Wrong final : evodevo::Mutation {
 }  // namespace
 
 #if defined(WRONG_EXPORTS)
-extern "C" __attribute__((visibility("default"), weak)) int another_export() { return 1; }  // as inline functions
+extern "C" __attribute__((visibility("default"), weak)) int another_export() { return 1; }  // as if inline
 #endif
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,

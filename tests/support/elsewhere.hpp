@@ -10,7 +10,7 @@
 
 namespace evodevo::testing {
 
-/// The simulator of the CPU with another name of the device.
+/// The CPU simulator, with another device name.
 class Elsewhere final : public Simulator {
  public:
   Elsewhere(const Experiment& experiment, std::string device)

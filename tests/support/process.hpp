@@ -15,11 +15,11 @@ class Process {
  public:
   /// Starts `arguments[0]`, looked up in PATH. Throws std::system_error.
   explicit Process(const std::vector<std::string>& arguments);
-  ~Process();  ///< kills it if it still runs
+  ~Process();  ///< kills the process if it is still running
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  /// Waits for the next line and returns it without its end, or nothing if the output has ended.
+  /// Waits for the next line and returns it without its newline. Returns nothing if the output has ended.
   std::optional<std::string> read_line();
   void send(int signal);
   /// Reads the output to its end and waits for the process. Returns the exit code, or 128 + the number of the signal

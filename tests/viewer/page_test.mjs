@@ -266,7 +266,7 @@ test("it fits a phone, where a finger turns the robot", async () => {
   await phone.close();
 });
 
-/** Runs in the page: returns the height of a life's lowest mass above the drawn ground at a time, m. */
+/** Is executed in the page. Returns the height of a life's lowest mass above the drawn ground at a time, m. */
 function gap({ viewer }, time) {
   const { life, floor } = viewer.stages[0];
   const { array } = floor.geometry.attributes.position;
@@ -297,7 +297,7 @@ test("rough ground is drawn where bodies stand on it, and slopes lean", async ()
   const robots = await inPage(hills, ({ viewer }) => viewer.robots.length);
   for (let i = 0; i < robots; ++i) {
     await inPage(hills, ({ viewer }, robot) => viewer.show(robot), i);
-    // bodies touch the ground at birth; between samples, up to 1/25 of the roughness is lost, and 1/254 by rounding
+    // bodies touch the ground at birth; sampling loses up to 1/25 of the roughness, and rounding 1/254
     assert.ok(Math.abs(await inPage(hills, gap, 0)) < 0.05 * roughness, `robot ${i}`);
     assert.ok((await inPage(hills, gap, 3)) > -0.1 * roughness, `robot ${i}`);
   }

@@ -78,7 +78,7 @@ export function archived(folder, query) {
   return JSON.parse(execFileSync("python3", ["-c", program, join(folder, "run.sqlite"), query], { encoding: "utf8" }));
 }
 
-/** Opens a page from its file; its requests and its errors and warnings are kept in `requests` and `complaints`. */
+/** Opens a page from its file; keeps the page's requests in `requests`, and its errors and warnings in `complaints`. */
 export async function opened(browser, file, options = {}) {
   const page = await browser.newPage({ viewport: { width: 640, height: 600 }, ...options });
   page.requests = [];
@@ -95,7 +95,7 @@ export async function opened(browser, file, options = {}) {
   return page;
 }
 
-/** Calls a function in the page with its parts {viewer, charts, data}, then waits until the page has been drawn. */
+/** Calls a function in the page with the page's parts {viewer, charts, data}, then waits until the page is drawn. */
 export async function inPage(page, action, argument) {
   return page.evaluate(
     async ([text, given]) => {

@@ -11,8 +11,8 @@ void warn_of_other_builds(const Experiment& experiment, const Simulator& simulat
 /// Warns if the run began on another device, because results may differ between devices.
 void warn_of_another_device(const Simulator& simulator, const Archive& archive);
 
-/// Throws ArchiveError if an operator has another version than when the run began. Another version means that results
-/// have changed; another build of the same version may give the same results.
+/// Throws ArchiveError if the version of an operator is not the one with which the run began. A different version means
+/// that results have changed; a different build of the same version may give the same results.
 void refuse_other_versions(const Experiment& experiment, const Archive& archive);
 
 }  // namespace evodevo

@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Throws UsageError if the standard output goes to the file `input` or, if `input` is the folder of a run, to the
-/// run's file.
+/// Throws UsageError if standard output goes to the file `input` or, if `input` is the folder of a run, to the run's
+/// file.
 void refuse_to_print_into(const std::string& input) {
   struct stat output = {}, read = {};
   if (fstat(STDOUT_FILENO, &output) != 0 || !S_ISREG(output.st_mode)) return;

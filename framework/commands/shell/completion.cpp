@@ -39,7 +39,7 @@ std::string quoted(const std::string& text) { return "'" + replaced(text, "'", "
 
 // ---- bash ----
 
-/// Returns a line of bash that offers the possible values of a placeholder. `offer_words` is the name of the shell
+/// Returns a bash command that offers the possible values of a placeholder. `offer_words` is the name of the shell
 /// function that offers words.
 std::string bash_offer(const Vocabulary& vocabulary, const std::string& offer_words) {
   switch (vocabulary.source) {

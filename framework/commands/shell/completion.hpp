@@ -1,4 +1,4 @@
-// Scripts by which a shell completes the program's commands, options and arguments.
+// Scripts that let a shell complete the program's commands, options and arguments.
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace evodevo {
 
-/// The shells that completion_script() knows, as a placeholder of an argument.
+/// The shells that completion_script() supports, in the form of the placeholder of an argument.
 inline constexpr const char* shells = "bash|zsh|fish";
 
 /// Returns the completion script for a shell. Throws UsageError if `shell` is not one of `shells`.

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t width = 80;
 
-/// Wraps the text into lines of at most `width` characters. Indents all lines except the first by `indent` blanks.
+/// Wraps the text to lines of at most `width` characters. Indents all lines except the first by `indent` spaces.
 std::string wrapped(const std::string& text, std::size_t indent = 0) {
   std::istringstream words(text);
   std::string lines;

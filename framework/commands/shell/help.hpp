@@ -9,7 +9,7 @@
 
 namespace evodevo {
 
-/// Prints the first page of help: what the program is, all commands and all topics.
+/// Prints the overview of the help: what the program is, all commands and all topics.
 void print_overview(std::ostream& stream, std::span<const Command> commands);
 
 /// Prints usage, text, examples and options of a command.

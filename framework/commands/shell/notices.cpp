@@ -27,7 +27,7 @@ void say_step(std::string_view what, std::optional<double> seconds) {
   say(std::string(what) + (seconds ? " took " + short_number(*seconds) + " s" : " ..."));
 }
 
-/// Reports the first slow step only. Slow steps are compilations of GPU kernels at their first use on a machine;
+/// Reports only the first slow step. Slow steps are compilations of GPU kernels at their first use on a machine;
 /// several are compiled at the same time, and a single line suffices to explain the wait.
 void say_first_step(std::string_view what, std::optional<double> seconds) {
   static std::atomic<bool> said{false};

@@ -1,4 +1,4 @@
-// What commands print besides their results.
+// What commands print in addition to their results.
 #pragma once
 
 #include <chrono>
@@ -10,17 +10,17 @@ namespace evodevo {
 enum class Verbosity { quiet, normal, verbose };
 
 /// Sets how much commands print. From then on, the program also reports slow steps of the simulator
-/// (core/slow_step.hpp) on standard error: all of them if verbose, none if quiet, and otherwise only the first and only
-/// on a terminal.
+/// (core/slow_step.hpp) on standard error: all of them if verbose, none if quiet, and otherwise only the first one, and
+/// only on a terminal.
 void set_verbosity(Verbosity verbosity);
 Verbosity verbosity();
 
-/// Returns the stream for output that is not a result, such as hints and speeds: the standard output or, if quiet, a
-/// stream that discards everything.
+/// Returns the stream for output that is not a result, such as hints and speeds: standard output or, if quiet, a stream
+/// that discards everything.
 std::ostream& remarks();
 
-/// Reports on standard error the beginning and the duration of a step that lasts as long as this object. Does so only
-/// if verbose.
+/// Reports the beginning and the duration of a step on standard error, but only if verbose. The step lasts as long as
+/// this object exists.
 class TimedStep {
  public:
   explicit TimedStep(std::string what);

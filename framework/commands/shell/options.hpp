@@ -12,7 +12,8 @@ void add_plugin_option(Options& options);
 /// Returns the values of --plugin-path. Throws UsageError if one of them is neither a folder nor a library.
 std::vector<std::filesystem::path> given_plugin_path(const Given& given);
 
-/// Throws UsageError if `file`, the output file that `option` names, is one of `inputs`, possibly by another path.
+/// Throws UsageError if `file`, the output file that `option` names, is one of `inputs`, even if it is named by a
+/// different path.
 void refuse_to_overwrite(const std::string& option, const std::filesystem::path& file,
                          const std::vector<std::filesystem::path>& inputs);
 /// Returns the libraries of an experiment's operators.
@@ -23,21 +24,21 @@ std::vector<std::filesystem::path> files_of_run(const std::filesystem::path& fol
 /// Adds --individual, which names one individual.
 void add_individual_option(Options& options);
 
-/// Adds --set, --plugin-path, and shorthands for single keys.
+/// Adds --set, --plugin-path, and the options that are shorthands for single keys.
 void add_experiment_options(Options& options);
-/// Returns the source of an experiment: `file` and the options that add_experiment_options() adds.
+/// Returns the source of an experiment: `file`, and the values of the options that add_experiment_options() adds.
 ExperimentSource experiment_source(const std::string& file, const Given& given);
 /// Reads the experiment from experiment_source(). Throws ConfigError.
 Experiment given_experiment(const std::string& file, const Given& given);
-/// Returns a simulator on the experiment's device.
+/// Returns a simulator for the experiment's device.
 std::unique_ptr<Simulator> opened_simulator(const Experiment& experiment);
 /// Returns the experiment of a run for re-simulation, possibly on a machine without a GPU.
 Experiment experiment_of_run(const Archive& archive, const Given& given);
 
-/// Returns an individual. Throws ArchiveError if there is none with this id, which may be any number.
+/// Returns the individual with this id. Throws ArchiveError if there is none. `id` may be any number.
 ArchivedIndividual individual_named(const Archive& archive, std::int64_t id);
-/// Returns the individual that --individual names or, without this option, the best. Throws ArchiveError if there is
-/// none.
+/// Returns the individual that --individual names or, without this option, the best individual. Throws ArchiveError if
+/// there is no such individual.
 ArchivedIndividual chosen_individual(const Archive& archive, const Given& given);
 
 }  // namespace evodevo

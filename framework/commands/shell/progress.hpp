@@ -8,11 +8,11 @@
 
 namespace evodevo {
 
-/// Displays progress: on a terminal, by one line that it keeps up to date; elsewhere, by one line for each generation.
+/// Displays progress: on a terminal, as one line that is kept up to date; elsewhere, as one line for each generation.
 class ProgressDisplay {
  public:
-  /// `past` are the generations that earlier processes have made. If `stop` is set, the display says that the run stops
-  /// after the current generation.
+  /// `past` has the summaries of the generations that earlier processes made. If `stop` is set, the display says that
+  /// the run will stop after the current generation.
   ProgressDisplay(const Experiment& experiment, const std::vector<Summary>& past, const std::atomic<bool>& stop);
 
   Observer observer();

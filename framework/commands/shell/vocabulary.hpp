@@ -16,8 +16,8 @@ struct Vocabulary {
   std::vector<std::string> words = {};  ///< all possible values, if the source is Source::words
 };
 
-/// Returns the possible values of a placeholder. It is a name such as "DIR" or "EXPERIMENT.toml", or the list of all
-/// possible values, such as "bash|zsh|fish".
+/// Returns the possible values of a placeholder. The placeholder is a name, such as "DIR" or "EXPERIMENT.toml", or a
+/// list of all possible values, such as "bash|zsh|fish".
 Vocabulary vocabulary_of(const std::string& placeholder, std::span<const Command> commands);
 
 }  // namespace evodevo

@@ -47,8 +47,8 @@ void require_empty(const fs::path& folder) {
                          program_name() + " resume " + folder.string() + "`");
 }
 
-/// Throws ArchiveError unless the folder has a run's file that is a regular file. Opening anything else, such as a
-/// pipe, could block for ever.
+/// Throws ArchiveError unless the run's file in the folder is a regular file. Opening anything else, such as a pipe,
+/// could block for ever.
 void require_run(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_regular_file(folder / database_name, error))
@@ -73,7 +73,7 @@ Archive Archive::create(const fs::path& folder, const Experiment& experiment, co
   fs::create_directories(folder, error);
   if (error)
     throw ArchiveError(folder.string() + ": cannot be created: " + error.message() + "; give another place with --out");
-  require_empty(folder);  // before locked(), which creates a file, and again when no other process can write
+  require_empty(folder);  // checked before locked(), which creates a file, and again when no other process can write
   auto lock = locked(folder);
   require_empty(folder);
   Archive archive(std::make_unique<RunDatabase>(folder, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, std::move(lock)));
@@ -122,7 +122,7 @@ Archive Archive::annotate(const fs::path& folder) {
 
 Archive Archive::read(const fs::path& folder) {
   require_run(folder);
-  // writable, because SQLite may have to recover a file that a killed process left behind
+  // opened for writing, because SQLite may have to recover a file that a killed process left behind
   Archive archive(std::make_unique<RunDatabase>(folder, SQLite::OPEN_READWRITE, std::nullopt));
   archive.run_->take_snapshot();
   check_tables(*archive.run_);

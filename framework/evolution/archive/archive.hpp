@@ -28,24 +28,24 @@ struct Failure {
   std::string status;
   std::string reason;  ///< reason of the first individual in the group
   std::int64_t count = 0;
-  bool varies = false;  ///< whether the reasons of other individuals in the group have other numbers in them
+  bool varies = false;  ///< whether the reasons of other individuals in the group differ from it after the first digit
 };
 
-/// The archive of a run. Functions that read it check every value; they throw ArchiveError if a value is not possible.
+/// The archive of a run. Functions that read it check every value; they throw ArchiveError if a value is impossible.
 class Archive {
  public:
   /// Starts the archive of a new run. The first provenance is that of this program on `device`. Throws ArchiveError if
-  /// the folder exists and is not empty. `journal` holds for the whole run; without it, the file system of the folder
-  /// decides.
+  /// the folder exists and is not empty. `journal` applies to the whole run; by default, it depends on the folder's
+  /// file system.
   static Archive create(const std::filesystem::path& folder, const Experiment& experiment, const std::string& device,
                         std::optional<Journal> journal = std::nullopt);
   /// Opens an archive to continue its run. Throws ArchiveError if another process is continuing the run.
   static Archive resume(const std::filesystem::path& folder, std::optional<Journal> journal = std::nullopt);
   /// Opens an archive to add findings about its individuals, such as verifications. Another process may continue the
-  /// run meanwhile.
+  /// run at the same time.
   static Archive annotate(const std::filesystem::path& folder);
   /// Opens an archive for reading. All functions return its content as of the first read, even if another process
-  /// continues the run meanwhile.
+  /// continues the run at the same time.
   static Archive read(const std::filesystem::path& folder);
 
   Archive(Archive&&) noexcept;
@@ -63,7 +63,7 @@ class Archive {
   const std::filesystem::path& folder() const;
   /// Returns whether the run's file is still the one that was opened; if it is not, written data are lost.
   bool is_in_place() const;
-  /// Throws ArchiveError: the record of the run is inconsistent, as `what` says.
+  /// Throws an ArchiveError which says that the record of the run is inconsistent. `what` describes how.
   [[noreturn]] void refuse(const std::string& what) const;
   /// Returns an entry of the run's record, such as "seed" or "created". Throws ArchiveError if there is none.
   std::string record(const std::string& key) const;
@@ -75,10 +75,10 @@ class Archive {
   void set_record(const std::string& key, const std::string& value);
   /// Sets several entries of the run's record in one transaction.
   void set_records(const std::map<std::string, std::string>& entries);
-  /// Adds a provenance to those of the run, if it is not among them yet, and returns its index.
+  /// Adds a provenance to those of the run, unless the run has it already, and returns its index.
   std::uint32_t add_provenance(const Provenance& provenance);
-  /// Returns the provenances of all processes that began or resumed the run, in the order in which they were added. A
-  /// process that ended before its first generation is among them.
+  /// Returns the provenances of all processes that began or resumed the run, in the order in which they were added.
+  /// They include the provenances of processes that ended before they made a generation.
   std::vector<Provenance> provenances() const;
   /// Returns the provenance of a generation.
   Provenance provenance(std::uint32_t generation) const;
@@ -87,19 +87,20 @@ class Archive {
   /// Returns the reasons why individuals failed, most frequent first. Reasons that agree up to the first digit are one
   /// group.
   std::vector<Failure> failures() const;
-  /// Returns the number of individuals for each status.
+  /// Returns the number of individuals with each status.
   std::map<std::string, std::int64_t> statuses() const;
-  /// Returns the individuals that live after the last generation, in the order of birth.
+  /// Returns the individuals that are alive after the last generation, in the order of birth.
   std::vector<Individual> population() const;
   /// Returns an individual, or nullopt if there is none with this id.
   std::optional<ArchivedIndividual> individual(std::uint32_t id) const;
   /// Returns an individual to which the archive itself refers. Throws ArchiveError if there is none with this id.
   ArchivedIndividual known_individual(std::uint32_t id) const;
-  /// Returns the ids of the `count` individuals with the best first objective, best first; ties in the order of birth.
+  /// Returns the ids of the `count` individuals with the best first objective, best first; ties are in the order of
+  /// birth.
   std::vector<std::uint32_t> best(std::size_t count) const;
   /// Returns the record of an individual's life, or nullopt if the individual never reached the front.
   std::optional<LifeRecord> life(std::uint32_t id) const;
-  /// Returns the verification of an individual, or nullopt if it was not verified.
+  /// Returns the verification of an individual, or nullopt if the individual has not been verified.
   std::optional<Verification> verification(std::uint32_t id) const;
 
  private:

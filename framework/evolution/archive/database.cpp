@@ -15,13 +15,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int opening_ms = 5'000;   ///< longest wait for other processes when a file is opened, ms
-constexpr int writing_ms = 60'000;  ///< longest wait while a run is written, ms; a run must not end because of a copy
+constexpr int writing_ms = 60'000;  ///< longest wait while a run is written, ms; somebody may be copying it
 constexpr std::chrono::seconds between_checkpoints{1};
 constexpr int most_bytes = 256 << 20;        ///< largest size of a row, bytes; far more than any genome or life needs
 constexpr std::size_t most_shown = 40;       ///< largest number of bytes of a text that a message shows
-constexpr std::size_t most_of_sqlite = 100;  ///< the same for a message of SQLite, which may quote the file
+constexpr std::size_t most_of_sqlite = 100;  ///< the same for a SQLite message, which may quote the file
 
-/// What an error of SQLite means for the user.
+/// What a SQLite error means for the user.
 struct Meaning {
   int code;
   bool of_storage;  ///< true: the storage failed; false: the input is wrong
@@ -83,7 +83,7 @@ RunDatabase::RunDatabase(fs::path folder, int flags, std::optional<boost::interp
   limit();
 }
 
-/// Keeps a file from an untrusted source from executing code (triggers, views) and from filling the memory.
+/// Prevents a file from an untrusted source from executing code (triggers, views) and from filling the memory.
 void RunDatabase::limit() const {
   sqlite3* const handle = database_.getHandle();
   sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, most_bytes);
@@ -104,8 +104,8 @@ RunDatabase::~RunDatabase() {
 
 void RunDatabase::prepare_for_rollback() { execute("PRAGMA locking_mode = EXCLUSIVE"); }
 
-/// Tries to set the write-ahead log. If that does not work in the folder, throws if `must`, else returns false. Throws
-/// also if another process uses the file or the disk is full.
+/// Tries to switch to a write-ahead log. If that does not work in the folder, throws an exception if `must`, and
+/// otherwise returns false. In both cases, throws if another process uses the file or the disk is full.
 bool RunDatabase::try_wal(bool must) {
   try {
     if (database_.execAndGet("PRAGMA journal_mode = WAL").getString() == "wal") return true;
@@ -122,7 +122,7 @@ void RunDatabase::set_journal(std::optional<Journal> wish) {
   guarded([&] {
     const bool wal = wish.value_or(journal_for(folder_)) == Journal::wal && try_wal(wish == Journal::wal);
     if (!wal) {
-      // in exclusive mode, SQLite can merge a write-ahead log that was left behind without shared memory
+      // in exclusive mode, SQLite needs no shared memory to merge a write-ahead log that was left behind
       database_.exec("PRAGMA locking_mode = EXCLUSIVE");
       database_.execAndGet("PRAGMA journal_mode = DELETE");
       database_.exec("PRAGMA locking_mode = NORMAL");

@@ -33,9 +33,10 @@ class RunDatabase {
   /// which can be read on any file system. While another process reads the run, the log and its index file stay.
   ~RunDatabase();
 
-  /// Makes SQLite work without shared memory. Must be called first if the run shall have a rollback journal.
+  /// Makes SQLite work without shared memory. Must be called before all other functions if the run is to have a
+  /// rollback journal.
   void prepare_for_rollback();
-  /// Sets the journal to `wish` or, without a wish, to the one that works in the folder.
+  /// Sets the journal to `wish` or, if that is nullopt, to the kind of journal that works in the folder.
   void set_journal(std::optional<Journal> wish);
   /// Makes all later reads see the same state of the run, without keeping other processes from writing.
   void take_snapshot();
@@ -44,12 +45,12 @@ class RunDatabase {
 
   /// Throws StorageError if the file was moved, removed or replaced since it was opened, or its log is gone.
   void require_in_place() const;
-  /// Moves the content of the write-ahead log to the database file, as far as readers allow it. Does nothing if the
-  /// last call that did so was less than a second ago, because each such call waits for the disk.
+  /// Moves the content of the write-ahead log to the database file, as far as readers allow it. Does nothing if less
+  /// than a second has passed since the last call that moved it, because each such call waits for the disk.
   void checkpoint_if_due();
 
   void execute(const char* sql);
-  /// Throws ArchiveError: the record of the run is inconsistent, as `what` says.
+  /// Throws an ArchiveError which says that the record of the run is inconsistent. `what` describes how.
   [[noreturn]] void refuse(const std::string& what) const;
 
   const std::filesystem::path& folder() const { return folder_; }
@@ -77,8 +78,8 @@ class RunDatabase {
   std::optional<std::chrono::steady_clock::time_point> last_checkpoint_;
 };
 
-/// A transaction: either everything that is written from its construction to commit() is kept, or nothing. It waits for
-/// other writers in its constructor, so that later writes do not fail because of them.
+/// A transaction: either everything that is written from its construction to commit() is kept, or nothing. The
+/// constructor waits for other writers, so that later writes do not fail because of them.
 class WriteTransaction {
  public:
   explicit WriteTransaction(RunDatabase& run);
@@ -90,13 +91,13 @@ class WriteTransaction {
 };
 
 /// An SQL statement and its result rows. Reading a value that does not have the expected type or range throws an
-/// ArchiveError that names table and column.
+/// ArchiveError that names the table and the column.
 class Statement {
  public:
   /// `table` is the name of the table in messages.
   Statement(const RunDatabase& run, std::string table, const std::string& sql);
 
-  /// Resets the statement and binds the values to its parameters, in their order.
+  /// Resets the statement and binds the values to its parameters, in order.
   template <class... Values>
   void bind(const Values&... values) {
     int position = 0;
@@ -129,7 +130,7 @@ class Statement {
   /// Reads bytes; they are valid until the next step().
   std::string_view bytes(int column) const;
 
-  /// Throws ArchiveError: the value of a column is not what was expected.
+  /// Throws an ArchiveError which says that the value of a column is not the expected one.
   [[noreturn]] void refuse(int column, const std::string& expected) const;
 
  private:

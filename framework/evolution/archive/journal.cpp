@@ -15,7 +15,7 @@ constexpr std::array<std::uint32_t, 17> remote_types = {
     0x0000517b,  // SMB
     0xff534d42,  // CIFS
     0xfe534d42,  // SMB 2
-    0x65735546,  // FUSE, sshfs among them
+    0x65735546,  // FUSE, including sshfs
     0x01021997,  // 9P
     0x00c36400,  // Ceph
     0x0bd00bd0,  // Lustre

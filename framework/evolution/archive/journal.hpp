@@ -17,7 +17,7 @@ enum class Journal {
   rollback  ///< rollback journal: works wherever files can be locked; readers and the writer wait for each other
 };
 
-/// Returns SQLite's name of a journal: "wal" or "delete".
+/// Returns SQLite's name for a journal: "wal" or "delete".
 const char* name(Journal journal);
 /// Returns the journal with this name, or nullopt if there is none.
 std::optional<Journal> journal_named(std::string_view name);

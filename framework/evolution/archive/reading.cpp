@@ -83,7 +83,7 @@ class Individuals {
   }
 
  private:
-  /// Checks that no table has a row of an id that the next individuals of the run will get.
+  /// Checks that no table has a row for an id that a later individual of the run will get.
   void check_ids(std::int64_t evaluations) {
     for (const char* column : {"individuals.id", "scores.individual", "lives.individual", "verifications.individual"}) {
       const std::string_view name(column);

@@ -88,7 +88,7 @@ void create_tables(RunDatabase& run) { run.execute(schema); }
 
 void check_tables(const RunDatabase& run) {
   const Things here = run.guarded([&] { return things_in(run.sqlite()); });
-  // Archive::create() writes the tables in one transaction, so a file without tables is one that was never committed.
+  // Archive::create() writes the tables in one transaction, so nothing was ever committed to a file without tables.
   if (here.empty())
     throw ArchiveError(run.folder().string() + ": the run in it ended before it stored anything; if there was a " +
                        database_name + "-wal beside " + database_name +
@@ -98,7 +98,7 @@ void check_tables(const RunDatabase& run) {
     if (found == here.end()) refuse_foreign(run, "lacks \"" + name + "\"");
     if (found->second != things_of_a_run().at(name)) refuse_foreign(run, "defines \"" + name + "\" in another way");
   };
-  check("record");  // first, because the format in it says whether this program knows the other tables
+  check("record");  // checked first, because the format in it says whether this program knows the other tables
   check_format(run);
   for (const auto& [name, sql] : things_of_a_run()) check(name);
 }

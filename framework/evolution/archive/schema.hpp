@@ -5,14 +5,15 @@
 
 namespace evodevo {
 
-/// Version of the tables. It must be raised whenever they change so that older programs cannot read the new tables, or
-/// this program cannot read the old ones.
+/// Version of the tables. It must be raised whenever the tables are changed in such a way that older programs cannot
+/// read the new tables, or that this program cannot read the old ones.
 inline constexpr const char* archive_format = "6";
 
 void create_tables(RunDatabase& run);
 
-/// Throws ArchiveError if the file holds no run, a run of another format, or tables that differ from those of a run.
-/// The check also keeps a foreign file from executing code of its own, such as views in the place of tables.
+/// Throws ArchiveError if the file holds no run, a run in another format, or tables that differ from those of a run.
+/// The check also prevents a file from elsewhere from executing its own code, for example through views in place of
+/// tables.
 void check_tables(const RunDatabase& run);
 
 }  // namespace evodevo

@@ -13,7 +13,7 @@ inline constexpr std::array<std::string_view, 2> names_of<Materials>{"table", "c
 
 namespace {
 
-/// What happens to a body for which a fixed dt is too long: it is invalid, or it is simulated all the same.
+/// What happens to a body for which a fixed dt is too long: it is invalid, or it is simulated anyway.
 enum class Unstable { invalid, run };
 
 }  // namespace

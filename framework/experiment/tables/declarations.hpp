@@ -9,7 +9,7 @@ namespace evodevo {
 
 void declare_run(SettingsVisitor& visitor, Settings& settings);           ///< [experiment]
 void declare_mass(SettingsVisitor& visitor, Settings& settings);          ///< the host's key in [encoding]
-void declare_accuracy(SettingsVisitor& visitor, Settings& settings);      ///< key of [simulation] to read first
+void declare_accuracy(SettingsVisitor& visitor, Settings& settings);      ///< first key to read of [simulation]
 void declare_simulation(SettingsVisitor& visitor, Settings& settings);    ///< other keys of [simulation]
 void declare_development(SettingsVisitor& visitor, Settings& settings);   ///< [development] without its operators
 void declare_schedule(SettingsVisitor& visitor, Schedule& schedule);      ///< the host's keys of a devo operator

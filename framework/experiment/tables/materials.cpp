@@ -7,8 +7,8 @@ namespace {
 
 constexpr std::size_t most_materials = 1000;
 
-/// Adds a warning if a new material's name is similar to that of a base material. If it was meant to be that name, the
-/// file defines a new material instead of changing the base material.
+/// Adds a warning if a new material's name is similar to that of a base material. If the user meant the base material,
+/// the file defines a new material instead of changing that one.
 void warn_of_near_material(const std::string& name, Warnings& warnings) {
   std::vector<std::string> known;
   for (const auto& [known_name, material] : base_materials()) known.push_back(known_name);

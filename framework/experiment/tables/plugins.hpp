@@ -12,15 +12,15 @@ namespace evodevo {
 /// A path that [plugins] names.
 struct NamedPath {
   std::filesystem::path path;
-  std::string fault;  ///< why it is not searched; empty if it is
+  std::string fault;  ///< reason why the path is not searched; empty if it is searched
 };
 
 class PluginsTable {
  public:
   PluginsTable(const toml::table& root, const ExperimentSource& source);
 
-  /// The paths to search for operators, in this order: those of the table, those of the command line, those of the
-  /// environment, and the program's own folder.
+  /// The paths to search for operators, in this order: those in the table, those given on the command line, those in
+  /// the environment variable EVODEVO_PLUGIN_PATH, and the program's own folder.
   const std::vector<std::filesystem::path>& search_path() const { return search_path_; }
   /// The part of the search path that a record stores, so that the run can be resumed without the options and the
   /// environment that it was started with: everything except the program's own folder.

@@ -38,10 +38,10 @@ void read_simulation(TomlReader& top, Settings& settings, Bodies bodies);
 /// Reads [development] without its operators. Takes the reader of that table. To be called after read_simulation().
 void read_development(TomlReader& development, Settings& settings);
 
-/// Throws ConfigError if StepRule::dt is fixed and a duration (s) is not a whole number of these steps.
+/// Throws ConfigError if StepRule::dt is fixed and a duration (s) is not a whole number of such steps.
 void check_duration(const TomlReader& table, std::string_view name, double duration, const StepRule& step);
 
-/// Reads all tables of settings in `top`. Does not check the keys of tables that operators read too.
+/// Reads all tables of settings in `top`. Does not check for unknown keys in tables that operators also read.
 Settings read_settings(TomlReader& top, Bodies bodies, Warnings& warnings);
 
 /// Writes the tables of settings. read_settings() reads them back as equal settings.

@@ -25,8 +25,8 @@ struct SpringRequest {
 /// The context of a devo operator: everything that the operator may look at after a cycle.
 ///
 /// `stress`, `peak_force`, `muscle_work` and `tension` are the records of the last cycle, with one number for every
-/// spring of `body`. A record is empty unless Devo::observes() asks for it. A spring that another operator has added
-/// since the cycle ended has the mean of the other springs as its record.
+/// spring of `body`. A record is empty unless Devo::observes() asks for it. For a spring that another operator has
+/// added since the cycle ended, the record is the mean of the records of the other springs.
 struct DevoContext {
   const Body& body;
   const State& state;
@@ -38,7 +38,7 @@ struct DevoContext {
   int application;                 ///< number of applications of this operator so far, including this one
   int applications;                ///< number of applications of this operator in the whole development
   double time;                     ///< simulated time since birth, s
-  Box bounds;                      ///< bounding box of the body now, cut off at the floor if the scene has one, m
+  Box bounds;                      ///< bounding box of all position(), cut off at the floor if the scene has one, m
   double mass;                     ///< mass that a new point mass should have, kg
   bool resets;                     ///< whether the body returns to its rest positions before the next cycle
   const Genome& genome;
@@ -74,7 +74,7 @@ struct ChangedSpring {
 
 /// One step in the linear growth of all springs. Over its whole growth, a spring's rest length changes linearly from L
 /// to Spring::growth * L, where L is the rest length at birth. The host multiplies the present rest length by the ratio
-/// that this step makes, so that other changes of the rest length are preserved.
+/// of the lengths after and before this step, so that other changes of the rest length are preserved.
 struct Growth {
   double from = 0, to = 0;  ///< progress of the growth before and after this step, 0 to `whole`
   double whole = 1;         ///< progress at which growth is complete, for example the number of applications
@@ -93,8 +93,8 @@ struct Causes {
 
 /// The changes that a devo operator requests. Indices of masses and springs refer to DevoContext::body; if that body
 /// has n masses, then index n + i refers to the new mass i in `new_masses`. The host applies an operator's edits
-/// together after the call. It refuses dangling springs, duplicate springs, springs of air, and numbers that are not
-/// finite.
+/// together after the call. The host refuses dangling springs, duplicate springs, springs of air, and numbers that are
+/// not finite.
 struct Edits {
   std::optional<Growth> growth;  ///< growth of all springs; a rest length given in `changed_springs` overrides it
   std::vector<std::uint32_t> removed_springs;
@@ -129,7 +129,7 @@ class Devo : public Operator {
   virtual Measure measure([[maybe_unused]] Causes::List list) const { return {"stress", "N"}; }
   /// Returns whether the operator sets Edits::growth. Growth has an effect only if Encoding::sets_growth() is true.
   virtual bool uses_growth() const { return false; }
-  /// Adds the wanted changes to `edits`, which is empty at the call.
+  /// Adds the wanted changes to `edits`, which is empty when this function is called.
   virtual void develop(const DevoContext& context, Edits& edits, Rng& rng) const = 0;
 };
 

@@ -37,16 +37,16 @@ struct Size {
   double end = 1;    ///< size at the end of a ballistic development
 };
 
-/// The result of an encoding. To make a body of it, the host joins neighbours, drops springs of air and masses without
-/// springs, keeps the largest connected piece, and puts that piece on the floor.
+/// The result of an encoding. To make a body from it, the host joins neighbours, drops springs of air and masses
+/// without springs, keeps the largest connected piece, and puts that piece on the floor.
 struct Blueprint {
   Body body;  ///< its `materials` begin with those of the context, in the same order
   std::uint32_t neighbours =
       0;                ///< > 0: the host joins each mass to this many nearest masses by springs of their mean material
   std::string failure;  ///< reason why there is no body; empty if there is one
-  std::vector<Vec3> paired_at = {};  ///< positions, one for each mass, by which the nearest masses are determined;
+  std::vector<Vec3> paired_at = {};  ///< positions, one for each mass, from which the nearest masses are determined;
                                      ///< empty: the rest positions
-  std::vector<Size> sizes = {};      ///< sizes, one for each mass, for springs to `neighbours`; empty: all sizes are 1
+  std::vector<Size> sizes = {};  ///< sizes, one for each mass, for the springs that join `neighbours`; empty: all are 1
   std::vector<Vec3> origins = {};  ///< the point that the encoding mapped to each mass, for pictures; empty: no points
 };
 

@@ -9,8 +9,8 @@
 
 namespace evodevo {
 
-/// What a fitness operator needs to know of the final evaluation. A body first settles; then the window opens, which is
-/// the time in which the body is measured.
+/// What a fitness operator needs to know about the final evaluation. A body first settles; then it is measured. The
+/// time during which it is measured is the window.
 struct Request {
   double settle = 0;   ///< time for which the body settles before the window opens, s
   double window = 10;  ///< length of the window, s

@@ -12,7 +12,7 @@ class Operator {
  public:
   virtual ~Operator() = default;
 
-  /// Declares every parameter of the operator by one call of a function of Parameters.
+  /// Declares every parameter of the operator with one call of a function of Parameters.
   virtual void parameters(Parameters&) {}
 };
 

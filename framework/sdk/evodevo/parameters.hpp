@@ -1,4 +1,4 @@
-// The interface by which operators declare their parameters. An operator declares each parameter once; from the
+// The interface through which operators declare their parameters. An operator declares each parameter once; from the
 // declarations, the host reads parameters from TOML, checks them, describes them and records them.
 #pragma once
 

@@ -17,7 +17,7 @@ namespace evodevo {
 struct Candidate {
   std::span<const double> scores;  ///< finite scores, one for each objective, greater is better; empty unless ok()
   std::uint32_t age = 0;           ///< number of generations since the individual's oldest genes were drawn
-  std::optional<std::uint32_t> challenges;  ///< row of the parent that this individual may replace; none: no such row
+  std::optional<std::uint32_t> challenges;  ///< row of the parent that this individual may replace, if there is one
 
   /// Returns whether the individual's evaluation ended `ok`.
   bool ok() const { return !scores.empty(); }
@@ -33,7 +33,7 @@ class Selection : public Operator {
   /// is its mate for crossover.
   virtual std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows,
                                                                        std::uint32_t count, Rng& rng) const = 0;
-  /// Returns the rows of the individuals that live on: at least one and at most `population` different rows.
+  /// Returns the rows of the individuals that survive: at least one and at most `population` different rows.
   virtual std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
                                                Rng& rng) const = 0;
 };

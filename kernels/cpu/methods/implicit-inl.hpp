@@ -52,9 +52,9 @@ struct Implicit : StepMethod {
   }
 
  private:
-  /// The solver stops when the residual, in the preconditioner's norm, is this fraction of what it was at the start.
-  /// In float32 rounding alone leaves about 1e-4 at twenty times the explicit methods' largest dt, where the condition
-  /// number of the matrix is 1,600. In float64, 1e-6 is far below the error of the method itself.
+  /// The solver stops when the residual, in the preconditioner's norm, has fallen to this fraction of its initial
+  /// value. In float32 rounding alone leaves about 1e-4 at twenty times the explicit methods' largest dt, where the
+  /// condition number of the matrix is 1,600. In float64, 1e-6 is far below the error of the method itself.
   template <class T>
   static constexpr T tolerance = sizeof(T) == sizeof(float) ? T(1e-4) : T(1e-6);
   /// The solver stops after this many iterations in any case. The remaining residual is an error of the motion, but
@@ -78,7 +78,7 @@ struct Implicit : StepMethod {
 
     T *residual, *direction, *correction;
     T* applied;              ///< the matrix times the direction
-    T* inverse_diagonal;     ///< of the matrix's diagonal: the preconditioner; 0 for masses that do not move
+    T* inverse_diagonal;     ///< the preconditioner: inverses of the matrix's diagonal elements; 0 for fixed masses
     T* resistance;           ///< R along x and y, kg/s
     T* vertical_resistance;  ///< R along z, kg/s
     T* interleaved;          ///< a copy of a vector that neighbours read: position_stride numbers for each mass

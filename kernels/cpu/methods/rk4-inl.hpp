@@ -1,4 +1,4 @@
-// rk4: the classical Runge-Kutta method of fourth order. Included once per instruction set.
+// rk4: the classical fourth-order Runge-Kutta method. Included once per instruction set.
 #if defined(EVODEVO_CPU_METHODS_RK4_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef EVODEVO_CPU_METHODS_RK4_INL_HPP
 #undef EVODEVO_CPU_METHODS_RK4_INL_HPP
@@ -12,8 +12,8 @@ HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
 /// A step: four stages, with damping, drag and floor as forces; their weighted means advance position and velocity.
-/// Friction acts once, at the end of the step, as a constant force: with N, the mean normal force of the stages, it
-/// takes mu N dt/m from the velocity and half of that from the mean velocity, so that a mass inside the friction cone
+/// Friction acts once, at the end of the step, as a constant force: it reduces the velocity by mu N dt/m, where N is
+/// the mean normal force of the stages, and the mean velocity by half of that, so that a mass inside the friction cone
 /// stays where it is.
 struct Rk4 : StepMethod {
   static constexpr std::size_t rows_per_step = 2, mass_arrays = 13;

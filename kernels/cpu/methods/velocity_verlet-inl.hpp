@@ -12,8 +12,8 @@ HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
 /// A step: half a step of damping and drag; kick (half a step of forces and friction); drift (x <- x + dt v); forces at
-/// the new positions; kick; half a step of damping and drag. The sequence is symmetric, hence of second order. The
-/// forces at the end of a step are used again at the beginning of the next step.
+/// the new positions; kick; half a step of damping and drag. The sequence is symmetric, so the method has second order.
+/// The forces at the end of a step are used again at the beginning of the next step.
 struct VelocityVerlet : StepMethod {
   template <class T>
   static void begin(const Stepper<T>& s) {

@@ -17,7 +17,7 @@ namespace evodevo::HWY_NAMESPACE {
 /// Each spring is a constraint |d| = L of compliance 1/k, and the floor is a constraint z >= 0 (Macklin et al., XPBD,
 /// 2016). One pass per step is made because, at equal cost, one pass with smaller steps is more accurate than several
 /// passes with larger ones (Macklin et al., Small steps in physics simulation, 2019). The unknowns are the velocities
-/// v, from which the positions at the end of the step follow as x + dt v. If they were the positions, float32
+/// v, from which the positions at the end of the step follow as x + dt v. If the unknowns were the positions, float32
 /// velocities would be differences of almost equal positions, mostly rounding error.
 struct Xpbd : StepMethod {
   static constexpr std::size_t mass_arrays = cpu::position_stride;
@@ -156,7 +156,7 @@ struct Xpbd : StepMethod {
     }
   }
 
-  /// The same on rough ground, with the slope that it has at the beginning of the step.
+  /// Solves rough ground as solve_floor() does level ground, with the ground's slope at the beginning of the step.
   template <class T>
   static void solve_rough_floor(const Stepper<T>& s) {
     const hn::ScalableTag<T> d;

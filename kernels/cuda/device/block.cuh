@@ -32,8 +32,8 @@ __device__ __forceinline__ void store(const Body& body, unsigned mass, const Mov
   body.velocities[mass] = point(m.velocity);
 }
 
-/// Calls advance(body, count) for the `count` steps of check span `index`, if the body has any. In `body`, positions
-/// and velocities are copied to the chip before and copied back afterwards, if there is room.
+/// Calls advance(body, count) for the `count` steps of check span `index`, if the body has steps in that span. In
+/// `body`, positions and velocities are copied to the chip before and copied back afterwards, if there is room.
 template <class Advance>
 __device__ __forceinline__ void advance_span(const Body& stored, std::uint64_t index, const Advance& advance) {
   const CheckSpan span(stored.piece, index);

@@ -57,7 +57,7 @@ __device__ __forceinline__ void record_fall(double height_moment, const StepCons
   answer.fallen = physics::maximum(answer.fallen, -static_cast<double>(constants.acceleration) * height_moment);
 }
 
-/// Whether a body exceeds the limit of energy. Its energies and steps are in its answer.
+/// Whether a body exceeds the energy limit. The answer has its energies and its number of steps.
 __device__ __forceinline__ bool has_gained(const RunPiece& piece, const StepConstants<Number>& constants,
                                            const Answer& answer) {
   const double elapsed = static_cast<double>(piece.first_step + answer.steps) * constants.exact_dt;

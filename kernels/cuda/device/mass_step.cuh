@@ -30,8 +30,8 @@ constexpr bool mean_tension = EVODEVO_TENSION;
 
 constexpr unsigned rows_per_step = EVODEVO_ROWS_PER_STEP;      // rows per step in the tables of lengths
 constexpr unsigned end_rows = EVODEVO_END_ROWS;                // 1 if a step reads the row at its end, otherwise 0
-constexpr unsigned opening_passes = EVODEVO_OPENING_PASSES;    // over springs, before the first step after a check
-constexpr unsigned passes_per_step = EVODEVO_PASSES_PER_STEP;  // over springs, in each step
+constexpr unsigned opening_passes = EVODEVO_OPENING_PASSES;    // over the springs before the first step after a check
+constexpr unsigned passes_per_step = EVODEVO_PASSES_PER_STEP;  // over the springs in each step
 
 using Vector = physics::Triple<Number>;
 
@@ -42,14 +42,14 @@ __device__ __forceinline__ double half_turns(const Actuator& actuator, double ti
   return 2 * (turns - floor(turns)) + actuator.phase;
 }
 
-/// A material at a time (s since birth).
+/// A material at a given time (s since birth).
 __device__ __forceinline__ Entry<Number> entry_of(const Actuator& actuator, double time) {
   double length = 1;  // L/L0
   if constexpr (actuation) length += actuator.amplitude * sinpi(half_turns(actuator, time));
   return {static_cast<Number>(actuator.stiffness), static_cast<Number>(actuator.stiffness * length)};
 }
 
-/// The rate of change of L/L0 at a time (s since birth), 1/s.
+/// The rate of change of L/L0 at a given time (s since birth), 1/s.
 __device__ __forceinline__ Number length_rate(const Actuator& actuator, double time) {
   double rate = 0;
   if constexpr (actuation)

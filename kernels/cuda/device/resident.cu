@@ -12,8 +12,9 @@
 //
 // Each lane of a warp takes a mass and computes the springs that the mass owns, one spring per row. It sums their
 // forces in registers, and adds the opposite force to the mass at the other end by atomic additions of integers in
-// shared memory. So each spring is computed once, and no sum depends on an order. The host compiles this file at run
-// time for each combination of features that a scene and a body ask for; a feature that is off leaves no instruction.
+// shared memory. So each spring is computed once, and no sum depends on the order of its terms. The host compiles this
+// file at run time for each combination of features that a scene and a body ask for; a feature that is off leaves no
+// instruction.
 #include EVODEVO_METHOD
 #include EVODEVO_MATERIALS
 
@@ -152,7 +153,7 @@ __device__ __forceinline__ void add_forces(const Body& body, const Share& share,
     if (row + 2 < rows) record = records[(row + 2) * lanes];
     const Number force = add_force(body, slot + row * lanes, spring, owner, pass, sums);
     if constexpr (stress) {
-      // no thread waits for the sum in memory; it has one writer, so its order is fixed
+      // no thread waits for this addition to memory; the sum has one writer, so its order is fixed
       const Number recorded = pass.recorded ? force : Number(0);
       if constexpr (chunked)
         atomicAdd(in_memory(body.recent_stress) + slot + row * lanes, recorded);

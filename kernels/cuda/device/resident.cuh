@@ -33,7 +33,7 @@ __device__ __forceinline__ const T* array_of(const T* in_device, unsigned offset
   return records_on_chip ? &on_chip<T>(offset) : in_memory(in_device);
 }
 
-/// Copies `count` numbers of such an array onto the chip.
+/// Copies `count` elements of such an array onto the chip.
 template <class T>
 __device__ __forceinline__ void copy_to_chip(const T* from, unsigned offset, unsigned count) {
   T* to = &on_chip<T>(offset);

@@ -9,7 +9,7 @@
 
 namespace evodevo::cuda {
 
-/// The description, for the device, of the piece of a run that a task is. The task's course must have begun.
+/// The description, for the device, of the piece of a run that a task represents. The task's course must have begun.
 inline RunPiece run_piece_of(const Task& task) {
   const Course& course = *task.course;
   return {.origin = course.origin,
@@ -40,7 +40,7 @@ inline void read_answer(const Answer& answer, Recording recording, Task& task) {
   apply_course(task, course);
 }
 
-/// The actuator of a material, its stiffness in units of `resolution` (N).
+/// The actuator of a material, with its stiffness in units of `resolution` (N).
 inline Actuator actuator_of(const Material& material, double resolution) {
   constexpr double pi = 3.14159265358979323846;
   return {material.stiffness / resolution, material.amplitude, material.frequency,

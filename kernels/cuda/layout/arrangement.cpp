@@ -13,12 +13,12 @@ namespace {
 constexpr unsigned unrolled_rows[] = {4, 8, 12, 15, 16, 20, 24};
 constexpr unsigned blocks[] = {1, 2, 4, 8, 16, 32};
 constexpr unsigned rows_of_a_chunk = 8;
-constexpr unsigned resident_warps = 32;  // of a multiprocessor, at 64 registers per thread
+constexpr unsigned resident_warps = 32;  // warps that fit on a multiprocessor, at 64 registers per thread
 
 unsigned divided(std::size_t a, std::size_t b) { return static_cast<unsigned>((a + b - 1) / b); }
 
-/// The shape for `rows` rows that wastes least. It weighs empty rows against warps for which a multiprocessor has no
-/// room, because warps hide each other's waiting times.
+/// The shape for `rows` rows that wastes the least. The choice weighs empty rows against warps for which a
+/// multiprocessor has no room, because warps hide each other's waiting times.
 Shape shape_for(std::size_t rows, std::uint32_t groups, unsigned largest_block) {
   Shape best;
   std::size_t best_cost = ~std::size_t{0};
@@ -145,7 +145,7 @@ void Arrangement::arrange(const Body& body, unsigned largest_block, Settled sett
   fill_empty_slots();
 }
 
-/// Sorts the springs by the group of their owner. Also counts the springs that lead to each mass, for magic_numbers.
+/// Sorts the springs by the group of their owner, and counts the springs that lead to each mass, for magic_numbers.
 Arrangement::Members Arrangement::members_of_groups(const Body& body, const std::vector<std::uint32_t>& owner,
                                                     const Settled& settled) {
   std::vector<std::uint32_t> owned(32 * groups, 0);

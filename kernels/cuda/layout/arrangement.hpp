@@ -15,7 +15,7 @@
 namespace evodevo::cuda {
 
 /// The device index of each mass of `body`: masses are sorted by descending degree (number of springs), so that masses
-/// in neighbouring lanes have about equally many springs.
+/// in neighbouring lanes have similar numbers of springs.
 std::vector<std::uint32_t> indices_by_degree(const Body& body);
 
 /// The sizes of a block for which a kernel is compiled and a body is arranged.
@@ -45,7 +45,7 @@ struct Outline {
 /// Masses are in groups of 32: each mass of a group has its own lane of a warp and its own bank of shared memory. A
 /// spring is in a row of the group of the mass that owns it, in the lane of that mass; the lanes of a row add forces to
 /// different banks as far as possible. The rows of all groups, one group after the other, are divided evenly among the
-/// warps. The arrangement influences only the order in which energies and work are summed, and no other result.
+/// warps. The arrangement influences only the order in which energies and work are summed, and nothing else.
 struct Arrangement {
   static constexpr std::uint32_t none = 0xffffffff;
 

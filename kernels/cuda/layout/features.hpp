@@ -60,8 +60,8 @@ struct ResidentForm {
   unsigned rows = 0, masses_per_thread = 0;
   bool chunked = false;          ///< warps have more than one chunk of rows
   bool records_on_chip = false;  ///< springs in shared memory; otherwise streamed from the device's memory
-  bool wide_offsets = false;     ///< offsets of masses need more than 16 bits in bytes, so they count in numbers
-  bool wide_table = false;       ///< likewise offsets of the table's entries
+  bool wide_offsets = false;  ///< offsets of masses count numbers, because in bytes they would need more than 16 bits
+  bool wide_table = false;    ///< likewise for offsets of the table's entries
 
   friend auto operator<=>(const ResidentForm&, const ResidentForm&) = default;
 };

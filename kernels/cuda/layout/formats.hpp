@@ -47,7 +47,7 @@ struct Actuator {
 template <class T>
 struct CodeUnits {
   T stiffness;          ///< as in Entry
-  T amplitude;          ///< 1; unit for the code's word with only the amplitude's bits set
+  T amplitude;          ///< 1; factor for the code's word with only the amplitude's bits set
   T angular_frequency;  ///< rad/s
   double frequency;     ///< Hz
 };
@@ -119,7 +119,7 @@ struct ResidentBody {
   Motion<T> motion;                  ///< [padded masses]
   double* stress;                    ///< [slots] sum of |force|, N
   T* recent_stress;                  ///< [slots] the part of the sum that is not yet in `stress`, units; if chunked
-  // [slots] if recorded; written by atomic operations without a result, so that no thread waits; each slot has one
+  // [slots] if recorded; written by atomic operations that return no result, so that no thread waits; each slot has one
   // writer
   Integer* peak;     ///< bits of the largest |force|, units; as integers they have the same order as the forces
   double* powers;    ///< sum of power, units m/s
@@ -161,8 +161,8 @@ struct alignas(4 * sizeof(T)) Point {
 };
 
 /// A body that is too large for the chip (streamed.cu), or whose method keeps bodies in the device's memory (implicit,
-/// xpbd). Its masses are sorted by descending degree (number of springs), so that those of a group have about equally
-/// many.
+/// xpbd). Its masses are sorted by descending degree (number of springs), so that the masses of a group have similar
+/// numbers of springs.
 template <class T>
 struct StreamedBody {
   StepConstants<T> constants;

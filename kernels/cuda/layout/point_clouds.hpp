@@ -37,7 +37,7 @@ struct DeviceClouds {
   const double *x, *y, *z;  ///< [points] m
   Reach* reach;             ///< [points]
   std::uint64_t*
-      first_pair;       ///< [points] first the number of pairs (a, b) of point a, then the index of the first of them
+      first_pair;       ///< [points] at first the number of pairs (a, b) of point a, later the index of the first pair
   std::uint32_t count;  ///< number of clouds
   std::uint32_t points;
 };

@@ -24,9 +24,9 @@ struct ChipMemory {
 };
 
 /// The range of forces for a body. The largest force is the maximum of: the force of its strongest spring at twice its
-/// length, or at three times its length if muscles drive the body (in resonance, springs stretch by more than their
-/// length); twice the largest current force of a spring; the force that stops the masses' motion; and the body's
-/// weight. The last three can be the maximum if springs are soft or short.
+/// rest length, or at three times its rest length if muscles drive the body (in resonance, springs stretch by more than
+/// their rest length); twice the largest current force of a spring; the force that stops the masses' motion; and the
+/// body's weight. The last three can be the maximum if springs are soft or short.
 template <class T>
 ForceRange force_range(const Body& body, const State& state, const Scene& scene);
 
@@ -51,7 +51,7 @@ template <class T>
 class Resident {
  public:
   /// Arranges the body of `task`, whose course has begun, for blocks with up to `shared_bytes` of shared memory.
-  /// Nothing if the body does not fit; whether it fits does not depend on what is recorded.
+  /// Returns nothing if the body does not fit; whether it fits does not depend on what is recorded.
   static std::optional<Resident> arrange(const Task& task, const Features& features, std::size_t shared_bytes);
 
   /// The part of `shared_bytes` that is available to a body; the kernel and the system need the rest.

@@ -84,8 +84,8 @@ class Colouring {
     for (const int edge : path_) set(edge, static_cast<std::uint32_t>(taken + open) - links_[edge].row);
   }
 
-  /// The cost of one more spring of `bank` in `row`: above all, how many more wavefronts an access takes; among equals,
-  /// how many springs of the bank are already in that row.
+  /// The cost of one more spring of `bank` in `row`: mainly the number of additional wavefronts that an access takes;
+  /// among rows for which this number is equal, the number of springs of the bank that are already in the row.
   int row_cost(int row, int bank) const {
     int most = 0;
     for (int other = 0; other < 32; ++other) most = std::max(most, in_bank(row, other));
@@ -103,7 +103,7 @@ class Colouring {
 }  // namespace
 
 void choose_rows(std::span<Link> links, std::size_t rows) {
-  if (rows > most_rows) {  // so many springs at one mass are rare: bank conflicts are accepted
+  if (rows > most_rows) {  // that many springs at one mass are rare: bank conflicts are accepted
     std::array<std::uint32_t, 32> next{};
     for (Link& link : links) link.row = next[link.lane]++;
     return;

@@ -11,7 +11,7 @@ namespace evodevo::cuda {
 /// A spring of a group: the lane of its owner and the bank of its other mass.
 struct Link {
   std::uint8_t lane, bank;
-  std::uint32_t row = open;  ///< the chosen row; a row that is given stays if possible
+  std::uint32_t row = open;  ///< the chosen row; a row that is already set is kept if possible
 };
 
 /// Divides the springs of a group among `rows` rows, so that no row has two springs of the same lane and, as far as

@@ -22,7 +22,7 @@ class Streamed {
   /// The number of threads of each block that simulates the body. If one block simulates the whole body, this number,
   /// and with it the order of the block's sums, depends only on the body.
   unsigned threads() const;
-  std::size_t chip_bytes() const { return chip_bytes_; }  ///< shared memory of the block, if one block moves the body
+  std::size_t chip_bytes() const { return chip_bytes_; }  ///< shared memory for the body, bytes; 0: not used
   std::uint32_t masses() const { return static_cast<std::uint32_t>(task_->body->masses.size()); }
   const Features& features() const { return features_; }
   /// The number of check spans: a span goes from one check, or the beginning of the task, to the next check or its end.
@@ -42,7 +42,7 @@ class Streamed {
   void pack_joints(const Regions& host) const;
   void pack_colours(const Regions& host) const;
   void unpack_springs(const Regions& host, Task& task) const;
-  /// The index of the `row`-th joint of the mass of index `index`.
+  /// The index of the `row`-th joint of the mass with index `index`.
   std::uint32_t joint_at(std::uint32_t index, std::uint32_t row) const {
     return lanes * (first_row_[index / lanes] + row) + index % lanes;
   }

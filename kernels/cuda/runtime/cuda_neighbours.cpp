@@ -217,7 +217,7 @@ class CudaNeighbourSearch final : public NeighbourSearch {
   }
 
  private:
-  /// The number of next jobs that form a portion; at least one.
+  /// The number of jobs, from the first one on, that form a portion; at least one.
   std::size_t portion_from(std::span<const Job> jobs) const {
     std::size_t bytes = 0;
     for (std::size_t count = 0; count < jobs.size(); ++count) {

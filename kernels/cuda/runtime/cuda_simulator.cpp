@@ -149,8 +149,8 @@ class DeviceSimulator final : public CudaSimulator {
     return plans;
   }
 
-  /// Simulates as many of the next plans as fit the device's memory together, and returns their number. Adds the time
-  /// of the kernels to `seconds`.
+  /// Simulates as many plans, from the first one on, as fit in the device's memory together, and returns their number.
+  /// Adds the time of the kernels to `seconds`.
   std::size_t simulate_next_portion(std::span<cuda::Plan<T>> plans, const cuda::Run& run, double& seconds) {
     const auto attempt = [&](std::size_t count) {
       const BatchResourcePool::Loan resources(batch_resources_);
@@ -165,7 +165,7 @@ class DeviceSimulator final : public CudaSimulator {
     }
   }
 
-  /// The number of next plans that should fit the free memory; at least one.
+  /// The number of plans, from the first one on, that should fit in the free memory; at least one.
   std::size_t plans_that_fit(std::span<const cuda::Plan<T>> plans) {
     const auto free = static_cast<double>(memory_->available());
     const std::size_t budget = std::min(largest_portion_, static_cast<std::size_t>(share_of_memory * free));

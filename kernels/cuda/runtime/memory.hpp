@@ -31,7 +31,7 @@ class MirroredMemory {
     return mirrored <= host_size_ && mirrored + more <= size_;
   }
 
-  /// Makes room for these sizes; the old content is lost. Throws OutOfMemory, and then holds no memory.
+  /// Makes room for these sizes; the old content is lost. If it throws OutOfMemory, no memory is held afterwards.
   void resize(std::size_t mirrored, std::size_t more) {
     if (holds(mirrored, more)) return;
     try {

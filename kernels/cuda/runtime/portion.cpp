@@ -147,7 +147,7 @@ std::vector<typename Portion<T>::ReadyLaunch> Portion<T>::ready_launches(KernelS
   return launches;
 }
 
-/// Allows a kernel to use as much shared memory as any body can need. It is always the same amount, because other
+/// Allows a kernel to use as much shared memory as any body can need. The amount is always the same, because other
 /// threads may be launching the same kernel.
 template <class T>
 void Portion<T>::allow_largest_chip(cudaKernel_t kernel) const {

@@ -1,4 +1,4 @@
-// A portion: bodies of a batch that fit the device's memory together. Its steps are:
+// A portion: bodies of a batch that fit in the device's memory together. Its steps are:
 //
 //   Plan       task ─► layout of the body: Resident (on the chip) or Streamed (in the device's memory)
 //   arrange    sizes of all plans ─► memory on host and device, regions of each body, launches of bodies of equal form
@@ -44,7 +44,7 @@ struct Plan {
   std::variant<Streamed<T>, Resident<T>> body;
 };
 
-/// Simulates bodies that fit the device's memory together.
+/// Simulates bodies that fit in the device's memory together.
 template <class T>
 class Portion {
  public:

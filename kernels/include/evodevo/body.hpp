@@ -49,7 +49,7 @@ struct Material {
   }
 };
 
-/// Whether the material is air, of which no spring is made.
+/// Whether the material is air; no springs are made of air.
 inline bool is_air(const Material& material) { return !(material.stiffness > 0); }
 
 /// The material of a spring between a mass of `a` and a mass of `b`: the mean of all four parameters
@@ -59,14 +59,15 @@ inline Material mean(const Material& a, const Material& b) {
           (a.phase + b.phase) / 2};
 }
 
-/// Mass::material of a mass that has none (encodings that give materials to springs, not to masses).
+/// The value of Mass::material for a mass without a material (in encodings that give materials to springs, not to
+/// masses).
 inline constexpr std::int32_t no_material = -1;
 
 struct Mass {
   Vec3 rest;                            ///< position in the undeformed body, m
   double mass = 0;                      ///< kg
   std::int32_t material = no_material;  ///< index into Body::materials, or no_material
-  std::uint32_t air_contacts = 0;       ///< number of neighbours to which no spring was made, as it would be air
+  std::uint32_t air_contacts = 0;       ///< number of neighbours to which no spring was made because it would be air
   double payload = 0;                   ///< part of `mass` that is payload of the scene, kg
 };
 
@@ -83,8 +84,8 @@ struct Body {
   std::vector<Mass> masses;
   std::vector<Spring> springs;
   std::vector<Material> materials;
-  /// The number of materials that come from the experiment, which are the first ones; set by the host at birth. They
-  /// are kept; every other material is removed when no spring and no mass uses it any more.
+  /// The number of materials that come from the experiment; they are the first ones in the list. Set by the host at
+  /// birth. These materials are always kept; every other material is removed when no spring or mass uses it any more.
   std::uint32_t base_materials = 0;
 
   /// Returns the index of `material` in `materials`, and appends it if it is new. Searches linearly.
@@ -102,7 +103,7 @@ struct State {
   std::vector<Vec3> velocity;  ///< m/s
   double time = 0;             ///< time since birth, s
   double start_energy = 0;     ///< upper bound of gravitational + kinetic + elastic energy, for the energy guard:
-                               ///< energy at birth, plus what development added and muscles can have added since, J
+                               ///< energy at birth, plus what development and muscles can have added since, J
 };
 
 /// The smallest box around `positions`; all zero if there are none.

@@ -1,4 +1,4 @@
-// Random numbers that depend only on their key, not on earlier draws of others.
+// Random numbers that depend only on the key of their stream, not on what other streams have drawn.
 #pragma once
 
 #include <cmath>
@@ -43,16 +43,16 @@ class Rng {
     return block_[used_++];
   }
 
-  /// Returns a number that is uniform in [0, 1), as a multiple of 2^-53.
+  /// Returns a uniformly distributed multiple of 2^-53 in [0, 1).
   double uniform() {
     const std::uint64_t high = (*this)() >> 5, low = (*this)() >> 6;
     return static_cast<double>(high << 26 | low) * 0x1p-53;
   }
 
-  /// Returns a number that is uniform in [low, high).
+  /// Returns a uniformly distributed number in [low, high).
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
 
-  /// Returns an integer that is uniform among 0 … count-1, without bias; count > 0.
+  /// Returns a uniformly distributed integer from 0 to count - 1, without bias; count > 0.
   std::uint32_t below(std::uint32_t count) {
     const std::uint32_t uneven = (0u - count) % count;
     for (;;) {

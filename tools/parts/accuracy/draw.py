@@ -245,7 +245,7 @@ def draw_gain(axes, rows):
 
 def draw_gain_map(axes, rows):
     m, k, gain = "mass (kg)", "floor stiffness (N/m)", "largest gain of a bounce (1)"
-    dt = 0.0005  # s
+    dt = 0.0005  # time step, s
     axes.set(title="The same for paper-euler at 0.5 ms", xlabel=m, ylabel=k)
     charts.make_logarithmic(axes, "xy")
     axes.grid(False)

@@ -8,7 +8,7 @@
 namespace evodevo::tools::accuracy {
 namespace {
 
-constexpr double dt = 0.0005;  // s
+constexpr double dt = 0.0005;  // time step, s
 
 /// The body at its rest positions; each mass has a velocity of its own, with up to 1 m/s along each axis.
 State shaken(const Body& body) {

@@ -1,4 +1,4 @@
-// The fitness of robots when they are simulated with one setting of the time stepping.
+// The fitness of robots that are simulated with one time-stepping setting.
 #pragma once
 
 #include <span>
@@ -16,7 +16,7 @@ struct Fitnesses {
 };
 
 /// Simulates bodies from birth in the scene of the experiment, without development, and scores them by the first
-/// fitness operator of the experiment. Before, each coordinate of each mass is moved by up to `perturbation` m.
+/// fitness operator of the experiment. At birth, each coordinate of each mass is moved by up to `perturbation` m.
 Fitnesses measure(const Experiment& experiment, std::span<const Body> bodies, const Setting& setting,
                   const Device& device, double perturbation = 0);
 

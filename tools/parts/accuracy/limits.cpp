@@ -30,8 +30,8 @@ bool roots_are_bounded(double trace, double determinant) {
   return determinant <= 1 && std::abs(trace) <= 1 + determinant;
 }
 
-/// Finds, by bisection, the value between `low`, where `holds` is true, and `high`, where it is false, at which `holds`
-/// becomes false; the relative tolerance is 1e-4.
+/// Finds, by bisection, the value at which `holds` becomes false, given that it is true at `low` and false at `high`.
+/// The relative tolerance is 1e-4.
 template <class F>
 double border(double low, double high, const F& holds) {
   while (high - low > 1e-4 * low) {

@@ -6,8 +6,8 @@
 
 namespace evodevo::tools::accuracy {
 
-/// Whether a method keeps the motion of a spring bounded, by the characteristic polynomial of one step. The spring
-/// oscillates with the angular frequency `phase` / dt and is damped at the rate `damping_step` / dt.
+/// Whether a method keeps the motion of a spring bounded, according to the characteristic polynomial of one step. The
+/// spring oscillates with the angular frequency `phase` / dt and is damped at the rate `damping_step` / dt.
 bool is_bounded(Method method, double phase, double damping_step);
 
 /// The interval of angular frequency times dt in which the motion stays bounded. Its lower end is not always 0: with
@@ -33,12 +33,13 @@ bool stays_bounded(const Oscillator& oscillator, Method method, double dt);
 /// The largest dt at which stays_bounded() is true, s; infinity if it is still true at 100 / frequency.
 double measured_limit(const Oscillator& oscillator, Method method);
 
-/// The same for a body whose masses start up to 1e-5 m from their rest positions. The result is searched for between
-/// `low` and `high`, s.
+/// The largest dt at which a body does not diverge if its masses start up to 1e-5 m from their rest positions, s. The
+/// search covers the range from `low` to `high` (s).
 double measured_limit(const Body& body, Method method, double low, double high);
 
-/// The largest ratio of a mass's energy after a bounce on the floor to that before, over 64 instants of the impact
-/// within a time step. The time step follows from dt sqrt(floor stiffness / mass) = `contact_phase`.
+/// The ratio of a mass's energy after a bounce on the floor to its energy before the bounce; the largest ratio for
+/// impacts at 64 different instants within a time step. The time step follows from dt sqrt(floor stiffness / mass) =
+/// `contact_phase`.
 double contact_gain(Method method, double contact_phase);
 
 }  // namespace evodevo::tools::accuracy

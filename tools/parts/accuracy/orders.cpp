@@ -12,7 +12,7 @@ namespace {
 /// Errors below this value are due to rounding and to the error of the reference solution.
 constexpr double smallest_error = 3e-11;
 
-/// Number of the smallest usable dt over which the order is fitted.
+/// How many of the smallest usable time steps are used for fitting the order.
 constexpr std::size_t smallest = 4;
 
 bool contact_bears(double dt) { return dt <= 0.0005; }

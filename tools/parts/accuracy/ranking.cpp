@@ -18,7 +18,7 @@ std::vector<double> time_steps(bool quick) {
   return {1e-4, 2e-4, 5e-4, 1e-3, 2e-3};
 }
 
-/// A change of the experiment by which the same genomes grow bodies with fewer masses or springs.
+/// A change of the experiment that makes the same genomes grow bodies with fewer masses or springs.
 struct Coarser {
   std::string name;
   std::vector<Override> overrides;

@@ -15,7 +15,7 @@ namespace evodevo::tools::accuracy {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double mass_of_each = 0.2;  // kg
+constexpr double mass_of_each = 0.2;  // each point mass, kg
 
 /// A lattice of n x n x n voxels with edges of 0.1 m.
 Body block(std::uint32_t n, const Material& material) {

@@ -19,7 +19,7 @@ struct Trial {
   Body body;
   Scene scene;
   State start;
-  double duration;  ///< s
+  double duration;  ///< simulated time [s]
   State truth;
   double ceiling = 0;  ///< error caused by moving the start by 1e-9 m; 0 if the reference is not simulated
 

@@ -61,7 +61,7 @@ class Simulation {
 /// Simulates a single body with one thread on the CPU.
 Traveller simulate(const Body& body, const State& start, const Scene& scene, const Setting& setting, double duration);
 
-/// The body at its rest positions without velocity; start_energy is set.
+/// The body at its rest positions with zero velocity; start_energy is set.
 State resting(const Body& body, const Scene& scene);
 
 /// Returns `state` with start_energy computed from its current positions and velocities.

@@ -15,7 +15,7 @@
 namespace evodevo::tools::accuracy {
 namespace {
 
-constexpr double paper_dt = 0.0005, paper_floor = 1e6;  // s, N/m
+constexpr double paper_dt = 0.0005, paper_floor = 1e6;  // time step, s; floor stiffness, N/m
 
 std::vector<Method> explicit_methods() {
   std::vector<Method> methods = all_methods();
@@ -73,8 +73,8 @@ Table body_limits(Workers& workers) {
   return table;
 }
 
-/// Where the motion of a spring stays bounded, over damping rate times dt and angular frequency times dt: a measured
-/// map, and its boundary in theory.
+/// Tables that show whether the motion of a spring stays bounded, as a function of damping rate times dt and angular
+/// frequency times dt: a measured map, and the theoretical boundary.
 std::vector<Table> spring_map(Workers& workers, bool quick) {
   struct Item {
     Method method;
@@ -119,7 +119,8 @@ Table contact_gains(Workers& workers) {
   return table;
 }
 
-/// The gain for the paper's method and dt, over the mass and the stiffness of the floor.
+/// The energy gain in a contact for the paper's method and dt, as a function of the mass and of the stiffness of the
+/// floor.
 Table contact_map(Workers& workers, bool quick) {
   struct Item {
     double mass, stiffness;

@@ -20,7 +20,7 @@ std::vector<Table> beam(const Settings& settings);
 /// bodies.
 std::vector<Table> ranking(const Settings& settings);
 
-/// The error of each method over dt, and the observed order of convergence.
+/// The error of each method against dt, and the observed order of convergence.
 std::vector<Table> orders(const Settings& settings);
 
 /// How the energy of a body without damping or drag changes with each method.

@@ -30,7 +30,7 @@ struct Measured {
 /// Measures the error and the cost, which is the computing time per simulated second of one body, s. The cost is the
 /// median over repeated runs, since the clock is coarse. On a GPU, enough bodies are simulated at once to keep it busy.
 Measured measure(const Trial& trial, const Setting& setting, const Device& device) {
-  constexpr double enough = 0.02;  // s
+  constexpr double enough = 0.02;  // total time after which no further run is measured, s
   const bool on_gpu = device.name == "cuda";
   const std::vector<Traveller> fresh(on_gpu ? 1056 : 1, Traveller{&trial.body, trial.start});
   Simulation simulation(trial.scene, setting, {device.name, on_gpu ? device.threads : 1});

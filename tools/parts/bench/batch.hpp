@@ -18,12 +18,12 @@ double median(std::vector<double> values);
 
 /// Spring evaluations per second.
 struct Rate {
-  double whole = 0;   ///< by the time of the whole call
-  double device = 0;  ///< by the time of the steps on the device; on the CPU the same as `whole`
+  double whole = 0;   ///< based on the time of the whole call
+  double device = 0;  ///< based on the time of the steps on the device; on the CPU the same as `whole`
 };
 
-/// A batch in our simulator. The given bodies are repeated in turn until the batch has the size in the settings; they
-/// must outlive the batch.
+/// A batch in our simulator. The given bodies are repeated cyclically until the batch has the size in the settings;
+/// they must outlive the batch.
 class Batch {
  public:
   Batch(const Settings& settings, std::span<const Body> bodies, const Scene& scene,

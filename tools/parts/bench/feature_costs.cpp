@@ -43,7 +43,7 @@ std::vector<Feature> features(const Body& body, const Body& still_body) {
   };
 }
 
-/// Measures the rates with and without a feature in turn.
+/// Measures the rates with and without a feature alternately.
 class Comparison {
  public:
   Comparison(const Settings& settings, const Feature& feature)

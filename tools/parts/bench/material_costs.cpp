@@ -7,7 +7,7 @@
 namespace evodevo::tools::bench {
 namespace {
 
-/// Measures the rates of one body in turn with its materials in a table and with computed materials.
+/// Measures the rates of one body alternately with its materials in a table and with computed materials.
 class Comparison {
  public:
   Comparison(const Settings& settings, const Body& body)

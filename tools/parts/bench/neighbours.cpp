@@ -45,7 +45,7 @@ Report neighbours(const Settings& settings) {
     throw std::runtime_error("CPU and GPU do not find the same neighbours");
 
   std::vector<double> cpu_seconds, cuda_seconds, ratios;
-  // in turn, so that other load on the machine affects both alike
+  // measures alternately, so that other load on the machine affects both equally
   for (int run = 0; run < settings.runs; ++run) {
     cpu_seconds.push_back(seconds(*cpu, clouds, workers));
     cuda_seconds.push_back(seconds(*cuda, clouds, workers));

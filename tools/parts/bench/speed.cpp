@@ -41,7 +41,7 @@ Report speed(const Settings& settings) {
   batch.rate({.stress = true});
   batch.rate({.work = true});
   std::vector<double> whole, plain, stress, work;
-  // in turn, so that other load on the machine affects all of them alike
+  // measures the rates by turns, so that other load on the machine affects all of them equally
   for (int run = 0; run < settings.runs; ++run) {
     const Rate rate = batch.rate();
     whole.push_back(rate.whole);

@@ -6,7 +6,7 @@
 
 namespace evodevo::tools::bench {
 
-/// Measures our simulator's rate, and the rates while recording stress or work, relative to it.
+/// Measures our simulator's rate and, relative to it, the rates while recording stress or work.
 Report speed(const Settings& settings);
 
 /// Measures the cost of each force, of actuation and of each recording: the ratio of the rates with and without it, all

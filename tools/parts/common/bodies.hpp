@@ -25,8 +25,8 @@ NamedBody body_named(const std::string& name, std::uint32_t masses, std::uint32_
 
 std::vector<Vec3> points_in_ball(std::uint32_t count, std::uint64_t seed);
 
-/// A body of random points in the unit ball, each joined to its 25 nearest neighbours. The springs take the paper's
-/// materials in turn.
+/// A body of random points in the unit ball, each joined to its 25 nearest neighbours. The springs cycle through the
+/// paper's materials.
 Body random_ball(std::uint32_t masses);
 
 /// Returns the body with the amplitude of all materials set to 0, so that its muscles keep their length.

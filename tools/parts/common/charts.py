@@ -97,7 +97,7 @@ def label_column(axes, x, labels, align="left"):
     as a fraction of the panel's width. The panel's limits and scales must be final."""
     if not labels:
         return
-    height = 72 * axes.figure.get_figheight() * axes.get_position().height  # points
+    height = 72 * axes.figure.get_figheight() * axes.get_position().height  # height of the axes, in points
     shares = axes.transAxes.inverted().transform([axes.transData.transform(point) for _, point, _ in labels])
     shares = numpy.clip(shares, 0, 1)  # the point may lie outside the panel
     heights = spread([height * share for _, share in shares], LINE, 0, height)

@@ -19,7 +19,7 @@ struct Program {
 using CommandLine = std::vector<std::string>;  ///< the arguments, without the program's name
 
 /// Implements `main`: prints the page of help if `--help` is among the arguments, and calls `run` otherwise. Returns
-/// the exit status, which is 2 after an exception, whose message it prints.
+/// the exit status. After an exception, prints its message and returns 2.
 int run_program(const Program& program, int argc, const char* const* argv,
                 const std::function<void(const CommandLine&)>& run);
 

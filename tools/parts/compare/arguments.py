@@ -1,4 +1,4 @@
-"""The command line. This module imports nothing that takes long to load."""
+"""The command line. This module imports nothing that takes a long time to load."""
 
 import argparse
 import pathlib

@@ -1,4 +1,4 @@
-"""The chart of a comparison: the median of the best score so far, with its interval, over both kinds of cost."""
+"""The chart of a comparison: the median of the best score so far, with its interval, against both kinds of cost."""
 
 import itertools
 import math
@@ -31,7 +31,7 @@ def curve(runs, axis):
 
 
 def draw_panel(axes, histories, curves, axis):
-    """Draws one panel. `curves` does not contain variants of which some run has no fitness."""
+    """Draws one panel. `curves` does not contain variants with a run that has no fitness."""
     axes.set(xlabel=AXES[axis], xlim=(0, max(common_span(runs, axis)[1] for runs in histories.values())))
     start, end = common_span([run for runs in histories.values() for run in runs], axis)
     if start <= end:

@@ -1,4 +1,4 @@
-"""The history of a run: the best score so far over evaluations and over spring evaluations."""
+"""The history of a run: the best score so far against evaluations and against spring evaluations."""
 
 import bisect
 import dataclasses
@@ -65,5 +65,5 @@ def history(shown, objective):
 
 def common_span(histories, axis):
     """Returns the lowest cost at which each of these runs has completed a generation, and the highest cost that all of
-    them reach, which may be lower."""
+    them reach. The latter may be lower."""
     return max(getattr(h, axis)[1] for h in histories), min(getattr(h, axis)[-1] for h in histories)

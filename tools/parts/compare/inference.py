@@ -11,13 +11,13 @@ import numpy
 from scipy import optimize, stats
 
 LEVEL = 0.95  # confidence level of intervals
-SIGNIFICANT = 0.05  # level of significance: a difference counts as shown if p is below
+SIGNIFICANT = 0.05  # level of significance: a difference counts as shown if p is below it
 # Smallest number of values for an interval of the median. With fewer, the median lies between the lowest and the
 # highest value with a probability below LEVEL.
 INTERVAL_FROM = next(size for size in itertools.count(1) if 2 * 0.5**size <= 1 - LEVEL)
 RESAMPLES = 9999  # number of bootstrap resamples
 EXACT_UP_TO = 40  # largest total number of scores for the exact test, if there are no ties
-EXACT_WITH_TIES_UP_TO = 16  # likewise with ties; then all ways to split the scores are tried
+EXACT_WITH_TIES_UP_TO = 16  # the same if there are ties; that test tries all ways to split the scores
 
 
 def median(values):

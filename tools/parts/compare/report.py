@@ -97,7 +97,8 @@ class Standing:
     holm: float
 
     def achieved(self, spent, generations):
-        """Returns the first cells of its row in the table: the median score with its interval, and the median costs."""
+        """Returns the first cells of the variant's row in the table: the median score with its interval, and the median
+        costs."""
         bounds = inference.median_interval(self.scores)
         interval = "{} to {}".format(*map(number, bounds)) if bounds else "-"
         score, *costs = (number(inference.median(values)) for values in (self.scores, spent, generations))
@@ -107,7 +108,8 @@ class Standing:
         return "{:.2f} to {:.2f}".format(*inference.superiority_interval(self.a12, len(self.scores)))
 
     def tests(self, judged):
-        """Returns the remaining cells of its row: the comparison with the variant that it is tested against."""
+        """Returns the remaining cells of the variant's row: the comparison with the variant that it is tested
+        against."""
         return [f"{self.a12:.2f}", self.interval() if judged else "-", f"{self.p:.2g}", f"{self.holm:.2g}"]
 
     def verdict(self, baseline):
@@ -183,8 +185,8 @@ def section(histories, objective, axis, against):
 
 
 def verified(runs):
-    """Returns table cells with the numbers of best robots that held, were artefacts and were passive, among those that
-    were verified."""
+    """Returns table cells that count, among the verified best robots, those without a mark, the artefacts and the
+    passive ones."""
     marks = [history.marks for history in runs if history.marks is not None]
     if not marks:
         return ["not verified", "-", "-"]

@@ -30,11 +30,11 @@ class Interrupted(Exception):
 
 @dataclasses.dataclass(frozen=True)
 class Variant:
-    """An experiment with values of the keys that --sweep and --set give."""
+    """An experiment, with values for the keys given by --sweep and --set."""
 
     experiment: pathlib.Path
     swept: tuple = ()  # pairs (key, value)
-    settings: tuple = ()  # likewise
+    settings: tuple = ()  # pairs (key, value)
 
     @property
     def name(self):
@@ -60,7 +60,8 @@ class Run:
 
 
 def split_values(text):
-    """Splits at commas outside brackets and quotes. Returns an empty list if a bracket or quote is not closed."""
+    """Splits a text at commas outside brackets and quotes. Returns an empty list if a bracket or quote is not
+    closed."""
     values, depth, quote = [""], 0, ""
     for character in text:
         if quote:
@@ -145,7 +146,7 @@ def refuse_keys(experiments, sweeps, settings):
 
 
 def make_variants(files, sweeps, settings):
-    """Returns each experiment with all combinations of the values of the keys whose tables it has."""
+    """Returns each experiment with every combination of values for those keys whose tables it has."""
     experiments = read_experiments(files)
     refuse_keys(experiments.values(), sweeps, settings)
     variants = []
@@ -166,7 +167,7 @@ class Runs:
     def __init__(self, program, out, variants, seeds):
         self._program = str(program)
         self._variants = variants
-        # seed by seed, so that at any time there are about equally many runs of all variants
+        # seed by seed, so that at any time there are about as many runs of one variant as of another
         self.all = [
             Run(variant, seed, out / "runs" / variant.name / f"seed-{seed}")
             for seed in range(1, seeds + 1)
@@ -249,7 +250,8 @@ class Runs:
     def _require_success(run, code):
         if code != 0:
             last = "\n  ".join(run.log.read_text().splitlines()[-3:])
-            # a run stopped if a signal ended it or it was asked to stop; otherwise it failed, and would fail again
+            # a run counts as stopped if a signal ended it or it was asked to stop; otherwise it failed, and would fail
+            # again
             stopped = code < 0 or code == STOPPED
             remedy = "the same command goes on from there" if stopped else "mend that and give the same command again"
             raise Failure(f"{run.folder}: the run ended with {code}:\n  {last}\n{remedy}")

@@ -58,8 +58,8 @@ def draw_body(axes, scene, body, lines, reach, height):
 
 
 def draw_distances(axes, pairs):
-    """Draws the share of springs that only one of two bodies has, over cycles. One line is the mean over all pairs of
-    scenes, the other one the mean over pairs of perturbed starts in the same scene."""
+    """Draws the share of springs that only one of two bodies has, against cycles. One line is the mean over all pairs
+    of scenes, the other one the mean over pairs of perturbed starts in the same scene."""
     cycles = range(len(pairs[0]["springs"]))
     axes.set(title="springs that only one body has", xlabel="cycles")
     labels = []

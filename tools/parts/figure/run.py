@@ -1,4 +1,4 @@
-"""Draws a run: its fitness over evaluations, and the motion of its best robot."""
+"""Draws a run: its fitness against evaluations, and the motion of its best robot."""
 
 import csv
 import json
@@ -10,12 +10,12 @@ from common import charts
 
 from .bodies import BLUE, RED, show_ground, springs
 
-SETTLE = 10  # s
+SETTLE = 10  # time for settling, s
 TIMES = [0, 2.5, 5, 7.5, 10]  # s after settling
 
 
 def draw_fitness(axes, run):
-    """Draws the best and the median fitness of the population over evaluations."""
+    """Draws the best and the median fitness of the population against evaluations."""
     generations = [generation for generation in run["generations"] if generation["best"] is not None]
     objective = run["objectives"][0]
     evaluations = [generation["evaluations"] for generation in generations]

@@ -36,14 +36,15 @@ struct Case {
 /// bodies only settle.
 std::vector<Case> cases(const std::vector<std::string>& experiments);
 
-/// Returns the cycle times, s. The others are compared with the last one.
+/// Returns the cycle times, s. All others are compared with the last one.
 std::vector<double> cycle_times();
 
 /// Simulates `robots` random robots of a case from birth on, with the time stepping of the experiment. All of them have
 /// a muscle and enough springs. Returns the stress of those that have not diverged.
 std::vector<StressOverTime> simulate(const Case& one, std::size_t robots, const std::string& device);
 
-/// Adds the rows of a case to the table: for each cycle time, statistics over its robots of the shares found.
+/// Adds the rows of a case to the table: for each cycle time, statistics of the shares found over the robots of the
+/// case.
 void add_rows(const Case& one, const std::vector<StressOverTime>& robots, Table& table);
 Table overlap_table();
 

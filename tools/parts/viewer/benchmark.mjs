@@ -12,7 +12,7 @@ function drawNothing() {
   for (const name of names) WebGL2RenderingContext.prototype[name] = () => {};
 }
 
-/** Plays a life frame by frame; returns the time of each frame [ms], with the first frames of cycles separate. */
+/** Plays a life frame by frame; returns the time of each frame [ms], listing the first frames of cycles separately. */
 async function play(count) {
   const { viewer } = await window.evodevo;
   const { life } = viewer.stages[0];

@@ -55,7 +55,7 @@ export const launch = async (more = []) =>
   chromium.launch({
     executablePath: chromiumProgram(),
     env: environment(),
-    chromiumSandbox: false, // it does not work for root and in many containers; we open only our own pages
+    chromiumSandbox: false, // the sandbox does not work for root or in many containers; we open only our own pages
     // Mesa draws with a GPU or without one. Without a GPU it is twice as fast as SwiftShader, which Chromium brings
     // along and uses if there is no Mesa.
     args: ["--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist", "--enable-unsafe-swiftshader", ...more],

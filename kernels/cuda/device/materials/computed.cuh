@@ -9,7 +9,7 @@
 
 namespace evodevo::cuda {
 
-/// The records and codes of the springs from one spring on.
+/// The records and codes of the springs, beginning with a given spring.
 struct Records {
   struct Read : Record<Number> {
     unsigned wave;  // MaterialCode::wave

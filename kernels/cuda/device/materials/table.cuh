@@ -8,7 +8,7 @@ namespace evodevo::cuda {
 
 constexpr unsigned entry_shift = EVODEVO_ENTRY_SHIFT;  // left shift that turns offsets of entries into bytes
 
-/// The records of the springs from one spring on.
+/// The records of the springs, beginning with a given spring.
 struct Records {
   using Read = Record<Number>;
   const Record<Number>* first;

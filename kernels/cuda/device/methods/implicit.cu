@@ -1,7 +1,7 @@
 // implicit: linearised backward Euler, solved by conjugate gradients. kernels/cpu/methods/implicit-inl.hpp states the
 // equation. One block simulates a body:
 //
-//   begin   positions, velocities ─► the equation, its residual at no correction
+//   begin   positions, velocities ─► the equation, its residual for zero correction
 //   solve   equation ─► correction of the velocities
 //   move    correction ─► velocities, positions
 //
@@ -21,7 +21,7 @@ struct alignas(4 * sizeof(Number)) Stiffness : physics::SpringStiffness<Number> 
 struct Memory {
   Point<Number>*residual, *correction;
   Point<Number>* applied;           // the matrix times the direction
-  Point<Number>* inverse_diagonal;  // of the matrix's diagonal: the preconditioner; 0 for masses that do not move
+  Point<Number>* inverse_diagonal;  // the preconditioner: 1/(diagonal of the matrix); 0 for fixed masses
   Point<Number>* resistance;        // R, kg/s
   Point<Number>* direction;         // on the chip if there is room, because neighbours read it
   Stiffness* stiffness;             // [joints]
@@ -109,8 +109,8 @@ __device__ __forceinline__ Number inverse(const StepConstants<Number>& constants
                                       1 / physics::multiply_add(constants.damped_dt, resistance, m.mass));
 }
 
-/// Sets up the equation, the residual r at no correction and the first direction. Returns <r, P r>, which measures the
-/// residual; P is the preconditioner.
+/// Sets up the equation, the residual r for zero correction and the first direction. Returns <r, P r>, which measures
+/// the residual; P is the preconditioner.
 __device__ __forceinline__ double begin(const StepConstants<Number>& constants, const Body& body, const Memory& memory,
                                         unsigned row) {
   double left = 0;

@@ -24,9 +24,9 @@ enum class MassMemory {
 struct PaperMethod {
   MassMemory memory = MassMemory::shared;
   SpringOrder order = SpringOrder::as_built;
-  unsigned threads = 256;                    ///< threads of a block; with Skip-Shift also the number of spring groups
+  unsigned threads = 256;                    ///< threads in a block; with Skip-Shift also the number of spring groups
   StressMethod stress = StressMethod::none;  ///< available only with shared memory
-  std::uint32_t skip = 0;                    ///< steps between two tallies of Skip-Shift
+  std::uint32_t skip = 0;                    ///< number of steps between two tallies of Skip-Shift
 };
 
 /// The recordings of one body's springs since birth. Quantities that the method does not record are zero.

@@ -17,7 +17,7 @@ __device__ __forceinline__ Vector triple(const Point<Number>& p) { return {p.x, 
 
 struct Pull {
   Vector force;    // on the spring's end a, N
-  Number tension;  // N
+  Number tension;  // tension of the spring, N
 };
 
 __device__ __forceinline__ Pull pull_of(const PaperSpring& spring, Vector a, Vector b, Entry<Number> entry) {
@@ -38,7 +38,7 @@ __device__ __forceinline__ void move(const StepConstants<Number>& constants, con
   batch.velocities[mass] = {m.velocity.x, m.velocity.y, m.velocity.z, 0};
 }
 
-/// Fills in the material table for `count` steps; `step` is the number of the first one since birth.
+/// Fills in the material table for `count` steps; `step` is the number of the first of these steps, counted from birth.
 extern "C" __global__ void evodevo_paper_table(const StepConstants<Number> constants, const cuda::Actuator* actuators,
                                                unsigned entries, std::uint64_t step, unsigned count,
                                                Entry<Number>* table) {

@@ -15,7 +15,7 @@ enum class SpringOrder {
   as_built,
   by_first_mass,
   shuffled,
-  spread,  ///< no two springs of a warp, that is of 32 in a row, share a mass, as far as possible
+  spread,  ///< as far as possible, no two springs of a warp (32 consecutive springs) share a mass
 };
 inline constexpr std::array<SpringOrder, 4> spring_orders{SpringOrder::as_built, SpringOrder::by_first_mass,
                                                           SpringOrder::shuffled, SpringOrder::spread};

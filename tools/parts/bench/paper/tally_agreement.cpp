@@ -15,10 +15,10 @@
 namespace evodevo::tools::bench {
 namespace {
 
-constexpr std::size_t sought = 125;                         // springs at either end (paper, section IV-D4)
-constexpr std::size_t least_springs = 2000;                 // of a robot, so that 125 are a small share
-constexpr std::uint64_t second = 2000;                      // steps of 0.5 ms
-constexpr std::uint64_t windows[] = {second, 10 * second};  // from birth on
+constexpr std::size_t sought = 125;                         // number of springs at either end (paper, section IV-D4)
+constexpr std::size_t least_springs = 2000;                 // of each robot, so that 125 are a small share
+constexpr std::uint64_t second = 2000;                      // number of steps of 0.5 ms
+constexpr std::uint64_t windows[] = {second, 10 * second};  // numbers of steps from birth on
 
 /// Two scores for each spring: the least stressed springs have the largest scores in `least`, the most stressed ones in
 /// `most`.

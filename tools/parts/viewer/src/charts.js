@@ -126,8 +126,8 @@ function agesAndFitness(runs) {
         points: { show: true, size: 7, fill: runColour(index), stroke: "transparent" },
         paths: () => null,
       };
-      // A chart has one value for each x, but several individuals can have the same age. They are moved apart by an
-      // invisible distance.
+      // A chart has one value for each x, but several individuals can have the same age. Such individuals are moved
+      // apart by an invisible distance.
       const seen = new Map();
       const x = run.population.map(({ age }) => {
         const times = seen.get(age) ?? 0;

@@ -1,7 +1,7 @@
 // A robot's life: which masses and springs exist at a time, and where they are.
 import { changed, integers, Positions, Values } from "./unpack.js";
 
-const smoothing = 0.5; // s, before and after: the camera that follows a robot should not shake with its steps
+const smoothing = 0.5; // s before and after a moment; averaged, so that the robot's steps do not shake the camera
 
 export class Life {
   /** Unpacks the life of a robot from the page's data. */
@@ -90,7 +90,7 @@ export class Life {
     });
   }
 
-  /** Returns the index of the shot at a time. When one shot ends and the next begins, this is the next one. */
+  /** Returns the index of the shot at a time. If one shot ends and the next begins then, it is the next one. */
   shotAt(time) {
     let index = this.shots.length - 1;
     while (index > 0 && this.shots[index].begin > time + 1e-9) --index;

@@ -22,7 +22,7 @@ import {
   textureWidth,
 } from "./shaders.js";
 
-const effectTime = 0.7; // s in which removed springs fade and new ones stop glowing
+const effectTime = 0.7; // s during which removed springs fade and new ones stop glowing
 
 const material = (vertexShader, fragmentShader, uniforms, options = {}) =>
   new THREE.ShaderMaterial({ glslVersion: THREE.GLSL3, vertexShader, fragmentShader, uniforms, ...options });

@@ -46,7 +46,7 @@ export class Values {
   }
 }
 
-/** Unpacks positions shot by shot, in units of the step: for each frame all x, then all y, then all z. */
+/** Unpacks positions shot by shot, as multiples of the film's step: for each frame all x, then all y, then all z. */
 export class Positions {
   #last = new Map(); // the last x, y and z of each mass that has existed
 

@@ -327,8 +327,8 @@ export class Viewer {
     this.note.textContent = shown.length > 0 ? this.#exactness(shown.map((stage) => stage.life.robot.film.error)) : "";
   }
 
-  /** Returns a text on how far the films shown may deviate from the simulation; it gives the larger deviation of the
-  *  two. */
+  /** Returns a text on how far the films shown may deviate from the simulation. The text states the larger one of the
+  *  films' deviations. */
   #exactness(errors) {
     const worst = (kind) => Math.max(...errors.map((error) => error[kind]));
     const within = `Positions are shown to within ${short(1000 * worst("most"))} mm 99 times in 100, and to within ${short(1000 * worst("largest"))} mm always`;
