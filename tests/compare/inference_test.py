@@ -122,7 +122,7 @@ class Superiority(unittest.TestCase):
                 self.assertAlmostEqual(abs(a12 - bound) / deviation, 1.959964, places=6)
 
     def test_at_no_difference_it_agrees_with_the_rank_sum_test(self):
-        # without ties and continuity correction, z of the rank test is (A12 - 0.5) / sqrt((2 n + 1) / (12 n^2))
+        # without ties and without continuity correction, z of the rank test is (A12 - 0.5) / sqrt((2 n + 1) / (12 n^2))
         for size in (5, 10, 20):
             step = 1.959964 * math.sqrt((2 * size + 1) / (12 * size**2))
             self.assertGreater(inference.superiority_interval(0.5 + 1.001 * step, size)[0], 0.5)

@@ -1,4 +1,5 @@
-// The command `evodevo simulate`: bodies from runs move as in their run, and unsuitable bodies and options are refused.
+// The command `evodevo simulate`: bodies taken from a run move as they did in that run, and unsuitable bodies and
+// options are refused.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -90,7 +90,7 @@ class Sources {
   /// Removes the code of a feature. Throws if there is no such code, or if part of it remains.
   void remove(const Subject& subject) {
     for (const char* constant : subject.constants) {
-      // replaces the constant by another one, because the compiler numbers constants and uses the numbers in
+      // replaces the constant with another one, because the compiler numbers constants and uses the numbers in
       // instructions
       replace_all("constexpr bool " + std::string(constant) + " = \\w+;",
                   "constexpr bool no_" + std::string(constant) + " = true;");

@@ -307,8 +307,8 @@ TEST(LifeRecord, ALifeAtRandomPlacesFollowsItsRecordWhicheverOperatorComesFirst)
   expect_that_a_life_follows_its_record(Control::random_places);
 }
 
-/// Exchanges the first spring for one between the same masses, whose rest length is `stretch` times as long or, without
-/// `stretch`, such that it starts without force.
+/// Replaces the first spring with a new one between the same masses. The rest length of the new spring is `stretch`
+/// times that of the first one or, without `stretch`, such that the new spring starts without force.
 class Exchange final : public Devo {
  public:
   explicit Exchange(std::optional<double> stretch) : stretch_(stretch) {}

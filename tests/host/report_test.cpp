@@ -338,7 +338,7 @@ TEST(FilmJson, StatesTheErrorOfWhatItLeavesOut) {
   EXPECT_NEAR(json["error"]["largest"].get<double>(), 1, 1e-3);
 }
 
-/// Spring turnover: replaces `springs` random springs by springs between masses that are not joined yet.
+/// Applies spring turnover: replaces `springs` random springs with springs between masses that are not joined yet.
 void turn_over(Body& body, std::size_t springs, std::mt19937& random) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> joined;
   for (const Spring& spring : body.springs) joined.insert(std::minmax(spring.a, spring.b));

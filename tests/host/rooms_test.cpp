@@ -1,5 +1,5 @@
-// Rules on which folder may include which, and on the sizes of folders and files: see framework/README.md and
-// kernels/README.md.
+// Rules on which folders may include which other folders, and on the sizes of folders and files: see
+// framework/README.md and kernels/README.md.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Runs the studies that the command line names, and writes their tables.
+// Runs the studies named on the command line, and writes their tables.
 #include <chrono>
 #include <iostream>
 #include <stdexcept>

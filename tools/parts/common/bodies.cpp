@@ -31,7 +31,7 @@ Body body_of(const std::vector<Vec3>& positions, const std::vector<std::pair<std
   return body;
 }
 
-/// Replaces a body's materials by `count` materials with evenly spaced phases, through which the springs cycle.
+/// Replaces a body's materials with `count` materials with evenly spaced phases, through which the springs cycle.
 void give_materials(Body& body, std::uint32_t count) {
   body.materials.clear();
   for (std::uint32_t i = 0; i < count; ++i) {

@@ -6,7 +6,7 @@ import { launch, opened } from "./browser.mjs";
 const frames = 600;
 const viewport = { width: 1280, height: 720 };
 
-/** Replaces WebGL's functions that draw and copy by functions that do nothing. */
+/** Replaces WebGL's functions that draw and copy with functions that do nothing. */
 function drawNothing() {
   const names = ["drawElements", "drawArrays", "clear", "bufferData", "bufferSubData", "texImage2D", "texSubImage2D"];
   for (const name of names) WebGL2RenderingContext.prototype[name] = () => {};
