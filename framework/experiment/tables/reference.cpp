@@ -66,7 +66,8 @@ std::string experiment_reference() {
   text += section("`[[development.operator]]`",
                   "The keys that every devo operator has in addition to `name` and its own parameters.",
                   [&](SettingsVisitor& v) { declare_schedule(v, schedule); });
-  text += section_of<Material>("`[materials.NAME]`", "A material. The defaults apply to materials that evodevo does not know.");
+  text += section_of<Material>("`[materials.NAME]`",
+                               "A material. The defaults apply to materials that evodevo does not know.");
   return text;
 }
 
