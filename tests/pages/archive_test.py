@@ -48,7 +48,7 @@ class Archive(unittest.TestCase):
     def test_names_the_format_and_the_entries_of_the_record(self):
         page = PAGE.read_text(encoding="utf-8")
         entries = dict(self.rows("SELECT key, value FROM record"))
-        self.assertIn(f"format {entries['format']},", page)
+        self.assertRegex(page, rf"format {entries['format']}\b")
         for key in entries:
             self.assertIn(f"`{key}`", page)
 
