@@ -97,7 +97,7 @@ struct Causes {
 /// not finite.
 struct Edits {
   std::optional<Growth> growth;  ///< growth of all springs; a rest length given in `changed_springs` overrides it
-  std::vector<std::uint32_t> removed_springs;
+  std::vector<std::uint32_t> removed_springs;  ///< an index may occur more than once
   std::vector<std::uint32_t> removed_masses;   ///< the host also removes the springs of these masses
   std::vector<ChangedSpring> changed_springs;  ///< changes of springs that are not removed
   std::vector<NewMass> new_masses;
