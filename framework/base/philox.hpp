@@ -14,12 +14,14 @@ namespace rng_stream {
 inline constexpr std::uint32_t newborn = 1;
 inline constexpr std::uint32_t parents = 2;
 inline constexpr std::uint32_t survivors = 3;
-inline constexpr std::uint32_t variation = 4;        ///< choice of the operators that vary a child
-inline constexpr std::uint32_t perturbation = 0x10;  ///< first of the streams of perturbations
-inline constexpr std::uint32_t crossover = 0x100;    ///< stream of the first crossover operator
-inline constexpr std::uint32_t mutation = 0x200;     ///< stream of the first mutation operator
-/// Returns the stream to use instead of `stream` for a newborn that is made again after `times` attempts have produced
-/// clones.
+inline constexpr std::uint32_t variation = 4;          ///< choice of the operators that vary a child
+inline constexpr std::uint32_t perturbation = 0x10;    ///< first of the streams of perturbations
+inline constexpr std::uint32_t crossover = 0x100;      ///< stream of the first crossover operator
+inline constexpr std::uint32_t mutation = 0x200;       ///< stream of the first mutation operator
+inline constexpr std::uint32_t first_section = 0x300;  ///< stream of the first genes of the first section
+/// Returns the stream of the genes that a random individual has in a section. The encoding's is that of newborns.
+constexpr std::uint32_t section(std::uint32_t index) { return index == 0 ? newborn : first_section + index; }
+/// Returns the stream to use instead of `stream` for a newborn that is made again after `times` attempts were clones.
 constexpr std::uint32_t again(std::uint32_t stream, std::uint32_t times) { return stream + (times << 16); }
 constexpr std::uint32_t devo(std::size_t op, std::int64_t cycle) {
   return static_cast<std::uint32_t>(op + 1) << 24 | static_cast<std::uint32_t>(cycle);

@@ -14,6 +14,7 @@ Command check_command();
 Command show_command();
 Command verify_command();
 Command body_command();
+Command genes_command();
 Command life_command();
 Command simulate_command();
 Command environments_command();

@@ -51,6 +51,13 @@ class Refusable final : public Parameters {
   }
   void vector(Vec3&, std::string_view name, Range, std::string_view) override { add(name, 1.0); }
   void counts(std::array<std::int64_t, 3>&, std::string_view name, Range, std::string_view) override { add(name, 1); }
+  void optional_real(std::optional<double>&, std::string_view name, Range range, std::string_view) override {
+    add(name, "text");
+    beyond(name, range);
+  }
+  void reals(std::vector<double>&, std::string_view name, Range, std::string_view) override { add(name, 1.0); }
+  void text(std::string&, std::string_view name, std::string_view) override { add(name, 1); }
+  void file(InputFile&, std::string_view name, std::string_view) override { add(name, "/no such file"); }
   void materials(std::vector<std::string>&, std::string_view name, std::string_view) override {
     add(name, toml::array{"none of the materials"});
   }
@@ -71,7 +78,7 @@ class Refusable final : public Parameters {
 
 bool accepts(const AvailableOperator& subject, const toml::table& table) {
   const std::vector<std::string> materials = sample_world().material_names;
-  TomlReader reader(table, "operator", &materials);
+  TomlReader reader(table, "operator", {&materials});
   try {
     create<Operator>(subject)->parameters(reader);
     reader.finish();
@@ -159,6 +166,14 @@ class Changer final : public Parameters {
   void counts(std::array<std::int64_t, 3>& value, std::string_view, Range range, std::string_view) override {
     value[0] = static_cast<std::int64_t>(other(static_cast<double>(value[0]), range));
   }
+  void optional_real(std::optional<double>& value, std::string_view, Range range, std::string_view) override {
+    value = other(value.value_or(range.high), range);
+  }
+  void reals(std::vector<double>& value, std::string_view, Range range, std::string_view) override {
+    value.push_back(range.low);
+  }
+  void text(std::string& value, std::string_view, std::string_view) override { value += "other"; }
+  void file(InputFile& value, std::string_view, std::string_view) override { value = {"other", "content"}; }
   void materials(std::vector<std::string>& value, std::string_view, std::string_view) override { value = {"bone"}; }
   void require(bool, std::string_view, std::string_view) override {}
 
@@ -198,7 +213,10 @@ std::string experiment_with(const AvailableOperator& subject, std::uint64_t seed
   std::string text = "[experiment]\nseed = " + std::to_string(seed % (1u << 31)) +
                      "\nevaluations = 24\npopulation = 6\n[scene.gravity]\n[scene.floor]\n[scene.friction]\n"
                      "[scene.damping]\n[simulation]\ndevice = \"cpu\"\nthreads = 2\n";
-  text += "[encoding]\n" + either("encoding", "name = \"voxel\"\nsize = [2, 1, 1]\nedge = 0.5\n");
+  // an encoding that has the blocks on which the operator works
+  const bool is_on_networks = !create<Operator>(subject)->traits().block_types.empty();
+  text += "[encoding]\n" + either("encoding", is_on_networks ? "name = \"neat\"\npoints = 30\nneighbours = 6\n"
+                                                             : "name = \"voxel\"\nsize = [2, 1, 1]\nedge = 0.5\n");
   text += "[[mutation]]\n" + either("mutation", "name = \"reset-weight\"\n") + "probability = 0.8\n";
   text += "[[crossover]]\n" + either("crossover", "name = \"two-point\"\n") + "probability = 0.5\n";
   text += "[development]\ncycles = 2\ncycle_time = 0.05\n[[development.operator]]\n" +

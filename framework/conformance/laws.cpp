@@ -5,6 +5,7 @@
 #include <numeric>
 #include <set>
 
+#include "base/genome_sections.hpp"
 #include "base/text.hpp"
 #include "conformance/trials.hpp"
 #include "life/body_building.hpp"
@@ -44,7 +45,7 @@ void decodes(const AvailableOperator& subject, std::uint64_t seed) {
     const auto genes = static_cast<std::uint32_t>(genome.size());
     for (std::uint32_t changed = 0; changed < std::min(genes, input); ++changed) {
       const std::uint32_t gene = rng.below(genes);
-      genome[gene] = layout.genes[gene].draw(rng);
+      genome[gene] = layout.draw(genome, gene, rng);
     }
     const Blueprint blueprint = op->decode(genome, context);
     reason = blueprint.failure;
@@ -59,16 +60,8 @@ void decodes(const AvailableOperator& subject, std::uint64_t seed) {
 }
 
 void layout_is_whole(const AvailableOperator& subject, std::uint64_t) {
-  const Layout layout = create<Encoding>(subject)->layout(sample_world());
-  std::vector<int> groups(layout.genes.size(), 0);
-  for (const GeneGroup& group : layout.groups)
-    for (std::uint32_t i = group.first; i < group.first + group.count; ++i)
-      if (i >= groups.size() || ++groups[i] > 1)
-        throw Violation("groups of its layout overlap or go beyond the last gene");
-  for (const GeneSpec& gene : layout.genes)
-    if (!gene.is_choice() && !(gene.low <= gene.high))
-      throw Violation("a gene of its layout has the bounds " + to_text(gene.low) + " and " + to_text(gene.high) +
-                      "; expected the lower one first");
+  if (const std::string fault = layout_fault(create<Encoding>(subject)->layout(sample_world())); !fault.empty())
+    throw Violation("its layout is not usable: " + fault);
 }
 
 // ---- variation ----
@@ -76,20 +69,21 @@ void layout_is_whole(const AvailableOperator& subject, std::uint64_t) {
 constexpr std::uint32_t tries_to_change = 200;
 
 void nothing_stays_nothing(const AvailableOperator& subject, std::uint64_t seed) {
-  Genome nothing;
+  const auto op = create<Mutation>(subject);
   Rng rng = stream(seed, 0);
-  create<Mutation>(subject)->mutate(nothing, Layout{}, rng);
-  if (!nothing.empty()) throw Violation("it adds genes to a genome that has no genes");
+  auto [layout, genome] = sample_genes(*op, Layout{}, rng);
+  const std::size_t own = genome.size();
+  op->mutate(genome, layout, rng);
+  if (genome.size() != own) throw Violation("it adds genes to a genome that has no genes");
 }
 
 /// Checks that the mutation changes at least one of many genomes. If it never changes any, all of its children are
 /// clones.
 void mutates(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Mutation>(subject);
-  const Layout layout = sample_layout();
   for (std::uint32_t input = 0; input < tries_to_change; ++input) {
     Rng rng = stream(seed, input);
-    const Genome genome = random_genome(layout, rng);
+    const auto [layout, genome] = sample_genes(*op, sample_layout(*op, input), rng);
     Genome mutant = genome;
     op->mutate(mutant, layout, rng);
     if (mutant != genome) return;
@@ -99,53 +93,47 @@ void mutates(const AvailableOperator& subject, std::uint64_t seed) {
 
 void mutants_fit(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Mutation>(subject);
-  const Layout layout = sample_layout();
-  Rng rng = stream(seed, 0);
-  Genome genome = random_genome(layout, rng);
-  for (int i = 0; i < 200; ++i) {
-    op->mutate(genome, layout, rng);
-    require_within(genome, layout);
+  for (const std::uint32_t input : {0, 1}) {
+    Rng rng = stream(seed, input);
+    auto [layout, genome] = sample_genes(*op, sample_layout(*op, input), rng);
+    for (int i = 0; i < 200; ++i) {
+      op->mutate(genome, layout, rng);
+      require_within(genome, layout);
+    }
   }
 }
 
 void twins_stay_twins(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Crossover>(subject);
-  const Layout layout = sample_layout();
   for (std::uint32_t input = 0; input < 50; ++input) {
+    const Layout layout = sample_layout(*op, input);
     Rng rng = stream(seed, input);
-    const Genome genome = random_genome(layout, rng);
-    Genome one = genome, other = genome;
-    op->cross(one, other, layout, rng);
-    if (one != genome || other != genome)
-      throw Violation("it changes two equal genomes; it must leave them as they are");
+    const Genome genome = sample_genome(layout, rng), twin = genome;
+    if (op->cross({genome, twin}, layout, rng) != genome)
+      throw Violation("the child of two equal genomes differs from them");
   }
 }
 
-/// Checks that the crossover changes the first genome of at least one of many pairs, because the child is made from the
-/// first genome.
+/// Checks that the child differs from the first parent for at least one of many pairs.
 void crosses(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Crossover>(subject);
-  const Layout layout = sample_layout();
   for (std::uint32_t input = 0; input < tries_to_change; ++input) {
+    const Layout layout = sample_layout(*op, input);
     Rng rng = stream(seed, input);
-    const Genome genome = random_genome(layout, rng);
-    Genome one = genome, other = random_genome(layout, rng);
-    op->cross(one, other, layout, rng);
-    if (one != genome) return;
+    const Genome first = sample_genome(layout, rng), second = sample_genome(layout, rng);
+    if (op->cross({first, second}, layout, rng) != first) return;
   }
-  throw Violation("in none of " + std::to_string(tries_to_change) +
-                  " pairs of genomes does it change the first genome, so its children are clones");
+  throw Violation("for all of " + std::to_string(tries_to_change) +
+                  " pairs of genomes it returns the first genome, so its children are clones");
 }
 
 void children_fit(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Crossover>(subject);
-  const Layout layout = sample_layout();
   Rng rng = stream(seed, 0);
-  for (int i = 0; i < 200; ++i) {
-    Genome one = random_genome(layout, rng), other = random_genome(layout, rng);
-    op->cross(one, other, layout, rng);
-    require_within(one, layout);
-    require_within(other, layout);
+  for (std::uint32_t input = 0; input < 200; ++input) {
+    const Layout layout = sample_layout(*op, input);
+    const Genome first = sample_genome(layout, rng), second = sample_genome(layout, rng);
+    require_within(op->cross({first, second, input % 4 < 2}, layout, rng), layout);
   }
 }
 
@@ -163,7 +151,7 @@ void bodies_stay_sound(const AvailableOperator& subject, std::uint64_t seed) {
   require_measures(*op);
   bool edited = false;
   for (std::uint32_t input = 0; input < 24; ++input) {
-    SampleLife life = sample_life(seed, input);
+    SampleLife life = sample_life(*op, seed, input);
     for (life.cycle = 1; life.cycle <= 10; ++life.cycle) {
       Edits edits;
       Rng rng = stream(seed, input, static_cast<std::uint32_t>(life.cycle));
@@ -194,6 +182,7 @@ void bodies_stay_sound(const AvailableOperator& subject, std::uint64_t seed) {
 /// are powers of two, so that rounding errors are small.
 void unmoved_by_translation(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Fitness>(subject);
+  if (op->traits().depends_on_place) throw Skipped("its traits say that it depends on the place of the body");
   for (std::uint32_t input = 0; input < 20; ++input) {
     const Observation here = sample_observation(seed, input);
     Observation there = here;
@@ -291,6 +280,7 @@ std::vector<std::uint32_t> survivors(const Selection& op, const SampleTable& tab
 
 void keeps_its_elite(const AvailableOperator& subject, std::uint64_t seed) {
   const auto op = create<Selection>(subject);
+  if (!op->traits().is_elitist) throw Skipped("its traits say that it is not elitist");
   for (std::uint32_t input = 0; input < 40; ++input) {
     const SampleTable table = sample_table(seed, input, 24, 4);
     const auto best = std::max_element(table.scores.begin(), table.scores.end());

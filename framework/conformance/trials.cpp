@@ -5,8 +5,10 @@
 #include <cmath>
 #include <set>
 
+#include "base/genome_sections.hpp"
 #include "base/philox.hpp"
 #include "base/text.hpp"
+#include "evodevo/neat.hpp"
 #include "operators/isolation.hpp"
 
 namespace evodevo::conformance {
@@ -18,6 +20,11 @@ void append(Numbers& numbers, std::initializer_list<double> more) { numbers.inse
 void append(Numbers& numbers, Vec3 v) { append(numbers, {v.x, v.y, v.z}); }
 
 void append(Numbers& numbers, const Material& m) { append(numbers, {m.stiffness, m.amplitude, m.frequency, m.phase}); }
+
+void append(Numbers& numbers, const std::vector<Block>& blocks) {
+  for (const Block& block : blocks)
+    append(numbers, {double(block.type), double(block.count), double(block.id >> 32), double(block.id & 0xffffffff)});
+}
 
 void append(Numbers& numbers, const Body& body) {
   for (const Mass& m : body.masses) {
@@ -31,8 +38,12 @@ void append(Numbers& numbers, const Body& body) {
 
 Numbers numbers_of(const Layout& layout) {
   Numbers numbers;
-  for (const GeneSpec& gene : layout.genes) append(numbers, {gene.low, gene.high, double(gene.choices)});
-  for (const GeneGroup& group : layout.groups) append(numbers, {double(group.first), double(group.count)});
+  for (const BlockType& type : layout.types) {
+    append(numbers, {double(type.least), double(type.most), double(type.section)});
+    for (const GeneSpec& gene : type.genes)
+      append(numbers, {gene.low, gene.high, double(gene.choices), gene.refers_to ? double(*gene.refers_to) : -1.0});
+  }
+  append(numbers, layout.first_blocks);
   return numbers;
 }
 
@@ -80,30 +91,32 @@ Numbers try_encoding(const Encoding& op, std::uint64_t seed, std::uint32_t input
 }
 
 Numbers try_mutation(const Mutation& op, std::uint64_t seed, std::uint32_t input) {
-  const Layout layout = sample_layout();
   Rng rng = stream(seed, input);
-  Genome genome = random_genome(layout, rng);
+  auto [layout, genome] = sample_genes(op, sample_layout(op, input), rng);
+  const Numbers layout_before = numbers_of(layout);
   op.mutate(genome, layout, rng);
-  require_untouched("the layout", numbers_of(sample_layout()), numbers_of(layout));
+  require_untouched("the layout", layout_before, numbers_of(layout));
   return numbers_of(genome);
 }
 
 Numbers try_crossover(const Crossover& op, std::uint64_t seed, std::uint32_t input) {
-  const Layout layout = sample_layout();
+  const Layout layout = sample_layout(op, input);
   Rng rng = stream(seed, input);
-  Genome one = random_genome(layout, rng), other = random_genome(layout, rng);
-  op.cross(one, other, layout, rng);
-  require_untouched("the layout", numbers_of(sample_layout()), numbers_of(layout));
-  one.insert(one.end(), other.begin(), other.end());
-  return numbers_of(one);
+  const Genome first = sample_genome(layout, rng), second = sample_genome(layout, rng);
+  const Numbers first_before = numbers_of(first), second_before = numbers_of(second);
+  const Genome child = op.cross({first, second, input % 4 < 2}, layout, rng);
+  require_untouched("the layout", numbers_of(sample_layout(op, input)), numbers_of(layout));
+  require_untouched("the first parent", first_before, numbers_of(first));
+  require_untouched("the second parent", second_before, numbers_of(second));
+  return numbers_of(child);
 }
 
 Numbers try_devo(const Devo& op, std::uint64_t seed, std::uint32_t input) {
-  const SampleLife life = sample_life(seed, input);
+  const SampleLife life = sample_life(op, seed, input);
   Edits edits;
   Rng rng = stream(seed, input, 1);
   op.develop(life.context(op.observes()), edits, rng);
-  require_untouched("the body, its state or its genes", numbers_of(sample_life(seed, input)), numbers_of(life));
+  require_untouched("the body, its state or its genes", numbers_of(sample_life(op, seed, input)), numbers_of(life));
   return numbers_of(edits);
 }
 
@@ -153,30 +166,67 @@ EncodingContext sample_world() {
   return context;
 }
 
-Layout sample_layout() {
+Layout sample_layout(std::uint32_t input) {
   Layout layout;
-  layout.add_group(7, {-1, 1});
-  layout.add_group(1, {0, 0, 5});
-  layout.add_group(3, {0, 0.25});
-  layout.add_group(6, {0, 0, 2});
+  if (input % 2 == 0) {
+    layout.add_block(7, {-1, 1});
+    layout.add_block(1, {0, 0, 5});
+    layout.add_block(3, {0, 0.25});
+    layout.add_block(6, {0, 0, 2});
+    return layout;
+  }
+  const neat::Types types = neat::add_types(layout, 2, 3, 9, 12);
+  for (int i = 0; i < 4; ++i) layout.add_block_of(types.node);
+  for (int i = 0; i < 5; ++i) layout.add_block_of(types.link);
   return layout;
 }
 
-void require_within(const Genome& genome, const Layout& layout) {
-  if (genome.size() != layout.genes.size())
-    throw Violation("a genome has " + std::to_string(genome.size()) + " genes, but the layout has " +
-                    std::to_string(layout.genes.size()));
-  for (std::size_t i = 0; i < genome.size(); ++i) {
-    const GeneSpec& spec = layout.genes[i];
-    const bool fits = spec.is_choice() ? genome[i] >= 0 && genome[i] < static_cast<float>(spec.choices) &&
-                                             genome[i] == std::floor(genome[i])
-                                       : genome[i] >= spec.low && genome[i] <= spec.high;
-    if (!fits)
-      throw Violation("gene " + std::to_string(i) + " = " + to_text(genome[i]) + " is not allowed by the layout");
-  }
+Layout sample_layout(const Operator& op, std::uint32_t input) {
+  const std::vector<std::string> wanted = op.traits().block_types;
+  if (wanted.empty()) return sample_layout(input);
+  for (const std::string& type : wanted)
+    if (type != "node" && type != "link")
+      throw Skipped("it works on blocks of the type \"" + printable(type) + "\", which the sample genomes do not have");
+  return sample_layout(1);
 }
 
-Numbers numbers_of(const Genome& genome) { return {genome.begin(), genome.end()}; }
+Genome sample_genome(const Layout& layout, Rng& rng) {
+  Genome genome = random_genome(layout, rng);
+  if (layout.is_fixed()) return genome;
+  for (std::uint32_t type = 0; type < layout.types.size(); ++type) {
+    const std::vector<float> genes(layout.types[type].genes.size(), 0);
+    const std::uint32_t block = add_block(genome, layout, type, genes, fresh_id(rng));
+    for (std::uint32_t gene = 0; gene < genes.size(); ++gene)
+      genome[genome.blocks[block].first + gene] = layout.draw(genome, genome.blocks[block].first + gene, rng);
+  }
+  remove_block(genome, layout, rng.below(4));
+  return genome;
+}
+
+SampleGenes sample_genes(const Mutation& op, const Layout& others, Rng& rng) {
+  SampleGenes sample{.layout = {.sections = {}}, .genome = {}};
+  add_section(sample.layout, "sample", others);
+  const Layout own = op.layout(others);
+  std::vector<Genome> sections = {others.types.empty() ? Genome() : sample_genome(others, rng)};
+  if (!own.types.empty()) {
+    sample.layout.own = add_section(sample.layout, "own", own);
+    sections.push_back(op.random(own, rng));
+  }
+  sample.genome = join(sections, sample.layout);
+  require_within(sample.genome, sample.layout);
+  return sample;
+}
+
+void require_within(const Genome& genome, const Layout& layout) {
+  if (const std::string fault = genome_fault(genome, layout); !fault.empty())
+    throw Violation("it makes a genome with " + fault);
+}
+
+Numbers numbers_of(const Genome& genome) {
+  Numbers numbers(genome.begin(), genome.end());
+  append(numbers, genome.blocks);
+  return numbers;
+}
 
 Numbers numbers_of(const Edits& edits) {
   Numbers numbers(edits.removed_springs.begin(), edits.removed_springs.end());
@@ -212,16 +262,21 @@ DevoContext SampleLife::context(const SpringRequest& request) const {
                       .mass = 0.2,
                       .resets = resets,
                       .genome = genome,
-                      .layout = layout};
+                      .layout = layout,
+                      .own = own};
   show_records(living, request, context);
   return context;
 }
 
-SampleLife sample_life(std::uint64_t seed, std::uint32_t input) {
-  Rng rng = stream(seed, input);
+SampleLife sample_life(const Devo& op, std::uint64_t seed, std::uint32_t input) {
+  Rng rng = stream(seed, input), own_rng = stream(seed, input, 2);
   SampleLife life;
-  life.layout = sample_layout();
+  life.layout = sample_layout(0);
   life.genome = random_genome(life.layout, rng);
+  if (const Layout own = op.layout(sample_world()); !own.types.empty()) {
+    life.own = op.random(own, own_rng);
+    require_within(life.own, own);
+  }
   life.resets = input % 3 == 2;
   Body& body = life.living.body;
   body.materials = sample_world().materials;

@@ -23,8 +23,20 @@ Rng stream(std::uint64_t seed, std::uint32_t input, std::uint32_t part = 0);
 
 /// Returns a context with the base materials.
 EncodingContext sample_world();
-/// Returns a layout with real genes and choice genes, in groups of several sizes.
-Layout sample_layout();
+/// Returns the layout of the genomes for this input. Even inputs have a fixed one, with real genes and choice genes in
+/// blocks of several sizes. Odd ones have one whose blocks come and go: nodes, and links that refer to them.
+Layout sample_layout(std::uint32_t input);
+/// The same for an operator: always the one with nodes and links if it works on them. Throws Skipped if it works on
+/// blocks of other types.
+Layout sample_layout(const Operator& op, std::uint32_t input);
+/// Returns a genome of a sample layout. If blocks may come and go, it has other blocks than a first genome.
+Genome sample_genome(const Layout& layout, Rng& rng);
+/// The genes that a mutation works on: those of a sample layout and its own.
+struct SampleGenes {
+  Layout layout;
+  Genome genome;
+};
+SampleGenes sample_genes(const Mutation& op, const Layout& others, Rng& rng);
 /// Throws Violation if the layout does not allow the genome.
 void require_within(const Genome& genome, const Layout& layout);
 Numbers numbers_of(const Genome& genome);
@@ -36,6 +48,7 @@ struct SampleLife {
   Box bounds;
   Genome genome;
   Layout layout;
+  Genome own;  ///< genes that the operator owns
   int cycle = 1;
   bool resets = false;
 
@@ -44,7 +57,7 @@ struct SampleLife {
 };
 /// Returns a random life. `input` determines whether the masses have materials, and whether the body has many masses or
 /// only two.
-SampleLife sample_life(std::uint64_t seed, std::uint32_t input);
+SampleLife sample_life(const Devo& op, std::uint64_t seed, std::uint32_t input);
 
 Observation sample_observation(std::uint64_t seed, std::uint32_t input);
 

@@ -1,13 +1,14 @@
 #include "evolution/breeding.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <stdexcept>
 #include <unordered_map>
 
+#include "base/genome_sections.hpp"
 #include "base/philox.hpp"
 #include "base/text.hpp"
+#include "evodevo/pareto.hpp"
 #include "evolution/clones.hpp"
 
 namespace evodevo {
@@ -28,15 +29,14 @@ void check_genome(const Genome& genome, const Layout& layout) {
 
 Individual random_individual(const Experiment& experiment, std::uint32_t generation, std::uint32_t id,
                              std::uint32_t repeat) {
-  Rng rng = stream(experiment, generation, id, rng_stream::again(rng_stream::newborn, repeat));
   Individual individual;
   individual.id = id;
   individual.born = individual.origin = generation;
   individual.made_by = "random";
-  call_operator(experiment.call_of(Encoding::kind, 0, {.individual = id}), [&] {
-    individual.genome = experiment.encoding->random(experiment.layout, rng);
-    check_genome(individual.genome, experiment.layout);
-  });
+  const auto section_stream = [&](std::uint32_t section) {
+    return stream(experiment, generation, id, rng_stream::again(rng_stream::section(section), repeat));
+  };
+  individual.genome = first_genome(experiment, section_stream, {.individual = id});
   return individual;
 }
 
@@ -57,8 +57,29 @@ std::vector<std::size_t> draw_variation(const Experiment& experiment, Rng& rng) 
   return {one};
 }
 
-Individual child(const Experiment& experiment, const Individual& parent, const Individual& mate,
-                 std::uint32_t generation, std::uint32_t id, std::uint32_t repeat) {
+/// Replaces the sections of a genome on which an operator works by what `change` makes of them.
+template <class T, class Change>
+void vary(const Experiment& experiment, const Varied<T>& varied, const OperatorCall& call, Genome& genome,
+          const Change& change) {
+  const Genome part = part_of(genome, experiment.layout, varied.sections, varied.layout);
+  const Genome changed = call_operator(call, [&] {
+    Genome made = change(part);
+    check_genome(made, varied.layout);
+    return made;
+  });
+  put_back(genome, experiment.layout, varied.sections, changed, varied.layout);
+}
+
+/// The two parents of a child, as selection has chosen them.
+struct Couple {
+  const Individual& parent;  ///< the one whose place the child may take
+  const Individual& mate;
+  bool mate_is_better = false;
+};
+
+Individual child(const Experiment& experiment, const Couple& couple, std::uint32_t generation, std::uint32_t id,
+                 std::uint32_t repeat) {
+  const auto& [parent, mate, mate_is_better] = couple;
   Individual individual;
   individual.id = id;
   individual.born = generation;
@@ -74,11 +95,11 @@ Individual child(const Experiment& experiment, const Individual& parent, const I
     if (i < experiment.crossovers.size()) {
       const auto& crossover = experiment.crossovers[i];
       Rng rng = draws(rng_stream::crossover + static_cast<std::uint32_t>(i));
-      Genome other = mate.genome;
-      call_operator(experiment.call_of(Crossover::kind, i, {.individual = id}), [&] {
-        crossover.op->cross(individual.genome, other, experiment.layout, rng);
-        check_genome(individual.genome, experiment.layout);
-      });
+      const Genome mates = part_of(mate.genome, experiment.layout, crossover.sections, crossover.layout);
+      vary(experiment, crossover, experiment.call_of(Crossover::kind, i, {.individual = id}), individual.genome,
+           [&](const Genome& own) {
+             return crossover.op->cross({own, mates, mate_is_better}, crossover.layout, rng);
+           });
       individual.parents = {parent.id, mate.id};
       individual.origin = std::min(parent.origin, mate.origin);
       names.push_back(crossover.name);
@@ -86,10 +107,11 @@ Individual child(const Experiment& experiment, const Individual& parent, const I
       const std::size_t k = i - experiment.crossovers.size();
       const auto& mutation = experiment.mutations[k];
       Rng rng = draws(rng_stream::mutation + static_cast<std::uint32_t>(k));
-      call_operator(experiment.call_of(Mutation::kind, k, {.individual = id}), [&] {
-        mutation.op->mutate(individual.genome, experiment.layout, rng);
-        check_genome(individual.genome, experiment.layout);
-      });
+      vary(experiment, mutation, experiment.call_of(Mutation::kind, k, {.individual = id}), individual.genome,
+           [&](Genome genome) {
+             mutation.op->mutate(genome, mutation.layout, rng);
+             return genome;
+           });
       names.push_back(mutation.name);
     }
   }
@@ -109,6 +131,8 @@ Individual distinct(GenomeSet& known, const Make& make) {
   return newborn;
 }
 
+Point scores_of(const Candidate& row) { return {row.scores.begin(), row.scores.end()}; }
+
 std::vector<std::pair<std::uint32_t, std::uint32_t>> chosen_parents(const Experiment& experiment,
                                                                     const SelectionTable& table, std::uint32_t count,
                                                                     Rng& rng) {
@@ -126,17 +150,24 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> chosen_parents(const Experi
 
 }  // namespace
 
-std::string genome_fault(const Genome& genome, const Layout& layout) {
-  if (genome.size() != layout.genes.size())
-    return std::to_string(genome.size()) + " genes, expected " + std::to_string(layout.genes.size());
-  for (std::size_t i = 0; i < genome.size(); ++i) {
-    const GeneSpec& spec = layout.genes[i];
-    const bool fits = spec.is_choice() ? genome[i] >= 0 && genome[i] < static_cast<float>(spec.choices) &&
-                                             genome[i] == std::floor(genome[i])
-                                       : genome[i] >= spec.low && genome[i] <= spec.high;
-    if (!fits) return "gene " + std::to_string(i) + " = " + to_text(genome[i]) + ", which is not allowed";
-  }
-  return "";
+Genome first_genome(const Experiment& experiment, const std::function<Rng(std::uint32_t)>& stream,
+                    CallSubject subject) {
+  std::vector<Genome> sections(experiment.own_layouts.size());
+  const auto draw = [&](std::string_view kind, std::size_t index, const auto& op, std::uint32_t section) {
+    const Layout& layout = experiment.own_layouts.at(section);
+    Rng rng = stream(section);
+    call_operator(experiment.call_of(kind, index, subject), [&] {
+      sections[section] = op.random(layout, rng);
+      check_genome(sections[section], layout);
+    });
+  };
+  draw(Encoding::kind, 0, *experiment.encoding, 0);
+  for (std::size_t i = 0; i < experiment.devo.size(); ++i)
+    if (const auto own = experiment.devo[i].own_section) draw(Devo::kind, i, *experiment.devo[i].op, *own);
+  for (std::size_t i = 0; i < experiment.mutations.size(); ++i)
+    if (const auto own = experiment.mutations[i].own_section)
+      draw(Mutation::kind, i, *experiment.mutations[i].op, *own);
+  return join(sections, experiment.layout);
 }
 
 SelectionTable::SelectionTable(const std::vector<Individual>& individuals, const std::vector<Objective>& objectives,
@@ -174,9 +205,10 @@ std::vector<Individual> breed(const Experiment& experiment, const std::vector<In
     const auto pairs = call_operator(experiment.call_of(Selection::kind, 0),
                                      [&] { return chosen_parents(experiment, table, asked, rng); });
     for (const auto& pair : pairs) {
-      const Individual &parent = population.at(pair.first), &mate = population.at(pair.second);
-      newborns.push_back(distinct(
-          known, [&](std::uint32_t repeat) { return child(experiment, parent, mate, generation, id, repeat); }));
+      const Couple couple{population.at(pair.first), population.at(pair.second),
+                          dominates(scores_of(table.rows()[pair.second]), scores_of(table.rows()[pair.first]))};
+      newborns.push_back(
+          distinct(known, [&](std::uint32_t repeat) { return child(experiment, couple, generation, id, repeat); }));
       ++id;
     }
   }

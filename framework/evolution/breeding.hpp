@@ -1,6 +1,7 @@
 // Breeding: makes random individuals, and children of a population.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,10 @@ class SelectionTable {
   std::vector<Candidate> rows_;
 };
 
-/// Returns a description of a value in the genome that the layout does not allow, or an empty text if there is none.
-std::string genome_fault(const Genome& genome, const Layout& layout);
+/// Returns the genome of an individual without ancestors. `stream(section)` gives the random numbers of each section.
+/// Throws std::runtime_error that names an operator whose genes its layout does not allow.
+Genome first_genome(const Experiment& experiment, const std::function<Rng(std::uint32_t)>& stream,
+                    CallSubject subject = {});
 
 /// Makes the `count` newborns of a generation, with ids from `first_id`: children of the population, and as many random
 /// individuals as the experiment asks for. If the population is empty, all newborns are random individuals. A newborn

@@ -7,14 +7,17 @@
 
 namespace evodevo {
 
-std::size_t GenomeSet::Hash::operator()(Genes genes) const {
+std::size_t GenomeSet::Hash::operator()(const Genome* genome) const {
   std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a over genes instead of bytes, for speed
-  for (const float gene : genes)
+  for (const float gene : genome->genes)
     hash = (hash ^ std::bit_cast<std::uint32_t>(gene + 0.0F)) * 0x100000001b3;  // adding 0 turns -0 into its equal, 0
   return hash;
 }
 
-bool GenomeSet::Equal::operator()(Genes a, Genes b) const { return std::ranges::equal(a, b); }
+bool GenomeSet::Equal::operator()(const Genome* a, const Genome* b) const {
+  const auto alike = [](const Block& x, const Block& y) { return x.type == y.type && x.count == y.count; };
+  return a->genes == b->genes && std::ranges::equal(a->blocks, b->blocks, alike);
+}
 
 GenomeSet::GenomeSet(const std::vector<Individual>& individuals) {
   for (const Individual& individual : individuals) add(individual.genome);
@@ -32,10 +35,10 @@ std::vector<std::uint32_t> remove_copies(std::vector<Individual>& everyone) {
   std::ranges::stable_sort(youngest_first, std::greater(), [](const Individual* one) { return one->origin; });
 
   using Scores = std::vector<double>;
-  std::unordered_map<GenomeSet::Genes, std::vector<const Scores*>, GenomeSet::Hash, GenomeSet::Equal> scores_of;
+  std::unordered_map<const Genome*, std::vector<const Scores*>, GenomeSet::Hash, GenomeSet::Equal> scores_of;
   std::vector<std::uint32_t> copies;
   for (const Individual* individual : youngest_first) {
-    std::vector<const Scores*>& known = scores_of[individual->genome];
+    std::vector<const Scores*>& known = scores_of[&individual->genome];
     const Scores& own = individual->result.objectives;
     if (std::ranges::any_of(known, [&](const Scores* scores) { return *scores == own; }))
       copies.push_back(individual->id);

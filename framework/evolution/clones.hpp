@@ -1,7 +1,6 @@
 // Clones and copies: finds genetically equal individuals, and removes those that also have equal scores.
 #pragma once
 
-#include <span>
 #include <unordered_set>
 #include <vector>
 
@@ -9,27 +8,26 @@
 
 namespace evodevo {
 
-/// A set of genomes, compared by the values of their genes. The set refers to the genomes, so they must not move or
-/// change while it exists.
+/// A set of genomes, compared by their genes and by the types of their blocks, not by the ids of blocks. The set refers
+/// to the genomes, so they must not move or change while it exists.
 class GenomeSet {
  public:
   GenomeSet() = default;
   explicit GenomeSet(const std::vector<Individual>& individuals);
 
-  bool contains(const Genome& genome) const { return genomes_.contains(genome); }
-  /// Adds a genome; returns false if the set already has an equal one.
-  bool add(const Genome& genome) { return genomes_.insert(genome).second; }
+  bool contains(const Genome& genome) const { return genomes_.contains(&genome); }
+  /// Adds a genome; returns false if the set has an equal one already.
+  bool add(const Genome& genome) { return genomes_.insert(&genome).second; }
 
-  using Genes = std::span<const float>;
   struct Hash {
-    std::size_t operator()(Genes genes) const;
+    std::size_t operator()(const Genome* genome) const;
   };
   struct Equal {
-    bool operator()(Genes a, Genes b) const;
+    bool operator()(const Genome* a, const Genome* b) const;
   };
 
  private:
-  std::unordered_set<Genes, Hash, Equal> genomes_;
+  std::unordered_set<const Genome*, Hash, Equal> genomes_;
 };
 
 /// Returns the number of newborns that are genetically equal to a member of `population` or to an earlier newborn.

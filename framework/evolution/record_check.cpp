@@ -44,11 +44,19 @@ void check_objectives(const Archive& archive, const Experiment& experiment) {
 }
 
 void check_genes(const Archive& archive, const Experiment& experiment, const Individual& individual) {
+  check_layout(archive, experiment);
   if (const std::string fault = genome_fault(individual.genome, experiment.layout); !fault.empty())
     archive.refuse("individual " + std::to_string(individual.id) + " has " + fault);
 }
 
+void check_layout(const Archive& archive, const Experiment& experiment) {
+  if (archive.layout() != experiment.layout)
+    archive.refuse(
+        "its genomes have another layout than those of the experiment's operators; use the operators that made it");
+}
+
 void check_resumable(const Archive& archive, const Experiment& experiment) {
+  check_layout(archive, experiment);
   const std::size_t generations = archive.generations().size();
   const std::vector<Individual> population = archive.population();
   const auto least = static_cast<std::size_t>(generations > 0 ? 1 : 0),

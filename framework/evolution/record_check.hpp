@@ -10,7 +10,10 @@ namespace evodevo {
 /// Checks that the recorded objectives are those of the experiment's fitness operators.
 void check_objectives(const Archive& archive, const Experiment& experiment);
 
-/// Checks that the layout of the encoding allows an individual's genes.
+/// Checks that the recorded layout of genomes is that of the experiment's operators.
+void check_layout(const Archive& archive, const Experiment& experiment);
+
+/// Checks that the recorded layout of genomes is that of the experiment's operators, and allows an individual's genes.
 void check_genes(const Archive& archive, const Experiment& experiment, const Individual& individual);
 
 /// Checks that the run can be resumed: reads and checks everything that evolve() will read.

@@ -54,7 +54,7 @@ Experiment compose(toml::table root, const ExperimentSource& source) {
   toml::array folders;
   for (const fs::path& folder : experiment.plugin_folders) folders.push_back(folder.string());
   if (!folders.empty()) record.insert("plugins", toml::table{{"paths", std::move(folders)}});
-  read_operators(top, OperatorFactory(registry, registry_faults, experiment), experiment, record);
+  read_operators(top, OperatorFactory(registry, registry_faults, experiment), source, experiment, record);
   top.finish();
   std::ostringstream text;
   text << record << '\n';

@@ -8,9 +8,11 @@
 #include <string_view>
 #include <vector>
 
+#include "base/genome_sections.hpp"
 #include "evodevo/plugin.hpp"
 #include "experiment/overrides.hpp"
 #include "experiment/settings.hpp"
+#include "experiment/toml_reader.hpp"
 #include "operators/operator_use.hpp"
 
 namespace evodevo {
@@ -21,12 +23,16 @@ struct Varied {
   std::unique_ptr<T> op;
   std::string name;
   double probability = 0.5;
+  SectionIndices sections = {};                ///< on which it works
+  Layout layout = {};                          ///< of these sections
+  std::optional<std::uint32_t> own_section{};  ///< the section that it owns, one of `sections`
 };
 
 /// A devo operator and the schedule of its applications.
 struct Scheduled {
   std::unique_ptr<Devo> op;
   Schedule schedule;
+  std::optional<std::uint32_t> own_section{};  ///< the section that it owns
 };
 
 struct Experiment : Settings {
@@ -37,13 +43,16 @@ struct Experiment : Settings {
 
   EncodingContext context;  ///< settings that encodings can read
   std::unique_ptr<Encoding> encoding;
-  Layout layout;  ///< layout of the encoding's genes
+  Layout layout;                    ///< of whole genomes; its first section is that of the encoding
+  std::vector<Layout> own_layouts;  ///< of each section by itself, as its owner declared it
   std::vector<Varied<Mutation>> mutations;
   std::vector<Varied<Crossover>> crossovers;
   std::vector<Scheduled> devo;
   std::vector<std::unique_ptr<Fitness>> fitness;
   std::vector<Objective> objectives;  ///< objectives of all fitness operators, in the order of the operators
   std::unique_ptr<Selection> selection;
+
+  FileContents files;  ///< of the files that parameters of operators name
 
   std::vector<OperatorUse> uses;
   std::vector<std::filesystem::path> plugin_folders;  ///< search path of operators, except the program's own folder
@@ -74,6 +83,11 @@ struct ExperimentSource {
   /// Whether the experiment's own encoding makes the bodies. If so, a dt that is too long for the experiment's masses
   /// and materials is an error. Otherwise the dt is only checked for the body that is given.
   bool grows_bodies = true;
+  /// Contents of the files that parameters name, from the record of a run; if not given, the files are read.
+  std::optional<FileContents> files = std::nullopt;
+
+  /// The folder of the file, to which paths in it are relative.
+  std::filesystem::path folder() const { return std::filesystem::path(file).parent_path(); }
 };
 
 /// Reads, checks and composes an experiment:

@@ -12,7 +12,10 @@
 namespace evodevo {
 namespace {
 
-constexpr std::size_t most_texts = 1000;  ///< largest number of strings in one list
+constexpr std::size_t most_numbers = 100'000;                   ///< largest number of numbers in one list
+constexpr std::size_t most_text_bytes = 10'000;                 ///< largest size of a text
+constexpr std::size_t most_file_bytes = std::size_t{64} << 20;  ///< largest size of a file that a parameter names
+constexpr std::size_t most_texts = 1000;                        ///< largest number of strings in one list
 
 /// Former names of keys, each with its present name.
 const std::map<std::string, std::string> renamed_keys{{"experiment.newcomers", "experiment.random_individuals"},
@@ -169,11 +172,49 @@ void TomlReader::counts(std::array<std::int64_t, 3>& value, std::string_view nam
   }
 }
 
+void TomlReader::optional_real(std::optional<double>& value, std::string_view name, Range range, std::string_view) {
+  if (const toml::node* node = look_up(name)) value = number(*node, name, range);
+}
+
+void TomlReader::reals(std::vector<double>& value, std::string_view name, Range range, std::string_view) {
+  const toml::node* node = look_up(name);
+  if (node == nullptr) return;
+  const toml::array* array = node->as_array();
+  if (array == nullptr || array->size() > most_numbers)
+    fail_at(*node, name, expected("a list of at most " + std::to_string(most_numbers) + " numbers", range));
+  value.clear();
+  for (const toml::node& item : *array) value.push_back(number(item, name, range));
+}
+
+void TomlReader::text(std::string& value, std::string_view name, std::string_view) {
+  value = text(name, value.c_str());
+  if (value.size() > most_text_bytes)
+    fail(name, "expected a text of at most " + std::to_string(most_text_bytes) + " bytes");
+}
+
+void TomlReader::file(InputFile& value, std::string_view name, std::string_view) {
+  value.path = text(name, value.path.c_str());
+  if (value.path.empty()) return;
+  if (references_.recorded_files != nullptr) {
+    const auto recorded = references_.recorded_files->find(value.path);
+    if (recorded == references_.recorded_files->end()) fail(name, "is not among the files of the run");
+    value.content = recorded->second;
+  } else {
+    try {
+      value.content = read_input_file((references_.folder / value.path).string(), most_file_bytes);
+    } catch (const ConfigError& error) {
+      fail(name, error.what());
+    }
+  }
+  if (references_.files != nullptr) (*references_.files)[value.path] = value.content;
+}
+
 void TomlReader::materials(std::vector<std::string>& value, std::string_view name, std::string_view) {
   if (const auto named = texts(name); !named.empty()) value = named;
   for (const std::string& material : value) {
-    if (std::find(materials_->begin(), materials_->end(), material) == materials_->end())
-      fail(name, "\"" + material + "\" is not a material" + suggestion(material, *materials_));
+    if (std::find(references_.materials->begin(), references_.materials->end(), material) ==
+        references_.materials->end())
+      fail(name, "\"" + material + "\" is not a material" + suggestion(material, *references_.materials));
     if (std::count(value.begin(), value.end(), material) > 1)
       fail(name, "names \"" + material + "\" twice; remove one of the two");
   }

@@ -3,6 +3,8 @@
 
 #include <toml++/toml.h>
 
+#include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,13 +29,24 @@ std::string location_of(const toml::source_region& source);
 /// Returns a node's value as messages show it: `"text"`, `3`, `[1, 2]`, `a table`.
 std::string value_text(const toml::node& node);
 
+/// The contents of files that parameters name, by their paths as in the TOML file.
+using FileContents = std::map<std::string, std::string>;
+
+/// What values of a table may refer to.
+struct References {
+  const std::vector<std::string>* materials = nullptr;  ///< names of materials; null if the table may not name any
+  /// Folder of relative paths. It is not used if `recorded_files` has the contents of all files.
+  std::filesystem::path folder = {};
+  const FileContents* recorded_files = nullptr;
+  FileContents* files = nullptr;  ///< gets the contents of files that are read, if not null
+};
+
 /// A visitor that reads variables from a TOML table. If a key is absent, its variable keeps the default.
 class TomlReader final : public SettingsVisitor {
  public:
-  /// `path` is the table's name in messages, such as "scene.floor"; empty for the top level. `materials` are the names
-  /// of materials that the table may refer to; nullptr if it may refer to none.
-  TomlReader(const toml::table& table, std::string path, const std::vector<std::string>* materials = nullptr)
-      : table_(table), path_(std::move(path)), materials_(materials) {}
+  /// `path` is the table's name in messages, such as "scene.floor"; empty for the top level.
+  TomlReader(const toml::table& table, std::string path, References references = {})
+      : table_(table), path_(std::move(path)), references_(std::move(references)) {}
 
   void real(double& value, std::string_view name, Range range, std::string_view text) override;
   void integer(std::int64_t& value, std::string_view name, Range range, std::string_view text) override;
@@ -42,6 +55,10 @@ class TomlReader final : public SettingsVisitor {
               std::string_view text) override;
   void vector(Vec3& value, std::string_view name, Range range, std::string_view text) override;
   void counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view text) override;
+  void optional_real(std::optional<double>& value, std::string_view name, Range range, std::string_view text) override;
+  void reals(std::vector<double>& value, std::string_view name, Range range, std::string_view text) override;
+  void text(std::string& value, std::string_view name, std::string_view text) override;
+  void file(InputFile& value, std::string_view name, std::string_view text) override;
   void materials(std::vector<std::string>& value, std::string_view name, std::string_view text) override;
   void require(bool holds, std::string_view name, std::string_view text) override;
   void real_or_auto(std::optional<double>& value, std::string_view name, Range range, std::string_view text) override;
@@ -87,7 +104,7 @@ class TomlReader final : public SettingsVisitor {
 
   const toml::table& table_;
   std::string path_;
-  const std::vector<std::string>* materials_;
+  References references_;
   std::vector<std::string> known_;
 };
 

@@ -21,6 +21,22 @@ void TomlWriter::counts(std::array<std::int64_t, 3>& value, std::string_view nam
   add(name, toml::array{value[0], value[1], value[2]});
 }
 
+void TomlWriter::optional_real(std::optional<double>& value, std::string_view name, Range, std::string_view) {
+  if (value) add(name, *value);
+}
+
+void TomlWriter::reals(std::vector<double>& value, std::string_view name, Range, std::string_view) {
+  toml::array numbers;
+  for (const double number : value) numbers.push_back(number);
+  add(name, std::move(numbers));
+}
+
+void TomlWriter::text(std::string& value, std::string_view name, std::string_view) { add(name, value); }
+
+void TomlWriter::file(InputFile& value, std::string_view name, std::string_view) {
+  if (!value.path.empty()) add(name, value.path);
+}
+
 void TomlWriter::materials(std::vector<std::string>& value, std::string_view name, std::string_view) {
   toml::array names;
   for (const std::string& material : value) names.push_back(material);

@@ -18,6 +18,10 @@ class TomlWriter final : public SettingsVisitor {
               std::string_view text) override;
   void vector(Vec3& value, std::string_view name, Range range, std::string_view text) override;
   void counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view text) override;
+  void optional_real(std::optional<double>& value, std::string_view name, Range range, std::string_view text) override;
+  void reals(std::vector<double>& value, std::string_view name, Range range, std::string_view text) override;
+  void text(std::string& value, std::string_view name, std::string_view text) override;
+  void file(InputFile& value, std::string_view name, std::string_view text) override;
   void materials(std::vector<std::string>& value, std::string_view name, std::string_view text) override;
   void require(bool holds, std::string_view name, std::string_view text) override;
   void real_or_auto(std::optional<double>& value, std::string_view name, Range range, std::string_view text) override;

@@ -140,8 +140,12 @@ void DevelopmentLoop::shuffle_records(Life& life, int cycle) const {
 }
 
 void DevelopmentLoop::apply_operator(Life& life, int cycle, std::size_t index) const {
-  const auto& [op, schedule] = experiment_.devo[index];
-  const DevoContext context = context_of(life, cycle, schedule, devo_request(experiment_, index));
+  const auto& [op, schedule, own_section] = experiment_.devo[index];
+  const auto genes_of = [&](std::uint32_t section) {
+    return part_of(*life.newborn.genome, experiment_.layout, {section}, experiment_.own_layouts[section]);
+  };
+  const Genome genome = genes_of(0), own = own_section ? genes_of(*own_section) : no_genes;
+  const DevoContext context = context_of(life, cycle, schedule, devo_request(experiment_, index), genome, own);
   Rng rng = stream(life, rng_stream::devo(index, cycle));
   const auto develop = [&] {
     Edits edits;
@@ -165,7 +169,7 @@ Rng DevelopmentLoop::stream(const Life& life, std::uint32_t id) const {
 }
 
 DevoContext DevelopmentLoop::context_of(const Life& life, int cycle, const Schedule& schedule,
-                                        const SpringRequest& request) const {
+                                        const SpringRequest& request, const Genome& genome, const Genome& own) const {
   const DevelopmentSettings& development = experiment_.development;
   const LivingBody& living = life.living;
   DevoContext context{.body = living.body,
@@ -179,8 +183,9 @@ DevoContext DevelopmentLoop::context_of(const Life& life, int cycle, const Sched
                       .bounds = bounds(living),
                       .mass = experiment_.context.mass,
                       .resets = development.reset,
-                      .genome = *life.newborn.genome,
-                      .layout = experiment_.layout};
+                      .genome = genome,
+                      .layout = experiment_.own_layouts.front(),
+                      .own = own};
   show_records(living, request, context);
   return context;
 }

@@ -55,7 +55,8 @@ class DevelopmentLoop {
 
   // ---- helper functions ----
   /// Returns the context that an operator sees after a cycle.
-  DevoContext context_of(const Life& life, int cycle, const Schedule& schedule, const SpringRequest& request) const;
+  DevoContext context_of(const Life& life, int cycle, const Schedule& schedule, const SpringRequest& request,
+                         const Genome& genome = no_genes, const Genome& own = no_genes) const;
   /// Applies a change and records it.
   void make(Change change, Life& life) const;
   /// Removes the pieces of the body that development has torn off.

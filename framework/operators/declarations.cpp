@@ -37,6 +37,17 @@ class DeclarationCheck final : public Parameters {
     declare(name, text);
     for (const std::int64_t part : value) check(name, static_cast<double>(part), range);
   }
+  void optional_real(std::optional<double>& value, std::string_view name, Range range, std::string_view text) override {
+    declare(name, text);
+    check(name, value.value_or(range.low), range);
+  }
+  void reals(std::vector<double>& value, std::string_view name, Range range, std::string_view text) override {
+    declare(name, text);
+    check(name, range.low, range);
+    for (const double number : value) check(name, number, range);
+  }
+  void text(std::string&, std::string_view name, std::string_view text) override { declare(name, text); }
+  void file(InputFile&, std::string_view name, std::string_view text) override { declare(name, text); }
   void materials(std::vector<std::string>&, std::string_view name, std::string_view text) override {
     declare(name, text);
   }

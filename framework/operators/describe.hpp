@@ -53,6 +53,20 @@ class Describer : public Visitor {
         "[" + std::to_string(value[0]) + ", " + std::to_string(value[1]) + ", " + std::to_string(value[2]) + "]", range,
         text);
   }
+  void optional_real(std::optional<double>& value, std::string_view name, Range range, std::string_view text) override {
+    add(name, "number", value ? to_text(*value) : "none", range, text);
+  }
+  void reals(std::vector<double>& value, std::string_view name, Range range, std::string_view text) override {
+    std::vector<std::string> numbers;
+    for (const double number : value) numbers.push_back(to_text(number));
+    add(name, "list of numbers", "[" + joined(numbers) + "]", range, text);
+  }
+  void text(std::string& value, std::string_view name, std::string_view text) override {
+    add(name, "text", in_quotes(value), {}, text);
+  }
+  void file(InputFile& value, std::string_view name, std::string_view text) override {
+    add(name, "file", value.path.empty() ? "none" : in_quotes(value.path), {}, text);
+  }
   void materials(std::vector<std::string>& value, std::string_view name, std::string_view text) override {
     std::vector<std::string> names;
     for (const std::string& material : value) names.push_back(in_quotes(material));

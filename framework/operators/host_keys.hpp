@@ -8,11 +8,11 @@
 namespace evodevo::host_key {
 
 inline constexpr std::string_view name = "name", mass = "mass", probability = "probability", from = "from", to = "to",
-                                  every = "every";
+                                  every = "every", sections = "sections";
 /// Not read yet, but reserved for later versions (sdk/README.md).
 inline constexpr std::string_view label = "label", over = "over";
 
-inline constexpr std::array all{name, mass, probability, from, to, every, label, over};
+inline constexpr std::array all{name, mass, probability, from, to, every, sections, label, over};
 
 /// Returns whether a key is reserved, so that no operator may have a parameter of this name.
 constexpr bool is_reserved(std::string_view key) { return std::find(all.begin(), all.end(), key) != all.end(); }

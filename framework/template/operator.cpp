@@ -19,8 +19,8 @@ class @CLASS@ final : public evodevo::Encoding {
   evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
     evodevo::Layout layout;
     for (std::int64_t i = 0; i < masses_; ++i) {
-      layout.add_group(3, {-1, 1});
-      layout.add_group(1, {0, 0, static_cast<std::uint32_t>(context.materials.size())});
+      layout.add_block(3, {-1, 1});
+      layout.add_block(1, {0, 0, static_cast<std::uint32_t>(context.materials.size())});
     }
     return layout;
   }
@@ -50,23 +50,27 @@ class @CLASS@ final : public evodevo::Mutation {
 
   void mutate(evodevo::Genome& genome, const evodevo::Layout& layout, evodevo::Rng& rng) const override {
     for (std::size_t i = 0; i < genome.size(); ++i)
-      if (rng.chance(rate_)) genome[i] = layout.genes[i].draw(rng);
+      if (rng.chance(rate_)) genome[i] = layout.draw(genome, i, rng);
   }
 
  private:
   double rate_ = 0.1;
 };
 @crossover@
-/// Uniform crossover: swaps each gene with probability `rate`.
+/// Uniform crossover: the child is the first parent, with each block taken from the second with probability `rate`.
 class @CLASS@ final : public evodevo::Crossover {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.real(rate_, "rate", {0, 1, "1"}, "Probability that a gene is swapped.");
+    p.real(rate_, "rate", {0, 1, "1"}, "Probability that a block comes from the second parent.");
   }
 
-  void cross(evodevo::Genome& one, evodevo::Genome& other, const evodevo::Layout&, evodevo::Rng& rng) const override {
-    for (std::size_t i = 0; i < one.size(); ++i)
-      if (rng.chance(rate_)) std::swap(one[i], other[i]);
+  evodevo::Genome cross(const evodevo::Parents& parents, const evodevo::Layout& layout,
+                        evodevo::Rng& rng) const override {
+    evodevo::Genome child = parents.first;
+    const auto partners = homologous(child, parents.second, layout);
+    for (std::uint32_t block = 0; block < partners.size(); ++block)
+      if (partners[block] && rng.chance(rate_)) copy_genes(child, block, parents.second, *partners[block], layout);
+    return child;
   }
 
  private:

@@ -4,7 +4,7 @@
 
 namespace {
 
-/// Each spring of a lattice has one gene, its material. The springs with the same first mass form one gene group.
+/// Each spring of a lattice has one gene, its material. The springs with the same first mass form one block.
 class Direct final : public LatticeEncoding {
  public:
   evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
@@ -12,8 +12,9 @@ class Direct final : public LatticeEncoding {
     evodevo::Layout layout;
     for (std::size_t first = 0, last = 0; first < lattice.springs.size(); first = last) {
       while (last < lattice.springs.size() && lattice.springs[last].a == lattice.springs[first].a) ++last;
-      layout.add_group(static_cast<std::uint32_t>(last - first), choice(context));
+      layout.add_block(static_cast<std::uint32_t>(last - first), choice(context), "springs");
     }
+    layout.types.front().gene_names = {"material"};
     return layout;
   }
 

@@ -21,7 +21,6 @@ class NetworkEncoding : public evodevo::Encoding {
     p.choice(pairing_, "pairing", {"after-mapping", "before-mapping"},
              "Which masses count as neighbours: those whose places in the body are near, or those whose points in the "
              "ball are.");
-    p.integer(hidden_, "hidden", {1, 1000, "1"}, "Number of neurons in each of the two hidden layers.");
     p.real(side_, "side", {0.001, 1000, "m"}, "Side length of the cube in which the masses lie.");
     p.materials(materials_, "materials", "Materials that a mass may have; an empty list stands for all.");
     p.real(size_range_, "size_range", {0, 0.9, "1"},
@@ -36,7 +35,7 @@ class NetworkEncoding : public evodevo::Encoding {
       return {{}, 0, "a gene is not finite"};
 
     const Matrix points = ball(context);
-    const Matrix outputs = map(genome.data(), points, outputs_in(context));
+    const Matrix outputs = map(genome, points, context);
     const auto materials = static_cast<Eigen::Index>(chosen.size());
     evodevo::Blueprint blueprint;
     blueprint.body.materials = context.materials;
@@ -60,33 +59,16 @@ class NetworkEncoding : public evodevo::Encoding {
  protected:
   using Matrix = Eigen::MatrixXd;
 
-  /// Returns the number of neurons in each of the two hidden layers.
-  std::int64_t hidden() const { return hidden_; }
   /// Returns the number of outputs of the network: x, y and z; one value for each material to choose from, the greatest
   /// of which selects the material; and, if `size_range` is above 0, the size at birth and the size at the end.
   std::int64_t outputs_in(const evodevo::EncodingContext& context) const {
     return 3 + static_cast<std::int64_t>(context.material_indices(materials_).size()) + (size_range_ > 0 ? 2 : 0);
   }
 
-  /// Returns the weighted sums of a layer of neurons plus their biases: one row for each neuron, one column for each
-  /// point. `rows` has one row for each neuron, with its bias and then its weights.
-  static Matrix sums(const Matrix& rows, const Matrix& input) {
-    // A lazy product always sums in the same order. Eigen's default product sums in an order that depends on the sizes
-    // of the caches, and would thus give different bits on different machines.
-    return rows.rightCols(input.rows()).lazyProduct(input).colwise() + rows.col(0);
-  }
-
-  /// Returns the next `neurons` groups of `count` genes as the rows of a matrix, and moves `genes` past them.
-  static Matrix next_rows(const float*& genes, Eigen::Index neurons, Eigen::Index count) {
-    using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    const Matrix rows = Eigen::Map<const Rows>(genes, neurons, count).cast<double>();
-    genes += rows.size();
-    return rows;
-  }
-
  private:
   /// Returns the network's outputs, one column for each point.
-  virtual Matrix map(const float* genes, const Matrix& points, Eigen::Index outputs) const = 0;
+  virtual Matrix map(const evodevo::Genome& genome, const Matrix& points,
+                     const evodevo::EncodingContext& context) const = 0;
 
   /// Returns the points as columns, uniformly distributed in the unit ball. All bodies of a run have the same points.
   Matrix ball(const evodevo::EncodingContext& context) const {
@@ -107,8 +89,39 @@ class NetworkEncoding : public evodevo::Encoding {
   std::int64_t points_seed_ = 1;
   std::int64_t neighbours_ = 25;
   std::string pairing_ = "after-mapping";
-  std::int64_t hidden_ = 25;
   double side_ = 2;
   std::vector<std::string> materials_;
   double size_range_ = 0;
+};
+
+/// A network with two layers of hidden neurons, whose topology is fixed.
+class LayeredNetworkEncoding : public NetworkEncoding {
+ public:
+  void parameters(evodevo::Parameters& p) override {
+    NetworkEncoding::parameters(p);
+    p.integer(hidden_, "hidden", {1, 1000, "1"}, "Number of neurons in each of the two hidden layers.");
+  }
+
+ protected:
+  /// Returns the number of neurons in each of the two hidden layers.
+  std::int64_t hidden() const { return hidden_; }
+
+  /// Returns the weighted sums of a layer of neurons plus their biases: one row for each neuron, one column for each
+  /// point. `rows` has one row for each neuron, with its bias and then its weights.
+  static Matrix sums(const Matrix& rows, const Matrix& input) {
+    // A lazy product always sums in the same order. Eigen's default product sums in an order that depends on the sizes
+    // of the caches, and would thus give different bits on different machines.
+    return rows.rightCols(input.rows()).lazyProduct(input).colwise() + rows.col(0);
+  }
+
+  /// Returns the next `neurons` blocks of `count` genes as the rows of a matrix, and moves `genes` past them.
+  static Matrix next_rows(const float*& genes, Eigen::Index neurons, Eigen::Index count) {
+    using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const Matrix rows = Eigen::Map<const Rows>(genes, neurons, count).cast<double>();
+    genes += rows.size();
+    return rows;
+  }
+
+ private:
+  std::int64_t hidden_ = 25;
 };

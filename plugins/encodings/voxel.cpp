@@ -6,10 +6,10 @@ namespace {
 
 using evodevo::Material;
 
-/// Each voxel has one gene group: its material and, if `size_range` is above 0, its size at birth and its size at the
-/// end of development (Kriegman et al. 2017; in the paper's words, "a start and end volume"). Voxels of air are absent.
-/// A spring that belongs to several voxels has the mean of their materials and sizes. The positions of the masses at
-/// birth are those of a lattice of equal voxels.
+/// Each voxel has one block of genes: its material and, if `size_range` is above 0, its size at birth and its size at
+/// the end of development (Kriegman et al. 2017; in the paper's words, "a start and end volume"). Voxels of air are
+/// absent. A spring that belongs to several voxels has the mean of their materials and sizes. The positions of the
+/// masses at birth are those of a lattice of equal voxels.
 class Voxel final : public LatticeEncoding {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -26,7 +26,8 @@ class Voxel final : public LatticeEncoding {
       voxel.insert(voxel.end(), 2, {1 - range, 1 + range});
     }
     evodevo::Layout layout;
-    for (std::uint32_t v = 0; v < lattice().voxels(); ++v) layout.add_group(voxel);
+    for (std::uint32_t v = 0; v < lattice().voxels(); ++v) layout.add_block(voxel, "voxel");
+    layout.types.front().gene_names = {"material", "size at birth", "size at the end"};
     return layout;
   }
 

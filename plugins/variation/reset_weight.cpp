@@ -5,8 +5,8 @@
 
 namespace {
 
-/// Works with real genes and with choice genes. A choice gene gets one of its other options, because drawing the old
-/// option again would waste an evaluation on a copy.
+/// Works with all genes. A choice gene gets one of its other options, because drawing the old option again would waste
+/// an evaluation on a copy.
 class ResetWeight final : public evodevo::Mutation {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -20,17 +20,19 @@ class ResetWeight final : public evodevo::Mutation {
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t drawn = rng.below(static_cast<std::uint32_t>(left.size()));
       const std::uint32_t gene = left[drawn];
-      genome[gene] = other_value(genome[gene], layout.genes[gene], rng);
+      genome[gene] = other_value(genome, layout, gene, rng);
       left[drawn] = left.back();
       left.pop_back();
     }
   }
 
  private:
-  static float other_value(float old, const evodevo::GeneSpec& spec, evodevo::Rng& rng) {
-    if (spec.choices < 2) return spec.draw(rng);
-    const auto option = static_cast<float>(rng.below(spec.choices - 1));
-    return option < old ? option : option + 1;
+  static float other_value(const evodevo::Genome& genome, const evodevo::Layout& layout, std::uint32_t gene,
+                           evodevo::Rng& rng) {
+    const std::uint32_t choices = layout.gene(genome, gene).choices;
+    if (choices < 2) return layout.draw(genome, gene, rng);
+    const auto option = static_cast<float>(rng.below(choices - 1));
+    return option < genome[gene] ? option : option + 1;
   }
 
   std::int64_t genes_ = 1;

@@ -3,15 +3,18 @@
 
 namespace {
 
-/// Swaps one of the layout's gene groups, and so works with any encoding. In a neural network, a gene group consists of
-/// the bias and the input weights of one neuron.
+/// The child is the first parent with one block of the second, and so the crossover works with any encoding. In a
+/// neural network, a block consists of the bias and the input weights of one neuron.
 class SwapNeuron final : public evodevo::Crossover {
  public:
-  void cross(evodevo::Genome& one, evodevo::Genome& other, const evodevo::Layout& layout,
-             evodevo::Rng& rng) const override {
-    if (layout.groups.empty()) return;
-    const evodevo::GeneGroup group = layout.groups[rng.below(static_cast<std::uint32_t>(layout.groups.size()))];
-    std::swap_ranges(one.begin() + group.first, one.begin() + group.first + group.count, other.begin() + group.first);
+  evodevo::Genome cross(const evodevo::Parents& parents, const evodevo::Layout& layout,
+                        evodevo::Rng& rng) const override {
+    evodevo::Genome child = parents.first;
+    const auto partners = homologous(child, parents.second, layout);
+    if (partners.empty()) return child;
+    const std::uint32_t block = rng.below(static_cast<std::uint32_t>(partners.size()));
+    if (partners[block]) copy_genes(child, block, parents.second, *partners[block], layout);
+    return child;
   }
 };
 
@@ -19,5 +22,5 @@ class SwapNeuron final : public evodevo::Crossover {
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<SwapNeuron>("swap-neuron",
-                                                   "Swaps one random group of genes, such as the bias and weights "
-                                                   "of a neuron (paper, section IV-B)."))
+                                                   "Takes one random block of genes, such as a neuron's bias and "
+                                                   "weights, from the second parent (paper, section IV-B)."))

@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"batch", "batch", "failed", {"input 12 "}}, Broken{"inputs", "inputs", "failed", {"the layout"}},
         Broken{"instances", "instances", "failed", {"instance", "static"}},
         Broken{"resuming", "resuming", "failed", {"resumed"}}, Broken{"nothing", "nothing", "failed", {"no genes"}},
-        Broken{"layout", "layout", "failed", {"gene 0 = 2 "}},
+        Broken{"layout", "layout", "failed", {"gene 0 = 2,"}},
         Broken{"changes", "changes", "failed", {"200 genomes", "clones"}},
         Broken{"changes_crossover", "changes", "failed", {"200 pairs", "clones"}},
         Broken{"twins", "twins", "failed", {"equal genomes"}}, Broken{"decoding", "decoding", "failed", {"spring 0 "}},

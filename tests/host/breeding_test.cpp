@@ -120,7 +120,7 @@ TEST(Breeding, AnOperatorThatLeavesTheLayoutIsNamed) {
     FAIL() << "the fault went unnoticed";
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), testing::at_place("mutation operator \"reset-weight\" of " +
-                                                    experiment.uses[1].file.string() + ", individual 2, seed 7: ",
+                                                    experiment.uses[2].file.string() + ", individual 2, seed 7: ",
                                                 "gene 0 = not a number", "correct the operator", "new run"));
   }
 }

@@ -139,11 +139,11 @@ TEST_P(Run, CountsTheClonesThatItsGenesShow) {
   ASSERT_EQ(all.size(), 75u) << "clones are evaluated";
   std::int64_t sum = 0;
   for (const Summary& summary : archive.generations()) {
-    std::multiset<Genome> living;
+    std::multiset<std::vector<float>> living;
     std::int64_t clones = 0;
     for (const ArchivedIndividual& one : candidates(all, summary.generation)) {
-      clones += one.born == summary.generation && living.contains(one.genome);
-      living.insert(one.genome);
+      clones += one.born == summary.generation && living.contains(one.genome.genes);
+      living.insert(one.genome.genes);
     }
     EXPECT_EQ(summary.clones, clones) << summary.generation;
     sum += summary.clones;
@@ -157,9 +157,9 @@ TEST_P(Run, OfCopiesOneLivesOnAndTakesNoPlaceOnTheFront) {
   const std::vector<ArchivedIndividual> all = everyone(archive);
   for (const Summary& summary : archive.generations()) {
     const std::uint32_t generation = summary.generation;
-    std::set<std::pair<Genome, std::vector<double>>> living, distinct;
+    std::set<std::pair<std::vector<float>, std::vector<double>>> living, distinct;
     for (const ArchivedIndividual& one : candidates(all, generation)) {
-      const std::pair key(one.genome, one.result.objectives);
+      const std::pair key(one.genome.genes, one.result.objectives);
       distinct.insert(key);
       if (one.died != generation) {
         EXPECT_TRUE(living.insert(key).second) << one.id << " is a copy that lives on";

@@ -38,7 +38,7 @@ TEST(Configuration, TheSmallExperimentIsRead) {
   EXPECT_EQ(experiment.seed, 7);
   EXPECT_EQ(experiment.evaluations, 24);
   EXPECT_EQ(experiment.name, "test");
-  EXPECT_EQ(experiment.layout.genes.size(), 2u);
+  EXPECT_EQ(experiment.layout.first_size(), 2u);
   EXPECT_EQ(experiment.mutations.at(0).probability, 0.8);
   EXPECT_TRUE(experiment.scene.floor.has_value());
   EXPECT_FALSE(experiment.scene.drag.has_value());
@@ -285,7 +285,7 @@ TEST(Configuration, WholeNumbersMayHaveAPointOrAnExponent) {
   EXPECT_EQ(read("experiment.random_individuals", "-0.0").random_individuals, 0);
   EXPECT_EQ(read("experiment.seed", "9007199254740991.0").seed, 9007199254740991);
   EXPECT_EQ(read("experiment.population", "7.0").resolved, read("experiment.population", "7").resolved);
-  EXPECT_EQ(read("encoding.size", "[3.0, 2, 1e0]").layout.genes.size(), 6u);
+  EXPECT_EQ(read("encoding.size", "[3.0, 2, 1e0]").layout.first_size(), 6u);
   EXPECT_THAT(complaint(with("population = 6", "population = 6.5")),
               testing::at_place("test.toml:5:14: experiment.population = 6.5: ", "whole number", "1 to 1000000"));
   EXPECT_THAT(complaint(with("size = [2, 1, 1]", "size = [2, 1.5, 1]")),
@@ -395,8 +395,8 @@ TEST(Configuration, MissingParts) {
 TEST(Configuration, ItsOwnOperatorsComeBeforeThoseBuiltIn) {
   const std::string folder = std::string(EVODEVO_FAULTY_PLUGINS) + "/taken_name";
   const Experiment experiment = testing::read(small_experiment + "\n[plugins]\npaths = ['" + folder + "']\n");
-  EXPECT_EQ(experiment.uses.at(1).name, "reset-weight");
-  EXPECT_EQ(experiment.uses.at(1).file.parent_path(), folder);
+  EXPECT_EQ(experiment.uses.at(2).name, "reset-weight");
+  EXPECT_EQ(experiment.uses.at(2).file.parent_path(), folder);
   ASSERT_EQ(experiment.warnings.size(), 1u);
   EXPECT_THAT(experiment.warnings[0],
               testing::naming("reset-weight.evodevo.so: ", "mutation operator \"reset-weight\""));

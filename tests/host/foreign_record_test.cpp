@@ -146,7 +146,8 @@ TEST_P(ForeignTable, MayHoldAnything) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Tables, ForeignTable,
-                         ::testing::Values("record", "provenances", "operators", "objectives", "individuals", "scores",
+                         ::testing::Values("record", "provenances", "operators", "objectives", "sections",
+                                           "block_types", "gene_types", "first_blocks", "individuals", "scores",
                                            "lives", "generations", "verifications"),
                          [](const auto& instance) { return std::string(instance.param); });
 

@@ -224,9 +224,10 @@ TEST(Loader, AllBuiltInOperatorsAreThere) {
   const Registry registry({builtin_plugin_folder()});
   EXPECT_TRUE(registry.failed().empty());
   using ::testing::ElementsAre;
-  EXPECT_THAT(registry.names("encoding"), ElementsAre("cppn", "direct", "neural", "voxel"));
-  EXPECT_THAT(registry.names("mutation"), ElementsAre("reset-weight"));
-  EXPECT_THAT(registry.names("crossover"), ElementsAre("swap-neuron", "two-point"));
+  EXPECT_THAT(registry.names("encoding"), ElementsAre("cppn", "direct", "neat", "neural", "voxel"));
+  EXPECT_THAT(registry.names("mutation"), ElementsAre("add-block", "add-link", "add-node", "duplicate-block",
+                                                      "gaussian", "remove-block", "reset-weight"));
+  EXPECT_THAT(registry.names("crossover"), ElementsAre("sbx", "swap-neuron", "two-point", "uniform"));
   EXPECT_THAT(registry.names("devo"),
               ElementsAre("amplitude-adaptation", "ballistic-growth", "length-adaptation", "mass-growth",
                           "mass-turnover", "spring-turnover", "stiffness-adaptation"));

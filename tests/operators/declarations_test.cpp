@@ -32,6 +32,16 @@ class DeclarationCheck final : public Parameters {
     declare(name, text);
     for (const std::int64_t part : value) check(static_cast<double>(part), range);
   }
+  void optional_real(std::optional<double>& value, std::string_view name, Range range, std::string_view text) override {
+    declare(name, text);
+    check(value.value_or(range.low), range);
+  }
+  void reals(std::vector<double>& value, std::string_view name, Range range, std::string_view text) override {
+    declare(name, text);
+    for (const double number : value) check(number, range);
+  }
+  void text(std::string&, std::string_view name, std::string_view text) override { declare(name, text); }
+  void file(InputFile&, std::string_view name, std::string_view text) override { declare(name, text); }
   void materials(std::vector<std::string>&, std::string_view name, std::string_view text) override {
     declare(name, text);
   }
@@ -57,9 +67,10 @@ class DeclarationCheck final : public Parameters {
 TEST(BuiltIn, AllOperatorsLoad) {
   EXPECT_TRUE(registry().failed().empty()) << registry().failed().front().reason;
   using testing::ElementsAre;
-  EXPECT_THAT(registry().names("encoding"), ElementsAre("cppn", "direct", "neural", "voxel"));
-  EXPECT_THAT(registry().names("mutation"), ElementsAre("reset-weight"));
-  EXPECT_THAT(registry().names("crossover"), ElementsAre("swap-neuron", "two-point"));
+  EXPECT_THAT(registry().names("encoding"), ElementsAre("cppn", "direct", "neat", "neural", "voxel"));
+  EXPECT_THAT(registry().names("mutation"), ElementsAre("add-block", "add-link", "add-node", "duplicate-block",
+                                                        "gaussian", "remove-block", "reset-weight"));
+  EXPECT_THAT(registry().names("crossover"), ElementsAre("sbx", "swap-neuron", "two-point", "uniform"));
   EXPECT_THAT(registry().names("devo"),
               ElementsAre("amplitude-adaptation", "ballistic-growth", "length-adaptation", "mass-growth",
                           "mass-turnover", "spring-turnover", "stiffness-adaptation"));

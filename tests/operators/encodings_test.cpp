@@ -20,14 +20,14 @@ std::vector<double> digest(const Blueprint& blueprint) {
   return digest;
 }
 
-void expect_groups_cover_genes_once(const Layout& layout) {
+void expect_blocks_cover_genes_once(const Layout& layout) {
   std::uint32_t next = 0;
-  for (const GeneGroup& group : layout.groups) {
-    EXPECT_EQ(group.first, next);
-    EXPECT_GT(group.count, 0u);
-    next += group.count;
+  for (const Block& block : layout.first_blocks) {
+    EXPECT_EQ(block.first, next);
+    EXPECT_GT(block.count, 0u);
+    next += block.count;
   }
-  EXPECT_EQ(next, layout.genes.size());
+  EXPECT_EQ(next, layout.first_size());
 }
 
 class AnyEncoding : public testing::TestWithParam<const char*> {};
@@ -44,11 +44,11 @@ TEST_P(AnyEncoding, SameGenomeSameBodyOnAnyThread) {
 TEST_P(AnyEncoding, RandomGenomesGiveBodiesThatBeginWithTheWorldsMaterials) {
   const auto encoding = make<Encoding>(GetParam());
   const Layout layout = encoding->layout(context());
-  expect_groups_cover_genes_once(layout);
+  expect_blocks_cover_genes_once(layout);
   Rng rng = stream(2);
   for (int i = 0; i < 5; ++i) {
     const Genome genome = encoding->random(layout, rng);
-    ASSERT_EQ(genome.size(), layout.genes.size());
+    ASSERT_EQ(genome.size(), layout.first_size());
     const Blueprint blueprint = encoding->decode(genome, context());
     EXPECT_EQ(blueprint.failure, "");
     ASSERT_GE(blueprint.body.materials.size(), 5u);
@@ -64,27 +64,24 @@ TEST_P(AnyEncoding, AirAloneIsNoBody) {
   EXPECT_THAT(encoding->decode(genome, context()).failure, testing::HasSubstr("air"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Encodings, AnyEncoding, testing::Values("neural", "cppn", "voxel", "direct"));
+INSTANTIATE_TEST_SUITE_P(Encodings, AnyEncoding, testing::Values("neural", "cppn", "neat", "voxel", "direct"));
 
 // neural -------------------------------------------------------------------------------------------------------------
 
 TEST(Neural, HasThePapersGenes) {
   const Layout layout = make<Encoding>("neural")->layout(context());
-  // genes (bias + weights): 25 neurons with 1 + 3, 25 with 1 + 25, and 3 + 5 outputs with 1 + 25
-  ASSERT_EQ(layout.genes.size(), 958u);
-  ASSERT_EQ(layout.groups.size(), 58u);
-  for (std::size_t n = 0; n < 58; ++n) EXPECT_EQ(layout.groups[n].count, n < 25 ? 4u : 26u);
-  for (const GeneSpec& gene : layout.genes) {
-    EXPECT_FALSE(gene.is_choice());
-    EXPECT_EQ(gene.low, -1);
-    EXPECT_EQ(gene.high, 1);
-  }
+  // genes: 25 neurons with 1 + 3, 25 with 1 + 25, and 3 + 5 with 1 + 25
+  ASSERT_EQ(layout.first_size(), 958u);
+  ASSERT_EQ(layout.first_blocks.size(), 58u);
+  for (std::size_t n = 0; n < 58; ++n) EXPECT_EQ(layout.first_blocks[n].count, n < 25 ? 4u : 26u);
+  ASSERT_EQ(layout.types.size(), 1u);
+  EXPECT_THAT(layout.types[0].genes, testing::ElementsAre(GeneSpec{-1, 1}));
 }
 
 TEST(Neural, OneOutputForEachMaterialToChooseFrom) {
   const auto encoding = make<Encoding>("neural", "materials = ['tissue', 'bone']");
   const Layout layout = encoding->layout(context());
-  EXPECT_EQ(layout.genes.size(), 958u - 3 * 26);
+  EXPECT_EQ(layout.first_size(), 958u - 3 * 26);
   std::map<std::int32_t, int> seen;
   Rng rng = stream(1);
   for (int i = 0; i < 20; ++i)
@@ -96,8 +93,8 @@ TEST(Neural, OneOutputForEachMaterialToChooseFrom) {
 TEST(Neural, BiasesOfTheOutputsAloneSetPlaceAndMaterial) {
   const auto encoding = make<Encoding>("neural", "side = 3.0\nneighbours = 7\npoints = 10");
   const Layout layout = encoding->layout(context());
-  Genome genome(layout.genes.size(), 0);
-  const auto bias = [&](std::size_t output) -> float& { return genome[layout.groups[50 + output].first]; };
+  Genome genome(layout.first_size(), 0);
+  const auto bias = [&](std::size_t output) -> float& { return genome[layout.first_blocks[50 + output].first]; };
   bias(0) = 0.5f;
   bias(1) = -1;
   bias(3 + muscle) = 0.25f;
@@ -117,9 +114,9 @@ TEST(Neural, BiasesOfTheOutputsAloneSetPlaceAndMaterial) {
 std::vector<Vec3> points_of(const std::string& toml) {
   const auto encoding = make<Encoding>("neural", "hidden = 6\n" + toml);
   const Layout layout = encoding->layout(context());
-  Genome genome(layout.genes.size(), 0);
+  Genome genome(layout.first_size(), 0);
   const auto weight = [&](std::size_t neuron, std::size_t input) -> float& {
-    return genome[layout.groups[neuron].first + 1 + input];
+    return genome[layout.first_blocks[neuron].first + 1 + input];
   };
   for (std::size_t axis = 0; axis < 3; ++axis) {
     weight(2 * axis, axis) = 1;
@@ -160,10 +157,10 @@ TEST(Neural, PointsDependOnTheirSeedAlone) {
 std::vector<double> network(const Genome& genome, const Layout& layout, Vec3 point) {
   std::vector<double> values{point.x, point.y, point.z};
   std::size_t group = 0;
-  for (const std::size_t last : {25u, 50u, static_cast<unsigned>(layout.groups.size())}) {
+  for (const std::size_t last : {25u, 50u, static_cast<unsigned>(layout.first_blocks.size())}) {
     std::vector<double> next;
     for (; group < last; ++group) {
-      const float* gene = &genome[layout.groups[group].first];
+      const float* gene = &genome[layout.first_blocks[group].first];
       double sum = gene[0];
       for (std::size_t i = 0; i < values.size(); ++i) sum += gene[1 + i] * values[i];
       next.push_back(last <= 50 ? std::max(0.0, sum) : sum);
@@ -250,9 +247,9 @@ TEST_P(AnyNetwork, SizesAreTwoMoreNeuronsThatChangeNothingElse) {
     const auto fixed = make<Encoding>(GetParam(), pairing);
     const auto sized = make<Encoding>(GetParam(), pairing + "\nsize_range = 0.9");
     const Layout less = fixed->layout(context()), more = sized->layout(context());
-    ASSERT_EQ(more.groups.size(), less.groups.size() + 2);
-    EXPECT_EQ(more.genes.size(), less.genes.size() + 2 * less.groups.back().count);
-    expect_groups_cover_genes_once(more);
+    ASSERT_EQ(more.first_blocks.size(), less.first_blocks.size() + 2);
+    EXPECT_EQ(more.first_size(), less.first_size() + 2 * less.first_blocks.back().count);
+    expect_blocks_cover_genes_once(more);
 
     Rng rng = stream(10);
     const Genome genome = sized->random(more, rng);
@@ -263,7 +260,8 @@ TEST_P(AnyNetwork, SizesAreTwoMoreNeuronsThatChangeNothingElse) {
       EXPECT_NEAR(size.end, 1, 0.9 + 1e-12);
     }
     blueprint.sizes.clear();
-    const Genome without(genome.begin(), genome.begin() + static_cast<std::ptrdiff_t>(less.genes.size()));
+    Genome without = genome;
+    without.genes.resize(less.first_size());
     EXPECT_EQ(digest(blueprint), digest(fixed->decode(without, context())));
   }
 }
@@ -272,9 +270,9 @@ TEST_P(AnyNetwork, SizesStayInTheirRangeWhateverTheGenes) {
   const auto encoding = make<Encoding>(GetParam(), "size_range = 0.5\npoints = 20");
   const Layout layout = encoding->layout(context());
   for (const float value : {0.0f, 1.0f, 1e30f}) {
-    Genome genome(layout.genes.size(), value);
+    Genome genome(layout.first_size(), value);
     for (std::size_t i = 0; i < genome.size(); ++i)
-      if (layout.genes[i].is_choice()) genome[i] = 0;
+      if (layout.gene(genome, i).is_choice()) genome[i] = 0;
     for (const Size& size : encoding->decode(genome, context()).sizes) {
       EXPECT_TRUE(size.start >= 0.5 && size.start <= 1.5) << size.start;
       EXPECT_TRUE(size.end >= 0.5 && size.end <= 1.5) << size.end;
@@ -288,11 +286,11 @@ INSTANTIATE_TEST_SUITE_P(Networks, AnyNetwork, testing::Values("neural", "cppn")
 
 TEST(Cppn, EveryHiddenNeuronHasAFunctionOfItsOwn) {
   const Layout layout = make<Encoding>("cppn", "hidden = 6")->layout(context());
-  ASSERT_EQ(layout.groups.size(), 6u + 6 + 8);
+  ASSERT_EQ(layout.first_blocks.size(), 6u + 6 + 8);
   for (std::size_t n = 0; n < 20; ++n) {
-    EXPECT_EQ(layout.groups[n].count, n < 6 ? 6u : n < 12 ? 8u : 7u);
-    for (std::uint32_t g = 0; g < layout.groups[n].count; ++g)
-      EXPECT_EQ(layout.genes[layout.groups[n].first + g].choices, n < 12 && g == 0 ? 5u : 0u);
+    EXPECT_EQ(layout.first_blocks[n].count, n < 6 ? 6u : n < 12 ? 8u : 7u);
+    for (std::uint32_t g = 0; g < layout.first_blocks[n].count; ++g)
+      EXPECT_EQ(layout.gene({}, layout.first_blocks[n].first + g).choices, n < 12 && g == 0 ? 5u : 0u);
   }
 }
 
@@ -305,9 +303,9 @@ TEST(Cppn, FunctionsAreStanleys) {
       [](double x) { return x; }, [](double x) { return std::tanh(x); }, [](double x) { return std::sin(x); },
       [](double x) { return std::exp(-x * x); }, [](double x) { return std::fabs(x); }};
   for (std::size_t f = 0; f < functions.size(); ++f) {
-    Genome genome(layout.genes.size(), 0);
+    Genome genome(layout.first_size(), 0);
     const auto gene = [&](std::size_t neuron, std::size_t index) -> float& {
-      return genome[layout.groups[neuron].first + index];
+      return genome[layout.first_blocks[neuron].first + index];
     };
     gene(0, 0) = static_cast<float>(f);
     gene(0, 1) = 0.5f;  // bias
@@ -323,7 +321,11 @@ TEST(Cppn, FunctionsAreStanleys) {
 
 // lattices -----------------------------------------------------------------------------------------------------------
 
-Genome choices(std::initializer_list<std::int32_t> options) { return Genome(options.begin(), options.end()); }
+Genome choices(std::initializer_list<std::int32_t> options) {
+  Genome genome;
+  genome.genes.assign(options.begin(), options.end());
+  return genome;
+}
 
 /// Returns the number of springs of each stiffness.
 std::map<double, int> stiffnesses(const Body& body) {
@@ -335,8 +337,8 @@ std::map<double, int> stiffnesses(const Body& body) {
 TEST(Voxel, OneVoxelIsACubeOfTwentyEightSprings) {
   const auto encoding = make<Encoding>("voxel", "size = [1, 1, 1]\nedge = 0.5");
   const Layout layout = encoding->layout(context());
-  ASSERT_EQ(layout.genes.size(), 1u);
-  EXPECT_EQ(layout.genes[0].choices, 5u);
+  ASSERT_EQ(layout.first_size(), 1u);
+  EXPECT_EQ(layout.gene({}, 0).choices, 5u);
   const Body body = encoding->decode(choices({muscle}), context()).body;
   ASSERT_EQ(body.masses.size(), 8u);
   for (const Mass& mass : body.masses) {
@@ -389,21 +391,21 @@ TEST(Voxel, UniformBodiesNeedNoNewMaterial) {
 
 TEST(Voxel, OptionsAreTheChosenMaterials) {
   const auto encoding = make<Encoding>("voxel", "size = [2, 1, 1]\nmaterials = ['air', 'tissue', 'bone']");
-  EXPECT_EQ(encoding->layout(context()).genes[1].choices, 3u);
+  EXPECT_EQ(encoding->layout(context()).gene({}, 1).choices, 3u);
   // options are in the order of the world's materials: air, bone, tissue
   EXPECT_EQ(stiffnesses(encoding->decode(choices({1, 2}), context()).body),
             (std::map<double, int>{{4000, 22}, {7000, 6}, {10000, 22}}));
 }
 
 TEST(Voxel, SizesAreGenesOnlyWhereTheyDevelop) {
-  EXPECT_EQ(make<Encoding>("voxel", "size = [2, 1, 1]")->layout(context()).genes.size(), 2u);
+  EXPECT_EQ(make<Encoding>("voxel", "size = [2, 1, 1]")->layout(context()).first_size(), 2u);
   const Layout layout = make<Encoding>("voxel", "size = [2, 1, 1]\nsize_range = 0.25")->layout(context());
-  ASSERT_EQ(layout.genes.size(), 6u);
-  ASSERT_EQ(layout.groups.size(), 2u);
-  EXPECT_EQ(layout.genes[3].choices, 5u);
+  ASSERT_EQ(layout.first_size(), 6u);
+  ASSERT_EQ(layout.first_blocks.size(), 2u);
+  EXPECT_EQ(layout.gene({}, 3).choices, 5u);
   for (const std::size_t gene : {1, 2, 4, 5}) {
-    EXPECT_EQ(layout.genes[gene].low, 0.75f);
-    EXPECT_EQ(layout.genes[gene].high, 1.25f);
+    EXPECT_EQ(layout.gene({}, gene).low, 0.75f);
+    EXPECT_EQ(layout.gene({}, gene).high, 1.25f);
   }
 }
 
@@ -424,13 +426,13 @@ TEST(Voxel, SpringsTakeTheSizesOfTheirVoxels) {
 
 TEST(Direct, EverySpringHasAGene) {
   const Layout one = make<Encoding>("direct", "size = [1, 1, 1]")->layout(context());
-  EXPECT_EQ(one.genes.size(), 28u);
+  EXPECT_EQ(one.first_size(), 28u);
   std::vector<std::uint32_t> counts;
-  for (const GeneGroup& group : one.groups) counts.push_back(group.count);
+  for (const Block& group : one.first_blocks) counts.push_back(group.count);
   EXPECT_THAT(counts, testing::ElementsAre(7, 6, 5, 4, 3, 2, 1));
-  EXPECT_EQ(make<Encoding>("direct", "size = [2, 1, 1]")->layout(context()).genes.size(), 50u);
+  EXPECT_EQ(make<Encoding>("direct", "size = [2, 1, 1]")->layout(context()).first_size(), 50u);
   // the body of the paper's benchmark, section V-A
-  EXPECT_EQ(make<Encoding>("direct", "size = [10, 10, 10]")->layout(context()).genes.size(), 14230u);
+  EXPECT_EQ(make<Encoding>("direct", "size = [10, 10, 10]")->layout(context()).first_size(), 14230u);
 }
 
 TEST(Direct, GenesStandInTheOrderOfTheSprings) {

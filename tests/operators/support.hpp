@@ -38,7 +38,7 @@ std::unique_ptr<T> make(const std::string& name, const std::string& toml = "") {
   auto op = create<T>(*available);
   const toml::table table = parse_toml(toml, "test.toml");
   const std::vector<std::string> materials = context().material_names;
-  TomlReader reader(table, "test", &materials);
+  TomlReader reader(table, "test", {&materials});
   op->parameters(reader);
   reader.finish();
   return op;

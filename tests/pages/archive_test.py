@@ -65,11 +65,11 @@ class Archive(unittest.TestCase):
         self.assertEqual(lineage[-1][3], "random")
         self.assertEqual([row[0] for row in lineage], list(range(len(lineage))))
 
-    def test_the_program_names_every_gene(self):
+    def test_the_program_names_genes(self):
         program, = blocks(PAGE, "python")
         answer = subprocess.run([sys.executable, "-c", program.text, self.folder], check=True, capture_output=True,
                                 text=True).stdout
-        self.assertRegex(answer, r"(?m)^output x: bias = -?\d\.\d{3}$")
+        self.assertRegex(answer, r"(?m)^neuron 0: bias = -?\d\.\d{3}$")
 
 
 if __name__ == "__main__":

@@ -89,7 +89,7 @@ struct Encoding final : evodevo::Encoding {
     if (how == "crash-in-layout") std::raise(SIGSEGV);
     if (how == "throw-in-layout") throw 7;
     evodevo::Layout layout;
-    layout.add_group(2, {0, 1});
+    layout.add_block(2, {0, 1});
     return layout;
   }
   evodevo::Blueprint decode(const evodevo::Genome&, const evodevo::EncodingContext& context) const override {

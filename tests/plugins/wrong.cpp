@@ -21,13 +21,15 @@ using evodevo::Rng;
 #if defined(WRONG_TWINS)
 
 struct Wrong final : evodevo::Crossover {
-  void cross(Genome& one, Genome&, const Layout& layout, Rng& rng) const override { one = random_genome(layout, rng); }
+  Genome cross(const evodevo::Parents&, const Layout& layout, Rng& rng) const override {
+    return random_genome(layout, rng);
+  }
 };
 
 #elif defined(WRONG_CHANGES_CROSSOVER)
 
 struct Wrong final : evodevo::Crossover {
-  void cross(Genome& one, Genome& other, const Layout&, Rng&) const override { other = one; }
+  Genome cross(const evodevo::Parents& parents, const Layout&, Rng&) const override { return parents.first; }
 };
 
 #elif defined(WRONG_CHANGES)
@@ -41,7 +43,7 @@ struct Wrong final : evodevo::Mutation {
 struct Wrong final : evodevo::Encoding {
   Layout layout(const evodevo::EncodingContext&) const override {
     Layout layout;
-    layout.add_group(2, {0, 1});
+    layout.add_block(2, {0, 1});
     return layout;
   }
   evodevo::Blueprint decode(const Genome&, const evodevo::EncodingContext& context) const override {
@@ -177,30 +179,31 @@ struct Wrong final : evodevo::Mutation {
     ++calls_;
     ++calls_in_this_process;
 #if defined(WRONG_NOTHING)
-    if (genome.empty()) genome.push_back(1);
+    if (genome.empty()) return genome.genes.push_back(1);
 #endif
 #if defined(WRONG_ENDLESS)
-    while (layout.genes.empty()) pause();
+    while (genome.empty()) pause();
 #endif
-    if (layout.genes.empty()) return;
+    if (genome.empty()) return;
     float& gene = genome[0];
-    gene = layout.genes[0].draw(rng);
+    const evodevo::GeneSpec& spec = layout.gene(genome, 0);
+    gene = spec.draw(rng);
 #if defined(WRONG_SAME_SEED)
     gene = static_cast<float>(std::random_device()() % 1000) / 1000;
 #elif defined(WRONG_THREADS)
-    if (!made_here) gene = layout.genes[0].low;
+    if (!made_here) gene = spec.low;
 #elif defined(WRONG_BATCH)
-    if (calls_ > 3) gene = layout.genes[0].low;
+    if (calls_ > 3) gene = spec.low;
 #elif defined(WRONG_INPUTS)
-    const_cast<Layout&>(layout).genes[0].high *= 0.5F;
+    const_cast<evodevo::GeneSpec&>(spec).high *= 0.5F;
 #elif defined(WRONG_RESUMING)
-    if (calls_in_this_process > 5) gene = layout.genes[0].draw(rng);
+    if (calls_in_this_process > 5) gene = spec.draw(rng);
 #elif defined(WRONG_LAYOUT)
-    gene = layout.genes[0].high + 1;
+    gene = spec.high + 1;
 #elif defined(WRONG_CRASHING)
     std::raise(SIGSEGV);
 #elif defined(WRONG_HIDDEN_STATE)
-    if (calls_in_this_process > 100) gene = layout.genes[0].low;
+    if (calls_in_this_process > 100) gene = spec.low;
 #elif defined(WRONG_SURROUNDINGS)
     std::setlocale(LC_ALL, "C.UTF-8");
 #endif

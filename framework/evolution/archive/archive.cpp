@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "base/text.hpp"
+#include "evolution/archive/genes.hpp"
 #include "evolution/archive/schema.hpp"
 #include "evolution/record_check.hpp"
 
@@ -87,6 +88,9 @@ Archive Archive::create(const fs::path& folder, const Experiment& experiment, co
     Statement(run, "objectives", "INSERT INTO objectives VALUES(?, ?, ?, ?)")
         .execute(static_cast<std::uint32_t>(i), objective.name, objective.unit, objective.maximise ? 1 : 0);
   }
+  for (const auto& [path, content] : experiment.files)
+    Statement(run, "files", "INSERT INTO files VALUES(?, ?)").execute(path, std::string_view(content));
+  insert_layout(run, experiment.layout);
   archive.insert_provenance(0, this_provenance(experiment, device));
   archive.insert_record("format", archive_format);
   archive.insert_record("evodevo", EVODEVO_VERSION);
@@ -153,7 +157,8 @@ Experiment recorded_experiment(const Archive& archive, std::vector<fs::path> plu
       read_experiment(archive.record("experiment"), {.file = (archive.folder() / "record of the run").string(),
                                                      .overrides = {},
                                                      .plugin_path = std::move(plugin_path),
-                                                     .is_record = true});
+                                                     .is_record = true,
+                                                     .files = archive.files()});
   experiment.name = printable(archive.record("name"));
   check_objectives(archive, experiment);
   return experiment;

@@ -83,6 +83,10 @@ class Archive {
   /// Returns the provenance of a generation.
   Provenance provenance(std::uint32_t generation) const;
   std::vector<Objective> objectives() const;
+  /// Returns the contents of the files that parameters of operators name.
+  FileContents files() const;
+  /// Returns the layout of whole genomes.
+  const Layout& layout() const;
   std::vector<Summary> generations() const;
   /// Returns the reasons why individuals failed, most frequent first. Reasons that agree up to the first digit are one
   /// group.
@@ -109,6 +113,7 @@ class Archive {
   void insert_record(const std::string& key, const std::string& value);
 
   std::unique_ptr<RunDatabase> run_;
+  mutable std::optional<Layout> layout_;  ///< read when it is first needed
 };
 
 /// Returns the settings of a run from its record, without loading any operator.

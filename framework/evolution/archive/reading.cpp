@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "base/text.hpp"
 #include "evolution/archive/archive.hpp"
 #include "evolution/archive/database.hpp"
+#include "evolution/archive/genes.hpp"
 
 namespace evodevo {
 namespace {
@@ -45,14 +45,15 @@ std::int64_t count_of(const RunDatabase& run, const std::string& table) {
 }
 
 constexpr const char* individual_columns =
-    "SELECT id, born, origin, parent, mate, made_by, genes, status, reason, ended_at, spring_evaluations, died "
+    "SELECT id, born, origin, parent, mate, made_by, genes, status, reason, ended_at, spring_evaluations, died, blocks "
     "FROM individuals ";
 
 /// Reads individuals and checks them against the run's generations and objectives.
 class Individuals {
  public:
-  Individuals(const RunDatabase& run, const std::string& which)
+  Individuals(const RunDatabase& run, const Layout& layout, const std::string& which)
       : run_(run),
+        layout_(layout),
         objectives_(count_of(run, "objectives")),
         row_(run, "individuals", individual_columns + which),
         scores_(run, "scores", "SELECT objective, value FROM scores WHERE individual = ? ORDER BY objective") {
@@ -74,7 +75,7 @@ class Individuals {
     individual.origin = row_.index(2, individual.born);
     read_parents(individual);
     individual.made_by = line(row_, 5);
-    read_genes(individual);
+    individual.genome = read_genome(row_, 6, 12, layout_);
     read_result(individual.result);
     if (!row_.is_null(11))
       individual.died = static_cast<std::uint32_t>(row_.integer(11, individual.born, *last_generation_));
@@ -103,13 +104,6 @@ class Individuals {
     }
   }
 
-  void read_genes(ArchivedIndividual& individual) {
-    const std::string_view bytes = row_.bytes(6);
-    if (bytes.size() % sizeof(float) != 0) row_.refuse(6, "four bytes for each gene");
-    individual.genome.resize(bytes.size() / sizeof(float));
-    if (!bytes.empty()) std::memcpy(individual.genome.data(), bytes.data(), bytes.size());
-  }
-
   void read_result(Result& result) {
     result.status = status_in(row_, 7);
     result.reason = line_or_empty(row_, 8);
@@ -132,6 +126,7 @@ class Individuals {
   }
 
   const RunDatabase& run_;
+  const Layout& layout_;
   std::int64_t objectives_;
   Statement row_, scores_;
   std::optional<std::uint32_t> last_generation_;
@@ -211,6 +206,18 @@ std::vector<Objective> Archive::objectives() const {
   return objectives;
 }
 
+FileContents Archive::files() const {
+  FileContents files;
+  Statement row(*run_, "files", "SELECT path, content FROM files");
+  while (row.step()) files.emplace(row.text(0), row.bytes(1));
+  return files;
+}
+
+const Layout& Archive::layout() const {
+  if (!layout_) layout_ = read_layout(*run_);
+  return *layout_;
+}
+
 std::vector<Summary> Archive::generations() const {
   const auto last_provenance = static_cast<std::uint32_t>(provenances().size() - 1);
   std::vector<Summary> summaries;
@@ -262,13 +269,13 @@ std::vector<Failure> Archive::failures() const {
 
 std::vector<Individual> Archive::population() const {
   std::vector<Individual> population;
-  Individuals living(*run_, "WHERE died IS NULL ORDER BY id");
+  Individuals living(*run_, layout(), "WHERE died IS NULL ORDER BY id");
   while (auto individual = living.next()) population.push_back(std::move(*individual));
   return population;
 }
 
 std::optional<ArchivedIndividual> Archive::individual(std::uint32_t id) const {
-  Individuals one(*run_, "WHERE id = ?");
+  Individuals one(*run_, layout(), "WHERE id = ?");
   one.row().bind(id);
   return one.next();
 }

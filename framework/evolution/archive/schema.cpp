@@ -14,6 +14,19 @@ CREATE TABLE provenances(provenance INTEGER PRIMARY KEY, device TEXT NOT NULL, e
 CREATE TABLE operators(provenance INTEGER NOT NULL, kind TEXT NOT NULL, name TEXT NOT NULL, version TEXT NOT NULL,
   file TEXT NOT NULL, hash TEXT NOT NULL);
 CREATE TABLE objectives(position INTEGER PRIMARY KEY, name TEXT NOT NULL, unit TEXT NOT NULL, maximise INTEGER NOT NULL);
+-- contents of the files that parameters of operators name
+CREATE TABLE files(path TEXT PRIMARY KEY, content BLOB NOT NULL) WITHOUT ROWID;
+-- what the genes of individuals are: owners of sections, types of blocks and their genes, blocks of first genomes
+CREATE TABLE sections(section INTEGER PRIMARY KEY, owner TEXT NOT NULL);
+CREATE TABLE block_types(
+  type INTEGER PRIMARY KEY, section INTEGER NOT NULL, name TEXT NOT NULL,
+  least INTEGER NOT NULL, most INTEGER NOT NULL);
+CREATE TABLE gene_types(
+  type INTEGER NOT NULL, position INTEGER NOT NULL, name TEXT NOT NULL,
+  low REAL NOT NULL, high REAL NOT NULL, choices INTEGER NOT NULL, refers_to INTEGER,
+  PRIMARY KEY(type, position)) WITHOUT ROWID;
+CREATE TABLE first_blocks(
+  block INTEGER PRIMARY KEY, type INTEGER NOT NULL, genes INTEGER NOT NULL, id INTEGER NOT NULL);
 CREATE TABLE individuals(
   id INTEGER PRIMARY KEY,
   born INTEGER NOT NULL,                -- generation
@@ -22,6 +35,7 @@ CREATE TABLE individuals(
   parent INTEGER, mate INTEGER,         -- ids
   made_by TEXT NOT NULL,
   genes BLOB NOT NULL,                  -- float32, little-endian
+  blocks BLOB,                          -- of sections whose blocks come and go
   status TEXT NOT NULL, reason TEXT, ended_at REAL,
   spring_evaluations INTEGER NOT NULL);
 CREATE INDEX individuals_by_death ON individuals(died);

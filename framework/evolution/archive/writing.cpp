@@ -3,18 +3,19 @@
 
 #include "evolution/archive/archive.hpp"
 #include "evolution/archive/database.hpp"
+#include "evolution/archive/genes.hpp"
 
 namespace evodevo {
 namespace {
 
-std::string_view bytes_of(const Genome& genome) {
+std::string_view gene_bytes(const Genome& genome) {
   return {reinterpret_cast<const char*>(genome.data()), genome.size() * sizeof(float)};
 }
 
-void insert_newborns(const RunDatabase& run, const std::vector<Individual>& newborns) {
+void insert_newborns(const RunDatabase& run, const std::vector<Individual>& newborns, const Layout& layout) {
   Statement insert(run, "individuals",
-                   "INSERT INTO individuals(id, born, origin, parent, mate, made_by, genes, status, reason, ended_at, "
-                   "spring_evaluations, died) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL)");
+                   "INSERT INTO individuals(id, born, origin, parent, mate, made_by, genes, blocks, status, reason, "
+                   "ended_at, spring_evaluations, died) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL)");
   Statement insert_score(run, "scores", "INSERT INTO scores VALUES(?, ?, ?)");
   for (const Individual& individual : newborns) {
     const Result& result = individual.result;
@@ -22,9 +23,11 @@ void insert_newborns(const RunDatabase& run, const std::vector<Individual>& newb
       return i < individual.parents.size() ? std::optional(individual.parents[i]) : std::nullopt;
     };
     const bool failed = result.status != Status::ok, diverged = result.status == Status::diverged;
+    const std::string blocks = block_bytes(individual.genome, layout);
     insert.execute(
         individual.id, individual.born, individual.origin, parent(0), parent(1), individual.made_by,
-        bytes_of(individual.genome), name(result.status), failed ? std::optional(result.reason) : std::nullopt,
+        gene_bytes(individual.genome), layout.is_fixed() ? std::nullopt : std::optional<std::string_view>(blocks),
+        name(result.status), failed ? std::optional(result.reason) : std::nullopt,
         diverged ? std::optional(result.ended_at) : std::nullopt, static_cast<std::int64_t>(result.spring_evaluations));
     for (std::size_t i = 0; i < result.objectives.size(); ++i)
       insert_score.execute(individual.id, static_cast<std::uint32_t>(i), result.objectives[i]);
@@ -36,7 +39,7 @@ void insert_newborns(const RunDatabase& run, const std::vector<Individual>& newb
 void Archive::commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,
                      const std::map<std::uint32_t, LifeRecord>& lives, const Summary& summary) {
   WriteTransaction transaction(*run_);
-  insert_newborns(*run_, newborns);
+  insert_newborns(*run_, newborns, layout());
   Statement insert_life(*run_, "lives", "INSERT INTO lives VALUES(?, ?)");
   for (const auto& [id, life] : lives) insert_life.execute(id, std::string_view(life.bytes()));
   Statement drop(*run_, "individuals", "UPDATE individuals SET died = ? WHERE id = ?");

@@ -40,16 +40,22 @@ namespace {
 /// Reads the tables of operators one after the other.
 class OperatorTables {
  public:
-  OperatorTables(TomlReader& top, const OperatorFactory& factory, Experiment& experiment, toml::table& record)
-      : top_(top), factory_(factory), out_(experiment), record_(record) {}
+  OperatorTables(TomlReader& top, const OperatorFactory& factory, const ExperimentSource& source,
+                 Experiment& experiment, toml::table& record)
+      : top_(top), factory_(factory), source_(source), out_(experiment), record_(record) {}
 
   void read() {
     read_encoding();
-    read_variation("mutation", out_.mutations);
-    read_variation("crossover", out_.crossovers);
-    check_variation();
     read_table(
-        top_, "development", false, [&](TomlReader& t) { read_development_operators(t); }, materials());
+        top_, "development", false, [&](TomlReader& t) { read_development_operators(t); }, references());
+    shared_ = out_.layout;
+    read_variation("mutation", out_.mutations, [&](TomlReader& t, Varied<Mutation>& mutation) {
+      mutation.own_section = add_own_section(t, [&] { return mutation.op->layout(mutation.layout); });
+    });
+    read_variation("crossover", out_.crossovers, [](TomlReader&, Varied<Crossover>&) {});
+    check_variation();
+    complete_layouts(out_.mutations);
+    complete_layouts(out_.crossovers);
     read_array(top_, "fitness", record_, [&](TomlReader& t, TomlWriter& writer) { read_fitness(t, writer); });
     if (out_.fitness.empty()) top_.fail("fitness", "is missing; add a table [[fitness]]");
     read_one("selection", [&](TomlReader& t, TomlWriter& writer) {
@@ -59,14 +65,16 @@ class OperatorTables {
   }
 
  private:
-  const std::vector<std::string>* materials() const { return &out_.context.material_names; }
+  References references() const {
+    return {&out_.context.material_names, source_.folder(), source_.files ? &*source_.files : nullptr, &out_.files};
+  }
 
   /// Calls `read` for the table [name], and adds the table to the record.
   template <class Read>
   void read_one(std::string_view name, const Read& read) {
     TomlWriter writer;
     read_table(
-        top_, name, true, [&](TomlReader& t) { read(t, writer); }, materials());
+        top_, name, true, [&](TomlReader& t) { read(t, writer); }, references());
     record_.insert_or_assign(name, writer.take());
   }
 
@@ -78,7 +86,7 @@ class OperatorTables {
     if (tables.size() > rng_stream::most_operators)
       parent.fail(name, "expected at most " + std::to_string(rng_stream::most_operators) + " of these tables");
     for (std::size_t i = 0; i < tables.size(); ++i) {
-      TomlReader reader(*tables[i], parent.full_name(name) + "." + std::to_string(i), materials());
+      TomlReader reader(*tables[i], parent.full_name(name) + "." + std::to_string(i), references());
       TomlWriter writer;
       read(reader, writer);
       reader.finish();
@@ -93,19 +101,78 @@ class OperatorTables {
       declare_mass(writer, out_);
       out_.encoding = factory_.make<Encoding>(t);
       factory_.write(t, *out_.encoding, writer);
-      out_.layout = factory_.ask(t, [&] { return out_.encoding->layout(out_.context); });
+      out_.layout.sections.clear();
+      add_own_section(t, [&] { return out_.encoding->layout(out_.context); });
     });
   }
 
+  /// Adds the section that the operator which was made last owns to the layout of whole genomes. `declare` asks for its
+  /// layout. Returns the index of the section, or nothing if the operator owns no genes.
+  template <class Declare>
+  std::optional<std::uint32_t> add_own_section(const TomlReader& t, const Declare& declare) {
+    return factory_.ask(t, [&]() -> std::optional<std::uint32_t> {
+      Layout layout = declare();
+      const bool is_encoding = out_.own_layouts.empty();
+      if (layout.types.empty() && !is_encoding) return std::nullopt;
+      const std::uint32_t section = add_section(out_.layout, out_.uses.back().name, layout);
+      out_.own_layouts.push_back(std::move(layout));
+      return section;
+    });
+  }
+
+  /// Reads on which sections a variation operator works: by default on all but those of mutations.
+  SectionIndices read_sections(TomlReader& t, TomlWriter& writer) const {
+    const std::vector<std::string> names = t.texts(host_key::sections);
+    SectionIndices sections;
+    for (const std::string& name : names)
+      if (std::find(shared_.sections.begin(), shared_.sections.end(), name) == shared_.sections.end())
+        t.fail(host_key::sections, "\"" + printable(name) + "\" is no section of these genomes; expected some of " +
+                                       joined(shared_.sections));
+    toml::array written;
+    for (std::uint32_t i = 0; i < shared_.sections.size(); ++i) {
+      const bool is_named = std::find(names.begin(), names.end(), shared_.sections[i]) != names.end();
+      if (!is_named && !names.empty()) continue;
+      sections.push_back(i);
+      if (is_named) written.push_back(shared_.sections[i]);
+    }
+    if (!names.empty()) writer.add(host_key::sections, std::move(written));
+    return sections;
+  }
+
+  /// Throws ConfigError if an operator works on types of blocks that its genomes do not have.
+  void check_block_types(const TomlReader& t, const Operator& op, const Layout& layout) const {
+    for (const std::string& name : factory_.ask(t, [&] { return op.traits(); }).block_types) {
+      const auto is_wanted = [&](const BlockType& type) { return type.name == name; };
+      if (std::any_of(layout.types.begin(), layout.types.end(), is_wanted)) continue;
+      t.fail("name", "this operator works on blocks of the type \"" + printable(name) +
+                         "\" (its trait block_types), which no section of " + joined(layout.sections) +
+                         " has; take an encoding that has them, or another operator");
+    }
+  }
+
+  /// Adds the sections that operators own to the layouts on which they work, when all sections are known.
   template <class T>
-  void read_variation(std::string_view name, std::vector<Varied<T>>& list) {
+  void complete_layouts(std::vector<Varied<T>>& list) const {
+    for (Varied<T>& varied : list) {
+      if (varied.own_section) varied.sections.push_back(*varied.own_section);
+      varied.layout = some_sections(out_.layout, varied.sections, varied.own_section);
+    }
+  }
+
+  /// Reads the operators of a list; `finish` is called for each when it is made.
+  template <class T, class Finish>
+  void read_variation(std::string_view name, std::vector<Varied<T>>& list, const Finish& finish) {
     read_array(top_, name, record_, [&](TomlReader& t, TomlWriter& writer) {
       Varied<T> varied;
       declare_probability(t, varied.probability);
       declare_probability(writer, varied.probability);
+      varied.sections = read_sections(t, writer);
+      varied.layout = some_sections(shared_, varied.sections);
       varied.op = factory_.make<T>(t);
       varied.name = out_.uses.back().name;
       factory_.write(t, *varied.op, writer);
+      check_block_types(t, *varied.op, varied.layout);
+      finish(t, varied);
       list.push_back(std::move(varied));
     });
   }
@@ -140,6 +207,7 @@ class OperatorTables {
     out_.devo.push_back({factory_.make<Devo>(t), schedule});
     Devo& op = *out_.devo.back().op;
     factory_.write(t, op, writer);
+    out_.devo.back().own_section = add_own_section(t, [&] { return op.layout(out_.context); });
     check_request(t, factory_.ask(t, [&] { return op.observes(); }));
     if (factory_.ask(t, [&] { return op.uses_growth() && !out_.encoding->sets_growth(); }))
       out_.warnings.push_back(t.full_name("name") + " = \"" + out_.uses.back().name +
@@ -207,14 +275,17 @@ class OperatorTables {
 
   TomlReader& top_;
   const OperatorFactory& factory_;
+  const ExperimentSource& source_;
   Experiment& out_;
   toml::table& record_;
+  Layout shared_;  ///< of all sections but those of mutations
 };
 
 }  // namespace
 
-void read_operators(TomlReader& top, const OperatorFactory& factory, Experiment& experiment, toml::table& record) {
-  OperatorTables(top, factory, experiment, record).read();
+void read_operators(TomlReader& top, const OperatorFactory& factory, const ExperimentSource& source,
+                    Experiment& experiment, toml::table& record) {
+  OperatorTables(top, factory, source, experiment, record).read();
 }
 
 }  // namespace evodevo

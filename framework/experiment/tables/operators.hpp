@@ -58,6 +58,7 @@ class OperatorFactory {
 
 /// Reads the tables of operators into an experiment whose settings have been read. Writes these tables, with every
 /// default, into `record`.
-void read_operators(TomlReader& top, const OperatorFactory& factory, Experiment& experiment, toml::table& record);
+void read_operators(TomlReader& top, const OperatorFactory& factory, const ExperimentSource& source,
+                    Experiment& experiment, toml::table& record);
 
 }  // namespace evodevo

@@ -17,11 +17,11 @@ using Warnings = std::vector<std::string>;
 /// if the table is `required` and absent, or if it has a key that `read` has not read.
 template <class Read>
 void read_table(TomlReader& parent, std::string_view name, bool required, const Read& read,
-                const std::vector<std::string>* materials = nullptr) {
+                const References& references = {}) {
   const toml::table* table = parent.table(name);
   if (table == nullptr && required) parent.fail(name, "is missing; add a table [" + std::string(name) + "]");
   if (table == nullptr) return;
-  TomlReader reader(*table, parent.full_name(name), materials);
+  TomlReader reader(*table, parent.full_name(name), references);
   read(reader);
   reader.finish();
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "evodevo/encoding.hpp"
 #include "evodevo/genome.hpp"
 #include "evodevo/operator.hpp"
 
@@ -41,8 +42,9 @@ struct DevoContext {
   Box bounds;                      ///< bounding box of all position(), cut off at the floor if the scene has one, m
   double mass;                     ///< mass that a new point mass should have, kg
   bool resets;                     ///< whether the body returns to its rest positions before the next cycle
-  const Genome& genome;
-  const Layout& layout;
+  const Genome& genome;            ///< genes of the encoding
+  const Layout& layout;            ///< layout of `genome`
+  const Genome& own = no_genes;    ///< genes that the operator owns; see Devo::layout()
   std::span<const double> peak_force = {};   ///< largest absolute force of each spring, N
   std::span<const double> muscle_work = {};  ///< positive work that each spring's muscle did on the body, J
   std::span<const double> tension = {};      ///< mean force of each spring, N; positive: it pulled, negative: it pushed
@@ -129,6 +131,10 @@ class Devo : public Operator {
   virtual Measure measure([[maybe_unused]] Causes::List list) const { return {"stress", "N"}; }
   /// Returns whether the operator sets Edits::growth. Growth has an effect only if Encoding::sets_growth() is true.
   virtual bool uses_growth() const { return false; }
+  /// Declares genes that the operator owns, so that the rule of development evolves together with the bodies.
+  virtual Layout layout([[maybe_unused]] const EncodingContext& context) const { return {}; }
+  /// Returns the genes that it owns for a first genome. `own` is the layout that it declares.
+  virtual Genome random(const Layout& own, Rng& rng) const { return random_genome(own, rng); }
   /// Adds the wanted changes to `edits`, which is empty when this function is called.
   virtual void develop(const DevoContext& context, Edits& edits, Rng& rng) const = 0;
 };

@@ -54,9 +54,9 @@ class Encoding : public Operator {
  public:
   static constexpr std::string_view kind = "encoding";
 
-  /// Returns the layout of all genomes of the experiment.
+  /// Declares the genes of the encoding: its section of all genomes of the experiment.
   virtual Layout layout(const EncodingContext& context) const = 0;
-  /// Returns the genome of a random individual.
+  /// Returns its genes for a first genome, one without ancestors.
   virtual Genome random(const Layout& layout, Rng& rng) const { return random_genome(layout, rng); }
   /// Turns a genome into a blueprint, or into the reason why there is no body (Blueprint::failure).
   virtual Blueprint decode(const Genome& genome, const EncodingContext& context) const = 0;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,13 @@ struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   std::string_view unit = "1";
+};
+
+/// A file that a parameter names. The host reads it once and keeps its content with the run, so that the run can be
+/// moved and resumed.
+struct InputFile {
+  std::string path;     ///< as in the TOML file: relative to the folder of the experiment; empty if none is named
+  std::string content;  ///< all bytes of the file
 };
 
 /// A visitor of parameters. For every parameter, an operator calls one of these functions with the variable that holds
@@ -36,6 +44,15 @@ class Parameters {
   /// A vector of three whole numbers, each within the range.
   virtual void counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range,
                       std::string_view text) = 0;
+  /// A real number that may be left out, so that it has no value.
+  virtual void optional_real(std::optional<double>& value, std::string_view name, Range range,
+                             std::string_view text) = 0;
+  /// A list of real numbers, each within the range.
+  virtual void reals(std::vector<double>& value, std::string_view name, Range range, std::string_view text) = 0;
+  /// A text of at most 10,000 bytes.
+  virtual void text(std::string& value, std::string_view name, std::string_view text) = 0;
+  /// A file of at most 64 MiB.
+  virtual void file(InputFile& value, std::string_view name, std::string_view text) = 0;
   /// A list of names of the experiment's materials; an empty list stands for all of them.
   virtual void materials(std::vector<std::string>& value, std::string_view name, std::string_view text) = 0;
   /// A condition on parameters that were declared before. If it does not hold, the host reports an error in parameter

@@ -64,6 +64,15 @@ class Rng {
   /// Returns true with the given probability.
   bool chance(double probability) { return uniform() < probability; }
 
+  /// Normally distributed with mean 0 and standard deviation 1 (polar method: Marsaglia and Bray 1964). It uses the
+  /// logarithm of the C library, the last bit of which may differ between libraries.
+  double normal() {
+    for (;;) {
+      const double x = uniform(-1, 1), y = uniform(-1, 1), square = x * x + y * y;
+      if (square > 0 && square < 1) return x * std::sqrt(-2 * std::log(square) / square);
+    }
+  }
+
   /// Shuffles the items; all orders are equally likely.
   template <class Items>
   void shuffle(Items& items) {

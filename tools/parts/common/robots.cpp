@@ -6,6 +6,7 @@
 #include "analysis/ground.hpp"
 #include "common/bodies.hpp"
 #include "core/simulator.hpp"
+#include "evolution/breeding.hpp"
 #include "experiment/time_steps.hpp"
 #include "life/evaluation.hpp"
 
@@ -36,9 +37,9 @@ std::vector<Genome> random_genomes(const Experiment& experiment, std::size_t cou
     if (seed > 100 * count)
       throw std::runtime_error("too few random robots of " + experiment.name + " have a muscle and " +
                                std::to_string(springs) + " springs; give an experiment with larger robots");
-    Rng rng = experiment.context.rng(seed);
-    Genome genome = call_operator(experiment.call_of(Encoding::kind, 0),
-                                  [&] { return experiment.encoding->random(experiment.layout, rng); });
+    Genome genome = first_genome(experiment, [&](std::uint32_t section) {
+      return experiment.context.rng(seed + (std::uint64_t{section} << 32));
+    });
     const auto robot = robot_of(experiment, genome);
     if (robot && has_muscle(*robot) && robot->springs.size() >= springs) genomes.push_back(std::move(genome));
   }

@@ -1,11 +1,18 @@
-// evodevo body: prints a body of a run as JSON.
-#include <iostream>
+// evodevo body and genes: print the body and the genes of an individual of a run.
+#include <fmt/ostream.h>
 
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "base/genome_sections.hpp"
+#include "base/json_text.hpp"
+#include "base/text.hpp"
 #include "commands/commands.hpp"
 #include "commands/shell/options.hpp"
 #include "evolution/record_check.hpp"
 #include "evolution/resimulation.hpp"
 #include "life/body_json.hpp"
+#include "report/genes_json.hpp"
 
 namespace evodevo {
 namespace {
@@ -50,7 +57,51 @@ int body(const Given& given) {
   return 0;
 }
 
+/// Prints a line for each block: its type, its id, and its genes by name.
+void print_genes(const nlohmann::ordered_json& sections) {
+  for (const auto& section : sections) {
+    std::cout << section["owner"].get<std::string>() << '\n';
+    for (const auto& block : section["blocks"]) {
+      fmt::print(std::cout, "  {} {}:", block["type"].get<std::string>(), block["id"].get<std::string>());
+      for (const auto& [name, value] : block["genes"].items())
+        std::cout << ' ' << name << " = "
+                  << (value.is_string() ? value.get<std::string>() : short_number(value.get<double>()))
+                  << (name == std::prev(block["genes"].end()).key() ? "" : ",");
+      std::cout << '\n';
+    }
+  }
+}
+
+int genes(const Given& given) {
+  const Archive archive = Archive::read(given["DIR"].as<std::string>());
+  const ArchivedIndividual individual = chosen_individual(archive, given);
+  const Layout& layout = archive.layout();
+  if (const std::string fault = genome_fault(individual.genome, layout); !fault.empty())
+    archive.refuse("individual " + std::to_string(individual.id) + " has " + fault);
+  const nlohmann::ordered_json sections = genes_json(individual.genome, layout);
+  if (given.contains("json"))
+    std::cout << json_text({{"individual", individual.id}, {"sections", sections}}) << '\n';
+  else
+    print_genes(sections);
+  return 0;
+}
+
 }  // namespace
+
+Command genes_command() {
+  Options options;
+  add_individual_option(options);
+  options.add_options()("json", "print JSON");
+  return {.name = "genes",
+          .arguments = {{"DIR"}},
+          .summary = "Print the genes of a robot by name",
+          .text = {"A genome has a section for each operator that owns genes, and each section has blocks of genes. "
+                   "Blocks of two individuals with equal ids descend from the same block. The value of a choice is "
+                   "the number of the option, counted from 0; the value of a reference is the id of a block."},
+          .examples = {"genes runs/quickstart-1", "genes runs/quickstart-1 --individual 531 --json"},
+          .options = options,
+          .function = genes};
+}
 
 Command body_command() {
   Options options;
