@@ -240,10 +240,9 @@ Genome part_of(const Genome& genome, const Layout& whole, const SectionIndices& 
   return join(some, part);
 }
 
-void put_back(Genome& genome, const Layout& whole, const SectionIndices& which, const Genome& changed,
-              const Layout& part) {
+void put_back(Genome& genome, const Layout& whole, const SectionIndices& which, Genome changed, const Layout& part) {
   if (which.size() == whole.sections.size()) {
-    genome = changed;
+    genome = std::move(changed);
     return;
   }
   std::vector<Genome> all = split(genome, whole), some = split(changed, part);

@@ -34,8 +34,7 @@ Genome join(const std::vector<Genome>& sections, const Layout& layout);
 /// Returns some sections of a genome of the layout `whole`, as a genome of the layout `part`.
 Genome part_of(const Genome& genome, const Layout& whole, const SectionIndices& which, const Layout& part);
 /// Replaces some sections of a genome of the layout `whole` by those of `changed`, a genome of the layout `part`.
-void put_back(Genome& genome, const Layout& whole, const SectionIndices& which, const Genome& changed,
-              const Layout& part);
+void put_back(Genome& genome, const Layout& whole, const SectionIndices& which, Genome changed, const Layout& part);
 
 /// Returns what is wrong with a layout that an operator declares, or an empty text if nothing is.
 std::string layout_fault(const Layout& layout);

@@ -61,13 +61,13 @@ std::vector<std::size_t> draw_variation(const Experiment& experiment, Rng& rng) 
 template <class T, class Change>
 void vary(const Experiment& experiment, const Varied<T>& varied, const OperatorCall& call, Genome& genome,
           const Change& change) {
-  const Genome part = part_of(genome, experiment.layout, varied.sections, varied.layout);
-  const Genome changed = call_operator(call, [&] {
-    Genome made = change(part);
+  Genome part = part_of(genome, experiment.layout, varied.sections, varied.layout);
+  Genome changed = call_operator(call, [&] {
+    Genome made = change(std::move(part));
     check_genome(made, varied.layout);
     return made;
   });
-  put_back(genome, experiment.layout, varied.sections, changed, varied.layout);
+  put_back(genome, experiment.layout, varied.sections, std::move(changed), varied.layout);
 }
 
 /// The two parents of a child, as selection has chosen them.

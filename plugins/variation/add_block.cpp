@@ -13,7 +13,7 @@ class AddBlock final : public evodevo::Mutation {
     for (std::uint32_t type = 0; type < layout.types.size(); ++type)
       if (count_blocks(genome, layout, type) < layout.types[type].most && has_targets(genome, layout, type))
         types.push_back(type);
-    const auto type = any_of(types, rng);
+    const auto type = random_item(types, rng);
     if (!type) return;
     const std::vector<float> genes(layout.types[*type].genes.size(), 0);
     const std::uint32_t first = genome.blocks[add_block(genome, layout, *type, genes, evodevo::fresh_id(rng))].first;

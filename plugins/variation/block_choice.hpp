@@ -17,7 +17,7 @@ inline std::vector<std::uint32_t> growable_blocks(const evodevo::Genome& genome,
 }
 
 /// Returns a random item, or nothing if there is none.
-inline std::optional<std::uint32_t> any_of(const std::vector<std::uint32_t>& items, evodevo::Rng& rng) {
+inline std::optional<std::uint32_t> random_item(const std::vector<std::uint32_t>& items, evodevo::Rng& rng) {
   if (items.empty()) return std::nullopt;
   return items[rng.below(static_cast<std::uint32_t>(items.size()))];
 }

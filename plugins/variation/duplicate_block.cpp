@@ -8,7 +8,7 @@ namespace {
 class DuplicateBlock final : public evodevo::Mutation {
  public:
   void mutate(evodevo::Genome& genome, const evodevo::Layout& layout, evodevo::Rng& rng) const override {
-    const auto block = any_of(growable_blocks(genome, layout), rng);
+    const auto block = random_item(growable_blocks(genome, layout), rng);
     if (!block) return;
     const evodevo::Block original = genome.blocks[*block];
     add_block(genome, layout, original.type, std::span(genome.genes).subspan(original.first, original.count),
