@@ -1,12 +1,12 @@
 // Adapts the tension of springs by changing the amplitude of muscles (paper, section VII): the most stressed muscles
 // become stronger, as if trained, or weaker, as if tired.
-#include "adaptation.hpp"
+#include "evodevo/helpers/adaptation.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
 
 /// Springs with an amplitude of zero are not muscles; the operator skips them.
-class AmplitudeAdaptation final : public Adaptation {
+class AmplitudeAdaptation final : public evodevo::Adaptation {
  public:
   AmplitudeAdaptation() : Adaptation(1.05, 0.02, 0.3) {}
 

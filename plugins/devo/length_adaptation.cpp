@@ -1,12 +1,12 @@
 // Adapts the tension of springs by changing their rest lengths (paper, section VII).
-#include "adaptation.hpp"
+#include "evodevo/helpers/adaptation.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
 
 /// The bounds are relative to the rest length with which the spring was created, so that they hold for a whole life,
 /// however the spring's masses move. Springs that were created with a rest length of zero stay as they are.
-class LengthAdaptation final : public Adaptation {
+class LengthAdaptation final : public evodevo::Adaptation {
  public:
   LengthAdaptation() : Adaptation(0.98, 0.7, 1.3) {}
 

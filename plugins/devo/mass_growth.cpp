@@ -1,6 +1,6 @@
 // "Add new-masses during devo on a timer rather than or in addition to when we remove a mass. This allows the robot to
 // potentially grow more masses than it started with" (paper, section VII). The timer is the operator's schedule.
-#include "arrivals.hpp"
+#include "evodevo/helpers/arrivals.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
@@ -20,7 +20,7 @@ class MassGrowth final : public evodevo::Devo {
   void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, evodevo::Rng& rng) const override {
     if (context.body.springs.empty()) return;
     const std::int64_t room = limit_ - static_cast<std::int64_t>(context.body.masses.size());
-    Arrivals arrivals(arrival_, context);
+    evodevo::Arrivals arrivals(arrival_, context);
     for (std::int64_t i = 0; i < std::min(masses_, room); ++i)
       if (!arrivals.find_position(rng)) break;
     arrivals.come(edits, rng);
@@ -29,7 +29,7 @@ class MassGrowth final : public evodevo::Devo {
  private:
   std::int64_t masses_ = 5;
   std::int64_t limit_ = 2000;
-  ArrivalRule arrival_;
+  evodevo::ArrivalRule arrival_;
 };
 
 }  // namespace

@@ -1,11 +1,11 @@
 // "Remove masses that fall below a threshold and add a new mass with the base amount of springs" (paper, section
 // IV-D3).
-#include "arrivals.hpp"
+#include "evodevo/helpers/arrivals.hpp"
+#include "evodevo/helpers/partners.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
 
-using evodevo::Body;
 using evodevo::DevoContext;
 using evodevo::Edits;
 using evodevo::Rng;
@@ -30,11 +30,11 @@ class MassTurnover final : public evodevo::Devo {
   }
 
   void develop(const DevoContext& context, Edits& edits, Rng& rng) const override {
-    const std::vector<std::int64_t> degree = degrees(context.body);
+    const std::vector<std::int64_t> degree = evodevo::degrees(context.body);
     const auto leaving = poorest(degree, rng);
     if (leaving.empty() || context.body.springs.empty()) return;
 
-    Arrivals arrivals(arrival_, context);
+    evodevo::Arrivals arrivals(arrival_, context);
     std::vector<std::uint32_t> removed;
     for (const std::uint32_t mass : leaving) {
       arrivals.set_staying(mass, false);
@@ -49,17 +49,6 @@ class MassTurnover final : public evodevo::Devo {
   }
 
  private:
-  /// Returns the number of springs of each mass, including its contacts to air.
-  static std::vector<std::int64_t> degrees(const Body& body) {
-    std::vector<std::int64_t> degree;
-    for (const auto& mass : body.masses) degree.push_back(mass.air_contacts);
-    for (const auto& spring : body.springs) {
-      ++degree[spring.a];
-      ++degree[spring.b];
-    }
-    return degree;
-  }
-
   /// Returns the masses below the threshold that may be removed, fewest springs first, ties in random order.
   std::vector<std::uint32_t> poorest(const std::vector<std::int64_t>& degree, Rng& rng) const {
     std::vector<std::uint32_t> poor;
@@ -73,7 +62,7 @@ class MassTurnover final : public evodevo::Devo {
 
   std::int64_t threshold_ = 20;
   std::int64_t limit_ = 10;
-  ArrivalRule arrival_;
+  evodevo::ArrivalRule arrival_;
 };
 
 }  // namespace

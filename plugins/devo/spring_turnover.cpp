@@ -2,8 +2,10 @@
 // "based on most stressed springs rather than randomly" (section VII).
 #include <set>
 
+#include "evodevo/helpers/materials.hpp"
+#include "evodevo/helpers/partners.hpp"
+#include "evodevo/helpers/stress.hpp"
 #include "evodevo/plugin.hpp"
-#include "stress.hpp"
 
 namespace {
 
@@ -11,38 +13,8 @@ using evodevo::Body;
 using evodevo::DevoContext;
 using evodevo::Edits;
 using evodevo::Material;
-using evodevo::no_material;
+using evodevo::Partners;
 using evodevo::Rng;
-
-/// For every mass, the masses that springs join it to (its partners), all in one array.
-class Partners {
- public:
-  explicit Partners(const Body& body) : first_(body.masses.size() + 1), partners_(2 * body.springs.size()) {
-    for (const auto& spring : body.springs) {
-      ++first_[spring.a + 1];
-      ++first_[spring.b + 1];
-    }
-    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-    auto next = first_;
-    for (const auto& spring : body.springs) {
-      partners_[next[spring.a]++] = spring.b;
-      partners_[next[spring.b]++] = spring.a;
-    }
-  }
-
-  std::span<const std::uint32_t> of(std::uint32_t mass) const {
-    return {partners_.data() + first_[mass], first_[mass + 1] - first_[mass]};
-  }
-
-  bool joined(std::uint32_t a, std::uint32_t b) const {
-    const auto partners = of(a);
-    return std::find(partners.begin(), partners.end(), b) != partners.end();
-  }
-
- private:
-  std::vector<std::uint32_t> first_;  ///< for each mass, the index of its first partner in `partners_`
-  std::vector<std::uint32_t> partners_;
-};
 
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -59,7 +31,7 @@ class Candidates {
              const Partners& partners, std::size_t count, Rng& rng)
       : context_(context), partners_(partners) {
     if (where == "most-stressed") most_stressed_ = most_stressed(stress, count, rng);
-    if (where == "by-stress") lottery_ = StressLottery(stress);
+    if (where == "by-stress") lottery_ = evodevo::StressLottery(stress);
   }
 
   Candidate next(Rng& rng) {
@@ -86,14 +58,15 @@ class Candidates {
   const DevoContext& context_;
   const Partners& partners_;
   std::vector<std::uint32_t> most_stressed_;
-  StressLottery lottery_;
+  evodevo::StressLottery lottery_;
   std::size_t turn_ = 0;
 };
 
 /// The number of springs stays the same: a spring is removed only if another can be added. A body in which every pair
 /// of masses is joined therefore stays as it is, and a body with fewer springs than `springs` can exchange only those
 /// that it has. A new spring joins two masses that are not joined before the application and that are not at the same
-/// position; its material is not air. A new spring exerts no force at first.
+/// position; its material is the mean of theirs or, if one has none, that of the removed spring, and is not air. A new
+/// spring exerts no force at first.
 class SpringTurnover final : public evodevo::Devo {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -126,7 +99,8 @@ class SpringTurnover final : public evodevo::Devo {
       if (partners.joined(a, b) || taken.contains(pair) || !(norm(context.position(b) - context.position(a)) > 0))
         continue;
       const std::uint32_t leaves = leaving[taken.size()];
-      const Material material = material_between(body, a, b, leaves);
+      const auto mixed = material_between(body, body.masses[a].material, body.masses[b].material);
+      const Material material = mixed ? *mixed : body.materials[body.springs[leaves].material];
       if (is_air(material)) continue;
       taken.insert(pair);
       edits.removed_springs.push_back(leaves);
@@ -137,16 +111,9 @@ class SpringTurnover final : public evodevo::Devo {
   }
 
  private:
-  /// Returns the mean of the materials of two masses or, if one of them has none, the material of the removed spring.
-  static Material material_between(const Body& body, std::uint32_t a, std::uint32_t b, std::uint32_t leaves) {
-    const std::int32_t first = body.masses[a].material, second = body.masses[b].material;
-    if (first == no_material || second == no_material) return body.materials[body.springs[leaves].material];
-    return mean(body.materials[first], body.materials[second]);
-  }
-
   std::int64_t springs_ = 125;
   std::string where_ = "random";
-  StressMeasure measure_;
+  evodevo::StressMeasure measure_;
 };
 
 }  // namespace

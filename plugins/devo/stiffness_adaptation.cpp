@@ -1,13 +1,13 @@
 // Adapts the tension of springs by changing their stiffness (paper, section VII). In Kriegman, Cheney, Corucci &
 // Bongard 2018, "Interoceptive robustness through environment-mediated morphological development", evolved robots
 // became robust because their stiffness followed stress during life.
-#include "adaptation.hpp"
+#include "evodevo/helpers/adaptation.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
 
 /// A body that becomes too stiff for the time step ends as invalid. Choose `high` low enough for the time step.
-class StiffnessAdaptation final : public Adaptation {
+class StiffnessAdaptation final : public evodevo::Adaptation {
  public:
   StiffnessAdaptation() : Adaptation(1.05, 1000, 20'000) {}
 

@@ -1,9 +1,9 @@
 // A compositional pattern-producing network (Stanley 2007): the activation functions of the neurons evolve together
 // with the weights. The functions determine the symmetries and repetitions of the pattern. Here the topology of the
 // network is fixed.
-#include "activations.hpp"
+#include "evodevo/helpers/activations.hpp"
+#include "evodevo/helpers/network_encoding.hpp"
 #include "evodevo/plugin.hpp"
-#include "network_encoding.hpp"
 
 namespace {
 
@@ -11,7 +11,7 @@ namespace {
 /// are the coordinates of a point and its distance from the centre. Each neuron has one block of genes: its activation
 /// function, its bias, then its input weights. Output neurons have no gene for the function, which is the identity.
 /// Biases and weights are in [-3, 3], as is usual for such networks, so that a sine can go through several periods.
-class Cppn final : public LayeredNetworkEncoding {
+class Cppn final : public evodevo::LayeredNetworkEncoding {
  public:
   evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
     evodevo::Layout layout;
@@ -29,7 +29,7 @@ class Cppn final : public LayeredNetworkEncoding {
 
   void add_hidden_layer(evodevo::Layout& layout, std::int64_t inputs) const {
     std::vector<evodevo::GeneSpec> neuron(static_cast<std::size_t>(2 + inputs), weight);
-    neuron.front() = {0, 0, static_cast<std::uint32_t>(activations.size())};
+    neuron.front() = {0, 0, static_cast<std::uint32_t>(evodevo::activations.size())};
     for (std::int64_t n = 0; n < hidden(); ++n) layout.add_block(neuron, "neuron");
   }
 
@@ -37,7 +37,7 @@ class Cppn final : public LayeredNetworkEncoding {
     const Matrix rows = next_rows(genes, hidden(), 2 + input.rows());
     Matrix values = sums(rows.rightCols(1 + input.rows()), input);
     for (Eigen::Index n = 0; n < values.rows(); ++n)
-      values.row(n) = values.row(n).unaryExpr(activations.at(static_cast<std::size_t>(rows(n, 0))));
+      values.row(n) = values.row(n).unaryExpr(evodevo::activations.at(static_cast<std::size_t>(rows(n, 0))));
     return values;
   }
 

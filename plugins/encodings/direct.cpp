@@ -1,11 +1,11 @@
 // "A direct encoding where each spring held its own material" (paper, section II).
+#include "evodevo/helpers/lattice_encoding.hpp"
 #include "evodevo/plugin.hpp"
-#include "lattice_encoding.hpp"
 
 namespace {
 
 /// Each spring of a lattice has one gene, its material. The springs with the same first mass form one block.
-class Direct final : public LatticeEncoding {
+class Direct final : public evodevo::LatticeEncoding {
  public:
   evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
     const evodevo::Lattice lattice = this->lattice();

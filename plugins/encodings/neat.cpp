@@ -2,9 +2,9 @@
 // Miikkulainen 2002).
 #include "evodevo/neat.hpp"
 
-#include "activations.hpp"
+#include "evodevo/helpers/activations.hpp"
+#include "evodevo/helpers/network_encoding.hpp"
 #include "evodevo/plugin.hpp"
-#include "network_encoding.hpp"
 
 namespace {
 
@@ -16,7 +16,7 @@ namespace neat = evodevo::neat;
 /// outputs, and a link from each input to each output. Mutations such as add-node and add-link let nodes and links come
 /// and go. Inputs and outputs are known by the ids of their blocks; an output that is gone is 0. Outputs are linear. If
 /// links form a cycle, the link that closes it has no effect.
-class Neat final : public NetworkEncoding {
+class Neat final : public evodevo::NetworkEncoding {
  public:
   void parameters(evodevo::Parameters& p) override {
     NetworkEncoding::parameters(p);
@@ -30,8 +30,8 @@ class Neat final : public NetworkEncoding {
     const auto most = [](std::int64_t limit, std::uint32_t needed) {
       return std::max(static_cast<std::uint32_t>(limit), needed);
     };
-    const neat::Types types =
-        neat::add_types(layout, 3, activations.size(), most(nodes_, inputs + outputs), most(links_, inputs * outputs));
+    const neat::Types types = neat::add_types(layout, 3, evodevo::activations.size(), most(nodes_, inputs + outputs),
+                                              most(links_, inputs * outputs));
     for (std::uint32_t i = 0; i < inputs + outputs; ++i) layout.add_block_of(types.node);
     for (std::uint32_t i = 0; i < inputs * outputs; ++i) layout.add_block_of(types.link);
     return layout;
@@ -81,7 +81,7 @@ class Neat final : public NetworkEncoding {
       compute(nodes, source, points);
       if (source.values.size() > 0) sum += link[neat::weight] * source.values;
     }
-    const auto activation = activations.at(static_cast<std::size_t>(node.genes[neat::function]));
+    const auto activation = evodevo::activations.at(static_cast<std::size_t>(node.genes[neat::function]));
     if (!node.is_linear) sum = sum.unaryExpr(activation).eval();
     node.values = std::move(sum);
   }

@@ -1,14 +1,14 @@
 // The paper's encoding (section IV-A1, Fig. 1): a small neural network maps each point of a ball to a position in a
 // cube and to a material. At each position there is a mass, which is joined to its nearest neighbours.
+#include "evodevo/helpers/network_encoding.hpp"
 #include "evodevo/plugin.hpp"
-#include "network_encoding.hpp"
 
 namespace {
 
 /// A fully connected network with 3 inputs, two layers of hidden() neurons with ReLU, and outputs_in(context) linear
 /// outputs. Each neuron has one block of genes: its bias, then its input weights. The paper does not mention biases;
 /// here they are genes like the weights.
-class Neural final : public LayeredNetworkEncoding {
+class Neural final : public evodevo::LayeredNetworkEncoding {
  public:
   evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
     evodevo::Layout layout;

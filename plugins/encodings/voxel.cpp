@@ -1,6 +1,6 @@
 // "A voxel encoding where a cube of springs shared a material" (paper, section II).
+#include "evodevo/helpers/lattice_encoding.hpp"
 #include "evodevo/plugin.hpp"
-#include "lattice_encoding.hpp"
 
 namespace {
 
@@ -10,7 +10,7 @@ using evodevo::Material;
 /// the end of development (Kriegman et al. 2017; in the paper's words, "a start and end volume"). Voxels of air are
 /// absent. A spring that belongs to several voxels has the mean of their materials and sizes. The positions of the
 /// masses at birth are those of a lattice of equal voxels.
-class Voxel final : public LatticeEncoding {
+class Voxel final : public evodevo::LatticeEncoding {
  public:
   void parameters(evodevo::Parameters& p) override {
     LatticeEncoding::parameters(p);

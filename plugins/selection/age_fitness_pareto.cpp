@@ -1,7 +1,7 @@
 // Age-fitness Pareto optimisation (Schmidt & Lipson 2011; paper, section IV-F).
+#include "evodevo/helpers/rows.hpp"
 #include "evodevo/pareto.hpp"
 #include "evodevo/plugin.hpp"
-#include "rows.hpp"
 
 namespace {
 
@@ -14,7 +14,7 @@ class AgeFitnessPareto final : public evodevo::Selection {
  public:
   std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
                                                                evodevo::Rng& rng) const override {
-    return draw_pairs(rows, count, rng, draw_any);
+    return draw_pairs(rows, count, rng, evodevo::draw_any);
   }
 
   std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,

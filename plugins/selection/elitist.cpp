@@ -1,6 +1,6 @@
 // Simple elitist selection: the best individuals survive, and parents are the winners of small tournaments.
+#include "evodevo/helpers/rows.hpp"
 #include "evodevo/plugin.hpp"
-#include "rows.hpp"
 
 namespace {
 

@@ -1,8 +1,8 @@
 // "A solution is considered better if it belongs to a higher layer, or if belongs to the same layer with higher
 // fitness. [...] During replacement, all solutions on the Pareto Front are exempt" (paper, section IV-F).
+#include "evodevo/helpers/rows.hpp"
 #include "evodevo/pareto.hpp"
 #include "evodevo/plugin.hpp"
-#include "rows.hpp"
 
 namespace {
 
@@ -22,7 +22,7 @@ class ParetoLayers final : public evodevo::Selection {
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
                                                                evodevo::Rng& rng) const override {
-    return draw_pairs(rows, count, rng, draw_any);
+    return draw_pairs(rows, count, rng, evodevo::draw_any);
   }
 
   std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,

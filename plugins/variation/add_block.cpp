@@ -1,5 +1,5 @@
 // A new block of genes with random values.
-#include "block_choice.hpp"
+#include "evodevo/helpers/block_choice.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {

@@ -1,5 +1,5 @@
 // Gene duplication (Ohno 1970): a copy of a block, which can then change while the original keeps its function.
-#include "block_choice.hpp"
+#include "evodevo/helpers/block_choice.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {

@@ -1,18 +1,20 @@
-// Shared by the operators that change a property of the most stressed springs: "Modify the tension of highest stress
+// For devo operators that change a property of the most stressed springs: "Modify the tension of highest stress
 // springs rather than adding new springs" (paper, section VII).
 #pragma once
 
 #include "evodevo/devo.hpp"
-#include "stress.hpp"
+#include "evodevo/helpers/stress.hpp"
+
+namespace evodevo {
 
 /// Multiplies a property of the most stressed springs by a factor, within bounds. Springs without the property are
 /// skipped. A value that is already beyond its bound stays as it is.
-class Adaptation : public evodevo::Devo {
+class Adaptation : public Devo {
  public:
-  evodevo::SpringRequest observes() const final { return measure_.request(); }
-  evodevo::Measure measure(evodevo::Causes::List) const final { return measure_.measure(); }
+  SpringRequest observes() const final { return measure_.request(); }
+  Measure measure(Causes::List) const final { return measure_.measure(); }
 
-  void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, evodevo::Rng& rng) const final {
+  void develop(const DevoContext& context, Edits& edits, Rng& rng) const final {
     const std::vector<double> stress_of = measure_.of(context);
     std::vector<std::uint32_t> springs;
     std::vector<double> stress;
@@ -32,7 +34,7 @@ class Adaptation : public evodevo::Devo {
  protected:
   Adaptation(double factor, double low, double high) : factor_(factor), low_(low), high_(high) {}
 
-  void declare(evodevo::Parameters& p, evodevo::Range range, std::string_view low_text, std::string_view high_text) {
+  void declare(Parameters& p, Range range, std::string_view low_text, std::string_view high_text) {
     p.integer(springs_, "springs", {1, 1'000'000, "1"},
               "Number of most stressed springs that are changed at each application.");
     p.real(factor_, "factor", {0.5, 2, "1"},
@@ -46,9 +48,9 @@ class Adaptation : public evodevo::Devo {
 
  private:
   /// Returns the property of a spring, or 0 if the spring does not have it.
-  virtual double value(const evodevo::Body& body, std::uint32_t spring) const = 0;
+  virtual double value(const Body& body, std::uint32_t spring) const = 0;
   /// Adds to `edits` the change that gives the property of a spring a new value.
-  virtual void change(const evodevo::Body& body, std::uint32_t spring, double value, evodevo::Edits& edits) const = 0;
+  virtual void change(const Body& body, std::uint32_t spring, double value, Edits& edits) const = 0;
 
   double adapted(double before) const {
     const double after = factor_ * before;
@@ -59,3 +61,5 @@ class Adaptation : public evodevo::Devo {
   double factor_, low_, high_;
   StressMeasure measure_;
 };
+
+}  // namespace evodevo

@@ -1,20 +1,22 @@
-// Shared by the encodings that map points to masses with a network (paper, section IV-A1).
+// For encodings that map points to masses with a network (paper, section IV-A1). The only header that needs Eigen 3.4.
 #pragma once
 
 #include <Eigen/Core>
 #include <cmath>
 
-#include "chosen.hpp"
 #include "evodevo/encoding.hpp"
+#include "evodevo/helpers/materials.hpp"
+
+namespace evodevo {
 
 /// A network that maps each point of a ball to a mass, that is, to a position in a cube and a material. Nearest
 /// neighbours are joined. The paper leaves two choices open: here, the points are uniformly distributed in the ball,
 /// and the positions lie in [-side/2, side/2]^3. Neighbours are determined among the positions or, as the paper
 /// proposes in section VII, among the points. If `size_range` is above 0, each mass has a size at birth and a size at
 /// the end of development (Kriegman et al. 2017).
-class NetworkEncoding : public evodevo::Encoding {
+class NetworkEncoding : public Encoding {
  public:
-  void parameters(evodevo::Parameters& p) override {
+  void parameters(Parameters& p) override {
     p.integer(points_, "points", {2, 100'000, "1"}, "Number of points in the ball, each of which becomes a mass.");
     p.integer(points_seed_, "points_seed", {0, 4294967295.0, "1"}, "Seed of the random points in the ball.");
     p.integer(neighbours_, "neighbours", {1, 1000, "1"}, "Number of nearest neighbours that every mass is joined to.");
@@ -28,7 +30,7 @@ class NetworkEncoding : public evodevo::Encoding {
            "ballistic-growth, at the end of development; 0: no genes for this.");
   }
 
-  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::EncodingContext& context) const final {
+  Blueprint decode(const Genome& genome, const EncodingContext& context) const final {
     const auto chosen = context.material_indices(materials_);
     if (auto reason = why_no_body(context, chosen); !reason.empty()) return {{}, 0, reason};
     if (!std::all_of(genome.begin(), genome.end(), [](float gene) { return std::isfinite(gene); }))
@@ -37,7 +39,7 @@ class NetworkEncoding : public evodevo::Encoding {
     const Matrix points = ball(context);
     const Matrix outputs = map(genome, points, context);
     const auto materials = static_cast<Eigen::Index>(chosen.size());
-    evodevo::Blueprint blueprint;
+    Blueprint blueprint;
     blueprint.body.materials = context.materials;
     blueprint.neighbours = static_cast<std::uint32_t>(neighbours_);
     for (const auto& output : outputs.colwise()) {
@@ -61,18 +63,17 @@ class NetworkEncoding : public evodevo::Encoding {
 
   /// Returns the number of outputs of the network: x, y and z; one value for each material to choose from, the greatest
   /// of which selects the material; and, if `size_range` is above 0, the size at birth and the size at the end.
-  std::int64_t outputs_in(const evodevo::EncodingContext& context) const {
+  std::int64_t outputs_in(const EncodingContext& context) const {
     return 3 + static_cast<std::int64_t>(context.material_indices(materials_).size()) + (size_range_ > 0 ? 2 : 0);
   }
 
  private:
   /// Returns the network's outputs, one column for each point.
-  virtual Matrix map(const evodevo::Genome& genome, const Matrix& points,
-                     const evodevo::EncodingContext& context) const = 0;
+  virtual Matrix map(const Genome& genome, const Matrix& points, const EncodingContext& context) const = 0;
 
   /// Returns the points as columns, uniformly distributed in the unit ball. All bodies of a run have the same points.
-  Matrix ball(const evodevo::EncodingContext& context) const {
-    evodevo::Rng rng = context.rng(static_cast<std::uint64_t>(points_seed_));
+  Matrix ball(const EncodingContext& context) const {
+    Rng rng = context.rng(static_cast<std::uint64_t>(points_seed_));
     Matrix points(3, points_);
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
       do {
@@ -97,7 +98,7 @@ class NetworkEncoding : public evodevo::Encoding {
 /// A network with two layers of hidden neurons, whose topology is fixed.
 class LayeredNetworkEncoding : public NetworkEncoding {
  public:
-  void parameters(evodevo::Parameters& p) override {
+  void parameters(Parameters& p) override {
     NetworkEncoding::parameters(p);
     p.integer(hidden_, "hidden", {1, 1000, "1"}, "Number of neurons in each of the two hidden layers.");
   }
@@ -125,3 +126,5 @@ class LayeredNetworkEncoding : public NetworkEncoding {
  private:
   std::int64_t hidden_ = 25;
 };
+
+}  // namespace evodevo

@@ -1,4 +1,4 @@
-// Shared by the selection operators: an order of the rows that does not depend on the order of birth, and the choice of
+// For selection operators: an order of the rows that does not depend on the order of birth, and the choice of
 // parents.
 #pragma once
 
@@ -9,10 +9,12 @@
 
 #include "evodevo/selection.hpp"
 
+namespace evodevo {
+
 /// Returns the rows from best to worst: by the first score, ties by the other scores in their order, then by youth,
 /// then by the order of birth. Failed rows come last. An operator that works in this order gives a result that depends
 /// on the order of birth only for exact ties.
-inline std::vector<std::uint32_t> best_first(std::span<const evodevo::Candidate> rows) {
+inline std::vector<std::uint32_t> best_first(std::span<const Candidate> rows) {
   std::vector<std::uint32_t> order(rows.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
@@ -25,9 +27,8 @@ inline std::vector<std::uint32_t> best_first(std::span<const evodevo::Candidate>
 }
 
 /// Returns the rows in the given order.
-inline std::vector<evodevo::Candidate> in_order(std::span<const evodevo::Candidate> rows,
-                                                const std::vector<std::uint32_t>& order) {
-  std::vector<evodevo::Candidate> sorted;
+inline std::vector<Candidate> in_order(std::span<const Candidate> rows, const std::vector<std::uint32_t>& order) {
+  std::vector<Candidate> sorted;
   for (const std::uint32_t i : order) sorted.push_back(rows[i]);
   return sorted;
 }
@@ -36,9 +37,8 @@ inline std::vector<evodevo::Candidate> in_order(std::span<const evodevo::Candida
 /// all failed. `draw(n, rng)` returns a rank from 0 (the best) to n-1. The mate differs from the parent if there is
 /// more than one row to draw from.
 template <class Draw>
-std::vector<std::pair<std::uint32_t, std::uint32_t>> draw_pairs(std::span<const evodevo::Candidate> rows,
-                                                                std::uint32_t count, evodevo::Rng& rng,
-                                                                const Draw& draw) {
+std::vector<std::pair<std::uint32_t, std::uint32_t>> draw_pairs(std::span<const Candidate> rows, std::uint32_t count,
+                                                                Rng& rng, const Draw& draw) {
   auto pool = best_first(rows);
   if (pool.empty()) return {};
   if (rows[pool.front()].ok()) std::erase_if(pool, [&](std::uint32_t i) { return !rows[i].ok(); });
@@ -54,4 +54,6 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> draw_pairs(std::span<const 
 }
 
 /// Draws a row uniformly: for draw_pairs(), a draw in which all rows have the same chance.
-inline std::uint32_t draw_any(std::uint32_t rows, evodevo::Rng& rng) { return rng.below(rows); }
+inline std::uint32_t draw_any(std::uint32_t rows, Rng& rng) { return rng.below(rows); }
+
+}  // namespace evodevo

@@ -1,14 +1,15 @@
-// Shared by the devo operators: functions that choose springs by their stress.
+// For devo operators: what counts as stress, and the choice of springs by it.
 #pragma once
 
 #include <tuple>
 
 #include "evodevo/devo.hpp"
 
+namespace evodevo {
+
 /// Returns the `count` springs with the smallest `key`, or all springs if there are fewer; smallest first, ties in
 /// random order. No key may be NaN.
-inline std::vector<std::uint32_t> springs_of_least(const std::vector<double>& key, std::size_t count,
-                                                   evodevo::Rng& rng) {
+inline std::vector<std::uint32_t> springs_of_least(const std::vector<double>& key, std::size_t count, Rng& rng) {
   count = std::min(count, key.size());
   if (count == 0) return {};
   std::vector<double> least(count);  // `count` is small, so most keys are compared only once
@@ -24,7 +25,7 @@ inline std::vector<std::uint32_t> springs_of_least(const std::vector<double>& ke
 }
 
 /// Returns the `count` least stressed springs, least stressed first. A stress of NaN counts as the greatest.
-inline std::vector<std::uint32_t> least_stressed(std::span<const double> stress, std::size_t count, evodevo::Rng& rng) {
+inline std::vector<std::uint32_t> least_stressed(std::span<const double> stress, std::size_t count, Rng& rng) {
   std::vector<double> key(stress.begin(), stress.end());
   for (double& value : key)
     if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
@@ -32,7 +33,7 @@ inline std::vector<std::uint32_t> least_stressed(std::span<const double> stress,
 }
 
 /// Returns the `count` most stressed springs, most stressed first. A stress of NaN counts as the least.
-inline std::vector<std::uint32_t> most_stressed(std::span<const double> stress, std::size_t count, evodevo::Rng& rng) {
+inline std::vector<std::uint32_t> most_stressed(std::span<const double> stress, std::size_t count, Rng& rng) {
   std::vector<double> key(stress.begin(), stress.end());
   for (double& value : key) value = std::isnan(value) ? std::numeric_limits<double>::infinity() : -value;
   return springs_of_least(key, count, rng);
@@ -41,23 +42,23 @@ inline std::vector<std::uint32_t> most_stressed(std::span<const double> stress, 
 /// The parameter `by`, which all these operators share: the quantity that counts as the stress of a spring.
 class StressMeasure {
  public:
-  void declare(evodevo::Parameters& p) {
+  void declare(Parameters& p) {
     p.choice(by_, "by", {"mean-force", "peak", "work", "tension", "compression"},
              "What counts as stress: a spring's mean or largest absolute force over the cycle, the work of its muscle, "
              "or the mean force with which it pulls (tension) or pushes (compression).");
   }
 
-  evodevo::SpringRequest request() const {
+  SpringRequest request() const {
     return {.stress = by_ == "mean-force",
             .peak_force = by_ == "peak",
             .muscle_work = by_ == "work",
             .tension = by_ == "tension" || by_ == "compression"};
   }
 
-  evodevo::Measure measure() const { return {by_, by_ == "work" ? "J" : "N"}; }
+  Measure measure() const { return {by_, by_ == "work" ? "J" : "N"}; }
 
   /// Returns the chosen quantity of every spring, N or J.
-  std::vector<double> of(const evodevo::DevoContext& context) const {
+  std::vector<double> of(const DevoContext& context) const {
     const std::span<const double> record = by_ == "mean-force" ? context.stress
                                            : by_ == "peak"     ? context.peak_force
                                            : by_ == "work"     ? context.muscle_work
@@ -85,7 +86,7 @@ class StressLottery {
 
   bool empty() const { return sums_.empty(); }
 
-  std::uint32_t draw(evodevo::Rng& rng) const {
+  std::uint32_t draw(Rng& rng) const {
     const double total = sums_.back();
     if (!(total > 0) || !std::isfinite(total)) return rng.below(static_cast<std::uint32_t>(sums_.size()));
     const auto drawn = std::upper_bound(sums_.begin(), sums_.end(), rng.uniform() * total);
@@ -97,3 +98,5 @@ class StressLottery {
  private:
   std::vector<double> sums_;  ///< cumulative stress: for each spring, the sum over the springs up to and including it
 };
+
+}  // namespace evodevo

@@ -1,8 +1,12 @@
-// Shared by the operators that add masses: where a new mass is placed, and which masses it is joined to.
+// For devo operators that add masses: where a new mass is placed, and which masses it is joined to.
 #pragma once
 
 #include "evodevo/devo.hpp"
-#include "stress.hpp"
+#include "evodevo/helpers/materials.hpp"
+#include "evodevo/helpers/partners.hpp"
+#include "evodevo/helpers/stress.hpp"
+
+namespace evodevo {
 
 /// The parameters that determine how new masses are placed and joined: as in the paper (section IV-D3), or as the paper
 /// proposes for future work (section VII).
@@ -13,7 +17,7 @@ struct ArrivalRule {
   std::string join = "random";
   StressMeasure measure;
 
-  void declare(evodevo::Parameters& p) {
+  void declare(Parameters& p) {
     p.integer(springs, "springs", {1, 100'000, "1"}, "Number of springs that join a new mass to masses that stay.");
     p.real(min_distance, "min_distance", {0, 100, "m"}, "Smallest distance of a new mass from all other masses.");
     p.choice(where, "where", {"random", "by-stress"},
@@ -24,7 +28,7 @@ struct ArrivalRule {
     measure.declare(p);
   }
 
-  evodevo::SpringRequest request() const { return where == "by-stress" ? measure.request() : evodevo::SpringRequest{}; }
+  SpringRequest request() const { return where == "by-stress" ? measure.request() : SpringRequest{}; }
 };
 
 /// Adds new masses to a body that has at least one spring. A new mass gets the material of a random mass that stays in
@@ -32,7 +36,7 @@ struct ArrivalRule {
 /// the material of a random spring of the body.
 class Arrivals {
  public:
-  Arrivals(const ArrivalRule& rule, const evodevo::DevoContext& context)
+  Arrivals(const ArrivalRule& rule, const DevoContext& context)
       : rule_(rule), context_(context), stays_(context.body.masses.size(), true) {
     if (rule.where != "by-stress") return;
     stress_ = rule.measure.of(context);
@@ -44,10 +48,10 @@ class Arrivals {
   void set_staying(std::uint32_t mass, bool stays) { stays_[mass] = stays; }
 
   /// Finds a free position for one more mass. Returns false if all attempts fail.
-  bool find_position(evodevo::Rng& rng) {
+  bool find_position(Rng& rng) {
     for (int attempt = 0; attempt < attempts_per_position; ++attempt) {
       const std::optional<std::uint32_t> spring = lottery_.empty() ? std::nullopt : std::optional(lottery_.draw(rng));
-      const evodevo::Vec3 position = spring ? position_on_spring(*spring, rng) : position_in_bounds(rng);
+      const Vec3 position = spring ? position_on_spring(*spring, rng) : position_in_bounds(rng);
       if (!is_free(position)) continue;
       positions_.push_back(position);
       if (spring) causes_.push_back(stress_[*spring]);
@@ -58,11 +62,11 @@ class Arrivals {
 
   /// Adds to `edits` one mass for each position found, and its springs. Returns false without adding anything if all
   /// masses that stay are air, because the new masses and all of their springs would be air too.
-  bool come(evodevo::Edits& edits, evodevo::Rng& rng) const {
+  bool come(Edits& edits, Rng& rng) const {
     auto partners = masses_where([&](std::uint32_t i) { return stays_[i]; });
     const auto models = masses_where([&](std::uint32_t i) { return stays_[i] && !is_of_air(i); });
     if (models.empty()) return false;
-    for (const evodevo::Vec3& position : positions_) {
+    for (const Vec3& position : positions_) {
       const auto model = models[rng.below(static_cast<std::uint32_t>(models.size()))];
       edits.new_masses.push_back({position, context_.mass, context_.body.masses[model].material});
       join(partners, edits, rng);
@@ -74,24 +78,24 @@ class Arrivals {
  private:
   static constexpr int attempts_per_position = 100;
 
-  evodevo::Vec3 position_in_bounds(evodevo::Rng& rng) const {
+  Vec3 position_in_bounds(Rng& rng) const {
     const auto& [low, high] = context_.bounds;
     return {rng.uniform(low.x, high.x), rng.uniform(low.y, high.y), rng.uniform(low.z, high.z)};
   }
 
   /// Returns a random position between the two ends of a spring, raised to the floor if masses have sunk into the
   /// floor.
-  evodevo::Vec3 position_on_spring(std::uint32_t index, evodevo::Rng& rng) const {
-    const evodevo::Spring& spring = context_.body.springs[index];
-    const evodevo::Vec3 a = context_.position(spring.a), b = context_.position(spring.b);
-    evodevo::Vec3 position = a + rng.uniform() * (b - a);
+  Vec3 position_on_spring(std::uint32_t index, Rng& rng) const {
+    const Spring& spring = context_.body.springs[index];
+    const Vec3 a = context_.position(spring.a), b = context_.position(spring.b);
+    Vec3 position = a + rng.uniform() * (b - a);
     position.z = std::max(position.z, context_.bounds.low.z);
     return position;
   }
 
   /// Returns whether a position is far enough from all masses that stay and from all new masses.
-  bool is_free(const evodevo::Vec3& position) const {
-    const auto is_near = [&](const evodevo::Vec3& other) { return !(norm(position - other) >= rule_.min_distance); };
+  bool is_free(const Vec3& position) const {
+    const auto is_near = [&](const Vec3& other) { return !(norm(position - other) >= rule_.min_distance); };
     if (std::any_of(positions_.begin(), positions_.end(), is_near)) return false;
     for (std::uint32_t i = 0; i < stays_.size(); ++i)
       if (stays_[i] && is_near(context_.position(i))) return false;
@@ -99,40 +103,28 @@ class Arrivals {
   }
 
   /// Adds springs from the newest mass to several of `partners`; changes the order of `partners`.
-  void join(std::vector<std::uint32_t>& partners, evodevo::Edits& edits, evodevo::Rng& rng) const {
-    const evodevo::Body& body = context_.body;
+  void join(std::vector<std::uint32_t>& partners, Edits& edits, Rng& rng) const {
+    const Body& body = context_.body;
     const auto newest = static_cast<std::uint32_t>(body.masses.size() + edits.new_masses.size() - 1);
     const std::int32_t own = edits.new_masses.back().material;
     const auto count = static_cast<std::uint32_t>(partners.size());
-    if (rule_.join == "nearest") sort_by_distance(partners, edits.new_masses.back().position);
+    if (rule_.join == "nearest")
+      sort_nearest_first(partners, static_cast<std::size_t>(rule_.springs), edits.new_masses.back().position, context_);
     for (std::uint32_t i = 0; i < std::min<std::int64_t>(count, rule_.springs); ++i) {
       if (rule_.join == "random") std::swap(partners[i], partners[i + rng.below(count - i)]);
-      const std::int32_t others = body.masses[partners[i]].material;
-      const evodevo::Material material = own == evodevo::no_material || others == evodevo::no_material
-                                             ? random_spring_material(rng)
-                                             : mean(body.materials[own], body.materials[others]);
-      edits.new_springs.push_back({partners[i], newest, material, {}});
+      const auto mixed = material_between(body, own, body.masses[partners[i]].material);
+      edits.new_springs.push_back({partners[i], newest, mixed ? *mixed : random_spring_material(rng), {}});
     }
   }
 
-  /// Sorts `partners` by distance, nearest first, ties by index; sorts only as many partners as the new mass gets
-  /// springs.
-  void sort_by_distance(std::vector<std::uint32_t>& partners, const evodevo::Vec3& position) const {
-    std::vector<std::pair<double, std::uint32_t>> order;
-    for (const std::uint32_t i : partners) order.emplace_back(norm(context_.position(i) - position), i);
-    const auto needed = std::min(order.size(), static_cast<std::size_t>(rule_.springs));
-    std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(needed), order.end());
-    std::transform(order.begin(), order.end(), partners.begin(), [](const auto& item) { return item.second; });
-  }
-
-  evodevo::Material random_spring_material(evodevo::Rng& rng) const {
+  Material random_spring_material(Rng& rng) const {
     const auto& springs = context_.body.springs;
     return context_.body.materials[springs[rng.below(static_cast<std::uint32_t>(springs.size()))].material];
   }
 
   bool is_of_air(std::uint32_t mass) const {
     const std::int32_t material = context_.body.masses[mass].material;
-    return material != evodevo::no_material && is_air(context_.body.materials[material]);
+    return material != no_material && is_air(context_.body.materials[material]);
   }
 
   template <class Predicate>
@@ -144,10 +136,12 @@ class Arrivals {
   }
 
   const ArrivalRule& rule_;
-  const evodevo::DevoContext& context_;
+  const DevoContext& context_;
   std::vector<double> stress_;  ///< stress of every spring; empty unless it determines where masses are placed
   StressLottery lottery_;
   std::vector<bool> stays_;
-  std::vector<evodevo::Vec3> positions_;
+  std::vector<Vec3> positions_;
   std::vector<double> causes_;  ///< for each position, the stress of the spring that it is on; empty if `stress_` is
 };
+
+}  // namespace evodevo
