@@ -15,6 +15,7 @@
 #include "base/text.hpp"
 #include "commands/commands.hpp"
 #include "commands/shell/notices.hpp"
+#include "commands/shell/options.hpp"
 #include "conformance/conformance.hpp"
 #include "operators/loader.hpp"
 
@@ -126,15 +127,43 @@ void print(const Verdict& verdict) {
 
 bool is_good(const Verdict& verdict) { return verdict.outcome == "passed" || verdict.outcome == "skipped"; }
 
+/// Returns what `conform` examines, without the experiment.
+conformance::Examination examination(const Given& given) {
+  if (given["seed"].as<std::int64_t>() < 0)
+    throw UsageError("--seed " + std::to_string(given["seed"].as<std::int64_t>()) + ": expected 0 or more");
+  conformance::Examination how;
+  how.seed = static_cast<std::uint64_t>(given["seed"].as<std::int64_t>());
+  if (given.contains("operator")) how.only_operator = given["operator"].as<std::string>();
+  if (given.contains("case")) how.only_case = given["case"].as<std::string>();
+  how.here = given.contains("here");
+  if (how.here && how.only_case.empty())
+    throw UsageError("--here: expected one case, because one may end the process; give --case NAME");
+  return how;
+}
+
+/// Throws UsageError if no case was run.
+void require_cases(std::size_t cases, const conformance::Examination& how) {
+  if (cases > 0) return;
+  std::string wanted;
+  if (!how.only_operator.empty()) wanted = option_text("operator", how.only_operator);
+  if (!how.only_case.empty()) wanted += (wanted.empty() ? "" : " ") + option_text("case", how.only_case);
+  throw UsageError(wanted + ": no such case; call conform without this to see the names of all");
+}
+
 int conform(const Given& given) {
   const auto libraries = given["LIBRARY"].as<std::vector<std::string>>();
   for (const std::string& library : libraries)
     if (std::error_code error; !std::filesystem::is_regular_file(library, error))
       throw UsageError("conform " + printable(library) +
                        ": is not a file; give the libraries to check, NAME.evodevo.so");
-  if (given["seed"].as<std::int64_t>() < 0)
-    throw UsageError("--seed " + std::to_string(given["seed"].as<std::int64_t>()) + ": expected 0 or more");
-  const auto seed = static_cast<std::uint64_t>(given["seed"].as<std::int64_t>());
+  conformance::Examination how = examination(given);
+  std::optional<Experiment> experiment;
+  if (given.contains("experiment")) {
+    ExperimentSource source{given["experiment"].as<std::string>(), {}, {}};
+    for (const std::string& library : libraries) source.plugin_path.push_back(std::filesystem::absolute(library));
+    experiment = read_experiment(source);
+    how.experiment = &*experiment;
+  }
   const bool as_json = given.contains("json");
   std::size_t cases = 0, bad = 0;
   Json list = Json::array();
@@ -146,16 +175,17 @@ int conform(const Given& given) {
                       {"case", verdict.name},
                       {"outcome", verdict.outcome},
                       {"reason", verdict.reason},
-                      {"seed", seed}});
+                      {"seed", how.seed}});
     else
       print(verdict);
   };
   for (const auto& library : libraries)
-    conformance::examine(std::filesystem::absolute(library).lexically_normal(), seed, report);
+    conformance::examine(std::filesystem::absolute(library).lexically_normal(), how, report);
+  require_cases(cases, how);
   if (as_json)
     std::cout << json_text(list) << '\n';
   else
-    std::cout << cases << " cases, " << bad << " failed; --seed " << seed << " repeats them\n";
+    std::cout << cases << " cases, " << bad << " failed; --seed " << how.seed << " repeats them\n";
   return bad == 0 ? 0 : 1;
 }
 
@@ -176,15 +206,26 @@ Command new_command() {
 
 Command conform_command() {
   Options options;
-  options.add_options()("seed", value<std::int64_t>("N")->default_value(1), "seed of all inputs")("json", "print JSON");
+  options.add_options()("experiment", value<std::string>("FILE.toml"),
+                        "try the operators that this experiment uses with its parameters and genomes")(
+      "operator", value<std::string>("NAME"), "try only this operator")("case", value<std::string>("NAME"),
+                                                                        "run only this case")(
+      "here", "run the case in this process, without a time limit, for a debugger")(
+      "seed", value<std::int64_t>("N")->default_value(1), "seed of all inputs")("json", "print JSON");
   return {
       .name = "conform",
       .arguments = {{"LIBRARY", Count::one_or_more}},
       .summary = "Check whether plugins follow the rules for operators",
       .text =
           {"It calls the operators of each library with many inputs and checks what evodevo relies on, such as "
-           "equal results for equal inputs. Each case runs in a process of its own, so a crash fails only one case."},
-      .examples = {"conform build/lib/evodevo/growth.evodevo.so"},
+           "equal results for equal inputs. Each case runs in a process of its own, so a crash fails only one case.",
+           "Operators are tried with their default parameters, and variation operators with generated genomes or, if "
+           "they work on blocks of certain types, with those of an encoding of the same library. With --experiment, "
+           "the operators that the experiment uses are tried with the parameters of their tables, its materials and "
+           "its genomes. This is needed for operators that require a file."},
+      .examples = {"conform build/lib/evodevo/growth.evodevo.so",
+                   "conform growth.evodevo.so --experiment experiment.toml",
+                   "conform growth.evodevo.so --operator my-lab.growth --case bodies --here"},
       .options = options,
       .function = conform,
       .watches_operators = false};  // because each case runs in a process of its own with a time limit

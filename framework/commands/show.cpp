@@ -10,6 +10,7 @@
 #include "commands/shell/options.hpp"
 #include "evolution/archive/archive.hpp"
 #include "experiment/toml_reader.hpp"
+#include "report/lineage.hpp"
 #include "report/run_json.hpp"
 
 namespace evodevo {
@@ -23,6 +24,7 @@ class Report {
   explicit Report(const Archive& archive)
       : archive_(archive),
         objectives_(archive.objectives()),
+        layout_(archive.layout()),
         generations_(archive.generations()),
         last_generation_(generations_.empty() ? 0 : generations_.back().generation) {}
 
@@ -86,19 +88,27 @@ class Report {
       if (const auto verification = archive_.verification(id))
         std::cout << ", " << marks_text(*verification, objectives_.front().maximise);
       std::cout << '\n';
-      std::string text;
-      for (const ArchivedIndividual& ancestor : line) {
-        if (!text.empty()) text += " < ";
-        text += std::to_string(ancestor.id) + " (" + ancestor.made_by + ")";
-      }
-      std::cout << "    " << text << '\n';
+      std::cout << "    " << line_text(line) << '\n';
     }
+  }
+
+  /// Returns a text such as: 17 (add-node: +1 node, +2 link) < 4 (random).
+  std::string line_text(const std::vector<ArchivedIndividual>& line) const {
+    std::string text;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      text += (i > 0 ? " < " : "") + std::to_string(line[i].id) + " (" + line[i].made_by;
+      if (i + 1 < line.size())
+        text += changes_text(block_changes(line[i + 1].genome, line[i].genome, layout_), layout_);
+      text += ")";
+    }
+    return text;
   }
 
   static std::string number(const std::optional<double>& value) { return value ? short_number(*value) : "-"; }
 
   const Archive& archive_;
   std::vector<Objective> objectives_;
+  Layout layout_;
   std::vector<Summary> generations_;
   std::uint32_t last_generation_;
 };
@@ -117,14 +127,17 @@ int show(const Given& given) {
 Command show_command() {
   Options options;
   options.add_options()("json", "print JSON, with every generation");
-  return {.name = "show",
-          .arguments = {{"DIR"}},
-          .summary = "Show the progress and the best robots of a run",
-          .text = {"It prints the best and the median fitness by generation, why individuals have no fitness, and the "
-                   "best individuals with their ancestors. The run may still be in progress."},
-          .examples = {"show runs/quickstart-1", "show runs/quickstart-1 --json"},
-          .options = options,
-          .function = show};
+  return {
+      .name = "show",
+      .arguments = {{"DIR"}},
+      .summary = "Show the progress and the best robots of a run",
+      .text =
+          {"It prints the best and the median fitness by generation, why individuals have no fitness, and the "
+           "best individuals with their ancestors, and the blocks of genes that came and went from one to the next. "
+           "The run may still be in progress."},
+      .examples = {"show runs/quickstart-1", "show runs/quickstart-1 --json"},
+      .options = options,
+      .function = show};
 }
 
 }  // namespace evodevo

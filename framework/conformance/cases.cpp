@@ -5,6 +5,7 @@
 #include <future>
 
 #include "base/text.hpp"
+#include "conformance/conformance.hpp"
 #include "conformance/trials.hpp"
 #include "cpu/simulator.hpp"
 #include "evolution/archive/archive.hpp"
@@ -20,14 +21,14 @@ namespace fs = std::filesystem;
 
 // ---- declarations ----
 
-void declarations(const AvailableOperator& subject, std::uint64_t) {
-  const auto op = create<Operator>(subject);
+void declarations(const Subject& subject, std::uint64_t) {
+  const auto op = evodevo::create<Operator>(subject.available);
   if (const std::string fault = wrong_default(*op); !fault.empty()) throw Violation("the default " + fault);
   if (const auto faults = declaration_faults(*op); !faults.empty()) throw Violation(joined(faults, "; "));
-  if (!std::string_view(subject.entry->summary).ends_with('.'))
+  if (!std::string_view(subject.available.entry->summary).ends_with('.'))
     throw Violation("its summary is not a sentence that ends with a full stop: \"" +
-                    std::string(subject.entry->summary) + "\"");
-  const std::string_view version = subject.manifest->version, licence = subject.manifest->license;
+                    std::string(subject.available.entry->summary) + "\"");
+  const std::string_view version = subject.available.manifest->version, licence = subject.available.manifest->license;
   if (version.empty() || licence.empty())
     throw Violation("its library gives no version or no licence; give both in EVODEVO_PLUGIN(...)");
 }
@@ -76,11 +77,11 @@ class Refusable final : public Parameters {
   }
 };
 
-bool accepts(const AvailableOperator& subject, const toml::table& table) {
-  const std::vector<std::string> materials = sample_world().material_names;
+bool accepts(const Subject& subject, const toml::table& table) {
+  const std::vector<std::string> materials = subject.context().material_names;
   TomlReader reader(table, "operator", {&materials});
   try {
-    create<Operator>(subject)->parameters(reader);
+    evodevo::create<Operator>(subject.available)->parameters(reader);
     reader.finish();
   } catch (const ConfigError&) {
     return false;
@@ -88,12 +89,14 @@ bool accepts(const AvailableOperator& subject, const toml::table& table) {
   return true;
 }
 
-void refusals(const AvailableOperator& subject, std::uint64_t) {
-  if (!accepts(subject, {})) throw Violation("it does not accept its own defaults; correct parameters()");
+void refusals(const Subject& subject, std::uint64_t) {
+  const std::string required = required_parameter(*evodevo::create<Operator>(subject.available));
+  if (required.empty() && !accepts(subject, {}))
+    throw Violation("it does not accept its own defaults; correct parameters()");
   if (accepts(subject, toml::table{{"a-key-that-nobody-knows", 1}}))
     throw Violation("it accepts an unknown key, a-key-that-nobody-knows");
   Refusable refusable;
-  create<Operator>(subject)->parameters(refusable);
+  evodevo::create<Operator>(subject.available)->parameters(refusable);
   for (const auto& [name, table] : refusable.tables)
     if (accepts(subject, table))
       throw Violation("it accepts " + name + " = " + value_text(*table.get(name)) +
@@ -102,7 +105,7 @@ void refusals(const AvailableOperator& subject, std::uint64_t) {
 
 // ---- calls ----
 
-void same_seed(const AvailableOperator& subject, std::uint64_t seed) {
+void same_seed(const Subject& subject, std::uint64_t seed) {
   for (std::uint32_t input = 0; input < inputs_for(subject); ++input)
     if (!same(try_new(subject, seed, input), try_new(subject, seed, input)))
       throw Violation(
@@ -110,14 +113,14 @@ void same_seed(const AvailableOperator& subject, std::uint64_t seed) {
           " and equal random numbers give different results; draw random numbers only from the Rng that is passed in");
 }
 
-void threads(const AvailableOperator& subject, std::uint64_t seed) {
+void threads(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Operator>(subject);
-  const std::string kind = kind_of(subject);
   std::vector<Numbers> alone;
-  for (std::uint32_t input = 0; input < inputs_for(subject); ++input) alone.push_back(try_out(kind, *op, seed, input));
+  for (std::uint32_t input = 0; input < inputs_for(subject); ++input)
+    alone.push_back(try_out(subject, *op, seed, input));
   const auto all = [&] {
     std::vector<Numbers> results;
-    for (std::uint32_t input = 0; input < alone.size(); ++input) results.push_back(try_out(kind, *op, seed, input));
+    for (std::uint32_t input = 0; input < alone.size(); ++input) results.push_back(try_out(subject, *op, seed, input));
     return results;
   };
   std::vector<std::future<std::vector<Numbers>>> others;
@@ -132,18 +135,18 @@ void threads(const AvailableOperator& subject, std::uint64_t seed) {
   }
 }
 
-void batch(const AvailableOperator& subject, std::uint64_t seed) {
+void batch(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Operator>(subject);
   for (std::uint32_t left = inputs_for(subject); left > 0; --left) {
     const std::uint32_t input = left - 1;
-    if (!same(try_out(kind_of(subject), *op, seed, input), try_new(subject, seed, input)))
+    if (!same(try_out(subject, *op, seed, input), try_new(subject, seed, input)))
       throw Violation(
           "input " + std::to_string(input) +
           " gives one result by itself and another after other inputs; an operator may hold only parameters");
   }
 }
 
-void untouched_inputs(const AvailableOperator& subject, std::uint64_t seed) {
+void untouched_inputs(const Subject& subject, std::uint64_t seed) {
   for (std::uint32_t input = 0; input < inputs_for(subject); ++input) try_new(subject, seed, input);
 }
 
@@ -184,7 +187,7 @@ class Changer final : public Parameters {
   }
 };
 
-void instances(const AvailableOperator& subject, std::uint64_t seed) {
+void instances(const Subject& subject, std::uint64_t seed) {
   const auto values = [](Operator& op) {
     std::string text;
     for (const ParameterDescription& p : describe_parameters(op)) text += p.name + " = " + p.fallback + "\n";
@@ -193,37 +196,16 @@ void instances(const AvailableOperator& subject, std::uint64_t seed) {
   const auto one = create<Operator>(subject), other = create<Operator>(subject);
   const std::string defaults = values(*one);
   if (defaults.empty()) throw Skipped("it has no parameters");
-  const Numbers before = try_out(kind_of(subject), *one, seed, 0);
+  const Numbers before = try_out(subject, *one, seed, 0);
   Changer changer;
   other->parameters(changer);
   if (values(*one) != defaults)
     throw Violation("a parameter that is set in one instance changes in another; use no static members");
-  if (!same(try_out(kind_of(subject), *one, seed, 0), before))
+  if (!same(try_out(subject, *one, seed, 0), before))
     throw Violation("parameters that are set in one instance change the results of another; use no static members");
 }
 
 // ---- a run ----
-
-/// Returns a small experiment that uses the operator with its default parameters.
-std::string experiment_with(const AvailableOperator& subject, std::uint64_t seed) {
-  const std::string kind = kind_of(subject), own = std::string("name = \"") + subject.entry->name + "\"\n";
-  const auto either = [&](std::string_view k, const char* otherwise) {
-    return k == kind ? own : std::string(otherwise);
-  };
-  std::string text = "[experiment]\nseed = " + std::to_string(seed % (1u << 31)) +
-                     "\nevaluations = 24\npopulation = 6\n[scene.gravity]\n[scene.floor]\n[scene.friction]\n"
-                     "[scene.damping]\n[simulation]\ndevice = \"cpu\"\nthreads = 2\n";
-  // an encoding that has the blocks on which the operator works
-  const bool is_on_networks = !create<Operator>(subject)->traits().block_types.empty();
-  text += "[encoding]\n" + either("encoding", is_on_networks ? "name = \"neat\"\npoints = 30\nneighbours = 6\n"
-                                                             : "name = \"voxel\"\nsize = [2, 1, 1]\nedge = 0.5\n");
-  text += "[[mutation]]\n" + either("mutation", "name = \"reset-weight\"\n") + "probability = 0.8\n";
-  text += "[[crossover]]\n" + either("crossover", "name = \"two-point\"\n") + "probability = 0.5\n";
-  text += "[development]\ncycles = 2\ncycle_time = 0.05\n[[development.operator]]\n" +
-          either("devo", "name = \"spring-turnover\"\nsprings = 2\n");
-  text += "[[fitness]]\n" + either("fitness", "name = \"distance\"\nsettle = 0.0\nwindow = 0.1\n");
-  return text + "[selection]\n" + either("selection", "name = \"elitist\"\n");
-}
 
 /// Continues the run in the archive. If `stop_early`, stops after generation 1, the first one that is bred from
 /// parents.
@@ -262,10 +244,11 @@ struct RunFolder {
   RunFolder& operator=(const RunFolder&) = delete;
 };
 
-void resuming(const AvailableOperator& subject, std::uint64_t seed) {
+void resuming(const Subject& subject, std::uint64_t seed) {
   const RunFolder folder;
-  const std::string text = experiment_with(subject, seed);
-  const ExperimentSource source{"the conformance kit's experiment", {}, {subject.file}};
+  const std::string text = small_experiment(subject, seed);
+  ExperimentSource source{"the conformance kit's experiment", {}, subject.plugin_path()};
+  if (subject.use) source.files = subject.use->experiment.files;
   const auto begin = [&](const char* name, bool stop_early) {
     return in_new_process([&] {
       const Experiment experiment = read_experiment(text, source);
@@ -278,7 +261,7 @@ void resuming(const AvailableOperator& subject, std::uint64_t seed) {
   begin("stopped", true);
   const std::string resumed = in_new_process([&] {
     Archive archive = Archive::resume(folder.path / "stopped");
-    live(recorded_experiment(archive, {subject.file}), archive, false);
+    live(recorded_experiment(archive, subject.plugin_path()), archive, false);
     return transcript(archive);
   });
   if (straight != resumed)

@@ -30,13 +30,36 @@ std::string tell(const std::function<void()>& check) {
   }
 }
 
-Verdict judge(const std::string& subject, const char* name, unsigned seconds, const std::function<void()>& check) {
-  const ChildEnd end = in_child([&] { return tell(check); }, seconds);
-  if (end.timed_out) return {subject, name, "failed", end.crash};
-  if (!end.crash.empty()) return {subject, name, "crashed", end.crash};
-  const auto newline = end.text.find('\n');
-  return {subject, name, end.text.substr(0, newline), end.text.substr(newline + 1)};
-}
+/// Runs one case after the other, as the examination wants it.
+class Court {
+ public:
+  Court(const Examination& how, const std::function<void(const Verdict&)>& report) : how_(how), report_(report) {}
+
+  /// Runs a case if it is wanted, and returns whether it passed.
+  bool judge(const std::string& subject, const char* name, const std::function<void()>& check) const {
+    if (!how_.only_case.empty() && how_.only_case != name) return true;
+    const Verdict verdict = how_.here ? told(subject, name, tell(check)) : judged_apart(subject, name, check);
+    report_(verdict);
+    return verdict.outcome == "passed";
+  }
+
+ private:
+  static Verdict told(const std::string& subject, const char* name, const std::string& text) {
+    const auto newline = text.find('\n');
+    return {subject, name, text.substr(0, newline), text.substr(newline + 1)};
+  }
+
+  /// Runs a case in a process of its own.
+  Verdict judged_apart(const std::string& subject, const char* name, const std::function<void()>& check) const {
+    const ChildEnd end = in_child([&] { return tell(check); }, how_.seconds);
+    if (end.timed_out) return {subject, name, "failed", end.crash};
+    if (!end.crash.empty()) return {subject, name, "crashed", end.crash};
+    return told(subject, name, end.text);
+  }
+
+  const Examination& how_;
+  const std::function<void(const Verdict&)>& report_;
+};
 
 void loads(const fs::path& library) {
   const Surroundings before;
@@ -66,20 +89,22 @@ void lists_quickly(const fs::path& library) {
 
 }  // namespace
 
-void examine(const fs::path& library, std::uint64_t seed, const std::function<void(const Verdict&)>& report,
-             unsigned seconds) {
+void examine(const fs::path& library, const Examination& how, const std::function<void(const Verdict&)>& report) {
+  const Court court(how, report);
   const std::string file = library.filename().string();
-  const Verdict loaded = judge(file, "loads", seconds, [&] { loads(library); });
-  report(loaded);
-  if (loaded.outcome != "passed") return;
-  report(judge(file, "exports", seconds, [&] { exports_one_function(library); }));
-  report(judge(file, "listing", seconds, [&] { lists_quickly(library); }));
-
+  if (how.only_operator.empty()) {
+    if (!court.judge(file, "loads", [&] { loads(library); })) return;
+    court.judge(file, "exports", [&] { exports_one_function(library); });
+    court.judge(file, "listing", [&] { lists_quickly(library); });
+  }
   const Registry registry({library});
-  for (const AvailableOperator& subject : registry.operators()) {
-    const std::string title = std::string(subject.entry->kind) + " " + subject.entry->name;
-    for (const auto& cases : {general_cases(), process_cases(), laws_of(subject.entry->kind)})
-      for (const Case& one : cases) report(judge(title, one.name, seconds, [&] { one.check(subject, seed); }));
+  for (const AvailableOperator& available : registry.operators()) {
+    if (!how.only_operator.empty() && how.only_operator != available.entry->name) continue;
+    const Subject subject{available, registry.operators(),
+                          how.experiment == nullptr ? std::nullopt : use_in(*how.experiment, available)};
+    const std::string title = subject.kind() + " " + subject.name();
+    for (const auto& cases : {general_cases(), process_cases(), laws_of(subject.kind())})
+      for (const Case& one : cases) court.judge(title, one.name, [&] { one.check(subject, how.seed); });
   }
 }
 

@@ -4,28 +4,17 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "operators/loader.hpp"
+#include "conformance/subject.hpp"
 
 namespace evodevo::conformance {
-
-/// Thrown by a case that fails. what() describes the violation of the rule.
-struct Violation : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-/// Thrown by a case that does not apply to this operator. what() says why.
-struct Skipped : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 /// A test case for one operator. `check` may crash, hang or change its process in any way.
 struct Case {
   const char* name;
-  void (*check)(const AvailableOperator& subject, std::uint64_t seed);
+  void (*check)(const Subject& subject, std::uint64_t seed);
 };
 
 /// Returns cases for operators of every kind.
@@ -44,11 +33,17 @@ struct Verdict {
   std::string reason;   ///< empty if the case passed
 };
 
-constexpr unsigned seconds_per_case = 60;
+/// What is examined, and how.
+struct Examination {
+  std::uint64_t seed = 1;                  ///< determines all inputs
+  std::string only_operator, only_case;    ///< names; empty: all
+  bool here = false;                       ///< whether cases run in this process, without a time limit, for a debugger
+  const Experiment* experiment = nullptr;  ///< gives parameters and genomes to the operators that it uses, if not null
+  unsigned seconds = 60;                   ///< a case that has not finished after this time counts as failed
+};
 
-/// Runs all cases on all operators of a library, and reports each verdict as soon as it is known. `seed` determines all
-/// inputs. A case that has not finished after `seconds` s counts as failed.
-void examine(const std::filesystem::path& library, std::uint64_t seed,
-             const std::function<void(const Verdict&)>& report, unsigned seconds = seconds_per_case);
+/// Runs the cases for the operators of a library, and reports each verdict as soon as it is known.
+void examine(const std::filesystem::path& library, const Examination& how,
+             const std::function<void(const Verdict&)>& report);
 
 }  // namespace evodevo::conformance

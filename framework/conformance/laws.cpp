@@ -7,6 +7,7 @@
 
 #include "base/genome_sections.hpp"
 #include "base/text.hpp"
+#include "conformance/conformance.hpp"
 #include "conformance/trials.hpp"
 #include "life/body_building.hpp"
 
@@ -31,10 +32,10 @@ bool springs_grow(const Blueprint& blueprint) {
          std::any_of(springs.begin(), springs.end(), [](const Spring& spring) { return spring.growth != 1; });
 }
 
-/// Checks that every genome gives a sound body, or a reason why there is none.
-void decodes(const AvailableOperator& subject, std::uint64_t seed) {
+/// Checks that every genome gives a sound body or a reason why there is none, and that not all fail.
+void decodes(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Encoding>(subject);
-  const EncodingContext context = sample_world();
+  const EncodingContext context = subject.context();
   const Layout layout = op->layout(context);
   std::string reason;
   std::uint32_t bodies = 0;
@@ -42,6 +43,7 @@ void decodes(const AvailableOperator& subject, std::uint64_t seed) {
     Rng rng = stream(seed, input);
     Genome genome = op->random(layout, rng);
     require_within(genome, layout);
+    if (input % 2 == 1) restructure(genome, layout, rng);
     const auto genes = static_cast<std::uint32_t>(genome.size());
     for (std::uint32_t changed = 0; changed < std::min(genes, input); ++changed) {
       const std::uint32_t gene = rng.below(genes);
@@ -56,11 +58,11 @@ void decodes(const AvailableOperator& subject, std::uint64_t seed) {
       throw Violation("it lets springs grow, but sets_growth() returns false");
     ++bodies;
   }
-  if (bodies == 0) throw Skipped("none of the genomes that were tried gives a body: " + reason);
+  if (bodies == 0) throw Violation("none of the genomes that were tried gives a body: " + reason);
 }
 
-void layout_is_whole(const AvailableOperator& subject, std::uint64_t) {
-  if (const std::string fault = layout_fault(create<Encoding>(subject)->layout(sample_world())); !fault.empty())
+void layout_is_whole(const Subject& subject, std::uint64_t) {
+  if (const std::string fault = layout_fault(create<Encoding>(subject)->layout(subject.context())); !fault.empty())
     throw Violation("its layout is not usable: " + fault);
 }
 
@@ -68,10 +70,10 @@ void layout_is_whole(const AvailableOperator& subject, std::uint64_t) {
 
 constexpr std::uint32_t tries_to_change = 200;
 
-void nothing_stays_nothing(const AvailableOperator& subject, std::uint64_t seed) {
+void nothing_stays_nothing(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Mutation>(subject);
   Rng rng = stream(seed, 0);
-  auto [layout, genome] = sample_genes(*op, Layout{}, rng);
+  auto [layout, genome] = sample_genes(*op, {{}, [](Rng&) { return Genome(); }}, rng);
   const std::size_t own = genome.size();
   op->mutate(genome, layout, rng);
   if (genome.size() != own) throw Violation("it adds genes to a genome that has no genes");
@@ -79,11 +81,11 @@ void nothing_stays_nothing(const AvailableOperator& subject, std::uint64_t seed)
 
 /// Checks that the mutation changes at least one of many genomes. If it never changes any, all of its children are
 /// clones.
-void mutates(const AvailableOperator& subject, std::uint64_t seed) {
+void mutates(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Mutation>(subject);
   for (std::uint32_t input = 0; input < tries_to_change; ++input) {
     Rng rng = stream(seed, input);
-    const auto [layout, genome] = sample_genes(*op, sample_layout(*op, input), rng);
+    const auto [layout, genome] = sample_genes(*op, sample_genomes(subject, *op, input), rng);
     Genome mutant = genome;
     op->mutate(mutant, layout, rng);
     if (mutant != genome) return;
@@ -91,11 +93,11 @@ void mutates(const AvailableOperator& subject, std::uint64_t seed) {
   throw Violation("it changes none of " + std::to_string(tries_to_change) + " genomes, so its children are clones");
 }
 
-void mutants_fit(const AvailableOperator& subject, std::uint64_t seed) {
+void mutants_fit(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Mutation>(subject);
   for (const std::uint32_t input : {0, 1}) {
     Rng rng = stream(seed, input);
-    auto [layout, genome] = sample_genes(*op, sample_layout(*op, input), rng);
+    auto [layout, genome] = sample_genes(*op, sample_genomes(subject, *op, input), rng);
     for (int i = 0; i < 200; ++i) {
       op->mutate(genome, layout, rng);
       require_within(genome, layout);
@@ -103,36 +105,36 @@ void mutants_fit(const AvailableOperator& subject, std::uint64_t seed) {
   }
 }
 
-void twins_stay_twins(const AvailableOperator& subject, std::uint64_t seed) {
+void twins_stay_twins(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Crossover>(subject);
   for (std::uint32_t input = 0; input < 50; ++input) {
-    const Layout layout = sample_layout(*op, input);
+    const auto [layout, draw] = sample_genomes(subject, *op, input);
     Rng rng = stream(seed, input);
-    const Genome genome = sample_genome(layout, rng), twin = genome;
+    const Genome genome = draw(rng), twin = genome;
     if (op->cross({genome, twin}, layout, rng) != genome)
       throw Violation("the child of two equal genomes differs from them");
   }
 }
 
 /// Checks that the child differs from the first parent for at least one of many pairs.
-void crosses(const AvailableOperator& subject, std::uint64_t seed) {
+void crosses(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Crossover>(subject);
   for (std::uint32_t input = 0; input < tries_to_change; ++input) {
-    const Layout layout = sample_layout(*op, input);
+    const auto [layout, draw] = sample_genomes(subject, *op, input);
     Rng rng = stream(seed, input);
-    const Genome first = sample_genome(layout, rng), second = sample_genome(layout, rng);
+    const Genome first = draw(rng), second = draw(rng);
     if (op->cross({first, second}, layout, rng) != first) return;
   }
   throw Violation("for all of " + std::to_string(tries_to_change) +
                   " pairs of genomes it returns the first genome, so its children are clones");
 }
 
-void children_fit(const AvailableOperator& subject, std::uint64_t seed) {
+void children_fit(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Crossover>(subject);
   Rng rng = stream(seed, 0);
   for (std::uint32_t input = 0; input < 200; ++input) {
-    const Layout layout = sample_layout(*op, input);
-    const Genome first = sample_genome(layout, rng), second = sample_genome(layout, rng);
+    const auto [layout, draw] = sample_genomes(subject, *op, input);
+    const Genome first = draw(rng), second = draw(rng);
     require_within(op->cross({first, second, input % 4 < 2}, layout, rng), layout);
   }
 }
@@ -145,13 +147,14 @@ void require_measures(const Devo& op) {
       throw Violation("measure() returns no name or no unit; the unit of a pure number is \"1\"");
 }
 
-/// Checks over several cycles that the host can apply all edits, and that new masses are within the bounds.
-void bodies_stay_sound(const AvailableOperator& subject, std::uint64_t seed) {
+/// Checks over several cycles that the host can apply all edits, that new masses are within the bounds, and that some
+/// body still has springs after the first cycle.
+void bodies_stay_sound(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Devo>(subject);
   require_measures(*op);
-  bool edited = false;
+  bool edited = false, some_body_holds = false;
   for (std::uint32_t input = 0; input < 24; ++input) {
-    SampleLife life = sample_life(*op, seed, input);
+    SampleLife life = sample_life(subject, *op, seed, input);
     for (life.cycle = 1; life.cycle <= 10; ++life.cycle) {
       Edits edits;
       Rng rng = stream(seed, input, static_cast<std::uint32_t>(life.cycle));
@@ -171,8 +174,10 @@ void bodies_stay_sound(const AvailableOperator& subject, std::uint64_t seed) {
         throw Violation(numbered("body", input) + ", " + numbered("cycle", std::uint32_t(life.cycle)) + ": it " +
                         error.what());
       }
+      some_body_holds = some_body_holds || !life.living.body.springs.empty();
     }
   }
+  if (!some_body_holds) throw Violation("it destroys every body: none has a spring after one cycle");
   if (!edited) throw Skipped("it edits none of the bodies");
 }
 
@@ -180,7 +185,7 @@ void bodies_stay_sound(const AvailableOperator& subject, std::uint64_t seed) {
 
 /// Checks that scores do not change if a body is moved horizontally (heights are relative to the floor). The distances
 /// are powers of two, so that rounding errors are small.
-void unmoved_by_translation(const AvailableOperator& subject, std::uint64_t seed) {
+void unmoved_by_translation(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Fitness>(subject);
   if (op->traits().depends_on_place) throw Skipped("its traits say that it depends on the place of the body");
   for (std::uint32_t input = 0; input < 20; ++input) {
@@ -197,7 +202,7 @@ void unmoved_by_translation(const AvailableOperator& subject, std::uint64_t seed
   }
 }
 
-void honest_about_nan(const AvailableOperator& subject, std::uint64_t) {
+void honest_about_nan(const Subject& subject, std::uint64_t) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Vec3 nowhere{nan, nan, nan};
   for (const double score : create<Fitness>(subject)->score({{nowhere, nowhere}, nowhere, nowhere, 1, nan}))
@@ -206,7 +211,7 @@ void honest_about_nan(const AvailableOperator& subject, std::uint64_t) {
                       "; expected a score that is not finite");
 }
 
-void scores_every_objective(const AvailableOperator& subject, std::uint64_t seed) {
+void scores_every_objective(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Fitness>(subject);
   const Request request = op->observes();
   if (!(request.settle >= 0) || !(request.window > 0))
@@ -245,7 +250,7 @@ SampleTable reordered(const SampleTable& table, const std::vector<std::uint32_t>
   return other;
 }
 
-void order_does_not_matter(const AvailableOperator& subject, std::uint64_t seed) {
+void order_does_not_matter(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Selection>(subject);
   for (std::uint32_t input = 0; input < 20; ++input) {
     const SampleTable table = sample_table(seed, input, 24, 4);
@@ -278,7 +283,7 @@ std::vector<std::uint32_t> survivors(const Selection& op, const SampleTable& tab
   return living;
 }
 
-void keeps_its_elite(const AvailableOperator& subject, std::uint64_t seed) {
+void keeps_its_elite(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Selection>(subject);
   if (!op->traits().is_elitist) throw Skipped("its traits say that it is not elitist");
   for (std::uint32_t input = 0; input < 40; ++input) {
@@ -293,7 +298,7 @@ void keeps_its_elite(const AvailableOperator& subject, std::uint64_t seed) {
 
 /// Checks that no failed row survives or breeds. Twelve of the twenty rows did not fail and only ten survive, so no
 /// failed row is needed. If all rows failed, there must be survivors and parents nevertheless.
-void failed_rows_lose(const AvailableOperator& subject, std::uint64_t seed) {
+void failed_rows_lose(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Selection>(subject);
   for (std::uint32_t input = 0; input < 20; ++input) {
     const SampleTable table = sample_table(seed, input, 20, 8);

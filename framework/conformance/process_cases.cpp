@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "conformance/conformance.hpp"
 #include "conformance/trials.hpp"
 #include "operators/describe.hpp"
 #include "operators/surroundings.hpp"
@@ -19,7 +20,7 @@ std::string bytes_of(const Numbers& numbers) {
 }
 
 /// Checks that every call gives the same result as if it were the first call in a process, regardless of earlier calls.
-void no_hidden_state(const AvailableOperator& subject, std::uint64_t seed) {
+void no_hidden_state(const Subject& subject, std::uint64_t seed) {
   constexpr std::uint32_t rounds = 16;
   const std::uint32_t inputs = inputs_for(subject);
   std::vector<std::string> first;
@@ -36,19 +37,20 @@ void no_hidden_state(const AvailableOperator& subject, std::uint64_t seed) {
 
 /// Checks that the operator leaves the rounding mode, flush-to-zero and the locale as they are, because they apply to
 /// the whole process.
-void same_surroundings(const AvailableOperator& subject, std::uint64_t seed) {
+void same_surroundings(const Subject& subject, std::uint64_t seed) {
   const Surroundings before;
   const auto require_same = [&](const char* where) {
     if (const std::string changed = before.restore(); !changed.empty())
       throw Violation("it changes " + changed + " in " + where);
   };
   // not made by create<Operator>(), which would restore what the constructor changes
-  const std::unique_ptr<Operator> op(subject.entry->create());
+  const std::unique_ptr<Operator> op(subject.available.entry->create());
   require_same("its constructor");
   describe_parameters(*op);
   require_same("parameters()");
+  set_parameters(*op, subject);
   for (std::uint32_t input = 0; input < inputs_for(subject); ++input) {
-    try_out(kind_of(subject), *op, seed, input);
+    try_out(subject, *op, seed, input);
     require_same("its calls");
   }
 }
@@ -76,12 +78,12 @@ void require_plain(const std::string& what, std::string_view text) {
   }
 }
 
-void plain_names(const AvailableOperator& subject, std::uint64_t) {
-  require_name("its name", subject.entry->name, "-._");
-  require_plain("its summary", subject.entry->summary);
-  require_plain("its version", subject.manifest->version);
-  require_plain("its licence", subject.manifest->license);
-  for (const ParameterDescription& p : describe_parameters(subject)) {
+void plain_names(const Subject& subject, std::uint64_t) {
+  require_name("its name", subject.available.entry->name, "-._");
+  require_plain("its summary", subject.available.entry->summary);
+  require_plain("its version", subject.available.manifest->version);
+  require_plain("its licence", subject.available.manifest->license);
+  for (const ParameterDescription& p : describe_parameters(subject.available)) {
     require_name("the parameter", p.name, "-_");
     for (const std::string& text : {p.fallback, p.allowed, p.unit, p.text})
       require_plain("the declaration of parameter \"" + p.name + "\"", text);

@@ -70,15 +70,15 @@ void require_untouched(const char* what, const Numbers& before, const Numbers& a
   if (!same(before, after)) throw Violation(std::string("it changes ") + what + ", which it may only read");
 }
 
-Numbers try_encoding(const Encoding& op, std::uint64_t seed, std::uint32_t input) {
-  const EncodingContext context = sample_world();
+Numbers try_encoding(const Subject& subject, const Encoding& op, std::uint64_t seed, std::uint32_t input) {
+  const EncodingContext context = subject.context();
   const Layout layout = op.layout(context);
   const Numbers layout_before = numbers_of(layout);
   Rng rng = stream(seed, input);
   const Genome genome = op.random(layout, rng);
   const Numbers genome_before = numbers_of(genome);
   const Blueprint blueprint = op.decode(genome, context);
-  require_untouched("the context", numbers_of(sample_world()), numbers_of(context));
+  require_untouched("the context", numbers_of(subject.context()), numbers_of(context));
   require_untouched("the layout", layout_before, numbers_of(layout));
   require_untouched("the genome that it decodes", genome_before, numbers_of(genome));
   Numbers result = genome_before;
@@ -90,33 +90,34 @@ Numbers try_encoding(const Encoding& op, std::uint64_t seed, std::uint32_t input
   return result;
 }
 
-Numbers try_mutation(const Mutation& op, std::uint64_t seed, std::uint32_t input) {
+Numbers try_mutation(const Subject& subject, const Mutation& op, std::uint64_t seed, std::uint32_t input) {
   Rng rng = stream(seed, input);
-  auto [layout, genome] = sample_genes(op, sample_layout(op, input), rng);
+  auto [layout, genome] = sample_genes(op, sample_genomes(subject, op, input), rng);
   const Numbers layout_before = numbers_of(layout);
   op.mutate(genome, layout, rng);
   require_untouched("the layout", layout_before, numbers_of(layout));
   return numbers_of(genome);
 }
 
-Numbers try_crossover(const Crossover& op, std::uint64_t seed, std::uint32_t input) {
-  const Layout layout = sample_layout(op, input);
+Numbers try_crossover(const Subject& subject, const Crossover& op, std::uint64_t seed, std::uint32_t input) {
+  const auto [layout, draw] = sample_genomes(subject, op, input);
   Rng rng = stream(seed, input);
-  const Genome first = sample_genome(layout, rng), second = sample_genome(layout, rng);
+  const Genome first = draw(rng), second = draw(rng);
   const Numbers first_before = numbers_of(first), second_before = numbers_of(second);
   const Genome child = op.cross({first, second, input % 4 < 2}, layout, rng);
-  require_untouched("the layout", numbers_of(sample_layout(op, input)), numbers_of(layout));
+  require_untouched("the layout", numbers_of(sample_genomes(subject, op, input).layout), numbers_of(layout));
   require_untouched("the first parent", first_before, numbers_of(first));
   require_untouched("the second parent", second_before, numbers_of(second));
   return numbers_of(child);
 }
 
-Numbers try_devo(const Devo& op, std::uint64_t seed, std::uint32_t input) {
-  const SampleLife life = sample_life(op, seed, input);
+Numbers try_devo(const Subject& subject, const Devo& op, std::uint64_t seed, std::uint32_t input) {
+  const SampleLife life = sample_life(subject, op, seed, input);
   Edits edits;
   Rng rng = stream(seed, input, 1);
   op.develop(life.context(op.observes()), edits, rng);
-  require_untouched("the body, its state or its genes", numbers_of(sample_life(op, seed, input)), numbers_of(life));
+  require_untouched("the body, its state or its genes", numbers_of(sample_life(subject, op, seed, input)),
+                    numbers_of(life));
   return numbers_of(edits);
 }
 
@@ -156,58 +157,11 @@ bool same(const Numbers& a, const Numbers& b) {
 
 Rng stream(std::uint64_t seed, std::uint32_t input, std::uint32_t part) { return Rng(philox, {seed, input, part, 0}); }
 
-EncodingContext sample_world() {
-  EncodingContext context;
-  for (const auto& [name, material] : base_materials()) {
-    context.material_names.push_back(name);
-    context.materials.push_back(material);
-  }
-  context.philox = philox;
-  return context;
-}
-
-Layout sample_layout(std::uint32_t input) {
-  Layout layout;
-  if (input % 2 == 0) {
-    layout.add_block(7, {-1, 1});
-    layout.add_block(1, {0, 0, 5});
-    layout.add_block(3, {0, 0.25});
-    layout.add_block(6, {0, 0, 2});
-    return layout;
-  }
-  const neat::Types types = neat::add_types(layout, 2, 3, 9, 12);
-  for (int i = 0; i < 4; ++i) layout.add_block_of(types.node);
-  for (int i = 0; i < 5; ++i) layout.add_block_of(types.link);
-  return layout;
-}
-
-Layout sample_layout(const Operator& op, std::uint32_t input) {
-  const std::vector<std::string> wanted = op.traits().block_types;
-  if (wanted.empty()) return sample_layout(input);
-  for (const std::string& type : wanted)
-    if (type != "node" && type != "link")
-      throw Skipped("it works on blocks of the type \"" + printable(type) + "\", which the sample genomes do not have");
-  return sample_layout(1);
-}
-
-Genome sample_genome(const Layout& layout, Rng& rng) {
-  Genome genome = random_genome(layout, rng);
-  if (layout.is_fixed()) return genome;
-  for (std::uint32_t type = 0; type < layout.types.size(); ++type) {
-    const std::vector<float> genes(layout.types[type].genes.size(), 0);
-    const std::uint32_t block = add_block(genome, layout, type, genes, fresh_id(rng));
-    for (std::uint32_t gene = 0; gene < genes.size(); ++gene)
-      genome[genome.blocks[block].first + gene] = layout.draw(genome, genome.blocks[block].first + gene, rng);
-  }
-  remove_block(genome, layout, rng.below(4));
-  return genome;
-}
-
-SampleGenes sample_genes(const Mutation& op, const Layout& others, Rng& rng) {
+SampleGenes sample_genes(const Mutation& op, const SampleGenomes& others, Rng& rng) {
   SampleGenes sample{.layout = {.sections = {}}, .genome = {}};
-  add_section(sample.layout, "sample", others);
-  const Layout own = op.layout(others);
-  std::vector<Genome> sections = {others.types.empty() ? Genome() : sample_genome(others, rng)};
+  add_section(sample.layout, "sample", others.layout);
+  const Layout own = op.layout(others.layout);
+  std::vector<Genome> sections = {others.draw(rng)};
   if (!own.types.empty()) {
     sample.layout.own = add_section(sample.layout, "own", own);
     sections.push_back(op.random(own, rng));
@@ -268,18 +222,19 @@ DevoContext SampleLife::context(const SpringRequest& request) const {
   return context;
 }
 
-SampleLife sample_life(const Devo& op, std::uint64_t seed, std::uint32_t input) {
+SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t seed, std::uint32_t input) {
   Rng rng = stream(seed, input), own_rng = stream(seed, input, 2);
   SampleLife life;
-  life.layout = sample_layout(0);
-  life.genome = random_genome(life.layout, rng);
-  if (const Layout own = op.layout(sample_world()); !own.types.empty()) {
+  const SampleGenomes genomes = sample_genomes(subject, op, 0);
+  life.layout = genomes.layout;
+  life.genome = genomes.draw(rng);
+  if (const Layout own = op.layout(subject.context()); !own.types.empty()) {
     life.own = op.random(own, own_rng);
     require_within(life.own, own);
   }
   life.resets = input % 3 == 2;
   Body& body = life.living.body;
-  body.materials = sample_world().materials;
+  body.materials = subject.context().materials;
   const auto materials = static_cast<std::uint32_t>(body.materials.size());
   body.base_materials = materials;
   // every eighth body has only two masses, a case that operators often do not consider
@@ -338,23 +293,22 @@ SampleTable sample_table(std::uint64_t seed, std::uint32_t input, std::size_t ro
   return table;
 }
 
-Numbers try_out(std::string_view kind, const Operator& op, std::uint64_t seed, std::uint32_t input) {
-  if (kind == Encoding::kind) return try_encoding(static_cast<const Encoding&>(op), seed, input);
-  if (kind == Mutation::kind) return try_mutation(static_cast<const Mutation&>(op), seed, input);
-  if (kind == Crossover::kind) return try_crossover(static_cast<const Crossover&>(op), seed, input);
-  if (kind == Devo::kind) return try_devo(static_cast<const Devo&>(op), seed, input);
+Numbers try_out(const Subject& subject, const Operator& op, std::uint64_t seed, std::uint32_t input) {
+  const std::string kind = subject.kind();
+  if (kind == Encoding::kind) return try_encoding(subject, static_cast<const Encoding&>(op), seed, input);
+  if (kind == Mutation::kind) return try_mutation(subject, static_cast<const Mutation&>(op), seed, input);
+  if (kind == Crossover::kind) return try_crossover(subject, static_cast<const Crossover&>(op), seed, input);
+  if (kind == Devo::kind) return try_devo(subject, static_cast<const Devo&>(op), seed, input);
   if (kind == Fitness::kind) return try_fitness(static_cast<const Fitness&>(op), seed, input);
   return try_selection(static_cast<const Selection&>(op), seed, input);
 }
 
-std::string kind_of(const AvailableOperator& subject) { return subject.entry->kind; }
-
-std::uint32_t inputs_for(const AvailableOperator& subject) {
-  return subject.entry->kind == Encoding::kind ? 4 : 16;  // bodies of encodings may have thousands of masses
+std::uint32_t inputs_for(const Subject& subject) {
+  return subject.kind() == Encoding::kind ? 4 : 16;  // bodies of encodings may have thousands of masses
 }
 
-Numbers try_new(const AvailableOperator& subject, std::uint64_t seed, std::uint32_t input) {
-  return try_out(kind_of(subject), *create<Operator>(subject), seed, input);
+Numbers try_new(const Subject& subject, std::uint64_t seed, std::uint32_t input) {
+  return try_out(subject, *create<Operator>(subject), seed, input);
 }
 
 std::string in_new_process(const std::function<std::string()>& work) {
@@ -362,12 +316,15 @@ std::string in_new_process(const std::function<std::string()>& work) {
   const auto guarded = [&] {
     try {
       return "+" + work();
+    } catch (const Skipped& reason) {
+      return "?" + std::string(reason.what());
     } catch (const std::exception& error) {
       return "-" + std::string(error.what());
     }
   };
   const ChildEnd end = in_child(guarded, seconds);
   if (!end.crash.empty()) throw Violation("in a process of its own it crashes: " + end.crash);
+  if (end.text.starts_with('?')) throw Skipped(end.text.substr(1));
   if (end.text.starts_with('-')) throw Violation(end.text.substr(1));
   return end.text.substr(1);
 }

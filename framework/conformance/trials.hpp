@@ -7,8 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "conformance/conformance.hpp"
-#include "experiment/experiment.hpp"
+#include "conformance/subject.hpp"
 #include "life/edits.hpp"
 
 namespace evodevo::conformance {
@@ -21,22 +20,12 @@ bool same(const Numbers& a, const Numbers& b);
 /// Returns a stream of random numbers that depends on nothing but the arguments.
 Rng stream(std::uint64_t seed, std::uint32_t input, std::uint32_t part = 0);
 
-/// Returns a context with the base materials.
-EncodingContext sample_world();
-/// Returns the layout of the genomes for this input. Even inputs have a fixed one, with real genes and choice genes in
-/// blocks of several sizes. Odd ones have one whose blocks come and go: nodes, and links that refer to them.
-Layout sample_layout(std::uint32_t input);
-/// The same for an operator: always the one with nodes and links if it works on them. Throws Skipped if it works on
-/// blocks of other types.
-Layout sample_layout(const Operator& op, std::uint32_t input);
-/// Returns a genome of a sample layout. If blocks may come and go, it has other blocks than a first genome.
-Genome sample_genome(const Layout& layout, Rng& rng);
-/// The genes that a mutation works on: those of a sample layout and its own.
+/// The genes that a mutation works on: those of others and its own.
 struct SampleGenes {
   Layout layout;
   Genome genome;
 };
-SampleGenes sample_genes(const Mutation& op, const Layout& others, Rng& rng);
+SampleGenes sample_genes(const Mutation& op, const SampleGenomes& others, Rng& rng);
 /// Throws Violation if the layout does not allow the genome.
 void require_within(const Genome& genome, const Layout& layout);
 Numbers numbers_of(const Genome& genome);
@@ -57,7 +46,7 @@ struct SampleLife {
 };
 /// Returns a random life. `input` determines whether the masses have materials, and whether the body has many masses or
 /// only two.
-SampleLife sample_life(const Devo& op, std::uint64_t seed, std::uint32_t input);
+SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t seed, std::uint32_t input);
 
 Observation sample_observation(std::uint64_t seed, std::uint32_t input);
 
@@ -71,16 +60,15 @@ SampleTable sample_table(std::uint64_t seed, std::uint32_t input, std::size_t ro
 
 /// Calls the functions of an operator with the input that has the number `input`, and returns all results as numbers.
 /// Throws Violation if the operator changes inputs that it may only read.
-Numbers try_out(std::string_view kind, const Operator& op, std::uint64_t seed, std::uint32_t input);
+Numbers try_out(const Subject& subject, const Operator& op, std::uint64_t seed, std::uint32_t input);
 
-std::string kind_of(const AvailableOperator& subject);
 /// Returns the number of inputs that the cases use for an operator of this kind.
-std::uint32_t inputs_for(const AvailableOperator& subject);
-/// Does the same as try_out(), but with a new instance of the operator that has the default parameters.
-Numbers try_new(const AvailableOperator& subject, std::uint64_t seed, std::uint32_t input);
+std::uint32_t inputs_for(const Subject& subject);
+/// Does the same as try_out(), but with a new instance of the operator.
+Numbers try_new(const Subject& subject, std::uint64_t seed, std::uint32_t input);
 
-/// Returns what `work` returns in a child process, in which the operator has not been called yet. Throws Violation if
-/// `work` throws, or if the process crashes or takes too long.
+/// Returns what `work` returns in a child process, in which the operator has not been called yet. Throws Skipped if
+/// `work` does, and Violation if it throws anything else, or if the process crashes or takes too long.
 std::string in_new_process(const std::function<std::string()>& work);
 
 }  // namespace evodevo::conformance

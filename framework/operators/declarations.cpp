@@ -11,7 +11,7 @@ namespace {
 
 class DeclarationCheck final : public Parameters {
  public:
-  std::vector<std::string> wrong_defaults, taken_names, faults;
+  std::vector<std::string> wrong_defaults, required, taken_names, faults;
 
   void real(double& value, std::string_view name, Range range, std::string_view text) override {
     declare(name, text);
@@ -46,13 +46,22 @@ class DeclarationCheck final : public Parameters {
     check(name, range.low, range);
     for (const double number : value) check(name, number, range);
   }
-  void text(std::string&, std::string_view name, std::string_view text) override { declare(name, text); }
-  void file(InputFile&, std::string_view name, std::string_view text) override { declare(name, text); }
+  void text(std::string& value, std::string_view name, std::string_view text) override {
+    declare(name, text);
+    if (value.empty()) unset_.emplace_back(name);
+  }
+  void file(InputFile& value, std::string_view name, std::string_view text) override {
+    declare(name, text);
+    if (value.path.empty()) unset_.emplace_back(name);
+  }
   void materials(std::vector<std::string>&, std::string_view name, std::string_view text) override {
     declare(name, text);
   }
   void require(bool holds, std::string_view name, std::string_view text) override {
-    if (!holds)
+    if (holds) return;
+    if (std::find(unset_.begin(), unset_.end(), name) != unset_.end())
+      required.emplace_back(name);
+    else
       wrong_defaults.push_back(std::string(name) + ": " + std::string(text) +
                                "; correct the defaults or the requirement");
   }
@@ -81,6 +90,7 @@ class DeclarationCheck final : public Parameters {
   }
 
   std::vector<std::string> names_;
+  std::vector<std::string> unset_;  ///< texts and files without a default
 };
 
 DeclarationCheck checked(Operator& op) {
@@ -94,6 +104,11 @@ DeclarationCheck checked(Operator& op) {
 std::string wrong_default(Operator& op) {
   const DeclarationCheck check = checked(op);
   return check.wrong_defaults.empty() ? "" : check.wrong_defaults.front();
+}
+
+std::string required_parameter(Operator& op) {
+  const DeclarationCheck check = checked(op);
+  return check.required.empty() ? "" : check.required.front();
 }
 
 std::string taken_name(Operator& op) {

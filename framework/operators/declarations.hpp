@@ -9,8 +9,12 @@
 namespace evodevo {
 
 /// Returns a description of the first default value that the operator's own declaration does not allow, with a remedy,
-/// or an empty text if all default values are allowed.
+/// or an empty text if all default values are allowed. A required parameter (see below) has no default.
 std::string wrong_default(Operator& op);
+
+/// Returns the name of the first parameter without a default that the operator's own declaration requires, such as a
+/// file, or an empty text if every parameter may be left out.
+std::string required_parameter(Operator& op);
 
 /// Returns the name of the first parameter that has the name of one of the host's keys (host_keys.hpp), or an empty
 /// text if there is no such parameter.

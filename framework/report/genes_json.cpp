@@ -10,17 +10,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string id_text(const Block& block) { return fmt::format("{:016x}", block.id); }
-
 Json value_json(const Genome& genome, const Layout& layout, const Block& block, std::uint32_t gene) {
   const GeneSpec& spec = layout.types[block.type].gene(gene);
   const float value = genome[block.first + gene];
-  if (spec.is_reference()) return id_text(layout.blocks(genome)[target_of(genome, layout, block, gene)]);
+  if (spec.is_reference()) return id_text(layout.blocks(genome)[target_of(genome, layout, block, gene)].id);
   if (spec.is_choice()) return static_cast<std::int64_t>(value);
   return value;
 }
 
 }  // namespace
+
+std::string id_text(BlockId id) { return fmt::format("{:016x}", id); }
 
 std::string gene_name(const BlockType& type, const Block& block, std::uint32_t gene) {
   const auto listed = static_cast<std::uint32_t>(type.gene_names.size());
@@ -40,7 +40,7 @@ Json genes_json(const Genome& genome, const Layout& layout) {
     for (std::uint32_t gene = 0; gene < block.count; ++gene)
       genes[gene_name(type, block, gene)] = value_json(genome, layout, block, gene);
     sections[type.section]["blocks"].push_back(
-        {{"type", printable(type.name)}, {"id", id_text(block)}, {"genes", std::move(genes)}});
+        {{"type", printable(type.name)}, {"id", id_text(block.id)}, {"genes", std::move(genes)}});
   }
   return sections;
 }

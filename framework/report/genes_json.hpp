@@ -8,6 +8,9 @@
 
 namespace evodevo {
 
+/// Returns the id of a block as reports show it: 16 hexadecimal digits.
+std::string id_text(BlockId id);
+
 /// Returns the name of a gene of a block, for example "bias" or "weight 3". `type` is one of the layout of whole
 /// genomes, which has a name, maybe empty, for every gene that it lists; a gene without a name is called by its number.
 std::string gene_name(const BlockType& type, const Block& block, std::uint32_t gene);

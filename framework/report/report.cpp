@@ -9,6 +9,7 @@
 #include "life/body_building.hpp"
 #include "report/film_json.hpp"
 #include "report/filming.hpp"
+#include "report/lineage.hpp"
 #include "report/run_json.hpp"
 #include "report/scene_json.hpp"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "evolution/evolution.hpp"
+#include "report/lineage.hpp"
 
 namespace evodevo {
 namespace {
@@ -74,15 +75,6 @@ std::int64_t clones(const std::vector<Summary>& generations) {
   return sum;
 }
 
-std::vector<ArchivedIndividual> ancestry(const Archive& archive, std::uint32_t id) {
-  std::vector<ArchivedIndividual> line;
-  for (std::optional<std::uint32_t> next = id; next;) {
-    line.push_back(archive.known_individual(*next));
-    next = line.back().parents.empty() ? std::nullopt : std::optional(line.back().parents.front());
-  }
-  return line;
-}
-
 std::uint32_t last_age(const ArchivedIndividual& individual, std::uint32_t last_generation) {
   return individual.age(individual.died.value_or(last_generation));
 }
@@ -105,6 +97,7 @@ Json individual_json(const Archive& archive, const ArchivedIndividual& individua
           {"parents", individual.parents},
           {"made_by", individual.made_by},
           {"ancestry", std::move(ancestors)},
+          {"block_changes", line_changes_json(line, archive.layout())},
           {"verification", verification ? verification_json(*verification, objectives.front()) : Json(nullptr)}};
 }
 

@@ -10,13 +10,11 @@ namespace evodevo {
 /// Returns the number of clones in all generations.
 std::int64_t clones(const std::vector<Summary>& generations);
 
-/// Returns an individual, its parent, the parent's parent, and so on, back to a random individual. Mates are left out.
-std::vector<ArchivedIndividual> ancestry(const Archive& archive, std::uint32_t id);
-
 /// Returns an individual's age, in generations, when it was dropped, or in the last generation if it is still alive.
 std::uint32_t last_age(const ArchivedIndividual& individual, std::uint32_t last_generation);
 
-/// Returns an individual with its objectives, parents, ancestors and verification. If it has no fitness, the JSON has
+/// Returns an individual with its objectives, parents, ancestors, the blocks that came and went on the way, and its
+/// verification. If it has no fitness, the JSON has
 /// no objectives.
 nlohmann::ordered_json individual_json(const Archive& archive, const ArchivedIndividual& individual);
 

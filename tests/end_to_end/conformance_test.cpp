@@ -21,8 +21,11 @@ using nlohmann::json;
 using testing::Finished;
 
 /// Returns the outcome of every case, followed by the reason if there is one.
-std::map<std::string, std::string> verdicts(const fs::path& library, int expected_exit) {
-  const Finished finished = testing::run({EVODEVO_PROGRAM, "conform", library.string(), "--json"});
+std::map<std::string, std::string> verdicts(const fs::path& library, int expected_exit,
+                                            const std::vector<std::string>& options = {}) {
+  std::vector<std::string> command = {EVODEVO_PROGRAM, "conform", library.string(), "--json"};
+  command.insert(command.end(), options.begin(), options.end());
+  const Finished finished = testing::run(command);
   EXPECT_EQ(finished.exit_code, expected_exit) << finished.output;
   std::map<std::string, std::string> outcomes;
   for (const json& verdict : json::parse(finished.output))
@@ -89,6 +92,8 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"changes_crossover", "changes", "failed", {"200 pairs", "clones"}},
         Broken{"twins", "twins", "failed", {"equal genomes"}}, Broken{"decoding", "decoding", "failed", {"spring 0 "}},
         Broken{"decoding_growth", "decoding", "failed", {"sets_growth()"}},
+        Broken{"decoding_nothing", "decoding", "failed", {"gives a body: never"}},
+        Broken{"bodies_destroyed", "bodies", "failed", {"every body"}},
         Broken{"bodies", "bodies", "failed", {"body 0, cycle 1: ", "masses "}},
         Broken{"bodies_dangling", "bodies", "failed", {"body 0, cycle 1: ", "masses 0 and "}},
         Broken{"bodies_nan", "bodies", "failed", {"body 0, cycle 1: ", "masses 0 and 1 ", "stiffness is not a number"}},
@@ -130,9 +135,69 @@ TEST(Conformance, ACaseThatNeverEndsIsNotKept) {
   const auto note = [&](const conformance::Verdict& verdict) {
     outcomes[verdict.name] = verdict.outcome + " " + verdict.reason;
   };
-  conformance::examine(wrong("endless"), 1, note, 1);
+  conformance::examine(wrong("endless"), {.seconds = 1}, note);
   EXPECT_THAT(outcomes.at("nothing"), testing::at_place("failed ", " 1 s"));
   EXPECT_EQ(outcomes.at("layout"), "passed ") << "and the next case comes";
+}
+
+/// Returns the outcomes of the cases of one operator of the library of operators with special needs.
+std::map<std::string, std::string> special(const std::string& name, std::vector<std::string> options = {}) {
+  const fs::path library = fs::path(EVODEVO_FAULTY_PLUGINS) / "special" / "plugin.evodevo.so";
+  options.insert(options.begin(), {"--operator", name});
+  return verdicts(library, 0, options);
+}
+
+bool is_all_skipped(const std::map<std::string, std::string>& outcomes, const std::vector<std::string>& but) {
+  return std::ranges::all_of(outcomes, [&](const auto& one) {
+    return std::ranges::count(but, one.first) > 0 || one.second.starts_with("skipped ");
+  });
+}
+
+TEST(Conformance, BlocksOfAnEncodingOfTheSameLibraryAreTried) {
+  for (const std::string name : {"twigs", "bend-twig"})
+    for (const auto& [one, outcome] : special(name))
+      EXPECT_THAT(outcome, ::testing::AnyOf("passed ", testing::at_place("skipped ", "no parameters"))) << one;
+}
+
+TEST(Conformance, BlocksThatNobodyHasAreMissed) {
+  EXPECT_THAT(special("bend-leaf").at("changes"), testing::at_place("skipped ", "\"leaf\"", "--experiment"));
+}
+
+TEST(Conformance, ARequiredFileComesFromTheExperiment) {
+  const auto without = special("by-file");
+  EXPECT_THAT(without.at("threads"), testing::at_place("skipped ", "\"file\"", "--experiment"));
+  EXPECT_TRUE(is_all_skipped(without, {"declarations", "refusals", "names"}));
+  const testing::Scratch folder;
+  folder.write("digits", "0369");
+  const std::string experiment = folder.write("digits.toml", R"([experiment]
+evaluations = 10
+[encoding]
+name = "twigs"
+[[mutation]]
+name = "by-file"
+file = "digits"
+[[fitness]]
+name = "distance"
+[selection]
+name = "elitist"
+)");
+  const auto outcomes = special("by-file", {"--experiment", experiment});
+  EXPECT_GE(outcomes.size(), 12u);
+  for (const auto& [name, outcome] : outcomes) EXPECT_EQ(outcome, "passed ") << name;
+}
+
+TEST(Conformance, OneCaseCanRunInThisProcess) {
+  EXPECT_EQ(special("twigs", {"--case", "decoding", "--here"}),
+            (std::map<std::string, std::string>{{"decoding", "passed "}}));
+  const std::string crashing = wrong("crashing").string();
+  const Finished here = testing::run({EVODEVO_PROGRAM, "conform", crashing, "--case", "batch", "--here"});
+  EXPECT_GT(here.exit_code, 2) << "the crash is that of the program";
+  const Finished no_case = testing::run({EVODEVO_PROGRAM, "conform", crashing, "--here"});
+  EXPECT_EQ(no_case.exit_code, 2);
+  EXPECT_THAT(no_case.output, testing::naming("--here: ", "--case"));
+  const Finished unknown = testing::run({EVODEVO_PROGRAM, "conform", crashing, "--case", "btach"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.output, testing::naming("--case btach: ", "names"));
 }
 
 TEST(Conformance, ACaseThatCannotSayAnythingIsSkipped) {

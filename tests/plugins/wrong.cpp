@@ -38,7 +38,7 @@ struct Wrong final : evodevo::Mutation {
   void mutate(Genome&, const Layout&, Rng&) const override {}
 };
 
-#elif defined(WRONG_DECODING) || defined(WRONG_DECODING_GROWTH)
+#elif defined(WRONG_DECODING) || defined(WRONG_DECODING_GROWTH) || defined(WRONG_DECODING_NOTHING)
 
 struct Wrong final : evodevo::Encoding {
   Layout layout(const evodevo::EncodingContext&) const override {
@@ -48,6 +48,9 @@ struct Wrong final : evodevo::Encoding {
   }
   evodevo::Blueprint decode(const Genome&, const evodevo::EncodingContext& context) const override {
     evodevo::Blueprint blueprint;
+#if defined(WRONG_DECODING_NOTHING)
+    blueprint.failure = "never";
+#endif
     blueprint.body.materials = context.materials;
     blueprint.body.masses = {{{0, 0, 0}, 1}, {{1, 0, 0}, 1}};
 #if defined(WRONG_DECODING)
@@ -60,7 +63,7 @@ struct Wrong final : evodevo::Encoding {
 };
 
 #elif defined(WRONG_BODIES) || defined(WRONG_BODIES_DANGLING) || defined(WRONG_BODIES_NAN) || \
-    defined(WRONG_BODIES_BEYOND) || defined(WRONG_BODIES_GROWTH)
+    defined(WRONG_BODIES_BEYOND) || defined(WRONG_BODIES_GROWTH) || defined(WRONG_BODIES_DESTROYED)
 
 struct Wrong final : evodevo::Devo {
   void develop([[maybe_unused]] const evodevo::DevoContext& context, evodevo::Edits& edits, Rng&) const override {
@@ -73,6 +76,8 @@ struct Wrong final : evodevo::Devo {
     edits.new_springs.push_back({0, beyond, {1000, 0, 0, 0}, {}});
 #elif defined(WRONG_BODIES_NAN)
     edits.new_springs.push_back({0, 1, {std::nan(""), 0, 0, 0}, {}});
+#elif defined(WRONG_BODIES_DESTROYED)
+    for (std::uint32_t s = 0; s < context.body.springs.size(); ++s) edits.removed_springs.push_back(s);
 #elif defined(WRONG_BODIES_GROWTH)
     edits.growth = {0, 1};
 #else

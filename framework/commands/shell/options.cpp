@@ -46,12 +46,11 @@ constexpr Shorthand shorthands[] = {
     {"threads", "simulation.threads", "N", "number of threads on the CPU; 0: one for each core"},
 };
 
-/// Returns an option with its value, for messages.
+}  // namespace
+
 std::string option_text(const std::string& option, const std::string& value) {
   return "--" + option + " " + printable(value);
 }
-
-}  // namespace
 
 void add_plugin_option(Options& options) {
   options.add_options()("plugin-path", values<std::string>("PATH"),

@@ -7,6 +7,9 @@
 
 namespace evodevo {
 
+/// Returns an option with its value, for messages.
+std::string option_text(const std::string& option, const std::string& value);
+
 /// Adds --plugin-path.
 void add_plugin_option(Options& options);
 /// Returns the values of --plugin-path. Throws UsageError if one of them is neither a folder nor a library.

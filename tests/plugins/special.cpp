@@ -1,0 +1,82 @@
+// Operators that need more than generated inputs: an encoding with blocks of its own, a mutation that works on such
+// blocks, one that works on blocks that no encoding of the library has, and one that requires a file.
+#include "evodevo/plugin.hpp"
+
+namespace {
+
+using evodevo::Genome;
+using evodevo::Layout;
+using evodevo::Rng;
+
+/// A tree: each twig begins where the twig ends to which it refers.
+struct Twigs final : evodevo::Encoding {
+  Layout layout(const evodevo::EncodingContext&) const override {
+    Layout layout;
+    const evodevo::GeneSpec direction{-1, 1}, parent{.refers_to = 0};
+    layout.add_type({"twig", {direction, direction, direction, parent}, 1, 6, {"x", "y", "z", "parent"}});
+    for (int i = 0; i < 4; ++i) layout.add_block_of(0);
+    return layout;
+  }
+  evodevo::Blueprint decode(const Genome& genome, const evodevo::EncodingContext& context) const override {
+    evodevo::Blueprint blueprint;
+    evodevo::Body& body = blueprint.body;
+    body.materials = context.materials;
+    body.masses.push_back({{0, 0, 0}, context.mass});
+    for (const evodevo::Block& twig : genome.blocks) {
+      const auto from = static_cast<std::uint32_t>(genome[twig.first + 3]) % body.masses.size();
+      const evodevo::Vec3 way{genome[twig.first], genome[twig.first + 1], 2.0 + genome[twig.first + 2]};
+      body.springs.push_back(
+          {static_cast<std::uint32_t>(from), static_cast<std::uint32_t>(body.masses.size()), norm(way), 0});
+      body.masses.push_back({body.masses[from].rest + way, context.mass});
+    }
+    return blueprint;
+  }
+};
+
+/// Draws a gene of a block of one type anew.
+struct Redraw : evodevo::Mutation {
+  explicit Redraw(const char* type) : type_(type) {}
+  evodevo::Traits traits() const override { return {.block_types = {type_}}; }
+  void mutate(Genome& genome, const Layout& layout, Rng& rng) const override {
+    for (const evodevo::Block& block : layout.blocks(genome))
+      if (layout.types[block.type].name == type_) genome[block.first] = layout.draw(genome, block.first, rng);
+  }
+
+ private:
+  const char* type_;
+};
+struct BendTwig final : Redraw {
+  BendTwig() : Redraw("twig") {}
+};
+struct BendLeaf final : Redraw {
+  BendLeaf() : Redraw("leaf") {}
+};
+
+/// Gives the first real gene the value of a random character of a file.
+struct ByFile final : evodevo::Mutation {
+  void parameters(evodevo::Parameters& p) override {
+    p.file(file_, "file", "A text of digits.");
+    p.require(!file_.path.empty(), "file", "expected a file of digits");
+  }
+  void mutate(Genome& genome, const Layout& layout, Rng& rng) const override {
+    const auto size = static_cast<std::uint32_t>(file_.content.size());
+    const int digit = file_.content.at(rng.below(size)) - '0';
+    for (std::size_t i = 0; i < genome.size(); ++i) {
+      const evodevo::GeneSpec& gene = layout.gene(genome, i);
+      if (!gene.is_real()) continue;
+      genome[i] = gene.low + (gene.high - gene.low) * static_cast<float>(digit) / 9;
+      return;
+    }
+  }
+
+ private:
+  evodevo::InputFile file_;
+};
+
+}  // namespace
+
+EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
+               evodevo::operator_entry<Twigs>("twigs", "Grows a tree of springs."),
+               evodevo::operator_entry<BendTwig>("bend-twig", "Gives each twig another direction."),
+               evodevo::operator_entry<BendLeaf>("bend-leaf", "Gives each leaf another direction."),
+               evodevo::operator_entry<ByFile>("by-file", "Sets a gene to what a file says."))
