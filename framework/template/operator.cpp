@@ -1,7 +1,5 @@
 @selection@
-#include <algorithm>
-#include <numeric>
-
+#include "evodevo/helpers/rows.hpp"
 @end@
 #include "evodevo/plugin.hpp"
 
@@ -128,17 +126,9 @@ class @CLASS@ final : public evodevo::Selection {
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
                                                                evodevo::Rng& rng) const override {
-    auto pool = best_first(rows);
-    const auto sound = std::count_if(rows.begin(), rows.end(), [](const Candidate& row) { return row.ok(); });
-    const double part = breeders_ * static_cast<double>(sound > 0 ? sound : std::ssize(rows));
-    pool.resize(std::max<std::size_t>(1, static_cast<std::size_t>(part)));
-    const auto draw = [&] { return pool[rng.below(static_cast<std::uint32_t>(pool.size()))]; };
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t parent = draw();
-      pairs.emplace_back(parent, draw());
-    }
-    return pairs;
+    return draw_pairs(rows, count, rng, [&](std::uint32_t size, evodevo::Rng& random) {
+      return random.below(std::max(1u, static_cast<std::uint32_t>(breeders_ * size)));
+    });
   }
 
   std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
@@ -149,16 +139,6 @@ class @CLASS@ final : public evodevo::Selection {
   }
 
  private:
-  static std::vector<std::uint32_t> best_first(std::span<const Candidate> rows) {
-    std::vector<std::uint32_t> order(rows.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
-      if (rows[i].ok() != rows[j].ok()) return rows[i].ok();
-      return rows[i].ok() && rows[i].scores[0] > rows[j].scores[0];
-    });
-    return order;
-  }
-
   double breeders_ = 0.5;
 };
 @end@

@@ -187,6 +187,8 @@ TEST_F(Completion, BashKnowsValuesFoldersAndFiles) {
   EXPECT_THAT(offered({"describe", "--markdown", "spring-t"}), ElementsAre("spring-turnover"));
   EXPECT_THAT(offered({"new", "d"}), ElementsAre("devo"));
   EXPECT_THAT(offered({"new", "devo", ""}), IsEmpty()) << "the name is the user's own";
+  EXPECT_THAT(offered({"new", "devo", "my-lab.growth", "--quiet", "f"}), ElementsAre("fitness"));
+  EXPECT_THAT(offered({"new", "devo", "my-lab.growth", "fitness", ""}), IsEmpty());
   EXPECT_THAT(offered({"help", "ex"}), ElementsAre("experiment", "exit-codes"));
 }
 

@@ -1,10 +1,14 @@
 #!/usr/bin/env bash
-# Installs evodevo. Then writes, builds, checks and runs a plugin of the given kind outside the source tree, using only
-# the installed package.
+# Installs evodevo. Then writes, builds, checks and runs a project with the given operators outside the source tree,
+# using only the installed package. The first operator is called my-lab.growth.
 #
-#   outside_plugin.sh BUILD_FOLDER KIND
+#   outside_plugin.sh BUILD_FOLDER KIND NAME [KIND NAME]...
 set -euo pipefail
-build=$(realpath "$1") kind=$2
+build=$(realpath "$1")
+shift
+operators=("$@")
+names=()
+for ((i = 1; i < $#; i += 2)); do names+=("${operators[i]}"); done
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 export XDG_STATE_HOME=$scratch/state
@@ -24,22 +28,35 @@ for file in man/man1/evodevo.1 bash-completion/completions/evodevo zsh/site-func
 done
 
 cd "$scratch"
-evodevo new "$kind" my-lab.growth
+evodevo new "${operators[@]}"
 cd my-lab.growth
 cmake -B build >/dev/null
 cmake --build build
 ctest --test-dir build --output-on-failure
 evodevo run experiment.toml --out run
 # does not use a pipe to grep, since grep would close the pipe at the first match
-[[ $(evodevo show run --json) == *'"my-lab.growth"'* ]] || { echo "the run does not use the operator"; exit 1; }
+shown=$(evodevo show run --json)
+for name in "${names[@]}"; do
+  [[ $shown == *"\"name\": \"$name\""* ]] || { echo "the run does not use $name"; exit 1; }
+done
 
 # after a change, only one file is compiled
 touch growth.cpp
 [ "$(cmake --build build | grep -c 'Building')" = 1 ] || { echo "a change of one file builds others"; exit 1; }
 
 table() { sed -n '/^## /,$p' "$1"; }
-evodevo describe my-lab.growth --markdown --plugin-path build/lib/evodevo >described.md
-diff <(table README.md) <(table described.md | sed '$d') || { echo "README.md is not what the operator says"; exit 1; }
+# README.md has the operators in the order of their kinds
+described() {
+  sed -n 's/^## `\(.*\)`$/\1/p' README.md | while read -r name; do
+    evodevo describe "$name" --markdown --plugin-path build/lib/evodevo >described.md
+    table described.md
+  done
+}
+(($(grep -c '^## `' README.md) == ${#names[@]})) || { echo "README.md has not one table for each operator"; exit 1; }
+diff <(table README.md) <(described | sed '$d') || { echo "README.md is not what the operators say"; exit 1; }
 
 cmake --install build --prefix "$scratch/package" >/dev/null
-[[ $(evodevo operators) == *my-lab.growth* ]] || { echo "the installed plugin is not found"; exit 1; }
+available=$(evodevo operators)
+for name in "${names[@]}"; do
+  [[ $available == *" $name "* ]] || { echo "the installed $name is not found"; exit 1; }
+done

@@ -127,6 +127,8 @@ TEST_F(Surroundings, HostileArgumentsAreRefusedInOneCleanLine) {
                                                           {"new", "devo", long_text},
                                                           {"new", "devo", ".."},
                                                           {"new", long_text, long_text},
+                                                          {"new", "devo", "x", odd},
+                                                          {"new", "devo", "x", "devo", odd},
                                                           {"conform", odd},
                                                           {"conform", folder},
                                                           {"conform", zero},

@@ -32,7 +32,7 @@ void refuse_to_print_into(const std::string& input) {
 
 std::vector<std::string> values_of(const Given& given, const Argument& argument) {
   if (!given.contains(argument.name)) return {};
-  if (argument.count == Count::one_or_more) return given[argument.name].as<std::vector<std::string>>();
+  if (argument.is_repeated()) return given[argument.name].as<std::vector<std::string>>();
   return {given[argument.name].as<std::string>()};
 }
 
@@ -62,6 +62,7 @@ std::string call_of(const Command& command) {
   std::string text = command.name;
   for (const Argument& argument : command.arguments)
     text += argument.count == Count::optional      ? " [" + argument.name + "]"
+            : argument.count == Count::pairs       ? " [" + argument.name + "...]"
             : argument.count == Count::one_or_more ? " " + argument.name + "..."
                                                    : " " + argument.name;
   return text;
@@ -80,12 +81,11 @@ Given parse(const Command& command, const Arguments& arguments) {
   all.add(command.options).add(common_options());
   po::positional_options_description positional;
   for (const Argument& argument : command.arguments) {
-    const bool repeated = argument.count == Count::one_or_more;
-    if (repeated)
+    if (argument.is_repeated())
       all.add_options()(argument.name.c_str(), po::value<std::vector<std::string>>());
     else
       all.add_options()(argument.name.c_str(), po::value<std::string>());
-    positional.add(argument.name.c_str(), repeated ? -1 : 1);
+    positional.add(argument.name.c_str(), argument.is_repeated() ? -1 : 1);
   }
   Given given;
   try {
@@ -94,7 +94,7 @@ Given parse(const Command& command, const Arguments& arguments) {
     throw UsageError(printable(error.what()) + usage_note(command));
   }
   for (const Argument& argument : command.arguments)
-    if (argument.count != Count::optional && !given.contains(argument.name) && !given.contains("help"))
+    if (argument.is_needed() && !given.contains(argument.name) && !given.contains("help"))
       throw UsageError(argument.name + " is missing" + usage_note(command));
   return given;
 }

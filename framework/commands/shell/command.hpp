@@ -22,11 +22,15 @@ struct UsageError : InputError {
   using InputError::InputError;
 };
 
-enum class Count { one, optional, one_or_more };
+/// How often an argument is given. `pairs`: any number of times two words, such as "KIND NAME".
+enum class Count { one, optional, one_or_more, pairs };
 
 struct Argument {
   std::string name;  ///< placeholder such as "DIR" (see vocabulary.hpp), or all allowed values, such as "bash|zsh|fish"
   Count count = Count::one;
+
+  bool is_repeated() const { return count == Count::one_or_more || count == Count::pairs; }
+  bool is_needed() const { return count == Count::one || count == Count::one_or_more; }
 };
 
 struct Command {

@@ -70,6 +70,14 @@ _evodevo_once() {
   done
   _evodevo_words "$@"
 }
+# the same for the first words of pairs
+_evodevo_pairs() {
+  local given count=0
+  for given in "${COMP_WORDS[@]:2:COMP_CWORD-2}"; do
+    [[ $given == -* ]] || ((++count))
+  done
+  ((count % 2)) || _evodevo_words "$@"
+}
 _evodevo() {
   local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
   COMPREPLY=()
@@ -91,8 +99,13 @@ std::string bash_case(const Command& command, std::span<const Command> commands)
   std::string text = "    " + command.name + ")\n";
   if (!values.empty()) text += "      case $previous in\n" + values + "      esac\n";
   text += "      if [[ $word == -* ]]; then\n        _evodevo_words" + names + "\n        return\n      fi\n";
-  if (!command.arguments.empty())
-    text += "      " + bash_offer(vocabulary_of(command.arguments.front().name, commands), "_evodevo_once") + "\n";
+  if (!command.arguments.empty()) {
+    const bool in_pairs = command.arguments.back().count == Count::pairs;
+    text += "      " +
+            bash_offer(vocabulary_of(command.arguments.front().name, commands),
+                       in_pairs ? "_evodevo_pairs" : "_evodevo_once") +
+            "\n";
+  }
   return text + "      ;;\n";
 }
 
@@ -138,8 +151,7 @@ std::string zsh_case(const Command& command, std::span<const Command> commands) 
     add((option.repeatable ? "*--" : "--") + option.name + (option.value.empty() ? "" : "=") + "[" +
         zsh_text(option.text) + "]" + (option.value.empty() ? "" : action(option.value)));
   for (std::size_t i = 0; i < command.arguments.size(); ++i)
-    add((command.arguments[i].count == Count::one_or_more ? "*" : std::to_string(i + 1)) +
-        action(command.arguments[i].name));
+    add((command.arguments[i].is_repeated() ? "*" : std::to_string(i + 1)) + action(command.arguments[i].name));
   return text + "\n      ;;\n";
 }
 

@@ -31,7 +31,8 @@ Vocabulary vocabulary_of(const std::string& placeholder, std::span<const Command
   if (placeholder.find('|') != placeholder.npos) return {Source::words, parts_of(placeholder)};
   if (placeholder == "DIR") return {Source::folders};
   if (placeholder == "OPERATOR") return {Source::operators};
-  if (placeholder == "KIND") return {Source::words, {operator_kinds.begin(), operator_kinds.end()}};
+  if (placeholder == "KIND" || placeholder == "KIND NAME")
+    return {Source::words, {operator_kinds.begin(), operator_kinds.end()}};
   if (placeholder == "TOPIC") return {Source::words, topics_and(commands)};
   if (std::find(of_files.begin(), of_files.end(), placeholder) != of_files.end()) return {Source::files};
   return {};

@@ -1,0 +1,85 @@
+#!/usr/bin/env bash
+# Installs evodevo and builds the operators of outside_project/ against the installed package alone. Checks them, and
+# runs an experiment with them twice: once without interruption, and once killed, moved and resumed without its data
+# file. Both runs must have the same rows.
+#
+#   outside_project.sh BUILD_FOLDER
+set -euo pipefail
+build=$(realpath "$1")
+source=$(dirname "$(realpath "${BASH_SOURCE[0]}")")/outside_project
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+export XDG_STATE_HOME=$scratch/state
+unset EVODEVO_COMMAND EVODEVO_PLUGIN_PATH
+
+fail() {
+  echo "$*"
+  exit 1
+}
+
+# an operator needs no cast that reinterprets, no environment and no state; constants are no state
+casts='(reinterpret|const|dynamic)_cast|\((const )?([\w:]+ ?[*&]+|char|int|float|double|unsigned|(std::)?u?int\d+_t)\) ?(?!const)[a-z(]'
+static='^ *static (?!const)[^(]*[;={]'
+globals='^(?!namespace )[a-z][\w:<>]* \w+ ?[;={]'
+forbidden="$casts|$static|$globals|getenv|\b(thread_local|mutable|extern)\b"
+if grep -nP "$forbidden" "$source"/*.cpp; then fail "operators need none of these"; fi
+
+cmake --install "$build" --prefix "$scratch/package" >/dev/null
+PATH=$scratch/package/bin:$PATH
+cp -r "$source" "$scratch/project"
+cd "$scratch/project"
+cmake -B build >/dev/null
+cmake --build build --parallel 2
+for operator in limbs adaptive-reset plan; do
+  evodevo conform "build/lib/evodevo/outside.$operator.evodevo.so" --experiment experiment.toml | tee verdicts
+  if grep -vE "^(passed |skipped .* it has no parameters|[0-9]+ cases, 0 failed)" verdicts; then fail "a case was skipped"; fi
+done
+evodevo check experiment.toml
+
+# a bad data file is refused at its key
+cp plan.txt good.txt
+echo many >>plan.txt
+if evodevo check experiment.toml 2>message; then fail "a plan with a line that is no number is accepted"; fi
+grep -q 'experiment.toml:.*plan.*whole number' message || fail "the refusal does not name the place: $(<message)"
+mv good.txt plan.txt
+
+evodevo run experiment.toml --out straight >log
+
+# the second run is killed when it has printed its third generation, of twenty
+coproc run { exec evodevo run experiment.toml --out killed 2>&1; }
+process=$run_PID
+for _ in 1 2 3 4; do
+  read -r line <&"${run[0]}" || fail "the run ended before it could be killed"
+done
+kill -KILL "$process"
+wait "$process" && fail "the run was done before it could be killed"
+show() { evodevo show "$1" --json; }
+[[ $(show killed) == *'"finished": false'* ]] || fail "the run was done before it could be killed"
+mkdir elsewhere
+mv killed elsewhere/moved
+rm plan.txt
+evodevo resume elsewhere/moved >log
+
+# compares everything except the folder and the time of day
+rows() { show "$1" | grep -vE '"(folder|created|wall_time)":'; }
+diff <(rows straight) <(rows elsewhere/moved) || fail "the resumed run has other generations"
+count=$(show straight | sed -n 's/^ *"evaluations_asked": \([0-9]*\),$/\1/p')
+genes() { for ((id = 0; id < count; ++id)); do evodevo genes "$1" --individual "$id" --json; done; }
+((count == 240)) || fail "there are $count individuals"
+genes straight >straight.json
+genes elsewhere/moved >moved.json
+cmp straight.json moved.json || fail "the resumed run has other genes"
+diff <(evodevo life straight) <(evodevo life elsewhere/moved) || fail "the best robot of the resumed run lived otherwise"
+
+# branches have come and gone, and the rate of the mutation has evolved
+sizes=$(awk '/"individual":/ { if (n) print n; n = 0 } /"type": "branch"/ { ++n } END { print n }' straight.json | sort -n)
+((${sizes%%$'\n'*} < 12 && ${sizes##*$'\n'} > 12)) || fail "genomes do not differ in length: $sizes"
+(($(grep -o '"ln(rate)": [-0-9.e]*' straight.json | sort -u | wc -l) > 10)) || fail "the rate does not evolve"
+
+# the plan has been carried out, and what is recorded can be simulated again
+removed=$(evodevo life elsewhere/moved | grep -c 'outside.plan: spring ') || fail "the plan has removed nothing"
+((removed <= 5)) || fail "the plan has removed $removed springs"
+evodevo verify elsewhere/moved --best 1 --json >verified.json
+grep -q '"trial"' verified.json || fail "nothing was verified: $(<verified.json)"
+
+evodevo genes elsewhere/moved
