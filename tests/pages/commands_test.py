@@ -14,14 +14,14 @@ from typing import NamedTuple
 from pages import PROGRAM, ROOT, SHRINK, PageTest, all_pages, blocks, evodevo, make_small_run, name
 
 # programs of other projects, whose options are not checked
-OTHERS = {"apt-get", "cd", "clang-format", "cmake", "cp", "ctest", "echo", "export", "g++", "git", "man", "mkdir",
-          "ninja", "python3", "sed", "source", "sqlite3", "sudo"}
+OTHERS = {"apt-get", "cd", "clang-format", "cmake", "cp", "ctest", "echo", "export", "g++", "gdb", "git", "man",
+          "mkdir", "ninja", "python3", "sed", "source", "sqlite3", "sudo"}
 # programs whose options go to another program, or that have none
 WITHOUT_HELP = {"tools/test": "hands its options to CTest", "tools/setup": "is read by the other tools"}
 
 # commands that are not run here, with the reason
 NOT_RUN = {
-    "conform": "takes a minute; OutsidePlugin and ReadmeTutorial run it",
+    "conform": "takes a library; OutsidePlugin and Pages.examples run it",
     "environments": "takes minutes; EnvironmentsCommand tests it",
     "film": "takes a browser; the tests of the viewer run it",
     "gallery": "takes a built viewer; the tests of the viewer run it",

@@ -45,16 +45,21 @@ def fault_of_link(page, target):
 
 
 def exists_near(page, path):
-    folders = [page.parent, *page.parent.parents]
+    folders = [page.parent, *page.parent.parents, ROOT / "kernels/include"]
     return any((folder / path).exists() for folder in folders if folder.is_relative_to(ROOT) or folder == page.parent)
 
 
-def faults(page):
+def faults_of_links(page):
     for number, line in prose(page):
         without_code = SPAN.sub("", line)
         for target in LINK.findall(line if "](" in line else "") + IMAGE.findall(without_code):
             if fault := fault_of_link(page, target):
                 yield f"{name(page)}:{number}: {target}: {fault}"
+
+
+def faults(page):
+    yield from faults_of_links(page)
+    for number, line in prose(page):
         for span in SPAN.findall(line):
             if SOURCE.fullmatch(span) and not span.startswith(WRITTEN) and not exists_near(page, span):
                 yield f"{name(page)}:{number}: `{span}`: there is no such file"

@@ -17,6 +17,7 @@ struct LatticeSpring {
   std::vector<std::uint32_t> voxels;  ///< ascending
 };
 
+/// The corners of a block of voxels, and all springs that a body made of these voxels may have.
 struct Lattice {
   std::array<std::uint32_t, 3> size;   ///< voxels along x, y, z
   std::vector<Vec3> corners;           ///< (x+1)(y+1)(z+1) positions, x fastest, from the origin, m
