@@ -2,6 +2,9 @@
 // Miikkulainen 2002).
 #include "evodevo/neat.hpp"
 
+#include <stdexcept>
+#include <string>
+
 #include "evodevo/helpers/activations.hpp"
 #include "evodevo/helpers/network_encoding.hpp"
 #include "evodevo/plugin.hpp"
@@ -27,11 +30,10 @@ class Neat final : public evodevo::NetworkEncoding {
   evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
     evodevo::Layout layout;
     const auto outputs = static_cast<std::uint32_t>(outputs_in(context));
-    const auto most = [](std::int64_t limit, std::uint32_t needed) {
-      return std::max(static_cast<std::uint32_t>(limit), needed);
-    };
-    const neat::Types types = neat::add_types(layout, 3, evodevo::activations.size(), most(nodes_, inputs + outputs),
-                                              most(links_, inputs * outputs));
+    require_at_least("nodes", nodes_, inputs + outputs, outputs);
+    require_at_least("links", links_, inputs * outputs, outputs);
+    const neat::Types types = neat::add_types(layout, 3, evodevo::activations.size(),
+                                              static_cast<std::uint32_t>(nodes_), static_cast<std::uint32_t>(links_));
     for (std::uint32_t i = 0; i < inputs + outputs; ++i) layout.add_block_of(types.node);
     for (std::uint32_t i = 0; i < inputs * outputs; ++i) layout.add_block_of(types.link);
     return layout;
@@ -52,6 +54,15 @@ class Neat final : public evodevo::NetworkEncoding {
  private:
   static constexpr std::uint32_t inputs = 4;
   static constexpr std::uint32_t link_genes = 4;  ///< genes of a link; a node has two
+
+  /// Throws std::invalid_argument if a first network needs more nodes or links than a genome may have.
+  static void require_at_least(const std::string& name, std::int64_t value, std::uint32_t least,
+                               std::uint32_t outputs) {
+    if (value >= least) return;
+    throw std::invalid_argument("`" + name + "` = " + std::to_string(value) + "; expected at least " +
+                                std::to_string(least) + ", for a first network with " + std::to_string(inputs) +
+                                " inputs and " + std::to_string(outputs) + " outputs");
+  }
 
   /// One node of a network.
   struct Node {

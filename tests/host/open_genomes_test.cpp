@@ -134,6 +134,20 @@ TEST(Traits, OfVariationMustFitTheGenomes) {
               testing::naming("mutation.0.name", "add-node", "\"node\"", "block_types", "voxel"));
 }
 
+TEST(Traits, FirstNetworksOfNeatMustFitItsLimits) {
+  std::string text = networks();
+  for (int i = 0; i < 6; ++i) text += "[materials.m" + std::to_string(i) + "]\nstiffness = 1000\n";  // 11 in all
+  const auto limited = [&](const std::string& keys) {
+    return complaint(replaced(text, "name = \"neat\"\n", "name = \"neat\"\n" + keys + "\n"));
+  };
+  EXPECT_EQ(limited("nodes = 18\nlinks = 64"), "accepted");
+  EXPECT_THAT(limited("nodes = 17"),
+              testing::naming("encoding", "`nodes` = 17", "at least 18", "4 inputs", "14 outputs"));
+  text += "[materials.m6]\nstiffness = 1000\n[materials.m7]\nstiffness = 1000\n[materials.m8]\nstiffness = 1000\n";
+  EXPECT_THAT(limited("links = 67"),
+              testing::naming("encoding", "`links` = 67", "at least 68", "4 inputs", "17 outputs"));
+}
+
 // parameters ---------------------------------------------------------------------------------------------------------
 
 /// One parameter of each type that the built-in operators do not use.

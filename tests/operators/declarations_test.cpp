@@ -67,7 +67,7 @@ class DeclarationCheck final : public Parameters {
 TEST(BuiltIn, AllOperatorsLoad) {
   EXPECT_TRUE(registry().failed().empty()) << registry().failed().front().reason;
   using testing::ElementsAre;
-  EXPECT_THAT(registry().names("encoding"), ElementsAre("cppn", "direct", "neat", "neural", "voxel"));
+  EXPECT_THAT(registry().names("encoding"), ElementsAre("cloud", "cppn", "direct", "neat", "neural", "voxel"));
   EXPECT_THAT(registry().names("mutation"), ElementsAre("add-block", "add-link", "add-node", "duplicate-block",
                                                         "gaussian", "remove-block", "reset-weight"));
   EXPECT_THAT(registry().names("crossover"), ElementsAre("sbx", "swap-neuron", "two-point", "uniform"));
