@@ -49,7 +49,7 @@ void decodes(const Subject& subject, std::uint64_t seed) {
       const std::uint32_t gene = rng.below(genes);
       genome[gene] = layout.draw(genome, gene, rng);
     }
-    const Blueprint blueprint = op->decode(genome, context);
+    const Blueprint blueprint = op->decode(genome, layout, context);
     reason = blueprint.failure;
     if (!reason.empty()) continue;
     if (blueprint.body.masses.empty()) throw Violation("a blueprint has neither masses nor a failure that says why");

@@ -49,6 +49,7 @@ void same_surroundings(const Subject& subject, std::uint64_t seed) {
   describe_parameters(*op);
   require_same("parameters()");
   set_parameters(*op, subject);
+  require_same("prepare()");
   for (std::uint32_t input = 0; input < inputs_for(subject); ++input) {
     try_out(subject, *op, seed, input);
     require_same("its calls");

@@ -141,11 +141,12 @@ void set_parameters(Operator& op, const Subject& subject) {
     if (const std::string name = required_parameter(op); !name.empty())
       throw Skipped("its parameter \"" + name +
                     "\" has no default; name an experiment that sets it: --experiment FILE");
-    return;
+    return op.prepare(subject.context());
   }
   const Experiment& experiment = subject.use->experiment;
   TomlReader reader(subject.use->own, subject.kind(), {&experiment.context.material_names, {}, &experiment.files});
   op.parameters(reader);
+  op.prepare(experiment.context);
 }
 
 std::unique_ptr<Operator> create_operator(const Subject& subject) {

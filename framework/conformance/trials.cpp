@@ -77,7 +77,7 @@ Numbers try_encoding(const Subject& subject, const Encoding& op, std::uint64_t s
   Rng rng = stream(seed, input);
   const Genome genome = op.random(layout, rng);
   const Numbers genome_before = numbers_of(genome);
-  const Blueprint blueprint = op.decode(genome, context);
+  const Blueprint blueprint = op.decode(genome, layout, context);
   require_untouched("the context", numbers_of(subject.context()), numbers_of(context));
   require_untouched("the layout", layout_before, numbers_of(layout));
   require_untouched("the genome that it decodes", genome_before, numbers_of(genome));

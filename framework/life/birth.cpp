@@ -41,8 +41,9 @@ std::string throw_by_ground(const LivingBody& living, const Scene& scene) {
 
 Blueprint decoded(const Experiment& experiment, const Genome& genome, CallSubject subject) {
   return call_operator(experiment.call_of(Encoding::kind, 0, subject), [&] {
-    const Genome own = part_of(genome, experiment.layout, {0}, experiment.own_layouts.front());
-    Blueprint blueprint = experiment.encoding->decode(own, experiment.context);
+    const Layout& layout = experiment.own_layouts.front();
+    const Genome own = part_of(genome, experiment.layout, {0}, layout);
+    Blueprint blueprint = experiment.encoding->decode(own, layout, experiment.context);
     if (blueprint.failure.empty()) check_blueprint(blueprint, experiment.context);
     return blueprint;
   });

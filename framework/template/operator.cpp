@@ -23,7 +23,8 @@ class @CLASS@ final : public evodevo::Encoding {
     return layout;
   }
 
-  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::EncodingContext& context) const override {
+  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::Layout&,
+                            const evodevo::EncodingContext& context) const override {
     evodevo::Blueprint blueprint;
     blueprint.body.materials = context.materials;
     blueprint.neighbours = 8;

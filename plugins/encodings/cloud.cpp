@@ -13,8 +13,7 @@ using evodevo::Vec3;
 
 /// The masses lie in the volume that a surface encloses, or at the points of a cloud. Each has the material of the
 /// nearest site (Voronoi 1908), so that bodies have patches of material. Mutations such as add-block and remove-block
-/// let sites come and go. Each call reads the file and draws the points again, which takes time in proportion to points
-/// times triangles: 30 ms for 1,000 points in half of the bounding box and 500 triangles.
+/// let sites come and go.
 class Cloud final : public evodevo::Encoding {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -31,12 +30,21 @@ class Cloud final : public evodevo::Encoding {
     p.integer(sites_, "sites", {1, 10'000, "1"},
               "Number of sites in first genomes; a mass has the nearest's material.");
     p.integer(most_sites_, "most_sites", {1, 10'000, "1"}, "Largest number of sites.");
+    p.require(!file_.path.empty(), "file", "expected a PLY or OBJ file");
     p.require(sites_ <= most_sites_, "sites", "expected at most `most_sites`");
   }
 
-  /// Throws std::invalid_argument if the file gives no body, so that `evodevo check` refuses it.
+  /// Reads the file and draws the places of the masses. This takes time in proportion to points times triangles: 30 ms
+  /// for 1,000 points in half of the bounding box and 500 triangles. Throws std::invalid_argument if the file gives no
+  /// body.
+  void prepare(const evodevo::EncodingContext& context) override {
+    const Shape shape = read_shape(file_);
+    evodevo::Rng rng = context.rng(static_cast<std::uint64_t>(points_seed_));
+    places_ = shape.triangles.empty() ? chosen(shape.points, rng) : filled(shape, rng);
+    half_ = shape.half;
+  }
+
   evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
-    if (!file_.path.empty()) places(read_shape(file_), context);
     const auto materials = static_cast<std::uint32_t>(context.material_indices(materials_).size());
     evodevo::Layout layout;
     const auto site = layout.add_type({"site",
@@ -48,47 +56,36 @@ class Cloud final : public evodevo::Encoding {
     return layout;
   }
 
-  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::EncodingContext& context) const override {
+  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::Layout&,
+                            const evodevo::EncodingContext& context) const override {
     const auto materials = context.material_indices(materials_);
     if (auto reason = why_no_body(context, materials); !reason.empty()) return {{}, 0, reason};
-    if (file_.path.empty()) return {{}, 0, "no file; set `file` to a PLY or OBJ file"};
-    try {
-      const Shape shape = read_shape(file_);
-      evodevo::Blueprint blueprint;
-      blueprint.origins = places(shape, context);
-      blueprint.body.materials = context.materials;
-      blueprint.neighbours = static_cast<std::uint32_t>(neighbours_);
-      for (const Vec3& place : blueprint.origins) {
-        const float* site = nearest_site(genome, place, shape.half);
-        blueprint.body.masses.push_back(
-            {side_ / 2 * place, context.mass, materials[static_cast<std::size_t>(site[site_material])]});
-      }
-      return blueprint;
-    } catch (const std::invalid_argument& error) {
-      return {{}, 0, error.what()};
+    evodevo::Blueprint blueprint;
+    blueprint.origins = places_;
+    blueprint.body.materials = context.materials;
+    blueprint.neighbours = static_cast<std::uint32_t>(neighbours_);
+    for (const Vec3& place : places_) {
+      const float* site = nearest_site(genome, place);
+      blueprint.body.masses.push_back(
+          {side_ / 2 * place, context.mass, materials[static_cast<std::size_t>(site[site_material])]});
     }
+    return blueprint;
   }
 
  private:
   /// Positions of the genes of a site. Its coordinates are relative to half of the sides of the bounding box.
   enum Gene : std::uint32_t { site_x, site_y, site_z, site_material, site_genes };
 
-  static const float* nearest_site(const evodevo::Genome& genome, Vec3 place, Vec3 half) {
+  const float* nearest_site(const evodevo::Genome& genome, Vec3 place) const {
     const float* nearest = nullptr;
     double least = std::numeric_limits<double>::infinity();
     for (const float* site = genome.data(); site != genome.data() + genome.size(); site += site_genes) {
-      const Vec3 way = place - Vec3{half.x * site[site_x], half.y * site[site_y], half.z * site[site_z]};
+      const Vec3 way = place - Vec3{half_.x * site[site_x], half_.y * site[site_y], half_.z * site[site_z]};
       if (nearest != nullptr && !(dot(way, way) < least)) continue;
       least = dot(way, way);
       nearest = site;
     }
     return nearest;
-  }
-
-  /// Returns the places of the masses; all bodies of a run have the same. The longest side of their shape is 2.
-  std::vector<Vec3> places(const Shape& shape, const evodevo::EncodingContext& context) const {
-    evodevo::Rng rng = context.rng(static_cast<std::uint64_t>(points_seed_));
-    return shape.triangles.empty() ? chosen(shape.points, rng) : filled(shape, rng);
   }
 
   std::vector<Vec3> chosen(std::vector<Vec3> points, evodevo::Rng& rng) const {
@@ -121,6 +118,8 @@ class Cloud final : public evodevo::Encoding {
   std::vector<std::string> materials_;
   std::int64_t sites_ = 12;
   std::int64_t most_sites_ = 48;
+  std::vector<Vec3> places_;  ///< of the masses, relative to half of the longest side; equal in all bodies of a run
+  Vec3 half_;                 ///< half of the sides of the bounding box, in the same unit
 };
 
 }  // namespace

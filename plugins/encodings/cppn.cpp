@@ -41,7 +41,7 @@ class Cppn final : public evodevo::LayeredNetworkEncoding {
     return values;
   }
 
-  Matrix map(const evodevo::Genome& genome, const Matrix& points,
+  Matrix map(const evodevo::Genome& genome, const evodevo::Layout&, const Matrix& points,
              const evodevo::EncodingContext& context) const override {
     const float* genes = genome.data();
     Matrix inputs(4, points.cols());

@@ -18,7 +18,8 @@ class Direct final : public evodevo::LatticeEncoding {
     return layout;
   }
 
-  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::EncodingContext& context) const override {
+  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::Layout&,
+                            const evodevo::EncodingContext& context) const override {
     const auto materials = chosen(context);
     if (auto reason = why_no_body(context, materials); !reason.empty()) return {{}, 0, reason};
     const evodevo::Lattice lattice = this->lattice();

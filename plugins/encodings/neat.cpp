@@ -97,8 +97,8 @@ class Neat final : public evodevo::NetworkEncoding {
     node.values = std::move(sum);
   }
 
-  Matrix map(const Genome& genome, const Matrix& points, const evodevo::EncodingContext& context) const override {
-    const evodevo::Layout layout = this->layout(context);
+  Matrix map(const Genome& genome, const evodevo::Layout& layout, const Matrix& points,
+             const evodevo::EncodingContext& context) const override {
     std::vector<Node> nodes = nodes_of(genome);
     const auto first_node = [&](Eigen::Index index) -> Node* {
       const auto block = find_block(genome, layout, layout.first_blocks[static_cast<std::size_t>(index)].id);

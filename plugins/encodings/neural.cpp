@@ -29,7 +29,7 @@ class Neural final : public evodevo::LayeredNetworkEncoding {
     return sums(next_rows(genes, neurons, 1 + input.rows()), input);
   }
 
-  Matrix map(const evodevo::Genome& genome, const Matrix& points,
+  Matrix map(const evodevo::Genome& genome, const evodevo::Layout&, const Matrix& points,
              const evodevo::EncodingContext& context) const override {
     const float* genes = genome.data();
     const Matrix first = layer(genes, hidden(), points).cwiseMax(0);

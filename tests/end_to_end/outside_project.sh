@@ -18,7 +18,7 @@ fail() {
 }
 
 # an operator needs no cast that reinterprets, no environment and no state; constants are no state
-casts='(reinterpret|const|dynamic)_cast|\((const )?([\w:]+ ?[*&]+|char|int|float|double|unsigned|(std::)?u?int\d+_t)\) ?(?!const)[a-z(]'
+casts='(reinterpret|const|dynamic)_cast|\((const )?([\w:]+ ?[*&]+|char|int|float|double|unsigned|(std::)?u?int\d+_t)\) ?(?!const|override)[a-z(]'
 static='^ *static (?!const)[^(]*[;={]'
 globals='^(?!namespace )[a-z][\w:<>]* \w+ ?[;={]'
 forbidden="$casts|$static|$globals|getenv|\b(thread_local|mutable|extern)\b"

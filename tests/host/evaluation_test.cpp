@@ -348,7 +348,7 @@ TEST(Evaluation, BallisticSpringsHaveTheLengthsThatANetworkGivesThem) {
         const Experiment experiment = ballistic(network + pairing, schedule);
         const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
         const Individual individual = breed(experiment, {}, 0, 0, 1).front();
-        const Blueprint blueprint = experiment.encoding->decode(individual.genome, experiment.context);
+        const Blueprint blueprint = decoded(experiment, individual.genome);
         const std::vector<std::uint32_t> kept = build_body(blueprint).kept;
         const auto expect_lengths = [&](const Body& body, double Size::*size, double tolerance) {
           ASSERT_GT(body.springs.size(), 100u);
@@ -412,7 +412,7 @@ TEST(Evaluation, AFaultyOperatorIsNamed) {
 /// An encoding with a spring to a mass that does not exist.
 struct Dangling final : Encoding {
   Layout layout(const EncodingContext&) const override { return {}; }
-  Blueprint decode(const Genome&, const EncodingContext& context) const override {
+  Blueprint decode(const Genome&, const Layout&, const EncodingContext& context) const override {
     return {
         .body = {.masses = {{{0, 0, 0}, 1}, {{1, 0, 0}, 1}}, .springs = {{0, 2, 1}}, .materials = context.materials}};
   }
@@ -439,7 +439,7 @@ struct Placed final : Encoding {
       : positions(std::move(positions_)), rest_length(rest_length_) {}
 
   Layout layout(const EncodingContext&) const override { return {}; }
-  Blueprint decode(const Genome&, const EncodingContext& context) const override {
+  Blueprint decode(const Genome&, const Layout&, const EncodingContext& context) const override {
     Blueprint blueprint{.body = {.masses = {}, .springs = {}, .materials = context.materials}};
     for (const Vec3& position : positions) blueprint.body.masses.push_back({position, context.mass});
     for (std::uint32_t a = 0; a < positions.size(); ++a)

@@ -109,7 +109,7 @@ class StrainedPair final : public Encoding {
  public:
   explicit StrainedPair(double stiffness) : stiffness_(stiffness) {}
   Layout layout(const EncodingContext&) const override { return {}; }
-  Blueprint decode(const Genome&, const EncodingContext& context) const override {
+  Blueprint decode(const Genome&, const Layout&, const EncodingContext& context) const override {
     Blueprint blueprint;
     blueprint.body.materials = context.materials;
     const std::uint32_t own = blueprint.body.material_index({stiffness_, strain, 0, 3.14159265358979323846 / 2});

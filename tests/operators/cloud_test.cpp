@@ -126,7 +126,7 @@ TEST_F(Cloud, GivesEachMassTheMaterialOfTheNearestSite) {
   for (int trial = 0; trial < 5; ++trial) {
     const Genome genome = encoding->random(layout, rng);
     ASSERT_EQ(genome.size(), 36u);
-    for (const Mass& mass : encoding->decode(genome, context()).body.masses) {
+    for (const Mass& mass : decoded(*encoding, genome).body.masses) {
       std::map<double, std::int32_t> by_distance;
       for (std::size_t site = 0; site < 36; site += 4)  // the box is 8 m long, 4 m wide and 2 m high
         by_distance[norm(mass.rest - Vec3{4.0 * genome[site], 2.0 * genome[site + 1], 1.0 * genome[site + 2]})] =
@@ -161,14 +161,14 @@ TEST_F(Cloud, LetsSitesComeAndGo) {
     make<Mutation>(names[rng.below(4)])->mutate(genome, layout, rng);
     ASSERT_EQ(genome_fault(genome, layout), "");
     counts.insert(genome.blocks.size());
-    EXPECT_EQ(encoding->decode(genome, context()).body.masses.size(), 30u);
+    EXPECT_EQ(decoded(*encoding, genome).body.masses.size(), 30u);
   }
   EXPECT_THAT(counts, ::testing::ElementsAre(1, 2, 3, 4, 5));
 }
 
 TEST_F(Cloud, RefusesMoreSitesThanMost) {
   try {
-    make<Encoding>("cloud", "sites = 9\nmost_sites = 8");
+    cloud(random_points(5).obj(), "sites = 9\nmost_sites = 8");
     FAIL() << "accepted";
   } catch (const ConfigError& error) {
     EXPECT_THAT(error.what(), evodevo::testing::naming("sites", "9", "most_sites"));

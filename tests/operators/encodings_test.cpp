@@ -37,8 +37,8 @@ TEST_P(AnyEncoding, SameGenomeSameBodyOnAnyThread) {
   const Layout layout = encoding->layout(context());
   Rng rng = stream(1);
   const Genome one = encoding->random(layout, rng), other = encoding->random(layout, rng);
-  const auto body = from_eight_threads([&] { return digest(encoding->decode(one, context())); });
-  EXPECT_NE(body, digest(encoding->decode(other, context())));
+  const auto body = from_eight_threads([&] { return digest(decoded(*encoding, one)); });
+  EXPECT_NE(body, digest(decoded(*encoding, other)));
 }
 
 TEST_P(AnyEncoding, RandomGenomesGiveBodiesThatBeginWithTheWorldsMaterials) {
@@ -49,7 +49,7 @@ TEST_P(AnyEncoding, RandomGenomesGiveBodiesThatBeginWithTheWorldsMaterials) {
   for (int i = 0; i < 5; ++i) {
     const Genome genome = encoding->random(layout, rng);
     ASSERT_EQ(genome.size(), layout.first_size());
-    const Blueprint blueprint = encoding->decode(genome, context());
+    const Blueprint blueprint = decoded(*encoding, genome);
     EXPECT_EQ(blueprint.failure, "");
     ASSERT_GE(blueprint.body.materials.size(), 5u);
     for (std::size_t m = 0; m < 5; ++m) EXPECT_EQ(blueprint.body.materials[m], context().materials[m]);
@@ -61,7 +61,7 @@ TEST_P(AnyEncoding, AirAloneIsNoBody) {
   const auto encoding = make<Encoding>(GetParam(), "materials = ['air']");
   Rng rng = stream(3);
   const Genome genome = encoding->random(encoding->layout(context()), rng);
-  EXPECT_THAT(encoding->decode(genome, context()).failure, testing::HasSubstr("air"));
+  EXPECT_THAT(decoded(*encoding, genome).failure, testing::HasSubstr("air"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Encodings, AnyEncoding, testing::Values("neural", "cppn", "neat", "voxel", "direct"));
@@ -85,8 +85,7 @@ TEST(Neural, OneOutputForEachMaterialToChooseFrom) {
   std::map<std::int32_t, int> seen;
   Rng rng = stream(1);
   for (int i = 0; i < 20; ++i)
-    for (const Mass& mass : encoding->decode(encoding->random(layout, rng), context()).body.masses)
-      ++seen[mass.material];
+    for (const Mass& mass : decoded(*encoding, encoding->random(layout, rng)).body.masses) ++seen[mass.material];
   EXPECT_THAT(seen, testing::ElementsAre(testing::Key(bone), testing::Key(tissue)));
 }
 
@@ -98,7 +97,7 @@ TEST(Neural, BiasesOfTheOutputsAloneSetPlaceAndMaterial) {
   bias(0) = 0.5f;
   bias(1) = -1;
   bias(3 + muscle) = 0.25f;
-  const Blueprint blueprint = encoding->decode(genome, context());
+  const Blueprint blueprint = decoded(*encoding, genome);
   EXPECT_EQ(blueprint.neighbours, 7u);
   ASSERT_EQ(blueprint.body.masses.size(), 10u);
   for (const Mass& mass : blueprint.body.masses) {
@@ -126,7 +125,7 @@ std::vector<Vec3> points_of(const std::string& toml) {
     weight(12 + axis, 2 * axis + 1) = -1;
   }
   std::vector<Vec3> points;
-  for (const Mass& mass : encoding->decode(genome, context()).body.masses)
+  for (const Mass& mass : decoded(*encoding, genome).body.masses)
     points.push_back({std::atanh(mass.rest.x), std::atanh(mass.rest.y), std::atanh(mass.rest.z)});
   return points;
 }
@@ -177,7 +176,7 @@ TEST(Neural, IsThePapersNetwork) {
   Rng rng = stream(4);
   for (int trial = 0; trial < 3; ++trial) {
     const Genome genome = encoding->random(layout, rng);
-    const Body body = encoding->decode(genome, context()).body;
+    const Body body = decoded(*encoding, genome).body;
     ASSERT_EQ(body.masses.size(), points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       const auto outputs = network(genome, layout, points[i]);
@@ -196,7 +195,7 @@ TEST(Neural, SizesAreTheLastTwoOutputs) {
   const auto points = points_of("");
   Rng rng = stream(9);
   const Genome genome = encoding->random(layout, rng);
-  const Blueprint blueprint = encoding->decode(genome, context());
+  const Blueprint blueprint = decoded(*encoding, genome);
   ASSERT_EQ(blueprint.sizes.size(), points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto outputs = network(genome, layout, points[i]);
@@ -209,7 +208,7 @@ TEST(Neural, SizesAreTheLastTwoOutputs) {
 TEST(Neural, PlacesStayInTheCubeWhateverTheGenes) {
   const auto encoding = make<Encoding>("neural");
   for (const float value : {-1.0f, 1.0f, 1e30f}) {
-    const Blueprint blueprint = encoding->decode(Genome(958, value), context());
+    const Blueprint blueprint = decoded(*encoding, Genome(958, value));
     for (const Mass& mass : blueprint.body.masses)
       for (const double position : {mass.rest.x, mass.rest.y, mass.rest.z}) EXPECT_LE(std::abs(position), 1);
   }
@@ -220,7 +219,7 @@ TEST(Neural, GenesThatAreNoNumbersAreNoBody) {
   for (const float value : {std::nanf(""), std::numeric_limits<float>::infinity()}) {
     Genome genome(958, 0.5f);
     genome[500] = value;
-    EXPECT_THAT(encoding->decode(genome, context()).failure,
+    EXPECT_THAT(decoded(*encoding, genome).failure,
                 testing::AllOf(testing::HasSubstr("gene"), testing::HasSubstr("not finite")));
   }
 }
@@ -232,11 +231,11 @@ TEST_P(AnyNetwork, PairsBeforeTheMappingAreThoseOfThePoints) {
   const Layout layout = after->layout(context());
   Rng rng = stream(8);
   const Genome genome = after->random(layout, rng), other = after->random(layout, rng);
-  Blueprint mapped = after->decode(genome, context()), paired = before->decode(genome, context());
+  Blueprint mapped = decoded(*after, genome), paired = decoded(*before, genome);
   EXPECT_TRUE(mapped.paired_at.empty());
   ASSERT_EQ(paired.paired_at.size(), 1000u);
   for (std::size_t i = 0; i < 1000; ++i) EXPECT_NEAR(norm(paired.paired_at[i] - points_of("")[i]), 0, 1e-9);
-  EXPECT_EQ(paired.paired_at, before->decode(other, context()).paired_at) << "the points are those of the run";
+  EXPECT_EQ(paired.paired_at, decoded(*before, other).paired_at) << "the points are those of the run";
   EXPECT_EQ(mapped.origins, paired.paired_at);
   paired.paired_at.clear();
   EXPECT_EQ(digest(paired), digest(mapped)) << "all else is the same";
@@ -253,7 +252,7 @@ TEST_P(AnyNetwork, SizesAreTwoMoreNeuronsThatChangeNothingElse) {
 
     Rng rng = stream(10);
     const Genome genome = sized->random(more, rng);
-    Blueprint blueprint = sized->decode(genome, context());
+    Blueprint blueprint = decoded(*sized, genome);
     ASSERT_EQ(blueprint.sizes.size(), 1000u);
     for (const Size& size : blueprint.sizes) {
       EXPECT_NEAR(size.start, 1, 0.9 + 1e-12);
@@ -262,7 +261,7 @@ TEST_P(AnyNetwork, SizesAreTwoMoreNeuronsThatChangeNothingElse) {
     blueprint.sizes.clear();
     Genome without = genome;
     without.genes.resize(less.first_size());
-    EXPECT_EQ(digest(blueprint), digest(fixed->decode(without, context())));
+    EXPECT_EQ(digest(blueprint), digest(decoded(*fixed, without)));
   }
 }
 
@@ -273,7 +272,7 @@ TEST_P(AnyNetwork, SizesStayInTheirRangeWhateverTheGenes) {
     Genome genome(layout.first_size(), value);
     for (std::size_t i = 0; i < genome.size(); ++i)
       if (layout.gene(genome, i).is_choice()) genome[i] = 0;
-    for (const Size& size : encoding->decode(genome, context()).sizes) {
+    for (const Size& size : decoded(*encoding, genome).sizes) {
       EXPECT_TRUE(size.start >= 0.5 && size.start <= 1.5) << size.start;
       EXPECT_TRUE(size.end >= 0.5 && size.end <= 1.5) << size.end;
     }
@@ -313,7 +312,7 @@ TEST(Cppn, FunctionsAreStanleys) {
     gene(0, 5) = -1;    // weight of the distance from the centre
     gene(2, 2) = 1;
     gene(4, 1) = 1;
-    const Body body = encoding->decode(genome, context()).body;
+    const Body body = decoded(*encoding, genome).body;
     for (std::size_t i = 0; i < 50; ++i)
       EXPECT_NEAR(body.masses[i].rest.x, std::tanh(functions[f](0.5 + 2 * points[i].x - norm(points[i]))), 1e-9);
   }
@@ -339,7 +338,7 @@ TEST(Voxel, OneVoxelIsACubeOfTwentyEightSprings) {
   const Layout layout = encoding->layout(context());
   ASSERT_EQ(layout.first_size(), 1u);
   EXPECT_EQ(layout.gene({}, 0).choices, 5u);
-  const Body body = encoding->decode(choices({muscle}), context()).body;
+  const Body body = decoded(*encoding, choices({muscle})).body;
   ASSERT_EQ(body.masses.size(), 8u);
   for (const Mass& mass : body.masses) {
     for (const double position : {mass.rest.x, mass.rest.y, mass.rest.z}) EXPECT_DOUBLE_EQ(std::abs(position), 0.25);
@@ -357,7 +356,7 @@ TEST(Voxel, OneVoxelIsACubeOfTwentyEightSprings) {
 
 TEST(Voxel, SharedSpringsTakeTheMean) {
   const auto encoding = make<Encoding>("voxel", "size = [2, 1, 1]");
-  const Body body = encoding->decode(choices({muscle2, bone}), context()).body;
+  const Body body = decoded(*encoding, choices({muscle2, bone})).body;
   EXPECT_EQ(body.masses.size(), 12u);
   // the six springs of the shared face belong to both voxels
   EXPECT_EQ(stiffnesses(body), (std::map<double, int>{{5000, 22}, {7500, 6}, {10000, 22}}));
@@ -372,7 +371,7 @@ TEST(Voxel, SharedSpringsTakeTheMean) {
 
 TEST(Voxel, VoxelsOfAirAreAbsent) {
   const auto encoding = make<Encoding>("voxel", "size = [2, 1, 1]");
-  const Body body = encoding->decode(choices({muscle, air}), context()).body;
+  const Body body = decoded(*encoding, choices({muscle, air})).body;
   EXPECT_EQ(stiffnesses(body), (std::map<double, int>{{5000, 28}}));
   for (const Mass& mass : body.masses) {
     // a corner that belongs only to the air voxel has 7 contacts; a corner of the shared face has 4, with the corners
@@ -380,20 +379,20 @@ TEST(Voxel, VoxelsOfAirAreAbsent) {
     const unsigned expected = mass.rest.x < -0.05 ? 0 : mass.rest.x < 0.05 ? 4 : 7;
     EXPECT_EQ(mass.air_contacts, expected);
   }
-  EXPECT_TRUE(encoding->decode(choices({air, air}), context()).body.springs.empty());
+  EXPECT_TRUE(decoded(*encoding, choices({air, air})).body.springs.empty());
 }
 
 TEST(Voxel, UniformBodiesNeedNoNewMaterial) {
   const auto encoding = make<Encoding>("voxel", "size = [3, 3, 3]");
   for (const std::int32_t material : {bone, muscle, muscle2, tissue})
-    EXPECT_EQ(encoding->decode(Genome(27, static_cast<float>(material)), context()).body.materials.size(), 5u);
+    EXPECT_EQ(decoded(*encoding, Genome(27, static_cast<float>(material))).body.materials.size(), 5u);
 }
 
 TEST(Voxel, OptionsAreTheChosenMaterials) {
   const auto encoding = make<Encoding>("voxel", "size = [2, 1, 1]\nmaterials = ['air', 'tissue', 'bone']");
   EXPECT_EQ(encoding->layout(context()).gene({}, 1).choices, 3u);
   // options are in the order of the world's materials: air, bone, tissue
-  EXPECT_EQ(stiffnesses(encoding->decode(choices({1, 2}), context()).body),
+  EXPECT_EQ(stiffnesses(decoded(*encoding, choices({1, 2})).body),
             (std::map<double, int>{{4000, 22}, {7000, 6}, {10000, 22}}));
 }
 
@@ -413,7 +412,7 @@ TEST(Voxel, SpringsTakeTheSizesOfTheirVoxels) {
   const auto encoding = make<Encoding>("voxel", "size = [3, 1, 1]\nedge = 0.5\nsize_range = 0.5");
   // the last voxel is air, whose sizes have no effect
   const Genome genome{bone, 0.5f, 1.5f, muscle, 1.0f, 0.75f, air, 1.5f, 1.5f};
-  const Body body = encoding->decode(genome, context()).body;
+  const Body body = decoded(*encoding, genome).body;
   ASSERT_EQ(body.springs.size(), 50u);
   for (const Spring& spring : body.springs) {
     const Vec3 a = body.masses[spring.a].rest, b = body.masses[spring.b].rest;
@@ -442,7 +441,7 @@ TEST(Direct, GenesStandInTheOrderOfTheSprings) {
   genome[6] = muscle;    // masses 0 and 7
   genome[27] = muscle2;  // masses 6 and 7
   genome[7] = air;       // masses 1 and 2
-  const Body body = encoding->decode(genome, context()).body;
+  const Body body = decoded(*encoding, genome).body;
   ASSERT_EQ(body.springs.size(), 27u);
   for (const Spring& spring : body.springs) {
     const std::pair<std::uint32_t, std::uint32_t> ends = std::minmax(spring.a, spring.b);

@@ -204,7 +204,7 @@ TEST(AddLink, BetweenTheSameNodesIsTheSameInnovation) {
 
 /// Returns the x coordinates that a network gives to the points of the ball, and the points themselves.
 std::pair<std::vector<double>, std::vector<Vec3>> mapped(const Genome& genome) {
-  const Blueprint blueprint = make<Encoding>("neat", "points = 40\nside = 2.0")->decode(genome, context());
+  const Blueprint blueprint = decoded(*make<Encoding>("neat", "points = 40\nside = 2.0"), genome);
   std::pair<std::vector<double>, std::vector<Vec3>> result;
   for (const Mass& mass : blueprint.body.masses) result.first.push_back(mass.rest.x);
   result.second = blueprint.origins;
@@ -257,7 +257,7 @@ TEST(Neat, BearsTheLossOfAnyBlock) {
   Genome genome = encoding->random(layout, rng);
   while (!genome.blocks.empty()) {
     remove->mutate(genome, layout, rng);
-    EXPECT_EQ(encoding->decode(genome, context()).body.masses.size(), 20u);
+    EXPECT_EQ(decoded(*encoding, genome).body.masses.size(), 20u);
   }
 }
 

@@ -41,7 +41,13 @@ std::unique_ptr<T> make(const std::string& name, const std::string& toml = "") {
   TomlReader reader(table, "test", {&materials});
   op->parameters(reader);
   reader.finish();
+  op->prepare(context());
   return op;
+}
+
+/// Returns what an encoding makes of a genome of its layout.
+inline Blueprint decoded(const Encoding& encoding, const Genome& genome) {
+  return encoding.decode(genome, encoding.layout(context()), context());
 }
 
 inline Rng stream(std::uint64_t seed) { return Rng(philox, {seed, 1, 2, 3}); }

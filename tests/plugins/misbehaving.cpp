@@ -92,7 +92,8 @@ struct Encoding final : evodevo::Encoding {
     layout.add_block(2, {0, 1});
     return layout;
   }
-  evodevo::Blueprint decode(const evodevo::Genome&, const evodevo::EncodingContext& context) const override {
+  evodevo::Blueprint decode(const evodevo::Genome&, const evodevo::Layout&,
+                            const evodevo::EncodingContext& context) const override {
     if (how == "crash") std::raise(SIGSEGV);
     evodevo::Blueprint blueprint;
     blueprint.body.materials = context.materials;

@@ -17,7 +17,8 @@ struct Twigs final : evodevo::Encoding {
     for (int i = 0; i < 4; ++i) layout.add_block_of(0);
     return layout;
   }
-  evodevo::Blueprint decode(const Genome& genome, const evodevo::EncodingContext& context) const override {
+  evodevo::Blueprint decode(const Genome& genome, const evodevo::Layout&,
+                            const evodevo::EncodingContext& context) const override {
     evodevo::Blueprint blueprint;
     evodevo::Body& body = blueprint.body;
     body.materials = context.materials;

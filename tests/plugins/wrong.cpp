@@ -46,7 +46,8 @@ struct Wrong final : evodevo::Encoding {
     layout.add_block(2, {0, 1});
     return layout;
   }
-  evodevo::Blueprint decode(const Genome&, const evodevo::EncodingContext& context) const override {
+  evodevo::Blueprint decode(const Genome&, const evodevo::Layout&,
+                            const evodevo::EncodingContext& context) const override {
     evodevo::Blueprint blueprint;
 #if defined(WRONG_DECODING_NOTHING)
     blueprint.failure = "never";

@@ -28,6 +28,7 @@ class OperatorFactory {
     return ask(table, [&] {
       std::unique_ptr<T> op = create<T>(available);
       op->parameters(table);
+      op->prepare(experiment_.context);
       return op;
     });
   }

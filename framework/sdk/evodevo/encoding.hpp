@@ -58,8 +58,9 @@ class Encoding : public Operator {
   virtual Layout layout(const EncodingContext& context) const = 0;
   /// Returns its genes for a first genome, one without ancestors.
   virtual Genome random(const Layout& layout, Rng& rng) const { return random_genome(layout, rng); }
-  /// Turns a genome into a blueprint, or into the reason why there is no body (Blueprint::failure).
-  virtual Blueprint decode(const Genome& genome, const EncodingContext& context) const = 0;
+  /// Turns a genome into a blueprint, or into the reason why there is no body (Blueprint::failure). `layout` is what
+  /// layout() returned.
+  virtual Blueprint decode(const Genome& genome, const Layout& layout, const EncodingContext& context) const = 0;
   /// Returns whether springs may grow, that is, whether decode() sets Blueprint::sizes or Spring::growth.
   virtual bool sets_growth() const { return false; }
 };

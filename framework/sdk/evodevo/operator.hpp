@@ -8,6 +8,8 @@
 
 namespace evodevo {
 
+struct EncodingContext;
+
 /// What an operator is, and what it needs. `evodevo check` refuses experiments that do not fit, and `conform` asks of
 /// an operator only what its traits claim. The defaults hold for most operators.
 struct Traits {
@@ -19,16 +21,20 @@ struct Traits {
   bool depends_on_place = false;
 };
 
-/// The base class of all operators. An operator holds its parameters and no other data. Its functions are therefore
-/// const, and several threads may call them at once; the host stores everything that outlives a call. An exception that
-/// leaves an operator ends the run; the generations committed before are kept.
+/// The base class of all operators. An operator holds its parameters, what prepare() computes from them, and no other
+/// data. Its other functions are therefore const, and several threads may call them at once; the host stores everything
+/// that outlives a call. An exception that leaves an operator ends the run; the generations committed before are kept.
 class Operator {
  public:
   virtual ~Operator() = default;
 
   /// Declares every parameter of the operator with one call of a function of Parameters.
   virtual void parameters(Parameters&) {}
-  /// Returns what the operator is and needs. The host calls this function after it has set the parameters.
+  /// Computes from the parameters what the other functions need, such as the points in a file. `context` has the
+  /// materials of the experiment and random numbers. The host calls this function once, after it has set the parameters
+  /// and before it calls any other. If it throws, the experiment is refused with the exception's message.
+  virtual void prepare([[maybe_unused]] const EncodingContext& context) {}
+  /// Returns what the operator is and needs.
   virtual Traits traits() const { return {}; }
 };
 

@@ -56,8 +56,8 @@ class Parameters {
   /// A list of names of the experiment's materials; an empty list stands for all of them.
   virtual void materials(std::vector<std::string>& value, std::string_view name, std::string_view text) = 0;
   /// A condition on parameters that were declared before. If it does not hold, the host reports an error in parameter
-  /// `name` with `text`, which should say what is expected. Default values must fulfil all conditions, except those on a
-  /// text or a file that is empty by default: such a condition makes the parameter a required one.
+  /// `name` with `text`, which should say what is expected. Default values must fulfil all conditions, except those on
+  /// a text or a file that is empty by default: such a condition makes the parameter a required one.
   virtual void require(bool holds, std::string_view name, std::string_view text) = 0;
 
  protected:

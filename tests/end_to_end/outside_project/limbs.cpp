@@ -41,10 +41,11 @@ class Limbs final : public evodevo::Encoding {
     return genome;
   }
 
-  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::EncodingContext& context) const override {
+  evodevo::Blueprint decode(const evodevo::Genome& genome, const evodevo::Layout& layout,
+                            const evodevo::EncodingContext& context) const override {
     evodevo::Blueprint blueprint;
     blueprint.body.materials = context.materials;
-    const std::vector<Node> nodes = tree(genome, layout(context));
+    const std::vector<Node> nodes = tree(genome, layout);
     for (const Node& node : nodes) blueprint.body.masses.push_back({node.position, context.mass, node.material});
     for (std::uint32_t i = 1; i < nodes.size(); ++i) {
       join(blueprint.body, i, nodes[i].parent, nodes[i].material);

@@ -30,14 +30,14 @@ class NetworkEncoding : public Encoding {
            "ballistic-growth, at the end of development; 0: no genes for this.");
   }
 
-  Blueprint decode(const Genome& genome, const EncodingContext& context) const final {
+  Blueprint decode(const Genome& genome, const Layout& layout, const EncodingContext& context) const final {
     const auto chosen = context.material_indices(materials_);
     if (auto reason = why_no_body(context, chosen); !reason.empty()) return {{}, 0, reason};
     if (!std::all_of(genome.begin(), genome.end(), [](float gene) { return std::isfinite(gene); }))
       return {{}, 0, "a gene is not finite"};
 
     const Matrix points = ball(context);
-    const Matrix outputs = map(genome, points, context);
+    const Matrix outputs = map(genome, layout, points, context);
     const auto materials = static_cast<Eigen::Index>(chosen.size());
     Blueprint blueprint;
     blueprint.body.materials = context.materials;
@@ -69,7 +69,8 @@ class NetworkEncoding : public Encoding {
 
  private:
   /// Returns the network's outputs, one column for each point.
-  virtual Matrix map(const Genome& genome, const Matrix& points, const EncodingContext& context) const = 0;
+  virtual Matrix map(const Genome& genome, const Layout& layout, const Matrix& points,
+                     const EncodingContext& context) const = 0;
 
   /// Returns the points as columns, uniformly distributed in the unit ball. All bodies of a run have the same points.
   Matrix ball(const EncodingContext& context) const {
