@@ -220,20 +220,5 @@ TEST(Loader, AFolderThatIsNotThereIsNamed) {
   EXPECT_THAT(registry.failed()[0].reason, naming("No such file or directory", "plugin path"));
 }
 
-TEST(Loader, AllBuiltInOperatorsAreThere) {
-  const Registry registry({builtin_plugin_folder()});
-  EXPECT_TRUE(registry.failed().empty());
-  using ::testing::ElementsAre;
-  EXPECT_THAT(registry.names("encoding"), ElementsAre("cppn", "direct", "neat", "neural", "voxel"));
-  EXPECT_THAT(registry.names("mutation"), ElementsAre("add-block", "add-link", "add-node", "duplicate-block",
-                                                      "gaussian", "remove-block", "reset-weight"));
-  EXPECT_THAT(registry.names("crossover"), ElementsAre("sbx", "swap-neuron", "two-point", "uniform"));
-  EXPECT_THAT(registry.names("devo"),
-              ElementsAre("amplitude-adaptation", "ballistic-growth", "length-adaptation", "mass-growth",
-                          "mass-turnover", "spring-turnover", "stiffness-adaptation"));
-  EXPECT_THAT(registry.names("fitness"), ElementsAre("actuation-work", "distance"));
-  EXPECT_THAT(registry.names("selection"), ElementsAre("age-fitness-pareto", "elitist", "pareto-layers"));
-}
-
 }  // namespace
 }  // namespace evodevo
