@@ -8,7 +8,7 @@ namespace {
 class Direct final : public evodevo::LatticeEncoding {
  public:
   evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
-    const evodevo::Lattice lattice = this->lattice();
+    const evodevo::Lattice& lattice = this->lattice();
     evodevo::Layout layout;
     for (std::size_t first = 0, last = 0; first < lattice.springs.size(); first = last) {
       while (last < lattice.springs.size() && lattice.springs[last].a == lattice.springs[first].a) ++last;
@@ -22,7 +22,7 @@ class Direct final : public evodevo::LatticeEncoding {
                             const evodevo::EncodingContext& context) const override {
     const auto materials = chosen(context);
     if (auto reason = why_no_body(context, materials); !reason.empty()) return {{}, 0, reason};
-    const evodevo::Lattice lattice = this->lattice();
+    const evodevo::Lattice& lattice = this->lattice();
     evodevo::Blueprint blueprint{masses(lattice, context), 0, {}};
     for (std::size_t s = 0; s < lattice.springs.size(); ++s)
       join(blueprint.body, lattice.springs[s], context.materials[materials[static_cast<std::size_t>(genome[s])]]);

@@ -35,7 +35,7 @@ class Voxel final : public evodevo::LatticeEncoding {
                             const evodevo::EncodingContext& context) const override {
     const auto materials = chosen(context);
     if (auto reason = why_no_body(context, materials); !reason.empty()) return {{}, 0, reason};
-    const evodevo::Lattice lattice = this->lattice();
+    const evodevo::Lattice& lattice = this->lattice();
     const std::size_t genes = size_range_ > 0 ? 3 : 1;
     evodevo::Blueprint blueprint{masses(lattice, context), 0, {}};
     for (const evodevo::LatticeSpring& spring : lattice.springs) {

@@ -16,12 +16,15 @@ class LatticeEncoding : public Encoding {
     p.materials(materials_, "materials", "Materials that genes choose from; an empty list stands for all.");
   }
 
- protected:
-  Lattice lattice() const {
-    return make_lattice({static_cast<std::uint32_t>(size_[0]), static_cast<std::uint32_t>(size_[1]),
-                         static_cast<std::uint32_t>(size_[2])},
-                        edge_);
+  /// Makes the lattice, which is the same for all bodies.
+  void prepare(const EncodingContext&) final {
+    lattice_ = make_lattice({static_cast<std::uint32_t>(size_[0]), static_cast<std::uint32_t>(size_[1]),
+                             static_cast<std::uint32_t>(size_[2])},
+                            edge_);
   }
+
+ protected:
+  const Lattice& lattice() const { return lattice_; }
 
   std::vector<std::int32_t> chosen(const EncodingContext& context) const {
     return context.material_indices(materials_);
@@ -59,6 +62,7 @@ class LatticeEncoding : public Encoding {
   std::array<std::int64_t, 3> size_ = {4, 4, 4};
   double edge_ = 0.1;
   std::vector<std::string> materials_;
+  Lattice lattice_;
 };
 
 }  // namespace evodevo

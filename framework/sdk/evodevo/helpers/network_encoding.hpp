@@ -30,14 +30,16 @@ class NetworkEncoding : public Encoding {
            "ballistic-growth, at the end of development; 0: no genes for this.");
   }
 
+  /// Draws the points, which are the same for all bodies.
+  void prepare(const EncodingContext& context) final { ball_ = ball(context); }
+
   Blueprint decode(const Genome& genome, const Layout& layout, const EncodingContext& context) const final {
     const auto chosen = context.material_indices(materials_);
     if (auto reason = why_no_body(context, chosen); !reason.empty()) return {{}, 0, reason};
     if (!std::all_of(genome.begin(), genome.end(), [](float gene) { return std::isfinite(gene); }))
       return {{}, 0, "a gene is not finite"};
 
-    const Matrix points = ball(context);
-    const Matrix outputs = map(genome, layout, points, context);
+    const Matrix outputs = map(genome, layout, ball_, context);
     const auto materials = static_cast<Eigen::Index>(chosen.size());
     Blueprint blueprint;
     blueprint.body.materials = context.materials;
@@ -51,7 +53,7 @@ class NetworkEncoding : public Encoding {
                                        chosen[static_cast<size_t>(material)]});
       if (size_range_ > 0) blueprint.sizes.push_back({size(output[3 + materials]), size(output[4 + materials])});
     }
-    for (const auto& point : points.colwise()) blueprint.origins.push_back({point[0], point[1], point[2]});
+    for (const auto& point : ball_.colwise()) blueprint.origins.push_back({point[0], point[1], point[2]});
     if (pairing_ == "before-mapping") blueprint.paired_at = blueprint.origins;
     return blueprint;
   }
@@ -72,7 +74,7 @@ class NetworkEncoding : public Encoding {
   virtual Matrix map(const Genome& genome, const Layout& layout, const Matrix& points,
                      const EncodingContext& context) const = 0;
 
-  /// Returns the points as columns, uniformly distributed in the unit ball. All bodies of a run have the same points.
+  /// Returns the points as columns, uniformly distributed in the unit ball.
   Matrix ball(const EncodingContext& context) const {
     Rng rng = context.rng(static_cast<std::uint64_t>(points_seed_));
     Matrix points(3, points_);
@@ -94,6 +96,7 @@ class NetworkEncoding : public Encoding {
   double side_ = 2;
   std::vector<std::string> materials_;
   double size_range_ = 0;
+  Matrix ball_;  ///< one column for each point
 };
 
 /// A network with two layers of hidden neurons, whose topology is fixed.
