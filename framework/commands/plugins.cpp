@@ -6,6 +6,7 @@
 #include <cctype>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
@@ -218,9 +219,6 @@ void print(const Verdict& verdict) {
   std::cout << std::flush;  // before the next fork, so that the child process does not print the line again
 }
 
-bool is_good(const Verdict& verdict) { return verdict.outcome == "passed" || verdict.outcome == "skipped"; }
-
-/// Returns what `conform` examines, without the experiment.
 conformance::Examination examination(const Given& given) {
   if (given["seed"].as<std::int64_t>() < 0)
     throw UsageError("--seed " + std::to_string(given["seed"].as<std::int64_t>()) + ": expected 0 or more");
@@ -228,19 +226,20 @@ conformance::Examination examination(const Given& given) {
   how.seed = static_cast<std::uint64_t>(given["seed"].as<std::int64_t>());
   if (given.contains("operator")) how.only_operator = given["operator"].as<std::string>();
   if (given.contains("case")) how.only_case = given["case"].as<std::string>();
+  if (given.contains("experiment")) how.experiment = given["experiment"].as<std::string>();
   how.here = given.contains("here");
   if (how.here && how.only_case.empty())
     throw UsageError("--here: expected one case, because one may end the process; give --case NAME");
   return how;
 }
 
-/// Throws UsageError if no case was run.
-void require_cases(std::size_t cases, const conformance::Examination& how) {
-  if (cases > 0) return;
+/// Throws UsageError, because there is no operator or case of the names that are given.
+[[noreturn]] void refuse_names(const conformance::Examination& how) {
   std::string wanted;
   if (!how.only_operator.empty()) wanted = option_text("operator", how.only_operator);
   if (!how.only_case.empty()) wanted += (wanted.empty() ? "" : " ") + option_text("case", how.only_case);
-  throw UsageError(wanted + ": no such case; call conform without this to see the names of all");
+  throw UsageError(wanted +
+                   ": the libraries have no such operator or case; call conform without this to see the names");
 }
 
 int conform(const Given& given) {
@@ -249,20 +248,12 @@ int conform(const Given& given) {
     if (std::error_code error; !std::filesystem::is_regular_file(library, error))
       throw UsageError("conform " + printable(library) +
                        ": is not a file; give the libraries to check, NAME.evodevo.so");
-  conformance::Examination how = examination(given);
-  std::optional<Experiment> experiment;
-  if (given.contains("experiment")) {
-    ExperimentSource source{given["experiment"].as<std::string>(), {}, {}};
-    for (const std::string& library : libraries) source.plugin_path.push_back(std::filesystem::absolute(library));
-    experiment = read_experiment(source);
-    how.experiment = &*experiment;
-  }
+  const conformance::Examination how = examination(given);
   const bool as_json = given.contains("json");
-  std::size_t cases = 0, bad = 0;
+  std::map<std::string, std::size_t> counts;
   Json list = Json::array();
   const auto report = [&](const Verdict& verdict) {
-    ++cases;
-    bad += !is_good(verdict);
+    ++counts[verdict.outcome];
     if (as_json)
       list.push_back({{"subject", verdict.subject},
                       {"case", verdict.name},
@@ -272,13 +263,16 @@ int conform(const Given& given) {
     else
       print(verdict);
   };
-  for (const auto& library : libraries)
-    conformance::examine(std::filesystem::absolute(library).lexically_normal(), how, report);
-  require_cases(cases, how);
+  std::vector<fs::path> paths;
+  for (const std::string& library : libraries) paths.push_back(fs::absolute(library).lexically_normal());
+  conformance::examine(paths, how, report);
+  if (counts.empty()) refuse_names(how);
+  const std::size_t bad = counts["failed"] + counts["crashed"];
   if (as_json)
     std::cout << json_text(list) << '\n';
   else
-    std::cout << cases << " cases, " << bad << " failed; --seed " << how.seed << " repeats them\n";
+    std::cout << counts["passed"] << " passed, " << counts["skipped"] << " skipped, " << bad << " failed; --seed "
+              << how.seed << " repeats them\n";
   return bad == 0 ? 0 : 1;
 }
 

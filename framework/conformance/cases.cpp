@@ -13,6 +13,7 @@
 #include "experiment/toml_reader.hpp"
 #include "operators/declarations.hpp"
 #include "operators/describe.hpp"
+#include "operators/host_keys.hpp"
 
 namespace evodevo::conformance {
 namespace {
@@ -77,9 +78,15 @@ class Refusable final : public Parameters {
   }
 };
 
+/// Returns whether the operator accepts the parameters that it is tried with if those in `table` replace some of them.
 bool accepts(const Subject& subject, const toml::table& table) {
-  const std::vector<std::string> materials = subject.context().material_names;
-  TomlReader reader(table, "operator", {&materials});
+  const EncodingContext context = subject.context();
+  toml::table all = subject.use ? subject.use->own : toml::table{};
+  for (const std::string_view key : host_key::all) all.erase(key);
+  for (const auto& [key, value] : table) all.insert_or_assign(key, value);
+  References references{&context.material_names};
+  if (subject.use) references.recorded_files = &subject.use->experiment.files;
+  TomlReader reader(all, "operator", references);
   try {
     evodevo::create<Operator>(subject.available)->parameters(reader);
     reader.finish();
@@ -90,9 +97,8 @@ bool accepts(const Subject& subject, const toml::table& table) {
 }
 
 void refusals(const Subject& subject, std::uint64_t) {
-  const std::string required = required_parameter(*evodevo::create<Operator>(subject.available));
-  if (required.empty() && !accepts(subject, {}))
-    throw Violation("it does not accept its own defaults; correct parameters()");
+  create<Operator>(subject);  // throws Skipped if a required parameter is missing
+  if (!accepts(subject, {})) throw Violation("it does not accept its own parameters; correct parameters()");
   if (accepts(subject, toml::table{{"a-key-that-nobody-knows", 1}}))
     throw Violation("it accepts an unknown key, a-key-that-nobody-knows");
   Refusable refusable;
@@ -108,9 +114,10 @@ void refusals(const Subject& subject, std::uint64_t) {
 void same_seed(const Subject& subject, std::uint64_t seed) {
   for (std::uint32_t input = 0; input < inputs_for(subject); ++input)
     if (!same(try_new(subject, seed, input), try_new(subject, seed, input)))
-      throw Violation(
-          "two calls with input " + std::to_string(input) +
-          " and equal random numbers give different results; draw random numbers only from the Rng that is passed in");
+      throw Violation("two calls with input " + std::to_string(input) +
+                      " and equal random numbers give different results; draw random numbers only from the Rng that is "
+                      "passed in, and keep "
+                      "nothing between calls");
 }
 
 void threads(const Subject& subject, std::uint64_t seed) {
@@ -129,9 +136,9 @@ void threads(const Subject& subject, std::uint64_t seed) {
     const auto results = other.get();
     for (std::size_t i = 0; i < alone.size(); ++i)
       if (!same(results[i], alone[i]))
-        throw Violation(
-            "input " + std::to_string(i) +
-            " gives one result on one thread and another on eight threads; an operator may hold only parameters");
+        throw Violation("input " + std::to_string(i) +
+                        " gives one result on one thread and another on eight threads; "
+                        "calls may not change what an operator holds");
   }
 }
 
@@ -140,9 +147,9 @@ void batch(const Subject& subject, std::uint64_t seed) {
   for (std::uint32_t left = inputs_for(subject); left > 0; --left) {
     const std::uint32_t input = left - 1;
     if (!same(try_out(subject, *op, seed, input), try_new(subject, seed, input)))
-      throw Violation(
-          "input " + std::to_string(input) +
-          " gives one result by itself and another after other inputs; an operator may hold only parameters");
+      throw Violation("input " + std::to_string(input) +
+                      " gives one result by itself and another after other inputs; "
+                      "calls may not change what an operator holds");
   }
 }
 
@@ -199,7 +206,11 @@ void instances(const Subject& subject, std::uint64_t seed) {
   const Numbers before = try_out(subject, *one, seed, 0);
   Changer changer;
   other->parameters(changer);
-  // not prepared, since the changed parameters need not fit each other
+  try {
+    other->prepare(subject.context());
+  } catch (const std::exception&) {
+    // the changed parameters need not fit each other
+  }
   if (values(*one) != defaults)
     throw Violation("a parameter that is set in one instance changes in another; use no static members");
   if (!same(try_out(subject, *one, seed, 0), before))

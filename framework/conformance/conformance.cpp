@@ -37,13 +37,20 @@ class Court {
 
   /// Runs a case if it is wanted, and returns whether it passed.
   bool judge(const std::string& subject, const char* name, const std::function<void()>& check) const {
-    if (!how_.only_case.empty() && how_.only_case != name) return true;
+    return !is_wanted(name) || require(subject, name, check);
+  }
+  /// Runs a case on which others depend, and returns whether it passed. Does not report it if it passed and is not
+  /// wanted.
+  bool require(const std::string& subject, const char* name, const std::function<void()>& check) const {
     const Verdict verdict = how_.here ? told(subject, name, tell(check)) : judged_apart(subject, name, check);
-    report_(verdict);
-    return verdict.outcome == "passed";
+    const bool has_passed = verdict.outcome == "passed";
+    if (is_wanted(name) || !has_passed) report_(verdict);
+    return has_passed;
   }
 
  private:
+  bool is_wanted(std::string_view name) const { return how_.only_case.empty() || how_.only_case == name; }
+
   static Verdict told(const std::string& subject, const char* name, const std::string& text) {
     const auto newline = text.find('\n');
     return {subject, name, text.substr(0, newline), text.substr(newline + 1)};
@@ -52,8 +59,9 @@ class Court {
   /// Runs a case in a process of its own.
   Verdict judged_apart(const std::string& subject, const char* name, const std::function<void()>& check) const {
     const ChildEnd end = in_child([&] { return tell(check); }, how_.seconds);
-    if (end.timed_out) return {subject, name, "failed", end.crash};
-    if (!end.crash.empty()) return {subject, name, "crashed", end.crash};
+    if (!end.crash.empty())
+      return {subject, name, end.timed_out ? "failed" : "crashed",
+              end.crash + "; to look at it in a debugger, give --case " + name + " --here"};
     return told(subject, name, end.text);
   }
 
@@ -87,24 +95,59 @@ void lists_quickly(const fs::path& library) {
                     " ms; expected less than 100 ms: do the work in the calls, not in constructors");
 }
 
-}  // namespace
-
-void examine(const fs::path& library, const Examination& how, const std::function<void(const Verdict&)>& report) {
-  const Court court(how, report);
+/// Runs the cases for a library as a whole, unless only one operator is examined. Returns whether it can be loaded.
+bool is_usable(const fs::path& library, const Court& court, const Examination& how) {
+  if (!how.only_operator.empty()) return true;
   const std::string file = library.filename().string();
-  if (how.only_operator.empty()) {
-    if (!court.judge(file, "loads", [&] { loads(library); })) return;
-    court.judge(file, "exports", [&] { exports_one_function(library); });
-    court.judge(file, "listing", [&] { lists_quickly(library); });
-  }
-  const Registry registry({library});
-  for (const AvailableOperator& available : registry.operators()) {
+  if (!court.judge(file, "loads", [&] { loads(library); })) return false;
+  court.judge(file, "exports", [&] { exports_one_function(library); });
+  court.judge(file, "listing", [&] { lists_quickly(library); });
+  return true;
+}
+
+/// Reads the experiment whose parameters and genomes the operators of the libraries are tried with. Throws Violation if
+/// it uses none of them.
+Experiment experiment_for(const std::vector<fs::path>& libraries, const std::string& file) {
+  Experiment experiment = read_experiment({.file = file, .overrides = {}, .plugin_path = libraries});
+  const auto is_tried = [&](const OperatorUse& use) {
+    return std::any_of(libraries.begin(), libraries.end(),
+                       [&](const fs::path& library) { return fs::equivalent(library, use.file); });
+  };
+  if (std::none_of(experiment.uses.begin(), experiment.uses.end(), is_tried))
+    throw Violation("it uses no operator of the libraries; name an experiment that does");
+  return experiment;
+}
+
+void try_operators(const std::vector<AvailableOperator>& operators, const Court& court, const Examination& how,
+                   const Experiment* experiment) {
+  for (const AvailableOperator& available : operators) {
     if (!how.only_operator.empty() && how.only_operator != available.entry->name) continue;
-    const Subject subject{available, registry.operators(),
-                          how.experiment == nullptr ? std::nullopt : use_in(*how.experiment, available)};
+    const Subject subject{available, operators, experiment == nullptr ? std::nullopt : use_in(*experiment, available)};
     const std::string title = subject.kind() + " " + subject.name();
     for (const auto& cases : {general_cases(), process_cases(), laws_of(subject.kind())})
       for (const Case& one : cases) court.judge(title, one.name, [&] { one.check(subject, how.seed); });
+  }
+}
+
+}  // namespace
+
+void examine(const std::vector<fs::path>& libraries, const Examination& how,
+             const std::function<void(const Verdict&)>& report) {
+  const Court court(how, report);
+  std::vector<fs::path> usable;
+  for (const fs::path& library : libraries)
+    if (is_usable(library, court, how)) usable.push_back(library);
+  // only now, since this loads the libraries into this process
+  std::optional<Experiment> experiment;
+  if (!how.experiment.empty() && !usable.empty()) {
+    const auto read = [&] { return experiment_for(usable, how.experiment); };
+    if (!court.require(how.experiment, "experiment", read)) return;
+    experiment = read();
+  }
+  for (const fs::path& library : usable) {
+    const Registry registry({library});
+    if (!registry.failed().empty()) report({library.filename(), "loads", "failed", registry.failed().front().reason});
+    try_operators(registry.operators(), court, how, experiment ? &*experiment : nullptr);
   }
 }
 

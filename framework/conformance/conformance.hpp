@@ -35,15 +35,18 @@ struct Verdict {
 
 /// What is examined, and how.
 struct Examination {
-  std::uint64_t seed = 1;                  ///< determines all inputs
-  std::string only_operator, only_case;    ///< names; empty: all
-  bool here = false;                       ///< whether cases run in this process, without a time limit, for a debugger
-  const Experiment* experiment = nullptr;  ///< gives parameters and genomes to the operators that it uses, if not null
-  unsigned seconds = 60;                   ///< a case that has not finished after this time counts as failed
+  std::uint64_t seed = 1;                ///< determines all inputs
+  std::string only_operator, only_case;  ///< names; empty: all
+  bool here = false;                     ///< whether cases run in this process, without a time limit, for a debugger
+  /// The file of an experiment that gives parameters and genomes to the operators that it uses; empty: none.
+  std::string experiment;
+  unsigned seconds = 60;  ///< a case that has not finished after this time counts as failed
 };
 
-/// Runs the cases for the operators of a library, and reports each verdict as soon as it is known.
-void examine(const std::filesystem::path& library, const Examination& how,
+/// Runs the cases for libraries and their operators, and reports each verdict as soon as it is known. The order: the
+/// cases for each library; the case "experiment", which reads the experiment if there is one; the cases for each
+/// operator. If the experiment cannot be used, the operators are not tried.
+void examine(const std::vector<std::filesystem::path>& libraries, const Examination& how,
              const std::function<void(const Verdict&)>& report);
 
 }  // namespace evodevo::conformance

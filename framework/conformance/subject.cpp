@@ -87,18 +87,22 @@ const AvailableOperator& encoding_with(const Subject& subject, const std::vector
   for (const AvailableOperator& other : subject.library) {
     if (std::string_view(other.entry->kind) != Encoding::kind) continue;
     const Subject encoding{other, subject.library};
-    if (has_types(create<Encoding>(encoding)->layout(encoding.context()), block_types)) return other;
+    try {
+      if (has_types(create<Encoding>(encoding)->layout(encoding.context()), block_types)) return other;
+    } catch (const Skipped&) {
+      // this one requires a parameter
+    }
   }
   throw Skipped("it works on blocks of the type \"" + printable(block_types.front()) +
-                "\"; name an experiment whose genomes have such blocks: --experiment FILE");
+                "\"; name an experiment that uses it and whose genomes have such blocks: --experiment FILE");
 }
 
 /// Returns the encoding for a small experiment with another operator: one whose genomes have the blocks on which the
 /// operator works.
 toml::table encoding_for(const Subject& subject) {
-  if (subject.use) return table_of(subject.use->tables, Encoding::kind, 0);
   const std::vector<std::string> wanted = create_operator(subject)->traits().block_types;
   if (wanted.empty()) return toml::table{{host_key::name, "voxel"}, {"size", toml::array{2, 1, 1}}, {"edge", 0.5}};
+  if (subject.use) return table_of(subject.use->tables, Encoding::kind, 0);
   if (has_types(sample_layout(1), wanted))
     return toml::table{{host_key::name, "neat"}, {"points", 30}, {"neighbours", 6}};
   return with_name(encoding_with(subject, wanted).entry->name);
@@ -140,7 +144,7 @@ void set_parameters(Operator& op, const Subject& subject) {
   if (!subject.use) {
     if (const std::string name = required_parameter(op); !name.empty())
       throw Skipped("its parameter \"" + name +
-                    "\" has no default; name an experiment that sets it: --experiment FILE");
+                    "\" has no default; name an experiment that uses it: --experiment FILE");
     return op.prepare(subject.context());
   }
   const Experiment& experiment = subject.use->experiment;

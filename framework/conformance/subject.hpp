@@ -51,8 +51,8 @@ struct Subject {
 /// Returns the use of an operator in an experiment, or nothing if the experiment does not use it.
 std::optional<Use> use_in(const Experiment& experiment, const AvailableOperator& available);
 
-/// Sets the parameters of an operator that has its defaults, and lets it prepare itself. Throws Skipped if it has none for a parameter that it
-/// requires.
+/// Sets the parameters of an operator that has its defaults, and lets it prepare itself. Throws Skipped if it has none
+/// for a parameter that it requires.
 void set_parameters(Operator& op, const Subject& subject);
 /// Creates the operator and sets its parameters.
 std::unique_ptr<Operator> create_operator(const Subject& subject);

@@ -24,7 +24,8 @@ void say(const OperatorCall& call, std::string_view what) {
     while (true) pause();  // the thread that came first ends the process
   Line line;
   line << "\nevodevo: " << call << ": " << what << "; `evodevo conform " << call.title->file
-       << "` tests the operator. The complete generations of a run are kept.\n";
+       << " --experiment FILE.toml` tests the operator with its parameters. The complete generations of a run are "
+          "kept.\n";
   line.write_to(STDERR_FILENO);
 }
 

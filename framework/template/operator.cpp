@@ -6,7 +6,7 @@
 namespace {
 
 @encoding@
-/// Each mass has three genes for its position and one gene for its material. The host joins neighbouring masses.
+/// Each mass has a block of four genes: three for its position and one for its material. The host joins neighbouring masses.
 class @CLASS@ final : public evodevo::Encoding {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -15,11 +15,10 @@ class @CLASS@ final : public evodevo::Encoding {
   }
 
   evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
+    const evodevo::GeneSpec place{-1, 1}, material{0, 0, static_cast<std::uint32_t>(context.materials.size())};
     evodevo::Layout layout;
-    for (std::int64_t i = 0; i < masses_; ++i) {
-      layout.add_block(3, {-1, 1});
-      layout.add_block(1, {0, 0, static_cast<std::uint32_t>(context.materials.size())});
-    }
+    for (std::int64_t i = 0; i < masses_; ++i) layout.add_block({place, place, place, material}, "mass");
+    layout.types.front().gene_names = {"x", "y", "z", "material"};
     return layout;
   }
 
@@ -153,7 +152,7 @@ EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<@CLASS@>("@NAME@",
                                                 "Gives every gene a new random value with a small probability."))
 @crossover@
-               evodevo::operator_entry<@CLASS@>("@NAME@", "Swaps every gene with a given probability."))
+               evodevo::operator_entry<@CLASS@>("@NAME@", "Takes each block from the second parent with a given probability."))
 @devo@
                evodevo::operator_entry<@CLASS@>("@NAME@", "Removes a few random springs."))
 @fitness@

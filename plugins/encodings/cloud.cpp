@@ -73,6 +73,8 @@ class Cloud final : public evodevo::Encoding {
   }
 
  private:
+  /// Most winding numbers of a triangle that prepare() computes; this many take about 30 s.
+  static constexpr std::size_t most_work = 1'000'000'000;
   /// Positions of the genes of a site. Its coordinates are relative to half of the sides of the bounding box.
   enum Gene : std::uint32_t { site_x, site_y, site_z, site_material, site_genes };
 
@@ -102,7 +104,11 @@ class Cloud final : public evodevo::Encoding {
       const double x = rng.uniform(-half.x, half.x), y = rng.uniform(-half.y, half.y);
       const Vec3 place{x, y, rng.uniform(-half.z, half.z)};
       if (winding_number(shape, place) > 0.5) inside.push_back(place);
-      if (tries >= 10'000 && inside.size() < tries / 200)
+      if (tries * shape.triangles.size() > most_work)
+        throw std::invalid_argument(file_.path + ": to fill a surface of " + std::to_string(shape.triangles.size()) +
+                                    " triangles with " + std::to_string(points_) +
+                                    " points takes too long; expected fewer triangles or points");
+      if (tries >= 10'000 && inside.size() < tries / 400)
         throw std::invalid_argument(file_.path +
                                     ": the surface encloses less than 0.5 % of its bounding box; expected "
                                     "a closed surface whose faces are anticlockwise as seen from outside");

@@ -39,7 +39,8 @@ struct Shape {
 Shape read_shape(const InputFile& file);
 
 /// Returns how many times the surface winds around a point (generalised winding number: Jacobson et al. 2013): 1 inside
-/// of a closed surface, 2 inside of two that overlap, 0 outside. Takes time in proportion to the number of triangles.
+/// of a closed surface, 2 inside of two that overlap, 0 outside. Takes time in proportion to the number of points and
+/// triangles.
 double winding_number(const Shape& shape, Vec3 point);
 
 /// Reads the vertices and faces of a PLY file (Turk 1994), whose indices may be out of range. Throws

@@ -88,6 +88,7 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"threads", "threads", "failed", {"input 0 ", "thread"}},
         Broken{"batch", "batch", "failed", {"input 12 "}}, Broken{"inputs", "inputs", "failed", {"the layout"}},
         Broken{"instances", "instances", "failed", {"instance", "static"}},
+        Broken{"instances_prepared", "instances", "failed", {"instance", "static"}},
         Broken{"resuming", "resuming", "failed", {"resumed"}}, Broken{"nothing", "nothing", "failed", {"no genes"}},
         Broken{"layout", "layout", "failed", {"gene 0 = 2,"}},
         Broken{"changes", "changes", "failed", {"200 genomes", "clones"}},
@@ -137,7 +138,7 @@ TEST(Conformance, ACaseThatNeverEndsIsNotKept) {
   const auto note = [&](const conformance::Verdict& verdict) {
     outcomes[verdict.name] = verdict.outcome + " " + verdict.reason;
   };
-  conformance::examine(wrong("endless"), {.seconds = 1}, note);
+  conformance::examine({wrong("endless")}, {.seconds = 1}, note);
   EXPECT_THAT(outcomes.at("nothing"), testing::at_place("failed ", " 1 s"));
   EXPECT_EQ(outcomes.at("layout"), "passed ") << "and the next case comes";
 }
@@ -186,6 +187,28 @@ name = "elitist"
   const auto outcomes = special("by-file", {"--experiment", experiment});
   EXPECT_GE(outcomes.size(), 12u);
   for (const auto& [name, outcome] : outcomes) EXPECT_EQ(outcome, "passed ") << name;
+}
+
+TEST(Conformance, AnExperimentHidesNoFaultOfALibrary) {
+  const fs::path library = fs::path(EVODEVO_FAULTY_PLUGINS) / "rounds" / "plugin.evodevo.so";
+  const auto outcomes = verdicts(library, 1, {"--experiment", EVODEVO_EXPERIMENTS "/quickstart.toml"});
+  EXPECT_THAT(outcomes.at("loads"), testing::at_place("failed ", "the rounding mode"));
+}
+
+TEST(Conformance, AnExperimentThatCannotBeReadIsACase) {
+  const testing::Scratch folder;
+  const std::string experiment = folder.write("bad.toml", "[experiment]\nevaluations = 10\nspede = 1\n");
+  const auto outcomes = verdicts(wrong("changes"), 1, {"--experiment", experiment, "--case", "changes"});
+  ASSERT_EQ(outcomes.size(), 1u);
+  EXPECT_THAT(outcomes.at("experiment"), testing::at_place("failed " + experiment, "spede"));
+}
+
+TEST(Conformance, AnExperimentWithoutTheOperatorsIsRefused) {
+  const std::string other = EVODEVO_EXPERIMENTS "/quickstart.toml";
+  const Finished finished =
+      testing::run({EVODEVO_PROGRAM, "conform", wrong("changes").string(), "--experiment", other});
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_THAT(finished.output, testing::naming("failed   " + other, "experiment: ", "no operator of the libraries"));
 }
 
 TEST(Conformance, OneCaseCanRunInThisProcess) {

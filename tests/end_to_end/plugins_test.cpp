@@ -193,7 +193,7 @@ TEST_F(Plugins, AnOperatorThatCrashesIsNamedWithItsFile) {
   EXPECT_NE(crashed.exit_code, 0);
   EXPECT_THAT(crashed.output, testing::naming("evodevo: mutation operator \"nothing\" of " + library_.string() +
                                                   ", individual 6, seed 7: crashed: Segmentation fault",
-                                              "`evodevo conform " + library_.string() + "`"));
+                                              "`evodevo conform " + library_.string() + " --experiment "));
 }
 
 TEST_F(Plugins, ARunOutlivesTheFolderOfItsOperators) {

@@ -164,6 +164,11 @@ struct Wrong final : evodevo::Mutation {
 #endif
   mutable int calls_ = 0;
 
+#if defined(WRONG_INSTANCES_PREPARED)
+  static inline float prepared_ = 0;  // what prepare() computes, of all instances
+  void prepare(const evodevo::EncodingContext&) override { prepared_ = 0.1F * static_cast<float>(genes_); }
+#endif
+
   void parameters(evodevo::Parameters& p) override {
 #if defined(WRONG_DECLARATIONS)
     p.integer(genes_, "genes", {0, 5, "1"}, "");
@@ -206,6 +211,8 @@ struct Wrong final : evodevo::Mutation {
     if (calls_in_this_process > 5) gene = spec.draw(rng);
 #elif defined(WRONG_LAYOUT)
     gene = spec.high + 1;
+#elif defined(WRONG_INSTANCES_PREPARED)
+    gene = spec.is_real() ? spec.low + (spec.high - spec.low) * prepared_ : 0;
 #elif defined(WRONG_CRASHING)
     std::raise(SIGSEGV);
 #elif defined(WRONG_HIDDEN_STATE)

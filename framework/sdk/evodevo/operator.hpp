@@ -1,6 +1,7 @@
 // The base class of all operators.
 #pragma once
 
+#include <stdexcept>  // for exceptions of prepare()
 #include <string>
 #include <vector>
 
@@ -31,8 +32,8 @@ class Operator {
   /// Declares every parameter of the operator with one call of a function of Parameters.
   virtual void parameters(Parameters&) {}
   /// Computes from the parameters what the other functions need, such as the points in a file. `context` has the
-  /// materials of the experiment and random numbers. The host calls this function once, after it has set the parameters
-  /// and before it calls any other. If it throws, the experiment is refused with the exception's message.
+  /// materials of the experiment and random numbers. The host calls this function once, after parameters() has set them
+  /// and before any function but parameters(). If it throws, the experiment is refused with the exception's message.
   virtual void prepare([[maybe_unused]] const EncodingContext& context) {}
   /// Returns what the operator is and needs.
   virtual Traits traits() const { return {}; }

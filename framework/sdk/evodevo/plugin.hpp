@@ -23,13 +23,39 @@ inline constexpr std::uint32_t plugin_epoch = 8;
 /// A hash of the sizes of all structs that host and plugin exchange.
 inline constexpr std::uint32_t plugin_struct_digest = [] {
   std::uint32_t digest = 2166136261u;  // FNV-1a
-  for (const std::size_t size :
-       {sizeof(Body),    sizeof(Mass),     sizeof(Spring),          sizeof(Material),      sizeof(State),
-        sizeof(Rng),     sizeof(GeneSpec), sizeof(BlockType),       sizeof(Block),         sizeof(Genome),
-        sizeof(Layout),  sizeof(Parents),  sizeof(EncodingContext), sizeof(Blueprint),     sizeof(DevoContext),
-        sizeof(Edits),   sizeof(NewMass),  sizeof(NewSpring),       sizeof(ChangedSpring), sizeof(SpringRequest),
-        sizeof(Measure), sizeof(Request),  sizeof(Observation),     sizeof(Objective),     sizeof(Candidate),
-        sizeof(Size),    sizeof(Growth)})
+  for (const std::size_t size : {sizeof(Body),
+                                 sizeof(Mass),
+                                 sizeof(Spring),
+                                 sizeof(Material),
+                                 sizeof(State),
+                                 sizeof(Rng),
+                                 sizeof(GeneSpec),
+                                 sizeof(BlockType),
+                                 sizeof(Block),
+                                 sizeof(Genome),
+                                 sizeof(Layout),
+                                 sizeof(Parents),
+                                 sizeof(EncodingContext),
+                                 sizeof(Blueprint),
+                                 sizeof(DevoContext),
+                                 sizeof(Edits),
+                                 sizeof(NewMass),
+                                 sizeof(NewSpring),
+                                 sizeof(ChangedSpring),
+                                 sizeof(SpringRequest),
+                                 sizeof(Measure),
+                                 sizeof(Request),
+                                 sizeof(Observation),
+                                 sizeof(Objective),
+                                 sizeof(Candidate),
+                                 sizeof(Size),
+                                 sizeof(Growth),
+                                 sizeof(Causes),
+                                 sizeof(Traits),
+                                 sizeof(InputFile),
+                                 sizeof(Range),
+                                 sizeof(Box),
+                                 sizeof(Vec3)})
     digest = (digest ^ static_cast<std::uint32_t>(size)) * 16777619u;
   return digest;
 }();

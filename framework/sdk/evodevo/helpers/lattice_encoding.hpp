@@ -17,7 +17,7 @@ class LatticeEncoding : public Encoding {
   }
 
   /// Makes the lattice, which is the same for all bodies.
-  void prepare(const EncodingContext&) final {
+  void prepare(const EncodingContext&) override {
     lattice_ = make_lattice({static_cast<std::uint32_t>(size_[0]), static_cast<std::uint32_t>(size_[1]),
                              static_cast<std::uint32_t>(size_[2])},
                             edge_);

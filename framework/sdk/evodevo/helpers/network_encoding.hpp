@@ -31,7 +31,7 @@ class NetworkEncoding : public Encoding {
   }
 
   /// Draws the points, which are the same for all bodies.
-  void prepare(const EncodingContext& context) final { ball_ = ball(context); }
+  void prepare(const EncodingContext& context) override { ball_ = ball(context); }
 
   Blueprint decode(const Genome& genome, const Layout& layout, const EncodingContext& context) const final {
     const auto chosen = context.material_indices(materials_);
