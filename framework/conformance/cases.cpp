@@ -116,8 +116,7 @@ void same_seed(const Subject& subject, std::uint64_t seed) {
     if (!same(try_new(subject, seed, input), try_new(subject, seed, input)))
       throw Violation("two calls with input " + std::to_string(input) +
                       " and equal random numbers give different results; draw random numbers only from the Rng that is "
-                      "passed in, and keep "
-                      "nothing between calls");
+                      "passed in, and keep nothing between calls");
 }
 
 void threads(const Subject& subject, std::uint64_t seed) {

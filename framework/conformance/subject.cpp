@@ -84,9 +84,9 @@ toml::table with_name(const std::string& name) { return toml::table{{host_key::n
 /// Returns the encoding of the same library whose genomes have blocks of all the given types. Throws Skipped if there
 /// is none.
 const AvailableOperator& encoding_with(const Subject& subject, const std::vector<std::string>& block_types) {
-  for (const AvailableOperator& other : subject.library) {
+  for (const AvailableOperator& other : subject.siblings) {
     if (std::string_view(other.entry->kind) != Encoding::kind) continue;
-    const Subject encoding{other, subject.library};
+    const Subject encoding{other, subject.siblings};
     try {
       if (has_types(create<Encoding>(encoding)->layout(encoding.context()), block_types)) return other;
     } catch (const Skipped&) {
@@ -166,7 +166,7 @@ SampleGenomes sample_genomes(const Subject& subject, const Operator& op, std::ui
     if (const Layout layout = sample_layout(one); has_types(layout, wanted))
       return restructured(layout, [layout](Rng& rng) { return random_genome(layout, rng); });
   const AvailableOperator& available = encoding_with(subject, wanted);
-  const std::shared_ptr<const Encoding> encoding = create<Encoding>(Subject{available, subject.library});
+  const std::shared_ptr<const Encoding> encoding = create<Encoding>(Subject{available, subject.siblings});
   const Layout layout = encoding->layout(subject.context());
   return restructured(layout, [encoding, layout](Rng& rng) { return encoding->random(layout, rng); });
 }

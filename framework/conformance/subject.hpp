@@ -37,8 +37,8 @@ struct Use {
 /// An operator, with its default parameters or with those that an experiment gives it.
 struct Subject {
   const AvailableOperator& available;
-  const std::vector<AvailableOperator>& library;  ///< all operators of its library
-  std::optional<Use> use = {};                    ///< nothing: default parameters
+  const std::vector<AvailableOperator>& siblings;  ///< all operators of its library, itself included
+  std::optional<Use> use = {};                     ///< nothing: default parameters
 
   std::string kind() const { return available.entry->kind; }
   std::string name() const { return available.entry->name; }
