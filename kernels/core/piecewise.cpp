@@ -11,7 +11,11 @@ namespace {
 /// A task that is simulated in pieces, and its progress.
 class Piecewise {
  public:
-  explicit Piecewise(Task& whole) : whole_(whole) { whole_.spring_evaluations = 0; }
+  explicit Piecewise(Task& whole) : whole_(whole) {
+    whole_.spring_evaluations = 0;
+    whole_.samples.clear();
+    for (const SamplePoint& point : whole_.sampled_at) counted_ = counted_ | counted_of(point.channels);
+  }
 
   bool is_over() const { return whole_.status != Status::ok || done_ == whole_.steps; }
 
@@ -21,6 +25,12 @@ class Piecewise {
     piece.later_steps = whole_.later_steps + whole_.steps - done_ - piece.steps;
     piece.course = whole_.course;
     piece.preparation = std::move(whole_.preparation);
+    for (std::size_t next = whole_.samples.size(); next < whole_.sampled_at.size(); ++next) {
+      const auto& [step, channels] = whole_.sampled_at[next];
+      if (step > done_ + piece.steps) break;
+      piece.sampled_at.push_back({step - done_, channels});
+    }
+    if (counted_.any()) piece.sampled_at.push_back({piece.steps, counted_});
     return piece;
   }
 
@@ -32,10 +42,35 @@ class Piecewise {
     whole_.preparation = std::move(piece.preparation);
     whole_.spring_evaluations += piece.spring_evaluations;
     done_ += piece.steps;
+    if (piece.status != Status::ok) return whole_.samples.clear();
+    Sample end;
+    if (counted_.any()) {
+      end = std::move(piece.samples.back());
+      piece.samples.pop_back();
+    }
+    for (std::size_t i = 0; i < piece.samples.size(); ++i) {
+      const Channels& channels = whole_.sampled_at[whole_.samples.size()].channels;
+      Sample& sample = whole_.samples.emplace_back(std::move(piece.samples[i]));
+      if (channels.contact) sample.contact_steps += before_.contact_steps;
+      if (channels.work) sample.work += before_.work;
+      for (std::size_t m = 0; m < sample.contacts.size() && m < before_.contacts.size(); ++m)
+        sample.contacts[m] += before_.contacts[m];
+    }
+    before_.contact_steps += end.contact_steps;
+    before_.work += end.work;
+    before_.contacts.resize(end.contacts.size());
+    for (std::size_t m = 0; m < end.contacts.size(); ++m) before_.contacts[m] += end.contacts[m];
   }
 
  private:
+  /// The channels that are counted from the beginning of a task.
+  static Channels counted_of(const Channels& channels) {
+    return {.contact = channels.contact, .work = channels.work, .contacts = channels.contacts};
+  }
+
   Task& whole_;
+  Channels counted_;  ///< by any sample; each piece is sampled at its end, so that the next one can go on counting
+  Sample before_;     ///< what was counted in earlier pieces
   std::uint64_t done_ = 0;
 };
 

@@ -17,6 +17,7 @@
 #include "core/course.hpp"
 #include "core/method.hpp"
 #include "core/neighbour_search.hpp"
+#include "core/sample.hpp"
 #include "core/scene.hpp"
 #include "evodevo/body.hpp"
 
@@ -77,8 +78,9 @@ class Preparation {
 };
 
 /// One body of a batch, to be simulated for `steps` time steps of length `dt`. The caller sets `body`, `state`, `dt`,
-/// `steps` and, if needed, `later_steps`, `course` and `preparation`; the simulator sets the rest. The records are
-/// empty after a divergence.
+/// `steps` and, if needed, `later_steps`, `course`, `preparation` and `sampled_at`; the simulator sets the rest. The
+/// records and samples are empty after a divergence. Records and samples change neither the motion nor each other, not
+/// even in the last bit.
 ///
 /// A run can be divided into pieces with the same body and dt: each piece except the last gives the number of
 /// `later_steps` that follow, and the caller passes its `course` to the next piece. State and status are then
@@ -94,12 +96,14 @@ struct Task : SpringRecords {
   /// In: the preparation from the body's last run, or null; out: that of this run. A preparation that no longer fits
   /// the body is ignored.
   std::shared_ptr<const Preparation> preparation;
+  std::vector<SamplePoint> sampled_at;  ///< in ascending order of their steps, from 0 to `steps`
 
   Status status = Status::ok;            ///< in: tasks that are not ok are skipped; out: ok or diverged
   double ended_at = 0;                   ///< time since birth at which a check found the divergence, s
   std::string reason;                    ///< why the body has diverged
   double work = 0;                       ///< work of the muscles on the body, J; 0 unless recorded
   std::uint64_t spring_evaluations = 0;  ///< springs times steps, whatever the number of passes per step
+  std::vector<Sample> samples;           ///< one for each of `sampled_at`
 };
 
 /// Thrown if a device has too little free memory for even one body.

@@ -72,6 +72,20 @@ HWY_INLINE void add_floor(const cpu::Motion<T>& m, const cpu::StepConstants<T>& 
   }
 }
 
+/// Adds 1 to the number of contact steps of each mass that is below the ground.
+template <class T>
+HWY_INLINE void count_contacts(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, std::size_t masses) {
+  if (!constants.floor) return;
+  const hn::ScalableTag<T> d;
+  const auto one = hn::Set(d, T(1)), zero = hn::Zero(d);
+  for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
+    auto height = hn::Load(d, m.z + i);
+    if (constants.rough) height = height - ground_under(m, constants, i).height;
+    const auto touches = hn::IfThenElseZero(hn::Lt(height, zero), one);
+    hn::Store(hn::Load(d, m.contact_steps + i) + touches, d, m.contact_steps + i);
+  }
+}
+
 template <class T>
 HWY_INLINE void add_drag(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, std::size_t masses) {
   const hn::ScalableTag<T> d;

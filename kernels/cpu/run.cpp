@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "analysis/computed_materials.hpp"
 #include "analysis/guard.hpp"
+#include "analysis/sampling.hpp"
 #include "cpu/coloured_springs.hpp"
 
 namespace evodevo::cpu {
@@ -80,7 +82,8 @@ class ActuationTables {
 template <class T>
 class MovingBody {
  public:
-  MovingBody(const Body& body, const State& state, std::size_t lanes, const Integrator<T>& integrator, Sums sums)
+  MovingBody(const Body& body, const State& state, std::size_t lanes, const Integrator<T>& integrator, Sums sums,
+             bool counts_contacts)
       : layout_(body, lanes),
         mass_(layout_.padded_masses()),
         inverse_mass_(layout_.padded_masses()),
@@ -90,7 +93,9 @@ class MovingBody {
         force_sum_(sums.force ? layout_.slots() : 0),
         power_sum_(sums.power ? layout_.slots() : 0),
         peak_(sums.peak ? layout_.slots() : 0),
-        tension_sum_(sums.tension ? layout_.slots() : 0) {
+        tension_sum_(sums.tension ? layout_.slots() : 0),
+        contact_steps_(counts_contacts ? layout_.padded_masses() : 0),
+        contacts_(counts_contacts ? layout_.masses : 0) {
     if (integrator.coloured) coloured_ = ColouredSprings<T>(body, layout_);
     for (auto* arrays : {&position_, &velocity_, &force_})
       for (Array<T>& array : *arrays) array = Array<T>(layout_.padded_masses());
@@ -142,7 +147,8 @@ class MovingBody {
             .force_sum = data_of(force_sum_),
             .power_sum = data_of(power_sum_),
             .peak = data_of(peak_),
-            .tension_sum = data_of(tension_sum_)};
+            .tension_sum = data_of(tension_sum_),
+            .contact_steps = data_of(contact_steps_)};
   }
 
   /// Adds the sums of the slots to the task's records and sets them to zero. The sums between two checks have few
@@ -159,6 +165,24 @@ class MovingBody {
     force_sum_.clear();
     power_sum_.clear();
     tension_sum_.clear();
+    for (std::size_t i = 0; i < contacts_.size(); ++i)
+      contacts_[layout_.mass_at[i]] += static_cast<std::uint32_t>(contact_steps_[i]);
+    contact_steps_.clear();
+  }
+
+  /// The number of steps after which each mass touched the ground, by its index in the body; empty if not counted.
+  std::vector<std::uint32_t> contacts() const {
+    std::vector<std::uint32_t> steps = contacts_;
+    for (std::size_t i = 0; i < steps.size(); ++i)
+      steps[layout_.mass_at[i]] += static_cast<std::uint32_t>(contact_steps_[i]);
+    return steps;
+  }
+
+  /// The sum of the power of all muscles since the last call of collect(), W.
+  double uncollected_power() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < layout_.springs; ++i) sum += power_sum_[layout_.slot_of[i]];
+    return sum;
   }
 
   void write(State& state) const {
@@ -180,8 +204,51 @@ class MovingBody {
   Layout<T> layout_;
   ColouredSprings<T> coloured_;
   Array<T> mass_, inverse_mass_, interleaved_positions_, mass_scratch_, slot_scratch_, floor_force_;
-  Array<T> force_sum_, power_sum_, peak_, tension_sum_;
+  Array<T> force_sum_, power_sum_, peak_, tension_sum_, contact_steps_;
+  std::vector<std::uint32_t> contacts_;  ///< contact steps as far as they have been collected
   Array<T> position_[3], velocity_[3], force_[3];
+};
+
+/// Takes the samples of a task.
+template <class T>
+class Sampler {
+ public:
+  /// `body` is the task's body with the materials that are simulated.
+  Sampler(const Body& body, Task& task)
+      : body_(body), task_(task), state_{task.state->position, task.state->velocity} {
+    for (const SamplePoint& point : task.sampled_at) requested_ = requested_ | point.channels;
+  }
+
+  bool counts_contacts() const { return requested_.contact || requested_.contacts; }
+  bool needs_power() const { return requested_.work; }
+
+  /// Returns the number of steps from step `step` to the next sample, but at most `most`.
+  std::uint64_t steps_before_next(std::uint64_t step, std::uint64_t most) const {
+    const std::size_t next = task_.samples.size();
+    return next < task_.sampled_at.size() ? std::min(most, task_.sampled_at[next].step - step) : most;
+  }
+
+  /// Takes the samples after step `step`, at `time` (s since birth). Before the first step, the state is not rounded.
+  void take(std::uint64_t step, double time, const MovingBody<T>& moving) {
+    for (std::size_t next = task_.samples.size(); next < task_.sampled_at.size() && task_.sampled_at[next].step == step;
+         ++next) {
+      if (step > 0) moving.write(state_);
+      const Channels& channels = task_.sampled_at[next].channels;
+      Sample& sample = task_.samples.emplace_back(sample_of(body_, state_, time, channels));
+      if (channels.work) sample.work = task_.work + task_.dt * moving.uncollected_power();
+      if (!channels.contact && !channels.contacts) continue;
+      std::vector<std::uint32_t> contacts = moving.contacts();
+      if (channels.contact)
+        sample.contact_steps = std::accumulate(contacts.begin(), contacts.end(), std::uint64_t{0});
+      if (channels.contacts) sample.contacts = std::move(contacts);
+    }
+  }
+
+ private:
+  const Body& body_;
+  Task& task_;
+  State state_;
+  Channels requested_;  ///< by any sample
 };
 
 /// Checks a body, and ends its run if it has diverged.
@@ -192,6 +259,7 @@ void check(Task& task, Course& course, const Scene& scene, const Energies& e) {
   task.status = Status::diverged;
   task.ended_at = course.time(task.dt);
   task.clear({}, 0);
+  task.samples.clear();
 }
 
 }  // namespace
@@ -205,28 +273,37 @@ void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels
   }
   const Body& body = stepping.materials == Materials::computed ? coded : *task.body;
   State& state = *task.state;
+  task.samples.clear();
+  Sampler<T> sampler(body, task);
   const Sums sums{.force = recording.stress,
-                  .power = recording.work || recording.muscle_work,
+                  .power = recording.work || recording.muscle_work || sampler.needs_power(),
                   .peak = recording.peak_force,
                   .tension = recording.tension};
   const StepConstants<T> constants = step_constants<T>(scene, task.dt);
   Course course = course_of(task, scene, stepping.precision);
   const Integrator<T>& integrator = kernels.integrator[static_cast<std::size_t>(stepping.method)];
   const std::size_t rows = integrator.rows_per_step;
-  MovingBody<T> moving(body, state, kernels.lanes, integrator, sums);
+  MovingBody<T> moving(body, state, kernels.lanes, integrator, sums, sampler.counts_contacts());
   ActuationTables<T> tables(body, guard_interval * rows + 1, kernels.table_size, sums);
   task.clear(recording, body.springs.size());
   task.work = 0;
   task.spring_evaluations = 0;
 
-  const std::uint64_t end = course.steps + task.steps;
+  const std::uint64_t begin = course.steps, end = begin + task.steps;
+  sampler.take(0, course.time(task.dt), moving);
   while (course.steps < end && task.status == Status::ok) {
     const std::size_t now = std::min(end - course.steps, guard_interval - course.steps % guard_interval);
     kernels.actuate(tables.view(), course.origin, course.steps * rows, now * rows + 1,
                     task.dt / static_cast<double>(rows));
-    integrator.advance(moving.view(), constants, tables.view(), now, sums);
+    for (std::size_t row = 0, left = now; left > 0;) {
+      const std::size_t steps = sampler.steps_before_next(course.steps - begin, left);
+      integrator.advance(moving.view(), constants, tables.view(row), steps, sums);
+      row += steps * rows;
+      left -= steps;
+      course.steps += steps;
+      sampler.take(course.steps - begin, course.time(task.dt), moving);
+    }
     moving.collect(task);
-    course.steps += now;
     task.spring_evaluations += now * body.springs.size();
     if (is_checked(task, course))
       check(task, course, scene, kernels.energies(moving.view(), constants, tables.view(now * rows)));

@@ -12,7 +12,7 @@ namespace evodevo::cpu {
 ///   arrange   body, state ─► arrays in Layout's order
 ///   repeat until the end or a divergence, up to the next check:
 ///     actuate   times ─► relative lengths of the materials
-///     advance   arrays, lengths ─► arrays after the steps up to the check
+///     advance   arrays, lengths ─► arrays after the steps up to the check; samples on the way
 ///     collect   sums of the slots ─► records of the springs
 ///     check     energies ─► status
 ///   write     arrays ─► state; sums ─► means over the run

@@ -85,6 +85,8 @@ struct Motion {
   T* power_sum;    ///< W
   T* peak;         ///< N
   T* tension_sum;  ///< N
+
+  T* contact_steps;  ///< [masses] number of steps after which each mass was below the ground; null if not counted
 };
 
 /// The materials as arrays of `padded` entries, and tables of their relative lengths with one row for each time.

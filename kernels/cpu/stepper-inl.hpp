@@ -87,7 +87,10 @@ void advance(const cpu::Motion<T>& motion, const cpu::StepConstants<T>& constant
                            spring_pass(actuation, {}),
                            spring_pass(actuation, sums)};
   M::begin(stepper);
-  for (std::size_t step = 0; step < steps; ++step) M::step(stepper, step * M::rows_per_step);
+  for (std::size_t step = 0; step < steps; ++step) {
+    M::step(stepper, step * M::rows_per_step);
+    if (motion.contact_steps != nullptr) count_contacts(motion, constants, stepper.masses);
+  }
 }
 
 template <class M, class T>
