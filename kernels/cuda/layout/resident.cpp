@@ -119,8 +119,9 @@ void Resident<T>::divide_chip(bool with_rates, std::size_t shared_bytes) {
   const std::size_t masses = masses_bytes<T>(arrangement().groups), slots = arrangement().shape.slots();
   const std::size_t records = slots * sizeof(Record<T>), waves = waves_in(slots) * sizeof(std::uint32_t);
   const MethodForm& method = form_of(features_.method);
-  const std::size_t steps =
-      std::clamp<std::size_t>(table_bytes / (lengths + rates) / method.rows_per_step, 1, longest_table);
+  // whatever is recorded: sums in registers have as many terms as the table has steps, and the number of terms decides
+  // how a sum is rounded
+  const std::size_t steps = std::clamp<std::size_t>(table_bytes / lengths / method.rows_per_step, 1, longest_table);
   // the clock is read one row ahead
   const std::size_t rows = (features_.actuation ? method.rows(static_cast<unsigned>(steps)) : 1) + (codes ? 1 : 0);
   records_on_chip_ = aligned(masses) + aligned(rows * (lengths + rates)) + 32 + records + waves <= shared_bytes;
