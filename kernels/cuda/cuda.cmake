@@ -2,6 +2,7 @@
 set(embedded
   cuda/device/block.cuh
   cuda/device/check.cuh
+  cuda/device/gather.cuh
   cuda/device/mass_step.cuh
   cuda/device/materials/computed.cuh
   cuda/device/materials/table.cuh
@@ -14,6 +15,9 @@ set(embedded
   cuda/device/neighbours.cu
   cuda/device/resident.cu
   cuda/device/resident.cuh
+  cuda/device/sample_streamed.cu
+  cuda/device/sampling.cuh
+  cuda/device/sampling_streamed.cuh
   cuda/device/streamed.cu
   cuda/device/streamed.cuh
   cuda/layout/fixed_point.hpp
@@ -47,6 +51,7 @@ target_sources(evodevo_kernels PRIVATE
   cuda/layout/ownership.cpp
   cuda/layout/resident.cpp
   cuda/layout/row_order.cpp
+  cuda/layout/sampling.cpp
   cuda/layout/streamed.cpp
   cuda/runtime/cache.cpp
   cuda/runtime/compiler.cpp

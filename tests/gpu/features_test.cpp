@@ -56,6 +56,9 @@ const std::vector<Subject> subjects{
     {"each muscle's work", &Features::muscle_work, {"muscle_work"}, {}, {}},
     {"peak force", &Features::peak_force, {"peak_force"}, {}, {}},
     {"tension", &Features::tension, {"mean_tension"}, {}, {}},
+    // contact is counted only for samples
+    {"samples", &Features::samples, {"contacts", "sampled"}, {}, {}},
+    {"contacts", &Features::contacts, {"contacts"}, {}, {}},
 };
 
 Features every_feature() {
@@ -71,6 +74,7 @@ Features without(const Subject& subject) {
   features.rough = features.rough && features.floor;
   features.friction = features.friction && features.floor;
   features.muscle_work = features.muscle_work && features.work;
+  features.contacts = features.contacts && features.samples;
   return features;
 }
 
@@ -268,7 +272,7 @@ TEST_P(FeatureCode, IsNotThereWhereAllAreOff) {
   for (const Subject& subject : subjects)
     // the excluded features have been removed together with gravity, the floor and the body's work
     if (subject.on != &Features::slope && subject.on != &Features::rough && subject.on != &Features::friction &&
-        subject.on != &Features::muscle_work)
+        subject.on != &Features::muscle_work && subject.on != &Features::contacts)
       sources.remove(subject);
   const Operations bare = code({}, {});
   std::printf("%s: %zu instructions without any\n", GetParam().name, bare.size());

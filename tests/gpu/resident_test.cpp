@@ -108,6 +108,27 @@ TEST(Resident, LeavesToTheDevicesMemoryWhatTheChipCannotHold) {
   EXPECT_FALSE(Resident<float>::arrange(task, features, shared_bytes / 2));
 }
 
+TEST(Resident, WhatIsRecordedOrSampledDoesNotDecideHowManyStepsATableHas) {
+  for (const std::size_t materials : {4, 15, 200, 5000}) {
+    const Body body = body_of(materials);
+    const Scene scene = testing_gpu::walking_scene();
+    State state = state_at_birth(body, scene);
+    Task task = task_of<float>(body, state, scene);
+    task.steps = 1000;
+    task.sampled_at = {{10, {.work = true, .positions = true, .contacts = true}}};
+    const auto table_steps = [&](Recording recording, const Channels& channels) {
+      const Features all = features_of(scene, {}, recording, true, channels);
+      const auto resident = Resident<float>::arrange(task, all, shared_bytes);
+      std::vector<std::byte> input(resident->sizes().input), motion(resident->sizes().state);
+      const Regions regions{input.data(), motion.data(), nullptr};
+      return resident->pack(regions, regions, scene).table_steps;
+    };
+    const std::uint32_t plain = table_steps({}, {});
+    EXPECT_EQ(plain, table_steps({true, true, true, true, true}, {})) << materials;
+    EXPECT_EQ(plain, table_steps({}, task.sampled_at.front().channels)) << materials;
+  }
+}
+
 TEST(Resident, WhatIsRecordedDoesNotDecideWhereABodyLies) {
   Features recording = features;
   recording.work = true;

@@ -2,7 +2,7 @@
 // are on the chip if there is room.
 #pragma once
 
-#include "cuda/device/streamed.cuh"
+#include "cuda/device/sampling_streamed.cuh"
 
 namespace evodevo::cuda {
 
@@ -32,12 +32,14 @@ __device__ __forceinline__ void store(const Body& body, unsigned mass, const Mov
   body.velocities[mass] = point(m.velocity);
 }
 
-/// Calls advance(body, count) for the `count` steps of check span `index`, if the body has steps in that span. In
-/// `body`, positions and velocities are copied to the chip before and copied back afterwards, if there is room.
+/// Calls advance(body, count, samples) for the `count` steps of check span `index`, if the body has steps in that span.
+/// In `body`, positions and velocities are copied to the chip before and copied back afterwards, if there is room.
 template <class Advance>
 __device__ __forceinline__ void advance_span(const Body& stored, std::uint64_t index, const Advance& advance) {
   const CheckSpan span(stored.piece, index);
   if (span.empty() || stored.answer->diverged) return;
+  [[maybe_unused]] Samples samples;
+  if constexpr (sampled) samples.begin(stored.sampling, span.begin);
   Body body = stored;
   if (body.on_chip) {
     body.positions = points_on_chip(body, 0);
@@ -45,8 +47,31 @@ __device__ __forceinline__ void advance_span(const Body& stored, std::uint64_t i
     for_each_mass(body, [&](unsigned mass) { store(body, mass, moving(stored, mass)); });
     __syncthreads();
   }
-  advance(body, span.steps());
+  advance(body, span.steps(), samples);
   if (body.on_chip) for_each_mass(body, [&](unsigned mass) { store(stored, mass, moving(body, mass)); });
+}
+
+/// Counts the contact of a mass at the end of a step.
+__device__ __forceinline__ void count_contact(const Body& body, unsigned mass, const Moving& m) {
+  if constexpr (contacts && floor_on) body.sampling.contact_steps[mass] += touches(body.constants, m.position);
+}
+
+/// Takes the samples that are due at the end of a step. Row `row` of the tables holds the lengths then.
+__device__ __forceinline__ void end_step(const Body& body, unsigned row, [[maybe_unused]] Samples& samples) {
+  if constexpr (sampled) {
+    ++samples.done;
+    if (!samples.are_due(body.sampling)) return;
+    __syncthreads();
+    take_samples(
+        body, body.positions, row,
+        [&](unsigned mass) {
+          MassAtEnd at{triple(body.positions[mass]), triple(body.velocities[mass])};
+          if constexpr (work) at.power = body.power[mass];
+          return at;
+        },
+        samples);
+    __syncthreads();
+  }
 }
 
 /// Records a spring's tension (N): adds to the spring's sums at index `joint` and to the sum of power at index `mass`.

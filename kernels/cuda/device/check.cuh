@@ -11,21 +11,24 @@ __device__ __forceinline__ double warp_sum(double value) {
   return value;
 }
 
+/// Values of up to 32 warps, for sums over the block.
+__shared__ double of_warps[4][lanes];
+
 /// The sum of a value over the block, in an order that depends only on the block's size; thread 0 gets the result.
-/// `of_warps` is shared memory that nothing else may use until the block is synchronised again.
-__device__ inline double block_sum(double value, double (&of_warps)[lanes]) {
+/// `values` is shared memory that nothing else may use until the block is synchronised again.
+__device__ inline double block_sum(double value, double (&values)[lanes]) {
   const unsigned lane = threadIdx.x % lanes, warp = threadIdx.x / lanes;
   const double sum = warp_sum(value);
-  if (lane == 0) of_warps[warp] = sum;
+  if (lane == 0) values[warp] = sum;
   __syncthreads();
-  return warp > 0 ? 0 : warp_sum(lane < blockDim.x / lanes ? of_warps[lane] : 0);
+  return warp > 0 ? 0 : warp_sum(lane < blockDim.x / lanes ? values[lane] : 0);
 }
 
 /// The sum of a value over the block, in the same order; all threads get the result. Synchronises the block before and
 /// after.
 __device__ inline double sum_for_all(double value) {
-  __shared__ double of_warps[lanes], total;
-  const double sum = block_sum(value, of_warps);
+  double& total = of_warps[1][0];
+  const double sum = block_sum(value, of_warps[0]);
   if (threadIdx.x == 0) total = sum;
   __syncthreads();
   return total;
@@ -48,6 +51,11 @@ __device__ __forceinline__ double height_moment_of(Number mass, const Vector& po
 /// Whether a body is checked after `steps` steps of its piece.
 __device__ __forceinline__ bool is_checked(const RunPiece& piece, std::uint64_t steps) {
   return (piece.since_check + steps) % guard_interval == 0 || (piece.is_last && steps == piece.steps);
+}
+
+/// The number of steps of a piece before check span `index` (streamed.cuh).
+__device__ __forceinline__ std::uint64_t steps_before_span(const RunPiece& piece, std::uint64_t index) {
+  return index == 0 ? 0 : min(index * guard_interval - piece.since_check, piece.steps);
 }
 
 /// Updates the largest energy that the body has lost by falling below the origin. `height_moment` is the sum of mass

@@ -27,6 +27,8 @@ constexpr bool work = EVODEVO_WORK;
 constexpr bool peak_force = EVODEVO_PEAK_FORCE;
 constexpr bool muscle_work = EVODEVO_MUSCLE_WORK;
 constexpr bool mean_tension = EVODEVO_TENSION;
+constexpr bool sampled = EVODEVO_SAMPLES;
+constexpr bool contacts = EVODEVO_CONTACTS;
 
 constexpr unsigned rows_per_step = EVODEVO_ROWS_PER_STEP;      // rows per step in the tables of lengths
 constexpr unsigned end_rows = EVODEVO_END_ROWS;                // 1 if a step reads the row at its end, otherwise 0
@@ -82,6 +84,8 @@ struct OnePass {
   static __device__ __forceinline__ unsigned row(unsigned index) { return index; }
   /// Whether the forces of pass `index` are recorded.
   static __device__ __forceinline__ bool is_recorded(unsigned) { return true; }
+  /// Whether a pass brings masses to where they are at the end of a step.
+  static __device__ __forceinline__ bool ends_motion(Pass) { return true; }
 };
 
 /// a + factor b
@@ -111,6 +115,11 @@ __device__ __forceinline__ Number clearance(const StepConstants<Number>& constan
   Number z = position.z;
   if constexpr (rough) z -= ground_under(constants, position).height;
   return z;
+}
+
+/// 1 if a mass at a position touches the ground, otherwise 0.
+__device__ __forceinline__ unsigned touches(const StepConstants<Number>& constants, const Vector& position) {
+  return clearance(constants, position) < 0 ? 1 : 0;
 }
 
 /// The scalar product of a velocity with the ground's normal (-slope_x, -slope_y, 1), m/s.

@@ -17,6 +17,7 @@
 // instruction.
 #include EVODEVO_METHOD
 #include EVODEVO_MATERIALS
+#include "cuda/device/sampling.cuh"
 
 namespace evodevo::cuda {
 
@@ -183,6 +184,7 @@ __device__ __forceinline__ void add_spring_forces(const Body& body, const Share&
 struct Movers {
   Vector velocity[masses_per_thread];
   Method::Kept kept[masses_per_thread];
+  std::uint32_t contact_steps[masses_per_thread] = {};
 };
 
 template <class Function>
@@ -225,6 +227,8 @@ __device__ __forceinline__ void move_masses(const Body& body, const StepConstant
     Method::move(constants, pass, movers.kept[i], m);
     set_position(offset, m.position);
     movers.velocity[i] = m.velocity;
+    if constexpr (contacts && floor_on)
+      if (Method::ends_motion(pass)) movers.contact_steps[i] += touches(constants, m.position);
   });
 }
 
@@ -235,6 +239,7 @@ __device__ __forceinline__ void load(const Body& body, Movers& movers) {
     set_position(offset, {m.x[index], m.y[index], m.z[index]});
     movers.velocity[i] = {m.vx[index], m.vy[index], m.vz[index]};
     set_force(offset, body.start[index]);
+    if constexpr (contacts) movers.contact_steps[i] = body.sampling.contact_steps[index];
   });
   // the masses to which empty slots refer
   if (threadIdx.x < lanes) {
@@ -258,6 +263,7 @@ __device__ __forceinline__ void store(const Body& body, const Movers& movers) {
     m.vx[index] = movers.velocity[i].x;
     m.vy[index] = movers.velocity[i].y;
     m.vz[index] = movers.velocity[i].z;
+    if constexpr (contacts) body.sampling.contact_steps[index] = movers.contact_steps[i];
   });
 }
 
@@ -306,7 +312,6 @@ __device__ __forceinline__ Check check_of(const Body& body, const Movers& movers
 /// Writes the body's energies after `steps` steps of its piece into its answer. Returns to all threads whether the body
 /// has diverged; that is decided only if a check is due.
 __device__ __noinline__ bool has_diverged(const Body& body, Check check, std::uint64_t steps) {
-  __shared__ double of_warps[4][lanes];
   const bool finite = !__syncthreads_or(check.not_finite != 0);
   const bool out_of_range =
       __syncthreads_or(!(check.totals.largest <= body.largest_force)) || body.piece.left_range != 0;
@@ -359,38 +364,109 @@ __device__ __forceinline__ void collect(const Body& body, const Share& share, co
   }
 }
 
+/// Writes the force of each spring into a sample (N), in the order of the slots.
+__device__ __forceinline__ void write_forces(const Body& body, const Share& share, const Lengths& lengths, float* to) {
+  unsigned offset = share.owner;
+  for (unsigned chunk = 0; chunk < share.chunks; ++chunk) {
+    const unsigned group_ends = share.group_ends[chunk];
+    for (unsigned row = 0; row < rows; ++row) {
+      const unsigned slot = share.slot(chunk) + row * lanes;
+      const Spring spring(share.records[slot], lengths);
+      const auto s = physics::separation(position_at(offset), spring.position);
+      const Number inverse = physics::inverse_length(s);
+      const Entry<Number>& entry = spring.material.entry;
+      const Number factor =
+          physics::spring_factor_by_inverse(inverse, entry.stiffness, entry.rest_force * spring.rest_length);
+      to[slot] = static_cast<float>(factor * physics::length_by_inverse(s, inverse) * body.resolution);
+      if (group_ends >> row & 1) offset += group_size;
+    }
+  }
+}
+
+/// Takes the samples that are due. `lengths` are the present ones; `totals` are those of all steps since the last
+/// check.
+__device__ __forceinline__ void take_samples(const Body& body, const Share& share, const Lengths& lengths,
+                                             const Movers& movers, const Totals& totals, Samples& samples) {
+  const Sampling& sampling = body.sampling;
+  for (; samples.are_due(sampling); ++samples.next) {
+    const SampleMark mark = sampling.marks[samples.next];
+    const SampleLists lists(mark, sampling.masses);
+    Reduction reduction;
+    for_each_mover(body, [&](unsigned i, unsigned index, unsigned offset) {
+      if (index >= sampling.masses) return;  // padding
+      sample_mass(sampling, mark, lists, index, position_at(offset), movers.velocity[i], reduction);
+      if constexpr (contacts) sample_contact(mark, lists, index, movers.contact_steps[i], reduction);
+    });
+    if constexpr (work) {
+      reduction.add_work(body.constants.exact_dt * body.resolution * totals.power);
+      if (threadIdx.x == 0) reduction.add_work(body.answer->work);
+    }
+    reduction.write(mark);
+    if (mark.channels & forces_bit) write_forces(body, share, lengths, lists.forces);
+  }
+}
+
 /// Computes `count` steps; the table holds their lengths. The sums exist only in this function, which calls only
-/// inlined functions, so they stay in registers. A warp without springs only moves masses.
+/// inlined functions, so they stay in registers. A warp without springs only moves masses. Takes the
+/// samples that are due before the last of these steps; after each, passes are numbered anew.
 template <bool has_springs>
 __device__ __forceinline__ void advance(const Body& body, const StepConstants<Number>& constants, const Share& share,
-                                        unsigned group_ends, unsigned count, Movers& movers, Totals& totals) {
+                                        unsigned group_ends, unsigned count, Movers& movers, Totals& totals,
+                                        [[maybe_unused]] Samples& samples) {
   const Number resolution = static_cast<Number>(body.resolution);
   SpringPass springs{Lengths(body)};
   [[maybe_unused]] Sums sums;
-  const unsigned passes = opening_passes + count * passes_per_step;
+  unsigned passes = opening_passes + count * passes_per_step;
+  [[maybe_unused]] unsigned now = count;  // steps to the next sample or the end
+  if constexpr (sampled) {
+    now = samples.steps_to_next(body.sampling, count);
+    passes = opening_passes + now * passes_per_step;
+  }
   for (unsigned pass = 0; pass < passes; ++pass) {
     springs.recorded = Method::is_recorded(pass);
     if constexpr (has_springs) add_spring_forces(body, share, group_ends, springs, sums);
     __syncthreads();
     move_masses(body, constants, resolution, {pass, pass + 1 == passes}, movers);
     __syncthreads();
-    const unsigned rows_on = Method::row(pass + 1) - Method::row(pass);
+    unsigned rows_on = Method::row(pass + 1) - Method::row(pass);
+    if constexpr (sampled)
+      if (pass + 1 == passes) rows_on -= opening_passes;  // an opening pass reads the row of the last pass again
     if constexpr (actuation) springs.lengths.advance_rows(body, rows_on);
+    if constexpr (sampled) {
+      if (pass + 1 < passes) continue;
+      samples.done += now;
+      count -= now;
+      if (count == 0) break;
+      Totals so_far = totals;
+      if constexpr (work) so_far.power += sums.power;
+      take_samples(body, share, springs.lengths, movers, so_far, samples);
+      now = samples.steps_to_next(body.sampling, count);
+      passes = opening_passes + now * passes_per_step;
+      pass = 0u - 1;
+    }
   }
   if constexpr (has_springs) collect(body, share, sums, totals);
 }
 
-extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1) evodevo_run_resident(const Body* bodies) {
+extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)
+    evodevo_run_resident(const Body* bodies, [[maybe_unused]] std::uint64_t range) {
   const Body& body = bodies[blockIdx.x];
   const Share share = share_of(body);
   const unsigned group_ends = chunked ? 0 : *share.group_ends;
+  std::uint64_t begin = 0, steps = body.piece.steps;
   Movers movers;
   Totals totals;
+  Samples samples;
+  if constexpr (sampled) {
+    begin = steps_before_span(body.piece, range * body.sampling.spans_per_range);
+    steps = steps_before_span(body.piece, (range + 1) * body.sampling.spans_per_range);
+    if (begin == steps || body.answer->diverged) return;
+    samples.begin(body.sampling, begin);
+  }
   load(body, movers);
   fill_lengths(body, 0, 1);
   __syncthreads();
-  const std::uint64_t steps = body.piece.steps;
-  for (std::uint64_t done = 0; done < steps;) {
+  for (std::uint64_t done = begin; done < steps;) {
     const unsigned since_check = static_cast<unsigned>((body.piece.since_check + done) % guard_interval);
     const unsigned until_check =
         static_cast<unsigned>(min(steps - done, static_cast<std::uint64_t>(guard_interval - since_check)));
@@ -401,10 +477,18 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1) evodevo_run
       __syncthreads();
     }
     if (share.chunks > 0)
-      advance<true>(body, body.constants, share, group_ends, now, movers, totals);
+      advance<true>(body, body.constants, share, group_ends, now, movers, totals, samples);
     else
-      advance<false>(body, body.constants, share, group_ends, now, movers, totals);
+      advance<false>(body, body.constants, share, group_ends, now, movers, totals, samples);
     done += now;
+    if constexpr (sampled) {
+      if (samples.are_due(body.sampling)) {
+        if constexpr (actuation) fill_lengths(body, done, 1);
+        __syncthreads();
+        take_samples(body, share, Lengths(body), movers, totals, samples);
+        __syncthreads();
+      }
+    }
     if (now < until_check) continue;
     if constexpr (actuation) {
       fill_lengths(body, done, 1);

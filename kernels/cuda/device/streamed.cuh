@@ -91,7 +91,6 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_CHECK_THREADS)
     });
   }
   const bool finite = !__syncthreads_or(broken != 0);
-  __shared__ double of_warps[4][lanes];
   kinetic = block_sum(kinetic, of_warps[0]);
   elastic = block_sum(elastic, of_warps[1]);
   const bool checked = is_checked(body.piece, span.end);

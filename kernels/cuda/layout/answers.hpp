@@ -34,6 +34,7 @@ inline void read_answer(const Answer& answer, Recording recording, Task& task) {
     task.ended_at = course.time(task.dt);
     task.work = 0;
     task.clear({}, 0);
+    task.samples.clear();
     task.reason = divergence_reason(course, task.dt, answer.kinetic, answer.elastic, answer.finite != 0);
     if (task.reason.empty()) task.reason = force_range_reason(course);
   }

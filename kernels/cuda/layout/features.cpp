@@ -38,7 +38,8 @@ const MethodForm& form_of(Method method) {
   return forms[static_cast<std::size_t>(method)];
 }
 
-Features features_of(const Scene& scene, const Stepping& stepping, Recording recording, bool actuation) {
+Features features_of(const Scene& scene, const Stepping& stepping, Recording recording, bool actuation,
+                     const Channels& channels) {
   return {.method = stepping.method,
           .float64 = stepping.precision == Precision::float64,
           .materials = stepping.materials,
@@ -51,10 +52,12 @@ Features features_of(const Scene& scene, const Stepping& stepping, Recording rec
           .drag = scene.drag.has_value(),
           .actuation = actuation,
           .stress = recording.stress,
-          .work = recording.work || recording.muscle_work,
+          .work = recording.work || recording.muscle_work || channels.work,
           .peak_force = recording.peak_force,
           .muscle_work = recording.muscle_work,
-          .tension = recording.tension};
+          .tension = recording.tension,
+          .samples = channels.any(),
+          .contacts = channels.contact || channels.contacts};
 }
 
 std::vector<std::string> definitions(const Features& features) {
@@ -84,7 +87,9 @@ std::vector<std::string> definitions(const Features& features) {
           flag("WORK", features.work),
           flag("PEAK_FORCE", features.peak_force),
           flag("MUSCLE_WORK", features.muscle_work),
-          flag("TENSION", features.tension)};
+          flag("TENSION", features.tension),
+          flag("SAMPLES", features.samples),
+          flag("CONTACTS", features.contacts)};
 }
 
 std::vector<std::string> definitions(const Features& features, const ResidentForm& form) {

@@ -42,12 +42,15 @@ struct Features {
   bool gravity = false, slope = false, floor = false, rough = false, friction = false, damping = false, drag = false;
   bool actuation = false, stress = false, work = false;
   bool peak_force = false, muscle_work = false, tension = false;  ///< muscle_work implies work
+  bool samples = false, contacts = false;                         ///< contacts implies samples
 
   friend auto operator<=>(const Features&, const Features&) = default;
 };
 
-/// The features for a scene and a run. `actuation` says whether a material of the body is that of a muscle.
-Features features_of(const Scene& scene, const Stepping& stepping, Recording recording, bool actuation);
+/// The features for a scene and a run. `actuation` says whether a material of the body is that of a muscle; `channels`
+/// are those of any sample that the device takes.
+Features features_of(const Scene& scene, const Stepping& stepping, Recording recording, bool actuation,
+                     const Channels& channels = {});
 
 /// Whether springs on the chip carry codes of their materials. In double precision they do not: the rounded materials
 /// come from a table.

@@ -94,6 +94,39 @@ struct Answer {
   std::uint32_t diverged, finite, out_of_range;
 };
 
+// the channels of a sample, as bits
+inline constexpr std::uint32_t centre_bit = 1, box_bit = 2, contact_bit = 4, work_bit = 8, positions_bit = 16,
+                               velocities_bit = 32, contacts_bit = 64, forces_bit = 128;
+
+/// A sample that the device takes. The reduced quantities are followed by the lists that the channels ask for:
+/// positions and velocities as float [3][masses], contacts as std::uint32_t [masses], forces as float [slots or
+/// joints].
+struct SampleMark {
+  std::uint64_t step;  ///< of the task, at least 1
+  unsigned char* to;   ///< in the host's memory, aligned to 16 bytes
+  std::uint32_t channels;
+};
+
+/// The reduced quantities of a sample.
+struct ReducedSample {
+  double centre[3];      ///< m
+  double work;           ///< J
+  double velocity[3];    ///< of the centre of mass, m/s
+  double contact_steps;  ///< of all masses
+  double low[4];         ///< the box, with opposite sign, m; the last number is unused
+  double high[4];        ///< m
+};
+
+/// What the device needs to sample a body. It writes samples directly to the host's memory, whose room for a range of
+/// check spans is used again for the next range but one.
+struct Sampling {
+  const SampleMark* marks;       ///< [count + 1] in ascending order of their steps; that of the last is never reached
+  const double* mass_share;      ///< [masses] share of a mass in the body's mass
+  std::uint32_t* contact_steps;  ///< [masses] number of steps after which each mass touched the ground, if counted
+  std::uint64_t spans_per_range;
+  std::uint32_t count, masses;
+};
+
 /// A body in motion: one entry for each mass, then padding that fills the last group. Padding has mass 0 and never
 /// moves.
 template <class T>
@@ -134,6 +167,7 @@ struct ResidentBody {
   std::uint32_t rate_offset;                     ///< of the rates, if work is recorded
   std::uint32_t record_offset;                   ///< of the records
   std::uint32_t wave_offset;                     ///< of the waves
+  Sampling sampling;
 };
 
 /// One end of a spring.
@@ -188,6 +222,7 @@ struct StreamedBody {
   RunPiece piece;
   std::uint32_t masses, entries, colours;
   std::uint32_t on_chip;  ///< whether MethodForm::points_on_chip are in shared memory
+  Sampling sampling;
 };
 
 }  // namespace evodevo::cuda

@@ -29,30 +29,35 @@ class Extent {
   std::size_t size_ = 0;
 };
 
-/// The sizes (bytes) of a body's four memory regions: `input` is copied to the device; `state` is copied there and
-/// back; `sums` is initially zero on the device and is copied back; `scratch` exists only on the device.
+/// The sizes (bytes) of a body's five memory regions: `input` is copied to the device; `state` is copied there and
+/// back; `sums` is initially zero on the device and is copied back; `scratch` exists only on the device; `samples`
+/// exists only on the host, where the device writes to it.
 struct Sizes {
-  std::size_t input = 0, state = 0, sums = 0, scratch = 0;
+  std::size_t input = 0, state = 0, sums = 0, scratch = 0, samples = 0;
 
   Sizes& operator+=(const Sizes& other) {
     input += other.input;
     state += other.state;
     sums += other.sums;
     scratch += other.scratch;
+    samples += other.samples;
     return *this;
   }
   std::size_t mirrored() const { return input + state + sums; }
-  std::size_t total() const { return mirrored() + scratch; }
+  std::size_t on_device() const { return mirrored() + scratch; }
+  std::size_t on_host() const { return mirrored() + samples; }
 };
 
 /// The beginnings of a body's regions, on the host or on the device.
 struct Regions {
   std::byte *input, *state, *sums;
   std::byte* scratch = nullptr;  ///< only on the device
+  std::byte* samples = nullptr;  ///< in the host's memory, for both
 
   /// Returns the regions of the next body, which follow those of a body with the given sizes.
   Regions behind(const Sizes& sizes) const {
-    return {input + sizes.input, state + sizes.state, sums + sizes.sums, scratch ? scratch + sizes.scratch : nullptr};
+    return {input + sizes.input, state + sizes.state, sums + sizes.sums, scratch ? scratch + sizes.scratch : nullptr,
+            samples ? samples + sizes.samples : nullptr};
   }
 };
 

@@ -86,7 +86,8 @@ std::size_t Resident<T>::largest_chip(std::size_t shared_bytes) {
 }
 
 template <class T>
-std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features& features, std::size_t shared_bytes) {
+std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features& features, std::size_t shared_bytes,
+                                                std::uint64_t spans_per_range) {
   // a quick test before the work of arranging: whether the masses and a table of one step fit
   const std::size_t entries = has_codes(features) ? 0 : task.body->materials.size() + 1;
   const std::size_t least =
@@ -98,6 +99,7 @@ std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features
   resident.divide_chip(true, chip);
   if (resident.chip_.size > chip) return std::nullopt;
   resident.divide_chip(features.work, chip);
+  if (features.samples) resident.samples_ = SampleLayout(task, spans_per_range, resident.slots());
   resident.reserve();
   return resident;
 }
@@ -158,7 +160,8 @@ void Resident<T>::reserve() {
   peak_ = sums.add<typename FixedPoint<T>::Integer>(features_.peak_force ? arrangement().slots.size() : 0);
   powers_ = sums.add<double>(features_.muscle_work ? arrangement().slots.size() : 0);
   tensions_ = sums.add<double>(features_.tension ? arrangement().slots.size() : 0);
-  sizes_ = {input.size(), state.size(), sums.size()};
+  samples_.reserve(padded_masses, input, sums);
+  sizes_ = {input.size(), state.size(), sums.size(), 0, samples_.bytes()};
 }
 
 template <class T>
@@ -275,7 +278,8 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
           .table_offset = static_cast<std::uint32_t>(chip_.table_offset),
           .rate_offset = static_cast<std::uint32_t>(chip_.rate_offset),
           .record_offset = static_cast<std::uint32_t>(chip_.record_offset),
-          .wave_offset = static_cast<std::uint32_t>(chip_.wave_offset)};
+          .wave_offset = static_cast<std::uint32_t>(chip_.wave_offset),
+          .sampling = samples_.pack(arrangement().index_of, host, device)};
 }
 
 template <class T>
@@ -291,6 +295,11 @@ void Resident<T>::unpack(const Regions& host, Recording recording, Task& task) c
     task.state->position[i] = {at(0, index), at(1, index), at(2, index)};
     task.state->velocity[i] = {at(3, index), at(4, index), at(5, index)};
   }
+}
+
+template <class T>
+void Resident<T>::unpack_samples(std::uint64_t range, const Regions& host, Task& task) const {
+  samples_.unpack(range, arrangement().index_of, arrangement().slot_of, host, task);
 }
 
 /// Reads the records of the springs into the task's lists, which have the right size. Needs the task's course.

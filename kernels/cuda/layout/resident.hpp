@@ -14,6 +14,7 @@
 #include "cuda/layout/features.hpp"
 #include "cuda/layout/formats.hpp"
 #include "cuda/layout/packing.hpp"
+#include "cuda/layout/sampling.hpp"
 
 namespace evodevo::cuda {
 
@@ -51,8 +52,10 @@ template <class T>
 class Resident {
  public:
   /// Arranges the body of `task`, whose course has begun, for blocks with up to `shared_bytes` of shared memory.
-  /// Returns nothing if the body does not fit; whether it fits does not depend on what is recorded.
-  static std::optional<Resident> arrange(const Task& task, const Features& features, std::size_t shared_bytes);
+  /// Returns nothing if the body does not fit. Neither that nor the steps of the table depend on what is recorded or
+  /// sampled. A range of samples has `spans_per_range` check spans.
+  static std::optional<Resident> arrange(const Task& task, const Features& features, std::size_t shared_bytes,
+                                         std::uint64_t spans_per_range = 1);
 
   /// The part of `shared_bytes` that is available to a body; the kernel and the system need the rest.
   static std::size_t largest_chip(std::size_t shared_bytes);
@@ -63,6 +66,7 @@ class Resident {
   std::size_t slots() const { return arrangement().slots.size(); }
   std::size_t chip_bytes() const { return chip_.size; }
   Sizes sizes() const { return sizes_; }
+  const SampleLayout& samples() const { return samples_; }
 
   /// Writes the body into its regions on the host, and returns its description for the kernel. `device`: the same
   /// regions on the device.
@@ -70,10 +74,12 @@ class Resident {
 
   /// Reads the answer, the motion and the records from the regions on the host into the task.
   void unpack(const Regions& host, Recording recording, Task& task) const;
+  /// Reads the samples of a range into the task.
+  void unpack_samples(std::uint64_t range, const Regions& host, Task& task) const;
 
  private:
   Resident(const Task& task, const Features& features);
-  void divide_chip(bool rates, std::size_t shared_bytes);
+  void divide_chip(bool with_rates, std::size_t shared_bytes);
   std::size_t waves_in(std::size_t slots) const;
   void reserve();
   std::vector<typename FixedPoint<T>::Integer> materials_in_records(const MaterialUnits& units) const;
@@ -92,6 +98,7 @@ class Resident {
   bool records_on_chip_ = true;
 
   Sizes sizes_;
+  SampleLayout samples_;
   Section<Record<T>> records_;
   Section<std::uint32_t> waves_;
   Section<std::uint32_t> first_group_, group_ends_;

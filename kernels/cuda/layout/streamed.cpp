@@ -11,7 +11,8 @@
 namespace evodevo::cuda {
 
 template <class T>
-Streamed<T>::Streamed(const Task& task, const Features& features, std::size_t largest_chip)
+Streamed<T>::Streamed(const Task& task, const Features& features, std::size_t largest_chip,
+                      std::uint64_t spans_per_range)
     : task_(&task),
       features_(features),
       chip_bytes_(form_of(features.method).points_on_chip * sizeof(Point<T>) * task.body->masses.size()),
@@ -33,6 +34,7 @@ Streamed<T>::Streamed(const Task& task, const Features& features, std::size_t la
   }
   if (form_of(features.method).coloured) colour_ = spring_colours(body);
   if (!colour_.empty()) colours_ = *std::max_element(colour_.begin(), colour_.end()) + 1;
+  if (features.samples) samples_ = SampleLayout(task, spans_per_range, joints());
   reserve();
 }
 
@@ -59,7 +61,8 @@ void Streamed<T>::reserve() {
   powers_ = sums.add<double>(features_.muscle_work ? joints() : 0);
   tensions_ = sums.add<double>(features_.tension ? joints() : 0);
   scratch_ = scratch.add<T>(method.numbers_of_mass * masses() + method.numbers_of_joint * joints());
-  sizes_ = {input.size(), state.size(), sums.size(), scratch.size()};
+  samples_.reserve(masses(), input, sums);
+  sizes_ = {input.size(), state.size(), sums.size(), scratch.size(), samples_.bytes()};
 }
 
 template <class T>
@@ -154,7 +157,8 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
           .masses = masses(),
           .entries = static_cast<std::uint32_t>(body.materials.size() + 1),
           .colours = colours_,
-          .on_chip = chip_bytes_ > 0};
+          .on_chip = chip_bytes_ > 0,
+          .sampling = samples_.pack(index_of_, host, device)};
 }
 
 template <class T>
@@ -170,6 +174,11 @@ void Streamed<T>::unpack(const Regions& host, Recording recording, Task& task) c
     task.state->velocity[i] = {v.x, v.y, v.z};
   }
   if (task.status == Status::ok) unpack_springs(host, task);
+}
+
+template <class T>
+void Streamed<T>::unpack_samples(std::uint64_t range, const Regions& host, Task& task) const {
+  samples_.unpack(range, index_of_, owned_joint_, host, task);
 }
 
 /// Reads the records of the springs into the task's lists, which have the right size.

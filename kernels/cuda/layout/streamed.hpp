@@ -8,6 +8,7 @@
 #include "cuda/layout/features.hpp"
 #include "cuda/layout/formats.hpp"
 #include "cuda/layout/packing.hpp"
+#include "cuda/layout/sampling.hpp"
 
 namespace evodevo::cuda {
 
@@ -15,10 +16,12 @@ namespace evodevo::cuda {
 template <class T>
 class Streamed {
  public:
-  /// The course of `task` must have begun. `largest_chip` is the shared memory that is available to a body, bytes.
-  Streamed(const Task& task, const Features& features, std::size_t largest_chip);
+  /// The course of `task` must have begun. `largest_chip` is the shared memory that is available to a body, bytes. A
+  /// range of samples has `spans_per_range` check spans.
+  Streamed(const Task& task, const Features& features, std::size_t largest_chip, std::uint64_t spans_per_range);
 
   Sizes sizes() const { return sizes_; }
+  const SampleLayout& samples() const { return samples_; }
   /// The number of threads of each block that simulates the body. If one block simulates the whole body, this number,
   /// and with it the order of the block's sums, depends only on the body.
   unsigned threads() const;
@@ -35,6 +38,8 @@ class Streamed {
 
   /// Reads the answer, the motion and the records from the regions on the host into the task.
   void unpack(const Regions& host, Recording recording, Task& task) const;
+  /// Reads the samples of a range into the task.
+  void unpack_samples(std::uint64_t range, const Regions& host, Task& task) const;
 
  private:
   unsigned since_check() const { return static_cast<unsigned>(task_->course->steps % guard_interval); }
@@ -57,6 +62,7 @@ class Streamed {
   std::vector<std::uint32_t> owned_joint_;  ///< [springs] the joint at end a, where the spring's stress is summed
   std::vector<std::uint32_t> colour_;       ///< [springs] if the method asks for colours
   std::uint32_t colours_ = 0;
+  SampleLayout samples_;
 
   Section<std::uint32_t> rows_;
   Section<Joint<T>> joints_;

@@ -81,7 +81,7 @@ class DeviceSimulator final : public CudaSimulator {
 
   void run(std::span<Task> tasks, Recording recording) override {
     const std::vector<Task*> live = begin(tasks, recording);
-    const cuda::Run run{scene_, stepping_, recording, device_.shared_bytes};
+    const cuda::Run run{scene_, stepping_, recording, device_.shared_bytes, cuda::spans_per_range(live)};
     std::vector<cuda::Plan<T>> plans = plan(live, run);
     double seconds = 0;
     std::size_t portions = 0;
@@ -125,6 +125,8 @@ class DeviceSimulator final : public CudaSimulator {
         continue;
       }
       Course course = begun(task);
+      cuda::take_first_samples(task, stepping_.materials);
+      cuda::take_samples_of_nothing(task, course);
       course.steps += task.steps;
       apply_course(task, course);
     }
@@ -142,6 +144,7 @@ class DeviceSimulator final : public CudaSimulator {
     std::vector<std::optional<cuda::Plan<T>>> planned(tasks.size());
     workers_.for_each(tasks.size(), [&](std::size_t i) {
       tasks[i]->course = begun(*tasks[i]);
+      cuda::take_first_samples(*tasks[i], stepping_.materials);
       planned[i].emplace(*tasks[i], run);
     });
     std::vector<cuda::Plan<T>> plans;
@@ -174,6 +177,7 @@ class DeviceSimulator final : public CudaSimulator {
     for (; count < plans.size(); ++count) {
       sizes += plans[count].sizes();
       if (cuda::Portion<T>::bytes_for(sizes, count + 1) > budget) break;
+      if (cuda::Portion<T>::host_bytes_for(sizes, count + 1) > largest_portion_) break;
     }
     return std::max<std::size_t>(count, 1);
   }

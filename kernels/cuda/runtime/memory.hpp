@@ -18,7 +18,8 @@ inline std::string in_mebibytes(std::size_t bytes) {
 }
 
 /// Memory of the device: a mirrored part, with a copy of the same size on the host, followed by a part that exists only
-/// on the device. The copy on the host cannot be swapped out.
+/// on the device. On the host, the copy is followed by a part that exists only there; the device can write to it. The
+/// memory on the host cannot be swapped out.
 class MirroredMemory {
  public:
   MirroredMemory() = default;
@@ -26,19 +27,20 @@ class MirroredMemory {
   MirroredMemory& operator=(const MirroredMemory&) = delete;
   ~MirroredMemory() { release(); }
 
-  /// Whether there is room for `mirrored` bytes on both sides and `more` bytes only on the device.
-  bool holds(std::size_t mirrored, std::size_t more) const {
-    return mirrored <= host_size_ && mirrored + more <= size_;
+  /// Whether there is room for `mirrored` bytes on both sides, `more` bytes only on the device and `apart` bytes only
+  /// on the host.
+  bool holds(std::size_t mirrored, std::size_t more, std::size_t apart = 0) const {
+    return mirrored + apart <= host_size_ && mirrored + more <= size_;
   }
 
   /// Makes room for these sizes; the old content is lost. If it throws OutOfMemory, no memory is held afterwards.
-  void resize(std::size_t mirrored, std::size_t more) {
-    if (holds(mirrored, more)) return;
+  void resize(std::size_t mirrored, std::size_t more, std::size_t apart = 0) {
+    if (holds(mirrored, more, apart)) return;
     try {
       // more than needed, because bodies grow little by little and allocation makes the device wait
-      take(rounded(mirrored), rounded(more));
+      take(rounded(mirrored + more), rounded(mirrored + apart));
     } catch (const OutOfMemory&) {
-      take(mirrored, more);
+      take(mirrored + more, mirrored + apart);
     }
   }
 
@@ -52,18 +54,17 @@ class MirroredMemory {
     return (size + piece - 1) / piece * piece;
   }
 
-  void take(std::size_t mirrored, std::size_t more) {
+  void take(std::size_t size, std::size_t host_size) {
     release();
-    const std::size_t size = mirrored + more;
     try {
       check(cudaMalloc(&device_, size), "allocating " + in_mebibytes(size) + " of the GPU's memory");
-      check(cudaMallocHost(&host_, mirrored), "allocating " + in_mebibytes(mirrored) + " of the host's memory");
+      check(cudaMallocHost(&host_, host_size), "allocating " + in_mebibytes(host_size) + " of the host's memory");
     } catch (const OutOfMemory&) {
       release();
       throw;
     }
     size_ = size;
-    host_size_ = mirrored;
+    host_size_ = host_size;
   }
 
   void release() {

@@ -22,11 +22,11 @@ std::size_t MemoryStore::available() {
   return bytes;
 }
 
-std::unique_ptr<MirroredMemory> MemoryStore::take(std::size_t mirrored, std::size_t more) {
+std::unique_ptr<MirroredMemory> MemoryStore::take(std::size_t mirrored, std::size_t more, std::size_t apart) {
   const std::lock_guard lock(mutex_);
   // the smallest that is large enough; if none is, the largest
   const auto later = [&](const auto& a, const auto& b) {
-    const bool enough_a = a->holds(mirrored, more), enough_b = b->holds(mirrored, more);
+    const bool enough_a = a->holds(mirrored, more, apart), enough_b = b->holds(mirrored, more, apart);
     if (enough_a != enough_b) return enough_b;
     return enough_a ? a->size() > b->size() : a->size() < b->size();
   };
@@ -37,11 +37,11 @@ std::unique_ptr<MirroredMemory> MemoryStore::take(std::size_t mirrored, std::siz
     idle_.erase(best);
   }
   try {
-    memory->resize(mirrored, more);
+    memory->resize(mirrored, more, apart);
   } catch (const OutOfMemory&) {
     if (idle_.empty()) throw;
     idle_.clear();
-    memory->resize(mirrored, more);
+    memory->resize(mirrored, more, apart);
   }
   return memory;
 }

@@ -22,9 +22,10 @@ class MemoryStore {
   /// Holds memory until it is destroyed.
   class Loan {
    public:
-    /// Takes `mirrored` bytes on device and host, and `more` bytes only on the device. Throws OutOfMemory.
-    Loan(MemoryStore& store, std::size_t mirrored, std::size_t more = 0)
-        : store_(store), memory_(store.take(mirrored, more)) {}
+    /// Takes `mirrored` bytes on device and host, `more` bytes only on the device and `apart` bytes only on the host.
+    /// Throws OutOfMemory.
+    Loan(MemoryStore& store, std::size_t mirrored, std::size_t more = 0, std::size_t apart = 0)
+        : store_(store), memory_(store.take(mirrored, more, apart)) {}
     Loan(const Loan&) = delete;
     Loan& operator=(const Loan&) = delete;
     ~Loan() { store_.give_back(std::move(memory_)); }
@@ -60,7 +61,7 @@ class MemoryStore {
   }
 
  private:
-  std::unique_ptr<MirroredMemory> take(std::size_t mirrored, std::size_t more);
+  std::unique_ptr<MirroredMemory> take(std::size_t mirrored, std::size_t more, std::size_t apart);
   void give_back(std::unique_ptr<MirroredMemory> memory);
   void release_idle();
 

@@ -1,7 +1,7 @@
 #include "cuda/runtime/portion.hpp"
 
 #include <algorithm>
-#include <deque>
+#include <set>
 
 #include "cuda/runtime/launch.hpp"
 
@@ -23,12 +23,17 @@ Sizes sizes_of(std::span<const Plan<T>> plans) {
   return sizes;
 }
 
-/// Waits until all streams are idle, and returns the time since `begin`, s. The thread sleeps while it waits, because
-/// other batches need the core. The host waits, not a stream on the device, because launches of other batches could be
-/// queued behind a waiting stream.
-double wait_for(std::span<const Stream> streams, const Event& begin) {
+/// Records an event in each stream.
+std::deque<Event> ends_of(std::span<const Stream> streams) {
   std::deque<Event> ends;
   for (const Stream& stream : streams) check(cudaEventRecord(ends.emplace_back(true), stream), "recording an event");
+  return ends;
+}
+
+/// Waits until all streams have come to `ends`, and returns the time from `begin` to the last, s. The thread sleeps
+/// while it waits, because other batches need the core. The host waits, not a stream on the device, because launches of
+/// other batches could be queued behind a waiting stream.
+double wait_for(const std::deque<Event>& ends, const Event& begin) {
   float longest = 0;
   for (const Event& end : ends) {
     float milliseconds = 0;
@@ -44,10 +49,12 @@ double wait_for(std::span<const Stream> streams, const Event& begin) {
 template <class T>
 Plan<T>::Plan(Task& task_, const Run& run)
     : task(&task_), body([&]() -> decltype(body) {
-        const Features features = features_of(run.scene, run.stepping, run.recording, has_muscles(*task_.body));
+        const Features features =
+            features_of(run.scene, run.stepping, run.recording, has_muscles(*task_.body), channels_on_device(task_));
         if (is_explicit(run.stepping.method))
-          if (auto resident = Resident<T>::arrange(task_, features, run.shared_bytes)) return *std::move(resident);
-        return Streamed<T>(task_, features, Resident<T>::largest_chip(run.shared_bytes));
+          if (auto resident = Resident<T>::arrange(task_, features, run.shared_bytes, run.spans_per_range))
+            return *std::move(resident);
+        return Streamed<T>(task_, features, Resident<T>::largest_chip(run.shared_bytes), run.spans_per_range);
       }()) {}
 
 template <class T>
@@ -56,8 +63,23 @@ Sizes Plan<T>::sizes() const {
 }
 
 template <class T>
+const SampleLayout& Plan<T>::samples() const {
+  return std::visit([](const auto& b) -> const SampleLayout& { return b.samples(); }, body);
+}
+
+template <class T>
+std::uint64_t Plan<T>::ranges() const {
+  return samples().empty() ? 1 : samples().ranges();
+}
+
+template <class T>
 std::size_t Portion<T>::bytes_for(const Sizes& sizes, std::size_t bodies) {
-  return sizes.total() + bodies * header_bytes<T>;
+  return sizes.on_device() + bodies * header_bytes<T>;
+}
+
+template <class T>
+std::size_t Portion<T>::host_bytes_for(const Sizes& sizes, std::size_t bodies) {
+  return sizes.on_host() + bodies * header_bytes<T>;
 }
 
 template <class T>
@@ -69,7 +91,7 @@ Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store
     : plans_(plans),
       run_(run),
       sizes_(sizes),
-      memory_(store, plans.size() * header_bytes<T> + sizes.mirrored(), sizes.scratch) {
+      memory_(store, plans.size() * header_bytes<T> + sizes.mirrored(), sizes.scratch, sizes.samples) {
   for (std::size_t i = 0; i < plans.size(); ++i) {
     if (const auto* resident = std::get_if<Resident<T>>(&plans[i].body)) {
       resident_[{resident->features(), resident->form(), resident->threads()}].push_back(i);
@@ -90,6 +112,7 @@ Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store
   };
   Regions host = regions(memory_->host()), device = regions(memory_->device());
   device.scratch = memory_->device() + headers + sizes_.mirrored();
+  host.samples = device.samples = memory_->host() + headers + sizes_.mirrored();
   for (const Plan<T>& plan : plans) {
     host_.push_back(host);
     device_.push_back(device);
@@ -157,24 +180,47 @@ void Portion<T>::allow_largest_chip(cudaKernel_t kernel) const {
 }
 
 template <class T>
-void Portion<T>::launch_resident(KernelStore& kernels, std::span<const Stream> streams, Workers& workers) {
+std::uint64_t Portion<T>::ranges() const {
+  std::uint64_t most = 1;
+  for (const Plan<T>& plan : plans_) most = std::max(most, plan.ranges());
+  return most;
+}
+
+/// Whether any of these bodies moves in a range.
+template <class T>
+bool Portion<T>::has_range(std::span<const std::size_t> members, std::uint64_t range) const {
+  return std::any_of(members.begin(), members.end(), [&](std::size_t i) { return range < plans_[i].ranges(); });
+}
+
+/// Launches the steps of all bodies in a range.
+template <class T>
+void Portion<T>::launch_range(KernelStore& kernels, std::span<const ReadyLaunch> resident,
+                              std::span<const Stream> streams, std::uint64_t range) {
+  launch_resident(resident, streams, range);
+  launch_streamed(kernels, streams, range);
+}
+
+template <class T>
+void Portion<T>::launch_resident(std::span<const ReadyLaunch> launches, std::span<const Stream> streams,
+                                 std::uint64_t range) {
   const Event ready;
   check(cudaEventRecord(ready, streams[0]), "recording an event");
   std::size_t next = 0;
-  for (const ReadyLaunch& one : ready_launches(kernels, workers)) {
+  for (const ReadyLaunch& one : launches) {
+    const cudaStream_t stream = streams[next++ % streams.size()];  // that of the earlier ranges
+    if (!has_range(one.members, range)) continue;
     std::size_t shared_bytes = 0;
     for (const std::size_t i : one.members)
       shared_bytes = std::max(shared_bytes, std::get<Resident<T>>(plans_[i].body).chip_bytes());
     allow_largest_chip(one.kernel);
-    const cudaStream_t stream = streams[next++ % streams.size()];
-    check(cudaStreamWaitEvent(stream, ready), "waiting for an event");
+    if (range == 0) check(cudaStreamWaitEvent(stream, ready), "waiting for an event");
     launch(one.kernel, dim3(static_cast<unsigned>(one.members.size())), one.launch.threads, shared_bytes, stream,
-           one.bodies);
+           one.bodies, range);
   }
 }
 
 template <class T>
-void Portion<T>::launch_streamed(KernelStore& kernels, std::span<const Stream> streams) {
+void Portion<T>::launch_streamed(KernelStore& kernels, std::span<const Stream> streams, std::uint64_t range) {
   const Event ready;
   check(cudaEventRecord(ready, streams[0]), "recording an event");
   std::size_t count = 0;
@@ -184,22 +230,25 @@ void Portion<T>::launch_streamed(KernelStore& kernels, std::span<const Stream> s
   std::size_t next = 0;
   for (const auto& [launch, members] : streamed_) {
     const cudaStream_t stream = streams[next++ % streams.size()];
-    check(cudaStreamWaitEvent(stream, ready), "waiting for an event");
-    launch_streamed(kernels, stream, members, bodies);
+    if (range == 0) check(cudaStreamWaitEvent(stream, ready), "waiting for an event");
+    if (has_range(members, range)) launch_streamed(kernels, stream, members, bodies, range);
     bodies += members.size();
   }
 }
 
 template <class T>
 void Portion<T>::launch_streamed(KernelStore& kernels, cudaStream_t stream, std::span<const std::size_t> members,
-                                 const StreamedBody<T>* bodies) {
+                                 const StreamedBody<T>* bodies, std::uint64_t range) {
   const MethodForm& method = form_of(run_.stepping.method);
   const bool by_block = !is_explicit(run_.stepping.method);
   unsigned masses = 1;
   std::uint64_t check_spans = 0;
   std::size_t shared_bytes = 0;
+  std::set<std::pair<std::uint64_t, unsigned>> samples;  // spans, and steps of the span
   for (const std::size_t i : members) {
     const auto& body = std::get<Streamed<T>>(plans_[i].body);
+    if (!by_block)
+      body.samples().for_each_in(range, [&](std::uint64_t span, unsigned step) { samples.emplace(span, step); });
     masses = std::max(masses, body.masses());
     check_spans = std::max(check_spans, body.check_spans());
     shared_bytes = std::max(shared_bytes, body.chip_bytes());
@@ -212,19 +261,40 @@ void Portion<T>::launch_streamed(KernelStore& kernels, cudaStream_t stream, std:
   const cudaKernel_t fill = kernel("evodevo_fill_tables"), check_bodies = kernel("evodevo_check_streamed"),
                      move = kernel(by_block ? "evodevo_advance_streamed" : "evodevo_pass_streamed");
   if (by_block) allow_largest_chip(move);
+  cudaKernel_t sample = nullptr;
+  if (!samples.empty())
+    sample = kernels.get("cuda/device/sample_streamed.cu", "evodevo_sample_streamed", definitions(first.features()));
   const auto count = static_cast<unsigned>(members.size());
   const dim3 over_masses((masses + threads - 1) / threads, count);
-  for (std::uint64_t span = 0; span < check_spans; ++span) {
+  const auto sample_after = [&](std::uint64_t span, unsigned step) {
+    if (samples.contains({span, step})) launch(sample, dim3(count), check_threads, 0, stream, bodies, span, step);
+  };
+  const bool whole = first.samples().empty();  // none of these bodies is sampled, or all are
+  const std::uint64_t begin = range * run_.spans_per_range,
+                      end = whole ? check_spans : std::min(begin + run_.spans_per_range, check_spans);
+  for (std::uint64_t span = begin; span < end; ++span) {
     unsigned steps = 0;
     for (const std::size_t i : members)
       steps = std::max(steps, std::get<Streamed<T>>(plans_[i].body).steps_of_span(span));
     launch(fill, dim3(count), 256, 0, stream, bodies, span, method.rows(steps));
     if (by_block) launch(move, dim3(count), threads, shared_bytes, stream, bodies, span);
-    for (unsigned pass = 0; pass < method.passes(steps); ++pass)
+    for (unsigned pass = 0; pass < method.passes(steps); ++pass) {
       launch(move, over_masses, threads, 0, stream, bodies, span, pass);
+      if ((pass + 1) % method.passes_per_step == 0) sample_after(span, (pass + 1) / method.passes_per_step);
+    }
     launch(fill, dim3(count), 256, 0, stream, bodies, span + 1, 1u);
+    sample_after(span, 0);
     launch(check_bodies, dim3(count), check_threads, 0, stream, bodies, span);
   }
+}
+
+template <class T>
+void Portion<T>::unpack_samples(Workers& workers, std::uint64_t range) {
+  workers.for_each(plans_.size(), [&](std::size_t i) {
+    Plan<T>& plan = plans_[i];
+    if (!plan.samples().empty())
+      std::visit([&](const auto& body) { body.unpack_samples(range, host_[i], *plan.task); }, plan.body);
+  });
 }
 
 template <class T>
@@ -247,9 +317,19 @@ double Portion<T>::simulate(KernelStore& kernels, std::span<const Stream> stream
     const StreamsAtRest at_rest(streams);
     upload(streams[0]);
     check(cudaEventRecord(begin, streams[0]), "recording an event");
-    launch_resident(kernels, streams, workers);
-    launch_streamed(kernels, streams);
-    seconds = wait_for(streams, begin);
+    const std::vector<ReadyLaunch> resident = ready_launches(kernels, workers);
+    launch_range(kernels, resident, streams, 0);
+    std::deque<Event> ends = ends_of(streams);
+    for (std::uint64_t range = 1; range <= ranges(); ++range) {
+      std::deque<Event> next_ends;
+      if (range < ranges()) {
+        launch_range(kernels, resident, streams, range);
+        next_ends = ends_of(streams);
+      }
+      seconds = wait_for(ends, begin);
+      unpack_samples(workers, range - 1);
+      ends = std::move(next_ends);
+    }
     download(streams[0]);
   }
   workers.for_each(plans_.size(), [&](std::size_t i) {

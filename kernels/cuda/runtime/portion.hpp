@@ -4,11 +4,14 @@
 //   arrange    sizes of all plans ─► memory on host and device, regions of each body, launches of bodies of equal form
 //   pack       bodies ─► descriptions, inputs and states on the host
 //   upload     host ─► device; the sums are set to zero
-//   launch_resident, launch_streamed   kernels compute all time steps
+//   for each range of check spans (layout/sampling.hpp; only one if nothing is sampled):
+//     launch_resident, launch_streamed   kernels compute the steps and write samples to the host
+//     unpack_samples   samples of the range ─► tasks, while the device computes the next range
 //   download   states and sums: device ─► host
 //   unpack     states, sums and answers on the host ─► tasks
 #pragma once
 
+#include <deque>
 #include <map>
 #include <span>
 #include <tuple>
@@ -30,7 +33,8 @@ struct Run {
   Scene scene;
   Stepping stepping;
   Recording recording;
-  std::size_t shared_bytes;  ///< shared memory that one block can have, bytes
+  std::size_t shared_bytes;       ///< shared memory that one block can have, bytes
+  std::uint64_t spans_per_range;  ///< check spans in a range of samples
 };
 
 /// A task, whose course has begun, and the layout in which its body is simulated.
@@ -39,6 +43,9 @@ struct Plan {
   Plan(Task& task, const Run& run);
 
   Sizes sizes() const;
+  const SampleLayout& samples() const;
+  /// The number of ranges in which the body is simulated; 1 if it is not sampled.
+  std::uint64_t ranges() const;
 
   Task* task;
   std::variant<Streamed<T>, Resident<T>> body;
@@ -53,6 +60,8 @@ class Portion {
 
   /// The memory of the device (bytes) that `bodies` bodies with these total sizes need.
   static std::size_t bytes_for(const Sizes& sizes, std::size_t bodies);
+  /// The same for the memory of the host.
+  static std::size_t host_bytes_for(const Sizes& sizes, std::size_t bodies);
 
   /// Simulates all steps, fills in the results and returns the time of the kernels, s. `busy` runs while the device
   /// works. If this function throws, no result is filled in and the streams are idle.
@@ -86,10 +95,15 @@ class Portion {
   void upload(cudaStream_t stream);
   std::vector<ReadyLaunch> ready_launches(KernelStore& kernels, Workers& workers) const;
   void allow_largest_chip(cudaKernel_t kernel) const;
-  void launch_resident(KernelStore& kernels, std::span<const Stream> streams, Workers& workers);
-  void launch_streamed(KernelStore& kernels, std::span<const Stream> streams);
+  std::uint64_t ranges() const;
+  bool has_range(std::span<const std::size_t> members, std::uint64_t range) const;
+  void launch_range(KernelStore& kernels, std::span<const ReadyLaunch> resident, std::span<const Stream> streams,
+                    std::uint64_t range);
+  void launch_resident(std::span<const ReadyLaunch> launches, std::span<const Stream> streams, std::uint64_t range);
+  void launch_streamed(KernelStore& kernels, std::span<const Stream> streams, std::uint64_t range);
   void launch_streamed(KernelStore& kernels, cudaStream_t stream, std::span<const std::size_t> members,
-                       const StreamedBody<T>* bodies);
+                       const StreamedBody<T>* bodies, std::uint64_t range);
+  void unpack_samples(Workers& workers, std::uint64_t range);
   void download(cudaStream_t stream);
 
   std::span<Plan<T>> plans_;

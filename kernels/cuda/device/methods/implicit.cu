@@ -205,6 +205,7 @@ __device__ __forceinline__ void move(const StepConstants<Number>& constants, con
     apply_friction(constants.friction_dt, m, m.velocity);
     advance_position(constants.dt, m);
     store(body, mass, m);
+    count_contact(body, mass, m);
   });
   __syncthreads();
 }
@@ -228,12 +229,13 @@ __device__ __forceinline__ void record_tensions(const Body& body, unsigned row) 
 /// Computes the steps of check span `index`. Row 0 of the tables holds the lengths at its beginning.
 extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS)
     evodevo_advance_streamed(const Body* bodies, std::uint64_t index) {
-  advance_span(bodies[blockIdx.x], index, [](const Body& body, unsigned count) {
+  advance_span(bodies[blockIdx.x], index, [](const Body& body, unsigned count, Samples& samples) {
     const Memory memory(body);
     for (unsigned step = 0; step < count; ++step) {
       solve(body.constants, body, memory, begin(body.constants, body, memory, step + 1));
       move(body.constants, body, memory);
       if constexpr (stress || work || peak_force || mean_tension) record_tensions(body, step + 1);
+      end_step(body, step + 1, samples);
     }
   });
 }

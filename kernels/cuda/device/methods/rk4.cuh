@@ -17,6 +17,7 @@ struct Method : OnePass {
   /// 3 that of the end, which is the beginning of the next step.
   static __device__ __forceinline__ unsigned row(unsigned index) { return index / 4 * 2 + (index % 4 + 1) / 2; }
   static __device__ __forceinline__ bool is_recorded(unsigned index) { return index % 4 == 0; }
+  static __device__ __forceinline__ bool ends_motion(Pass pass) { return pass.index % 4 == 3; }
 
   static __device__ __forceinline__ void move(const StepConstants<Number>& constants, Pass pass, Kept& kept,
                                               Moving& m) {

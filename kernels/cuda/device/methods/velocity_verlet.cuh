@@ -9,6 +9,7 @@ namespace evodevo::cuda {
 /// first pass after a check only begins a step, and the last pass before a check only ends one.
 struct Method : OnePass {
   static __device__ __forceinline__ bool is_recorded(unsigned index) { return index > 0; }
+  static __device__ __forceinline__ bool ends_motion(Pass pass) { return !pass.last; }
 
   static __device__ __forceinline__ void move(const StepConstants<Number>& constants, Pass pass, Kept&, Moving& m) {
     add_gravity(constants, m);

@@ -68,17 +68,19 @@ __device__ __forceinline__ void move(const StepConstants<Number>& constants, con
     apply_friction(constants.friction_dt, m, m.velocity);
     advance_position(constants.dt, m);
     store(body, mass, m);
+    count_contact(body, mass, m);
   });
 }
 
 /// Computes the steps of check span `index`. Row 0 of the tables holds the lengths at its beginning.
 extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS)
     evodevo_advance_streamed(const Body* bodies, std::uint64_t index) {
-  advance_span(bodies[blockIdx.x], index, [](const Body& body, unsigned count) {
+  advance_span(bodies[blockIdx.x], index, [](const Body& body, unsigned count, Samples& samples) {
     for (unsigned step = 0; step < count; ++step) {
       apply_gravity(body.constants, body);
       solve_springs(body.constants, body, step + 1);
       move(body.constants, body);
+      end_step(body, step + 1, samples);
     }
   });
 }
