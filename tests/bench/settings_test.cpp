@@ -40,6 +40,8 @@ TEST(Settings, RefuseWhatCannotBeMeasured) {
   EXPECT_THAT(complaint({"--study", "stress", "--device", "cuda"}), HasSubstr("-DEVODEVO_CUDA=ON"));
 #endif
   EXPECT_EQ(complaint({"--study", "features"}), "");
+  EXPECT_EQ(complaint({"--study", "samples", "--method", "rk4"}), "");
+  EXPECT_THAT(complaint({"--study", "samples", "--robots", "some.toml"}), HasSubstr("--robots"));
 }
 
 TEST(Settings, AreDescribedByTheHelp) {

@@ -48,7 +48,7 @@ Batch::Batch(const Settings& settings, std::span<const Body> bodies, const Scene
   for (const Body& body : bodies) births_.push_back(state_at_birth(body, scene));
 }
 
-Rate Batch::rate(Recording recording) {
+Rate Batch::rate(Recording recording, const std::vector<SamplePoint>& sampled_at) {
   std::vector<Task> tasks(states_.size());
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     states_[i] = births_[i % births_.size()];
@@ -56,6 +56,7 @@ Rate Batch::rate(Recording recording) {
     tasks[i].state = &states_[i];
     tasks[i].dt = time_step;
     tasks[i].steps = steps_;
+    tasks[i].sampled_at = sampled_at;
   }
   const auto start = std::chrono::steady_clock::now();
   simulator_->run(tasks, recording);

@@ -31,8 +31,9 @@ class Batch {
 
   std::string device() const { return simulator_->device(); }
 
-  /// Simulates the batch from birth once, and returns the rate. Throws std::runtime_error if a body diverges.
-  Rate rate(Recording recording = {});
+  /// Simulates the batch from birth once, with samples of each body at `sampled_at`, and returns the rate. Throws
+  /// std::runtime_error if a body diverges.
+  Rate rate(Recording recording = {}, const std::vector<SamplePoint>& sampled_at = {});
 
  private:
   std::span<const Body> bodies_;

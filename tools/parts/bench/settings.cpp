@@ -9,7 +9,8 @@ namespace {
 constexpr std::uint32_t most_bodies = 65535;  // CUDA's limit for the second dimension of a grid of blocks
 
 void check(const Settings& s) {
-  check_choice("study", s.study, {"speed", "features", "baselines", "stress", "tallies", "neighbours", "materials"});
+  check_choice("study", s.study,
+               {"speed", "features", "samples", "baselines", "stress", "tallies", "neighbours", "materials"});
   check_device(s.device);
   check_choice("method", s.method, {method_names.begin(), method_names.end()});
   check_choice("precision", s.precision, {"float32", "float64"});
@@ -18,7 +19,8 @@ void check(const Settings& s) {
     throw std::invalid_argument(
         "--study materials measures a GPU in single precision with explicit methods; add --device cuda, leave "
         "--precision out, and choose another --method");
-  const bool beside_cuda = s.study != "speed" && s.study != "features" && s.study != "materials";
+  const bool beside_cuda =
+      s.study != "speed" && s.study != "features" && s.study != "samples" && s.study != "materials";
   if (beside_cuda && s.device != "cuda")
     throw std::invalid_argument("--study " + s.study + " compares methods on a GPU; add --device cuda");
   if (beside_cuda && s.method != name(Method::paper_euler))

@@ -13,6 +13,9 @@ Report speed(const Settings& settings);
 /// else equal.
 Report feature_costs(const Settings& settings);
 
+/// Measures the cost of samples of several kinds: the ratio of the rates of whole runs with and without them.
+Report sample_costs(const Settings& settings);
+
 #ifdef EVODEVO_CUDA
 /// Compares the paper's baseline, the paper's method and our simulator.
 Report baselines(const Settings& settings);
