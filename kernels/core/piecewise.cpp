@@ -21,6 +21,7 @@ class Piecewise {
 
   Task piece(std::uint64_t steps) {
     Task piece{.body = whole_.body, .state = whole_.state, .dt = whole_.dt};
+    piece.scene = whole_.scene;
     piece.steps = std::min(steps, whole_.steps - done_);
     piece.later_steps = whole_.later_steps + whole_.steps - done_ - piece.steps;
     piece.course = whole_.course;

@@ -78,9 +78,9 @@ class Preparation {
 };
 
 /// One body of a batch, to be simulated for `steps` time steps of length `dt`. The caller sets `body`, `state`, `dt`,
-/// `steps` and, if needed, `later_steps`, `course`, `preparation` and `sampled_at`; the simulator sets the rest. The
-/// records and samples are empty after a divergence. Records and samples change neither the motion nor each other, not
-/// even in the last bit.
+/// `steps` and, if needed, `later_steps`, `course`, `preparation`, `scene` and `sampled_at`; the simulator sets the
+/// rest. The records and samples are empty after a divergence. Records and samples change neither the motion nor each
+/// other, not even in the last bit.
 ///
 /// A run can be divided into pieces with the same body and dt: each piece except the last gives the number of
 /// `later_steps` that follow, and the caller passes its `course` to the next piece. State and status are then
@@ -96,6 +96,7 @@ struct Task : SpringRecords {
   /// In: the preparation from the body's last run, or null; out: that of this run. A preparation that no longer fits
   /// the body is ignored.
   std::shared_ptr<const Preparation> preparation;
+  const Scene* scene = nullptr;         ///< the scene of the body; null: that of the simulator
   std::vector<SamplePoint> sampled_at;  ///< in ascending order of their steps, from 0 to `steps`
 
   Status status = Status::ok;            ///< in: tasks that are not ok are skipped; out: ok or diverged
@@ -105,6 +106,11 @@ struct Task : SpringRecords {
   std::uint64_t spring_evaluations = 0;  ///< springs times steps, whatever the number of passes per step
   std::vector<Sample> samples;           ///< one for each of `sampled_at`
 };
+
+/// The scene in which a simulator of `scene` simulates a task.
+inline const Scene& scene_of(const Task& task, const Scene& scene) {
+  return task.scene != nullptr ? *task.scene : scene;
+}
 
 /// Thrown if a device has too little free memory for even one body.
 class DeviceOutOfMemory : public std::runtime_error {
@@ -118,8 +124,8 @@ struct DeviceUse {
   std::size_t portions = 1;  ///< largest number of portions into which a batch was divided to fit the device's memory
 };
 
-/// Simulates bodies in a scene. Masses of 0 kg are held in place. The result for a body is bit-identical whether the
-/// body is alone or in any batch, and for any number of threads.
+/// Simulates bodies in a scene; tasks may have scenes of their own. Masses of 0 kg are held in place. The result for a
+/// body is bit-identical whether the body is alone or in any batch, and for any number of threads.
 class Simulator {
  public:
   virtual ~Simulator() = default;

@@ -20,7 +20,8 @@ class CpuSimulator final : public Simulator {
 
   void run(std::span<Task> tasks, Recording recording) override {
     workers_.for_each(tasks.size(), [&](std::size_t i) {
-      if (tasks[i].status == Status::ok) cpu::run(tasks[i], scene_, stepping_, kernels_, recording);
+      Task& task = tasks[i];
+      if (task.status == Status::ok) cpu::run(task, scene_of(task, scene_), stepping_, kernels_, recording);
     });
   }
 

@@ -1,6 +1,7 @@
 // The result of a body is bit-identical, whatever its position in a batch and however often it is computed.
 #include "analysis/ground.hpp"
 #include "gpu.hpp"
+#include "physics/scenes.hpp"
 
 namespace evodevo::testing_gpu {
 namespace {
@@ -126,6 +127,12 @@ TEST_P(Determinism, InternalForcesLeaveTheMomentumAlone) {
   // the method `implicit` solves the equation of each step only up to a relative residual of 1e-6
   const double rest = method == Method::implicit ? 1e-5 : 1e-12;
   EXPECT_LT(norm(momentum), precision == Precision::float32 ? 1e-4 : rest);
+}
+
+TEST_P(Determinism, HoldsForTasksInTheirOwnScenes) {
+  EVODEVO_NEEDS_GPU();
+  test::expect_tasks_in_their_own_scenes(
+      [](const Scene& scene) { return make_cuda_simulator(scene, stepping(GetParam())); });
 }
 
 INSTANTIATE_TEST_SUITE_P(Gpu, Determinism, all_ways(), [](const auto& test) { return name(test.param); });

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "analysis/ground.hpp"
+#include "scenes.hpp"
 #include "support.hpp"
 
 namespace evodevo::test {
@@ -139,6 +140,16 @@ TEST(Guard, EnergyFromNothingIsDivergence) {
   EXPECT_EQ(a.state.time, a.task.ended_at);
   for (Vec3& v : state.velocity) v = {0, 0, 3.4};  // 9.2 J
   EXPECT_EQ(simulate(body, state, {}, stepping, 1000).task.status, Status::ok);
+}
+
+TEST(Scenes, MayDifferWithinABatch) {
+  for (const Method method : all_methods)
+    for (const Precision precision : {Precision::float32, Precision::float64}) {
+      SCOPED_TRACE(name_of(method) + " " + name_of(precision));
+      expect_tasks_in_their_own_scenes([&](const Scene& scene) {
+        return make_cpu_simulator(scene, {method, precision}, 2);
+      });
+    }
 }
 
 TEST(Guard, TheEndOfARunIsChecked) {

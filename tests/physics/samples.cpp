@@ -147,7 +147,8 @@ void expect_samples_in_pieces(const SimulatorFactory& simulator_for, const Body&
   whole.task.sampled_at = pieces.task.sampled_at = awkward_points(all_channels);
   whole.make(*simulator);
   pieces.task.state = &pieces.state;
-  run_in_pieces(*simulator, {&pieces.task, 1}, {}, [](std::size_t) { return 73; }, [](std::size_t, const Task&) {});
+  run_in_pieces(
+      *simulator, {&pieces.task, 1}, {}, [](std::size_t) { return 73; }, [](std::size_t, const Task&) {});
   EXPECT_TRUE(same_bits(whole.state, pieces.state));
   ASSERT_EQ(whole.task.samples.size(), pieces.task.samples.size());
   for (std::size_t i = 0; i < whole.task.samples.size(); ++i) {

@@ -135,8 +135,9 @@ class DeviceSimulator final : public CudaSimulator {
 
   /// Returns the course that a task continues, or a new course.
   Course begun(const Task& task) const {
-    Course course = course_of(task, scene_, stepping_.precision);
-    if (!task.course) course.forces = cuda::force_range<T>(*task.body, *task.state, scene_);
+    const Scene& scene = scene_of(task, scene_);
+    Course course = course_of(task, scene, stepping_.precision);
+    if (!task.course) course.forces = cuda::force_range<T>(*task.body, *task.state, scene);
     return course;
   }
 

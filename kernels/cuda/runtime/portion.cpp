@@ -49,8 +49,8 @@ double wait_for(const std::deque<Event>& ends, const Event& begin) {
 template <class T>
 Plan<T>::Plan(Task& task_, const Run& run)
     : task(&task_), body([&]() -> decltype(body) {
-        const Features features =
-            features_of(run.scene, run.stepping, run.recording, has_muscles(*task_.body), channels_on_device(task_));
+        const Features features = features_of(scene_of(task_, run.scene), run.stepping, run.recording,
+                                              has_muscles(*task_.body), channels_on_device(task_));
         if (is_explicit(run.stepping.method))
           if (auto resident = Resident<T>::arrange(task_, features, run.shared_bytes, run.spans_per_range))
             return *std::move(resident);
@@ -134,9 +134,10 @@ void Portion<T>::pack(Workers& workers) {
     const std::size_t at = order[i];
     const Plan<T>& plan = plans_[at];
     if (const auto* body = std::get_if<Resident<T>>(&plan.body))
-      resident[i] = body->pack(host_[at], device_[at], run_.scene);
+      resident[i] = body->pack(host_[at], device_[at], scene_of(*plan.task, run_.scene));
     else
-      streamed[i - first_streamed] = std::get<Streamed<T>>(plan.body).pack(host_[at], device_[at], run_.scene);
+      streamed[i - first_streamed] =
+          std::get<Streamed<T>>(plan.body).pack(host_[at], device_[at], scene_of(*plan.task, run_.scene));
   });
 }
 
