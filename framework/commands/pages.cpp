@@ -33,10 +33,12 @@ void say_size(const std::string& file, std::size_t bytes, const std::string& opt
 }
 
 /// Simulates the robots of `cast` again and returns the data of the run for a page.
-Json filmed_run(const Archive& archive, const Experiment& experiment, const Cast& cast, std::size_t budget) {
+Json filmed_run(const Archive& archive, const Experiment& experiment, const Given& given, const Cast& cast,
+                std::size_t budget) {
+  const std::size_t scenario = given_scenario(experiment, given).value_or(0);
   const auto simulator = opened_simulator(experiment);
   return timed("simulating robots of " + printable(archive.folder().string()) + " again",
-               [&] { return reported_run(archive, experiment, *simulator, cast, budget); });
+               [&] { return reported_run(archive, experiment, *simulator, cast, budget, scenario); });
 }
 
 Json reported(const std::string& folder, const Given& given, std::size_t budget) {
@@ -47,7 +49,7 @@ Json reported(const std::string& folder, const Given& given, std::size_t budget)
       cast.individuals.push_back(individual_named(archive, id).id);
   const Experiment experiment = experiment_of_run(archive, given);
   refuse_to_overwrite("--out", given["out"].as<std::string>(), libraries_of(experiment));
-  return filmed_run(archive, experiment, cast, budget);
+  return filmed_run(archive, experiment, given, cast, budget);
 }
 
 int report(const Given& given) {
@@ -104,7 +106,7 @@ int film(const Given& given) {
   const Experiment experiment = experiment_of_run(archive, given);
   refuse_to_overwrite("--out", file, libraries_of(experiment));
   OutputFile output(file, file);
-  const Json data = report_data({filmed_run(archive, experiment, cast, page_budget)});
+  const Json data = report_data({filmed_run(archive, experiment, given, cast, page_budget)});
   timed("drawing " + printable(file), [&] { shoot(filled_page(page, data), output, file, shooting); });
   std::cout << file << '\n';
   return 0;
@@ -142,6 +144,7 @@ Command report_command() {
                         "how many of the best individuals of each run to show")(
       "individual", values<std::int64_t>("ID"), "another individual of each run to show; may be repeated")(
       "out", value<std::string>("FILE")->default_value("report.html"), "the page to write");
+  add_scenario_option(options, "the scenario in which the films end; default: the first");
   add_plugin_option(options);
   return {
       .name = "report",
@@ -163,6 +166,7 @@ Command film_command() {
       "from", value<double>("S"), "time at which a film begins, in s since birth; default: at birth")(
       "to", value<double>("S"), "time at which a film ends, in s since birth; default: at the end of the life")(
       "at", value<double>("S"), "time of a picture, in s since birth; default: midway through the last measurement");
+  add_scenario_option(options, "the scenario in which the film ends; default: the first");
   add_plugin_option(options);
   return {
       .name = "film",

@@ -14,6 +14,7 @@
 #include "evolution/evolution.hpp"
 #include "evolution/record_check.hpp"
 #include "experiment/device.hpp"
+#include "life/measurement/windows.hpp"
 #include "operators/call_watch.hpp"
 #include "operators/plugin_folders.hpp"
 #include "threads/parallel.hpp"
@@ -158,9 +159,25 @@ int resume(const Given& given) {
   return evolve_and_report(experiment, *simulator, archive);
 }
 
+/// Prints how much memory samples by mass and by spring take, if a fitness operator asks for any.
+void print_sample_memory(const Experiment& experiment) {
+  constexpr std::size_t masses = 1000, springs = 10'000;
+  const Windows windows(experiment, 0);
+  const double small = windows.bytes_after_maturing(0, 0) + windows.bytes_within_life(0, 0),
+               after = windows.bytes_after_maturing(masses, springs),
+               within = windows.bytes_within_life(masses, springs);
+  if (!(after + within > small)) return;
+  const auto megabytes = [](double bytes) { return short_number(bytes / 1e6) + " MB"; };
+  std::cout << "samples: " << megabytes(after) << " after maturing and " << megabytes(within)
+            << " within the life, for a robot of " << masses << " masses and " << springs << " springs; at most "
+            << megabytes(std::max(after, most_sample_bytes)) << " after maturing at once\n";
+}
+
 int check(const Given& given) {
   const auto file = given["EXPERIMENT.toml"].as<std::string>();
-  print_warnings(given_experiment(file, given));
+  const Experiment experiment = given_experiment(file, given);
+  print_warnings(experiment);
+  print_sample_memory(experiment);
   std::cout << file << ": ok\n";
   return 0;
 }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <iostream>
+#include <map>
+#include <numeric>
 
 #include "base/json_text.hpp"
 #include "base/text.hpp"
@@ -88,8 +90,37 @@ class Report {
       if (const auto verification = archive_.verification(id))
         std::cout << ", " << marks_text(*verification, objectives_.front().maximise);
       std::cout << '\n';
+      print_measures(id);
+      print_tests(id);
       std::cout << "    " << line_text(line) << '\n';
     }
+  }
+
+  /// Prints the scores that are not objectives.
+  void print_measures(std::uint32_t id) const {
+    std::string text;
+    for (const ArchivedMeasure& measure : archive_.measures(id))
+      text += (text.empty() ? "" : ", ") + measure.name + " " + short_number(measure.value) + " " + measure.unit;
+    if (!text.empty()) std::cout << "    " << text << '\n';
+  }
+
+  /// Prints the mean of the first objective over the repeats of each scenario.
+  void print_tests(std::uint32_t id) const {
+    std::vector<std::string> scenarios;
+    std::map<std::string, std::vector<double>> values;
+    for (const ArchivedTest& test : archive_.tests(id)) {
+      if (test.objective != objectives_.front().name) continue;
+      if (!values.contains(test.scenario)) scenarios.push_back(test.scenario);
+      values[test.scenario].push_back(test.value);
+    }
+    if (scenarios.empty()) return;
+    std::cout << "    " << objectives_.front().name << " by scenario:";
+    for (std::size_t i = 0; i < scenarios.size(); ++i) {
+      const std::vector<double>& repeats = values[scenarios[i]];
+      const double mean = std::accumulate(repeats.begin(), repeats.end(), 0.0) / static_cast<double>(repeats.size());
+      std::cout << (i > 0 ? ", " : " ") << scenarios[i] << ' ' << short_number(mean);
+    }
+    std::cout << '\n';
   }
 
   /// Returns a text such as: 17 (add-node: +1 node, +2 link) < 4 (random).

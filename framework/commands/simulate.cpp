@@ -65,7 +65,7 @@ Motion go_on(const Evaluation& evaluation, Simulator& simulator, Life& life, dou
   const auto look = [&](std::size_t, const Task& piece) {
     if (piece.status == Status::ok) trajectory->add(*piece.state);
   };
-  evaluation.simulation.run({&life, 1}, duration, [&](std::span<Task> tasks, std::span<Life* const>) {
+  evaluation.simulation.run({&life, 1}, {.duration = duration}, [&](std::span<Task> tasks, std::span<Life* const>) {
     if (trajectory == nullptr) return simulator.run(tasks, {});
     trajectory->add(*tasks.front().state);
     run_in_pieces(simulator, tasks, {}, next_steps, look);
@@ -76,6 +76,14 @@ Motion go_on(const Evaluation& evaluation, Simulator& simulator, Life& life, dou
 
 std::string vector_text(Vec3 v) {
   return "(" + short_number(v.x) + ", " + short_number(v.y) + ", " + short_number(v.z) + ")";
+}
+
+/// Puts a life into the first repeat of a scenario.
+void enter_scenario(std::size_t scenario, const Experiment& experiment, const Evaluation& evaluation, Life& life) {
+  start_scenario({scenario}, experiment, evaluation.simulation, life);
+  if (!life.alive())
+    throw ConfigError("--scenario " + experiment.scenarios[scenario].name + ": " + name(life.result.status) + ": " +
+                      life.result.reason + "; change the scenario or simulation.dt");
 }
 
 /// Returns the life of the body in a file. Throws ConfigError if the body cannot be simulated in the scene or with the
@@ -113,6 +121,7 @@ int simulate(const Given& given) {
   const auto simulator = opened_simulator(experiment);
   const Evaluation evaluation(experiment, *simulator);
   Life life = life_of(body_file, evaluation);
+  if (const auto scenario = given_scenario(experiment, given)) enter_scenario(*scenario, experiment, evaluation, life);
   const Pace pace = pace_over(duration, experiment.step, life.living.longest_dt);
   if (pace.steps == 0)
     throw UsageError("--duration " + to_text(duration) + ": is less than half a time step; expected at least " +
@@ -154,6 +163,7 @@ Command simulate_command() {
   options.add_options()("duration", value<double>("S")->default_value(10), "simulated time, s")(
       "trajectory", value<std::string>("FILE"),
       "CSV file for the motion, with a frame every 0.01 s or the nearest whole number of time steps");
+  add_scenario_option(options, "simulate the body in this scenario of the experiment instead of its scene");
   add_experiment_options(options);
   return {
       .name = "simulate",

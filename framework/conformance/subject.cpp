@@ -180,6 +180,13 @@ void restructure(Genome& genome, const Layout& layout, Rng& rng) {
   if (is_within_limits(fewer, layout)) genome = std::move(fewer);
 }
 
+/// Makes the life of an experiment long enough for the window of a fitness operator, if it lies within the life.
+void fit_life(const Request& request, toml::table& development) {
+  if (!request.cycle) return;
+  development.insert_or_assign("cycles", *request.cycle + 2);
+  development.insert_or_assign("cycle_time", std::max(0.05, (request.settle + request.window) / 2 + 0.05));
+}
+
 std::string small_experiment(const Subject& subject, std::uint64_t seed) {
   toml::table root = parse_toml(
       "[experiment]\nevaluations = 24\npopulation = 6\n[scene.gravity]\n[scene.floor]\n[scene.friction]\n"
@@ -206,9 +213,15 @@ std::string small_experiment(const Subject& subject, std::uint64_t seed) {
   root.insert("crossover", toml::array{std::move(crossover)});
   root["development"].as_table()->insert(
       "operator", toml::array{either(Devo::kind, toml::table{{host_key::name, "spring-turnover"}, {"springs", 2}})});
-  root.insert(
-      "fitness",
-      toml::array{either(Fitness::kind, toml::table{{host_key::name, "distance"}, {"settle", 0.0}, {"window", 0.1}})});
+  toml::array fitness;
+  if (subject.kind() == Fitness::kind) {
+    fitness.push_back(own);
+    fit_life(create<Fitness>(subject)->observes(), *root["development"].as_table());
+  }
+  // the operator itself may have no objective
+  fitness.push_back(
+      toml::table{{host_key::name, "distance"}, {host_key::label, "way"}, {"settle", 0.0}, {"window", 0.1}});
+  root.insert("fitness", std::move(fitness));
   root.insert("selection", either(Selection::kind, with_name("elitist")));
   std::ostringstream text;
   text << root << '\n';

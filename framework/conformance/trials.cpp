@@ -8,6 +8,7 @@
 #include "base/genome_sections.hpp"
 #include "base/philox.hpp"
 #include "base/text.hpp"
+#include "conformance/behaviours.hpp"
 #include "evodevo/neat.hpp"
 #include "operators/isolation.hpp"
 
@@ -122,17 +123,19 @@ Numbers try_devo(const Subject& subject, const Devo& op, std::uint64_t seed, std
 }
 
 Numbers try_fitness(const Fitness& op, std::uint64_t seed, std::uint32_t input) {
-  const Observation observation = sample_observation(seed, input);
-  const auto digest = [](const Observation& o) {
-    Numbers numbers{o.window, o.work};
+  const Request request = op.observes();
+  const SampleBehaviour behaviour = sample_behaviour(request, seed, input);
+  const auto digest = [](const SampleBehaviour& b) {
+    const Observation& o = b.observation;
+    Numbers numbers{o.window};
     for (const Vec3& v : {o.box.low, o.box.high, o.centre_before, o.centre_after}) append(numbers, v);
+    for (const StoredSample& sample : b.samples) append(numbers, sample.centre);
     return numbers;
   };
-  const Numbers before = digest(observation);
-  Numbers result = op.score(observation);
-  require_untouched("the observation", before, digest(observation));
-  const Request request = op.observes();
-  append(result, {request.settle, request.window, double(request.work), double(op.objectives().size())});
+  const Numbers before = digest(behaviour);
+  Numbers result = op.score(behaviour.observation);
+  require_untouched("the observation", before, digest(behaviour));
+  append(result, {request.settle, request.window, double(request.work), request.rate, double(op.objectives().size())});
   return result;
 }
 
@@ -262,13 +265,6 @@ SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t see
   }
   life.bounds = bounding_box(life.living.state.position);
   return life;
-}
-
-Observation sample_observation(std::uint64_t seed, std::uint32_t input) {
-  Rng rng = stream(seed, input);
-  const auto position = [&] { return Vec3{rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0, 1)}; };
-  const Vec3 low = position(), size = position() + Vec3{2, 2, 1};
-  return {{low, low + size}, low + 0.5 * size, position(), 2.0, rng.uniform(0, 50)};
 }
 
 SampleTable sample_table(std::uint64_t seed, std::uint32_t input, std::size_t rows, std::size_t failed) {

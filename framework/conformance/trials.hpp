@@ -48,8 +48,6 @@ struct SampleLife {
 /// only two.
 SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t seed, std::uint32_t input);
 
-Observation sample_observation(std::uint64_t seed, std::uint32_t input);
-
 /// A table for a selection operator.
 struct SampleTable {
   std::vector<Numbers> scores;

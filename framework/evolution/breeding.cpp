@@ -8,7 +8,7 @@
 #include "base/genome_sections.hpp"
 #include "base/philox.hpp"
 #include "base/text.hpp"
-#include "evodevo/pareto.hpp"
+#include "evodevo/helpers/pareto.hpp"
 #include "evolution/clones.hpp"
 
 namespace evodevo {

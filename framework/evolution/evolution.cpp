@@ -7,7 +7,7 @@
 
 #include "base/philox.hpp"
 #include "base/text.hpp"
-#include "evodevo/pareto.hpp"
+#include "evodevo/helpers/pareto.hpp"
 #include "evolution/breeding.hpp"
 #include "evolution/clones.hpp"
 

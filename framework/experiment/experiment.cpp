@@ -36,7 +36,7 @@ Experiment compose(toml::table root, const ExperimentSource& source) {
   for (const Override& change : source.overrides) apply_override(change, root);
   TomlReader top(root, "");
   top.expect({"experiment", "encoding", "mutation", "crossover", "scene", "simulation", "development", "fitness",
-              "selection", "materials", "plugins"});
+              "scenario", "selection", "materials", "plugins"});
   Experiment experiment;
   const PluginsTable plugins(root, source);
   plugins.check(top, experiment.warnings);

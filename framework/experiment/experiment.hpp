@@ -49,7 +49,9 @@ struct Experiment : Settings {
   std::vector<Varied<Crossover>> crossovers;
   std::vector<Scheduled> devo;
   std::vector<std::unique_ptr<Fitness>> fitness;
+  std::vector<Over> over;             ///< for each fitness operator, how its scores in several tests become one
   std::vector<Objective> objectives;  ///< objectives of all fitness operators, in the order of the operators
+  std::vector<Objective> measures;    ///< likewise their scores with other roles
   std::unique_ptr<Selection> selection;
 
   FileContents files;  ///< of the files that parameters of operators name

@@ -17,6 +17,23 @@ toml::table written(const Declare& declare) {
   return writer.take();
 }
 
+toml::table written_forces(auto& settings) {
+  toml::table forces;
+  for_each_force(settings, [&](std::string_view name, auto& force) {
+    if (force) forces.insert(name, written([&](TomlWriter& writer) { declare(writer, *force); }));
+  });
+  return forces;
+}
+
+toml::table written_scenario(Scenario& scenario) {
+  toml::table table = written([&](TomlWriter& writer) {
+    writer.add("name", scenario.name);
+    declare_scenario(writer, scenario);
+  });
+  for (auto&& [name, force] : written_forces(scenario)) table.insert(name, std::move(force));
+  return table;
+}
+
 }  // namespace
 
 std::map<std::string, Material> base_materials() {
@@ -29,10 +46,7 @@ std::map<std::string, Material> base_materials() {
 }
 
 toml::table to_toml(Settings settings) {
-  toml::table scene, materials;
-  for_each_force(settings, [&](std::string_view name, auto& force) {
-    if (force) scene.insert(name, written([&](TomlWriter& writer) { declare(writer, *force); }));
-  });
+  toml::table scene = written_forces(settings), materials;
   for (auto& [name, material] : settings.materials)
     materials.insert(name, written([&, &one = material](TomlWriter& writer) { declare(writer, one); }));
   toml::table root;
@@ -44,6 +58,9 @@ toml::table to_toml(Settings settings) {
                 declare_accuracy(writer, settings);
                 declare_simulation(writer, settings);
               }));
+  toml::array scenarios;
+  for (Scenario& scenario : settings.scenarios) scenarios.push_back(written_scenario(scenario));
+  if (!scenarios.empty()) root.insert("scenario", std::move(scenarios));
   root.insert("development", written([&](TomlWriter& writer) { declare_development(writer, settings); }));
   return root;
 }
@@ -59,6 +76,7 @@ Settings read_settings(TomlReader& top, Bodies bodies, Warnings& warnings) {
     declare_mass(t, settings);
   }
   read_scene(top, settings);
+  read_scenarios(top, settings);
   read_simulation(top, settings, bodies);
   if (const toml::table* development = top.table("development")) {
     TomlReader t(*development, "development");

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/philox.hpp"
 #include "core/simulator.hpp"
@@ -71,6 +72,24 @@ struct Payload {
   bool operator==(const Payload&) const = default;
 };
 
+/// How the scores of several tests become one.
+enum class Over { mean, worst, median };
+template <>
+inline constexpr std::array<std::string_view, 3> names_of<Over>{"mean", "worst", "median"};
+
+/// A test of a matured robot: the scene in which it is measured, and what is changed about the robot before.
+struct Scenario {
+  std::string name;
+  Scene scene;  ///< the scene of the experiment with the forces that the scenario replaces
+  std::optional<Payload> payload;
+  double start_noise = 0;   ///< largest offset of a mass along each axis, relative to the body's longest side, 1
+  bool muscles = true;      ///< whether muscles are actuated
+  double damage = 0;        ///< share of the springs that are lost around a random place, 1
+  std::int64_t repeat = 1;  ///< number of repeats, each with its own random numbers
+
+  bool operator==(const Scenario&) const = default;
+};
+
 /// The five base materials (paper, Table I). The second muscle has the opposite phase, as in the paper's source code.
 std::map<std::string, Material> base_materials();
 
@@ -95,6 +114,8 @@ struct Settings {
   std::int64_t threads = 0;  ///< number of threads on the CPU; 0: one for each core
 
   DevelopmentSettings development;
+
+  std::vector<Scenario> scenarios;  ///< none: matured robots are measured in the scene alone
 
   bool operator==(const Settings&) const = default;
 };

@@ -40,10 +40,22 @@ LongestStep longest_step(const StepRule& rule, const Body& body, std::span<const
   return {dt, ""};
 }
 
+std::uint64_t Pace::steps_to(double time) const {
+  const auto undivided = static_cast<std::uint64_t>(std::llround(time / (dt * static_cast<double>(refine))));
+  return undivided * static_cast<std::uint64_t>(refine);
+}
+
 Pace pace_over(double duration, const StepRule& rule, double longest) {
   const double steps = rule.dt ? std::round(duration / *rule.dt) : std::ceil(duration / longest);
   const auto count = static_cast<std::uint64_t>(steps) * static_cast<std::uint64_t>(rule.refine);
-  return {rule.dt ? *rule.fixed() : duration / static_cast<double>(count), count};
+  return {rule.dt ? *rule.fixed() : duration / static_cast<double>(count), count, rule.refine};
+}
+
+Pace pace_of_seconds(double duration, const StepRule& rule, double longest) {
+  if (rule.dt) return pace_over(duration, rule, longest);
+  Pace pace = pace_over(1, rule, longest);
+  pace.steps = pace.steps_to(duration);
+  return pace;
 }
 
 bool is_whole_number_of_steps(double duration, double dt) {

@@ -26,6 +26,11 @@ struct StepRule {
 struct Pace {
   double dt = 0;  ///< time step, s
   std::uint64_t steps = 0;
+  std::int64_t refine = 1;  ///< StepRule::refine
+
+  /// The number of steps to a time (s) since the beginning, rounded to a step before the division by `refine`, so that
+  /// finer steps end at the same times.
+  std::uint64_t steps_to(double time) const;
 };
 
 /// The time step of a body, or the reason why the body cannot be simulated.
@@ -41,6 +46,12 @@ LongestStep longest_step(const StepRule& rule, const Body& body, std::span<const
 /// is the smallest number for which equal steps are no longer than `longest` (s). In both cases, each of these steps is
 /// divided by `rule.refine`.
 Pace pace_over(double duration, const StepRule& rule, double longest);
+
+/// Returns the time steps for a duration (s) in which a body does not change, so that they do not depend on the
+/// duration. With a fixed dt, they are those of pace_over(). Otherwise a second is the smallest whole number of equal
+/// steps no longer than `longest` (s), each divided by `rule.refine`; the duration is rounded to a step before that
+/// division.
+Pace pace_of_seconds(double duration, const StepRule& rule, double longest);
 
 /// Whether a duration (s) is a whole number of steps of `dt` (s), apart from rounding.
 bool is_whole_number_of_steps(double duration, double dt);

@@ -96,9 +96,9 @@ void DevelopmentLoop::simulate_cycle(std::span<Life> lives, int cycle, Recording
     simulation_.simulator().run(tasks, recording);
   };
   if (recording.stress && development.probe == Probe::skip_shift)
-    simulation_.run(lives, development.cycle_time, tally);
+    simulation_.run(lives, windows_.in_cycle(cycle), tally);
   else
-    simulation_.run(lives, development.cycle_time, record);
+    simulation_.run(lives, windows_.in_cycle(cycle), record);
 }
 
 template <class Action>

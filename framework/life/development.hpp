@@ -8,6 +8,7 @@
 #include "life/controls.hpp"
 #include "life/life.hpp"
 #include "life/life_simulation.hpp"
+#include "life/measurement/windows.hpp"
 
 namespace evodevo {
 
@@ -19,11 +20,12 @@ namespace evodevo {
 ///   4. choose a time step for each changed body
 ///
 /// If a newborn comes with a record, the recorded changes are applied and no operator is called. A control changes what
-/// happens in step 2. Experiment and simulation must outlive this object.
+/// happens in step 2. Samples of windows within the life are taken in step 1. Experiment, simulation and windows must
+/// outlive this object.
 class DevelopmentLoop {
  public:
-  DevelopmentLoop(const Experiment& experiment, const LifeSimulation& simulation)
-      : experiment_(experiment), simulation_(simulation) {}
+  DevelopmentLoop(const Experiment& experiment, const LifeSimulation& simulation, const Windows& windows)
+      : experiment_(experiment), simulation_(simulation), windows_(windows) {}
 
   /// Develops lives. Calls `progress` after each cycle, once all lives have been changed. Throws InputError if a record
   /// does not fit its body.
@@ -77,6 +79,7 @@ class DevelopmentLoop {
 
   const Experiment& experiment_;
   const LifeSimulation& simulation_;
+  const Windows& windows_;
   mutable BusyClock clock_;
 };
 

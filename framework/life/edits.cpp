@@ -299,6 +299,12 @@ class Editor {
   std::vector<std::uint32_t> new_index_;  ///< new index of every old and new mass
 };
 
+/// Erases elements, given by their indices in ascending order.
+void erase_at(std::vector<double>& list, const std::vector<std::uint32_t>& indices) {
+  for (auto index = indices.rbegin(); index != indices.rend(); ++index)
+    list.erase(list.begin() + static_cast<std::ptrdiff_t>(*index));
+}
+
 }  // namespace
 
 Edits resolved(const Edits& edits, const DevoContext& context) {
@@ -311,7 +317,12 @@ Edits resolved(const Edits& edits, const DevoContext& context) {
 }
 
 void apply(const Edits& resolved, LivingBody& living) {
-  if (!resolved.empty()) Editor(resolved, living.body, &living.state, &living).apply();
+  if (resolved.empty()) return;
+  Editor(resolved, living.body, &living.state, &living).apply();
+  living.version = nullptr;
+  if (living.contact_times.empty()) return;
+  erase_at(living.contact_times, resolved.removed_masses);
+  living.contact_times.resize(living.body.masses.size(), 0);
 }
 
 void apply(const Edits& resolved, Body& body) {

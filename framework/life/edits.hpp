@@ -6,6 +6,7 @@
 
 #include "core/simulator.hpp"
 #include "evodevo/devo.hpp"
+#include "evodevo/samples.hpp"
 
 namespace evodevo {
 
@@ -13,6 +14,10 @@ namespace evodevo {
 struct LivingBody : SpringRecords {
   Body body;
   State state;
+  /// [masses] time in which each mass has touched the ground, as far as it was counted, s; empty if it was not
+  std::vector<double> contact_times = {};
+  /// The body as samples show it, until it changes; null if no sample shows it.
+  std::shared_ptr<const BodyVersion> version = nullptr;
   double longest_dt = 0;                                     ///< LongestStep::dt, s
   std::shared_ptr<const Preparation> preparation = nullptr;  ///< what the simulator reuses in the next cycle
 };
@@ -22,7 +27,8 @@ struct LivingBody : SpringRecords {
 /// are more or fewer causes than removed items, both lists stay as they are, and apply() throws.
 Edits resolved(const Edits& edits, const DevoContext& context);
 
-/// Applies resolved edits, all of them together. New springs get the mean records of the springs that stay. Materials
+/// Applies resolved edits, all of them together. New springs get the mean records of the springs that stay; new masses
+/// have not touched the ground. Materials
 /// that are no longer used are removed, except the base materials. Throws a std::invalid_argument that names the edit
 /// if growth goes beyond its end, an index is out of range, a spring joins a mass to itself or to a removed mass, a
 /// pair of masses is joined twice, a spring is changed twice or is both changed and removed, a spring is of air, a

@@ -19,9 +19,10 @@ Evaluation::Evaluation(const Experiment& experiment, Simulator& simulator)
 
 Evaluation::Evaluation(const Experiment& experiment, Simulator& simulator, const Conditions& conditions)
     : simulation(experiment, simulator, conditions),
+      windows(experiment, conditions.later),
       birth(experiment, simulation),
-      development(experiment, simulation),
-      measurement(experiment, simulation, conditions) {}
+      development(experiment, simulation, windows),
+      measurement(experiment, simulation, windows) {}
 
 std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, const Progress& progress) const {
   const std::size_t cohorts = std::clamp<std::size_t>(newborns.size() / smallest_cohort, 1,

@@ -8,7 +8,7 @@
 #include "life/development.hpp"
 #include "life/life.hpp"
 #include "life/life_simulation.hpp"
-#include "life/measurement.hpp"
+#include "life/measurement/measurement.hpp"
 
 namespace evodevo {
 
@@ -40,6 +40,7 @@ class Evaluation {
   PhaseTimes phase_times() const { return {birth.seconds(), simulation.seconds(), development.seconds()}; }
 
   const LifeSimulation simulation;
+  const Windows windows;
   const Birth birth;
   const DevelopmentLoop development;
   const Measurement measurement;

@@ -24,6 +24,14 @@ struct Newborn {
   std::string recorded_in = {};  ///< the run and individual that the record belongs to, for messages
 };
 
+/// A score of a matured body in one repeat of one scenario.
+struct TestScore {
+  std::size_t scenario = 0;   ///< index into Settings::scenarios
+  std::int64_t repeat = 0;    ///< from 0
+  std::size_t objective = 0;  ///< index into Experiment::objectives
+  double value = 0;
+};
+
 /// How an evaluation ended.
 struct Result {
   Status status = Status::ok;
@@ -32,13 +40,19 @@ struct Result {
   std::vector<double> objectives;  ///< in the order and units of Experiment::objectives; empty unless ok
   std::uint64_t spring_evaluations = 0;
   LifeRecord record;  ///< changes by development; kept and archived only for individuals that reach the front
+  std::vector<double> measures = {};  ///< in the order and units of Experiment::measures; empty unless ok
+  std::vector<TestScore> tests = {};  ///< of the windows after maturing; empty without scenarios
 };
 
 /// The life of a newborn while it is being evaluated.
 struct Life {
   Newborn newborn;
   LivingBody living;
-  double work = 0;  ///< work of the muscles on the body, as far as it was recorded, J
+  const Scene* scene = nullptr;       ///< the scene in which the body lives on; null: that of the experiment
+  std::uint32_t born_masses = 0;      ///< number of masses at birth
+  std::vector<StoredSample> samples;  ///< taken so far
+  double contact_time = 0;            ///< mean time in which a mass touched the ground, as far as it was counted, s
+  double work = 0;                    ///< work of the muscles on the body, as far as it was recorded, J
   Result result;
 
   bool alive() const { return result.status == Status::ok; }
@@ -49,6 +63,11 @@ struct Life {
     result.ended_at = ended_at;
   }
 };
+
+/// The numbers of the masses of a life at present.
+inline std::vector<std::uint32_t> present_numbers(const Life& life) {
+  return mass_numbers(life.born_masses, life.result.record);
+}
 
 /// How lives are simulated. The defaults are the settings of an experiment.
 struct Conditions {

@@ -5,38 +5,101 @@
 #include "experiment/time_steps.hpp"
 
 namespace evodevo {
+namespace {
+
+/// Returns the scene in which a life goes on.
+const Scene& scene_of(const Life& life, const Scene& usual) { return life.scene != nullptr ? *life.scene : usual; }
+
+bool shows_parts(const Channels& channels) {
+  return channels.positions || channels.velocities || channels.contacts || channels.forces;
+}
+
+/// Converts a sample to one that counts from birth.
+StoredSample stored(Sample& sample, const Channels& channels, double dt, Life& life) {
+  LivingBody& living = life.living;
+  StoredSample kept{.time = sample.time,
+                    .centre = sample.centre,
+                    .velocity = sample.velocity,
+                    .box = sample.box,
+                    .contact_time = life.contact_time,
+                    .work = life.work + sample.work,
+                    .positions = std::move(sample.positions),
+                    .velocities = std::move(sample.velocities),
+                    .contact_times = {},
+                    .forces = std::move(sample.forces),
+                    .version = nullptr};
+  if (!living.body.masses.empty())
+    kept.contact_time +=
+        dt * static_cast<double>(sample.contact_steps) / static_cast<double>(living.body.masses.size());
+  if (!sample.contacts.empty()) living.contact_times.resize(sample.contacts.size(), 0);
+  for (std::size_t i = 0; i < sample.contacts.size(); ++i)
+    kept.contact_times.push_back(living.contact_times[i] + dt * sample.contacts[i]);
+  if (!shows_parts(channels)) return kept;
+  if (!living.version)
+    living.version = std::make_shared<const BodyVersion>(BodyVersion{living.body, present_numbers(life)});
+  kept.version = living.version;
+  return kept;
+}
+
+/// Moves the samples of a task into its life. If anything is counted, the last sample is only there to count on.
+void keep_samples(Task& task, const Channels& counted, Life& life) {
+  const std::size_t asked = task.samples.size() - (counted.any() ? 1 : 0);
+  for (std::size_t i = 0; i < asked; ++i)
+    life.samples.push_back(stored(task.samples[i], task.sampled_at[i].channels, task.dt, life));
+  if (!counted.any()) return;
+  StoredSample end = stored(task.samples.back(), {}, task.dt, life);
+  life.contact_time = end.contact_time;
+  life.work = end.work;
+  if (counted.contacts) life.living.contact_times = std::move(end.contact_times);
+}
+
+}  // namespace
 
 void LifeSimulation::choose_step(Life& life) const {
   LivingBody& living = life.living;
-  LongestStep longest = longest_step(conditions_.step, living.body, living.state.position, scene_, conditions_.method);
+  LongestStep longest =
+      longest_step(conditions_.step, living.body, living.state.position, scene_of(life, scene_), conditions_.method);
   if (!longest.failure.empty()) return life.end(Status::invalid, std::move(longest.failure));
   living.longest_dt = longest.dt;
 }
 
-void LifeSimulation::run(std::span<Life> lives, double duration, const Move& move) const {
+Task LifeSimulation::task_for(Life& life, const Stretch& stretch) const {
+  const Pace pace = stretch.ends_exactly ? pace_over(stretch.duration, conditions_.step, life.living.longest_dt)
+                                         : pace_of_seconds(stretch.duration, conditions_.step, life.living.longest_dt);
+  Task task;
+  task.body = &life.living.body;
+  task.state = &life.living.state;
+  task.dt = pace.dt;
+  task.steps = pace.steps;
+  task.scene = life.scene;
+  task.preparation = std::move(life.living.preparation);
+  for (const auto& [time, channels] : stretch.samples)
+    task.sampled_at.push_back({std::min(pace.steps_to(time), pace.steps), channels});
+  if (stretch.counted.any()) task.sampled_at.push_back({pace.steps, stretch.counted});
+  return task;
+}
+
+void LifeSimulation::run(std::span<Life> lives, const Stretch& stretch, const Move& move) const {
   const BusyClock::Span span(clock_);
   std::vector<Task> tasks;
   std::vector<Life*> alive;
   for (Life& life : lives) {
     if (!life.alive()) continue;
     alive.push_back(&life);
-    Task& task = tasks.emplace_back();
-    task.body = &life.living.body;
-    task.state = &life.living.state;
-    const Pace pace = pace_over(duration, conditions_.step, life.living.longest_dt);
-    task.dt = pace.dt;
-    task.steps = pace.steps;
-    task.preparation = std::move(life.living.preparation);
+    tasks.push_back(task_for(life, stretch));
   }
   move(std::span(tasks), std::span<Life* const>(alive));
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
+  simulator_.workers().for_each(tasks.size(), [&](std::size_t i) {
     Life& life = *alive[i];
-    life.result.spring_evaluations += tasks[i].spring_evaluations;
-    static_cast<SpringRecords&>(life.living) = std::move(static_cast<SpringRecords&>(tasks[i]));
-    life.living.preparation = std::move(tasks[i].preparation);
-    life.work += tasks[i].work;
-    if (tasks[i].status != Status::ok) life.end(tasks[i].status, std::move(tasks[i].reason), tasks[i].ended_at);
-  }
+    Task& task = tasks[i];
+    life.result.spring_evaluations += task.spring_evaluations;
+    static_cast<SpringRecords&>(life.living) = std::move(static_cast<SpringRecords&>(task));
+    life.living.preparation = std::move(task.preparation);
+    if (task.status == Status::ok)
+      keep_samples(task, stretch.counted, life);
+    else
+      life.end(task.status, std::move(task.reason), task.ended_at);
+  });
 }
 
 }  // namespace evodevo

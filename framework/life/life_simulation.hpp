@@ -1,4 +1,4 @@
-// Simulates lives: chooses a time step for each body, and runs the simulator.
+// Simulates lives: chooses a time step for each body, runs the simulator, and keeps the samples.
 #pragma once
 
 #include <functional>
@@ -13,8 +13,23 @@ namespace evodevo {
 /// A function that runs tasks on the simulator. The i-th task belongs to the i-th life.
 using Move = std::function<void(std::span<Task>, std::span<Life* const>)>;
 
-/// Simulates the bodies of lives for a given time, and stores in each life its new state and what was recorded.
-/// Experiment and simulator must outlive this object.
+/// A time at which bodies are sampled.
+struct SampleTime {
+  double time = 0;  ///< since the beginning of the stretch, s
+  Channels channels;
+};
+
+/// A part of a life in which the body does not change.
+struct Stretch {
+  double duration = 0;  ///< s
+  /// Whether the stretch ends exactly after its duration, or at the nearest of steps that do not depend on it.
+  bool ends_exactly = true;
+  std::span<const SampleTime> samples = {};  ///< in ascending order of their times
+  Channels counted = {};  ///< the channels that count from birth and are read in this stretch or later
+};
+
+/// Simulates the bodies of lives for a given time, and stores in each life its new state, what was recorded and the
+/// samples. Experiment and simulator must outlive this object.
 class LifeSimulation {
  public:
   LifeSimulation(const Experiment& experiment, Simulator& simulator, const Conditions& conditions)
@@ -22,13 +37,15 @@ class LifeSimulation {
 
   /// Chooses the time step for a body in its present state. If the body cannot be simulated, its life ends as invalid.
   void choose_step(Life& life) const;
-  /// Simulates all lives that have not ended yet for `duration` (s). `move` runs the tasks.
-  void run(std::span<Life> lives, double duration, const Move& move) const;
+  /// Simulates all lives that have not ended yet for a stretch. `move` runs the tasks.
+  void run(std::span<Life> lives, const Stretch& stretch, const Move& move) const;
 
   Simulator& simulator() const { return simulator_; }
   double seconds() const { return clock_.seconds(); }  ///< wall-clock time spent on simulation, s
 
  private:
+  Task task_for(Life& life, const Stretch& stretch) const;
+
   const Scene& scene_;
   Simulator& simulator_;
   Conditions conditions_;

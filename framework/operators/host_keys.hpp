@@ -8,9 +8,7 @@
 namespace evodevo::host_key {
 
 inline constexpr std::string_view name = "name", mass = "mass", probability = "probability", from = "from", to = "to",
-                                  every = "every", sections = "sections";
-/// Not read yet, but reserved for later versions (sdk/README.md).
-inline constexpr std::string_view label = "label", over = "over";
+                                  every = "every", sections = "sections", label = "label", over = "over";
 
 inline constexpr std::array all{name, mass, probability, from, to, every, sections, label, over};
 

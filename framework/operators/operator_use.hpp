@@ -15,6 +15,10 @@ struct OperatorUse {
   std::filesystem::path file;
   std::string hash;                      ///< hash of the file
   const OperatorTitle* title = nullptr;  ///< nullptr if read from the record of a run
+  std::string label = {};                ///< given in the experiment, to tell two uses of one operator apart
+
+  /// The label, or the name if there is no label.
+  const std::string& own_name() const { return label.empty() ? name : label; }
 };
 
 /// Throws a std::runtime_error whose message names the call, says `what` went wrong, and gives a remedy.

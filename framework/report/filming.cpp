@@ -36,14 +36,13 @@ void add_records(SpringRecords& whole, const SpringRecords& part, double share) 
 /// A filmed task. It is simulated in parts, each of which ends at the next frame.
 class Take {
  public:
-  Take(Task& task, Recording recording, Reel& reel, double rate) : whole_(task), reel_(reel), rate_(rate) {
+  Take(Task& task, Recording recording, Reel& reel, double rate, std::span<const double> cuts)
+      : whole_(task), reel_(reel), rate_(rate), cuts_(cuts) {
     whole_.clear(recording, task.body->springs.size());
     whole_.work = 0;
     const double frames = std::ceil(static_cast<double>(task.steps) * task.dt * rate - 1e-9);
     parts_ = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(frames), 1, std::max<std::uint64_t>(1, task.steps));
-    if (reel_.steps > 0) return;
-    reel_.film.push_back({*task.body, {}, std::vector<double>(task.body->springs.size(), 0.0)});
-    add_frame(shot().frames, *task.state, rate);
+    if (reel_.steps == 0) begin_shot();
   }
 
   /// Returns the number of steps of the next part; the lengths of the parts differ by at most one step.
@@ -59,10 +58,24 @@ class Take {
     else
       lose_records();
     add_frame(shot().frames, *whole_.state, rate_);
+    if (whole_.status == Status::ok && done_ < whole_.steps && is_cut()) begin_shot();
   }
 
  private:
   Shot& shot() { return reel_.film.back(); }
+
+  void begin_shot() {
+    reel_.steps = 0;
+    reel_.film.push_back({*whole_.body, {}, std::vector<double>(whole_.body->springs.size(), 0.0)});
+    add_frame(shot().frames, *whole_.state, rate_);
+  }
+
+  /// Whether a cut is nearer to the present frame than to the frames before and after it.
+  bool is_cut() const {
+    const double now = whole_.state->time;
+    return std::any_of(cuts_.begin(), cuts_.end(),
+                       [&](double cut) { return cut > now - 0.5 / rate_ && cut <= now + 0.5 / rate_; });
+  }
 
   void add(const Task& part) {
     const auto steps = static_cast<double>(part.steps);
@@ -84,6 +97,7 @@ class Take {
   Task& whole_;
   Reel& reel_;
   double rate_;                          ///< frames per simulated second
+  std::span<const double> cuts_;         ///< s since birth
   std::uint64_t parts_ = 1, begun_ = 0;  ///< number of parts, and number of parts begun so far
   std::uint64_t done_ = 0;               ///< number of steps done
 };
@@ -101,6 +115,21 @@ void number_masses(Film& film, const LifeRecord& record) {
   }
 }
 
+/// The times at which windows after maturing open and close, s since birth.
+std::vector<double> ends_of_windows(const Experiment& experiment) {
+  const DevelopmentSettings& development = experiment.development;
+  const double matured = static_cast<double>(development.cycles) * development.cycle_time;
+  std::vector<double> times;
+  for (std::size_t i = 0; i < experiment.fitness.size(); ++i) {
+    const Request request = fitness_request(experiment, i);
+    if (request.cycle) continue;
+    const double opens = matured + request.settle;
+    if (request.settle > 0) times.push_back(opens);
+    times.push_back(opens + request.window);
+  }
+  return times;
+}
+
 }  // namespace
 
 void FilmingSimulator::run(std::span<Task> tasks, Recording recording) {
@@ -108,7 +137,7 @@ void FilmingSimulator::run(std::span<Task> tasks, Recording recording) {
   with_stress.stress = true;
   std::vector<std::optional<Take>> takes(tasks.size());
   for (std::size_t i = 0; i < tasks.size(); ++i)
-    if (tasks[i].status == Status::ok) takes[i].emplace(tasks[i], recording, reels_[tasks[i].body], rate_);
+    if (tasks[i].status == Status::ok) takes[i].emplace(tasks[i], recording, reels_[tasks[i].body], rate_, cuts_);
   const auto next_steps = [&](std::size_t i) { return takes[i]->next_steps(); };
   const auto look = [&](std::size_t i, const Task& part) { takes[i]->look(part); };
   run_in_pieces(simulator_, tasks, with_stress, next_steps, look);
@@ -119,13 +148,17 @@ void FilmingSimulator::cut() {
 }
 
 std::vector<FilmedLife> film_lives(const Experiment& experiment, Simulator& simulator,
-                                   std::span<const Newborn> newborns) {
+                                   std::span<const Newborn> newborns, const Test& test) {
   FilmingSimulator camera(simulator, filmed_frames_per_second);
   const Evaluation evaluation(experiment, camera);
   std::vector<Life> lives = evaluation.birth.of(newborns);
   const auto cut = [&](double) { camera.cut(); };
   evaluation.development.run(lives, cut);
-  evaluation.measurement.run(lives, cut);
+  camera.cut_at(ends_of_windows(experiment));
+  if (experiment.scenarios.empty())
+    evaluation.measurement.run(lives, cut);
+  else
+    evaluation.measurement.run_in(test, lives);
   std::vector<FilmedLife> filmed;
   for (Life& life : lives) {
     Film film = camera.take(life.living.body);

@@ -52,6 +52,8 @@ class FilmingSimulator final : public Simulator {
 
   /// Ends the present shot of every body; later runs of a body are in a new shot.
   void cut();
+  /// From now on, ends a shot at the frame nearest to each of these times (s since birth).
+  void cut_at(std::vector<double> times) { cuts_ = std::move(times); }
 
   /// Returns the film of a body and removes it from the simulator. Shot::numbers are not set yet.
   Film take(const Body& body) { return std::move(reels_[&body].film); }
@@ -59,6 +61,7 @@ class FilmingSimulator final : public Simulator {
  private:
   Simulator& simulator_;
   double rate_;
+  std::vector<double> cuts_;
   std::map<const Body*, Reel> reels_;
 };
 
@@ -71,8 +74,9 @@ struct FilmedLife {
 
 inline constexpr double filmed_frames_per_second = 60;  ///< frames per simulated second
 
-/// Simulates newborns again as in their run, and films them. The film of a life that diverges ends early.
+/// Simulates newborns again as in their run, and films them. If the experiment has scenarios, their final evaluation is
+/// that of one test alone. The film of a life that diverges ends early.
 std::vector<FilmedLife> film_lives(const Experiment& experiment, Simulator& simulator,
-                                   std::span<const Newborn> newborns);
+                                   std::span<const Newborn> newborns, const Test& test = {});
 
 }  // namespace evodevo

@@ -19,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// An individual and the role for which it is shown, such as "best" or "ancestor".
-struct Role {
+struct Actor {
   ArchivedIndividual individual;
   std::string role;
 };
@@ -28,7 +28,7 @@ class Casting {
  public:
   explicit Casting(const Archive& archive) : archive_(archive) {}
 
-  std::vector<Role> choose(const Cast& cast) {
+  std::vector<Actor> choose(const Cast& cast) {
     const std::vector<std::uint32_t> best = archive_.best(cast.best);
     for (std::size_t i = 0; i < best.size(); ++i) add(best[i], i == 0 ? "best" : "best " + std::to_string(i + 1));
     for (const std::uint32_t id : cast.individuals) add(id, "chosen");
@@ -38,7 +38,7 @@ class Casting {
 
  private:
   void add(std::uint32_t id, const std::string& role) {
-    if (std::any_of(roles_.begin(), roles_.end(), [&](const Role& r) { return r.individual.id == id; })) return;
+    if (std::any_of(roles_.begin(), roles_.end(), [&](const Actor& r) { return r.individual.id == id; })) return;
     roles_.push_back({archive_.known_individual(id), role});
   }
 
@@ -51,26 +51,29 @@ class Casting {
   }
 
   const Archive& archive_;
-  std::vector<Role> roles_;
+  std::vector<Actor> roles_;
 };
 
+/// The time after maturing at which the first window opens, s.
 double first_window(const Experiment& experiment) {
-  double opens = fitness_request(experiment, 0).settle;
-  for (std::size_t i = 1; i < experiment.fitness.size(); ++i)
-    opens = std::min(opens, fitness_request(experiment, i).settle);
+  double opens = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < experiment.fitness.size(); ++i)
+    if (const Request request = fitness_request(experiment, i); !request.cycle) opens = std::min(opens, request.settle);
   return opens;
 }
 
-std::vector<Title> titles_of(const FilmedLife& life, const Experiment& experiment) {
-  const double measured_from =
-      static_cast<double>(life.cycles) * experiment.development.cycle_time + first_window(experiment) - 1e-6;
+/// Returns the title of each shot of a life whose final evaluation was that of `scenario`, if the experiment has any.
+std::vector<Title> titles_of(const FilmedLife& life, const Experiment& experiment, std::size_t scenario) {
+  const double measured_from = static_cast<double>(life.cycles) * experiment.development.cycle_time +
+                               first_window(experiment) - 0.5 / filmed_frames_per_second;
+  const std::string where = experiment.scenarios.empty() ? "" : " in " + experiment.scenarios[scenario].name;
   std::vector<Title> titles;
   for (std::size_t i = 0; i < life.film.size(); ++i) {
     const bool measured = life.film[i].frames.front().time >= measured_from;
     if (i < life.cycles)
       titles.push_back({"cycle " + std::to_string(i + 1)});
     else
-      titles.push_back({measured ? "measured" : "settling", measured});
+      titles.push_back({(measured ? "measured" : "settling") + where, measured});
   }
   return titles;
 }
@@ -138,29 +141,31 @@ Json random_robot(const Experiment& experiment, const Individual& individual, st
   return robot;
 }
 
-Json robot_json(const Archive& archive, const Role& role, const FilmedLife& life, const Experiment& experiment,
-                std::size_t budget) {
+Json robot_json(const Archive& archive, const Actor& role, const FilmedLife& life, const Experiment& experiment,
+                std::size_t scenario, std::size_t budget) {
   Json robot = individual_json(archive, role.individual);
   robot["role"] = role.role;
   robot["reason"] = role.individual.result.reason;
-  robot["again"] = life.result.objectives;
-  robot["film"] = film_json(life.film, titles_of(life, experiment), budget);
+  // the objectives of several tests cannot be compared with the scores of the test that is filmed
+  robot["again"] = experiment.scenarios.empty() ? life.result.objectives : std::vector<double>();
+  robot["film"] = film_json(life.film, titles_of(life, experiment, scenario), budget);
   return robot;
 }
 
 }  // namespace
 
 Json reported_run(const Archive& archive, const Experiment& experiment, Simulator& simulator, const Cast& cast,
-                  std::size_t budget) {
-  const std::vector<Role> roles = Casting(archive).choose(cast);
+                  std::size_t budget, std::size_t scenario) {
+  const std::vector<Actor> roles = Casting(archive).choose(cast);
   std::vector<Newborn> newborns;
-  for (const Role& role : roles)
+  for (const Actor& role : roles)
     newborns.push_back(for_resimulation(archive, experiment, role.individual, simulator.device()));
-  const std::vector<FilmedLife> lives = film_lives(experiment, simulator, newborns);
+  const std::vector<FilmedLife> lives = film_lives(experiment, simulator, newborns, {scenario});
 
   Json run = run_json(archive, experiment);
   run["resolved"] = archive.record("experiment");
-  run["scene"] = scene_json(experiment.scene, lives);
+  run["scene"] =
+      scene_json(experiment.scenarios.empty() ? experiment.scene : experiment.scenarios[scenario].scene, lives);
   run["material_names"] = experiment.context.material_names;
   run["population"] = population_json(
       archive, run["generations"].empty() ? 0 : run["generations"].back()["generation"].get<std::uint32_t>());
@@ -169,7 +174,7 @@ Json reported_run(const Archive& archive, const Experiment& experiment, Simulato
   for (std::size_t i = 0; i < roles.size(); ++i) {
     // robots share the budget evenly; what one robot does not use is left to those after it
     const std::size_t share = budget / (roles.size() - i);
-    const Json& robot = run["robots"].emplace_back(robot_json(archive, roles[i], lives[i], experiment, share));
+    const Json& robot = run["robots"].emplace_back(robot_json(archive, roles[i], lives[i], experiment, scenario, share));
     budget -= std::min(budget, robot.dump().size());
   }
   return run;

@@ -21,9 +21,10 @@ struct Cast {
 
 /// Returns the data of a run for a report: numbers of the run, its population, and the robots of `cast` with films.
 /// `simulator` simulates the robots again (evolution/resimulation.hpp). `budget` is the largest total size of the
-/// films, bytes.
+/// films, bytes. If the experiment has scenarios, the films end in the first repeat of the one with index `scenario`,
+/// whose ground they show.
 nlohmann::ordered_json reported_run(const Archive& archive, const Experiment& experiment, Simulator& simulator,
-                                    const Cast& cast, std::size_t budget);
+                                    const Cast& cast, std::size_t budget, std::size_t scenario = 0);
 
 /// Returns the data of a page that shows runs.
 nlohmann::ordered_json report_data(std::vector<nlohmann::ordered_json> runs);

@@ -67,6 +67,19 @@ Json failures_json(const std::vector<Failure>& failures) {
   return list;
 }
 
+/// The scores of an individual in each scenario, by repeat and objective.
+Json tests_json(const std::vector<ArchivedTest>& tests) {
+  Json list = Json::array();
+  for (const ArchivedTest& test : tests) {
+    const bool is_next =
+        list.empty() || list.back()["scenario"] != test.scenario || list.back()["repeat"] != test.repeat + 1;
+    if (is_next)
+      list.push_back({{"scenario", test.scenario}, {"repeat", test.repeat + 1}, {"objectives", Json::object()}});
+    list.back()["objectives"][test.objective] = test.value;
+  }
+  return list;
+}
+
 }  // namespace
 
 std::int64_t clones(const std::vector<Summary>& generations) {
@@ -86,6 +99,8 @@ Json individual_json(const Archive& archive, const ArchivedIndividual& individua
   Json values = Json::object();
   for (std::size_t i = 0; i < individual.result.objectives.size(); ++i)
     values[objectives[i].name] = individual.result.objectives[i];
+  Json measures = Json::object();
+  for (const ArchivedMeasure& measure : archive.measures(individual.id)) measures[measure.name] = measure.value;
   Json ancestors = Json::array();
   for (std::size_t i = 1; i < line.size(); ++i) ancestors.push_back(line[i].id);
   const auto verification = archive.verification(individual.id);
@@ -94,6 +109,8 @@ Json individual_json(const Archive& archive, const ArchivedIndividual& individua
           {"age", last_age(individual, generations.empty() ? 0 : generations.back().generation)},
           {"status", name(individual.result.status)},
           {"objectives", std::move(values)},
+          {"measures", std::move(measures)},
+          {"scenarios", tests_json(archive.tests(individual.id))},
           {"parents", individual.parents},
           {"made_by", individual.made_by},
           {"ancestry", std::move(ancestors)},

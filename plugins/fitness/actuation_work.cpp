@@ -1,5 +1,6 @@
 // The cost of moving. Together with the fitness `distance`, it gives a Pareto front of two objectives (paper, section
 // IV-F: "multiple criteria").
+#include "evodevo/helpers/window.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
@@ -8,20 +9,20 @@ namespace {
 /// of a life.
 class ActuationWork final : public evodevo::Fitness {
  public:
-  void parameters(evodevo::Parameters& p) override {
-    p.real(settle_, "settle", {0, 3600, "s"}, "Time in which the body settles before the work is measured.");
-    p.real(window_, "window", {0.001, 3600, "s"}, "Time in which the work is measured.");
-  }
+  void parameters(evodevo::Parameters& p) override { window_.declare(p); }
 
-  evodevo::Request observes() const override { return {settle_, window_, true}; }
+  evodevo::Request observes() const override {
+    evodevo::Request request = window_.request();
+    request.work = true;
+    return request;
+  }
 
   std::vector<evodevo::Objective> objectives() const override { return {{"actuation-work", "J", false}}; }
 
   std::vector<double> score(const evodevo::Observation& observation) const override { return {observation.work}; }
 
  private:
-  double settle_ = 10;
-  double window_ = 10;
+  evodevo::MeasuringWindow window_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 // section IV-E).
 #include <stdexcept>
 
+#include "evodevo/helpers/window.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
@@ -13,13 +14,12 @@ class Distance final : public evodevo::Fitness {
   void parameters(evodevo::Parameters& p) override {
     p.vector(direction_, "direction", {-1000, 1000, "1"},
              "Direction in which the distance is measured: a vector of any length above 0.");
-    p.real(settle_, "settle", {0, 3600, "s"}, "Time in which the body settles before the distance is measured.");
-    p.real(window_, "window", {0.001, 3600, "s"}, "Time in which the distance is measured.");
+    window_.declare(p);
   }
 
   evodevo::Request observes() const override {
     if (!(norm(direction_) > 0)) throw std::invalid_argument("direction must be longer than 0");
-    return {settle_, window_, false};
+    return window_.request();
   }
 
   std::vector<evodevo::Objective> objectives() const override { return {{"distance", "body lengths", true}}; }
@@ -34,8 +34,7 @@ class Distance final : public evodevo::Fitness {
 
  private:
   evodevo::Vec3 direction_ = {1, 0, 0};
-  double settle_ = 10;
-  double window_ = 10;
+  evodevo::MeasuringWindow window_;
 };
 
 }  // namespace

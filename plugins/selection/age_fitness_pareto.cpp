@@ -1,6 +1,6 @@
 // Age-fitness Pareto optimisation (Schmidt & Lipson 2011; paper, section IV-F).
 #include "evodevo/helpers/rows.hpp"
-#include "evodevo/pareto.hpp"
+#include "evodevo/helpers/pareto.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {

@@ -1,7 +1,7 @@
 // "A solution is considered better if it belongs to a higher layer, or if belongs to the same layer with higher
 // fitness. [...] During replacement, all solutions on the Pareto Front are exempt" (paper, section IV-F).
 #include "evodevo/helpers/rows.hpp"
-#include "evodevo/pareto.hpp"
+#include "evodevo/helpers/pareto.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {

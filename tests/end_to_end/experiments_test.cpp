@@ -37,7 +37,7 @@ TEST(Experiments, EachRunsForTwoGenerationsWhenShrunk) {
     EXPECT_EQ(archive.generations().size(), 2u);
     EXPECT_GT(archive.statuses().at("ok"), 0);
   }
-  EXPECT_EQ(count, 23);
+  EXPECT_EQ(count, 24);
 }
 
 TEST(Experiments, TheEnvironmentsDifferInTheirSceneAlone) {

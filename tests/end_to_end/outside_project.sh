@@ -31,7 +31,7 @@ cp -r "$source" "$scratch/project"
 cd "$scratch/project"
 cmake -B build >/dev/null
 cmake --build build --parallel 2
-for operator in limbs adaptive-reset plan; do
+for operator in limbs adaptive-reset plan leap gait weight; do
   evodevo conform "build/lib/evodevo/outside.$operator.evodevo.so" --experiment experiment.toml | tee verdicts
   if grep -vE "^(passed |skipped .* it has no parameters|[0-9]+ passed, [0-9]+ skipped, 0 failed)" verdicts; then fail "a case was skipped"; fi
 done
@@ -82,5 +82,12 @@ removed=$(evodevo life elsewhere/moved | grep -c 'outside.plan: spring ') || fai
 ((removed <= 5)) || fail "the plan has removed $removed springs"
 evodevo verify elsewhere/moved --best 1 --json >verified.json
 grep -q '"trial"' verified.json || fail "nothing was verified: $(<verified.json)"
+
+# the fitness operators have seen all scenes, and the constraint has refused somebody
+show elsewhere/moved >moved.txt
+grep -q '"rhythm": 0\.' moved.txt || fail "there is no measure of the gait"
+grep -q '"leap": ' moved.txt || fail "nobody leaps"
+(($(grep -c '"scenario": ' moved.txt) == 3)) || fail "there are not three scenes"
+grep -q 'constraint overweight: .* kg above 0' moved.txt || fail "nobody was too heavy"
 
 evodevo genes elsewhere/moved

@@ -115,7 +115,8 @@ class Simulate : public ::testing::Test {
     std::vector<Life> lives = evaluation.birth.of({&newborn, 1});
 
     Life& go_on() {
-      evaluation.simulation.run(lives, 0.0098, [&](std::span<Task> tasks, auto) { simulator->run(tasks, {}); });
+      evaluation.simulation.run(lives, {.duration = 0.0098},
+                                [&](std::span<Task> tasks, auto) { simulator->run(tasks, {}); });
       return lives.front();
     }
   };

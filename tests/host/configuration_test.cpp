@@ -227,10 +227,11 @@ TEST(Configuration, UnknownKeys) {
               testing::at_place("test.toml:4:1: experiment.evalutions: ", "\"evaluations\""));
   EXPECT_THAT(complaint(with("[selection]", "[sellection]")),
               testing::at_place("test.toml:47:2: sellection: ", "\"selection\""));
-  EXPECT_THAT(complaint(small_experiment + "\n[wind]\n"),
-              testing::at_place("test.toml:50:2: wind: ",
-                                "experiment, encoding, mutation, crossover, scene, simulation, development, fitness, "
-                                "selection, materials, plugins"));
+  EXPECT_THAT(
+      complaint(small_experiment + "\n[wind]\n"),
+      testing::at_place("test.toml:50:2: wind: ",
+                        "experiment, encoding, mutation, crossover, scene, simulation, development, fitness, scenario, "
+                        "selection, materials, plugins"));
   EXPECT_THAT(complaint(with("[scene.floor]", "[scene.flor]")),
               testing::at_place("test.toml:22:8: scene.flor: ", "[scene]", "\"floor\""));
   EXPECT_THAT(complaint(with("edge = 0.5", "edgy = 0.5")),
@@ -411,7 +412,7 @@ TEST(Configuration, ContradictoryParts) {
       complaint(with("[scene.floor]", "")),
       testing::at_place("test.toml:23:1: scene.friction = a table: ", "add [scene.floor]", "remove [scene.friction]"));
   EXPECT_THAT(complaint(with("\"actuation-work\"", "\"distance\"")),
-              testing::at_place("test.toml:43:8: fitness.1.name = \"distance\": ", "objective \"distance\""));
+              testing::at_place("test.toml:43:8: fitness.1.name = \"distance\": ", "\"distance\"", "label"));
 }
 
 TEST(Configuration, StepsThatTheSceneOrAMaterialCannotBear) {

@@ -81,7 +81,8 @@ TEST(BuiltIn, AllOperatorsLoad) {
   EXPECT_THAT(registry().names("devo"),
               ElementsAre("amplitude-adaptation", "ballistic-growth", "length-adaptation", "mass-growth",
                           "mass-turnover", "spring-turnover", "stiffness-adaptation"));
-  EXPECT_THAT(registry().names("fitness"), ElementsAre("actuation-work", "distance"));
+  EXPECT_THAT(registry().names("fitness"),
+              ElementsAre("actuation-work", "descriptor", "distance", "efficiency", "jump", "reach", "straightness"));
   EXPECT_THAT(registry().names("selection"), ElementsAre("age-fitness-pareto", "elitist", "pareto-layers"));
 }
 

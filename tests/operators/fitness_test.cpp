@@ -98,5 +98,106 @@ TEST(AnyFitness, GivesTheSameOnAnyThread) {
   from_eight_threads([&] { return fitness->score(moved()); });
 }
 
+/// A body whose centre of mass is at given places, 0.1 s apart; its box reaches 0.5 m to all sides.
+class Path {
+ public:
+  Path(const Fitness& fitness, const std::vector<Vec3>& places) {
+    const Request request = fitness.observes();
+    for (const Vec3& place : places) {
+      StoredSample& sample =
+          samples_.emplace_back(StoredSample{.time = 3 + 0.1 * static_cast<double>(samples_.size())});
+      sample.centre = place;
+      sample.box = {place - Vec3{0.5, 0.5, 0.5}, place + Vec3{0.5, 0.5, 0.5}};
+    }
+    std::vector<const StoredSample*> all;
+    for (const StoredSample& sample : samples_) all.push_back(&sample);
+    seen = {.box = samples_.front().box, .centre_before = places.front(), .centre_after = places.back()};
+    seen.samples = Samples(all, request.channels);
+  }
+  Path(const Path&) = delete;
+
+  StoredSample& sample(std::size_t i) { return samples_[i]; }
+
+  Observation seen;
+
+ private:
+  std::vector<StoredSample> samples_;
+};
+
+double score_of(const std::string& name, const std::string& toml, const std::vector<Vec3>& places) {
+  const auto fitness = make<Fitness>(name, toml);
+  return fitness->score(Path(*fitness, places).seen).at(0);
+}
+
+TEST(Jump, IsTheHighestOfAllHeights) {
+  EXPECT_DOUBLE_EQ(score_of("jump", "", {{0, 0, 1}, {1, 0, 1.5}, {2, 0, 3}, {3, 0, 0.2}}), 2);
+  EXPECT_DOUBLE_EQ(score_of("jump", "", {{0, 0, 1}, {0, 0, 0.5}}), 0) << "it only falls";
+  const double nan = std::nan("");
+  EXPECT_TRUE(std::isnan(score_of("jump", "", {{nan, nan, nan}, {nan, nan, nan}})));
+  EXPECT_EQ(make<Fitness>("jump", "rate = 250.0")->observes().rate, 250);
+}
+
+TEST(Reach, IsTheSmallestOfAllDistances) {
+  const std::vector<Vec3> places{{5, 5, 1}, {6, 5, 1}, {7, 5, 2}, {9, 9, 9}};
+  EXPECT_DOUBLE_EQ(score_of("reach", "target = [2, 0, 0]", places), 1);
+  EXPECT_DOUBLE_EQ(score_of("reach", "target = [2.0, 0.0, 1.0]", places), 0);
+  EXPECT_DOUBLE_EQ(score_of("reach", "target = [-1, 0, 0]", places), 1) << "it never comes nearer";
+  EXPECT_FALSE(make<Fitness>("reach")->objectives().at(0).maximise);
+}
+
+TEST(Straightness, ComparesTheWayWithThePath) {
+  EXPECT_DOUBLE_EQ(score_of("straightness", "", {{0, 0, 0}, {1, 0, 7}, {2, 0, 3}}), 1) << "heights do not count";
+  EXPECT_DOUBLE_EQ(score_of("straightness", "", {{0, 0, 0}, {3, 0, 0}, {3, 4, 0}}), 5.0 / 7);
+  EXPECT_DOUBLE_EQ(score_of("straightness", "", {{0, 0, 0}, {3, 0, 0}, {0, 0, 0}}), 0);
+  EXPECT_DOUBLE_EQ(score_of("straightness", "", {{1, 2, 0}, {1, 2, 0}}), 0) << "it does not move";
+}
+
+TEST(Efficiency, IsTheWayForTheWork) {
+  const auto score = [](const std::string& toml, double work) {
+    Observation observation = moved();
+    observation.work = work;
+    return make<Fitness>("efficiency", toml)->score(observation).at(0);
+  };
+  EXPECT_DOUBLE_EQ(score("", 60), 3.0 / 60);
+  EXPECT_DOUBLE_EQ(score("direction = [0, -2, 0]", 60), -4.0 / 60);
+  EXPECT_DOUBLE_EQ(score("", 1e-9), 3.0 / 10) << "a body at rest gains nothing by resting more";
+  EXPECT_DOUBLE_EQ(score("least_work = 0.5", 0), 3.0 / 0.5);
+  EXPECT_TRUE(std::isnan(score("", std::nan(""))));
+  EXPECT_THAT([] { make<Fitness>("efficiency", "direction = [0, 0, 0]")->observes(); },
+              testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("direction")));
+}
+
+TEST(Descriptor, HasARangeAndTheRoleOfOne) {
+  const auto fitness = make<Fitness>("descriptor", "what = 'height'\nrange = [0.5, 1.5]");
+  const Objective described = fitness->objectives().at(0);
+  EXPECT_EQ(described.name, "height");
+  EXPECT_EQ(described.role, Role::descriptor);
+  EXPECT_EQ(described.low, 0.5);
+  EXPECT_EQ(described.high, 1.5);
+  for (const char* what : {"height", "contact", "spread", "masses"}) {
+    const Objective usual = make<Fitness>("descriptor", std::string("what = '") + what + "'")->objectives().at(0);
+    EXPECT_LT(usual.low, usual.high) << what;
+  }
+  for (const char* range : {"[1.0]", "[2.0, 1.0]", "[1.0, 1.0]", "[1.0, 2.0, 3.0]"})
+    EXPECT_THAT([&] { make<Fitness>("descriptor", std::string("range = ") + range); },
+                testing::ThrowsMessage<InputError>(testing::HasSubstr("range")));
+}
+
+TEST(Descriptor, IsTheMeanOverTheWindow) {
+  const auto fitness = [](const std::string& what) { return make<Fitness>("descriptor", "what = '" + what + "'"); };
+  const auto height = fitness("height");
+  EXPECT_DOUBLE_EQ(height->score(Path(*height, {{0, 0, 1}, {0, 0, 2}}).seen).at(0), 1) << "the boxes are cubes";
+  const auto contact = fitness("contact");
+  Path path(*contact, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}});
+  path.sample(1).contact_time = 0.02;  // 0.1 s lie between two samples
+  path.sample(2).contact_time = 0.08;
+  EXPECT_NEAR(contact->score(path.seen).at(0), (0.2 + 0.6) / 2, 1e-12);
+  Body body;
+  body.masses.resize(17);
+  Observation seen = moved();
+  seen.body = &body;
+  EXPECT_EQ(fitness("masses")->score(seen), std::vector{17.0});
+}
+
 }  // namespace
 }  // namespace evodevo::test

@@ -1,7 +1,7 @@
 #include <map>
 #include <set>
 
-#include "evodevo/pareto.hpp"
+#include "evodevo/helpers/pareto.hpp"
 #include "support.hpp"
 
 namespace evodevo::test {

@@ -29,7 +29,7 @@ class Archive(unittest.TestCase):
     def setUpClass(cls):
         cls.scratch = tempfile.TemporaryDirectory()
         cls.folder = Path(cls.scratch.name, "run")
-        make_small_run(cls.folder)
+        make_small_run(cls.folder, "--set", "scenario=[{name='flat'}, {name='shaken', start_noise=0.01}]")
         cls.run_file = sqlite3.connect(f"file:{cls.folder}/run.sqlite?mode=ro", uri=True)
 
     @classmethod

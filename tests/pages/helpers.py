@@ -10,8 +10,8 @@ from pages import ROOT
 PAGE_FOLDER = ROOT / "framework/sdk"
 INCLUDE_FOLDERS = [ROOT / "framework/sdk/evodevo", ROOT / "kernels/include/evodevo"]
 # the interfaces, which have pages of their own
-INTERFACES = {"body.hpp", "devo.hpp", "encoding.hpp", "fitness.hpp", "genome.hpp", "operator.hpp", "parameters.hpp",
-              "plugin.hpp", "rng.hpp", "selection.hpp", "variation.hpp"}
+INTERFACES = {"body.hpp", "channels.hpp", "devo.hpp", "encoding.hpp", "fitness.hpp", "genome.hpp", "operator.hpp",
+              "parameters.hpp", "plugin.hpp", "rng.hpp", "samples.hpp", "selection.hpp", "variation.hpp"}
 
 BEGIN = r"(?:template|inline|constexpr|class|struct|enum|using)\b"  # of a declaration outside of classes
 # a docstring, and the declaration that follows it, up to its body

@@ -80,5 +80,5 @@ SHRINK = [word for key in ("experiment.evaluations=24", "experiment.population=6
                            "simulation.device=cpu") for word in ("--set", key)]
 
 
-def make_small_run(folder):
-    evodevo("run", str(ROOT / "experiments/quickstart.toml"), "--out", str(folder), *SHRINK)
+def make_small_run(folder, *options):
+    evodevo("run", str(ROOT / "experiments/quickstart.toml"), "--out", str(folder), *SHRINK, *options)

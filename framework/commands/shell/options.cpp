@@ -74,6 +74,22 @@ void add_individual_option(Options& options) {
   options.add_options()("individual", value<std::int64_t>("ID"), "the individual; default: the best");
 }
 
+void add_scenario_option(Options& options, const char* text) {
+  options.add_options()("scenario", value<std::string>("NAME"), text);
+}
+
+std::optional<std::size_t> given_scenario(const Experiment& experiment, const Given& given) {
+  if (!given.contains("scenario")) return std::nullopt;
+  const auto name = given["scenario"].as<std::string>();
+  std::vector<std::string> names;
+  for (const Scenario& scenario : experiment.scenarios) names.push_back(scenario.name);
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  throw UsageError(
+      option_text("scenario", name) + ": the experiment has " +
+      (names.empty() ? "no scenarios; leave the option out" : "no scenario of this name" + suggestion(name, names)));
+}
+
 void add_experiment_options(Options& options) {
   add_plugin_option(options);
   for (const Shorthand& shorthand : shorthands)

@@ -27,6 +27,12 @@ std::vector<std::filesystem::path> files_of_run(const std::filesystem::path& fol
 /// Adds --individual, which names one individual.
 void add_individual_option(Options& options);
 
+/// Adds --scenario, which names a scenario. `text` says what for.
+void add_scenario_option(Options& options, const char* text);
+/// Returns the index of the scenario that --scenario names, or nothing without this option. Throws UsageError if the
+/// experiment has no scenario of this name.
+std::optional<std::size_t> given_scenario(const Experiment& experiment, const Given& given);
+
 /// Adds --set, --plugin-path, and the options that are shorthands for single keys.
 void add_experiment_options(Options& options);
 /// Returns the source of an experiment: `file`, and the values of the options that add_experiment_options() adds.

@@ -88,6 +88,17 @@ Archive Archive::create(const fs::path& folder, const Experiment& experiment, co
     Statement(run, "objectives", "INSERT INTO objectives VALUES(?, ?, ?, ?)")
         .execute(static_cast<std::uint32_t>(i), objective.name, objective.unit, objective.maximise ? 1 : 0);
   }
+  for (std::size_t i = 0; i < experiment.measures.size(); ++i) {
+    const Objective& measure = experiment.measures[i];
+    const bool has_range = measure.role == Role::descriptor;
+    Statement(run, "measures", "INSERT INTO measures VALUES(?, ?, ?, ?, ?, ?)")
+        .execute(static_cast<std::uint32_t>(i), measure.name, measure.unit, name(measure.role),
+                 has_range ? std::optional(measure.low) : std::nullopt,
+                 has_range ? std::optional(measure.high) : std::nullopt);
+  }
+  for (std::size_t i = 0; i < experiment.scenarios.size(); ++i)
+    Statement(run, "scenarios", "INSERT INTO scenarios VALUES(?, ?)")
+        .execute(static_cast<std::uint32_t>(i), experiment.scenarios[i].name);
   for (const auto& [path, content] : experiment.files)
     Statement(run, "files", "INSERT INTO files VALUES(?, ?)").execute(path, std::string_view(content));
   insert_layout(run, experiment.layout);

@@ -23,6 +23,20 @@ struct ArchivedIndividual : Individual {
   std::optional<std::uint32_t> died;
 };
 
+/// A score of an individual in one repeat of one scenario.
+struct ArchivedTest {
+  std::string scenario;
+  std::int64_t repeat = 0;  ///< from 0
+  std::string objective;
+  double value = 0;
+};
+
+/// A score of an individual that is not an objective.
+struct ArchivedMeasure {
+  std::string name, unit, role;
+  double value = 0;
+};
+
 /// A group of individuals that have no fitness for the same reason.
 struct Failure {
   std::string status;
@@ -102,6 +116,10 @@ class Archive {
   /// Returns the ids of the `count` individuals with the best first objective, best first; ties are in the order of
   /// birth.
   std::vector<std::uint32_t> best(std::size_t count) const;
+  /// Returns the scores of an individual that are not objectives, in the order of the experiment.
+  std::vector<ArchivedMeasure> measures(std::uint32_t id) const;
+  /// Returns the scores of an individual in each repeat of each scenario, in the order of the experiment.
+  std::vector<ArchivedTest> tests(std::uint32_t id) const;
   /// Returns the record of an individual's life, or nullopt if the individual never reached the front.
   std::optional<LifeRecord> life(std::uint32_t id) const;
   /// Returns the verification of an individual, or nullopt if the individual has not been verified.

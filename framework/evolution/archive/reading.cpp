@@ -134,6 +134,26 @@ class Individuals {
 
 }  // namespace
 
+std::vector<ArchivedMeasure> Archive::measures(std::uint32_t id) const {
+  Statement row(*run_, "measured",
+                "SELECT name, unit, role, value FROM measured JOIN measures ON position = measure "
+                "WHERE individual = ? ORDER BY position");
+  row.bind(id);
+  std::vector<ArchivedMeasure> measures;
+  while (row.step()) measures.push_back({line(row, 0), line(row, 1), line(row, 2), row.number(3)});
+  return measures;
+}
+
+std::vector<ArchivedTest> Archive::tests(std::uint32_t id) const {
+  Statement row(*run_, "tests",
+                "SELECT scenarios.name, repeat, objectives.name, value FROM tests JOIN scenarios USING (scenario) "
+                "JOIN objectives ON position = objective WHERE individual = ? ORDER BY scenario, repeat, objective");
+  row.bind(id);
+  std::vector<ArchivedTest> tests;
+  while (row.step()) tests.push_back({line(row, 0), row.integer(1, 0, most), line(row, 2), row.number(3)});
+  return tests;
+}
+
 std::optional<Verification> Archive::verification(std::uint32_t id) const {
   Statement row(*run_, "verifications",
                 "SELECT trial, status, reason, value FROM verifications WHERE individual = ? ORDER BY position");

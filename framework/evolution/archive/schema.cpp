@@ -14,6 +14,10 @@ CREATE TABLE provenances(provenance INTEGER PRIMARY KEY, device TEXT NOT NULL, e
 CREATE TABLE operators(provenance INTEGER NOT NULL, kind TEXT NOT NULL, name TEXT NOT NULL, version TEXT NOT NULL,
   file TEXT NOT NULL, hash TEXT NOT NULL);
 CREATE TABLE objectives(position INTEGER PRIMARY KEY, name TEXT NOT NULL, unit TEXT NOT NULL, maximise INTEGER NOT NULL);
+-- scores that are not objectives
+CREATE TABLE measures(position INTEGER PRIMARY KEY, name TEXT NOT NULL, unit TEXT NOT NULL, role TEXT NOT NULL,
+  low REAL, high REAL);
+CREATE TABLE scenarios(scenario INTEGER PRIMARY KEY, name TEXT NOT NULL);
 -- contents of the files that parameters of operators name
 CREATE TABLE files(path TEXT PRIMARY KEY, content BLOB NOT NULL) WITHOUT ROWID;
 -- what the genes of individuals are: owners of sections, types of blocks and their genes, blocks of first genomes
@@ -42,6 +46,13 @@ CREATE INDEX individuals_by_death ON individuals(died);
 CREATE TABLE scores(
   individual INTEGER NOT NULL, objective INTEGER NOT NULL, value REAL NOT NULL,
   PRIMARY KEY(individual, objective)) WITHOUT ROWID;
+CREATE TABLE measured(
+  individual INTEGER NOT NULL, measure INTEGER NOT NULL, value REAL NOT NULL,
+  PRIMARY KEY(individual, measure)) WITHOUT ROWID;
+-- scores in each repeat of each scenario, from which the scores above are made
+CREATE TABLE tests(
+  individual INTEGER NOT NULL, scenario INTEGER NOT NULL, repeat INTEGER NOT NULL, objective INTEGER NOT NULL,
+  value REAL NOT NULL, PRIMARY KEY(individual, scenario, repeat, objective)) WITHOUT ROWID;
 -- what development did to those who reached the front; see life_record.hpp
 CREATE TABLE lives(individual INTEGER PRIMARY KEY, record BLOB NOT NULL);
 CREATE TABLE generations(

@@ -17,6 +17,8 @@ void insert_newborns(const RunDatabase& run, const std::vector<Individual>& newb
                    "INSERT INTO individuals(id, born, origin, parent, mate, made_by, genes, blocks, status, reason, "
                    "ended_at, spring_evaluations, died) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL)");
   Statement insert_score(run, "scores", "INSERT INTO scores VALUES(?, ?, ?)");
+  Statement insert_measure(run, "measured", "INSERT INTO measured VALUES(?, ?, ?)");
+  Statement insert_test(run, "tests", "INSERT INTO tests VALUES(?, ?, ?, ?, ?)");
   for (const Individual& individual : newborns) {
     const Result& result = individual.result;
     const auto parent = [&](std::size_t i) {
@@ -31,6 +33,12 @@ void insert_newborns(const RunDatabase& run, const std::vector<Individual>& newb
         diverged ? std::optional(result.ended_at) : std::nullopt, static_cast<std::int64_t>(result.spring_evaluations));
     for (std::size_t i = 0; i < result.objectives.size(); ++i)
       insert_score.execute(individual.id, static_cast<std::uint32_t>(i), result.objectives[i]);
+    for (std::size_t i = 0; i < result.measures.size(); ++i)
+      insert_measure.execute(individual.id, static_cast<std::uint32_t>(i), result.measures[i]);
+    if (result.status != Status::ok) continue;
+    for (const TestScore& test : result.tests)
+      insert_test.execute(individual.id, static_cast<std::uint32_t>(test.scenario), test.repeat,
+                          static_cast<std::uint32_t>(test.objective), test.value);
   }
 }
 

@@ -72,6 +72,19 @@ void declare_development(SettingsVisitor& v, Settings& s) {
             "Number of time steps from one tally to the next; used only with probe = \"skip-shift\".");
 }
 
+void declare_scenario(SettingsVisitor& v, Scenario& s) {
+  v.real(s.start_noise, "start_noise", {0, 0.5, "1"},
+         "Largest offset by which each mass is moved along each axis at random, relative to the body's longest side.");
+  v.flag(s.muscles, "muscles", "Whether the muscles are actuated.");
+  v.real(s.damage, "damage", {0, 0.99, "1"},
+         "Share of the springs that the robot loses around a random place, with the pieces that this tears off.");
+  v.integer(s.repeat, "repeat", {1, 1000}, "Number of repeats, each with its own noise and damage.");
+}
+
+void declare_over(SettingsVisitor& v, Over& over) {
+  choice(v, over, host_key::over, "How the scores in all scenarios and repeats become one score.");
+}
+
 void declare_schedule(SettingsVisitor& v, Schedule& s) {
   constexpr Range cycles{1, rng_stream::most_cycles};
   v.integer(s.from, host_key::from, cycles, "First cycle after which the operator is applied.");

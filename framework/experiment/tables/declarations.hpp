@@ -12,6 +12,8 @@ void declare_mass(SettingsVisitor& visitor, Settings& settings);          ///< t
 void declare_accuracy(SettingsVisitor& visitor, Settings& settings);      ///< first key to read of [simulation]
 void declare_simulation(SettingsVisitor& visitor, Settings& settings);    ///< other keys of [simulation]
 void declare_development(SettingsVisitor& visitor, Settings& settings);   ///< [development] without its operators
+void declare_scenario(SettingsVisitor& visitor, Scenario& scenario);      ///< [[scenario]] without its name and forces
+void declare_over(SettingsVisitor& visitor, Over& over);                  ///< the host's key of a fitness operator
 void declare_schedule(SettingsVisitor& visitor, Schedule& schedule);      ///< the host's keys of a devo operator
 void declare_probability(SettingsVisitor& visitor, double& probability);  ///< the host's key of a variation operator
 
@@ -23,7 +25,8 @@ void declare(SettingsVisitor& visitor, Damping& damping);
 void declare(SettingsVisitor& visitor, Drag& drag);
 void declare(SettingsVisitor& visitor, Payload& payload);
 
-/// Calls `use(name, part)` for each part of a scene. `part` is the std::optional that holds it.
+/// Calls `use(name, part)` for each part of the scene of an experiment's settings or of a scenario. `part` is the
+/// std::optional that holds it.
 template <class AnySettings, class Use>
 void for_each_force(AnySettings& settings, const Use& use) {
   use("gravity", settings.scene.gravity);

@@ -22,13 +22,16 @@ const AvailableOperator& OperatorFactory::named_in(TomlReader& table, std::strin
       message += " (and " + std::to_string(registry_faults_.size() - 1) + " more such warnings)";
     table.fail("name", message);
   }
+  const std::string label = table.text(host_key::label, "");
+  if (const std::string fault = text_fault(label); !fault.empty()) table.fail(host_key::label, fault);
   experiment_.uses.push_back({available->entry->kind, name, available->manifest->version, available->file,
-                              file_hash(available->file), available->title});
+                              file_hash(available->file), available->title, label});
   return *available;
 }
 
 void OperatorFactory::write(const TomlReader& table, Operator& op, TomlWriter& writer) const {
   writer.add(host_key::name, experiment_.uses.back().name);
+  if (!experiment_.uses.back().label.empty()) writer.add(host_key::label, experiment_.uses.back().label);
   ask(table, [&] {
     op.parameters(writer);
     return 0;
@@ -58,6 +61,8 @@ class OperatorTables {
     complete_layouts(out_.crossovers);
     read_array(top_, "fitness", record_, [&](TomlReader& t, TomlWriter& writer) { read_fitness(t, writer); });
     if (out_.fitness.empty()) top_.fail("fitness", "is missing; add a table [[fitness]]");
+    if (out_.objectives.empty())
+      top_.fail("fitness", "no operator has an objective by which individuals could be selected; add one that has");
     read_one("selection", [&](TomlReader& t, TomlWriter& writer) {
       out_.selection = factory_.make<Selection>(t);
       factory_.write(t, *out_.selection, writer);
@@ -114,7 +119,7 @@ class OperatorTables {
       Layout layout = declare();
       const bool is_encoding = out_.own_layouts.empty();
       if (layout.types.empty() && !is_encoding) return std::nullopt;
-      const std::uint32_t section = add_section(out_.layout, out_.uses.back().name, layout);
+      const std::uint32_t section = add_section(out_.layout, out_.uses.back().own_name(), layout);
       out_.own_layouts.push_back(std::move(layout));
       return section;
     });
@@ -240,18 +245,25 @@ class OperatorTables {
   void read_fitness(TomlReader& t, TomlWriter& writer) {
     std::unique_ptr<Fitness> fitness = factory_.make<Fitness>(t);
     factory_.write(t, *fitness, writer);
+    Over& over = out_.over.emplace_back(Over::mean);
+    declare_over(t, over);
+    declare_over(writer, over);
     const Request request = factory_.ask(t, [&] { return fitness->observes(); });
     check_request(t, request);
     check_duration(t, "settle", request.settle, out_.step);
     check_duration(t, "window", request.window, out_.step);
     std::vector<Objective> objectives = factory_.ask(t, [&] { return fitness->objectives(); });
     if (objectives.empty()) t.fail("name", "this operator has no objectives; expected one or more from objectives()");
-    for (Objective& objective : objectives) add_objective(t, std::move(objective));
+    const std::string& label = out_.uses.back().label;
+    for (Objective& objective : objectives) {
+      if (!label.empty()) objective.name = objectives.size() == 1 ? label : label + "-" + objective.name;
+      add_objective(t, std::move(objective));
+    }
     out_.fitness.push_back(std::move(fitness));
   }
 
   /// Throws ConfigError if the settling time or the window of a fitness operator is out of range.
-  static void check_request(const TomlReader& t, const Request& request) {
+  void check_request(const TomlReader& t, const Request& request) const {
     constexpr double longest = 1e6;  // s, the same limit as for the time of a cycle
     const auto text = [](double time) { return std::isfinite(time) ? to_text(time) + " s" : "no finite number"; };
     // written so that NaN fails
@@ -259,6 +271,34 @@ class OperatorTables {
       t.fail("name", "this operator observes settle = " + text(request.settle) +
                          " and window = " + text(request.window) + "; expected settle from 0 to " + text(longest) +
                          ", and window above 0 and at most " + text(longest));
+    check_samples(t, request);
+    if (request.cycle) check_window_within_life(t, request);
+  }
+
+  /// Throws ConfigError if a fitness operator asks for more samples than a body can be sampled.
+  static void check_samples(const TomlReader& t, const Request& request) {
+    constexpr double most = 1e6;
+    if (!(request.rate >= 0) || !(request.rate * request.window <= most))
+      t.fail("name", "this operator asks for " + to_text(request.rate) + " samples per second for " +
+                         to_text(request.window) + " s; expected a rate of at least 0, and at most " + to_text(most) +
+                         " samples");
+    if (request.channels.any() && request.rate == 0)
+      t.fail("name", "this operator asks for channels of samples, but for no samples; it must set Request::rate");
+  }
+
+  /// Throws ConfigError if a window within the life does not lie within the life.
+  void check_window_within_life(const TomlReader& t, const Request& request) const {
+    const DevelopmentSettings& development = out_.development;
+    const double ends = static_cast<double>(development.cycles) * development.cycle_time;
+    if (*request.cycle < 0 || *request.cycle >= development.cycles)
+      t.fail("name", "this operator measures from cycle " + std::to_string(*request.cycle) + " of development on; " +
+                         (development.cycles == 0 ? "bodies do not develop: add a table [development]"
+                                                  : "expected 0 to " + std::to_string(development.cycles - 1)));
+    const double closes =
+        static_cast<double>(*request.cycle) * development.cycle_time + request.settle + request.window;
+    if (!(closes <= ends + 1e-9))
+      t.fail("name", "this operator measures until " + to_text(closes) + " s of the life, which ends after " +
+                         to_text(ends) + " s; shorten its window, or add cycles");
   }
 
   void add_objective(const TomlReader& t, Objective objective) {
@@ -267,10 +307,16 @@ class OperatorTables {
     for (const std::string& text : {objective.name, objective.unit})
       if (const std::string fault = text_fault(text); !fault.empty())
         t.fail("name", "its objective's name or unit " + fault);
+    if (objective.role == Role::descriptor &&
+        !(objective.low < objective.high && std::isfinite(objective.low) && std::isfinite(objective.high)))
+      t.fail("name", "its descriptor \"" + objective.name + "\" has the range " + to_text(objective.low) + " to " +
+                         to_text(objective.high) + "; expected two numbers, the smaller first");
     const auto same = [&](const Objective& other) { return other.name == objective.name; };
-    if (std::any_of(out_.objectives.begin(), out_.objectives.end(), same))
-      t.fail("name", "there is already an objective \"" + objective.name + "\"; remove one of the two operators");
-    out_.objectives.push_back(std::move(objective));
+    for (const auto* scores : {&out_.objectives, &out_.measures})
+      if (std::any_of(scores->begin(), scores->end(), same))
+        t.fail("name", "there is already a score \"" + objective.name +
+                           "\"; remove one of the two operators, or tell them apart by a label");
+    (objective.role == Role::objective ? out_.objectives : out_.measures).push_back(std::move(objective));
   }
 
   TomlReader& top_;

@@ -66,6 +66,21 @@ std::string experiment_reference() {
   text += section("`[[development.operator]]`",
                   "The keys that every devo operator has in addition to `name` and its own parameters.",
                   [&](SettingsVisitor& v) { declare_schedule(v, schedule); });
+  text +=
+      section("`[[fitness]]`", "The keys that every fitness operator has in addition to `name` and its own parameters.",
+              [&](SettingsVisitor& v) {
+                Over over = Over::mean;
+                declare_over(v, over);
+              });
+  text +=
+      section("`[[scenario]]`",
+              "A test of the matured robot, with a `name`; there may be several. Tables such as `[scenario.gravity]`, "
+              "`[scenario.floor]` or `[scenario.payload]` have the keys of the tables of `[scene]`; what they leave "
+              "out stays as in the scene. Without this table, robots are measured in the scene itself.",
+              [&](SettingsVisitor& v) {
+                Scenario scenario;
+                declare_scenario(v, scenario);
+              });
   text += section_of<Material>("`[materials.NAME]`",
                                "A material. The defaults apply to materials that evodevo does not know.");
   return text;

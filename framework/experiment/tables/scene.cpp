@@ -1,17 +1,56 @@
+#include <algorithm>
+
+#include "base/text.hpp"
 #include "experiment/tables/declarations.hpp"
 #include "experiment/tables/tables.hpp"
 
 namespace evodevo {
+namespace {
+
+/// Reads the forces of a scene. Keys that are left out keep their values.
+template <class AnySettings>
+void read_forces(TomlReader& table, AnySettings& settings) {
+  for_each_force(settings, [&](std::string_view name, auto& force) {
+    read_table(table, name, false, [&](TomlReader& t) { declare(t, force ? *force : force.emplace()); });
+  });
+  if (settings.scene.friction && !settings.scene.floor)
+    table.fail("friction", "there is no floor for friction to act on; add [" + table.full_name("floor") +
+                               "] or remove [" + table.full_name("friction") + "]");
+}
+
+Scenario read_scenario(TomlReader& table, const Settings& settings) {
+  table.expect({"name", "start_noise", "muscles", "damage", "repeat", "gravity", "floor", "friction", "damping", "drag",
+                "payload"});
+  Scenario scenario{.name = table.text("name"), .scene = settings.scene, .payload = settings.payload};
+  if (const std::string fault = text_fault(scenario.name); scenario.name.empty() || !fault.empty())
+    table.fail("name", scenario.name.empty() ? "is empty; give the scenario a name" : fault);
+  declare_scenario(table, scenario);
+  read_forces(table, scenario);
+  return scenario;
+}
+
+}  // namespace
 
 void read_scene(TomlReader& top, Settings& settings) {
   read_table(top, "scene", false, [&](TomlReader& scene) {
     scene.expect({"gravity", "floor", "friction", "damping", "drag", "payload"});
-    for_each_force(settings, [&](std::string_view name, auto& force) {
-      read_table(scene, name, false, [&](TomlReader& t) { declare(t, force.emplace()); });
-    });
-    if (settings.scene.friction && !settings.scene.floor)
-      scene.fail("friction", "there is no floor for friction to act on; add [scene.floor] or remove [scene.friction]");
+    read_forces(scene, settings);
   });
+}
+
+void read_scenarios(TomlReader& top, Settings& settings) {
+  constexpr std::size_t most = 1000;
+  const auto tables = top.tables("scenario");
+  if (tables.size() > most) top.fail("scenario", "expected at most " + std::to_string(most) + " of these tables");
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    TomlReader table(*tables[i], "scenario." + std::to_string(i));
+    Scenario scenario = read_scenario(table, settings);
+    table.finish();
+    const auto is_same = [&](const Scenario& other) { return other.name == scenario.name; };
+    if (std::any_of(settings.scenarios.begin(), settings.scenarios.end(), is_same))
+      table.fail("name", "there is already a scenario \"" + scenario.name + "\"; give each its own name");
+    settings.scenarios.push_back(std::move(scenario));
+  }
 }
 
 }  // namespace evodevo

@@ -28,6 +28,8 @@ void read_table(TomlReader& parent, std::string_view name, bool required, const 
 
 void read_materials(TomlReader& top, Settings& settings, Warnings& warnings);
 void read_scene(TomlReader& top, Settings& settings);
+/// Reads [[scenario]]. To be called after read_scene().
+void read_scenarios(TomlReader& top, Settings& settings);
 
 /// Where the bodies of an experiment come from. The experiment's own encoding makes `grown` bodies; dt is then checked
 /// for the experiment's masses and materials. A `given` body comes from a file; dt is checked for that body later.

@@ -1,54 +1,68 @@
-// The final evaluation: simulates matured bodies and lets the fitness operators score them.
+// The final evaluation: simulates matured bodies and lets the fitness operators score what they did.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "life/life.hpp"
 #include "life/life_simulation.hpp"
+#include "life/measurement/scenario_start.hpp"
+#include "life/measurement/windows.hpp"
 
 namespace evodevo {
 
-/// Evaluates matured lives: gives each its objectives, or the reason why it has none. Lives are simulated from mark to
-/// mark. A mark is a time at which the window of some fitness operator opens or closes. A snapshot is taken at each
-/// mark, and each fitness operator scores the two snapshots at the ends of its window. The experiment and the
-/// simulation must outlive this object.
+/// Evaluates lives: gives each its scores, or the reason why it has none.
+///
+///   samples of the life ─► scores of the operators whose windows lie within the life
+///   matured body ─► for each scenario and repeat: start_scenario() ─► simulate ─► samples ─► scores of the others
+///   scores of all scenarios and repeats ─► objectives and other scores
+///
+/// The body is simulated in one run. What the operators observe does not change its motion or how its life ends, except
+/// that the run lasts until the last window closes. Experiment, windows and simulation must outlive this object.
 class Measurement {
  public:
-  Measurement(const Experiment& experiment, const LifeSimulation& simulation, const Conditions& conditions);
+  Measurement(const Experiment& experiment, const LifeSimulation& simulation, const Windows& windows);
 
-  /// Evaluates lives. Calls `progress` at each mark.
+  /// Evaluates lives. Calls `progress` after each test.
   void run(std::span<Life> lives, const Progress& progress) const;
+  /// Evaluates matured lives in one test, in which they also end. Their objectives are the scores of this test.
+  void run_in(const Test& test, std::span<Life> lives) const;
 
   /// Simulated time of the final evaluation, s.
-  double duration() const { return marks_.back(); }
+  double duration() const;
 
  private:
-  /// What a fitness operator asks for, and the indices of the marks at which its window opens and closes.
-  struct Window {
-    Request request;
-    std::size_t opens, closes;
+  /// Where a score goes: its role, and its index among the objectives or among the other scores of the experiment.
+  struct Place {
+    Role role;
+    std::size_t index;
   };
-  /// What is recorded of a body at a mark.
-  struct Snapshot {
-    Box box;
-    Vec3 centre;
-    double work = 0;  ///< work of the muscles since the final evaluation began, J
-  };
-  using Snapshots = std::vector<Snapshot>;  ///< snapshots of one life, one for each mark
+  /// The scores of each operator; none for operators whose windows lie elsewhere.
+  using Scores = std::vector<std::vector<double>>;
 
-  /// Sets the windows and marks. Windows open `later` s later than the operators ask for.
-  void set_windows(double later);
-  /// Whether a fitness operator asks for the work between the previous mark and this mark.
-  bool needs_work(std::size_t mark) const;
-  /// Whether the window of a fitness operator opens at a mark.
-  bool opens_window(std::size_t mark) const;
-  void score(Life& life, const Snapshots& snapshots) const;
+  /// Simulates lives in their present scene until the last window closes, and appends the scores of each life that has
+  /// not ended to its list.
+  void measure(std::span<Life> lives, std::string_view scenario, std::vector<std::vector<Scores>>& scores) const;
+  /// Returns the number of lives, from the first one on, whose samples fit in memory together; at least one.
+  std::size_t measured_at_once(std::span<const Life> lives) const;
+  /// Measures copies of lives in all tests.
+  void measure_in_scenarios(std::span<Life> lives, std::vector<std::vector<Scores>>& scores,
+                            const Progress& progress) const;
+  /// Notes the scores of a test in the result of a life.
+  void add_test(const Test& test, const Scores& scores, Life& life) const;
+  Scores scores_within_life(Life& life) const;
+  /// Lets an operator score the window of a life. If a score is not finite, ends the life.
+  std::vector<double> score(std::size_t op, std::string_view scenario, Life& life) const;
+  /// Makes the scores of a life from those within the life and in all tests. Ends a life that violates a constraint.
+  void set_scores(const Scores& within_life, const std::vector<Scores>& tests, Life& life) const;
+  /// Makes one score of the i-th scores of an operator in all tests: the mean of a descriptor, the worst of a
+  /// constraint, and of the others what the experiment says.
+  double over_tests(std::size_t op, std::size_t i, const std::vector<Scores>& tests) const;
+  const Objective& title_of(const Place& place) const;
 
   const Experiment& experiment_;
   const LifeSimulation& simulation_;
-  std::vector<double> marks_;    ///< times of the marks since the start of the final evaluation, s
-  std::vector<Window> windows_;  ///< window of each fitness operator
+  const Windows& windows_;
+  std::vector<std::vector<Place>> places_;  ///< for each fitness operator, where each of its scores goes
 };
 
 }  // namespace evodevo

@@ -1,0 +1,86 @@
+#include "life/measurement/scenario_start.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "analysis/energy.hpp"
+#include "analysis/ground.hpp"
+#include "base/philox.hpp"
+#include "life/body_building.hpp"
+
+namespace evodevo {
+namespace {
+
+/// Replaces the load of a body.
+void change_payload(const std::optional<Payload>& payload, Body& body) {
+  for (Mass& mass : body.masses) {
+    mass.mass -= mass.payload;
+    mass.payload = 0;
+  }
+  if (payload) add_payload(body, payload->share, payload->top);
+}
+
+/// Removes the share of the springs whose middles are nearest to a place drawn in the body's bounding box, and then the
+/// pieces that this tears off.
+void do_damage(double share, Rng& random, LivingBody& living) {
+  const std::vector<Vec3>& positions = living.state.position;
+  const Box box = bounding_box(positions);
+  const double x = random.uniform(), y = random.uniform(), z = random.uniform();
+  const Vec3 side = box.high - box.low, place = box.low + Vec3{x * side.x, y * side.y, z * side.z};
+  const std::vector<Spring>& springs = living.body.springs;
+  const auto distance = [&](std::uint32_t spring) {
+    return norm(0.5 * (positions[springs[spring].a] + positions[springs[spring].b]) - place);
+  };
+  std::vector<std::uint32_t> order(springs.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return distance(a) < distance(b); });
+  order.resize(static_cast<std::size_t>(std::round(share * static_cast<double>(springs.size()))));
+  std::sort(order.begin(), order.end());
+  apply(Edits{.removed_springs = std::move(order)}, living);
+  apply(Edits{.removed_masses = loose_masses(living.body)}, living);
+}
+
+void move_at_random(double noise, Rng& random, std::vector<Vec3>& positions) {
+  const double most = noise * bounding_box(positions).longest_side();
+  const auto offset = [&] { return most * (2 * random.uniform() - 1); };
+  for (Vec3& position : positions) {
+    const double x = offset(), y = offset(), z = offset();
+    position = position + Vec3{x, y, z};
+  }
+}
+
+Rng stream(const Test& test, const Experiment& experiment) {
+  return Rng(philox, {static_cast<std::uint64_t>(experiment.seed), static_cast<std::uint32_t>(test.scenario),
+                      static_cast<std::uint32_t>(test.repeat), rng_stream::scenario});
+}
+
+}  // namespace
+
+std::vector<Test> tests_of(const Experiment& experiment) {
+  std::vector<Test> tests;
+  for (std::size_t i = 0; i < experiment.scenarios.size(); ++i)
+    for (std::int64_t repeat = 0; repeat < experiment.scenarios[i].repeat; ++repeat) tests.push_back({i, repeat});
+  return tests;
+}
+
+void start_scenario(const Test& test, const Experiment& experiment, const LifeSimulation& simulation, Life& life) {
+  const Scenario& scenario = experiment.scenarios[test.scenario];
+  LivingBody& living = life.living;
+  Rng random = stream(test, experiment);
+  life.scene = &scenario.scene;
+  if (scenario.payload != experiment.payload) change_payload(scenario.payload, living.body);
+  if (!scenario.muscles)
+    for (Material& material : living.body.materials) material.amplitude = 0;
+  if (scenario.damage > 0) do_damage(scenario.damage, random, living);
+  if (living.body.springs.empty()) return life.end(Status::invalid, "no springs");
+  if (scenario.start_noise > 0) move_at_random(scenario.start_noise, random, living.state.position);
+  const bool is_moved = scenario.start_noise > 0 || scenario.scene.floor != experiment.scene.floor;
+  if (is_moved && scenario.scene.floor) put_on_ground(living.state.position, scenario.scene);
+  living.version = nullptr;
+  living.state.start_energy =
+      std::max(living.state.start_energy, total_energy(living.body, living.state, scenario.scene));
+  simulation.choose_step(life);
+}
+
+}  // namespace evodevo

@@ -1,0 +1,66 @@
+// Numbers that say what a body does and is like, without saying that it is good.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "evodevo/helpers/window.hpp"
+#include "evodevo/plugin.hpp"
+
+namespace {
+
+class Descriptor final : public evodevo::Fitness {
+ public:
+  void parameters(evodevo::Parameters& p) override {
+    p.choice(what_, "what", {"height", "contact", "spread", "masses"},
+             "What is described: the mean height of the body, the mean share of its masses that touch the ground, the "
+             "mean of the longer horizontal side of its bounding box, or its number of masses.");
+    p.reals(range_, "range", {-1e9, 1e9},
+            "Smallest and largest value that is expected, in the unit of the descriptor.");
+    window_.declare(p);
+    p.real(rate_, "rate", {0.1, 1000, "1/s"}, "Number of times per second at which it is measured.");
+    p.require(range_.empty() || (range_.size() == 2 && range_[0] < range_[1]), "range",
+              "expected two numbers, the smaller first");
+    p.require(rate_ * window_.window >= 1, "rate", "expected one or more measurements within the window");
+  }
+
+  evodevo::Request observes() const override {
+    return window_.request(rate_, {.box = what_ != "contact" && what_ != "masses", .contact = what_ == "contact"});
+  }
+
+  std::vector<evodevo::Objective> objectives() const override {
+    evodevo::Objective descriptor{what_, what_ == "contact" || what_ == "masses" ? "1" : "m"};
+    descriptor.role = evodevo::Role::descriptor;
+    descriptor.low = range_.empty() ? 0 : range_[0];
+    descriptor.high = range_.empty() ? (what_ == "masses" ? 1000 : what_ == "contact" ? 1 : 2) : range_[1];
+    return {descriptor};
+  }
+
+  std::vector<double> score(const evodevo::Observation& observation) const override {
+    const evodevo::Samples& samples = observation.samples;
+    if (what_ == "masses") {
+      const bool is_known = norm(observation.centre_after - observation.centre_before) >= 0;  // not NaN
+      return {is_known ? static_cast<double>(observation.body->masses.size()) : std::nan("")};
+    }
+    double sum = 0;
+    for (std::size_t i = 1; i < samples.size(); ++i) sum += value(samples, i);
+    return {sum / static_cast<double>(samples.size() - 1)};
+  }
+
+ private:
+  double value(const evodevo::Samples& samples, std::size_t i) const {
+    if (what_ == "contact") return samples.contact(i);
+    const evodevo::Vec3 side = samples.box(i).high - samples.box(i).low;
+    return what_ == "height" ? side.z : std::max(side.x, side.y);
+  }
+
+  std::string what_ = "height";
+  std::vector<double> range_;
+  evodevo::MeasuringWindow window_;
+  double rate_ = 10;
+};
+
+}  // namespace
+
+EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
+               evodevo::operator_entry<Descriptor>(
+                   "descriptor", "Where a robot lies in the space of behaviours; recorded, but not selected by."))

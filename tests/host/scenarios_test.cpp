@@ -1,0 +1,341 @@
+// Scenarios: what they change, what they keep, and how the scores in them become one.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "life/evaluation.hpp"
+#include "support/experiments.hpp"
+#include "support/messages.hpp"
+
+namespace evodevo {
+namespace {
+
+const Progress unwatched = [](double) {};
+
+Experiment with(const std::string& scenarios, std::vector<Override> overrides = {}) {
+  return testing::read(testing::small_experiment + scenarios, std::move(overrides));
+}
+
+Life lived(const Experiment& experiment, const Genome& genome = {2, 1}, std::uint32_t id = 0) {
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  const Evaluation evaluation(experiment, *simulator);
+  std::vector<Life> lives = evaluation.birth.of(std::vector<Newborn>{{id, 0, &genome}});
+  evaluation.development.run(lives, unwatched);
+  evaluation.measurement.run(lives, unwatched);
+  return std::move(lives.front());
+}
+
+/// What a fitness operator saw in one test.
+struct Seen {
+  std::string scenario;
+  Body body;
+  Vec3 way;
+  Box box;
+};
+
+class Witness final : public Fitness {
+ public:
+  explicit Witness(std::vector<Seen>& seen) : seen_(seen) {}
+  Request observes() const override { return {.settle = 0, .window = 0.02}; }
+  std::vector<Objective> objectives() const override { return {{"number", "1"}}; }
+  std::vector<double> score(const Observation& o) const override {
+    seen_.push_back({std::string(o.scenario), *o.body, o.centre_after - o.centre_before, o.box});
+    return {static_cast<double>(seen_.size())};
+  }
+
+ private:
+  std::vector<Seen>& seen_;
+};
+
+std::vector<Seen> seen_in(const std::string& scenarios, std::vector<Override> overrides = {}, std::uint32_t id = 0) {
+  Experiment experiment = with(scenarios, std::move(overrides));
+  std::vector<Seen> seen;
+  experiment.fitness.clear();
+  experiment.fitness.push_back(std::make_unique<Witness>(seen));
+  experiment.over = {Over::mean};
+  experiment.objectives = {{"number", "1"}};
+  const Life life = lived(experiment, {2, 1}, id);
+  EXPECT_TRUE(life.alive()) << life.result.reason;
+  return seen;
+}
+
+TEST(Scenarios, ThatChangeNothingAreTheSceneItself) {
+  const Life plain = lived(with("")), tested = lived(with("\n[[scenario]]\nname = 'as it is'\n"));
+  ASSERT_TRUE(tested.alive()) << tested.result.reason;
+  EXPECT_EQ(plain.result.objectives, tested.result.objectives);
+  EXPECT_EQ(plain.result.spring_evaluations, tested.result.spring_evaluations);
+  ASSERT_EQ(tested.result.tests.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(tested.result.tests[i].objective, i);
+    EXPECT_EQ(tested.result.tests[i].value, plain.result.objectives.at(i));
+  }
+  EXPECT_TRUE(plain.result.tests.empty());
+}
+
+TEST(Scenarios, BeginWithTheMaturedBodyWhateverCameBefore) {
+  const std::string slope = "\n[[scenario]]\nname = 'slope'\n[scenario.gravity]\nslope = 12\n",
+                    rough = "\n[[scenario]]\nname = 'rough'\n[scenario.floor]\nroughness = 0.03\n";
+  const auto scores = [](const std::string& scenarios) {
+    std::map<std::string, std::vector<double>> by_name;
+    const Experiment experiment = with(scenarios);
+    for (const TestScore& test : lived(experiment).result.tests)
+      by_name[experiment.scenarios[test.scenario].name].push_back(test.value);
+    return by_name;
+  };
+  auto both = scores(slope + rough), turned = scores(rough + slope);
+  EXPECT_EQ(both, turned);
+  EXPECT_EQ(both.at("slope"), scores(slope).at("slope"));
+  EXPECT_EQ(both.at("rough"), scores(rough).at("rough"));
+  EXPECT_NE(both.at("slope"), both.at("rough"));
+}
+
+TEST(Scenarios, ReplaceForces) {
+  const Experiment experiment = with(R"(
+[[scenario]]
+name = "ice"
+[scenario.friction]
+coefficient = 0.01
+[[scenario]]
+name = "hills"
+[scenario.floor]
+roughness = 0.05
+seed = 9
+[[scenario]]
+name = "mud"
+[scenario.drag]
+coefficient = 3
+)",
+                                     {{"scene.floor.stiffness", "1e5", ""}});
+  EXPECT_EQ(experiment.scenarios.at(0).scene.friction->coefficient, 0.01);
+  EXPECT_EQ(experiment.scenarios[1].scene.floor->stiffness, 1e5) << "keys that are left out are those of the scene";
+  EXPECT_EQ(experiment.scenarios[1].scene.floor->roughness, 0.05);
+  EXPECT_EQ(experiment.scenarios[1].scene.friction->coefficient, 0.5);
+  EXPECT_EQ(experiment.scenarios[2].scene.drag->coefficient, 3);
+  EXPECT_FALSE(experiment.scene.drag);
+  EXPECT_EQ(read_settings(experiment.resolved, "record").scenarios, experiment.scenarios) << "read back";
+}
+
+TEST(Scenarios, TiltTheGround) {
+  // without friction, a body slides down a slope with the acceleration g sin(slope)
+  const auto seen =
+      seen_in("\n[[scenario]]\nname = 'slide'\n[scenario.gravity]\nslope = 30\n[scenario.friction]\ncoefficient = 0\n",
+              {{"scene.damping.rate", "0", ""}, {"development.cycles", "0", ""}, {"encoding.mass", "1", ""}});
+  ASSERT_EQ(seen.size(), 1u);
+  EXPECT_EQ(seen[0].scenario, "slide");
+  EXPECT_NEAR(seen[0].way.x, 9.81 * 0.5 / 2 * 0.02 * 0.02, 5e-5);
+}
+
+TEST(Scenarios, StillMuscles) {
+  const auto seen = seen_in("\n[[scenario]]\nname = 'still'\nmuscles = false\n[[scenario]]\nname = 'moving'\n");
+  ASSERT_EQ(seen.size(), 2u);
+  const auto moves = [](const Body& body) {
+    return std::any_of(body.materials.begin(), body.materials.end(), [](const Material& m) { return m.amplitude > 0; });
+  };
+  EXPECT_FALSE(moves(seen[0].body));
+  EXPECT_TRUE(moves(seen[1].body));
+}
+
+TEST(Scenarios, LoadTheBody) {
+  const auto seen =
+      seen_in("\n[[scenario]]\nname = 'bare'\n[[scenario]]\nname = 'loaded'\n[scenario.payload]\nshare = 0.7\n",
+              {{"scene.payload.share", "0.2", ""}});
+  const auto weight = [](const Body& body) {
+    double sum = 0;
+    for (const Mass& mass : body.masses) sum += mass.mass;
+    return sum;
+  };
+  ASSERT_EQ(seen.size(), 2u);
+  EXPECT_NEAR(weight(seen[0].body), 12 * 0.2 * 1.2, 1e-12);
+  EXPECT_NEAR(weight(seen[1].body), 12 * 0.2 * 1.7, 1e-12) << "in place of the scene's load";
+}
+
+TEST(Scenarios, DamageTheSameInAllIndividualsAndOtherwiseInEveryRepeat) {
+  const std::string damage = "\n[[scenario]]\nname = 'hurt'\ndamage = 0.2\nrepeat = 3\n";
+  const auto whole = seen_in("", {{"development.cycles", "0", ""}}),
+             one = seen_in(damage, {{"development.cycles", "0", ""}}, 0),
+             other = seen_in(damage, {{"development.cycles", "0", ""}}, 5);
+  ASSERT_EQ(one.size(), 3u);
+  const std::size_t springs = whole[0].body.springs.size(), left = springs - std::lround(0.2 * double(springs));
+  const auto pairs = [](const Body& body) {
+    std::set<std::pair<std::uint32_t, std::uint32_t>> joined;
+    for (const Spring& spring : body.springs) joined.insert({spring.a, spring.b});
+    return joined;
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_LE(one[i].body.springs.size(), left) << "and those of pieces that come off";
+    EXPECT_GE(one[i].body.springs.size(), left / 2);
+    EXPECT_EQ(pairs(one[i].body), pairs(other.at(i).body));
+  }
+  EXPECT_FALSE(pairs(one[0].body) == pairs(one[1].body) && pairs(one[1].body) == pairs(one[2].body));
+}
+
+TEST(Scenarios, ShakeTheStart) {
+  const auto seen =
+      seen_in("\n[[scenario]]\nname = 'calm'\n[[scenario]]\nname = 'shaken'\nstart_noise = 0.01\nrepeat = 2\n");
+  ASSERT_EQ(seen.size(), 3u);
+  for (std::size_t i = 1; i < 3; ++i) {
+    EXPECT_FALSE(seen[i].box.high == seen[0].box.high);
+    EXPECT_NEAR(seen[i].box.longest_side(), seen[0].box.longest_side(), 0.03);
+  }
+  EXPECT_FALSE(seen[1].box.high == seen[2].box.high);
+}
+
+TEST(Scenarios, AreSummedUpAsTheExperimentSays) {
+  const std::string five = "\n[[scenario]]\nname = 'a'\nrepeat = 3\n[[scenario]]\nname = 'b'\nrepeat = 2\n";
+  for (const auto& [over, expected] : {std::pair{Over::mean, 3.0}, {Over::worst, 1.0}, {Over::median, 3.0}}) {
+    Experiment experiment = with(five);
+    std::vector<Seen> seen;
+    experiment.fitness.clear();
+    experiment.fitness.push_back(std::make_unique<Witness>(seen));  // scores 1 to 5
+    experiment.over = {over};
+    experiment.objectives = {{"number", "1", true}};
+    EXPECT_EQ(lived(experiment).result.objectives, std::vector{expected});
+    experiment.objectives[0].maximise = false;
+    seen.clear();
+    EXPECT_EQ(lived(experiment).result.objectives, std::vector{over == Over::worst ? 5.0 : expected});
+  }
+  EXPECT_EQ(with(five, {{"fitness.0.over", "worst", ""}}).over, (std::vector{Over::worst, Over::mean}));
+}
+
+TEST(Scenarios, ThatFailAreNamed) {
+  const Experiment experiment = with(R"(
+[[scenario]]
+name = "flat"
+[[scenario]]
+name = "storm"
+repeat = 2
+[scenario.gravity]
+acceleration = 1000
+[scenario.drag]
+coefficient = 1e6
+)");
+  const Life life = lived(experiment, {2, 2});
+  EXPECT_EQ(life.result.status, Status::diverged);
+  EXPECT_THAT(life.result.reason, testing::at_place("scenario \"storm\", repeat 1: "));
+  EXPECT_GT(life.result.ended_at, 0.1) << "since birth";
+  EXPECT_TRUE(life.result.objectives.empty());
+
+  const Life stiff = lived(with("\n[[scenario]]\nname = 'rock'\n[scenario.floor]\nstiffness = 1e9\n"));
+  EXPECT_EQ(stiff.result.status, Status::invalid);
+  EXPECT_THAT(stiff.result.reason, testing::at_place("scenario \"rock\": unstable dt: "));
+}
+
+TEST(Scenarios, WithFaultsAreRefused) {
+  const auto told = [](const std::string& scenarios) {
+    try {
+      with(scenarios);
+    } catch (const ConfigError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(told("\n[[scenario]]\nrepeat = 2\n"), testing::at_place("test.toml:50:1", "name"));
+  EXPECT_THAT(told("\n[[scenario]]\nname = ''\n"), testing::naming("scenario.0.name"));
+  EXPECT_THAT(told("\n[[scenario]]\nname = 'a'\n[[scenario]]\nname = 'a'\n"),
+              testing::naming("scenario.1.name", "\"a\""));
+  EXPECT_THAT(told("\n[[scenario]]\nname = 'a'\ndamage = 1.5\n"), testing::naming("scenario.0.damage", "1.5", "0.99"));
+  EXPECT_THAT(told("\n[[scenario]]\nname = 'a'\ndamag = 0.5\n"), testing::naming("damag", "damage"));
+  EXPECT_THAT(told("\n[[scenario]]\nname = 'a'\n[scenario.gravity]\nslop = 5\n"), testing::naming("slop", "slope"));
+  EXPECT_THAT(told("\n[[scenario]]\nname = 'a'\nstart_noise = nan\n"), testing::naming("scenario.0.start_noise"));
+}
+
+TEST(Labels, TellTwoUsesOfOneOperatorApart) {
+  const std::string second = "\n[[fitness]]\nname = 'distance'\ndirection = [0, 1, 0]\nsettle = 0.05\nwindow = 0.1\n";
+  const Experiment experiment = with(second + "label = 'sideways'\n");
+  ASSERT_EQ(experiment.objectives.size(), 3u);
+  EXPECT_EQ(experiment.objectives[0].name, "distance");
+  EXPECT_EQ(experiment.objectives[2].name, "sideways");
+  EXPECT_EQ(read_experiment(experiment.resolved, {"record", {}}).objectives[2].name, "sideways") << "read back";
+  EXPECT_THAT([&] { with(second); },
+              ::testing::ThrowsMessage<ConfigError>(testing::naming("fitness.2.name", "\"distance\"", "label")));
+  EXPECT_THAT([&] { with(second + "label = 'actuation-work'\n"); },
+              ::testing::ThrowsMessage<ConfigError>(testing::naming("fitness.2", "\"actuation-work\"", "label")));
+}
+
+TEST(Labels, NameTheSectionsOfGenomes) {
+  const std::string mutations = R"(
+[[mutation]]
+name = "gaussian"
+label = "small"
+[[mutation]]
+name = "gaussian"
+label = "large"
+)";
+  const Experiment experiment = with(mutations);
+  EXPECT_THAT(experiment.layout.sections, ::testing::IsSupersetOf({"small", "large"}));
+}
+
+/// A fitness operator with a score of each role; they grow by one in every test.
+class AllRoles final : public Fitness {
+ public:
+  explicit AllRoles(double violation) : violation_(violation) {}
+  Request observes() const override { return {.settle = 0, .window = 0.02}; }
+  std::vector<Objective> objectives() const override {
+    return {{"limit", "N", true, Role::constraint},
+            {"goal", "m"},
+            {"place", "m", true, Role::descriptor, -1, 1},
+            {"note", "s", true, Role::measure}};
+  }
+  std::vector<double> score(const Observation&) const override {
+    const double test = ++tests_;
+    return {violation_ + test, 10 + test, 20 + test, 30 + test};
+  }
+
+ private:
+  double violation_;
+  mutable int tests_ = 0;
+};
+
+Life with_all_roles(double violation) {
+  Experiment experiment = with("\n[[scenario]]\nname = 'a'\nrepeat = 3\n");
+  experiment.fitness.clear();
+  experiment.fitness.push_back(std::make_unique<AllRoles>(violation));
+  experiment.over = {Over::worst};
+  const std::vector<Objective> all = experiment.fitness[0]->objectives();
+  experiment.objectives = {all[1]};
+  experiment.measures = {all[0], all[2], all[3]};
+  return lived(experiment);
+}
+
+TEST(Roles, AreSummedUpEachInItsWay) {
+  const Life life = with_all_roles(-3);
+  ASSERT_TRUE(life.alive()) << life.result.reason;
+  EXPECT_EQ(life.result.objectives, std::vector{11.0}) << "the worst, as the experiment says";
+  EXPECT_EQ(life.result.measures, (std::vector{0.0, 22.0, 31.0})) << "the worst, the mean, the worst";
+  ASSERT_EQ(life.result.tests.size(), 3u) << "of the objective";
+  EXPECT_EQ(life.result.tests[2].value, 13);
+}
+
+TEST(Roles, AConstraintAboveZeroEndsTheEvaluation) {
+  const Life life = with_all_roles(-2.5);  // 0.5 N in the last test
+  EXPECT_EQ(life.result.status, Status::invalid);
+  EXPECT_THAT(life.result.reason, testing::naming("limit", "0.5 N"));
+  EXPECT_TRUE(life.result.objectives.empty());
+  EXPECT_TRUE(life.result.measures.empty());
+}
+
+TEST(Roles, AreReadFromTheOperators) {
+  const std::string described = "\n[[fitness]]\nname = 'descriptor'\nwhat = 'contact'\nsettle = 0.05\nwindow = 0.1\n";
+  const Experiment experiment = with(described);
+  EXPECT_EQ(experiment.objectives.size(), 2u);
+  ASSERT_EQ(experiment.measures.size(), 1u);
+  EXPECT_EQ(experiment.measures[0].name, "contact");
+  const Life life = lived(experiment);
+  ASSERT_TRUE(life.alive()) << life.result.reason;
+  ASSERT_EQ(life.result.measures.size(), 1u);
+  EXPECT_GT(life.result.measures[0], 0);
+  EXPECT_LT(life.result.measures[0], 1);
+  EXPECT_THAT(
+      [&] {
+        with(described,
+             {{"fitness.0", "{name='descriptor'}", ""}, {"fitness.1", "{name='descriptor', label='b'}", ""}});
+      },
+      ::testing::ThrowsMessage<ConfigError>(testing::naming("fitness", "objective")));
+}
+
+}  // namespace
+}  // namespace evodevo
