@@ -68,6 +68,8 @@ TEST(GpuSamplesOfComputedMaterials, ChangeNothingAndAreTrue) {
     };
     test::expect_samples_to_change_nothing(factory,
                                            {test::random_body(107, 9, 23, 6), test::random_body(1701, 14, 5, 8)});
+    for (const Body& body : {test::random_body(61, 9, 23, 6), test::random_body(1701, 14, 5, 8)})
+      test::expect_samples_to_be_true(factory, body, 1e-6, Materials::computed);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "analysis/computed_materials.hpp"
 #include "analysis/ground.hpp"
 #include "analysis/sampling.hpp"
 #include "core/piecewise.hpp"
@@ -104,7 +105,10 @@ void expect_samples_to_change_nothing(const SimulatorFactory& simulator_for, con
   }
 }
 
-void expect_samples_to_be_true(const SimulatorFactory& simulator_for, const Body& body, double rounding) {
+void expect_samples_to_be_true(const SimulatorFactory& simulator_for, const Body& body, double rounding,
+                               Materials materials) {
+  Body simulated = body;
+  simulated.materials = simulated_materials(body, materials);
   const Scene scene = scene_with_everything();
   const auto simulator = simulator_for(scene);
   Run sampled(body, scene);
@@ -117,7 +121,7 @@ void expect_samples_to_be_true(const SimulatorFactory& simulator_for, const Body
     Run ended(body, scene, step);
     ended.make(*simulator);
     const Sample& sample = sampled.task.samples[i];
-    const Sample truth = sample_of(body, ended.state, ended.state.time, all_channels);
+    const Sample truth = sample_of(simulated, ended.state, ended.state.time, all_channels);
     EXPECT_EQ(sample.time, ended.state.time);
     expect_close(sample.centre, truth.centre, rounding, "centre");
     expect_close(sample.velocity, truth.velocity, 100 * rounding, "velocity of the centre");

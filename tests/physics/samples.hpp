@@ -13,8 +13,10 @@ namespace evodevo::test {
 void expect_samples_to_change_nothing(const SimulatorFactory& simulator_for, const std::vector<Body>& bodies);
 
 /// Expects that samples of a body agree with the states of runs that end at the same steps, and with the work and the
-/// contacts counted there. Numbers of double precision may differ by `rounding` times their largest value.
-void expect_samples_to_be_true(const SimulatorFactory& simulator_for, const Body& body, double rounding);
+/// contacts counted there. Numbers of double precision may differ by `rounding` times their largest value. `materials`
+/// says how the simulator's springs get their materials.
+void expect_samples_to_be_true(const SimulatorFactory& simulator_for, const Body& body, double rounding,
+                               Materials materials = Materials::table);
 
 /// Expects that a body which is sampled in pieces has the samples of the whole.
 void expect_samples_in_pieces(const SimulatorFactory& simulator_for, const Body& body);
