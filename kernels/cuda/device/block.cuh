@@ -32,6 +32,12 @@ __device__ __forceinline__ void store(const Body& body, unsigned mass, const Mov
   body.velocities[mass] = point(m.velocity);
 }
 
+/// The number of steps of a body's piece so far, and its next sample.
+struct Samples {
+  std::uint64_t done;
+  NextSample next;
+};
+
 /// Calls advance(body, count, samples) for the `count` steps of check span `index`, if the body has steps in that span.
 /// In `body`, positions and velocities are copied to the chip before and copied back afterwards, if there is room.
 template <class Advance>
@@ -39,7 +45,10 @@ __device__ __forceinline__ void advance_span(const Body& stored, std::uint64_t i
   const CheckSpan span(stored.piece, index);
   if (span.empty() || stored.answer->diverged) return;
   [[maybe_unused]] Samples samples;
-  if constexpr (sampled) samples.begin(stored.sampling, span.begin);
+  if constexpr (sampled) {
+    samples.done = span.begin;
+    samples.next.seek(stored.sampling, span.begin);
+  }
   Body body = stored;
   if (body.on_chip) {
     body.positions = points_on_chip(body, 0);
@@ -59,8 +68,7 @@ __device__ __forceinline__ void count_contact(const Body& body, unsigned mass, c
 /// Takes the samples that are due at the end of a step. Row `row` of the tables holds the lengths then.
 __device__ __forceinline__ void end_step(const Body& body, unsigned row, [[maybe_unused]] Samples& samples) {
   if constexpr (sampled) {
-    ++samples.done;
-    if (!samples.are_due(body.sampling)) return;
+    if (samples.next.step != ++samples.done) return;
     __syncthreads();
     take_samples(
         body, body.positions, row,
@@ -69,8 +77,7 @@ __device__ __forceinline__ void end_step(const Body& body, unsigned row, [[maybe
           if constexpr (work) at.power = body.power[mass];
           return at;
         },
-        samples);
-    __syncthreads();
+        samples.done, samples.next);
   }
 }
 

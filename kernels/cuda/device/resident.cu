@@ -383,13 +383,14 @@ __device__ __forceinline__ void write_forces(const Body& body, const Share& shar
   }
 }
 
-/// Takes the samples that are due. `lengths` are the present ones; `totals` are those of all steps since the last
-/// check.
+/// Takes the samples that are due after `done` steps. `lengths` are the present ones; `totals` are those of all steps
+/// since the last check. Nothing else may use of_warps until the block is synchronised again.
 __device__ __forceinline__ void take_samples(const Body& body, const Share& share, const Lengths& lengths,
-                                             const Movers& movers, const Totals& totals, Samples& samples) {
+                                             const Movers& movers, const Totals& totals, std::uint64_t done,
+                                             NextSample& next) {
   const Sampling& sampling = body.sampling;
-  for (; samples.are_due(sampling); ++samples.next) {
-    const SampleMark mark = sampling.marks[samples.next];
+  while (true) {
+    const SampleMark mark = next.take(sampling);
     const SampleLists lists(mark, sampling.masses);
     Reduction reduction;
     for_each_mover(body, [&](unsigned i, unsigned index, unsigned offset) {
@@ -403,23 +404,26 @@ __device__ __forceinline__ void take_samples(const Body& body, const Share& shar
     }
     reduction.write(mark);
     if (mark.channels & forces_bit) write_forces(body, share, lengths, lists.forces);
+    if (next.step != done) return;
+    __syncthreads();
   }
 }
 
-/// Computes `count` steps; the table holds their lengths. The sums exist only in this function, which calls only
-/// inlined functions, so they stay in registers. A warp without springs only moves masses. Takes the
+/// Computes `count` steps after the first `done`; the table holds their lengths. The sums exist only in this function,
+/// which calls only inlined functions, so they stay in registers. A warp without springs only moves masses. Takes the
 /// samples that are due before the last of these steps; after each, passes are numbered anew.
 template <bool has_springs>
 __device__ __forceinline__ void advance(const Body& body, const StepConstants<Number>& constants, const Share& share,
                                         unsigned group_ends, unsigned count, Movers& movers, Totals& totals,
-                                        [[maybe_unused]] Samples& samples) {
+                                        [[maybe_unused]] std::uint64_t done, [[maybe_unused]] NextSample& next) {
   const Number resolution = static_cast<Number>(body.resolution);
   SpringPass springs{Lengths(body)};
   [[maybe_unused]] Sums sums;
   unsigned passes = opening_passes + count * passes_per_step;
-  [[maybe_unused]] unsigned now = count;  // steps to the next sample or the end
+  [[maybe_unused]] unsigned left = 0;  // steps after the next sample
   if constexpr (sampled) {
-    now = samples.steps_to_next(body.sampling, count);
+    const unsigned now = next.steps_from(done, count);
+    left = count - now;
     passes = opening_passes + now * passes_per_step;
   }
   for (unsigned pass = 0; pass < passes; ++pass) {
@@ -433,14 +437,13 @@ __device__ __forceinline__ void advance(const Body& body, const StepConstants<Nu
       if (pass + 1 == passes) rows_on -= opening_passes;  // an opening pass reads the row of the last pass again
     if constexpr (actuation) springs.lengths.advance_rows(body, rows_on);
     if constexpr (sampled) {
-      if (pass + 1 < passes) continue;
-      samples.done += now;
-      count -= now;
-      if (count == 0) break;
+      if (pass + 1 < passes || left == 0) continue;
       Totals so_far = totals;
       if constexpr (work) so_far.power += sums.power;
-      take_samples(body, share, springs.lengths, movers, so_far, samples);
-      now = samples.steps_to_next(body.sampling, count);
+      const std::uint64_t at = done + (count - left);
+      take_samples(body, share, springs.lengths, movers, so_far, at, next);
+      const unsigned now = next.steps_from(at, left);
+      left -= now;
       passes = opening_passes + now * passes_per_step;
       pass = 0u - 1;
     }
@@ -456,12 +459,12 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)
   std::uint64_t begin = 0, steps = body.piece.steps;
   Movers movers;
   Totals totals;
-  Samples samples;
+  NextSample next;
   if constexpr (sampled) {
     begin = steps_before_span(body.piece, range * body.sampling.spans_per_range);
     steps = steps_before_span(body.piece, (range + 1) * body.sampling.spans_per_range);
     if (begin == steps || body.answer->diverged) return;
-    samples.begin(body.sampling, begin);
+    next.seek(body.sampling, begin);
   }
   load(body, movers);
   fill_lengths(body, 0, 1);
@@ -477,22 +480,23 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)
       __syncthreads();
     }
     if (share.chunks > 0)
-      advance<true>(body, body.constants, share, group_ends, now, movers, totals, samples);
+      advance<true>(body, body.constants, share, group_ends, now, movers, totals, done, next);
     else
-      advance<false>(body, body.constants, share, group_ends, now, movers, totals, samples);
+      advance<false>(body, body.constants, share, group_ends, now, movers, totals, done, next);
     done += now;
-    if constexpr (sampled) {
-      if (samples.are_due(body.sampling)) {
-        if constexpr (actuation) fill_lengths(body, done, 1);
-        __syncthreads();
-        take_samples(body, share, Lengths(body), movers, totals, samples);
-        __syncthreads();
-      }
-    }
-    if (now < until_check) continue;
+    bool is_due = false;
+    if constexpr (sampled) is_due = next.step == done;
+    if (now < until_check && !is_due) continue;
     if constexpr (actuation) {
       fill_lengths(body, done, 1);
       __syncthreads();
+    }
+    if constexpr (sampled) {
+      if (is_due) {
+        take_samples(body, share, Lengths(body), movers, totals, done, next);
+        __syncthreads();
+      }
+      if (now < until_check) continue;
     }
     if (has_diverged(body, check_of(body, movers, totals), done)) break;
     totals = Totals();

@@ -14,9 +14,9 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_CHECK_THREADS)
   const CheckSpan span(body.piece, index);
   if (span.empty() || step >= span.steps() || body.answer->diverged) return;
   const bool at_end = step == 0;
-  Samples samples;
-  samples.begin(body.sampling, span.begin + (at_end ? span.steps() : step) - 1);
-  ++samples.done;
+  const std::uint64_t done = span.begin + (at_end ? span.steps() : step);
+  NextSample next;
+  next.seek(body.sampling, done - 1);
   const unsigned passes = at_end ? span.passes() : step * passes_per_step;
   const Point<Number>* positions = body.positions + (passes_before(span, index) + passes) % 2 * body.masses;
   const bool merged = opening_passes > 0 && !at_end;  // the next pass would end this step
@@ -34,7 +34,7 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_CHECK_THREADS)
         at.velocity = m.velocity;
         return at;
       },
-      samples);
+      done, next);
 }
 
 }  // namespace evodevo::cuda

@@ -6,88 +6,105 @@
 
 namespace evodevo::cuda {
 
-/// The progress of a body through its samples.
-struct Samples {
-  std::uint64_t done;  // steps of the piece so far
-  unsigned next;       // index of the next mark
+/// The next sample of a body. After the last, it is one that is never reached.
+struct NextSample {
+  std::uint64_t step;  // of the piece
+  unsigned index;      // of its mark
 
-  /// Goes to the first mark after step `step` of the piece.
-  __device__ __forceinline__ void begin(const Sampling& sampling, std::uint64_t step) {
-    done = step;
-    next = 0;
-    for (unsigned end = sampling.count; next < end;) {
-      const unsigned middle = (next + end) / 2;
-      if (sampling.marks[middle].step <= step)
-        next = middle + 1;
+  /// Goes to the first mark after step `done` of the piece.
+  __device__ __forceinline__ void seek(const Sampling& sampling, std::uint64_t done) {
+    index = 0;
+    for (unsigned end = sampling.count; index < end;) {
+      const unsigned middle = (index + end) / 2;
+      if (sampling.marks[middle].step <= done)
+        index = middle + 1;
       else
         end = middle;
     }
+    step = sampling.marks[index].step;
   }
 
-  __device__ __forceinline__ bool are_due(const Sampling& sampling) const { return sampling.marks[next].step == done; }
+  /// Returns the mark, and goes to the one that follows it. Both are read at once.
+  __device__ __forceinline__ SampleMark take(const Sampling& sampling) {
+    const SampleMark mark = sampling.marks[index];
+    step = sampling.marks[++index].step;
+    return mark;
+  }
 
-  /// The number of steps to the next sample, but at most `most`.
-  __device__ __forceinline__ unsigned steps_to_next(const Sampling& sampling, unsigned most) const {
-    return static_cast<unsigned>(min(static_cast<std::uint64_t>(most), sampling.marks[next].step - done));
+  /// The number of steps to the sample, but at most `most`.
+  __device__ __forceinline__ unsigned steps_from(std::uint64_t done, unsigned most) const {
+    return static_cast<unsigned>(min(static_cast<std::uint64_t>(most), step - done));
   }
 };
 
 struct Add {
-  __device__ __forceinline__ double operator()(double a, double b) const { return a + b; }
+  template <class T>
+  __device__ __forceinline__ T operator()(T a, T b) const {
+    return a + b;
+  }
 };
 
 struct Larger {
-  __device__ __forceinline__ double operator()(double a, double b) const { return fmax(a, b); }
+  template <class T>
+  __device__ __forceinline__ T operator()(T a, T b) const {
+    return fmax(a, b);
+  }
 };
 
 /// Joins each of eight values over a warp, in a fixed order: lanes exchange half of their values at a time, which takes
 /// a fifth of the exchanges of eight separate sums. Lane l returns the result for value l / 4.
-template <class Join>
-__device__ __forceinline__ double across_warp(double (&values)[8], Join join) {
+template <class T, class Join>
+__device__ __forceinline__ T across_warp(T (&values)[8], Join join) {
   constexpr unsigned all = 0xffffffff;
 #pragma unroll
   for (unsigned distance = 16, count = 4; count > 0; distance /= 2, count /= 2) {
     const bool upper = threadIdx.x & distance;
 #pragma unroll
     for (unsigned i = 0; i < count; ++i) {
-      const double sent = upper ? values[i] : values[i + count], kept = upper ? values[i + count] : values[i];
+      const T sent = upper ? values[i] : values[i + count], kept = upper ? values[i + count] : values[i];
       values[i] = join(kept, __shfl_xor_sync(all, sent, distance));
     }
   }
+#pragma unroll
   for (unsigned distance = 2; distance > 0; distance /= 2)
     values[0] = join(values[0], __shfl_xor_sync(all, values[0], distance));
   return values[0];
 }
 
 /// Joins each of eight values over the block, in an order that depends only on the block's size, and writes the results
-/// to `to`. `nothing` changes no result. Nothing else may use of_warps until the function returns.
-template <class Join>
-__device__ __forceinline__ void write_joined(double (&values)[8], Join join, double nothing, double* to) {
+/// to `to`. `nothing` changes no result. One warp joins the results of the warps, while the others go on. Nothing else
+/// may use of_warps until the block is synchronised again.
+template <class T, class Join>
+__device__ __forceinline__ void write_joined(T (&values)[8], Join join, T nothing, unsigned writer, double* to) {
+  constexpr unsigned room = sizeof of_warps / (lanes * sizeof(T));  // for so many values of each warp at a time
+  T* const shared = reinterpret_cast<T*>(of_warps);
   const unsigned lane = threadIdx.x % lanes, warp = threadIdx.x / lanes, warps = blockDim.x / lanes;
-  const double of_warp = across_warp(values, join);
-  for (unsigned first = 0; first < 8; first += 4) {  // there is room for four values at a time
-    const unsigned row = lane / 4 - first;
-    if (lane % 4 == 0 && row < 4) of_warps[row][warp] = of_warp;
+  const bool writes = warp == writer % warps;
+  const T of_warp = across_warp(values, join);
+#pragma unroll
+  for (unsigned first = 0; first < 8; first += room) {
+    if (first > 0) __syncthreads();
+    const unsigned i = lane / 4 - first;
+    if (lane % 4 == 0 && i < room) shared[warp * room + i] = of_warp;
     __syncthreads();
-    for (unsigned i = warp; i < 4; i += warps) {
-      double all = lane < warps ? of_warps[i][lane] : nothing;
-      for (unsigned distance = lanes / 2; distance > 0; distance /= 2)
-        all = join(all, __shfl_down_sync(0xffffffff, all, distance));
-      if (lane == 0) to[first + i] = all;
-    }
-    __syncthreads();
+    if (!writes) continue;
+#pragma unroll
+    for (unsigned k = 0; k < room; ++k) values[first + k] = lane < warps ? shared[lane * room + k] : nothing;
   }
+  if (!writes) return;
+  const T result = across_warp(values, join);
+  if (lane % 4 == 0) to[lane / 4] = result;
 }
 
 /// A thread's contribution to the reduced quantities of a sample.
 struct Reduction {
-  static constexpr double lowest = -1.7976931348623157e308;
+  static constexpr Number lowest = sizeof(Number) == sizeof(float) ? -3.402823466e38 : -1.7976931348623157e308;
   double sums[8] = {};  // as in ReducedSample: centre, work, velocity, contact steps
-  double extremes[8] = {lowest, lowest, lowest, lowest, lowest, lowest, lowest, lowest};  // low (negative), high
+  Number extremes[8] = {lowest, lowest, lowest, lowest, lowest, lowest, lowest, lowest};  // low (negative), high
 
   __device__ __forceinline__ void add(const SampleMark& mark, double mass_share, const Vector& position,
                                       const Vector& velocity) {
-    const double x[3] = {position.x, position.y, position.z}, v[3] = {velocity.x, velocity.y, velocity.z};
+    const Number x[3] = {position.x, position.y, position.z}, v[3] = {velocity.x, velocity.y, velocity.z};
 #pragma unroll
     for (unsigned i = 0; i < 3; ++i) {
       if (mark.channels & centre_bit) sums[i] += mass_share * x[i], sums[4 + i] += mass_share * v[i];
@@ -99,11 +116,14 @@ struct Reduction {
   __device__ __forceinline__ void add_work(double joules) { sums[3] += joules; }
   __device__ __forceinline__ void add_contact(std::uint32_t steps) { sums[7] += steps; }
 
-  /// Writes the sums and extremes of all threads of the block into the sample.
+  /// Writes the sums and extremes of all threads of the block into the sample. Nothing else may use of_warps until the
+  /// block is synchronised again.
   __device__ __forceinline__ void write(const SampleMark& mark) {
     auto* to = reinterpret_cast<ReducedSample*>(mark.to);
-    if (mark.channels & (centre_bit | contact_bit | work_bit)) write_joined(sums, Add(), 0, to->centre);
-    if (mark.channels & box_bit) write_joined(extremes, Larger(), lowest, to->low);
+    const bool summed = mark.channels & (centre_bit | contact_bit | work_bit), boxed = mark.channels & box_bit;
+    if (summed) write_joined(sums, Add(), 0.0, 0, to->centre);
+    if (summed && boxed) __syncthreads();
+    if (boxed) write_joined(extremes, Larger(), lowest, 1, to->low);
   }
 };
 

@@ -27,13 +27,14 @@ __device__ __forceinline__ void write_forces(const Body& body, const Point<Numbe
   });
 }
 
-/// Takes the samples that are due. Row `row` of the tables holds the present lengths; at_end(mass) returns a MassAtEnd.
+/// Takes the samples that are due after `done` steps. Row `row` of the tables holds the present lengths; at_end(mass)
+/// returns a MassAtEnd. Nothing else may use of_warps until the block is synchronised again.
 template <class AtEnd>
 __device__ __forceinline__ void take_samples(const Body& body, const Point<Number>* positions, unsigned row,
-                                             const AtEnd& at_end, Samples& samples) {
+                                             const AtEnd& at_end, std::uint64_t done, NextSample& next) {
   const Sampling& sampling = body.sampling;
-  for (; samples.are_due(sampling); ++samples.next) {
-    const SampleMark mark = sampling.marks[samples.next];
+  while (next.step == done) {
+    const SampleMark mark = next.take(sampling);
     const SampleLists lists(mark, sampling.masses);
     Reduction reduction;
     for (unsigned mass = threadIdx.x; mass < body.masses; mass += blockDim.x) {
@@ -46,6 +47,7 @@ __device__ __forceinline__ void take_samples(const Body& body, const Point<Numbe
     if constexpr (work)
       if (threadIdx.x == 0) reduction.add_work(body.answer->work);
     reduction.write(mark);
+    __syncthreads();
   }
 }
 

@@ -111,6 +111,7 @@ void take_samples_of_nothing(Task& task, Course course) {
 SampleLayout::SampleLayout(const Task& task, std::uint64_t spans_per_range, std::size_t forces)
     : task_(&task), spans_per_range_(spans_per_range), forces_(forces) {
   ranges_ = span_of_sample(task, task.steps) / spans_per_range + 1;
+  points_.reserve(task.sampled_at.size());
   std::uint64_t range = 0;
   std::size_t used = 0;
   for (const SamplePoint& point : task.sampled_at) {
