@@ -18,6 +18,7 @@ set(embedded
   cuda/device/sample_streamed.cu
   cuda/device/sampling.cuh
   cuda/device/sampling_streamed.cuh
+  cuda/device/springs.cuh
   cuda/device/streamed.cu
   cuda/device/streamed.cuh
   cuda/layout/fixed_point.hpp

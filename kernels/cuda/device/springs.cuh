@@ -1,0 +1,234 @@
+// The springs of a body on the chip: their forces, records and energy.
+//
+// Each lane of a warp takes a mass and computes the springs that the mass owns, one spring per row. It sums their
+// forces in registers, and adds the opposite force to the mass at the other end by atomic additions of integers in
+// shared memory. So each spring is computed once, and no sum depends on the order of its terms.
+#pragma once
+
+#include EVODEVO_MATERIALS
+
+namespace evodevo::cuda {
+
+using Fixed = FixedPoint<Number>;
+using Integer = Fixed::Integer;
+constexpr unsigned plane = plane_bytes<Number>;
+constexpr unsigned group_size = group_bytes<Number>;
+
+__device__ __forceinline__ Vector position_at(unsigned offset) {
+  return {on_chip<Number>(offset), on_chip<Number>(offset + plane), on_chip<Number>(offset + 2 * plane)};
+}
+
+__device__ __forceinline__ unsigned offset_of_mass(unsigned index) {
+  return index / lanes * group_size + index % lanes * static_cast<unsigned>(sizeof(Number));
+}
+
+__device__ __forceinline__ Integer bits(float value) { return __float_as_uint(value); }
+__device__ __forceinline__ Integer bits(double value) { return static_cast<Integer>(__double_as_longlong(value)); }
+
+/// A spring and the position of the mass at its other end. They are read ahead of their use.
+struct Spring {
+  Number rest_length;
+  unsigned other;  // offset of the mass at the other end
+  SpringMaterial material;
+  Vector position;
+
+  __device__ __forceinline__ Spring(const Records::Read& record, const Lengths& lengths)
+      : rest_length(record.rest_length),
+        other((static_cast<unsigned>(record.packed) & 0xffffu) << offset_shift),
+        material(lengths(record)),
+        position(position_at(other)) {}
+};
+
+/// The mass whose springs a thread is computing, and the sum of their forces so far.
+struct Owner {
+  unsigned offset;
+  Vector position;
+  Integer fx, fy, fz;
+
+  __device__ __forceinline__ explicit Owner(unsigned offset_)
+      : offset(offset_), position(position_at(offset_)), fx(0), fy(0), fz(0) {}
+
+  __device__ __forceinline__ void flush() const {
+    atomicAdd(&on_chip<Integer>(offset + 3 * plane), fx);
+    atomicAdd(&on_chip<Integer>(offset + 4 * plane), fy);
+    atomicAdd(&on_chip<Integer>(offset + 5 * plane), fz);
+  }
+};
+
+/// Sums of a thread over its springs and some steps.
+struct Sums {
+  Number largest = 0;            // |force|, units
+  Number row_stress[rows] = {};  // sum of |force| of the spring in each row, if there is one chunk, units
+  Number power = 0;              // sum over the springs, units m/s
+};
+
+/// Sums of a thread between two checks.
+struct Totals {
+  double power = 0;    // units m/s
+  Number largest = 0;  // |force|, units
+};
+
+/// The springs of a thread.
+struct Share {
+  Records records;  // of all slots of the body
+  unsigned owner;   // offset of the mass that owns the first row
+  unsigned first_slot;
+  unsigned chunks;                  // 0 if the warp has no springs
+  const std::uint32_t* group_ends;  // for the warp's chunks: bit r is set if a group ends with row r
+
+  __device__ __forceinline__ unsigned slot(unsigned chunk) const { return first_slot + chunk * rows * lanes; }
+};
+
+__device__ __forceinline__ Share share_of(const Body& body) {
+  Share share{Records::of(body)};
+  const unsigned warp = threadIdx.x / lanes, chunks = chunked ? body.chunks : 1;
+  share.chunks = warp < body.warps ? chunks : 0;
+  share.first_slot = warp * chunks * rows * lanes + threadIdx.x % lanes;
+  share.group_ends = body.group_ends + warp * chunks;
+  share.owner = offset_of_mass(body.first_group[warp] * lanes + threadIdx.x % lanes);
+  return share;
+}
+
+/// A pass over the springs.
+struct SpringPass {
+  Lengths lengths;
+  bool recorded = true;  // whether its forces are recorded
+};
+
+/// Adds the force of the spring at `slot` to the sums of both its masses. Returns the absolute force, units.
+__device__ __forceinline__ Number add_force(const Body& body, unsigned slot, const Spring& spring, Owner& owner,
+                                            const SpringPass& pass, Sums& sums) {
+  const auto s = physics::separation(owner.position, spring.position);
+  const Number inverse = physics::inverse_length(s);
+  const Entry<Number>& entry = spring.material.entry;
+  const Number factor =
+      physics::spring_factor_by_inverse(inverse, entry.stiffness, entry.rest_force * spring.rest_length);
+  const Number tension = factor * physics::length_by_inverse(s, inverse);
+  sums.largest = fmax(sums.largest, fabs(tension));
+  if constexpr (work) {
+    const Number rate = pass.lengths.rate_of(spring.material) * spring.rest_length;
+    const Number watts = physics::actuation_power(tension, rate);
+    if (pass.recorded) sums.power += watts;
+    if constexpr (muscle_work)
+      if (pass.recorded) atomicAdd(in_memory(body.powers) + slot, static_cast<double>(watts));
+  }
+  if constexpr (peak_force)
+    if (pass.recorded) atomicMax(in_memory(body.peak) + slot, bits(fabs(tension)));
+  if constexpr (mean_tension)
+    if (pass.recorded) atomicAdd(in_memory(body.tensions) + slot, static_cast<double>(tension));
+  const Integer x = bits(physics::multiply_add(-factor, s.d.x, Fixed::magic));
+  const Integer y = bits(physics::multiply_add(-factor, s.d.y, Fixed::magic));
+  const Integer z = bits(physics::multiply_add(-factor, s.d.z, Fixed::magic));
+  atomicAdd(&on_chip<Integer>(spring.other + 3 * plane), x);
+  atomicAdd(&on_chip<Integer>(spring.other + 4 * plane), y);
+  atomicAdd(&on_chip<Integer>(spring.other + 5 * plane), z);
+  owner.fx -= x;
+  owner.fy -= y;
+  owner.fz -= z;
+  return fabs(tension);
+}
+
+/// Adds the forces of `rows` rows, beginning at `slot`. The reads of the next row are issued before the atomics of this
+/// row, because the compiler must not move them across atomics.
+__device__ __forceinline__ void add_forces(const Body& body, const Share& share, unsigned slot, unsigned group_ends,
+                                           const SpringPass& pass, Owner& owner, Sums& sums) {
+  const Records records = share.records.from(slot);
+  Records::Read record = records[rows > 1 ? lanes : 0];
+  Spring next(records[0], pass.lengths);
+#pragma unroll
+  for (unsigned row = 0; row < rows; ++row) {
+    const Spring spring = next;
+    if (row + 1 < rows) next = Spring(record, pass.lengths);
+    if (row + 2 < rows) record = records[(row + 2) * lanes];
+    const Number force = add_force(body, slot + row * lanes, spring, owner, pass, sums);
+    if constexpr (stress) {
+      // no thread waits for this addition to memory; the sum has one writer, so its order is fixed
+      const Number recorded = pass.recorded ? force : Number(0);
+      if constexpr (chunked)
+        atomicAdd(in_memory(body.recent_stress) + slot + row * lanes, recorded);
+      else
+        sums.row_stress[row] += recorded;
+    }
+    if (group_ends >> row & 1) {
+      owner.flush();
+      owner = Owner(owner.offset + group_size);
+    }
+  }
+}
+
+__device__ __forceinline__ void add_spring_forces(const Body& body, const Share& share, unsigned group_ends,
+                                                  const SpringPass& pass, Sums& sums) {
+  Owner owner(share.owner);
+  if constexpr (chunked) {
+    for (unsigned chunk = 0; chunk < share.chunks; ++chunk)
+      add_forces(body, share, share.slot(chunk), share.group_ends[chunk], pass, owner, sums);
+  } else {
+    add_forces(body, share, share.first_slot, group_ends, pass, owner, sums);
+  }
+  owner.flush();
+}
+
+/// Adds the sums of some steps to the body's records and to the totals.
+__device__ __forceinline__ void collect(const Body& body, const Share& share, const Sums& sums, Totals& totals) {
+  totals.largest = fmax(totals.largest, sums.largest);
+  if constexpr (work) totals.power += sums.power;
+  if constexpr (stress) {
+    for (unsigned chunk = 0; chunk < (chunked ? share.chunks : 1); ++chunk) {
+      double* to = body.stress + share.slot(chunk);
+      Number* recent = body.recent_stress + share.slot(chunk);
+      double before[rows];  // all read before the first write, because a read after a write would wait for it
+      Number forces[rows];
+#pragma unroll
+      for (unsigned row = 0; row < rows; ++row) {
+        before[row] = to[row * lanes];
+        forces[row] = chunked ? __ldcg(recent + row * lanes) : sums.row_stress[row];
+      }
+#pragma unroll
+      for (unsigned row = 0; row < rows; ++row) {
+        to[row * lanes] = before[row] + body.resolution * forces[row];
+        if constexpr (chunked) recent[row * lanes] = 0;
+      }
+    }
+  }
+}
+
+/// The elastic energy of a thread's springs, units m. The first row of lengths must be the current one.
+__device__ double elastic_energy(const Body& body, const Share& share) {
+  const Lengths lengths(body);
+  double sum = 0;
+  unsigned offset = share.owner;
+  for (unsigned chunk = 0; chunk < share.chunks; ++chunk) {
+    const unsigned group_ends = share.group_ends[chunk];
+    for (unsigned row = 0; row < rows; ++row) {
+      const Spring spring(share.records[share.slot(chunk) + row * lanes], lengths);
+      const auto s = physics::separation(position_at(offset), spring.position);
+      // an empty slot has no stiffness
+      const Entry<Number>& entry = spring.material.entry;
+      const Number relative = entry.rest_force / physics::maximum(entry.stiffness, Number(1e-30));
+      sum += physics::elastic_energy(s, entry.stiffness, spring.rest_length * relative);
+      if (group_ends >> row & 1) offset += group_size;
+    }
+  }
+  return sum;
+}
+
+/// Writes the force of each spring into a sample (N), in the order of the slots.
+__device__ __forceinline__ void write_forces(const Body& body, const Share& share, const Lengths& lengths, float* to) {
+  unsigned offset = share.owner;
+  for (unsigned chunk = 0; chunk < share.chunks; ++chunk) {
+    const unsigned group_ends = share.group_ends[chunk];
+    for (unsigned row = 0; row < rows; ++row) {
+      const unsigned slot = share.slot(chunk) + row * lanes;
+      const Spring spring(share.records[slot], lengths);
+      const auto s = physics::separation(position_at(offset), spring.position);
+      const Number inverse = physics::inverse_length(s);
+      const Entry<Number>& entry = spring.material.entry;
+      const Number factor =
+          physics::spring_factor_by_inverse(inverse, entry.stiffness, entry.rest_force * spring.rest_length);
+      to[slot] = static_cast<float>(factor * physics::length_by_inverse(s, inverse) * body.resolution);
+      if (group_ends >> row & 1) offset += group_size;
+    }
+  }
+}
+
+}  // namespace evodevo::cuda
