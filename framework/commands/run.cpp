@@ -120,7 +120,10 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
   print_outcome(experiment, archive, progress);
   print_time_spent(time, simulator);
   if (is_finished(experiment, archive.generations())) {
-    const auto count = static_cast<std::size_t>(experiment.verify);
+    const auto count = is_verifiable(experiment) ? static_cast<std::size_t>(experiment.verify) : 0;
+    if (count < static_cast<std::size_t>(experiment.verify))
+      remarks() << "not verified: " << experiment.objectives.front().name
+                << " is measured within the life, which verification does not repeat" << std::endl;
     if (count > 0)
       remarks() << "verifying the best " << count << "; Ctrl-C stops this, and it can be done later by `"
                 << program_name() << " verify " << archive.folder().string() << "`" << std::endl;

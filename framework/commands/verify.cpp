@@ -25,6 +25,10 @@ int verify(const Given& given) {
     throw ArchiveError(archive.folder().string() + ": no individual has a fitness that could be verified; see `" +
                        program_name() + " show " + archive.folder().string() + "`");
   const Experiment experiment = experiment_of_run(archive, given);
+  if (!is_verifiable(experiment))
+    throw ArchiveError(archive.folder().string() + ": its first objective, " + experiment.objectives.front().name +
+                       ", is measured within the life, which verification does not repeat; put an operator that "
+                       "measures after maturing first");
   const auto simulator = opened_simulator(experiment);
   warn_of_other_builds(experiment, *simulator, archive);
   const auto verifications = verify_best(experiment, *simulator, archive, static_cast<std::size_t>(best));

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "base/philox.hpp"
+#include "life/measurement/windows.hpp"
 
 namespace evodevo::conformance {
 namespace {
@@ -46,24 +47,26 @@ SampleBehaviour sample_behaviour(const Request& request, std::uint64_t seed, std
   if (!(request.rate > 0)) return behaviour;
 
   // the body moves evenly from the first place to the last one, and shakes
-  constexpr double most = 100;
-  const double last = std::floor(std::min(most, request.window * request.rate));
+  const auto last = static_cast<double>(last_sample(request));
+  std::vector<double> contact_times(masses, 0.0);
+  double contact_time = 0;
   for (double i = 0; i <= last; ++i) {
     const double share = last > 0 ? i / last : 0;
     StoredSample& sample = behaviour.samples.emplace_back(StoredSample{.time = 5 + i / request.rate});
+    const auto touched = [&] { return i > 0 ? rng.uniform(0.2, 0.8) / request.rate : 0; };
     const Vec3 moved = share * (seen.centre_after - seen.centre_before);
     sample.centre = seen.centre_before + moved;
     sample.velocity = (1 / request.window) * (seen.centre_after - seen.centre_before);
     sample.box = {low + moved, low + moved + size};
-    sample.contact_time = rng.uniform(0.2, 0.8) * i / request.rate;
+    sample.contact_time = contact_time += touched();
     sample.work = share * work;
     sample.version = behaviour.version;
     for (const Mass& mass : body.masses) {
       const Vec3 at = sample.centre + mass.rest;
       for (const double number : {at.x, at.y, at.z}) sample.positions.push_back(static_cast<float>(number));
       for (int c = 0; c < 3; ++c) sample.velocities.push_back(static_cast<float>(rng.uniform(-1, 1)));
-      sample.contact_times.push_back(rng.uniform(0.2, 0.8) * i / request.rate);
     }
+    for (double& time : contact_times) sample.contact_times.push_back(time += touched());
     for (std::size_t s = 0; s < body.springs.size(); ++s)
       sample.forces.push_back(static_cast<float>(rng.uniform(-100, 100)));
   }

@@ -80,7 +80,7 @@ Life Birth::of(Body body) const {
   Life life;
   life.living.state = state_at_birth(body, experiment_.scene);
   life.living.body = std::move(body);
-  life.born_masses = static_cast<std::uint32_t>(life.living.body.masses.size());
+  life.living.numbers = MassNumbers(life.living.body.masses.size());
   simulation_.choose_step(life);
   return life;
 }
@@ -91,7 +91,7 @@ Life Birth::amid_life(Body body, State state) const {
   Life life;
   life.living.body = std::move(body);
   life.living.state = std::move(state);
-  life.born_masses = static_cast<std::uint32_t>(life.living.body.masses.size());
+  life.living.numbers = MassNumbers(life.living.body.masses.size());
   if (std::string reason = throw_by_ground(life.living, experiment_.scene); !reason.empty())
     life.end(Status::invalid, std::move(reason));
   else

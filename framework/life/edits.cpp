@@ -318,7 +318,9 @@ Edits resolved(const Edits& edits, const DevoContext& context) {
 
 void apply(const Edits& resolved, LivingBody& living) {
   if (resolved.empty()) return;
+  const bool is_numbered = living.numbers.numbers().size() == living.body.masses.size();
   Editor(resolved, living.body, &living.state, &living).apply();
+  if (is_numbered) living.numbers.apply(resolved);
   living.version = nullptr;
   if (living.contact_times.empty()) return;
   erase_at(living.contact_times, resolved.removed_masses);

@@ -49,7 +49,6 @@ struct Life {
   Newborn newborn;
   LivingBody living;
   const Scene* scene = nullptr;       ///< the scene in which the body lives on; null: that of the experiment
-  std::uint32_t born_masses = 0;      ///< number of masses at birth
   std::vector<StoredSample> samples;  ///< taken so far
   double contact_time = 0;            ///< mean time in which a mass touched the ground, as far as it was counted, s
   double work = 0;                    ///< work of the muscles on the body, as far as it was recorded, J
@@ -63,11 +62,6 @@ struct Life {
     result.ended_at = ended_at;
   }
 };
-
-/// The numbers of the masses of a life at present.
-inline std::vector<std::uint32_t> present_numbers(const Life& life) {
-  return mass_numbers(life.born_masses, life.result.record);
-}
 
 /// How lives are simulated. The defaults are the settings of an experiment.
 struct Conditions {

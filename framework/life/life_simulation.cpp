@@ -36,7 +36,7 @@ StoredSample stored(Sample& sample, const Channels& channels, double dt, Life& l
     kept.contact_times.push_back(living.contact_times[i] + dt * sample.contacts[i]);
   if (!shows_parts(channels)) return kept;
   if (!living.version)
-    living.version = std::make_shared<const BodyVersion>(BodyVersion{living.body, present_numbers(life)});
+    living.version = std::make_shared<const BodyVersion>(BodyVersion{living.body, living.numbers.numbers()});
   kept.version = living.version;
   return kept;
 }

@@ -33,6 +33,10 @@ struct Verification {
   std::vector<Trial> trials;
 };
 
+/// Whether the first objective is measured after maturing. verify() repeats only that part of a life, so that it can
+/// say nothing of an objective that is measured within the life.
+bool is_verifiable(const Experiment& experiment);
+
 /// Simulates the development of champions as in the run, on `simulator`. Then repeats the final evaluation in the
 /// following trials:
 ///   again         unchanged;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "core/piecewise.hpp"
 
@@ -37,7 +38,7 @@ void add_records(SpringRecords& whole, const SpringRecords& part, double share) 
 class Take {
  public:
   Take(Task& task, Recording recording, Reel& reel, double rate, std::span<const double> cuts)
-      : whole_(task), reel_(reel), rate_(rate), cuts_(cuts) {
+      : whole_(task), reel_(reel), rate_(rate), cuts_(cuts), seen_until_(task.state->time) {
     whole_.clear(recording, task.body->springs.size());
     whole_.work = 0;
     const double frames = std::ceil(static_cast<double>(task.steps) * task.dt * rate - 1e-9);
@@ -70,11 +71,11 @@ class Take {
     add_frame(shot().frames, *whole_.state, rate_);
   }
 
-  /// Whether a cut is nearer to the present frame than to the frames before and after it.
-  bool is_cut() const {
-    const double now = whole_.state->time;
-    return std::any_of(cuts_.begin(), cuts_.end(),
-                       [&](double cut) { return cut > now - 0.5 / rate_ && cut <= now + 0.5 / rate_; });
+  /// Whether there is a cut between the middles of the intervals before and after the present frame.
+  bool is_cut() {
+    const double half = static_cast<double>(whole_.steps) * whole_.dt / static_cast<double>(parts_) / 2;
+    const double from = std::exchange(seen_until_, whole_.state->time + half);
+    return std::any_of(cuts_.begin(), cuts_.end(), [&](double cut) { return cut > from && cut <= seen_until_; });
   }
 
   void add(const Task& part) {
@@ -98,12 +99,13 @@ class Take {
   Reel& reel_;
   double rate_;                          ///< frames per simulated second
   std::span<const double> cuts_;         ///< s since birth
+  double seen_until_;                    ///< time up to which cuts have been made, s since birth
   std::uint64_t parts_ = 1, begun_ = 0;  ///< number of parts, and number of parts begun so far
   std::uint64_t done_ = 0;               ///< number of steps done
 };
 
 /// Sets the numbers of the masses in all shots. Shot i begins after i cycles; all shots after the last cycle show the
-/// same body.
+/// matured body.
 void number_masses(Film& film, const LifeRecord& record) {
   if (film.empty()) return;
   MassNumbers numbers(film.front().body.masses.size());
@@ -165,6 +167,8 @@ std::vector<FilmedLife> film_lives(const Experiment& experiment, Simulator& simu
     number_masses(film, life.result.record);
     std::erase_if(film, [](const Shot& shot) { return shot.frames.empty(); });
     const std::size_t cycles = std::min(film.size(), static_cast<std::size_t>(experiment.development.cycles));
+    // a scenario may have damaged the body
+    for (std::size_t i = cycles; i < film.size(); ++i) film[i].numbers = life.living.numbers.numbers();
     filmed.push_back({std::move(life.result), std::move(film), cycles});
   }
   return filmed;

@@ -17,7 +17,11 @@ class Piecewise {
     for (const SamplePoint& point : whole_.sampled_at) counted_ = counted_ | counted_of(point.channels);
   }
 
-  bool is_over() const { return whole_.status != Status::ok || done_ == whole_.steps; }
+  /// Whether the task has ended. A task without steps takes one piece if it is sampled.
+  bool is_over() const {
+    const bool is_sampled = whole_.samples.size() == whole_.sampled_at.size();
+    return whole_.status != Status::ok || (done_ == whole_.steps && is_sampled);
+  }
 
   Task piece(std::uint64_t steps) {
     Task piece{.body = whole_.body, .state = whole_.state, .dt = whole_.dt};

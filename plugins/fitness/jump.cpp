@@ -12,6 +12,7 @@ class Jump final : public evodevo::Fitness {
   void parameters(evodevo::Parameters& p) override {
     window_.declare(p);
     p.real(rate_, "rate", {1, 1000, "1/s"}, "Number of times per second at which the height is measured.");
+    p.require(rate_ * window_.window >= 1, "rate", "expected one or more measurements within the window");
   }
 
   evodevo::Request observes() const override { return window_.request(rate_, {.box = true}); }

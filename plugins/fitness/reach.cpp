@@ -13,6 +13,7 @@ class Reach final : public evodevo::Fitness {
              "Place of the target, relative to the centre of mass when the window opens.");
     window_.declare(p);
     p.real(rate_, "rate", {1, 1000, "1/s"}, "Number of times per second at which the distance is measured.");
+    p.require(rate_ * window_.window >= 1, "rate", "expected one or more measurements within the window");
   }
 
   evodevo::Request observes() const override { return window_.request(rate_, {.centre = true}); }

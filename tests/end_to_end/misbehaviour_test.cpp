@@ -137,7 +137,7 @@ TEST_F(Misbehaviour, WhatNoLifeCanBeMeasuredByIsRefused) {
       {"endless-window", "settle = 0 s and window = no finite number; expected"},
       {"early-window", "settle = -0.1 s and window = 0.1 s; expected"},
       {"window-that-is-no-number", "settle = no finite number and window = 0.1 s; expected"},
-      {"no-objective", "has no objectives"},
+      {"no-objective", "no scores"},
       {"nameless-objective", "an objective without a name"}};
   for (const auto& [how, reason] : cases) {
     const Finished finished = testing::run(run_with("fitness.0", how));
@@ -148,7 +148,7 @@ TEST_F(Misbehaviour, WhatNoLifeCanBeMeasuredByIsRefused) {
   }
   const Finished scores = testing::run(run_with("fitness.0", "one-score-too-many"));
   EXPECT_EQ(scores.exit_code, 1);
-  EXPECT_THAT(scores.output, testing::naming("2 scores", "1 objectives"));
+  EXPECT_THAT(scores.output, testing::naming("2 scores", "objectives() has 1"));
   EXPECT_THAT(scores.output, HasSubstr(named("fitness") + ", individual "));
 }
 

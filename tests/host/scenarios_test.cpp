@@ -8,6 +8,7 @@
 #include <set>
 
 #include "life/evaluation.hpp"
+#include "report/filming.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 
@@ -44,7 +45,8 @@ class Witness final : public Fitness {
   std::vector<Objective> objectives() const override { return {{"number", "1"}}; }
   std::vector<double> score(const Observation& o) const override {
     seen_.push_back({std::string(o.scenario), *o.body, o.centre_after - o.centre_before, o.box});
-    return {static_cast<double>(seen_.size())};
+    const std::size_t test = seen_.size();
+    return {test == 4 ? 10.0 : static_cast<double>(test)};
   }
 
  private:
@@ -173,6 +175,56 @@ TEST(Scenarios, DamageTheSameInAllIndividualsAndOtherwiseInEveryRepeat) {
   EXPECT_FALSE(pairs(one[0].body) == pairs(one[1].body) && pairs(one[1].body) == pairs(one[2].body));
 }
 
+/// A fitness operator that sees every mass.
+class Counter final : public Fitness {
+ public:
+  explicit Counter(std::vector<std::vector<std::uint32_t>>& numbers) : numbers_(numbers) {}
+  Request observes() const override {
+    return {.settle = 0, .window = 0.02, .rate = 50, .channels = {.positions = true}};
+  }
+  std::vector<Objective> objectives() const override { return {{"masses", "1"}}; }
+  std::vector<double> score(const Observation& o) const override {
+    const auto numbers = o.samples.numbers(1);
+    numbers_.emplace_back(numbers.begin(), numbers.end());
+    EXPECT_EQ(numbers.size(), o.samples.body(1).masses.size());
+    EXPECT_EQ(numbers.size(), o.body->masses.size());
+    return {static_cast<double>(numbers.size())};
+  }
+
+ private:
+  std::vector<std::vector<std::uint32_t>>& numbers_;
+};
+
+TEST(Scenarios, LeaveTheMassesTheirNumbers) {
+  Experiment experiment =
+      with("\n[[scenario]]\nname = 'whole'\n[[scenario]]\nname = 'hurt'\ndamage = 0.6\nrepeat = 4\n");
+  std::vector<std::vector<std::uint32_t>> numbers;
+  experiment.fitness.clear();
+  experiment.fitness.push_back(std::make_unique<Counter>(numbers));
+  experiment.over = {Over::mean};
+  experiment.objectives = {{"masses", "1"}};
+  const Genome genome{2, 1};
+  const Life life = lived(experiment, genome);
+  ASSERT_TRUE(life.alive()) << life.result.reason;
+  ASSERT_EQ(numbers.size(), 5u);
+  EXPECT_EQ(numbers[0].size(), 12u);
+  std::size_t least = 12;
+  for (const auto& hurt : numbers) {
+    EXPECT_THAT(numbers[0], ::testing::IsSupersetOf(hurt));
+    least = std::min(least, hurt.size());
+  }
+  EXPECT_LT(least, 12u) << "pieces come off";
+
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  for (std::int64_t repeat = 0; repeat < 4; ++repeat) {
+    const Film film =
+        film_lives(experiment, *simulator, std::vector<Newborn>{{0, 0, &genome}}, {1, repeat}).front().film;
+    ASSERT_EQ(film.size(), 3u) << "two cycles and the window";
+    EXPECT_EQ(film.back().numbers, numbers[static_cast<std::size_t>(1 + repeat)]);
+    EXPECT_EQ(film.back().body.masses.size(), film.back().numbers.size());
+  }
+}
+
 TEST(Scenarios, ShakeTheStart) {
   const auto seen =
       seen_in("\n[[scenario]]\nname = 'calm'\n[[scenario]]\nname = 'shaken'\nstart_noise = 0.01\nrepeat = 2\n");
@@ -185,20 +237,20 @@ TEST(Scenarios, ShakeTheStart) {
 }
 
 TEST(Scenarios, AreSummedUpAsTheExperimentSays) {
-  const std::string five = "\n[[scenario]]\nname = 'a'\nrepeat = 3\n[[scenario]]\nname = 'b'\nrepeat = 2\n";
-  for (const auto& [over, expected] : {std::pair{Over::mean, 3.0}, {Over::worst, 1.0}, {Over::median, 3.0}}) {
-    Experiment experiment = with(five);
+  const std::string four = "\n[[scenario]]\nname = 'a'\nrepeat = 3\n[[scenario]]\nname = 'b'\n";
+  for (const auto& [over, expected] : {std::pair{Over::mean, 4.0}, {Over::worst, 1.0}, {Over::median, 2.5}}) {
+    Experiment experiment = with(four);
     std::vector<Seen> seen;
     experiment.fitness.clear();
-    experiment.fitness.push_back(std::make_unique<Witness>(seen));  // scores 1 to 5
+    experiment.fitness.push_back(std::make_unique<Witness>(seen));  // scores 1, 2, 3, 10
     experiment.over = {over};
     experiment.objectives = {{"number", "1", true}};
     EXPECT_EQ(lived(experiment).result.objectives, std::vector{expected});
     experiment.objectives[0].maximise = false;
     seen.clear();
-    EXPECT_EQ(lived(experiment).result.objectives, std::vector{over == Over::worst ? 5.0 : expected});
+    EXPECT_EQ(lived(experiment).result.objectives, std::vector{over == Over::worst ? 10.0 : expected});
   }
-  EXPECT_EQ(with(five, {{"fitness.0.over", "worst", ""}}).over, (std::vector{Over::worst, Over::mean}));
+  EXPECT_EQ(with(four, {{"fitness.0.over", "worst", ""}}).over, (std::vector{Over::worst, Over::mean}));
 }
 
 TEST(Scenarios, ThatFailAreNamed) {

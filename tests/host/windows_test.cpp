@@ -28,7 +28,10 @@ class Spy final : public Fitness {
   std::vector<Objective> objectives() const override { return {{"way", "m", true}}; }
   std::vector<double> score(const Observation& seen) const override {
     see_(seen);
-    return {seen.centre_after.x - seen.centre_before.x};
+    double score = seen.centre_after.x - seen.centre_before.x;
+    if (request_.work) score += seen.work;
+    for (std::size_t i = 0; request_.channels.contact && i < seen.samples.size(); ++i) score += seen.samples.contact(i);
+    return {score};
   }
 
  private:
@@ -103,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(Ways, Observing,
 
 TEST_P(Observing, ChangesNoLife) {
   constexpr Channels everything{true, true, true, true, true, true, true, true};
-  const Request first{.settle = 0.0511, .window = 0.1001};
+  const Request first{.settle = 0.0511, .window = 0.1001, .work = true, .rate = 250, .channels = {.contact = true}};
   Experiment plain = experiment(), watched = experiment();
   spy_on(plain, Spy(first));
   spy_on(watched, Spy(first), Spy({.settle = 0.0133, .window = 0.0417, .work = true}),
@@ -232,6 +235,51 @@ TEST(Windows, AskForNothingThatIsNotRequested) {
               testing::naming("body", "Request::channels"));
   EXPECT_THAT(told([&](const Observation& o) { number(o.samples.centre(6).x); }),
               testing::naming("sample 6", "only 6"));
+}
+
+TEST(Windows, AskForNothingThatOthersRequestedEither) {
+  Experiment experiment = testing::read(testing::small_experiment);
+  const Request centres{.settle = 0, .window = 0.05, .rate = 100, .channels = {.centre = true}};
+  Request places = centres;
+  places.channels = {.positions = true};
+  spy_on(experiment, Spy(centres, [](const Observation& o) { static_cast<void>(o.samples.body(1)); }), Spy(places));
+  EXPECT_THAT([&] { lived(experiment); },
+              ::testing::ThrowsMessage<std::runtime_error>(testing::naming("body", "Request::channels")));
+}
+
+TEST(Windows, ShorterThanAStepAreInvalid) {
+  Experiment experiment = testing::read(testing::small_experiment);
+  spy_on(experiment, Spy({.settle = 0.01, .window = 0.0001}));
+  const Life life = lived(experiment);
+  EXPECT_EQ(life.result.status, Status::invalid);
+  EXPECT_THAT(life.result.reason, testing::naming("window", "step"));
+}
+
+/// Removes the first mass after the second cycle.
+struct Remover final : Devo {
+  void develop(const DevoContext& context, Edits& edits, Rng&) const override {
+    if (context.cycle == 2) edits.removed_masses.push_back(0);
+  }
+};
+
+TEST(Windows, FollowMassesByTheirNumbers) {
+  Experiment experiment = testing::read(testing::small_experiment, {{"development.cycles", "4", ""}});
+  experiment.devo[0].op = std::make_unique<Remover>();
+  const auto see = [](const Observation& seen) {
+    bool removed = false;
+    for (std::size_t i = 1; i < seen.samples.size(); ++i) {
+      removed |= seen.samples.edited(i);
+      ASSERT_EQ(seen.samples.numbers(i).size(), removed ? 11u : 12u);
+      EXPECT_EQ(seen.samples.numbers(i).front(), removed ? 1u : 0u);
+      for (std::size_t m = 0; m < seen.samples.numbers(i).size(); ++m) {
+        EXPECT_GE(seen.samples.contact(i, m), 0) << i;
+        EXPECT_LE(seen.samples.contact(i, m), 1 + 1e-9) << i;
+      }
+    }
+    EXPECT_TRUE(removed);
+  };
+  spy_on(experiment, Spy({.settle = 0, .window = 0.2, .cycle = 0, .rate = 70, .channels = {.contacts = true}}, see));
+  ASSERT_TRUE(lived(experiment).alive());
 }
 
 TEST(Windows, ShowPartsByTheirIndices) {

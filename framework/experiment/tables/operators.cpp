@@ -61,6 +61,11 @@ class OperatorTables {
     complete_layouts(out_.crossovers);
     read_array(top_, "fitness", record_, [&](TomlReader& t, TomlWriter& writer) { read_fitness(t, writer); });
     if (out_.fitness.empty()) top_.fail("fitness", "is missing; add a table [[fitness]]");
+    const auto is_within_life = [&](const std::unique_ptr<Fitness>& op) { return op->observes().cycle.has_value(); };
+    if (!out_.scenarios.empty() && std::all_of(out_.fitness.begin(), out_.fitness.end(), is_within_life))
+      top_.fail("scenario",
+                "no fitness operator measures robots after they have matured; remove the scenarios, or add "
+                "such an operator");
     if (out_.objectives.empty())
       top_.fail("fitness", "no operator has an objective by which individuals could be selected; add one that has");
     read_one("selection", [&](TomlReader& t, TomlWriter& writer) {
@@ -253,7 +258,7 @@ class OperatorTables {
     check_duration(t, "settle", request.settle, out_.step);
     check_duration(t, "window", request.window, out_.step);
     std::vector<Objective> objectives = factory_.ask(t, [&] { return fitness->objectives(); });
-    if (objectives.empty()) t.fail("name", "this operator has no objectives; expected one or more from objectives()");
+    if (objectives.empty()) t.fail("name", "this operator gives no scores; expected one or more from objectives()");
     const std::string& label = out_.uses.back().label;
     for (Objective& objective : objectives) {
       if (!label.empty()) objective.name = objectives.size() == 1 ? label : label + "-" + objective.name;

@@ -25,6 +25,14 @@ double combined(std::vector<double> scores, Over over, bool maximise) {
   return std::accumulate(scores.begin(), scores.end(), 0.0) / static_cast<double>(scores.size());
 }
 
+/// Removes the samples of a life and what it has counted, so that the samples that follow do not depend on them.
+void begin_counting_anew(Life& life) {
+  life.samples = {};
+  life.contact_time = life.work = 0;
+  life.living.contact_times = {};
+  life.living.version = nullptr;
+}
+
 /// Adds the name of a test to the reason for which a life ended in it.
 void name_test(const Test& test, const Experiment& experiment, Life& life) {
   const Scenario& scenario = experiment.scenarios[test.scenario];
@@ -62,7 +70,10 @@ double Measurement::duration() const {
 void Measurement::run(std::span<Life> lives, const Progress& progress) const {
   std::vector<Scores> within_life(lives.size());
   std::vector<std::vector<Scores>> tests(lives.size());
-  for (std::size_t i = 0; i < lives.size(); ++i) within_life[i] = scores_within_life(lives[i]);
+  for (std::size_t i = 0; i < lives.size(); ++i) {
+    within_life[i] = scores_within_life(lives[i]);
+    begin_counting_anew(lives[i]);
+  }
   if (windows_.after_maturing().duration > 0) {
     if (experiment_.scenarios.empty())
       measure(lives, "", tests);
@@ -122,7 +133,7 @@ void Measurement::measure(std::span<Life> lives, std::string_view scenario,
   for (std::size_t first = 0, count = 0; first < lives.size(); first += count) {
     count = measured_at_once(lives.subspan(first));
     const std::span<Life> group = lives.subspan(first, count);
-    for (Life& life : group) life.samples.clear();
+    for (Life& life : group) begin_counting_anew(life);
     simulation_.run(group, windows_.after_maturing(), move);
     simulation_.simulator().workers().for_each(count, [&](std::size_t i) {
       Scores of_life(windows_.all().size());
@@ -156,10 +167,9 @@ std::vector<double> Measurement::score(std::size_t op, std::string_view scenario
   const Fitness& fitness = *experiment_.fitness[op];
   const Window& window = windows_.all()[op];
   const StoredSample &before = life.samples[window.opens], &after = life.samples[window.closes];
-  if (!has_extent(std::vector{before.box.low, before.box.high})) {
-    life.end(Status::invalid, "no extent");
-    return {};
-  }
+  if (!has_extent(std::vector{before.box.low, before.box.high})) life.end(Status::invalid, "no extent");
+  if (!(after.time > before.time)) life.end(Status::invalid, "window shorter than a time step");
+  if (!life.alive()) return {};
   std::vector<const StoredSample*> samples;
   for (const std::size_t sample : window.samples) samples.push_back(&life.samples[sample]);
   const Observation observation{.box = before.box,
@@ -173,8 +183,8 @@ std::vector<double> Measurement::score(std::size_t op, std::string_view scenario
   const auto measured = [&] {
     auto scores = fitness.score(observation);
     if (const std::size_t expected = places_[op].size(); scores.size() != expected)
-      throw std::runtime_error("gave " + std::to_string(scores.size()) + " scores for " + std::to_string(expected) +
-                               " objectives");
+      throw std::runtime_error("gave " + std::to_string(scores.size()) + " scores, and objectives() has " +
+                               std::to_string(expected));
     return scores;
   };
   const auto scores = call_operator(experiment_.call_of(Fitness::kind, op, {.individual = life.newborn.id}), measured);

@@ -12,13 +12,25 @@
 namespace evodevo {
 namespace {
 
-/// Replaces the load of a body.
-void change_payload(const std::optional<Payload>& payload, Body& body) {
-  for (Mass& mass : body.masses) {
+/// Replaces the payload of a body. The masses in the upper part of the body, as it is now, carry the new one; held
+/// masses (0 kg) carry nothing.
+void change_payload(const std::optional<Payload>& payload, LivingBody& living) {
+  const std::vector<Vec3>& positions = living.state.position;
+  const Box box = bounding_box(positions);
+  double weight = 0;
+  std::vector<Mass*> carriers;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    Mass& mass = living.body.masses[i];
     mass.mass -= mass.payload;
     mass.payload = 0;
+    weight += mass.mass;
+    if (payload && mass.mass > 0 && positions[i].z >= box.high.z - payload->top * (box.high.z - box.low.z))
+      carriers.push_back(&mass);
   }
-  if (payload) add_payload(body, payload->share, payload->top);
+  for (Mass* mass : carriers) {
+    mass->payload = payload->share * weight / static_cast<double>(carriers.size());
+    mass->mass += mass->payload;
+  }
 }
 
 /// Removes the share of the springs whose middles are nearest to a place drawn in the body's bounding box, and then the
@@ -69,7 +81,7 @@ void start_scenario(const Test& test, const Experiment& experiment, const LifeSi
   LivingBody& living = life.living;
   Rng random = stream(test, experiment);
   life.scene = &scenario.scene;
-  if (scenario.payload != experiment.payload) change_payload(scenario.payload, living.body);
+  if (scenario.payload != experiment.payload) change_payload(scenario.payload, living);
   if (!scenario.muscles)
     for (Material& material : living.body.materials) material.amplitude = 0;
   if (scenario.damage > 0) do_damage(scenario.damage, random, living);

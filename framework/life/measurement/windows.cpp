@@ -6,14 +6,17 @@
 namespace evodevo {
 namespace {
 
-constexpr double rounding = 1e-9;  // s; closer times are the same
+constexpr double rounding = 1e-9;  // s
 
-/// A moment of a life: a cycle of development (from 1; 0: after maturing), and a time since its beginning (s).
+/// A moment of a life: a cycle of development (from 1; 0: after maturing), and a time since its beginning. Times are
+/// whole nanoseconds, so that equal moments of two windows are equal in all bits.
 struct Moment {
-  std::int64_t cycle = 0;
-  double time = 0;
+  std::int64_t cycle = 0, nanoseconds = 0;
 
-  bool is(const Moment& other) const { return cycle == other.cycle && std::abs(time - other.time) <= rounding; }
+  static Moment at(std::int64_t cycle, double seconds) { return {cycle, std::llround(seconds * 1e9)}; }
+  double seconds() const { return static_cast<double>(nanoseconds) * 1e-9; }
+
+  friend auto operator<=>(const Moment&, const Moment&) = default;
 };
 
 /// A sample that a window needs.
@@ -28,7 +31,7 @@ template <class MomentAfter>
 std::vector<Need> needs_of(const Request& request, const Moment& opening, const MomentAfter& moment_after) {
   std::vector<Need> needs{{opening, Channels{.centre = true, .box = true, .work = request.work} | request.channels}};
   if (request.rate > 0)
-    for (std::int64_t i = 1; static_cast<double>(i) <= request.window * request.rate + rounding; ++i)
+    for (std::int64_t i = 1; i <= last_sample(request); ++i)
       needs.push_back({moment_after(static_cast<double>(i) / request.rate), request.channels});
   needs.push_back({moment_after(request.window), {.centre = true, .work = request.work}});
   return needs;
@@ -36,7 +39,7 @@ std::vector<Need> needs_of(const Request& request, const Moment& opening, const 
 
 std::vector<Need> needs_after_maturing(const Request& request, double later) {
   const double opens = request.settle + later;
-  return needs_of(request, {0, opens}, [&](double time) { return Moment{0, opens + time}; });
+  return needs_of(request, Moment::at(0, opens), [&](double time) { return Moment::at(0, opens + time); });
 }
 
 /// A window that opens between two cycles opens after the change of the body. Every other sample between two cycles is
@@ -46,20 +49,18 @@ std::vector<Need> needs_within_life(const Request& request, double cycle_time) {
   const auto first = static_cast<std::int64_t>(std::floor((opens + rounding) / cycle_time));
   const auto moment_after = [&](double time) {
     const auto cycle = std::max<std::int64_t>(1, std::llround(std::ceil((opens + time - rounding) / cycle_time)));
-    return Moment{cycle, opens + time - static_cast<double>(cycle - 1) * cycle_time};
+    return Moment::at(cycle, opens + time - static_cast<double>(cycle - 1) * cycle_time);
   };
   const double since = std::max(0.0, opens - static_cast<double>(first) * cycle_time);
-  return needs_of(request, {first + 1, since}, moment_after);
+  return needs_of(request, Moment::at(first + 1, since), moment_after);
 }
 
 /// Merges needs at the same moment, in the order of time.
 std::vector<Need> merged(std::vector<Need> needs) {
-  std::stable_sort(needs.begin(), needs.end(), [](const Need& a, const Need& b) {
-    return a.moment.cycle != b.moment.cycle ? a.moment.cycle < b.moment.cycle : a.moment.time < b.moment.time;
-  });
+  std::stable_sort(needs.begin(), needs.end(), [](const Need& a, const Need& b) { return a.moment < b.moment; });
   std::vector<Need> merged;
   for (const Need& need : needs) {
-    if (merged.empty() || !merged.back().moment.is(need.moment)) merged.push_back({need.moment, {}});
+    if (merged.empty() || merged.back().moment != need.moment) merged.push_back({need.moment, {}});
     merged.back().channels = merged.back().channels | need.channels;
   }
   return merged;
@@ -67,10 +68,8 @@ std::vector<Need> merged(std::vector<Need> needs) {
 
 /// The index among `merged` of the sample at a moment.
 std::size_t index_of(const Moment& moment, const std::vector<Need>& merged) {
-  const auto found = std::lower_bound(merged.begin(), merged.end(), moment, [](const Need& need, const Moment& wanted) {
-    return need.moment.cycle != wanted.cycle ? need.moment.cycle < wanted.cycle
-                                             : need.moment.time < wanted.time - rounding;
-  });
+  const auto found = std::lower_bound(merged.begin(), merged.end(), moment,
+                                      [](const Need& need, const Moment& wanted) { return need.moment < wanted; });
   return static_cast<std::size_t>(found - merged.begin());
 }
 
@@ -111,8 +110,8 @@ Windows::Windows(const Experiment& experiment, double later)
   after = merged(std::move(after));
   counted_in_life_ = counted_in(in_life);
   for (const Need& need : in_life)
-    in_cycles_.at(static_cast<std::size_t>(need.moment.cycle - 1)).push_back({need.moment.time, need.channels});
-  for (const Need& need : after) after_maturing_.push_back({need.moment.time, need.channels});
+    in_cycles_.at(static_cast<std::size_t>(need.moment.cycle - 1)).push_back({need.moment.seconds(), need.channels});
+  for (const Need& need : after) after_maturing_.push_back({need.moment.seconds(), need.channels});
   for (std::size_t i = 0; i < windows_.size(); ++i) {
     std::vector<std::size_t> at;
     for (const Need& need : needs[i]) at.push_back(index_of(need.moment, windows_[i].within_life() ? in_life : after));
@@ -121,6 +120,10 @@ Windows::Windows(const Experiment& experiment, double later)
     at.pop_back();
     if (windows_[i].request.rate > 0) windows_[i].samples = std::move(at);
   }
+}
+
+std::int64_t last_sample(const Request& request) {
+  return static_cast<std::int64_t>(std::floor(request.window * request.rate + rounding));
 }
 
 double Windows::bytes_after_maturing(std::size_t masses, std::size_t springs) const {

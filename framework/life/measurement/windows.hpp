@@ -18,8 +18,11 @@ struct Window {
   bool within_life() const { return request.cycle.has_value(); }
 };
 
-/// The memory for the samples of all bodies that are measured at once after maturing, bytes. If they would take more,
-/// fewer bodies are measured at once, but at least one.
+/// The number of the last sample that a fitness operator asks for; the first one is 0.
+std::int64_t last_sample(const Request& request);
+
+/// The memory for the samples of the bodies of a cohort that are measured at once after maturing, bytes. If they would
+/// take more, fewer bodies are measured at once, but at least one.
 inline constexpr double most_sample_bytes = 4e9;
 
 /// The times at which bodies are sampled for the windows of all fitness operators. A sample serves all operators that

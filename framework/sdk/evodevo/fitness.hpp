@@ -82,7 +82,7 @@ inline const char* name(Role role) {
 struct Objective {
   std::string name;
   std::string unit;
-  bool maximise = true;  ///< whether larger values are better; only of an objective
+  bool maximise = true;  ///< whether larger values are better; of an objective or a measure
   Role role = Role::objective;
   double low = 0, high = 1;  ///< the range of a descriptor, in its unit; values outside are allowed
 };

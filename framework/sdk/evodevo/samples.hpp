@@ -107,7 +107,7 @@ class Samples {
 
   const BodyVersion& version(std::size_t i) const {
     const StoredSample& sample = at(i);
-    if (!sample.version)
+    if (!channels_.positions && !channels_.velocities && !channels_.contacts && !channels_.forces)
       throw std::logic_error(
           "reads the body of a sample, but observes() asks for no channel by mass or by spring; set one in "
           "Request::channels");
@@ -116,14 +116,17 @@ class Samples {
 
   template <class T>
   static const T& element(const std::vector<T>& list, std::size_t i, const char* what) {
-    if (i >= list.size())
-      throw std::logic_error(std::string("reads ") + what + " " + std::to_string(i) + ", but there are only " +
-                             std::to_string(list.size()) + ", numbered from 0");
+    if (i >= list.size()) refuse(what, i, list.size());
     return list[i];
   }
 
+  [[noreturn]] static void refuse(const char* what, std::size_t i, std::size_t count) {
+    throw std::logic_error(std::string("reads ") + what + " " + std::to_string(i) + ", but there are only " +
+                           std::to_string(count) + ", numbered from 0");
+  }
+
   static Vec3 triple(const std::vector<float>& list, std::size_t mass) {
-    element(list, 3 * mass + 2, "number");
+    if (mass >= list.size() / 3) refuse("mass", mass, list.size() / 3);
     const float* v = list.data() + 3 * mass;
     return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
   }

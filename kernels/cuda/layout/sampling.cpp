@@ -16,6 +16,9 @@ namespace {
 constexpr double wanted_spans = 10;           // in a range
 constexpr double wanted_bytes = 8 << 10;      // of a body's samples in a range, if it has that many spans
 constexpr double largest_bytes = 1024 << 10;  // even if it then has fewer
+// Blocks are not interrupted. While a batch is simulated for long, shorter ranges let others with higher priority begin
+// in between: evo-devo.toml with 1,024 robots runs 1.3 times as fast as with all spans in one range.
+constexpr double most_spans = 50;
 
 std::size_t bytes_of_lists(const Channels& channels, std::size_t masses, std::size_t forces) {
   std::size_t numbers = 0;
@@ -74,7 +77,7 @@ std::uint64_t spans_per_range(std::span<Task* const> tasks) {
   if (bytes == 0) return all;
   const double per_span = bytes / std::max(spans, 1.0);
   const double enough = std::max(wanted_spans, wanted_bytes / per_span);
-  return static_cast<std::uint64_t>(std::clamp(std::min(enough, largest_bytes / per_span), 1.0, 1e9));
+  return static_cast<std::uint64_t>(std::clamp(std::min(enough, largest_bytes / per_span), 1.0, most_spans));
 }
 
 Channels channels_on_device(const Task& task) {

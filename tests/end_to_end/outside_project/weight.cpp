@@ -1,6 +1,4 @@
 // Robots must not be too heavy.
-#include <cmath>
-
 #include "evodevo/plugin.hpp"
 
 namespace {
@@ -18,7 +16,6 @@ class Weight final : public evodevo::Fitness {
   }
 
   std::vector<double> score(const evodevo::Observation& seen) const override {
-    if (std::isnan(seen.centre_after.z)) return {seen.centre_after.z};  // nothing is known of this body
     double weight = 0;
     for (const evodevo::Mass& mass : seen.body->masses) weight += mass.mass;
     return {weight - most_};
