@@ -210,8 +210,8 @@ class Watcher final : public Devo {
   explicit Watcher(Seen& seen, SpringRequest request = {.stress = true}) : seen_(seen), request_(request) {}
   SpringRequest observes() const override { return request_; }
   void develop(const DevoContext& context, Edits&, Rng&) const override {
-    seen_.stress.emplace_back(context.stress.begin(), context.stress.end());
-    seen_.peak_force.emplace_back(context.peak_force.begin(), context.peak_force.end());
+    if (request_.stress) seen_.stress.emplace_back(context.stress.begin(), context.stress.end());
+    if (request_.peak_force) seen_.peak_force.emplace_back(context.peak_force.begin(), context.peak_force.end());
     seen_.applications.emplace_back(context.application, context.applications);
     seen_.cycles.push_back(context.cycle);
   }
