@@ -1,7 +1,7 @@
 // The charts of a report.
 import uPlot from "uplot";
 import { element, short, style } from "./elements.js";
-import { age, directionOf, measuresOf, objectivesOf, own, scoreChooser, titled } from "./scores.js";
+import { age, directionOf, listed, measuresOf, objectivesOf, own, scoreChooser, titled } from "./scores.js";
 
 const height = 250;
 const nothing = "Nothing to show: no individual has ended with a fitness.";
@@ -141,7 +141,7 @@ function progress(runs, name, title, x, xOf) {
 }
 
 /** Returns the name of an axis. */
-const axisText = (score) => [titled(score), score.maximise === false ? directionOf(score) : ""].filter(Boolean).join(", ");
+const axisText = (score) => listed(titled(score), directionOf(score));
 
 function cumulative(numbers) {
   let sum = 0;

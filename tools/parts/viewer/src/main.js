@@ -5,7 +5,7 @@ import { Charts } from "./charts.js";
 import { readPalette } from "./colours.js";
 import { element, short } from "./elements.js";
 import { Gallery } from "./gallery.js";
-import { directionOf, own, quantityText } from "./scores.js";
+import { directionOf, hasUnit, listed, own, quantityText } from "./scores.js";
 import { robotTable, TestTable } from "./tables.js";
 import { Viewer } from "./viewer.js";
 
@@ -51,7 +51,7 @@ function facts(run) {
     { className: "facts" },
     runs.length > 1 ? fact("Run", run.label, `${run.experiment}, seed ${run.seed}`) : null,
     ...run.objectives.map((o) =>
-      fact(`Best ${o.name}`, short(o.best?.value), [o.unit === "1" ? "" : o.unit, directionOf(o)].filter(Boolean).join(", ")),
+      fact(`Best ${o.name}`, short(o.best?.value), listed(hasUnit(o.unit) ? o.unit : "", directionOf(o))),
     ),
     fact(
       "Evaluations",

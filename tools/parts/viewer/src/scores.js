@@ -1,7 +1,7 @@
 // What is known of an individual in numbers: its age, its objectives and its other scores.
 import { element, short } from "./elements.js";
 
-const hasUnit = (unit) => unit !== "" && unit !== "1";
+export const hasUnit = (unit) => unit !== "" && unit !== "1";
 
 /** Returns a text such as "distance (m)". The unit "1", of a number without dimension, is left out. */
 export const titled = ({ name, unit }) => (hasUnit(unit) ? `${name} (${unit})` : name);
@@ -9,8 +9,11 @@ export const titled = ({ name, unit }) => (hasUnit(unit) ? `${name} (${unit})` :
 /** Returns a text such as "0.1234 m". */
 export const quantityText = (value, { unit }) => (hasUnit(unit) ? `${short(value)} ${unit}` : short(value));
 
-/** Returns a note for an objective for which low values are good; an empty text for the others. */
-export const directionOf = ({ maximise }) => (maximise ? "" : "lower is better");
+/** Joins texts by commas, without the empty ones. */
+export const listed = (...texts) => texts.filter((text) => text !== "").join(", ");
+
+/** Returns a note for an objective for which low values are good; an empty text for other scores. */
+export const directionOf = ({ maximise }) => (maximise === false ? "lower is better" : "");
 
 export const age = { name: "age", unit: "generations", group: "Age", better: -1, of: (individual) => individual.age };
 

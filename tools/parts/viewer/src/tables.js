@@ -1,6 +1,6 @@
 // The tables of a report: the robots, and the scores of the robots shown in each test.
 import { element, short } from "./elements.js";
-import { directionOf, measuresOf, objectivesOf, own, titled } from "./scores.js";
+import { directionOf, listed, measuresOf, objectivesOf, own, titled } from "./scores.js";
 
 const cell = (text, tag = "td") => element(tag, { textContent: text });
 
@@ -96,7 +96,7 @@ function heads(tested) {
     element("th", { textContent: name, colSpan: run.objectives.length, scope: "colgroup" }),
   );
   const names = tested.flatMap(({ run }) =>
-    run.objectives.map((o) => cell([titled(o), directionOf(o)].filter(Boolean).join(", "), "th")),
+    run.objectives.map((o) => cell(listed(titled(o), directionOf(o)), "th")),
   );
   return [element("tr", {}, cell("", "th"), ...spans), element("tr", {}, cell("Test", "th"), ...names)];
 }
@@ -118,9 +118,10 @@ function rows(tested) {
       ...tested.flatMap(({ run, robot }) => run.objectives.map((o) => cell(short(own(scoresOf(robot), o.name))))),
     );
   return [
-    ...names.map((name) =>
-      row(name, tested.some((one) => isFilmed(one, name)) ? "in the film" : "", (robot) => testOf(robot, name)?.objectives),
-    ),
+    ...names.map((name) => {
+      const note = tested.some((one) => isFilmed(one, name)) ? "in the film" : "";
+      return row(name, note, (robot) => testOf(robot, name)?.objectives);
+    }),
     row("combined", "", (robot) => robot.objectives),
   ];
 }
