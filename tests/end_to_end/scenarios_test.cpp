@@ -13,6 +13,7 @@ namespace evodevo {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using testing::Finished;
 using ::testing::HasSubstr;
 
@@ -80,7 +81,10 @@ TEST_F(ScenarioRun, KeepsTheScoresOfEveryTest) {
 
 TEST_F(ScenarioRun, IsShown) {
   EXPECT_THAT(evodevo({"show", folder_}).output,
-              AllOf(HasSubstr("distance by scenario: flat "), HasSubstr(", hurt "), HasSubstr("touching ")));
+              AllOf(HasSubstr("distance by scenario: flat "), HasSubstr(", hurt "),
+                    HasSubstr("actuation-work by scenario: flat "), HasSubstr("actuation-work (J), lower is better"),
+                    HasSubstr("best individuals in actuation-work"),
+                    ContainsRegex("touching [0-9.e-]+\n")));  // no unit "1"
   const auto best = nlohmann::json::parse(evodevo({"show", folder_, "--json"}).output).at("best");
   ASSERT_EQ(best.at("scenarios").size(), 3u);
   EXPECT_EQ(best.at("scenarios")[2].at("scenario"), "hurt");

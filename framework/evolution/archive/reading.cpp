@@ -140,7 +140,14 @@ std::vector<ArchivedMeasure> Archive::measures(std::uint32_t id) const {
                 "WHERE individual = ? ORDER BY position");
   row.bind(id);
   std::vector<ArchivedMeasure> measures;
-  while (row.step()) measures.push_back({line(row, 0), line(row, 1), line(row, 2), row.number(3)});
+  while (row.step()) measures.push_back({{line(row, 0), line(row, 1), line(row, 2)}, row.number(3)});
+  return measures;
+}
+
+std::vector<MeasureKind> Archive::measures() const {
+  Statement row(*run_, "measures", "SELECT name, unit, role FROM measures ORDER BY position");
+  std::vector<MeasureKind> measures;
+  while (row.step()) measures.push_back({line(row, 0), line(row, 1), line(row, 2)});
   return measures;
 }
 
@@ -315,15 +322,28 @@ std::optional<LifeRecord> Archive::life(std::uint32_t id) const try {
   refuse("individual " + std::to_string(id) + ": " + error.what());
 }
 
-std::vector<std::uint32_t> Archive::best(std::size_t count) const {
-  const bool maximise = objectives().front().maximise;
+std::vector<std::uint32_t> Archive::best(std::size_t count, std::size_t objective) const {
+  const bool maximise = objectives().at(objective).maximise;
   std::vector<std::uint32_t> ids;
   Statement row(*run_, "scores",
-                std::string("SELECT individual FROM scores WHERE objective = 0 ORDER BY value ") +
+                std::string("SELECT individual FROM scores WHERE objective = ? ORDER BY value ") +
                     (maximise ? "DESC" : "ASC") + ", individual LIMIT ?");
-  row.bind(static_cast<std::int64_t>(count));
+  row.bind(static_cast<std::int64_t>(objective), static_cast<std::int64_t>(count));
   while (row.step()) ids.push_back(row.index(0));
   return ids;
+}
+
+std::vector<Membership> Archive::memberships(std::size_t objective) const {
+  Statement row(*run_, "individuals",
+                "SELECT born, died, value FROM individuals JOIN scores ON individual = id "
+                "WHERE objective = ? AND (died IS NULL OR died > born) ORDER BY born, id");
+  row.bind(static_cast<std::int64_t>(objective));
+  std::vector<Membership> memberships;
+  while (row.step()) {
+    Membership& one = memberships.emplace_back(Membership{row.index(0), {}, row.number(2)});
+    if (!row.is_null(1)) one.died = row.index(1);
+  }
+  return memberships;
 }
 
 }  // namespace evodevo
