@@ -158,8 +158,7 @@ Json robot_json(const Archive& archive, const Actor& role, const FilmedLife& lif
   Json robot = individual_json(archive, role.individual);
   robot["role"] = role.role;
   robot["reason"] = role.individual.result.reason;
-  // the objectives of several tests cannot be compared with the scores of the test that is filmed
-  robot["again"] = experiment.scenarios.empty() ? life.result.objectives : std::vector<double>();
+  robot["again"] = life.result.objectives;  // of the test that is filmed
   robot["film"] = film_json(life.film, titles_of(life, experiment, scenario), budget);
   return robot;
 }

@@ -1,6 +1,6 @@
 // The report's page of runs with several objectives, other scores and scenarios.
 import assert from "node:assert/strict";
-import { readFileSync, writeFileSync } from "node:fs";
+import { cpSync, readFileSync, writeFileSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { archived, evodevo, inPage, launch, opened, Scratch, until } from "./support.mjs";
 
@@ -216,7 +216,22 @@ test("beside the film stand its test and how far the robot has moved in it", asy
   evodevo("report", run, "--best", "1", "--scenario", "hurt", "--out", scratch.path("hurt.html"));
   const hurt = await opened(browser, scratch.path("hurt.html"));
   assert.equal(await hurt.locator(".tests tr", { hasText: "in the film" }).locator("th").textContent(), "hurt, repeat 1in the film");
+  const filmed = await inPage(hurt, ({ viewer }) => viewer.robots[0].robot);
+  const scores = `SELECT value FROM tests WHERE individual = ${filmed.individual} AND scenario = 1 AND repeat = 0`;
+  assert.deepEqual(filmed.again, archived(run, `${scores} ORDER BY objective`).flat(), "the same bits");
   await hurt.close();
+});
+
+test("a score that differs in the life shown is told beside the test", async () => {
+  const changed = scratch.path("changed");
+  cpSync(run, changed, { recursive: true });
+  archived(changed, "UPDATE tests SET value = 77 WHERE scenario = 0 AND objective = 1");
+  evodevo("report", changed, "--best", "1", "--out", scratch.path("changed.html"));
+  const other = await opened(browser, scratch.path("changed.html"));
+  const texts = await other.locator(".tests tbody tr").first().locator("td").allTextContents();
+  assert.match(texts[1], /^77 \(as shown: [\d.]+\)$/);
+  assert.doesNotMatch(texts[0], /as shown/);
+  await other.close();
 });
 
 test("the best robot by each objective is shown", async () => {

@@ -63,11 +63,16 @@ function scoreText(robot, score, note) {
   return robot.status === "ok" ? "–" : robot.status;
 }
 
-/** Returns a note if an objective in the life shown differs from that in the archive by more than 1 %, for example
- *  because it was simulated on another device. */
+/** Returns a note if an objective in the life shown differs from that in the archive. If the robot was tested in
+ *  scenarios, the life shown is that of one test, and its note stands there. */
 function again(run, robot, objective) {
-  const shown = robot.again[run.objectives.findIndex(({ name }) => name === objective.name)];
-  const value = objective.of(robot);
+  return run.filmed_scenario ? "" : asShown(run, robot, objective.name, objective.of(robot));
+}
+
+/** Returns a note if a score in the life shown differs from `value`, that in the archive, by more than 1 %, for example
+ *  because it was simulated on another device. */
+function asShown(run, robot, objective, value) {
+  const shown = robot.again[run.objectives.findIndex(({ name }) => name === objective)];
   return shown === undefined || Math.abs(shown - value) <= 0.01 * Math.abs(value) ? "" : ` (as shown: ${short(shown)})`;
 }
 
@@ -110,18 +115,22 @@ function rows(tested) {
     const test = testOf(robot, name);
     return test?.scenario === run.filmed_scenario && test?.repeat === 1;
   };
-  const row = (name, note, scoresOf) =>
+  const scoreIn = (one, name, objective) => {
+    const value = own(testOf(one.robot, name)?.objectives, objective);
+    return short(value) + (isFilmed(one, name) ? asShown(one.run, one.robot, objective, value) : "");
+  };
+  const row = (name, note, textOf) =>
     element(
       "tr",
       {},
       element("th", { scope: "row" }, name, note ? element("span", { textContent: note }) : null),
-      ...tested.flatMap(({ run, robot }) => run.objectives.map((o) => cell(short(own(scoresOf(robot), o.name))))),
+      ...tested.flatMap((one) => one.run.objectives.map((o) => cell(textOf(one, o.name)))),
     );
   return [
     ...names.map((name) => {
       const note = tested.some((one) => isFilmed(one, name)) ? "in the film" : "";
-      return row(name, note, (robot) => testOf(robot, name)?.objectives);
+      return row(name, note, (one, objective) => scoreIn(one, name, objective));
     }),
-    row("combined", "", (robot) => robot.objectives),
+    row("combined", "", ({ robot }, objective) => short(own(robot.objectives, objective))),
   ];
 }
