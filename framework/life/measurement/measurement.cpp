@@ -49,7 +49,7 @@ Measurement::Measurement(const Experiment& experiment, const LifeSimulation& sim
   for (std::size_t op = 0; op < experiment.fitness.size(); ++op) {
     std::vector<Place>& places = places_.emplace_back();
     for (const Objective& score :
-         call_operator(experiment.call_of(Fitness::kind, op), [&] { return experiment.fitness[op]->objectives(); }))
+         call_operator(experiment.call_of(Fitness::kind, op), [&] { return experiment.fitness[op].op->objectives(); }))
       places.push_back({score.role, score.role == Role::objective ? objectives++ : measures++});
   }
   if (objectives != experiment.objectives.size() || measures != experiment.measures.size())
@@ -164,7 +164,7 @@ Measurement::Scores Measurement::scores_within_life(Life& life) const {
 }
 
 std::vector<double> Measurement::score(std::size_t op, std::string_view scenario, Life& life) const {
-  const Fitness& fitness = *experiment_.fitness[op];
+  const Fitness& fitness = *experiment_.fitness[op].op;
   const Window& window = windows_.all()[op];
   const StoredSample &before = life.samples[window.opens], &after = life.samples[window.closes];
   if (!has_extent(std::vector{before.box.low, before.box.high})) life.end(Status::invalid, "no extent");
@@ -196,15 +196,21 @@ std::vector<double> Measurement::score(std::size_t op, std::string_view scenario
 
 double Measurement::over_tests(std::size_t op, std::size_t i, const std::vector<Scores>& tests) const {
   if (tests.size() == 1) return tests.front()[op][i];
-  std::vector<double> scores;
-  for (const Scores& test : tests) scores.push_back(test[op][i]);
+  const std::vector<Test> all = tests_of(experiment_);
+  const auto scores_in = [&](std::optional<std::size_t> scenario) {
+    std::vector<double> scores;
+    for (std::size_t t = 0; t < tests.size(); ++t)
+      if (!scenario || all[t].scenario == *scenario) scores.push_back(tests[t][op][i]);
+    return scores;
+  };
+  const Scored& scored = experiment_.fitness[op];
   switch (const Place& place = places_[op][i]; place.role) {
     case Role::descriptor:
-      return combined(std::move(scores), Over::mean, true);
+      return combined(scores_in({}), Over::mean, true);
     case Role::constraint:
-      return combined(std::move(scores), Over::worst, false);
+      return combined(scores_in({}), Over::worst, false);
     default:
-      return combined(std::move(scores), experiment_.over.at(op), title_of(place).maximise);
+      return combined(scores_in(scored.scenario), scored.over, title_of(place).maximise);
   }
 }
 
