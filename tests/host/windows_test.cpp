@@ -39,9 +39,8 @@ class Spy final : public Fitness {
   See see_;
 };
 
-void set_fitness(Experiment& experiment, std::vector<std::unique_ptr<Fitness>> fitness) {
+void set_fitness(Experiment& experiment, std::vector<Scored> fitness) {
   experiment.fitness = std::move(fitness);
-  experiment.over.assign(experiment.fitness.size(), Over::mean);
   experiment.objectives.clear();
   for (std::size_t i = 0; i < experiment.fitness.size(); ++i)
     experiment.objectives.push_back({"way" + std::to_string(i), "m", true});
@@ -49,8 +48,8 @@ void set_fitness(Experiment& experiment, std::vector<std::unique_ptr<Fitness>> f
 
 template <class... Spies>
 void spy_on(Experiment& experiment, Spies... spies) {
-  std::vector<std::unique_ptr<Fitness>> fitness;
-  (fitness.push_back(std::make_unique<Spy>(std::move(spies))), ...);
+  std::vector<Scored> fitness;
+  (fitness.push_back({std::make_unique<Spy>(std::move(spies))}), ...);
   set_fitness(experiment, std::move(fitness));
 }
 

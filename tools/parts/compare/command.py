@@ -10,6 +10,7 @@ from common import charts
 from . import arguments, chart, report
 from .history import Objective, history
 from .runs import Failure, Interrupted, Runs, make_variants, parse_setting, parse_sweep
+from .scenarios import shared
 
 
 def first_objective(shown):
@@ -54,6 +55,10 @@ def compare(words, program):
     (out / "report.md").write_text(text)
     report.write_csv(out / "results.csv", histories)
     charts.save(chart.figure(histories, objective), out / "chart.svg")
+    if in_scenarios := shared(histories, objective).scores:
+        report.write_scenarios_csv(out / "scenarios.csv", histories)
+        if all(in_scenarios.values()):
+            charts.save(chart.scenario_figure(in_scenarios, objective), out / "scenarios.svg")
     print(f"\n{text}\nwritten to {out}")
 
 
