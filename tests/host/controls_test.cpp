@@ -46,8 +46,7 @@ struct Ring {
 
   Vec3 position(std::uint32_t mass) const { return living.state.position[mass]; }
   DevoContext context() const {
-    return {living.body, living.state, living.stress, 1,     2, 1, 2, 0.25, {{-1, -1, 0}, {1, 1, 1}},
-            0.2,         false,        genome,        layout};
+    return {living.body, living.state, 1, 2, 1, 2, 0.25, {{-1, -1, 0}, {1, 1, 1}}, 0.2, false, genome, layout};
   }
   Edits moved(const Amount& amount, std::uint64_t seed, std::size_t& surplus) const {
     Rng rng(philox, {seed, 1, 2, 3});
