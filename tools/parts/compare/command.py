@@ -15,7 +15,7 @@ from .scenarios import shared
 
 def first_objective(shown):
     """Returns the first objective, by which runs are compared. It must be the same in all runs."""
-    objectives = {Objective(**run["objectives"][0]) for run in shown}
+    objectives = {Objective.of(run["objectives"][0]) for run in shown}
     if len(objectives) > 1:
         names = ", ".join(sorted(f"{o.name} ({o.unit})" for o in objectives))
         raise Failure(f"the experiments differ in their first objective: {names}; only the same can be compared")

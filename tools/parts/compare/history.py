@@ -14,6 +14,11 @@ class Objective:
     unit: str
     maximise: bool
 
+    @classmethod
+    def of(cls, shown):
+        """The objective that `show --json` describes, with other facts about it."""
+        return cls(shown["name"], shown["unit"], shown["maximise"])
+
     @property
     def worst(self):
         """The score of a run in which no robot has a fitness."""
