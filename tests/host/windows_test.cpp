@@ -212,7 +212,8 @@ TEST(Windows, SampleOnlyAsManyBodiesAtOnceAsFitInMemory) {
          Spy({.settle = 0, .window = 0.05, .cycle = 0, .rate = 1e6, .channels = {.positions = true}}));
   // a window has 50,001 samples, each with three floats for each mass
   std::vector<Life> lives(5);
-  for (Life& life : lives) life.living.body.masses.resize(static_cast<std::size_t>(most_sample_bytes / 50'001 / 12 / 2.5));
+  for (Life& life : lives)
+    life.living.body.masses.resize(static_cast<std::size_t>(most_sample_bytes / 50'001 / 12 / 2.5));
   const Windows windows(experiment, 0);
   EXPECT_EQ(windows.fitting_after_maturing(lives), 2u);
   EXPECT_EQ(windows.fitting_within_life(lives), 2u);
