@@ -39,7 +39,8 @@ to {inference.EXACT_WITH_TIES_UP_TO}, and by the normal distribution beyond, cor
 
 SCENARIOS = """\
 The best robot of each run, by the first objective of its own experiment. Its score in a scenario is the mean of the
-repeats. Each cell has the median of the runs and, if there are enough seeds, its interval.
+repeats. Each cell has the median of the runs and, if there are enough seeds, its interval. Experiments that
+differ in the key `over` score their robots by different tests; this table has their scores in the same ones.
 """
 
 
