@@ -12,8 +12,9 @@
 namespace evodevo {
 
 /// Returns the rows from best to worst: by the first score, ties by the other scores in their order, then by youth,
-/// then by the order of birth. Failed rows come last. An operator that works in this order gives a result that depends
-/// on the order of birth only for exact ties.
+/// then by the order of birth. Failed rows come last, and among them those first that violate the constraints least
+/// (Deb 2000). An operator that works in this order gives a result that depends on the order of birth only for exact
+/// ties.
 inline std::vector<std::uint32_t> best_first(std::span<const Candidate> rows) {
   std::vector<std::uint32_t> order(rows.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -21,6 +22,7 @@ inline std::vector<std::uint32_t> best_first(std::span<const Candidate> rows) {
     const auto &a = rows[i].scores, &b = rows[j].scores;
     if (!std::equal(a.begin(), a.end(), b.begin(), b.end()))
       return std::lexicographical_compare(b.begin(), b.end(), a.begin(), a.end());
+    if (rows[i].violation != rows[j].violation) return rows[i].violation < rows[j].violation;
     return rows[i].age < rows[j].age;
   });
   return order;
