@@ -1,4 +1,4 @@
-// Nearest neighbours in a space of any dimension. Needs nanoflann.
+// Places in the space of descriptors, and nearest neighbours in a space of any dimension. Needs nanoflann.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +9,21 @@
 #include <utility>
 #include <vector>
 
+#include "evodevo/selection.hpp"
+
 namespace evodevo {
 
 /// A place in a space of any dimension, such as the space of the descriptors.
 using Place = std::vector<double>;
+
+/// Returns where an individual that did not fail lies in the space of the descriptors. The range of each descriptor
+/// becomes [0, 1].
+inline Place place_of(const Candidate& row, std::span<const Objective> descriptors) {
+  Place place;
+  for (std::size_t i = 0; i < descriptors.size(); ++i)
+    place.push_back((row.descriptors[i] - descriptors[i].low) / (descriptors[i].high - descriptors[i].low));
+  return place;
+}
 
 /// Finds the nearest of many fixed places by Euclidean distance, with a k-d tree (nanoflann).
 class Neighbours {
