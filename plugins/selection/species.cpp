@@ -13,11 +13,12 @@ using evodevo::SelectionContext;
 using Numbers = std::vector<std::uint32_t>;
 
 /// An individual belongs to the species whose best member of the generation before has the most similar genome, or
-/// founds a new one if none is similar enough. Its worth is one more than the number of individuals with a lower first
-/// score, divided by the number of members of its species: so no species takes over, and new ones have time to improve.
-/// NEAT divides scores; ranks do the same for scores of any scale and sign (Baker 1985). Parents are drawn in
-/// proportion to their worth, and their mates from the same species. Survivors are chosen one by one, and for their
-/// worth, only those members count that were chosen before. The memory holds the species of the living.
+/// founds a new one if none is similar enough. Two species become one when these members are similar. The worth of an
+/// individual is its first score, counted from 0 or from the lowest one if that is below 0, divided by the number of
+/// members of its species: so no species takes over, and new ones have time to improve (fitness sharing: Goldberg and
+/// Richardson 1987). Parents are drawn in proportion to their worth, and their mates from the same species. Survivors
+/// are chosen one by one, and for their worth, only those members count that were chosen before. The memory holds the
+/// species of the living.
 class SpeciesSelection final : public evodevo::Selection {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -35,7 +36,7 @@ class SpeciesSelection final : public evodevo::Selection {
     const auto pool = breeding_rows(context.rows);
     std::map<std::uint32_t, Numbers> members;  // positions in the pool
     for (std::uint32_t i = 0; i < pool.size(); ++i) members[known.species_of(context.rows[pool[i]])].push_back(i);
-    const auto worth = ranks(context.rows, pool);
+    const auto worth = shares(context.rows, pool);
     std::vector<double> sums{0};
     for (std::uint32_t i = 0; i < pool.size(); ++i)
       sums.push_back(sums.back() +
@@ -64,13 +65,13 @@ class SpeciesSelection final : public evodevo::Selection {
     for (std::uint32_t i = 0; i < order.size(); ++i)
       if (context.rows[order[i]].ok()) survival.notes.push_back({order[i], 0, static_cast<double>(species[i])});
 
-    const auto worth = ranks(context.rows, order);
+    const auto worth = shares(context.rows, order);
     std::map<std::uint32_t, double> chosen;  // how many of each species
     std::vector<bool> lives(order.size(), false);
     Known living{{}};
     for (std::size_t places = std::min<std::size_t>(population, order.size()); places > 0; --places) {
       std::uint32_t best = 0;
-      double most = 0;
+      double most = -1;
       for (std::uint32_t i = 0; i < order.size(); ++i)
         if (const double shared = worth[i] / (1 + chosen[species[i]]); !lives[i] && shared > most)
           best = i, most = shared;
@@ -114,16 +115,16 @@ class SpeciesSelection final : public evodevo::Selection {
     std::uint32_t next = 1;
   };
 
-  /// Returns, for each row of `order`, one more than the number of them that have a lower first score. Rows that failed
-  /// are equal.
-  static std::vector<double> ranks(std::span<const Candidate> rows, const Numbers& order) {
-    const auto score = [&](std::uint32_t row) { return rows[row].ok() ? rows[row].scores[0] : 0; };
-    std::vector<double> ranks;
-    for (const std::uint32_t row : order)
-      ranks.push_back(1.0 + static_cast<double>(std::count_if(order.begin(), order.end(), [&](std::uint32_t other) {
-                        return score(other) < score(row);
-                      })));
-    return ranks;
+  /// Returns the first score of each row of `order`, which is from best to worst, relative to the best:
+  /// counted from 0, or from the lowest one if that is below 0; 1 if all are equal. Rows that failed are equal.
+  static std::vector<double> shares(std::span<const Candidate> rows, const Numbers& order) {
+    const auto half = [&](std::uint32_t row) { return rows[row].ok() ? rows[row].scores[0] / 2 : 0; };  // no overflow
+    std::vector<double> shares;
+    for (const std::uint32_t row : order) {
+      const double low = std::min(0.0, half(order.back())), range = half(order.front()) - low;
+      shares.push_back(range > 0 ? (half(row) - low) / range : 1);
+    }
+    return shares;
   }
 
   double difference(const SelectionContext& context, std::uint32_t one, std::uint32_t other) const {
@@ -132,25 +133,30 @@ class SpeciesSelection final : public evodevo::Selection {
     return distance.blocks + weight_ * distance.genes;
   }
 
+  /// Returns the species whose representative is most similar to a row, or 0 if none is similar enough.
+  std::uint32_t nearest(const SelectionContext& context, const std::map<std::uint32_t, std::uint32_t>& representatives,
+                        std::uint32_t row) const {
+    std::uint32_t nearest = 0;
+    double least = threshold_;
+    for (const auto& [number, representative] : representatives)
+      if (const double distance = difference(context, row, representative);
+          distance < least || (distance == least && nearest == 0))
+        nearest = number, least = distance;
+    return nearest;
+  }
+
   /// Returns the species of each row of `order`, which is from best to worst, and numbers the new ones.
   Numbers classified(const SelectionContext& context, const Numbers& order, Known& known) const {
     std::map<std::uint32_t, std::uint32_t> representatives;  // row by species
     for (const std::uint32_t row : order)
-      if (const std::uint32_t number = known.species_of(context.rows[row]); number > 0)
+      if (const std::uint32_t number = known.species_of(context.rows[row]);
+          number > 0 && !representatives.contains(number) && nearest(context, representatives, row) == 0)
         representatives.emplace(number, row);
     Numbers species;
     for (const std::uint32_t row : order) {
-      std::uint32_t nearest = 0;
-      double least = threshold_;
-      for (const auto& [number, representative] : representatives)
-        if (const double distance = difference(context, row, representative);
-            distance < least || (distance <= least && nearest == 0))
-          nearest = number, least = distance;
-      if (nearest == 0) {
-        nearest = known.next++;
-        representatives.emplace(nearest, row);
-      }
-      species.push_back(nearest);
+      std::uint32_t number = nearest(context, representatives, row);
+      if (number == 0) representatives.emplace(number = known.next++, row);
+      species.push_back(number);
     }
     return species;
   }
