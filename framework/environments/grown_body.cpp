@@ -52,7 +52,7 @@ GrowthObserver::GrowthObserver(const Body& born) : born_(born.masses.size()) {
 }
 
 GrownBody GrowthObserver::after_cycle(const Life& life) {
-  GrownBody grown{life.living.body, life.living.state.position, {}, mass_numbers(born_, life.result.record), born_};
+  GrownBody grown{life.living.body, life.living.state.position, {}, life.living.numbers.numbers(), born_};
   std::vector<Vec3> positions, rest_positions;  // of the masses that were in the body before this cycle's changes
   for (std::size_t i = 0; i < grown.numbers.size(); ++i)
     if (const auto known = rest_.find(grown.numbers[i]); known != rest_.end()) {

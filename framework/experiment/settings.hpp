@@ -77,7 +77,7 @@ enum class Over { mean, worst, median };
 template <>
 inline constexpr std::array<std::string_view, 3> names_of<Over>{"mean", "worst", "median"};
 
-/// A test of a matured robot: the scene in which it is measured, and what is changed about the robot before.
+/// A test of a robot: the scene in which it is measured, and what is changed about the robot before.
 struct Scenario {
   std::string name;
   Scene scene;  ///< the scene of the experiment with the forces that the scenario replaces
@@ -86,6 +86,9 @@ struct Scenario {
   bool muscles = true;      ///< whether muscles are actuated
   double damage = 0;        ///< share of the springs that are lost around a random place, 1
   std::int64_t repeat = 1;  ///< number of repeats, each with its own random numbers
+  /// Whether the robot is born and matures in this scene, with this payload; otherwise it has matured in the scene of
+  /// the experiment.
+  bool develops = false;
 
   bool operator==(const Scenario&) const = default;
 };

@@ -57,7 +57,7 @@ std::vector<BuiltBody> Birth::build(std::span<const Newborn> newborns) const {
   return build_bodies(std::move(blueprints), simulation_.simulator().neighbours(), simulation_.simulator().workers());
 }
 
-std::vector<Life> Birth::of(std::span<const Newborn> newborns) const {
+std::vector<Life> Birth::of(std::span<const Newborn> newborns, const Scenario* scenario) const {
   const BusyClock::Span span(clock_);
   std::vector<BuiltBody> built = build(newborns);
   std::vector<Life> lives(newborns.size());
@@ -66,7 +66,7 @@ std::vector<Life> Birth::of(std::span<const Newborn> newborns) const {
     if (built[i].failure.empty()) {
       body.base_materials = static_cast<std::uint32_t>(experiment_.context.materials.size());
       drop_unused_materials(body);
-      lives[i] = of(std::move(body));
+      lives[i] = scenario != nullptr ? begin(std::move(body), scenario->scene, scenario->payload) : of(std::move(body));
     } else {
       lives[i].end(Status::invalid, std::move(built[i].failure));
     }
@@ -75,10 +75,13 @@ std::vector<Life> Birth::of(std::span<const Newborn> newborns) const {
   return lives;
 }
 
-Life Birth::of(Body body) const {
-  if (const auto& payload = experiment_.payload) add_payload(body, payload->share, payload->top);
+Life Birth::of(Body body) const { return begin(std::move(body), experiment_.scene, experiment_.payload); }
+
+Life Birth::begin(Body body, const Scene& scene, const std::optional<Payload>& payload) const {
+  if (payload) add_payload(body, payload->share, payload->top);
   Life life;
-  life.living.state = state_at_birth(body, experiment_.scene);
+  life.scene = &scene;
+  life.living.state = state_at_birth(body, scene);
   life.living.body = std::move(body);
   life.living.numbers = MassNumbers(life.living.body.masses.size());
   simulation_.choose_step(life);
@@ -89,6 +92,7 @@ Life Birth::amid_life(Body body, State state) const {
   // if the body lived in another scene before, the forces of this scene may add energy
   state.start_energy = std::max(state.start_energy, total_energy(body, state, experiment_.scene));
   Life life;
+  life.scene = &experiment_.scene;
   life.living.body = std::move(body);
   life.living.state = std::move(state);
   life.living.numbers = MassNumbers(life.living.body.masses.size());

@@ -14,9 +14,9 @@ namespace evodevo {
 /// names the encoding if the encoding throws or the blueprint is malformed (check_blueprint()).
 Blueprint decoded(const Experiment& experiment, const Genome& genome, CallSubject subject = {});
 
-/// Makes lives from genomes or bodies. It builds each body, adds the scene's payload,
-/// puts the body on the ground and chooses its time step. The life of a body that cannot be built or simulated ends as
-/// invalid. Experiment and simulation must outlive this object.
+/// Makes lives from genomes or bodies. It builds each body, adds the scene's payload, puts the body on the ground and
+/// chooses its time step. The life of a body that cannot be built or simulated ends as invalid. Experiment and
+/// simulation must outlive this object and the lives.
 class Birth {
  public:
   Birth(const Experiment& experiment, const LifeSimulation& simulation)
@@ -24,8 +24,9 @@ class Birth {
 
   /// Only decodes genomes and builds bodies, without a payload, a state or a time step.
   std::vector<BuiltBody> build(std::span<const Newborn> newborns) const;
-  /// Returns the lives of newborns, in the same order.
-  std::vector<Life> of(std::span<const Newborn> newborns) const;
+  /// Returns the lives of newborns, in the same order. They begin in the scene of a scenario, or in that of the
+  /// experiment.
+  std::vector<Life> of(std::span<const Newborn> newborns, const Scenario* scenario = nullptr) const;
   /// Returns the life of a body that no genome of the experiment describes, such as one from a file.
   Life of(Body body) const;
   /// Returns the life of a body in the middle of its life, in the given state. The life ends as invalid if the body is
@@ -35,6 +36,8 @@ class Birth {
   double seconds() const { return clock_.seconds(); }  ///< wall-clock time spent on making bodies from genomes, s
 
  private:
+  Life begin(Body body, const Scene& scene, const std::optional<Payload>& payload) const;
+
   const Experiment& experiment_;
   const LifeSimulation& simulation_;
   mutable BusyClock clock_;

@@ -45,8 +45,9 @@ void DevelopmentLoop::run(std::span<Life> lives, const Progress& progress) const
     else
       apply_operators(lives[i], cycle);
   };
-  // Lives with a record are observed as well, so that their re-simulation equals the original bit for bit.
-  run_cycles(lives, !yoked, change, progress);
+  const auto is_recorded = [](const Life& life) { return life.newborn.record.has_value(); };
+  const bool observed = !yoked && !std::all_of(lives.begin(), lives.end(), is_recorded);
+  run_cycles(lives, observed, change, progress);
 }
 
 std::vector<std::optional<Yoke>> DevelopmentLoop::yokes_of(std::span<const Life> lives) const {
@@ -103,16 +104,17 @@ void DevelopmentLoop::simulate_cycle(std::span<Life> lives, int cycle, Recording
 
 template <class Action>
 void DevelopmentLoop::allow_energy(Life& life, const Action& action) const {
-  const auto energy = [&] { return total_energy(life.living.body, life.living.state, experiment_.scene); };
+  const auto energy = [&] { return total_energy(life.living.body, life.living.state, *life.scene); };
   const double before = energy();
   action();
   life.living.state.start_energy += std::max(0.0, energy() - before);
 }
 
-Box DevelopmentLoop::bounds(const LivingBody& living) const {
+Box DevelopmentLoop::bounds(const Life& life) const {
+  const LivingBody& living = life.living;
   Box box =
       experiment_.development.reset ? bounding_box(rest_positions(living.body)) : bounding_box(living.state.position);
-  if (const auto& floor = experiment_.scene.floor) box.low.z = std::max(box.low.z, floor->roughness);
+  if (const auto& floor = life.scene->floor) box.low.z = std::max(box.low.z, floor->roughness);
   box.high.z = std::max(box.high.z, box.low.z);
   return box;
 }
@@ -180,7 +182,7 @@ DevoContext DevelopmentLoop::context_of(const Life& life, int cycle, const Sched
                       .application = static_cast<int>(schedule.applications(cycle)),
                       .applications = static_cast<int>(schedule.applications(development.cycles)),
                       .time = living.state.time,
-                      .bounds = bounds(living),
+                      .bounds = bounds(life),
                       .mass = experiment_.context.mass,
                       .resets = development.reset,
                       .genome = genome,
@@ -226,8 +228,7 @@ void DevelopmentLoop::return_to_rest(Life& life) const {
     state.velocity[i] = {};
   }
   // rest positions assume level ground
-  if (const auto& floor = experiment_.scene.floor; floor && floor->rough())
-    put_on_ground(state.position, experiment_.scene);
+  if (const auto& floor = life.scene->floor; floor && floor->rough()) put_on_ground(state.position, *life.scene);
 }
 
 }  // namespace evodevo

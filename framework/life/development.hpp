@@ -19,9 +19,9 @@ namespace evodevo {
 ///   3. remove the pieces that have been torn off; with DevelopmentSettings::reset, return bodies to rest
 ///   4. choose a time step for each changed body
 ///
-/// If a newborn comes with a record, the recorded changes are applied and no operator is called. A control changes what
-/// happens in step 2. Samples of windows within the life are taken in step 1. Experiment, simulation and windows must
-/// outlive this object.
+/// Each body lives in the scene of its life. If a newborn comes with a record, the recorded changes are applied and no
+/// operator is called. A control changes what happens in step 2. Samples of windows within the life are taken in
+/// step 1. Experiment, simulation and windows must outlive this object.
 class DevelopmentLoop {
  public:
   DevelopmentLoop(const Experiment& experiment, const LifeSimulation& simulation, const Windows& windows)
@@ -73,7 +73,7 @@ class DevelopmentLoop {
   void return_to_rest(Life& life) const;
   /// Returns the box around the positions at which the next cycle starts, cut off below at the height of the highest
   /// point of the floor.
-  Box bounds(const LivingBody& living) const;
+  Box bounds(const Life& life) const;
   /// Returns the RNG stream `id` of a life.
   Rng stream(const Life& life, std::uint32_t id) const;
 

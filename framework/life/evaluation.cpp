@@ -1,6 +1,7 @@
 #include "life/evaluation.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <mutex>
 #include <numeric>
 
@@ -22,7 +23,9 @@ Evaluation::Evaluation(const Experiment& experiment, Simulator& simulator, const
       windows(experiment, conditions.later),
       birth(experiment, simulation),
       development(experiment, simulation, windows),
-      measurement(experiment, simulation, windows) {}
+      measurement(experiment, simulation, windows),
+      experiment_(experiment),
+      developing_scenarios_(scenarios_that_develop(experiment)) {}
 
 std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, const Progress& progress) const {
   const std::size_t cohorts = std::clamp<std::size_t>(newborns.size() / smallest_cohort, 1,
@@ -46,14 +49,46 @@ std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, cons
 }
 
 std::vector<Result> Evaluation::evaluate_cohort(std::span<const Newborn> newborns, const Progress& progress) const {
-  const double developing = development.duration(), whole = developing + measurement.duration(),
-               share = whole > 0 ? developing / whole : 0;
-  std::vector<Life> lives = birth.of(newborns);
-  development.run(lives, [&](double done) { progress(done * share); });
-  measurement.run(lives, [&](double done) { progress(share + done * (1 - share)); });
+  const double developing = development.duration() * static_cast<double>(1 + developing_scenarios_.size()),
+               whole = developing + measurement.duration(), share = whole > 0 ? developing / whole : 0;
+  std::vector<Life> born = birth.of(newborns);
   std::vector<Result> results;
-  for (Life& life : lives) results.push_back(std::move(life.result));
+  while (results.size() < newborns.size()) {
+    const auto before = static_cast<double>(results.size());
+    const std::size_t count = windows.fitting_within_life(std::span(born).subspan(results.size()));
+    const auto first = born.begin() + static_cast<std::ptrdiff_t>(results.size());
+    const auto group_progress = [&](double done) {
+      progress((before + done * static_cast<double>(count)) / static_cast<double>(newborns.size()));
+    };
+    Matured group = matured({std::make_move_iterator(first), std::make_move_iterator(first + count)},
+                            [&](double done) { group_progress(done * share); });
+    measurement.run(group, [&](double done) { group_progress(share + done * (1 - share)); });
+    for (Life& life : group.lives) results.push_back(std::move(life.result));
+  }
   return results;
+}
+
+Matured Evaluation::matured(std::vector<Life> born, const Progress& progress) const {
+  const auto count = static_cast<std::ptrdiff_t>(born.size());
+  std::vector<Newborn> again;  // in the scenarios the operators develop them, whatever a record says
+  for (const Life& life : born) again.push_back({life.newborn.id, life.newborn.generation, life.newborn.genome});
+  std::vector<Life> all = std::move(born);  // they develop in one batch, which uses a device better than several
+  for (const std::size_t scenario : developing_scenarios_) {
+    std::vector<Life> lives = birth.of(again, &experiment_.scenarios[scenario]);
+    std::move(lives.begin(), lives.end(), std::back_inserter(all));
+  }
+  development.run(all, progress);
+  Matured matured;
+  auto next = std::make_move_iterator(all.begin());
+  matured.lives.assign(next, next + count);
+  for (const std::size_t scenario : developing_scenarios_) {
+    next += count;
+    std::vector<Life>& lives = matured.in_scenarios[scenario];
+    lives.assign(next, next + count);
+    for (std::size_t i = 0; i < lives.size(); ++i)
+      matured.lives[i].result.spring_evaluations += lives[i].result.spring_evaluations;
+  }
+  return matured;
 }
 
 }  // namespace evodevo

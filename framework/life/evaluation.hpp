@@ -24,8 +24,8 @@ struct PhaseTimes {
 ///                  \_______ all three use _______/
 ///                            simulation
 ///
-/// A large batch is divided into as many cohorts as are needed to keep the simulator busy. Experiment and simulator
-/// must outlive this object.
+/// Newborns also develop in the scenarios that ask for it, in lives of their own. A large batch is divided into as many
+/// cohorts as are needed to keep the simulator busy. Experiment and simulator must outlive this object.
 class Evaluation {
  public:
   Evaluation(const Experiment& experiment, Simulator& simulator);
@@ -37,6 +37,10 @@ class Evaluation {
   /// batch. Calls `progress` with the fraction of the simulation that is done, 0 to 1, from one thread at a time.
   std::vector<Result> evaluate(std::span<const Newborn> newborns, const Progress& progress) const;
 
+  /// Lets lives develop until they have matured, and lives of the same newborns in the scenarios that develop. The
+  /// spring evaluations of all of them count in the results of `born`. Calls `progress` as DevelopmentLoop::run() does.
+  Matured matured(std::vector<Life> born, const Progress& progress) const;
+
   PhaseTimes phase_times() const { return {birth.seconds(), simulation.seconds(), development.seconds()}; }
 
   const LifeSimulation simulation;
@@ -47,6 +51,9 @@ class Evaluation {
 
  private:
   std::vector<Result> evaluate_cohort(std::span<const Newborn> newborns, const Progress& progress) const;
+
+  const Experiment& experiment_;
+  std::vector<std::size_t> developing_scenarios_;
 };
 
 }  // namespace evodevo

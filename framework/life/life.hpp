@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -41,14 +42,14 @@ struct Result {
   std::uint64_t spring_evaluations = 0;
   LifeRecord record;  ///< changes by development; kept and archived only for individuals that reach the front
   std::vector<double> measures = {};  ///< in the order and units of Experiment::measures; empty unless ok
-  std::vector<TestScore> tests = {};  ///< of the windows after maturing; empty without scenarios
+  std::vector<TestScore> tests = {};  ///< of the windows that lie in scenarios; empty without scenarios
 };
 
 /// The life of a newborn while it is being evaluated.
 struct Life {
   Newborn newborn;
   LivingBody living;
-  const Scene* scene = nullptr;       ///< the scene in which the body lives on; null: that of the experiment
+  const Scene* scene = nullptr;       ///< the scene in which the body lives; set at birth
   std::vector<StoredSample> samples;  ///< taken so far
   double contact_time = 0;            ///< mean time in which a mass touched the ground, as far as it was counted, s
   double work = 0;                    ///< work of the muscles on the body, as far as it was recorded, J
@@ -61,6 +62,13 @@ struct Life {
     result.reason = std::move(reason);
     result.ended_at = ended_at;
   }
+};
+
+/// Newborns that have matured.
+struct Matured {
+  std::vector<Life> lives;  ///< in the scene of the experiment, in the order of the newborns
+  /// Lives of the same newborns, by the index of each scenario that develops.
+  std::map<std::size_t, std::vector<Life>> in_scenarios = {};
 };
 
 /// How lives are simulated. The defaults are the settings of an experiment.

@@ -234,10 +234,4 @@ void MassNumbers::apply(const Edits& edits) {
   remove(edits.removed_masses);
 }
 
-std::vector<std::uint32_t> mass_numbers(std::size_t born, const LifeRecord& record) {
-  MassNumbers masses(born);
-  for (const Change& change : record.changes()) masses.apply(change.edits);
-  return masses.numbers();
-}
-
 }  // namespace evodevo

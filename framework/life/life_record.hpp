@@ -63,7 +63,4 @@ class MassNumbers {
   std::uint32_t next_;
 };
 
-/// Returns the numbers of a body's masses after all changes of its life. `born` is the number of masses at birth.
-std::vector<std::uint32_t> mass_numbers(std::size_t born, const LifeRecord& record);
-
 }  // namespace evodevo

@@ -7,9 +7,6 @@
 namespace evodevo {
 namespace {
 
-/// Returns the scene in which a life goes on.
-const Scene& scene_of(const Life& life, const Scene& usual) { return life.scene != nullptr ? *life.scene : usual; }
-
 bool shows_parts(const Channels& channels) {
   return channels.positions || channels.velocities || channels.contacts || channels.forces;
 }
@@ -58,7 +55,7 @@ void keep_samples(Task& task, const Channels& counted, Life& life) {
 void LifeSimulation::choose_step(Life& life) const {
   LivingBody& living = life.living;
   LongestStep longest =
-      longest_step(conditions_.step, living.body, living.state.position, scene_of(life, scene_), conditions_.method);
+      longest_step(conditions_.step, living.body, living.state.position, *life.scene, conditions_.method);
   if (!longest.failure.empty()) return life.end(Status::invalid, std::move(longest.failure));
   living.longest_dt = longest.dt;
 }
@@ -71,7 +68,7 @@ Task LifeSimulation::task_for(Life& life, const Stretch& stretch) const {
   task.state = &life.living.state;
   task.dt = pace.dt;
   task.steps = pace.steps;
-  task.scene = life.scene;
+  task.scene = life.scene == &scene_ ? nullptr : life.scene;
   task.preparation = std::move(life.living.preparation);
   for (const auto& [time, channels] : stretch.samples)
     task.sampled_at.push_back({std::min(pace.steps_to(time), pace.steps), channels});

@@ -16,12 +16,10 @@ constexpr std::int64_t step_parts = 4;
 
 const Progress unwatched = [](double) {};
 
-std::vector<Life> matured(const Evaluation& evaluation, std::span<const Champion> champions) {
+Matured matured(const Evaluation& evaluation, std::span<const Champion> champions) {
   std::vector<Newborn> newborns;
   for (const Champion& champion : champions) newborns.push_back(champion.newborn);
-  std::vector<Life> lives = evaluation.birth.of(newborns);
-  evaluation.development.run(lives, unwatched);
-  return lives;
+  return evaluation.matured(evaluation.birth.of(newborns), unwatched);
 }
 
 void still_muscles(Life& life) {
@@ -31,8 +29,8 @@ void still_muscles(Life& life) {
 /// Runs the trials of matured champions and collects the results.
 class Trials {
  public:
-  Trials(const Experiment& experiment, std::span<const Champion> champions, std::vector<Life> lives)
-      : experiment_(experiment), lives_(std::move(lives)) {
+  Trials(const Experiment& experiment, std::span<const Champion> champions, Matured matured)
+      : experiment_(experiment), matured_(std::move(matured)) {
     for (const Champion& champion : champions) verifications_.push_back({champion.newborn.id, champion.fitness, {}});
   }
 
@@ -40,15 +38,19 @@ class Trials {
   template <class Change>
   void add(const std::string& name, Simulator& simulator, const Conditions& conditions, const Change& change) {
     const Evaluation evaluation(experiment_, simulator, conditions);
-    std::vector<Life> lives = lives_;
-    for (Life& life : lives) {
-      if (!life.alive()) continue;
-      change(life);
-      evaluation.simulation.choose_step(life);
-    }
-    evaluation.measurement.run(lives, unwatched);
-    for (std::size_t i = 0; i < lives.size(); ++i) {
-      const Result& result = lives[i].result;
+    const auto change_all = [&](std::vector<Life>& lives) {
+      for (Life& life : lives) {
+        if (!life.alive()) continue;
+        change(life);
+        evaluation.simulation.choose_step(life);
+      }
+    };
+    Matured matured = matured_;
+    change_all(matured.lives);
+    for (auto& [scenario, lives] : matured.in_scenarios) change_all(lives);
+    evaluation.measurement.run(matured, unwatched);
+    for (std::size_t i = 0; i < matured.lives.size(); ++i) {
+      const Result& result = matured.lives[i].result;
       Trial trial{name, result.status, result.reason, std::nullopt};
       if (result.status == Status::ok) trial.value = result.objectives.front();
       verifications_[i].trials.push_back(std::move(trial));
@@ -66,7 +68,7 @@ class Trials {
 
  private:
   const Experiment& experiment_;
-  std::vector<Life> lives_;
+  Matured matured_;
   std::vector<Verification> verifications_;
 };
 

@@ -24,23 +24,11 @@ void add_frame(std::vector<Frame>& frames, const State& state, double rate) {
   frames.push_back(std::move(frame));
 }
 
-/// Adds the records of a part of a run to those of the whole run. `share` is the part's fraction of all steps. Only
-/// records that `whole` was asked for are added.
-void add_records(SpringRecords& whole, const SpringRecords& part, double share) {
-  for (std::size_t s = 0; s < whole.stress.size(); ++s) whole.stress[s] += share * part.stress[s];
-  for (std::size_t s = 0; s < whole.tension.size(); ++s) whole.tension[s] += share * part.tension[s];
-  for (std::size_t s = 0; s < whole.muscle_work.size(); ++s) whole.muscle_work[s] += part.muscle_work[s];
-  for (std::size_t s = 0; s < whole.peak_force.size(); ++s)
-    whole.peak_force[s] = std::max(whole.peak_force[s], part.peak_force[s]);
-}
-
 /// A filmed task. It is simulated in parts, each of which ends at the next frame.
 class Take {
  public:
-  Take(Task& task, Recording recording, Reel& reel, double rate, std::span<const double> cuts)
+  Take(Task& task, Reel& reel, double rate, std::span<const double> cuts)
       : whole_(task), reel_(reel), rate_(rate), cuts_(cuts), seen_until_(task.state->time) {
-    whole_.clear(recording, task.body->springs.size());
-    whole_.work = 0;
     const double frames = std::ceil(static_cast<double>(task.steps) * task.dt * rate - 1e-9);
     parts_ = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(frames), 1, std::max<std::uint64_t>(1, task.steps));
     if (reel_.steps == 0) begin_shot();
@@ -52,12 +40,12 @@ class Take {
     return whole_.steps * begun_ / parts_ - done_;
   }
 
-  /// Adds the result of a part to the film. Stress was recorded in it even if the task did not ask for it.
+  /// Adds the result of a part, in which stress was recorded, to the film.
   void look(const Task& part) {
     if (whole_.status == Status::ok)
       add(part);
     else
-      lose_records();
+      shot().stress.clear();
     add_frame(shot().frames, *whole_.state, rate_);
     if (whole_.status == Status::ok && done_ < whole_.steps && is_cut()) begin_shot();
   }
@@ -82,17 +70,9 @@ class Take {
     const auto steps = static_cast<double>(part.steps);
     done_ += part.steps;
     reel_.steps += part.steps;
-    whole_.work += part.work;
-    add_records(whole_, part, steps / static_cast<double>(whole_.steps));
     std::vector<double>& mean = shot().stress;
     for (std::size_t s = 0; s < mean.size(); ++s)
       mean[s] += (part.stress[s] - mean[s]) * (steps / static_cast<double>(reel_.steps));
-  }
-
-  void lose_records() {
-    whole_.clear({}, 0);
-    whole_.work = 0;
-    shot().stress.clear();
   }
 
   Task& whole_;
@@ -104,17 +84,21 @@ class Take {
   std::uint64_t done_ = 0;               ///< number of steps done
 };
 
-/// Sets the numbers of the masses in all shots. Shot i begins after i cycles; all shots after the last cycle show the
-/// matured body.
-void number_masses(Film& film, const LifeRecord& record) {
-  if (film.empty()) return;
-  MassNumbers numbers(film.front().body.masses.size());
-  const std::vector<Change> changes = record.changes();
-  auto next = changes.begin();
-  for (std::size_t i = 0; i < film.size(); ++i) {
-    for (; next != changes.end() && next->cycle <= i; ++next) numbers.apply(next->edits);
-    film[i].numbers = numbers.numbers();
-  }
+/// Whether a run sums anything over its steps.
+bool has_sums(std::span<const Task> tasks, const Recording& recording) {
+  const auto sums_work = [](const SamplePoint& point) { return point.channels.work; };
+  return recording.of_springs() || recording.work || std::any_of(tasks.begin(), tasks.end(), [&](const Task& task) {
+           return std::any_of(task.sampled_at.begin(), task.sampled_at.end(), sums_work);
+         });
+}
+
+/// Births lives as those that film_lives() films; in the scene of the test's scenario if they develop in it.
+std::vector<Life> born(const Experiment& experiment, const Birth& birth, std::span<const Newborn> newborns,
+                       const Test& test) {
+  if (experiment.scenarios.empty() || !experiment.scenarios[test.scenario].develops) return birth.of(newborns);
+  std::vector<Newborn> again;  // a record is of the life in the scene of the experiment
+  for (const Newborn& newborn : newborns) again.push_back({newborn.id, newborn.generation, newborn.genome});
+  return birth.of(again, &experiment.scenarios[test.scenario]);
 }
 
 /// The times at which windows after maturing open and close, s since birth.
@@ -135,14 +119,25 @@ std::vector<double> ends_of_windows(const Experiment& experiment) {
 }  // namespace
 
 void FilmingSimulator::run(std::span<Task> tasks, Recording recording) {
-  Recording with_stress = recording;
-  with_stress.stress = true;
+  if (!has_sums(tasks, recording)) return film(tasks);
+  std::vector<Task> copies(tasks.begin(), tasks.end());
+  std::vector<State> states;
+  for (const Task& task : tasks) states.push_back(*task.state);
+  for (std::size_t i = 0; i < copies.size(); ++i) {
+    copies[i].state = &states[i];
+    copies[i].sampled_at.clear();
+  }
+  film(copies);
+  simulator_.run(tasks, recording);
+}
+
+void FilmingSimulator::film(std::span<Task> tasks) {
   std::vector<std::optional<Take>> takes(tasks.size());
   for (std::size_t i = 0; i < tasks.size(); ++i)
-    if (tasks[i].status == Status::ok) takes[i].emplace(tasks[i], recording, reels_[tasks[i].body], rate_, cuts_);
+    if (tasks[i].status == Status::ok) takes[i].emplace(tasks[i], reels_[tasks[i].body], rate_, cuts_);
   const auto next_steps = [&](std::size_t i) { return takes[i]->next_steps(); };
   const auto look = [&](std::size_t i, const Task& part) { takes[i]->look(part); };
-  run_in_pieces(simulator_, tasks, with_stress, next_steps, look);
+  run_in_pieces(simulator_, tasks, {.stress = true}, next_steps, look);
 }
 
 void FilmingSimulator::cut() {
@@ -153,23 +148,30 @@ std::vector<FilmedLife> film_lives(const Experiment& experiment, Simulator& simu
                                    std::span<const Newborn> newborns, const Test& test) {
   FilmingSimulator camera(simulator, filmed_frames_per_second);
   const Evaluation evaluation(experiment, camera);
-  std::vector<Life> lives = evaluation.birth.of(newborns);
-  const auto cut = [&](double) { camera.cut(); };
-  evaluation.development.run(lives, cut);
+  Matured matured{born(experiment, evaluation.birth, newborns, test)};
+  std::vector<Life>& lives = matured.lives;
+  std::vector<std::vector<std::vector<std::uint32_t>>> numbers(lives.size());  // by life and cycle
+  const auto note_numbers = [&] {
+    for (std::size_t i = 0; i < lives.size(); ++i) numbers[i].push_back(lives[i].living.numbers.numbers());
+  };
+  note_numbers();
+  evaluation.development.run(lives, [&](double) {
+    camera.cut();
+    note_numbers();
+  });
   camera.cut_at(ends_of_windows(experiment));
   if (experiment.scenarios.empty())
-    evaluation.measurement.run(lives, cut);
+    evaluation.measurement.run(matured, [](double) {});
   else
     evaluation.measurement.run_in(test, lives);
   std::vector<FilmedLife> filmed;
-  for (Life& life : lives) {
-    Film film = camera.take(life.living.body);
-    number_masses(film, life.result.record);
+  for (std::size_t i = 0; i < lives.size(); ++i) {
+    Film film = camera.take(lives[i].living.body);
     std::erase_if(film, [](const Shot& shot) { return shot.frames.empty(); });
     const std::size_t cycles = std::min(film.size(), static_cast<std::size_t>(experiment.development.cycles));
-    // a scenario may have damaged the body
-    for (std::size_t i = cycles; i < film.size(); ++i) film[i].numbers = life.living.numbers.numbers();
-    filmed.push_back({std::move(life.result), std::move(film), cycles});
+    for (std::size_t shot = 0; shot < film.size(); ++shot)  // a scenario may have damaged the body
+      film[shot].numbers = shot < cycles ? numbers[i][shot] : lives[i].living.numbers.numbers();
+    filmed.push_back({std::move(lives[i].result), std::move(film), cycles});
   }
   return filmed;
 }

@@ -39,7 +39,8 @@ struct Reel {
 };
 
 /// A simulator that films what another simulator computes. It interrupts the simulation at every frame to record the
-/// positions; bodies move as they would without interruptions.
+/// positions; bodies move as they would without interruptions. Sums over many steps would differ by rounding; a run
+/// that asks for some is therefore simulated twice, once for the film and once in one go.
 class FilmingSimulator final : public Simulator {
  public:
   /// `rate` is in frames per simulated second.
@@ -59,6 +60,8 @@ class FilmingSimulator final : public Simulator {
   Film take(const Body& body) { return std::move(reels_[&body].film); }
 
  private:
+  void film(std::span<Task> tasks);
+
   Simulator& simulator_;
   double rate_;
   std::vector<double> cuts_;

@@ -15,15 +15,13 @@ class Descriptor final : public evodevo::Fitness {
              "mean of the longer horizontal side of its bounding box, or its number of masses.");
     p.reals(range_, "range", {-1e9, 1e9},
             "Smallest and largest value that is expected, in the unit of the descriptor.");
-    window_.declare(p);
-    p.real(rate_, "rate", {0.1, 1000, "1/s"}, "Number of times per second at which it is measured.");
+    window_.declare_sampled(p);
     p.require(range_.empty() || (range_.size() == 2 && range_[0] < range_[1]), "range",
               "expected two numbers, the smaller first");
-    p.require(rate_ * window_.window >= 1, "rate", "expected one or more measurements within the window");
   }
 
   evodevo::Request observes() const override {
-    return window_.request(rate_, {.box = what_ != "contact" && what_ != "masses", .contact = what_ == "contact"});
+    return window_.request({.box = what_ != "contact" && what_ != "masses", .contact = what_ == "contact"});
   }
 
   std::vector<evodevo::Objective> objectives() const override {
@@ -52,7 +50,6 @@ class Descriptor final : public evodevo::Fitness {
   std::string what_ = "height";
   std::vector<double> range_;
   evodevo::MeasuringWindow window_;
-  double rate_ = 10;
 };
 
 }  // namespace

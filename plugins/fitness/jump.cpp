@@ -7,15 +7,12 @@
 namespace {
 
 /// The height of a body is that of its lowest mass, so that a body which only stretches or stands up does not jump.
+/// A way uphill counts as height.
 class Jump final : public evodevo::Fitness {
  public:
-  void parameters(evodevo::Parameters& p) override {
-    window_.declare(p);
-    p.real(rate_, "rate", {1, 1000, "1/s"}, "Number of times per second at which the height is measured.");
-    p.require(rate_ * window_.window >= 1, "rate", "expected one or more measurements within the window");
-  }
+  void parameters(evodevo::Parameters& p) override { window_.declare_sampled(p); }
 
-  evodevo::Request observes() const override { return window_.request(rate_, {.box = true}); }
+  evodevo::Request observes() const override { return window_.request({.box = true}); }
 
   std::vector<evodevo::Objective> objectives() const override { return {{"jump", "m", true}}; }
 
@@ -28,8 +25,7 @@ class Jump final : public evodevo::Fitness {
   }
 
  private:
-  evodevo::MeasuringWindow window_;
-  double rate_ = 100;
+  evodevo::MeasuringWindow window_{.rate = 100};
 };
 
 }  // namespace
@@ -37,4 +33,4 @@ class Jump final : public evodevo::Fitness {
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<Jump>("jump",
                                              "The largest height of the lowest mass above its height when the "
-                                             "window opens."))
+                                             "window opens; a way uphill counts."))

@@ -11,12 +11,10 @@ class Reach final : public evodevo::Fitness {
   void parameters(evodevo::Parameters& p) override {
     p.vector(target_, "target", {-1000, 1000, "m"},
              "Place of the target, relative to the centre of mass when the window opens.");
-    window_.declare(p);
-    p.real(rate_, "rate", {1, 1000, "1/s"}, "Number of times per second at which the distance is measured.");
-    p.require(rate_ * window_.window >= 1, "rate", "expected one or more measurements within the window");
+    window_.declare_sampled(p);
   }
 
-  evodevo::Request observes() const override { return window_.request(rate_, {.centre = true}); }
+  evodevo::Request observes() const override { return window_.request({.centre = true}); }
 
   std::vector<evodevo::Objective> objectives() const override { return {{"reach", "m", false}}; }
 
@@ -30,8 +28,7 @@ class Reach final : public evodevo::Fitness {
 
  private:
   evodevo::Vec3 target_ = {1, 0, 0};
-  evodevo::MeasuringWindow window_;
-  double rate_ = 20;
+  evodevo::MeasuringWindow window_{.rate = 20};
 };
 
 }  // namespace

@@ -8,13 +8,9 @@ namespace {
 /// of mass of a walker swings to and fro with every stroke of its muscles; a low rate leaves that out.
 class Straightness final : public evodevo::Fitness {
  public:
-  void parameters(evodevo::Parameters& p) override {
-    window_.declare(p);
-    p.real(rate_, "rate", {0.01, 1000, "1/s"}, "Number of points per second of which the path consists.");
-    p.require(rate_ * window_.window >= 1, "rate", "expected one or more points within the window");
-  }
+  void parameters(evodevo::Parameters& p) override { window_.declare_sampled(p); }
 
-  evodevo::Request observes() const override { return window_.request(rate_, {.centre = true}); }
+  evodevo::Request observes() const override { return window_.request({.centre = true}); }
 
   std::vector<evodevo::Objective> objectives() const override { return {{"straightness", "1", true}}; }
 
@@ -29,8 +25,7 @@ class Straightness final : public evodevo::Fitness {
  private:
   static double along_ground(evodevo::Vec3 way) { return norm(evodevo::Vec3{way.x, way.y, 0}); }
 
-  evodevo::MeasuringWindow window_;
-  double rate_ = 1;
+  evodevo::MeasuringWindow window_{.rate = 1};
 };
 
 }  // namespace

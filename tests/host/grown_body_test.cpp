@@ -59,6 +59,7 @@ Life newborn(const std::vector<Vec3>& rest) {
   Life life;
   for (const Vec3& position : rest) life.living.body.masses.push_back({position, 1});
   life.living.state.position = rest;
+  life.living.numbers = MassNumbers(rest.size());
   return life;
 }
 
@@ -69,7 +70,7 @@ void replace_mass(Life& life, Vec3 position, std::uint32_t goes) {
   living.body.masses.erase(living.body.masses.begin() + goes);
   living.state.position.push_back(position);
   living.state.position.erase(living.state.position.begin() + goes);
-  life.result.record.add({.cycle = 1, .op = 0, .edits = {.removed_masses = {goes}, .new_masses = {{position, 1}}}});
+  living.numbers.apply({.removed_masses = {goes}, .new_masses = {{position, 1}}});
 }
 
 TEST(GrowthObserver, MassesOfBirthKeepTheirRestPlacesInBodyLengthsFromTheCorner) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "evolution/breeding.hpp"
 #include "life/evaluation.hpp"
 #include "report/filming.hpp"
 #include "support/experiments.hpp"
@@ -24,10 +25,9 @@ Experiment with(const std::string& scenarios, std::vector<Override> overrides = 
 Life lived(const Experiment& experiment, const Genome& genome = {2, 1}, std::uint32_t id = 0) {
   const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
   const Evaluation evaluation(experiment, *simulator);
-  std::vector<Life> lives = evaluation.birth.of(std::vector<Newborn>{{id, 0, &genome}});
-  evaluation.development.run(lives, unwatched);
-  evaluation.measurement.run(lives, unwatched);
-  return std::move(lives.front());
+  Matured matured = evaluation.matured(evaluation.birth.of(std::vector<Newborn>{{id, 0, &genome}}), unwatched);
+  evaluation.measurement.run(matured, unwatched);
+  return std::move(matured.lives.front());
 }
 
 /// What a fitness operator saw in one test.
@@ -274,6 +274,99 @@ coefficient = 1e6
   const Life stiff = lived(with("\n[[scenario]]\nname = 'rock'\n[scenario.floor]\nstiffness = 1e9\n"));
   EXPECT_EQ(stiff.result.status, Status::invalid);
   EXPECT_THAT(stiff.result.reason, testing::at_place("scenario \"rock\": unstable dt: "));
+}
+
+const std::string muddy = "\n[[scenario]]\nname = 'mud'\ndevelops = true\n[scenario.drag]\ncoefficient = 3\n";
+
+TEST(Scenarios, ThatDevelopAreLivesInTheirSceneFromBirthOn) {
+  const Life there = lived(with("", {{"scene.drag.coefficient", "3", ""}}));
+  const Life here = lived(with("")), both = lived(with(muddy));
+  ASSERT_TRUE(both.alive()) << both.result.reason;
+  EXPECT_EQ(both.result.objectives, there.result.objectives);
+  EXPECT_NE(both.result.objectives, here.result.objectives);
+  EXPECT_EQ(both.result.record, here.result.record) << "the record is of the life in the experiment's own scene";
+  EXPECT_GT(both.result.spring_evaluations, there.result.spring_evaluations) << "it developed in both scenes";
+  const Life matured_here = lived(with("\n[[scenario]]\nname = 'mud'\n[scenario.drag]\ncoefficient = 3\n"));
+  EXPECT_NE(both.result.objectives, matured_here.result.objectives);
+}
+
+TEST(Scenarios, ThatDevelopCarryTheirLoadFromBirthOn) {
+  const std::string loaded = "\n[[scenario]]\nname = 'load'\ndevelops = true\n[scenario.payload]\nshare = 0.7\n";
+  EXPECT_EQ(lived(with(loaded)).result.objectives,
+            lived(with("", {{"scene.payload.share", "0.7", ""}})).result.objectives);
+}
+
+TEST(Scenarios, ThatDevelopMayBeginWithNoiseAndDamage) {
+  const std::string hurt = "repeat = 3\ndamage = 0.2\nstart_noise = 0.01\ndevelops = ";
+  const auto scores = [&](const std::string& develops) {
+    std::vector<double> values;
+    for (const TestScore& test : lived(with("\n[[scenario]]\nname = 'hurt'\n" + hurt + develops + "\n")).result.tests)
+      values.push_back(test.value);
+    return values;
+  };
+  EXPECT_EQ(scores("true").size(), 6u);
+  EXPECT_EQ(scores("true"), scores("false")) << "it is the same scene, and noise and damage begin after maturing";
+}
+
+TEST(Scenarios, ThatDevelopHoldTheWindowsWithinTheLife) {
+  Experiment experiment = with("\n[[scenario]]\nname = 'matured'\n" + muddy);
+  struct Grower final : Fitness {
+    explicit Grower(std::vector<std::string>& scenarios) : seen_in(scenarios) {}
+    Request observes() const override { return {.settle = 0, .window = 0.08, .cycle = 0}; }
+    std::vector<Objective> objectives() const override { return {{"way", "m", true}}; }
+    std::vector<double> score(const Observation& o) const override {
+      seen_in.emplace_back(o.scenario);
+      return {norm(o.centre_after - o.centre_before)};
+    }
+    std::vector<std::string>& seen_in;
+  };
+  std::vector<std::string> seen_in;
+  std::vector<Seen> seen;
+  experiment.fitness.clear();
+  experiment.fitness.push_back(std::make_unique<Grower>(seen_in));
+  experiment.fitness.push_back(std::make_unique<Witness>(seen));
+  experiment.over = {Over::mean, Over::mean};
+  experiment.objectives = {{"way", "m", true}, {"number", "1", true}};
+  const Life life = lived(experiment);
+  ASSERT_TRUE(life.alive()) << life.result.reason;
+  EXPECT_EQ(seen_in, (std::vector<std::string>{"", "mud"}));
+  ASSERT_EQ(life.result.tests.size(), 3u) << "one window in the first scenario, and two in the second one";
+  EXPECT_EQ(life.result.tests[1].value, life.result.objectives[0]) << "the way in the scenario that develops";
+}
+
+TEST(Scenarios, ThatDevelopAreNamedWhereALifeFails) {
+  const Life life = lived(with("\n[[scenario]]\nname = 'rock'\ndevelops = true\n[scenario.floor]\nstiffness = 1e9\n"));
+  EXPECT_EQ(life.result.status, Status::invalid);
+  EXPECT_THAT(life.result.reason, testing::at_place("scenario \"rock\": unstable dt: "));
+  EXPECT_TRUE(life.result.objectives.empty());
+}
+
+TEST(Scenarios, ThatDevelopGiveTheSameInAnyBatch) {
+  const Experiment experiment = with("\n[[scenario]]\nname = 'flat'\n" + muddy);
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
+  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 6);
+  std::vector<Newborn> newborns;
+  for (const Individual& individual : individuals) newborns.push_back({individual.id, 0, &individual.genome});
+  const std::vector<Result> together = Evaluation(experiment, *simulator).evaluate(newborns, unwatched);
+  for (std::size_t i = 0; i < newborns.size(); ++i) {
+    const Life alone = lived(experiment, individuals[i].genome, newborns[i].id);
+    EXPECT_EQ(together[i].objectives, alone.result.objectives);
+    EXPECT_EQ(together[i].spring_evaluations, alone.result.spring_evaluations);
+  }
+}
+
+TEST(Scenarios, ThatDevelopAreFilmedFromBirthOn) {
+  const Experiment experiment = with(muddy), there = with("", {{"scene.drag.coefficient", "3", ""}});
+  const Genome genome{2, 1};
+  const auto filmed = [&](const Experiment& of) {
+    const auto simulator = make_cpu_simulator(of.scene, of.stepping, 1);
+    return film_lives(of, *simulator, std::vector<Newborn>{{0, 0, &genome}}).front();
+  };
+  const FilmedLife film = filmed(experiment), film_there = filmed(there);
+  EXPECT_EQ(film.result.objectives, lived(experiment).result.objectives);
+  ASSERT_EQ(film.film.size(), film_there.film.size());
+  for (std::size_t shot = 0; shot < film.film.size(); ++shot)
+    EXPECT_EQ(film.film[shot].frames.back().positions, film_there.film[shot].frames.back().positions);
 }
 
 TEST(Scenarios, WithFaultsAreRefused) {

@@ -57,10 +57,9 @@ void spy_on(Experiment& experiment, Spies... spies) {
 Life lived(const Experiment& experiment, const Genome& genome = {2, 2}) {
   const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
   const Evaluation evaluation(experiment, *simulator);
-  std::vector<Life> lives = evaluation.birth.of(std::vector<Newborn>{{0, 0, &genome}});
-  evaluation.development.run(lives, unwatched);
-  evaluation.measurement.run(lives, unwatched);
-  return std::move(lives.front());
+  Matured matured = evaluation.matured(evaluation.birth.of(std::vector<Newborn>{{0, 0, &genome}}), unwatched);
+  evaluation.measurement.run(matured, unwatched);
+  return std::move(matured.lives.front());
 }
 
 void expect_same_life(const Life& a, const Life& b) {
@@ -206,6 +205,23 @@ TEST(Windows, GoOnCountingAcrossEdits) {
   EXPECT_FALSE(life.result.record.empty()) << "there must be edits";
   EXPECT_GT(all, 0.1);
   EXPECT_GT(work, 0);
+}
+
+TEST(Windows, SampleOnlyAsManyBodiesAtOnceAsFitInMemory) {
+  Experiment experiment = testing::read(testing::small_experiment);
+  spy_on(experiment, Spy({.settle = 0, .window = 0.05, .rate = 1e6, .channels = {.positions = true}}),
+         Spy({.settle = 0, .window = 0.05, .cycle = 0, .rate = 1e6, .channels = {.positions = true}}));
+  // a window has 50,001 samples, each with three floats for each mass
+  std::vector<Life> lives(5);
+  for (Life& life : lives) life.living.body.masses.resize(static_cast<std::size_t>(most_sample_bytes / 50'001 / 12 / 2.5));
+  const Windows windows(experiment, 0);
+  EXPECT_EQ(windows.fitting_after_maturing(lives), 2u);
+  EXPECT_EQ(windows.fitting_within_life(lives), 2u);
+  EXPECT_EQ(windows.fitting_within_life(std::span(lives).first(1)), 1u);
+  experiment.scenarios.push_back({.name = "a", .scene = {}, .develops = true});
+  EXPECT_EQ(Windows(experiment, 0).fitting_within_life(lives), 1u) << "each lives twice";
+  lives[0].living.body.masses.resize(lives[0].living.body.masses.size() * 5);
+  EXPECT_EQ(windows.fitting_within_life(lives), 1u) << "a body that does not fit is simulated alone";
 }
 
 TEST(Windows, AskForNothingThatIsNotRequested) {

@@ -79,6 +79,9 @@ void declare_scenario(SettingsVisitor& v, Scenario& s) {
   v.real(s.damage, "damage", {0, 0.99, "1"},
          "Share of the springs that the robot loses around a random place, with the pieces that this tears off.");
   v.integer(s.repeat, "repeat", {1, 1000}, "Number of repeats, each with its own noise and damage.");
+  v.flag(s.develops, "develops",
+         "Whether the robot is born and matures in this scene, with this payload; otherwise it has matured in the "
+         "scene of the experiment. Noise, damage and still muscles begin when it has matured.");
 }
 
 void declare_over(SettingsVisitor& v, Over& over) {

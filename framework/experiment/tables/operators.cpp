@@ -62,10 +62,12 @@ class OperatorTables {
     read_array(top_, "fitness", record_, [&](TomlReader& t, TomlWriter& writer) { read_fitness(t, writer); });
     if (out_.fitness.empty()) top_.fail("fitness", "is missing; add a table [[fitness]]");
     const auto is_within_life = [&](const std::unique_ptr<Fitness>& op) { return op->observes().cycle.has_value(); };
-    if (!out_.scenarios.empty() && std::all_of(out_.fitness.begin(), out_.fitness.end(), is_within_life))
+    const auto develops = [](const Scenario& scenario) { return scenario.develops; };
+    if (!std::all_of(out_.scenarios.begin(), out_.scenarios.end(), develops) &&
+        std::all_of(out_.fitness.begin(), out_.fitness.end(), is_within_life))
       top_.fail("scenario",
-                "no fitness operator measures robots after they have matured; remove the scenarios, or add "
-                "such an operator");
+                "no fitness operator measures robots after they have matured; set develops = true in every scenario, "
+                "or add such an operator");
     if (out_.objectives.empty())
       top_.fail("fitness", "no operator has an objective by which individuals could be selected; add one that has");
     read_one("selection", [&](TomlReader& t, TomlWriter& writer) {

@@ -74,7 +74,7 @@ std::string experiment_reference() {
               });
   text +=
       section("`[[scenario]]`",
-              "A test of the matured robot, with a `name`; there may be several. Tables such as `[scenario.gravity]`, "
+              "A test of the robot, with a `name`; there may be several. Tables such as `[scenario.gravity]`, "
               "`[scenario.floor]` or `[scenario.payload]` have the keys of the tables of `[scene]`; what they leave "
               "out stays as in the scene. Without this table, robots are measured in the scene itself.",
               [&](SettingsVisitor& v) {

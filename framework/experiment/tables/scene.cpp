@@ -19,8 +19,8 @@ void read_forces(TomlReader& table, AnySettings& settings) {
 }
 
 Scenario read_scenario(TomlReader& table, const Settings& settings) {
-  table.expect({"name", "start_noise", "muscles", "damage", "repeat", "gravity", "floor", "friction", "damping", "drag",
-                "payload"});
+  table.expect({"name", "start_noise", "muscles", "damage", "repeat", "develops", "gravity", "floor", "friction",
+                "damping", "drag", "payload"});
   Scenario scenario{.name = table.text("name"), .scene = settings.scene, .payload = settings.payload};
   if (const std::string fault = text_fault(scenario.name); scenario.name.empty() || !fault.empty())
     table.fail("name", scenario.name.empty() ? "is empty; give the scenario a name" : fault);

@@ -33,12 +33,11 @@ void begin_counting_anew(Life& life) {
   life.living.version = nullptr;
 }
 
-/// Adds the name of a test to the reason for which a life ended in it.
-void name_test(const Test& test, const Experiment& experiment, Life& life) {
+std::string name_of(const Test& test, const Experiment& experiment) {
   const Scenario& scenario = experiment.scenarios[test.scenario];
   std::string name = "scenario \"" + scenario.name + "\"";
   if (scenario.repeat > 1) name += ", repeat " + std::to_string(test.repeat + 1);
-  life.result.reason = name + ": " + life.result.reason;
+  return name;
 }
 
 }  // namespace
@@ -67,100 +66,101 @@ double Measurement::duration() const {
          static_cast<double>(std::max<std::size_t>(1, tests_of(experiment_).size()));
 }
 
-void Measurement::run(std::span<Life> lives, const Progress& progress) const {
-  std::vector<Scores> within_life(lives.size());
-  std::vector<std::vector<Scores>> tests(lives.size());
-  for (std::size_t i = 0; i < lives.size(); ++i) {
-    within_life[i] = scores_within_life(lives[i]);
-    begin_counting_anew(lives[i]);
+void Measurement::run(Matured& matured, const Progress& progress) const {
+  std::vector<std::vector<Scores>> tests(matured.lives.size());
+  if (experiment_.scenarios.empty()) {
+    std::vector<Scores> scores = scores_within(matured.lives, "");
+    measure(matured.lives, "", scores);
+    for (std::size_t i = 0; i < tests.size(); ++i) tests[i].push_back(std::move(scores[i]));
+  } else {
+    measure_in_scenarios(matured, tests, progress);
   }
-  if (windows_.after_maturing().duration > 0) {
-    if (experiment_.scenarios.empty())
-      measure(lives, "", tests);
-    else
-      measure_in_scenarios(lives, tests, progress);
-  }
-  for (std::size_t i = 0; i < lives.size(); ++i) set_scores(within_life[i], tests[i], lives[i]);
+  for (std::size_t i = 0; i < tests.size(); ++i) set_scores(tests[i], matured.lives[i]);
   progress(1);
 }
 
 void Measurement::run_in(const Test& test, std::span<Life> lives) const {
-  std::vector<Scores> within_life(lives.size());
-  std::vector<std::vector<Scores>> scores(lives.size());
-  for (std::size_t i = 0; i < lives.size(); ++i) {
-    within_life[i] = scores_within_life(lives[i]);
-    if (lives[i].alive()) start_scenario(test, experiment_, simulation_, lives[i]);
-  }
-  measure(lives, experiment_.scenarios[test.scenario].name, scores);
-  for (std::size_t i = 0; i < lives.size(); ++i) set_scores(within_life[i], scores[i], lives[i]);
+  const Scenario& scenario = experiment_.scenarios[test.scenario];
+  std::vector<Scores> scores = scores_within(lives, scenario.develops ? scenario.name : "");
+  for (Life& life : lives)
+    if (life.alive()) start_scenario(test, experiment_, simulation_, life);
+  measure(lives, scenario.name, scores);
+  for (std::size_t i = 0; i < lives.size(); ++i) set_scores({scores[i]}, lives[i]);
 }
 
-void Measurement::measure_in_scenarios(std::span<Life> lives, std::vector<std::vector<Scores>>& scores,
+void Measurement::measure_in_scenarios(Matured& matured, std::vector<std::vector<Scores>>& tests,
                                        const Progress& progress) const {
-  const std::vector<Test> tests = tests_of(experiment_);
-  for (std::size_t t = 0; t < tests.size(); ++t) {
-    std::vector<Life> tested(lives.size());
-    simulation_.simulator().workers().for_each(lives.size(), [&](std::size_t i) {
-      if (lives[i].alive()) {
-        tested[i] = lives[i];
-        start_scenario(tests[t], experiment_, simulation_, tested[i]);
-      } else {
-        tested[i].end(lives[i].result.status, "");
-      }
-    });
-    measure(tested, experiment_.scenarios[tests[t].scenario].name, scores);
+  const std::span<Life> lives = matured.lives;
+  const std::vector<Scores> within_life = scores_within(lives, "");
+  std::map<std::size_t, std::vector<Scores>> within_scenario;
+  for (auto& [scenario, others] : matured.in_scenarios)
+    within_scenario[scenario] = scores_within(others, experiment_.scenarios[scenario].name);
+  if (within_scenario.empty())
+    for (std::size_t i = 0; i < lives.size(); ++i) tests[i].push_back(within_life[i]);
+
+  const std::vector<Test> all = tests_of(experiment_);
+  for (std::size_t t = 0; t < all.size(); ++t) {
+    const auto developed = matured.in_scenarios.find(all[t].scenario);
+    const bool here = developed != matured.in_scenarios.end();
+    std::vector<Life> tested = started(all[t], lives, here ? std::span<const Life>(developed->second) : lives);
+    std::vector<Scores> scores =
+        here ? within_scenario[all[t].scenario] : std::vector<Scores>(lives.size(), Scores(places_.size()));
+    measure(tested, experiment_.scenarios[all[t].scenario].name, scores);
     for (std::size_t i = 0; i < lives.size(); ++i) {
       if (!lives[i].alive()) continue;
-      Life& life = tested[i];
-      if (!life.alive()) name_test(tests[t], experiment_, life);
-      lives[i].result = std::move(life.result);
-      if (lives[i].alive()) add_test(tests[t], scores[i].back(), lives[i]);
+      add_test(all[t], scores[i], tested[i].result, lives[i]);
+      tests[i].push_back(std::move(scores[i]));
     }
-    progress(static_cast<double>(t + 1) / static_cast<double>(tests.size()));
+    progress(static_cast<double>(t + 1) / static_cast<double>(all.size()));
   }
 }
 
-void Measurement::add_test(const Test& test, const Scores& scores, Life& life) const {
+std::vector<Life> Measurement::started(const Test& test, std::span<const Life> lives,
+                                       std::span<const Life> matured) const {
+  std::vector<Life> started(lives.size());
+  simulation_.simulator().workers().for_each(lives.size(), [&](std::size_t i) {
+    if (!lives[i].alive()) return started[i].end(lives[i].result.status, "");
+    started[i] = matured[i];
+    started[i].result.spring_evaluations = 0;
+    if (started[i].alive()) start_scenario(test, experiment_, simulation_, started[i]);
+  });
+  return started;
+}
+
+void Measurement::add_test(const Test& test, const Scores& scores, const Result& tested, Life& life) const {
+  life.result.spring_evaluations += tested.spring_evaluations;
+  if (tested.status != Status::ok)
+    return life.end(tested.status, name_of(test, experiment_) + ": " + tested.reason, tested.ended_at);
   for (std::size_t op = 0; op < scores.size(); ++op)
     for (std::size_t i = 0; i < scores[op].size(); ++i)
       if (const Place& place = places_[op][i]; place.role == Role::objective)
         life.result.tests.push_back({test.scenario, test.repeat, place.index, scores[op][i]});
 }
 
-void Measurement::measure(std::span<Life> lives, std::string_view scenario,
-                          std::vector<std::vector<Scores>>& scores) const {
+std::vector<Measurement::Scores> Measurement::scores_within(std::span<Life> lives,
+                                                             std::string_view scenario) const {
+  std::vector<Scores> scores(lives.size(), Scores(places_.size()));
+  simulation_.simulator().workers().for_each(lives.size(), [&](std::size_t i) {
+    for (std::size_t op = 0; op < places_.size() && lives[i].alive(); ++op)
+      if (windows_.all()[op].within_life()) scores[i][op] = score(op, scenario, lives[i]);
+    begin_counting_anew(lives[i]);
+  });
+  return scores;
+}
+
+void Measurement::measure(std::span<Life> lives, std::string_view scenario, std::span<Scores> scores) const {
+  if (windows_.after_maturing().duration == 0) return;
   const auto move = [&](std::span<Task> tasks, std::span<Life* const>) { simulation_.simulator().run(tasks, {}); };
   for (std::size_t first = 0, count = 0; first < lives.size(); first += count) {
-    count = measured_at_once(lives.subspan(first));
+    count = windows_.fitting_after_maturing(lives.subspan(first));
     const std::span<Life> group = lives.subspan(first, count);
-    for (Life& life : group) begin_counting_anew(life);
     simulation_.run(group, windows_.after_maturing(), move);
     simulation_.simulator().workers().for_each(count, [&](std::size_t i) {
-      Scores of_life(windows_.all().size());
-      for (std::size_t op = 0; op < of_life.size() && group[i].alive(); ++op)
-        if (!windows_.all()[op].within_life()) of_life[op] = score(op, scenario, group[i]);
-      if (group[i].alive()) scores[first + i].push_back(std::move(of_life));
+      for (std::size_t op = 0; op < places_.size() && group[i].alive(); ++op)
+        if (!windows_.all()[op].within_life()) scores[first + i][op] = score(op, scenario, group[i]);
       group[i].samples = {};
     });
   }
-}
-
-std::size_t Measurement::measured_at_once(std::span<const Life> lives) const {
-  double bytes = 0;
-  std::size_t count = 0;
-  for (; count < lives.size(); ++count) {
-    const Body& body = lives[count].living.body;
-    bytes += windows_.bytes_after_maturing(body.masses.size(), body.springs.size());
-    if (bytes > most_sample_bytes) break;
-  }
-  return std::max<std::size_t>(count, 1);
-}
-
-Measurement::Scores Measurement::scores_within_life(Life& life) const {
-  Scores scores(windows_.all().size());
-  for (std::size_t op = 0; op < scores.size() && life.alive(); ++op)
-    if (windows_.all()[op].within_life()) scores[op] = score(op, "", life);
-  return scores;
 }
 
 std::vector<double> Measurement::score(std::size_t op, std::string_view scenario, Life& life) const {
@@ -195,9 +195,10 @@ std::vector<double> Measurement::score(std::size_t op, std::string_view scenario
 }
 
 double Measurement::over_tests(std::size_t op, std::size_t i, const std::vector<Scores>& tests) const {
-  if (tests.size() == 1) return tests.front()[op][i];
   std::vector<double> scores;
-  for (const Scores& test : tests) scores.push_back(test[op][i]);
+  for (const Scores& test : tests)
+    if (!test[op].empty()) scores.push_back(test[op][i]);
+  if (scores.size() == 1) return scores.front();
   switch (const Place& place = places_[op][i]; place.role) {
     case Role::descriptor:
       return combined(std::move(scores), Over::mean, true);
@@ -208,13 +209,13 @@ double Measurement::over_tests(std::size_t op, std::size_t i, const std::vector<
   }
 }
 
-void Measurement::set_scores(const Scores& within_life, const std::vector<Scores>& tests, Life& life) const {
+void Measurement::set_scores(const std::vector<Scores>& tests, Life& life) const {
   if (!life.alive()) return;
   Result& result = life.result;
   for (std::size_t op = 0; op < places_.size(); ++op)
     for (std::size_t i = 0; i < places_[op].size(); ++i) {
-      const double score = windows_.all()[op].within_life() ? within_life[op][i] : over_tests(op, i, tests);
-      (places_[op][i].role == Role::objective ? result.objectives : result.measures).push_back(score);
+      const bool is_objective = places_[op][i].role == Role::objective;
+      (is_objective ? result.objectives : result.measures).push_back(over_tests(op, i, tests));
     }
   for (std::size_t i = 0; i < result.measures.size(); ++i) {
     const Objective& measure = experiment_.measures[i];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "analysis/energy.hpp"
 #include "analysis/ground.hpp"
@@ -76,18 +77,25 @@ std::vector<Test> tests_of(const Experiment& experiment) {
   return tests;
 }
 
+std::vector<std::size_t> scenarios_that_develop(const Experiment& experiment) {
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < experiment.scenarios.size(); ++i)
+    if (experiment.scenarios[i].develops) indices.push_back(i);
+  return indices;
+}
+
 void start_scenario(const Test& test, const Experiment& experiment, const LifeSimulation& simulation, Life& life) {
   const Scenario& scenario = experiment.scenarios[test.scenario];
   LivingBody& living = life.living;
   Rng random = stream(test, experiment);
-  life.scene = &scenario.scene;
-  if (scenario.payload != experiment.payload) change_payload(scenario.payload, living);
+  const Scene& before = *std::exchange(life.scene, &scenario.scene);
+  if (!scenario.develops && scenario.payload != experiment.payload) change_payload(scenario.payload, living);
   if (!scenario.muscles)
     for (Material& material : living.body.materials) material.amplitude = 0;
   if (scenario.damage > 0) do_damage(scenario.damage, random, living);
   if (living.body.springs.empty()) return life.end(Status::invalid, "no springs");
   if (scenario.start_noise > 0) move_at_random(scenario.start_noise, random, living.state.position);
-  const bool is_moved = scenario.start_noise > 0 || scenario.scene.floor != experiment.scene.floor;
+  const bool is_moved = scenario.start_noise > 0 || scenario.scene.floor != before.floor;
   if (is_moved && scenario.scene.floor) put_on_ground(living.state.position, scenario.scene);
   living.version = nullptr;
   living.state.start_energy =

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "life/measurement/scenario_start.hpp"
+
 namespace evodevo {
 namespace {
 
@@ -90,11 +92,24 @@ double bytes_of(std::span<const SampleTime> samples, std::size_t masses, std::si
   return bytes;
 }
 
+template <class BytesOf>
+std::size_t fitting(std::span<const Life> lives, const BytesOf& bytes_of_body) {
+  double bytes = 0;
+  std::size_t count = 0;
+  for (; count < lives.size(); ++count) {
+    const Body& body = lives[count].living.body;
+    bytes += bytes_of_body(body.masses.size(), body.springs.size());
+    if (bytes > most_sample_bytes) break;
+  }
+  return std::max<std::size_t>(count, 1);
+}
+
 }  // namespace
 
 Windows::Windows(const Experiment& experiment, double later)
     : cycle_time_(experiment.development.cycle_time),
-      in_cycles_(static_cast<std::size_t>(experiment.development.cycles)) {
+      in_cycles_(static_cast<std::size_t>(experiment.development.cycles)),
+      scenes_of_life_(static_cast<double>(1 + scenarios_that_develop(experiment).size())) {
   std::vector<std::vector<Need>> needs;
   std::vector<Need> in_life, after;
   for (std::size_t i = 0; i < experiment.fitness.size(); ++i) {
@@ -134,6 +149,14 @@ double Windows::bytes_within_life(std::size_t masses, std::size_t springs) const
   double bytes = 0;
   for (const std::vector<SampleTime>& samples : in_cycles_) bytes += bytes_of(samples, masses, springs);
   return bytes;
+}
+
+std::size_t Windows::fitting_after_maturing(std::span<const Life> lives) const {
+  return fitting(lives, [&](auto masses, auto springs) { return bytes_after_maturing(masses, springs); });
+}
+
+std::size_t Windows::fitting_within_life(std::span<const Life> born) const {
+  return fitting(born, [&](auto masses, auto springs) { return scenes_of_life_ * bytes_within_life(masses, springs); });
 }
 
 Stretch Windows::in_cycle(std::int64_t cycle) const {

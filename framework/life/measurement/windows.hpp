@@ -21,8 +21,8 @@ struct Window {
 /// The number of the last sample that a fitness operator asks for; the first one is 0.
 std::int64_t last_sample(const Request& request);
 
-/// The memory for the samples of the bodies of a cohort that are measured at once after maturing, bytes. If they would
-/// take more, fewer bodies are measured at once, but at least one.
+/// The memory for the samples of the bodies that a cohort simulates at once, bytes. If they would take more, fewer
+/// bodies are simulated at once, but at least one.
 inline constexpr double most_sample_bytes = 4e9;
 
 /// The times at which bodies are sampled for the windows of all fitness operators. A sample serves all operators that
@@ -43,6 +43,10 @@ class Windows {
   double bytes_after_maturing(std::size_t masses, std::size_t springs) const;
   /// The memory that they take within the life, bytes.
   double bytes_within_life(std::size_t masses, std::size_t springs) const;
+  /// The number of lives, from the first one on, whose samples after maturing fit in memory together; at least one.
+  std::size_t fitting_after_maturing(std::span<const Life> lives) const;
+  /// The same for the samples within the lives, of bodies that keep their size, in all scenes in which they develop.
+  std::size_t fitting_within_life(std::span<const Life> born) const;
 
  private:
   double cycle_time_;  // s
@@ -51,6 +55,7 @@ class Windows {
   std::vector<SampleTime> after_maturing_;
   double duration_ = 0;  // of the final evaluation, s
   Channels counted_in_life_;
+  double scenes_of_life_;  // number of scenes in which each newborn develops
 };
 
 }  // namespace evodevo

@@ -21,7 +21,8 @@ struct Request {
   bool work = false;   ///< whether Observation::work is needed
   /// If given, the window lies within the life: the body begins to settle when development has changed it after this
   /// cycle, or at birth (0). The window must close before the last cycle ends. Otherwise the body begins to settle when
-  /// it has matured, in every scenario.
+  /// it has matured, in every scenario. Windows within the life lie in the scenarios that develop or, if there are
+  /// none, in the life in the experiment's own scene.
   std::optional<std::int64_t> cycle = std::nullopt;
   double rate = 0;         ///< samples per second; 0: none
   Channels channels = {};  ///< of each sample
@@ -53,7 +54,8 @@ struct Observation {
   Samples samples;     ///< if requested; empty otherwise
   /// The body when it had matured, after the changes of the scenario. Null in a window within the life.
   const Body* body = nullptr;
-  std::string_view scenario;  ///< name of the scenario; empty if the experiment has none, and within the life
+  /// Name of the scenario; empty if the experiment has none, and within the life in the experiment's own scene.
+  std::string_view scenario;
 };
 
 /// What a score is for.
