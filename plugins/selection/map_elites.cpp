@@ -9,7 +9,7 @@
 
 namespace {
 
-using evodevo::Place;
+using evodevo::Coordinates;
 
 /// The space of the descriptors is divided into cells, and the best individual of each cell survives: the population is
 /// the map. Individuals are compared by their first score; ties are broken by the other scores, then by youth. All
@@ -37,7 +37,7 @@ class MapElites final : public evodevo::Selection {
   evodevo::Survival survive(const evodevo::SelectionContext& context, std::uint32_t population,
                             evodevo::Rng&) const override {
     const bool is_grid = cells_ == "grid";
-    const evodevo::Neighbours centres(is_grid ? std::vector<Place>() : centres_in(context));
+    const evodevo::Neighbours centres(is_grid ? std::vector<Coordinates>() : centres_in(context));
     const auto order = breeding_rows(context.rows);
     std::map<std::uint64_t, std::uint32_t> elites;
     evodevo::Survival survival;
@@ -47,7 +47,7 @@ class MapElites final : public evodevo::Selection {
         survival.rows.push_back(row);
         continue;
       }
-      const Place place = place_of(candidate, context.descriptors);
+      const Coordinates place = place_of(candidate, context.descriptors);
       const std::uint64_t cell = is_grid ? evodevo::grid_cell(place, static_cast<std::uint32_t>(bins_))
                                          : centres.nearest(place, 1).front().index;
       survival.notes.push_back({row, 0, static_cast<double>(cell)});
@@ -59,21 +59,21 @@ class MapElites final : public evodevo::Selection {
   }
 
  private:
-  std::vector<Place> centres_in(const evodevo::SelectionContext& context) const {
+  std::vector<Coordinates> centres_in(const evodevo::SelectionContext& context) const {
     const std::size_t dimension = context.descriptors.size();
     if (context.memory.empty()) {
       evodevo::Rng rng = *rng_;
       return evodevo::voronoi_centres(static_cast<std::uint32_t>(count_), dimension, rng);
     }
     evodevo::MemoryReader reader(context.memory);
-    std::vector<Place> centres;
+    std::vector<Coordinates> centres;
     while (reader.left() > 0) centres.push_back(reader.read_list<double>());
     return centres;
   }
 
-  static std::vector<std::byte> written(const std::vector<Place>& centres) {
+  static std::vector<std::byte> written(const std::vector<Coordinates>& centres) {
     evodevo::MemoryWriter writer;
-    for (const Place& centre : centres) writer.write(centre);
+    for (const Coordinates& centre : centres) writer.write(centre);
     return writer.bytes();
   }
 

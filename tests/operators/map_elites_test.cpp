@@ -57,7 +57,7 @@ TEST(MapElites, TheBestOfTheCellWithTheNearestCentreSurvives) {
   Table table = random_table(1, 80);
   const Survival first = table.survive(*selection, 100);
   MemoryReader reader(first.memory);
-  std::vector<Place> centres;
+  std::vector<Coordinates> centres;
   while (reader.left() > 0) centres.push_back(reader.read_list<double>());
   ASSERT_EQ(centres.size(), 12u);
 
@@ -67,7 +67,7 @@ TEST(MapElites, TheBestOfTheCellWithTheNearestCentreSurvives) {
     if (one.scores.empty()) continue;
     const double x = one.descriptors[0] / 2, y = (one.descriptors[1] + 1) / 2;
     std::size_t nearest = 0;
-    const auto squared = [&](const Place& c) { return (c[0] - x) * (c[0] - x) + (c[1] - y) * (c[1] - y); };
+    const auto squared = [&](const Coordinates& c) { return (c[0] - x) * (c[0] - x) + (c[1] - y) * (c[1] - y); };
     for (std::size_t i = 1; i < centres.size(); ++i)
       if (squared(centres[i]) < squared(centres[nearest])) nearest = i;
     const auto found = best.emplace(nearest, row).first;

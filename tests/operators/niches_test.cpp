@@ -9,21 +9,21 @@
 namespace evodevo::test {
 namespace {
 
-std::vector<Place> random_places(Rng& rng, std::size_t count, std::size_t dimension) {
-  std::vector<Place> places(count, Place(dimension));
-  for (Place& place : places)
+std::vector<Coordinates> random_places(Rng& rng, std::size_t count, std::size_t dimension) {
+  std::vector<Coordinates> places(count, Coordinates(dimension));
+  for (Coordinates& place : places)
     for (double& coordinate : place) coordinate = rng.uniform();
   return places;
 }
 
-double distance(const Place& a, const Place& b) {
+double distance(const Coordinates& a, const Coordinates& b) {
   double sum = 0;
   for (std::size_t axis = 0; axis < a.size(); ++axis) sum += (a[axis] - b[axis]) * (a[axis] - b[axis]);
   return std::sqrt(sum);
 }
 
 /// Returns the indices of all places, ordered by their distances to a place.
-std::vector<std::uint32_t> by_distance(const std::vector<Place>& places, const Place& to) {
+std::vector<std::uint32_t> by_distance(const std::vector<Coordinates>& places, const Coordinates& to) {
   std::vector<std::uint32_t> order(places.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),
@@ -37,7 +37,7 @@ TEST(Neighbours, AreThoseOfAFullSearch) {
       Rng rng = stream(dimension * 1000 + count);
       const auto places = random_places(rng, count, dimension);
       const Neighbours neighbours(places);
-      for (const Place& place : random_places(rng, 20, dimension)) {
+      for (const Coordinates& place : random_places(rng, 20, dimension)) {
         const auto order = by_distance(places, place);
         const auto found = neighbours.nearest(place, 12);
         ASSERT_EQ(found.size(), std::min<std::size_t>(12, count));
@@ -50,28 +50,28 @@ TEST(Neighbours, AreThoseOfAFullSearch) {
 }
 
 TEST(Neighbours, OfNothingAreNone) {
-  EXPECT_TRUE(Neighbours(std::vector<Place>()).nearest(Place{0.5}, 3).empty());
-  EXPECT_TRUE(Neighbours(std::vector<Place>{{0.5}}).nearest(Place{0.5}, 0).empty());
+  EXPECT_TRUE(Neighbours(std::vector<Coordinates>()).nearest(Coordinates{0.5}, 3).empty());
+  EXPECT_TRUE(Neighbours(std::vector<Coordinates>{{0.5}}).nearest(Coordinates{0.5}, 0).empty());
 }
 
 TEST(Neighbours, MayLieAtOnePlace) {
-  const Neighbours neighbours(std::vector<Place>(50, Place{0.25, 0.75}));
-  EXPECT_THAT(neighbours.nearest(Place{0.25, 0.5}, 60), testing::SizeIs(50));
-  EXPECT_EQ(neighbours.nearest(Place{0.25, 0.5}, 60).back().distance, 0.25);
+  const Neighbours neighbours(std::vector<Coordinates>(50, Coordinates{0.25, 0.75}));
+  EXPECT_THAT(neighbours.nearest(Coordinates{0.25, 0.5}, 60), testing::SizeIs(50));
+  EXPECT_EQ(neighbours.nearest(Coordinates{0.25, 0.5}, 60).back().distance, 0.25);
 }
 
 TEST(GridCell, CountsTheFirstAxisFirst) {
-  EXPECT_EQ(grid_cell(Place{0.05, 0.95}, 10), 9u);
-  EXPECT_EQ(grid_cell(Place{0.95, 0.05}, 10), 90u);
-  EXPECT_EQ(grid_cell(Place{0.35, 0.25, 0.15}, 10), 321u);
+  EXPECT_EQ(grid_cell(Coordinates{0.05, 0.95}, 10), 9u);
+  EXPECT_EQ(grid_cell(Coordinates{0.95, 0.05}, 10), 90u);
+  EXPECT_EQ(grid_cell(Coordinates{0.35, 0.25, 0.15}, 10), 321u);
 }
 
 TEST(GridCell, BordersAndWhatLiesOutsideBelongToTheNearestCell) {
-  EXPECT_EQ(grid_cell(Place{0}, 4), 0u);
-  EXPECT_EQ(grid_cell(Place{0.25}, 4), 1u);
-  EXPECT_EQ(grid_cell(Place{1}, 4), 3u);
-  EXPECT_EQ(grid_cell(Place{-1e300}, 4), 0u);
-  EXPECT_EQ(grid_cell(Place{1e300}, 4), 3u);
+  EXPECT_EQ(grid_cell(Coordinates{0}, 4), 0u);
+  EXPECT_EQ(grid_cell(Coordinates{0.25}, 4), 1u);
+  EXPECT_EQ(grid_cell(Coordinates{1}, 4), 3u);
+  EXPECT_EQ(grid_cell(Coordinates{-1e300}, 4), 0u);
+  EXPECT_EQ(grid_cell(Coordinates{1e300}, 4), 3u);
 }
 
 TEST(MoveCentroids, LowersTheCostUntilItStays) {
@@ -89,7 +89,7 @@ TEST(MoveCentroids, LowersTheCostUntilItStays) {
 }
 
 TEST(MoveCentroids, TakesTheMeanOfTheSamplesAround) {
-  std::vector<Place> centroids{{0.2}, {0.7}, {5}};
+  std::vector<Coordinates> centroids{{0.2}, {0.7}, {5}};
   EXPECT_NEAR(move_centroids(centroids, {{0.1}, {0.2}, {0.6}, {0.9}}), (0.01 + 0 + 0.01 + 0.04) / 4, 1e-12);
   EXPECT_NEAR(centroids[0][0], 0.15, 1e-12);
   EXPECT_NEAR(centroids[1][0], 0.75, 1e-12);
@@ -103,7 +103,7 @@ TEST(VoronoiCentres, HaveCellsOfSimilarSize) {
     const Neighbours cells(voronoi_centres(count, dimension, rng));
     std::vector<double> size(count, 0);
     const int samples = 64000;
-    for (const Place& place : random_places(rng, samples, dimension))
+    for (const Coordinates& place : random_places(rng, samples, dimension))
       size[cells.nearest(place, 1)[0].index] += static_cast<double>(count) / samples;
     for (const double relative : size) {
       EXPECT_GT(relative, 0.4) << "dimension " << dimension;
@@ -129,7 +129,7 @@ TEST(VoronoiCentres, MayBeOne) {
 
 std::vector<Behaviour> random_behaviours(Rng& rng, std::size_t count) {
   std::vector<Behaviour> behaviours;
-  for (const Place& place : random_places(rng, count, 2)) behaviours.push_back({place, 1.0 * rng.below(5)});
+  for (const Coordinates& place : random_places(rng, count, 2)) behaviours.push_back({place, 1.0 * rng.below(5)});
   return behaviours;
 }
 

@@ -13,13 +13,13 @@
 
 namespace evodevo {
 
-/// A place in a space of any dimension, such as the space of the descriptors.
-using Place = std::vector<double>;
+/// The coordinates of a place in a space of any dimension, such as the space of the descriptors.
+using Coordinates = std::vector<double>;
 
 /// Returns where an individual that did not fail lies in the space of the descriptors. The range of each descriptor
 /// becomes [0, 1].
-inline Place place_of(const Candidate& row, std::span<const Objective> descriptors) {
-  Place place;
+inline Coordinates place_of(const Candidate& row, std::span<const Objective> descriptors) {
+  Coordinates place;
   for (std::size_t i = 0; i < descriptors.size(); ++i)
     place.push_back((row.descriptors[i] - descriptors[i].low) / (descriptors[i].high - descriptors[i].low));
   return place;
@@ -34,7 +34,7 @@ class Neighbours {
   };
 
   /// All places must have the same dimension, at least 1.
-  explicit Neighbours(std::vector<Place> places)
+  explicit Neighbours(std::vector<Coordinates> places)
       : cloud_{std::move(places)}, tree_(cloud_.dimension(), cloud_, {leaf_size}) {}
   Neighbours(const Neighbours&) = delete;  // the tree refers to the places
   Neighbours& operator=(const Neighbours&) = delete;
@@ -52,14 +52,14 @@ class Neighbours {
     return result;
   }
 
-  const std::vector<Place>& places() const { return cloud_.places; }
+  const std::vector<Coordinates>& places() const { return cloud_.places; }
 
  private:
   static constexpr std::size_t leaf_size = 10;
 
   /// The places in the form that nanoflann reads.
   struct Cloud {
-    std::vector<Place> places;
+    std::vector<Coordinates> places;
 
     int dimension() const { return places.empty() ? 1 : static_cast<int>(places.front().size()); }
     std::size_t kdtree_get_point_count() const { return places.size(); }

@@ -22,12 +22,12 @@ inline std::uint64_t grid_cell(std::span<const double> place, std::uint32_t bins
 
 /// Moves each centroid to the mean of the samples to which it is the nearest one (Lloyd's algorithm), and returns the
 /// mean squared distance of the samples to their centroids before that. A centroid without samples stays.
-inline double move_centroids(std::vector<Place>& centroids, const std::vector<Place>& samples) {
+inline double move_centroids(std::vector<Coordinates>& centroids, const std::vector<Coordinates>& samples) {
   const Neighbours cells(centroids);
-  std::vector<Place> sums(centroids.size(), Place(centroids.front().size(), 0));
+  std::vector<Coordinates> sums(centroids.size(), Coordinates(centroids.front().size(), 0));
   std::vector<std::uint32_t> counts(centroids.size(), 0);
   double cost = 0;
-  for (const Place& sample : samples) {
+  for (const Coordinates& sample : samples) {
     const Neighbours::Neighbour cell = cells.nearest(sample, 1).front();
     for (std::size_t axis = 0; axis < sample.size(); ++axis) sums[cell.index][axis] += sample[axis];
     ++counts[cell.index];
@@ -42,11 +42,11 @@ inline double move_centroids(std::vector<Place>& centroids, const std::vector<Pl
 /// Returns the centres of `count` > 0 cells of similar size that fill the unit cube of a dimension: a centroidal
 /// Voronoi tessellation, by k-means of uniformly distributed samples (Vassiliades et al. 2018). A place belongs to the
 /// cell whose centre is nearest.
-inline std::vector<Place> voronoi_centres(std::uint32_t count, std::size_t dimension, Rng& rng) {
-  std::vector<Place> samples(std::max<std::size_t>(10'000, std::size_t{25} * count), Place(dimension));
-  for (Place& sample : samples)
+inline std::vector<Coordinates> voronoi_centres(std::uint32_t count, std::size_t dimension, Rng& rng) {
+  std::vector<Coordinates> samples(std::max<std::size_t>(10'000, std::size_t{25} * count), Coordinates(dimension));
+  for (Coordinates& sample : samples)
     for (double& coordinate : sample) coordinate = rng.uniform();
-  std::vector<Place> centres(samples.begin(), samples.begin() + count);
+  std::vector<Coordinates> centres(samples.begin(), samples.begin() + count);
   double before = move_centroids(centres, samples);
   for (int round = 0; round < 100; ++round) {  // until the cost hardly changes
     const double cost = move_centroids(centres, samples);

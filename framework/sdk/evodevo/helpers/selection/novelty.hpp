@@ -10,8 +10,8 @@ namespace evodevo {
 
 /// What an individual did, and how good it was.
 struct Behaviour {
-  Place place;       ///< in the space of descriptors
-  double score = 0;  ///< greater is better
+  Coordinates place;  ///< in the space of descriptors
+  double score = 0;   ///< greater is better
 };
 
 /// How an individual compares with its nearest neighbours.
@@ -26,7 +26,7 @@ inline std::vector<Novelty> novelty(std::span<const Behaviour> individuals, std:
                                     std::size_t count) {
   std::vector<Behaviour> all(individuals.begin(), individuals.end());
   all.insert(all.end(), archive.begin(), archive.end());
-  std::vector<Place> places;
+  std::vector<Coordinates> places;
   for (const Behaviour& one : all) places.push_back(one.place);
   const Neighbours neighbours(std::move(places));
   std::vector<Novelty> result;
