@@ -1,5 +1,6 @@
 // Species of similar genomes that share their fitness (NEAT: Stanley and Miikkulainen 2002).
 #include <map>
+#include <set>
 
 #include "evodevo/helpers/rows.hpp"
 #include "evodevo/helpers/selection/homology.hpp"
@@ -65,22 +66,12 @@ class SpeciesSelection final : public evodevo::Selection {
     for (std::uint32_t i = 0; i < order.size(); ++i)
       if (context.rows[order[i]].ok()) survival.notes.push_back({order[i], 0, static_cast<double>(species[i])});
 
-    const auto worth = shares(context.rows, order);
-    std::map<std::uint32_t, double> chosen;  // how many of each species
-    std::vector<bool> lives(order.size(), false);
     Known living{{}};
-    for (std::size_t places = std::min<std::size_t>(population, order.size()); places > 0; --places) {
-      std::uint32_t best = 0;
-      double most = -1;
-      for (std::uint32_t i = 0; i < order.size(); ++i)
-        if (const double shared = worth[i] / (1 + chosen[species[i]]); !lives[i] && shared > most)
-          best = i, most = shared;
-      lives[best] = true;
-      ++chosen[species[best]];
-      survival.rows.push_back(order[best]);
-      living.species[context.rows[order[best]].id] = species[best];
-    }
     living.next = known.next;
+    for (const std::uint32_t i : chosen(shares(context.rows, order), species, population)) {
+      survival.rows.push_back(order[i]);
+      living.species[context.rows[order[i]].id] = species[i];
+    }
     survival.memory = living.written();
     return survival;
   }
@@ -127,6 +118,23 @@ class SpeciesSelection final : public evodevo::Selection {
     return shares;
   }
 
+  /// Returns the positions of at most `count` individuals, chosen one by one by their worth, which is shared with the
+  /// members of the same species that were chosen before.
+  static Numbers chosen(const std::vector<double>& worth, const Numbers& species, std::uint32_t count) {
+    std::map<std::uint32_t, double> members;
+    Numbers left(worth.size()), chosen;
+    std::iota(left.begin(), left.end(), 0u);
+    while (chosen.size() < count && !left.empty()) {
+      const auto shared = [&](std::uint32_t i) { return worth[i] / (1 + members[species[i]]); };
+      const auto best =
+          std::max_element(left.begin(), left.end(), [&](auto a, auto b) { return shared(a) < shared(b); });
+      ++members[species[*best]];
+      chosen.push_back(*best);
+      left.erase(best);
+    }
+    return chosen;
+  }
+
   double difference(const SelectionContext& context, std::uint32_t one, std::uint32_t other) const {
     const auto distance =
         evodevo::genome_distance(*context.rows[one].genome, *context.rows[other].genome, context.layout);
@@ -148,10 +156,12 @@ class SpeciesSelection final : public evodevo::Selection {
   /// Returns the species of each row of `order`, which is from best to worst, and numbers the new ones.
   Numbers classified(const SelectionContext& context, const Numbers& order, Known& known) const {
     std::map<std::uint32_t, std::uint32_t> representatives;  // row by species
-    for (const std::uint32_t row : order)
-      if (const std::uint32_t number = known.species_of(context.rows[row]);
-          number > 0 && !representatives.contains(number) && nearest(context, representatives, row) == 0)
-        representatives.emplace(number, row);
+    std::set<std::uint32_t> seen{0};
+    for (const std::uint32_t row : order) {
+      const std::uint32_t number = known.species_of(context.rows[row]);
+      const bool is_best = seen.insert(number).second;
+      if (is_best && nearest(context, representatives, row) == 0) representatives.emplace(number, row);
+    }
     Numbers species;
     for (const std::uint32_t row : order) {
       std::uint32_t number = nearest(context, representatives, row);
