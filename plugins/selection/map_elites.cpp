@@ -21,7 +21,7 @@ class MapElites final : public evodevo::Selection {
     p.choice(cells_, "cells", {"grid", "centroidal"},
              "Shape of the cells: a grid, or a given number of cells of similar size, for many descriptors.");
     p.integer(bins_, "bins", {1, 1000, "1"}, "Number of cells of the grid along each descriptor.");
-    p.integer(count_, "count", {1, 100'000, "1"}, "Number of centroidal cells.");
+    p.integer(count_, "count", {1, 10'000, "1"}, "Number of centroidal cells.");
   }
 
   evodevo::Traits traits() const override { return {.least_descriptors = 1}; }
