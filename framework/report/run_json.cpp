@@ -101,6 +101,8 @@ Json individual_json(const Archive& archive, const ArchivedIndividual& individua
     values[objectives[i].name] = individual.result.objectives[i];
   Json measures = Json::object();
   for (const ArchivedMeasure& measure : archive.measures(individual.id)) measures[measure.name] = measure.value;
+  Json notes = Json::object();
+  for (const ArchivedNote& note : archive.notes(individual.id)) notes[note.name] = note.value;
   Json ancestors = Json::array();
   for (std::size_t i = 1; i < line.size(); ++i) ancestors.push_back(line[i].id);
   const auto verification = archive.verification(individual.id);
@@ -110,6 +112,7 @@ Json individual_json(const Archive& archive, const ArchivedIndividual& individua
           {"status", name(individual.result.status)},
           {"objectives", std::move(values)},
           {"measures", std::move(measures)},
+          {"notes", std::move(notes)},
           {"scenarios", tests_json(archive.tests(individual.id))},
           {"parents", individual.parents},
           {"made_by", individual.made_by},
