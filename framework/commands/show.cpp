@@ -66,6 +66,25 @@ class Report {
     print_best();
   }
 
+  void print_individual(std::uint32_t id) const {
+    const auto line = ancestry(archive_, id);
+    const ArchivedIndividual& individual = line.front();
+    fmt::print(std::cout, "  {}: ", individual.id);
+    if (individual.result.status != Status::ok)
+      fmt::print(std::cout, "{}, {}, ", name(individual.result.status), individual.result.reason);
+    for (std::size_t i = 0; i < individual.result.objectives.size(); ++i)
+      fmt::print(std::cout, "{} {}, ", objectives_[i].name,
+                 short_quantity(individual.result.objectives[i], objectives_[i].unit));
+    fmt::print(std::cout, "born in generation {}, age {}", individual.born, last_age(individual, last_generation_));
+    if (const auto verification = archive_.verification(id))
+      std::cout << ", " << marks_text(*verification, objectives_.front().maximise);
+    std::cout << '\n';
+    print_measures(id);
+    const std::vector<ArchivedTest> tests = archive_.tests(id);
+    for (const Objective& objective : objectives_) print_tests(tests, objective);
+    std::cout << "    " << line_text(line) << '\n';
+  }
+
  private:
   std::int64_t done() const { return generations_.empty() ? 0 : generations_.back().evaluations; }
 
@@ -121,29 +140,14 @@ class Report {
     }
   }
 
-  void print_individual(std::uint32_t id) const {
-    const auto line = ancestry(archive_, id);
-    const ArchivedIndividual& individual = line.front();
-    fmt::print(std::cout, "  {}: ", individual.id);
-    for (std::size_t i = 0; i < objectives_.size(); ++i)
-      fmt::print(std::cout, "{} {}, ", objectives_[i].name,
-                 short_quantity(individual.result.objectives[i], objectives_[i].unit));
-    fmt::print(std::cout, "born in generation {}, age {}", individual.born, last_age(individual, last_generation_));
-    if (const auto verification = archive_.verification(id))
-      std::cout << ", " << marks_text(*verification, objectives_.front().maximise);
-    std::cout << '\n';
-    print_measures(id);
-    const std::vector<ArchivedTest> tests = archive_.tests(id);
-    for (const Objective& objective : objectives_) print_tests(tests, objective);
-    std::cout << "    " << line_text(line) << '\n';
-  }
-
-  /// Prints the scores that are not objectives.
+  /// Prints the scores that are not objectives, and what the selection operator has noted.
   void print_measures(std::uint32_t id) const {
-    std::string text;
+    std::vector<std::string> texts;
     for (const ArchivedMeasure& measure : archive_.measures(id))
-      text += (text.empty() ? "" : ", ") + measure.name + " " + short_quantity(measure.value, measure.unit);
-    if (!text.empty()) std::cout << "    " << text << '\n';
+      texts.push_back(measure.name + " " + short_quantity(measure.value, measure.unit));
+    for (const ArchivedNote& note : archive_.notes(id))
+      texts.push_back(note.name + " " + short_quantity(note.value, note.unit));
+    if (!texts.empty()) std::cout << "    " << joined(texts, ", ") << '\n';
   }
 
   /// Prints the mean of an objective over the repeats of each scenario.
@@ -189,7 +193,12 @@ class Report {
 
 int show(const Given& given) {
   const Archive archive = Archive::read(given["DIR"].as<std::string>());
-  if (given.contains("json"))
+  const bool is_one = given.contains("individual");
+  if (is_one && given.contains("json"))
+    std::cout << json_text(individual_json(archive, chosen_individual(archive, given))) << '\n';
+  else if (is_one)
+    Report(archive).print_individual(chosen_individual(archive, given).id);
+  else if (given.contains("json"))
     std::cout << json_text(run_json(archive, recorded_settings(archive))) << '\n';
   else
     Report(archive).print();
@@ -200,6 +209,7 @@ int show(const Given& given) {
 
 Command show_command() {
   Options options;
+  options.add_options()("individual", value<std::int64_t>("ID"), "show this individual alone");
   options.add_options()("json", "print JSON, with every generation");
   return {
       .name = "show",
@@ -208,8 +218,10 @@ Command show_command() {
       .text =
           {"It prints the best and the median of each objective by generation, why individuals have no fitness, and "
            "the best individuals with their scores, their ancestors, and the blocks of genes that came and went from "
-           "one to the next. The run may still be in progress."},
-      .examples = {"show runs/quickstart-1", "show runs/quickstart-1 --json"},
+           "one to the next. The run may still be in progress. With --individual, it prints one individual: its "
+           "scores, what the selection operator has noted about it, and its ancestors."},
+      .examples = {"show runs/quickstart-1", "show runs/quickstart-1 --individual 531",
+                   "show runs/quickstart-1 --json"},
       .options = options,
       .function = show};
 }

@@ -235,8 +235,10 @@ std::string transcript(const Archive& archive) {
     text += std::to_string(id) + " " + name(individual->result.status) + " ";
     for (const float gene : individual->genome) text += to_text(gene) + " ";
     for (const double value : individual->result.objectives) text += to_text(value) + " ";
+    for (const ArchivedNote& note : archive.notes(id)) text += note.name + " " + to_text(note.value) + " ";
     text += individual->died ? std::to_string(*individual->died) + "\n" : "lives\n";
   }
+  for (const std::byte byte : archive.memory()) text += std::to_string(std::to_integer<int>(byte)) + " ";
   return text;
 }
 

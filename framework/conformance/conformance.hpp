@@ -24,6 +24,7 @@ std::vector<Case> general_cases();
 std::vector<Case> process_cases();
 /// Returns the cases for operators of one kind.
 std::vector<Case> laws_of(std::string_view kind);
+std::vector<Case> selection_laws();
 
 /// The result of one case.
 struct Verdict {

@@ -243,89 +243,6 @@ void scores_every_objective(const Subject& subject, std::uint64_t seed) {
   throw Violation("none of " + std::to_string(bodies) + " bodies gets finite scores, so all would be invalid");
 }
 
-// ---- selection ----
-
-/// Returns the table in another order of birth. `order[i]` is the old index of the new row i.
-SampleTable reordered(const SampleTable& table, const std::vector<std::uint32_t>& order) {
-  std::vector<std::uint32_t> position(order.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) position[order[i]] = i;
-  SampleTable other;
-  for (const std::uint32_t row : order) other.scores.push_back(table.scores[row]);
-  for (std::uint32_t i = 0; i < order.size(); ++i) {
-    Candidate row = table.rows[order[i]];
-    row.scores = other.scores[i];
-    if (row.challenges) row.challenges = position[*row.challenges];
-    other.rows.push_back(row);
-  }
-  return other;
-}
-
-void order_does_not_matter(const Subject& subject, std::uint64_t seed) {
-  const auto op = create<Selection>(subject);
-  for (std::uint32_t input = 0; input < 20; ++input) {
-    const SampleTable table = sample_table(seed, input, 24, 4);
-    std::vector<std::uint32_t> order(24);
-    std::iota(order.begin(), order.end(), 0u);
-    Rng shuffler = stream(seed, input, 2);
-    shuffler.shuffle(order);
-    const SampleTable other = reordered(table, order);
-    Rng rng = stream(seed, input, 1), same_rng = stream(seed, input, 1);
-    auto living = op->survivors(table.rows, 10, rng), living_too = op->survivors(other.rows, 10, same_rng);
-    for (std::uint32_t& row : living_too) row = order.at(row);
-    std::sort(living.begin(), living.end());
-    std::sort(living_too.begin(), living_too.end());
-    if (living != living_too) throw Violation("the choice of survivors depends on the order of birth");
-    const auto pairs = op->parents(table.rows, 20, rng), pairs_too = op->parents(other.rows, 20, same_rng);
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-      if (pairs[i] != std::pair(order.at(pairs_too.at(i).first), order.at(pairs_too.at(i).second)))
-        throw Violation("the choice of parents depends on the order of birth");
-  }
-}
-
-/// Returns the rows that survive. Throws Violation unless they are 1 to 10 different rows of the table.
-std::vector<std::uint32_t> survivors(const Selection& op, const SampleTable& table, Rng& rng) {
-  const auto living = op.survivors(table.rows, 10, rng);
-  const std::set<std::uint32_t> different(living.begin(), living.end());
-  if (living.empty() || living.size() > 10 || different.size() != living.size() ||
-      *different.rbegin() >= table.rows.size())
-    throw Violation("it chooses " + std::to_string(living.size()) + " survivors of " +
-                    std::to_string(table.rows.size()) + " rows; expected 1 to 10 different ones");
-  return living;
-}
-
-void keeps_its_elite(const Subject& subject, std::uint64_t seed) {
-  const auto op = create<Selection>(subject);
-  if (!op->traits().is_elitist) throw Skipped("its traits say that it is not elitist");
-  for (std::uint32_t input = 0; input < 40; ++input) {
-    const SampleTable table = sample_table(seed, input, 24, 4);
-    const auto best = std::max_element(table.scores.begin(), table.scores.end());
-    Rng rng = stream(seed, input, 1);
-    const auto living = survivors(*op, table, rng);
-    if (std::find(living.begin(), living.end(), best - table.scores.begin()) == living.end())
-      throw Violation("the row with the best first score does not survive");
-  }
-}
-
-/// Checks that no failed row survives or breeds. Twelve of the twenty rows did not fail and only ten survive, so no
-/// failed row is needed. If all rows failed, there must be survivors and parents nevertheless.
-void failed_rows_lose(const Subject& subject, std::uint64_t seed) {
-  const auto op = create<Selection>(subject);
-  for (std::uint32_t input = 0; input < 20; ++input) {
-    const SampleTable table = sample_table(seed, input, 20, 8);
-    Rng rng = stream(seed, input, 1);
-    for (const std::uint32_t row : survivors(*op, table, rng))
-      if (!table.rows[row].ok()) throw Violation("a failed row survives in place of a sound one");
-    for (const auto& [parent, mate] : op->parents(table.rows, 20, rng))
-      if (!table.rows.at(parent).ok() || !table.rows.at(mate).ok())
-        throw Violation("a failed row is a parent in place of a sound one");
-  }
-  const SampleTable hopeless = sample_table(seed, 0, 20, 20);
-  Rng rng = stream(seed, 0, 1);
-  survivors(*op, hopeless, rng);
-  if (op->parents(hopeless.rows, 5, rng).size() != 5)
-    throw Violation("if all rows have failed, it does not choose as many parents as asked for");
-}
-
 }  // namespace
 
 std::vector<Case> laws_of(std::string_view kind) {
@@ -336,7 +253,7 @@ std::vector<Case> laws_of(std::string_view kind) {
   if (kind == Devo::kind) return {{"bodies", bodies_stay_sound}};
   if (kind == Fitness::kind)
     return {{"objectives", scores_every_objective}, {"translation", unmoved_by_translation}, {"nan", honest_about_nan}};
-  return {{"order", order_does_not_matter}, {"elite", keeps_its_elite}, {"failed", failed_rows_lose}};
+  return selection_laws();
 }
 
 }  // namespace evodevo::conformance

@@ -1,6 +1,7 @@
 #include "conformance/subject.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <sstream>
 
 #include "base/genome_sections.hpp"
@@ -19,7 +20,10 @@ namespace fs = std::filesystem;
 /// Returns the table of an experiment for the operator with this index among those of its kind.
 toml::table table_of(const toml::table& tables, std::string_view kind, std::size_t index) {
   const toml::node_view<const toml::node> node = kind == Devo::kind ? tables["development"]["operator"] : tables[kind];
-  if (const toml::table* one = node.as_table()) return *one;
+  if (const toml::table* one = node.as_table()) {
+    const toml::table* apart = (*one)[index == 0 ? "survivors" : "parents"].as_table();
+    return apart != nullptr ? *apart : *one;
+  }
   return *node.as_array()->get(index)->as_table();
 }
 
@@ -55,6 +59,10 @@ SampleGenomes genomes_of(const Use& use, std::string_view kind) {
   if (kind == Mutation::kind) {
     sections = experiment.mutations.at(use.index).sections;
     if (const auto own = experiment.mutations.at(use.index).own_section) std::erase(sections, *own);
+  }
+  if (kind == Selection::kind) {
+    sections.resize(experiment.layout.sections.size());
+    std::iota(sections.begin(), sections.end(), 0u);
   }
   const Layout layout = some_sections(experiment.layout, sections);
   return restructured(layout, [&experiment, sections, layout](Rng& rng) {
@@ -100,7 +108,9 @@ const AvailableOperator& encoding_with(const Subject& subject, const std::vector
 /// Returns the encoding for a small experiment with another operator: one whose genomes have the blocks on which the
 /// operator works.
 toml::table encoding_for(const Subject& subject) {
-  const std::vector<std::string> wanted = create_operator(subject)->traits().block_types;
+  const Traits traits = create_operator(subject)->traits();
+  if (traits.needs_real_genes) return toml::table{{host_key::name, "neural"}, {"points", 12}, {"neighbours", 4}};
+  const std::vector<std::string>& wanted = traits.block_types;
   if (wanted.empty()) return toml::table{{host_key::name, "voxel"}, {"size", toml::array{2, 1, 1}}, {"edge", 0.5}};
   if (subject.use) return table_of(subject.use->tables, Encoding::kind, 0);
   if (has_types(sample_layout(1), wanted))
@@ -187,6 +197,23 @@ void fit_life(const Request& request, toml::table& development) {
   development.insert_or_assign("cycle_time", std::max(0.05, (request.settle + request.window) / 2 + 0.05));
 }
 
+/// Adds fitness operators to one that has an objective, until a selection operator has as many scores as it needs.
+void add_scores(const Traits& traits, toml::array& fitness) {
+  const auto add = [&](const char* name, std::uint32_t number) {
+    fitness.push_back(toml::table{
+        {host_key::name, name}, {host_key::label, name + std::to_string(number)}, {"settle", 0.0}, {"window", 0.1}});
+  };
+  for (std::uint32_t i = 1; i < traits.least_objectives; ++i) add("actuation-work", i);
+  for (std::uint32_t i = 0; i < traits.least_descriptors; ++i) add("descriptor", i);
+}
+
+/// Returns the table [selection] of a small experiment with a selection operator, whose own table is `own`.
+toml::table selection_with(const toml::table& own, const Traits& traits) {
+  if (traits.chooses_parents && traits.chooses_survivors) return own;
+  return traits.chooses_parents ? toml::table{{"parents", own}, {"survivors", with_name("elitist")}}
+                                : toml::table{{"parents", with_name("elitist")}, {"survivors", own}};
+}
+
 std::string small_experiment(const Subject& subject, std::uint64_t seed) {
   toml::table root = parse_toml(
       "[experiment]\nevaluations = 24\npopulation = 6\n[scene.gravity]\n[scene.floor]\n[scene.friction]\n"
@@ -209,8 +236,11 @@ std::string small_experiment(const Subject& subject, std::uint64_t seed) {
   mutation.insert_or_assign(host_key::probability, 0.8);
   crossover.insert_or_assign(host_key::probability, 0.5);
   root.insert("encoding", subject.kind() == Encoding::kind ? own : encoding_for(subject));
-  root.insert("mutation", toml::array{std::move(mutation)});
-  root.insert("crossover", toml::array{std::move(crossover)});
+  const Traits traits = create_operator(subject)->traits();
+  if (!traits.makes_children) {
+    root.insert("mutation", toml::array{std::move(mutation)});
+    root.insert("crossover", toml::array{std::move(crossover)});
+  }
   root["development"].as_table()->insert(
       "operator", toml::array{either(Devo::kind, toml::table{{host_key::name, "spring-turnover"}, {"springs", 2}})});
   toml::array fitness;
@@ -221,8 +251,9 @@ std::string small_experiment(const Subject& subject, std::uint64_t seed) {
   // the operator itself may have no objective
   fitness.push_back(
       toml::table{{host_key::name, "distance"}, {host_key::label, "way"}, {"settle", 0.0}, {"window", 0.1}});
+  add_scores(traits, fitness);
   root.insert("fitness", std::move(fitness));
-  root.insert("selection", either(Selection::kind, with_name("elitist")));
+  root.insert("selection", subject.kind() == Selection::kind ? selection_with(own, traits) : with_name("elitist"));
   std::ostringstream text;
   text << root << '\n';
   return text.str();

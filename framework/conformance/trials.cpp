@@ -9,6 +9,7 @@
 #include "base/philox.hpp"
 #include "base/text.hpp"
 #include "conformance/behaviours.hpp"
+#include "conformance/tables.hpp"
 #include "evodevo/neat.hpp"
 #include "operators/isolation.hpp"
 
@@ -139,17 +140,6 @@ Numbers try_fitness(const Fitness& op, std::uint64_t seed, std::uint32_t input) 
   return result;
 }
 
-Numbers try_selection(const Selection& op, std::uint64_t seed, std::uint32_t input) {
-  const SampleTable table = sample_table(seed, input, 24, 4), before = sample_table(seed, input, 24, 4);
-  Rng rng = stream(seed, input, 1);
-  Numbers result;
-  for (const auto& [parent, mate] : op.parents(table.rows, 20, rng)) append(result, {double(parent), double(mate)});
-  for (const std::uint32_t row : op.survivors(table.rows, 10, rng)) result.push_back(row);
-  for (std::size_t i = 0; i < table.scores.size(); ++i)
-    require_untouched("the scores", before.scores[i], table.scores[i]);
-  return result;
-}
-
 }  // namespace
 
 bool same(const Numbers& a, const Numbers& b) {
@@ -266,28 +256,6 @@ SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t see
   return life;
 }
 
-SampleTable sample_table(std::uint64_t seed, std::uint32_t input, std::size_t rows, std::size_t failed) {
-  Rng rng = stream(seed, input);
-  SampleTable table;
-  std::vector<std::uint8_t> fails(rows, 0);
-  std::fill_n(fails.begin(), failed, 1);
-  rng.shuffle(fails);
-  for (std::size_t i = 0; i < rows; ++i) {
-    Numbers scores;
-    for (std::uint32_t objective = 0; objective < 1 + input % 2; ++objective) scores.push_back(rng.uniform(-5, 5));
-    table.scores.push_back(fails[i] ? Numbers{} : scores);
-  }
-  for (std::size_t i = 0; i < rows; ++i) {
-    Candidate row;
-    row.scores = table.scores[i];
-    row.age = rng.below(6);
-    // the rows of the second half are newborns, most of which are children of rows of the first half
-    if (i >= rows / 2 && rng.chance(0.8)) row.challenges = rng.below(static_cast<std::uint32_t>(rows / 2));
-    table.rows.push_back(row);
-  }
-  return table;
-}
-
 Numbers try_out(const Subject& subject, const Operator& op, std::uint64_t seed, std::uint32_t input) {
   const std::string kind = subject.kind();
   if (kind == Encoding::kind) return try_encoding(subject, static_cast<const Encoding&>(op), seed, input);
@@ -295,7 +263,7 @@ Numbers try_out(const Subject& subject, const Operator& op, std::uint64_t seed, 
   if (kind == Crossover::kind) return try_crossover(subject, static_cast<const Crossover&>(op), seed, input);
   if (kind == Devo::kind) return try_devo(subject, static_cast<const Devo&>(op), seed, input);
   if (kind == Fitness::kind) return try_fitness(static_cast<const Fitness&>(op), seed, input);
-  return try_selection(static_cast<const Selection&>(op), seed, input);
+  return try_selection(subject, static_cast<const Selection&>(op), seed, input);
 }
 
 std::uint32_t inputs_for(const Subject& subject) {

@@ -48,14 +48,6 @@ struct SampleLife {
 /// only two.
 SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t seed, std::uint32_t input);
 
-/// A table for a selection operator.
-struct SampleTable {
-  std::vector<Numbers> scores;
-  std::vector<Candidate> rows;  ///< refer to `scores`
-};
-/// Returns a random table in which all scores differ. `failed` of its rows, chosen at random, have no scores.
-SampleTable sample_table(std::uint64_t seed, std::uint32_t input, std::size_t rows, std::size_t failed);
-
 /// Calls the functions of an operator with the input that has the number `input`, and returns all results as numbers.
 /// Throws Violation if the operator changes inputs that it may only read.
 Numbers try_out(const Subject& subject, const Operator& op, std::uint64_t seed, std::uint32_t input);

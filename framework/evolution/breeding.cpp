@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
-#include <unordered_map>
 
 #include "base/genome_sections.hpp"
 #include "base/philox.hpp"
 #include "base/text.hpp"
 #include "evodevo/helpers/pareto.hpp"
 #include "evolution/clones.hpp"
+#include "evolution/selection_table.hpp"
 
 namespace evodevo {
 namespace {
@@ -119,33 +119,117 @@ Individual child(const Experiment& experiment, const Couple& couple, std::uint32
   return individual;
 }
 
-/// Returns a newborn made by `make(repeat)`, with a genome that is not in `known` if possible. As long as the genome is
-/// in `known`, the newborn is made again with other random numbers, but at most `most_repeats` times, because there may
-/// be no other genomes. Adds the genome to `known`.
-template <class Make>
-Individual distinct(GenomeSet& known, const Make& make) {
-  Individual newborn = make(0);
-  for (std::uint32_t repeat = 1; repeat <= most_repeats && known.contains(newborn.genome); ++repeat)
-    newborn = make(repeat);
-  known.add(newborn.genome);
-  return newborn;
-}
+/// What is to be bred.
+struct Brood {
+  const Experiment& experiment;
+  const std::vector<Individual>& population;
+  std::uint32_t generation;
+  std::uint32_t first_id;
+  std::span<const std::byte> memory;
+};
+
+/// The newborns of a generation and the genomes that are known: theirs, and those of the population.
+class Nursery {
+ public:
+  Nursery(const Brood& brood, std::size_t count) : next_id_(brood.first_id), known_(brood.population) {
+    newborns_.reserve(count);  // because `known_` refers to their genomes
+  }
+
+  std::uint32_t next_id() const { return next_id_; }
+
+  void add(Individual newborn) {
+    newborns_.push_back(std::move(newborn));
+    known_.add(newborns_.back().genome);
+    ++next_id_;
+  }
+  /// Adds a newborn made by `make(repeat)`, with a genome that is not known yet if possible. As long as the genome is
+  /// known, the newborn is made again with other random numbers, but at most `most_repeats` times, because there may be
+  /// no other genomes.
+  template <class Make>
+  void add_distinct(const Make& make) {
+    Individual newborn = make(0);
+    for (std::uint32_t repeat = 1; repeat <= most_repeats && known_.contains(newborn.genome); ++repeat)
+      newborn = make(repeat);
+    add(std::move(newborn));
+  }
+
+  std::vector<Individual> take() { return std::move(newborns_); }
+
+ private:
+  std::uint32_t next_id_;
+  std::vector<Individual> newborns_;
+  GenomeSet known_;
+};
 
 Point scores_of(const Candidate& row) { return {row.scores.begin(), row.scores.end()}; }
 
+/// Throws std::runtime_error if the table does not have a row that an operator has chosen as a parent.
+void check_parent(std::uint32_t row, const SelectionContext& context) {
+  if (row >= context.rows.size())
+    throw std::runtime_error("chose row " + std::to_string(row) + " as a parent, but the table has " +
+                             std::to_string(context.rows.size()) + " rows, numbered from 0");
+}
+
 std::vector<std::pair<std::uint32_t, std::uint32_t>> chosen_parents(const Experiment& experiment,
-                                                                    const SelectionTable& table, std::uint32_t count,
-                                                                    Rng& rng) {
-  auto pairs = experiment.selection->parents(table.rows(), count, rng);
+                                                                    const SelectionContext& context,
+                                                                    std::uint32_t count, Rng& rng) {
+  auto pairs = experiment.breeder().couples(context, count, rng);
   if (pairs.size() != count)
     throw std::runtime_error("chose " + std::to_string(pairs.size()) + " pairs of parents, expected " +
                              std::to_string(count));
-  for (const auto& [parent, mate] : pairs)
-    if (std::max(parent, mate) >= table.rows().size())
-      throw std::runtime_error("chose row " + std::to_string(std::max(parent, mate)) +
-                               " as a parent, but the table has " + std::to_string(table.rows().size()) +
-                               " rows, numbered from 0");
+  for (const auto& [parent, mate] : pairs) check_parent(std::max(parent, mate), context);
   return pairs;
+}
+
+/// Adds `count` children that the experiment's variation makes.
+void add_varied(const Brood& brood, std::uint32_t count, Nursery& nursery) {
+  const auto& [experiment, population, generation, first_id, memory] = brood;
+  const SelectionTable table(population, experiment, generation, memory);
+  Rng rng = stream(experiment, generation, 0, rng_stream::parents);
+  const auto pairs = call_operator(experiment.call_of(Selection::kind, experiment.breeder_index()),
+                                   [&] { return chosen_parents(experiment, table.context(), count, rng); });
+  for (const auto& pair : pairs) {
+    const Couple couple{population.at(pair.first), population.at(pair.second),
+                        dominates(scores_of(table.rows()[pair.second]), scores_of(table.rows()[pair.first]))};
+    const std::uint32_t id = nursery.next_id();
+    nursery.add_distinct([&](std::uint32_t repeat) { return child(experiment, couple, brood.generation, id, repeat); });
+  }
+}
+
+std::vector<Child> made_children(const Experiment& experiment, const SelectionContext& context, std::uint32_t count,
+                                 Rng& rng) {
+  auto children = experiment.breeder().children(context, count, rng);
+  if (children.size() != count)
+    throw std::runtime_error("made " + std::to_string(children.size()) + " children, expected " +
+                             std::to_string(count));
+  for (const Child& child : children) {
+    check_genome(child.genome, context.layout);
+    if (child.parents.size() > 2)
+      throw std::runtime_error("made a child of " + std::to_string(child.parents.size()) + " parents, expected 0 to 2");
+    for (const std::uint32_t row : child.parents) check_parent(row, context);
+  }
+  return children;
+}
+
+/// Adds `count` children that the selection operator makes.
+void add_made(const Brood& brood, std::uint32_t count, Nursery& nursery) {
+  const Experiment& experiment = brood.experiment;
+  const SelectionTable table(brood.population, experiment, brood.generation, brood.memory);
+  Rng rng = stream(experiment, brood.generation, 0, rng_stream::parents);
+  auto children = call_operator(experiment.call_of(Selection::kind, experiment.breeder_index()),
+                                [&] { return made_children(experiment, table.context(), count, rng); });
+  for (Child& made : children) {
+    Individual newborn;
+    newborn.id = nursery.next_id();
+    newborn.born = newborn.origin = brood.generation;
+    for (const std::uint32_t row : made.parents) {
+      newborn.parents.push_back(brood.population[row].id);
+      newborn.origin = std::min(newborn.origin, brood.population[row].origin);
+    }
+    newborn.made_by = experiment.child_maker;
+    newborn.genome = std::move(made.genome);
+    nursery.add(std::move(newborn));
+  }
 }
 
 }  // namespace
@@ -170,52 +254,21 @@ Genome first_genome(const Experiment& experiment, const std::function<Rng(std::u
   return join(sections, experiment.layout);
 }
 
-SelectionTable::SelectionTable(const std::vector<Individual>& individuals, const std::vector<Objective>& objectives,
-                               std::uint32_t generation)
-    : scores_(individuals.size()) {
-  std::unordered_map<std::uint32_t, std::uint32_t> row_of;
-  for (std::size_t i = 0; i < individuals.size(); ++i) {
-    const Individual& individual = individuals[i];
-    row_of[individual.id] = static_cast<std::uint32_t>(i);
-    if (individual.result.status == Status::ok)
-      for (std::size_t o = 0; o < objectives.size(); ++o)
-        scores_[i].push_back(objectives[o].maximise ? individual.result.objectives[o]
-                                                    : -individual.result.objectives[o]);
-    Candidate row;
-    row.scores = scores_[i];
-    row.age = individual.age(generation);
-    if (individual.born == generation && !individual.parents.empty())
-      if (const auto parent = row_of.find(individual.parents.front()); parent != row_of.end())
-        row.challenges = parent->second;
-    rows_.push_back(row);
-  }
-}
-
 std::vector<Individual> breed(const Experiment& experiment, const std::vector<Individual>& population,
-                              std::uint32_t generation, std::uint32_t first_id, std::size_t count) {
+                              std::uint32_t generation, std::uint32_t first_id, std::size_t count,
+                              std::span<const std::byte> memory) {
+  const bool all_are_random = population.empty() && !experiment.makes_children();
   const std::size_t random_individuals =
-      population.empty() ? count : std::min(count, static_cast<std::size_t>(experiment.random_individuals));
-  std::vector<Individual> newborns;
-  GenomeSet known(population);
-  std::uint32_t id = first_id;
-  if (random_individuals < count) {
-    const SelectionTable table(population, experiment.objectives, generation);
-    Rng rng = stream(experiment, generation, 0, rng_stream::parents);
-    const auto asked = static_cast<std::uint32_t>(count - random_individuals);
-    const auto pairs = call_operator(experiment.call_of(Selection::kind, 0),
-                                     [&] { return chosen_parents(experiment, table, asked, rng); });
-    for (const auto& pair : pairs) {
-      const Couple couple{population.at(pair.first), population.at(pair.second),
-                          dominates(scores_of(table.rows()[pair.second]), scores_of(table.rows()[pair.first]))};
-      newborns.push_back(
-          distinct(known, [&](std::uint32_t repeat) { return child(experiment, couple, generation, id, repeat); }));
-      ++id;
-    }
+      all_are_random ? count : std::min(count, static_cast<std::size_t>(experiment.random_individuals));
+  const Brood brood{experiment, population, generation, first_id, memory};
+  Nursery nursery(brood, count);
+  if (const auto children = static_cast<std::uint32_t>(count - random_individuals); children > 0)
+    experiment.makes_children() ? add_made(brood, children, nursery) : add_varied(brood, children, nursery);
+  for (std::size_t i = 0; i < random_individuals; ++i) {
+    const std::uint32_t id = nursery.next_id();
+    nursery.add_distinct([&](std::uint32_t repeat) { return random_individual(experiment, generation, id, repeat); });
   }
-  for (; newborns.size() < count; ++id)
-    newborns.push_back(
-        distinct(known, [&](std::uint32_t repeat) { return random_individual(experiment, generation, id, repeat); }));
-  return newborns;
+  return nursery.take();
 }
 
 }  // namespace evodevo

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "evodevo/helpers/pareto.hpp"
 #include "evolution/breeding.hpp"
 #include "evolution/clones.hpp"
+#include "evolution/selection_table.hpp"
 
 namespace evodevo {
 namespace {
@@ -21,22 +23,43 @@ void evaluate(std::vector<Individual>& newborns, const Evaluation& evaluation, c
   for (std::size_t i = 0; i < newborns.size(); ++i) newborns[i].result = std::move(results[i]);
 }
 
-std::vector<std::uint32_t> chosen_survivors(const Experiment& experiment, const SelectionTable& table,
-                                            std::uint32_t population, Rng& rng) {
-  auto rows = experiment.selection->survivors(table.rows(), population, rng);
+constexpr std::size_t most_memory = std::size_t{128} << 20;  ///< of a selection operator, bytes; half of a row's limit
+
+/// Throws std::runtime_error if the memory or the notes of a selection operator cannot be kept.
+void check_remembered(const Survival& survival, const Experiment& experiment, std::size_t rows) {
+  if (survival.memory.size() > most_memory)
+    throw std::runtime_error("returned a memory of " + std::to_string(survival.memory.size()) +
+                             " bytes, expected at most " + std::to_string(most_memory));
+  for (const Note& note : survival.notes) {
+    if (note.row >= rows || note.title >= experiment.notes.size())
+      throw std::runtime_error("noted number " + std::to_string(note.title) + " about row " + std::to_string(note.row) +
+                               ", but notes() has " + std::to_string(experiment.notes.size()) +
+                               " numbers and the table has " + std::to_string(rows) + " rows, both counted from 0");
+    if (!std::isfinite(note.value))
+      throw std::runtime_error("noted " + experiment.notes[note.title].name + " = " + to_text(note.value) +
+                               " about row " + std::to_string(note.row) + ", expected a finite number");
+  }
+}
+
+/// Returns what the selection operator has chosen, with its rows in ascending order.
+Survival chosen_survivors(const Experiment& experiment, const SelectionTable& table, std::uint32_t population,
+                          Rng& rng) {
+  Survival survival = experiment.selection->survive(table.context(), population, rng);
+  std::vector<std::uint32_t>& rows = survival.rows;
   std::sort(rows.begin(), rows.end());
   const bool twice = std::adjacent_find(rows.begin(), rows.end()) != rows.end();
   if (rows.empty() || rows.size() > population || twice || rows.back() >= table.rows().size())
     throw std::runtime_error("chose " + std::to_string(rows.size()) + " survivors, expected 1 to " +
                              std::to_string(population) + " different rows of " + std::to_string(table.rows().size()) +
                              ", numbered from 0");
-  return rows;
+  check_remembered(survival, experiment, table.rows().size());
+  return survival;
 }
 
 /// Returns the Pareto front of `everyone` in the objectives and in youth.
 std::vector<const Individual*> front(const std::vector<Individual>& everyone, const Experiment& experiment,
                                      std::uint32_t generation) {
-  const SelectionTable table(everyone, experiment.objectives, generation);
+  const SelectionTable table(everyone, experiment, generation);
   const std::vector<std::uint32_t> layer = pareto_layers(scores_and_youth(table.rows()));
   std::vector<const Individual*> front;
   for (std::size_t i = 0; i < everyone.size(); ++i)
@@ -95,22 +118,34 @@ class FrontLives {
 };
 
 /// Removes from `everyone` all individuals except the survivors, which stay in the order of birth. Adds the ids of the
-/// removed individuals to `dropped`.
+/// removed individuals to `dropped`. Replaces what the operator remembers, and its notes.
 void select(std::vector<Individual>& everyone, const Experiment& experiment, std::uint32_t generation,
-            std::vector<std::uint32_t>& dropped) {
+            std::vector<std::uint32_t>& dropped, Remembered& remembered) {
   const auto population = static_cast<std::uint32_t>(experiment.population);
-  const SelectionTable table(everyone, experiment.objectives, generation);
+  const SelectionTable table(everyone, experiment, generation, remembered.memory);
   Rng rng(philox, {static_cast<std::uint64_t>(experiment.seed), generation, 0, rng_stream::survivors});
-  const auto rows = call_operator(experiment.call_of(Selection::kind, 0),
-                                  [&] { return chosen_survivors(experiment, table, population, rng); });
+  Survival survival = call_operator(experiment.call_of(Selection::kind, 0),
+                                    [&] { return chosen_survivors(experiment, table, population, rng); });
+  remembered = {std::move(survival.memory), {}};
+  for (const Note& note : survival.notes) remembered.notes.push_back({everyone[note.row].id, note.title, note.value});
   std::vector<Individual> survivors;
   for (std::uint32_t i = 0; i < everyone.size(); ++i) {
-    if (std::binary_search(rows.begin(), rows.end(), i))
+    if (std::binary_search(survival.rows.begin(), survival.rows.end(), i))
       survivors.push_back(std::move(everyone[i]));
     else
       dropped.push_back(everyone[i].id);
   }
   everyone = std::move(survivors);
+}
+
+/// Only the operator that chooses survivors has a memory.
+std::span<const std::byte> memory_of_breeder(const Experiment& experiment, const Remembered& remembered) {
+  return experiment.parent_selection ? std::span<const std::byte>() : remembered.memory;
+}
+
+/// Whether copies stay, because the operator that chooses survivors has made the children itself: it may count them.
+bool needs_all_children(const Experiment& experiment) {
+  return experiment.makes_children() && !experiment.parent_selection;
 }
 
 /// Returns the first objective of the individuals whose status is `ok`.
@@ -195,24 +230,27 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
   auto generation = static_cast<std::uint32_t>(summaries.size());
   std::int64_t evaluations = summaries.empty() ? 0 : summaries.back().evaluations;
   std::vector<Individual> population = archive.population();
+  Remembered remembered{archive.memory(), {}};
   const Provenance provenance = this_provenance(experiment, simulator.device());
   const std::uint32_t provenance_index = archive.add_provenance(provenance);
   FrontLives lives(experiment, evaluation, archive, provenance);
 
   for (; !is_finished(experiment, summaries) && !stop; ++generation) {
     const auto start = Clock::now();
-    const std::int64_t count = std::min(experiment.population, experiment.evaluations - evaluations);
+    const std::int64_t count = std::min(experiment.newborns(), experiment.evaluations - evaluations);
     // each evaluation uses one id, so the next id is the number of evaluations so far
-    std::vector<Individual> newborns = breed(experiment, population, generation,
-                                             static_cast<std::uint32_t>(evaluations), static_cast<std::size_t>(count));
+    std::vector<Individual> newborns =
+        breed(experiment, population, generation, static_cast<std::uint32_t>(evaluations),
+              static_cast<std::size_t>(count), memory_of_breeder(experiment, remembered));
     evaluate(newborns, evaluation, observer);
     evaluations += count;
     Summary summary = summarise(population, newborns, generation);
     lives.take(newborns);
     population.insert(population.end(), newborns.begin(), newborns.end());
-    std::vector<std::uint32_t> dropped = remove_copies(population);
+    std::vector<std::uint32_t> dropped;
+    if (!needs_all_children(experiment)) dropped = remove_copies(population);
     lives.keep_front(population, generation);
-    select(population, experiment, generation, dropped);
+    select(population, experiment, generation, dropped, remembered);
     lives.keep_front(population, generation);
     const auto [best, median] = best_and_median(first_scores(population), experiment.objectives.front().maximise);
     summary.best = best;
@@ -221,7 +259,7 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
     summary.wall_time = seconds_since(start);
     summary.provenance = provenance_index;
     const auto commit = Clock::now();
-    archive.commit(newborns, dropped, lives.committed(), summary);
+    archive.commit(newborns, dropped, lives.committed(), summary, remembered);
     time.archive += seconds_since(commit);
     observer.generation_done(summary);
     summaries.push_back(summary);

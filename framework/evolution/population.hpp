@@ -10,11 +10,13 @@
 namespace evodevo {
 
 struct Individual {
-  std::uint32_t id = 0;                ///< consecutive number from 0, in the order of birth
-  std::uint32_t born = 0;              ///< generation in which the individual was born
-  std::uint32_t origin = 0;            ///< generation in which its oldest genes were drawn; its age counts from then
-  std::vector<std::uint32_t> parents;  ///< ids of the parent, which it may replace, and the mate; empty if random
-  std::string made_by;                 ///< names of the variation operators that made it, joined by '+', or "random"
+  std::uint32_t id = 0;      ///< consecutive number from 0, in the order of birth
+  std::uint32_t born = 0;    ///< generation in which the individual was born
+  std::uint32_t origin = 0;  ///< generation in which its oldest genes were drawn or sampled; its age counts from then
+  std::vector<std::uint32_t>
+      parents;          ///< ids of the parent, which it may replace, and the mate, as far as there are any
+  std::string made_by;  ///< names of the variation operators that made it, joined by '+', name of the selection
+                        ///< operator that made it, or "random"
   Genome genome;
   Result result;
 
@@ -36,6 +38,19 @@ struct Summary {
   std::uint64_t spring_evaluations = 0;  ///< spring evaluations of this generation
   double wall_time = 0;                  ///< wall-clock time of this generation, s
   std::uint32_t provenance = 0;          ///< index of this generation's provenance in Archive::provenances()
+};
+
+/// A number that the selection operator has noted about an individual.
+struct NoteOf {
+  std::uint32_t individual = 0;
+  std::uint32_t title = 0;  ///< index into Experiment::notes
+  double value = 0;
+};
+
+/// What the selection of a generation leaves behind besides the survivors.
+struct Remembered {
+  std::vector<std::byte> memory;  ///< of the operator that chooses survivors
+  std::vector<NoteOf> notes;
 };
 
 }  // namespace evodevo

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/text.hpp"
 #include "evolution/breeding.hpp"
 #include "evolution/evolution.hpp"
 
@@ -27,6 +28,34 @@ std::string fault_of(const Change& change, std::uint32_t before, const Experimen
     return "operator " + std::to_string(*change.op) + " of " + std::to_string(experiment.devo.size());
   if (!change.op && has_causes(change.edits.causes)) return "causes of edits, but no operator that made the edits";
   return "";
+}
+
+/// Checks that an individual of the population has all scores that selection operators see.
+void check_scores(const Archive& archive, const Experiment& experiment, const Individual& individual) {
+  const Result& result = individual.result;
+  const auto check = [&](std::size_t count, std::size_t expected, const char* what) {
+    if (count != expected && !(result.status != Status::ok && count == 0))
+      archive.refuse("individual " + std::to_string(individual.id) + " has " + std::to_string(count) + " " + what +
+                     ", expected " + std::to_string(expected));
+  };
+  const auto tested = std::count_if(experiment.cases.begin(), experiment.cases.end(),
+                                    [](const Case& one) { return !one.scenario.empty(); });
+  check(result.measures.size(), experiment.measures.size(), "scores that are not objectives");
+  check(result.tests.size(), static_cast<std::size_t>(tested), "scores in scenarios");
+}
+
+/// Checks that the recorded titles of notes are those of the experiment's selection operator.
+void check_notes(const Archive& archive, const Experiment& experiment) {
+  const auto titles = [](const std::vector<NoteTitle>& notes) {
+    std::vector<std::string> texts;
+    for (const NoteTitle& note : notes) texts.push_back(note.name + " in " + note.unit);
+    return joined(texts);
+  };
+  const std::string recorded = titles(archive.note_titles()), now = titles(experiment.notes);
+  if (recorded != now)
+    archive.refuse("its selection operator notes " + (recorded.empty() ? "nothing" : recorded) +
+                   ", but that of the experiment notes " + (now.empty() ? "nothing" : now) +
+                   "; use the operator that made it");
 }
 
 }  // namespace
@@ -66,9 +95,12 @@ void check_resumable(const Archive& archive, const Experiment& experiment) {
                    " generations, expected " + std::to_string(least) + " to " + std::to_string(most));
   for (const Individual& individual : population) {
     check_genes(archive, experiment, individual);
+    check_scores(archive, experiment, individual);
     archive.life(individual.id);
     archive.provenance(individual.born);
   }
+  check_notes(archive, experiment);
+  archive.memory();
   archive.provenances();
   recorded_time_spent(archive);
 }

@@ -71,6 +71,7 @@ Experiment::~Experiment() {
   };
   end(Encoding::kind, 0, encoding);
   end(Selection::kind, 0, selection);
+  end(Selection::kind, 1, parent_selection);
   for (std::size_t i = 0; i < mutations.size(); ++i) end(Mutation::kind, i, mutations[i].op);
   for (std::size_t i = 0; i < crossovers.size(); ++i) end(Crossover::kind, i, crossovers[i].op);
   for (std::size_t i = 0; i < devo.size(); ++i) end(Devo::kind, i, devo[i].op);

@@ -58,7 +58,16 @@ struct Experiment : Settings {
   std::vector<Scored> fitness;
   std::vector<Objective> objectives;  ///< objectives of all fitness operators, in the order of the operators
   std::vector<Objective> measures;    ///< likewise their scores with other roles
-  std::unique_ptr<Selection> selection;
+  std::vector<Case> cases;  ///< what selection operators see of the scores in scenarios; refers to `scenarios`
+
+  std::unique_ptr<Selection> selection;         ///< chooses survivors and, if there is no other, parents
+  std::unique_ptr<Selection> parent_selection;  ///< chooses parents; null: `selection` does
+  std::string child_maker;  ///< name of the one that makes the children itself, without variation; empty: none does
+  std::vector<NoteTitle> notes;  ///< what `selection` may note about individuals
+  /// The operator that chooses parents or makes children, and its index among the selection operators.
+  const Selection& breeder() const { return parent_selection ? *parent_selection : *selection; }
+  std::size_t breeder_index() const { return parent_selection ? 1 : 0; }
+  bool makes_children() const { return !child_maker.empty(); }
 
   FileContents files;  ///< of the files that parameters of operators name
 

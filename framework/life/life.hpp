@@ -41,7 +41,7 @@ struct Result {
   std::vector<double> objectives;  ///< in the order and units of Experiment::objectives; empty unless ok
   std::uint64_t spring_evaluations = 0;
   LifeRecord record;  ///< changes by development; kept and archived only for individuals that reach the front
-  std::vector<double> measures = {};  ///< in the order and units of Experiment::measures; empty unless ok
+  std::vector<double> measures = {};  ///< in the order and units of Experiment::measures; empty unless ok or infeasible
   std::vector<TestScore> tests = {};  ///< of the windows that lie in scenarios; empty without scenarios
 };
 

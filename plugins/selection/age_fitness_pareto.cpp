@@ -1,6 +1,6 @@
 // Age-fitness Pareto optimisation (Schmidt & Lipson 2011; paper, section IV-F).
-#include "evodevo/helpers/rows.hpp"
 #include "evodevo/helpers/pareto.hpp"
+#include "evodevo/helpers/rows.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
@@ -21,16 +21,8 @@ class AgeFitnessPareto final : public evodevo::Selection {
                                        evodevo::Rng&) const override {
     const auto order = best_first(rows);
     const auto points = evodevo::scores_and_youth(in_order(rows, order));
-    const auto layer = evodevo::pareto_layers(points);
-    std::vector<std::uint32_t> living;
-    for (std::uint32_t depth = 0; living.size() < population; ++depth) {
-      std::vector<std::uint32_t> members;
-      for (std::uint32_t i = 0; i < layer.size(); ++i)
-        if (layer[i] == depth) members.push_back(i);
-      if (members.empty()) break;
-      for (const std::uint32_t i : evodevo::least_crowded(points, members, population - living.size()))
-        living.push_back(order[i]);
-    }
+    auto living = evodevo::best_layers(points, population);
+    for (std::uint32_t& i : living) i = order[i];
     return living;
   }
 };

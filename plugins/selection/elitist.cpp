@@ -16,11 +16,7 @@ class Elitist final : public evodevo::Selection {
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
                                                                evodevo::Rng& rng) const override {
-    return draw_pairs(rows, count, rng, [&](std::uint32_t size, evodevo::Rng& random) {
-      std::uint32_t best = random.below(size);
-      for (std::int64_t i = 1; i < tournament_; ++i) best = std::min(best, random.below(size));
-      return best;
-    });
+    return draw_pairs(rows, count, rng, evodevo::Tournament{tournament_});
   }
 
   std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,

@@ -1,13 +1,12 @@
 // "A solution is considered better if it belongs to a higher layer, or if belongs to the same layer with higher
 // fitness. [...] During replacement, all solutions on the Pareto Front are exempt" (paper, section IV-F).
-#include "evodevo/helpers/rows.hpp"
 #include "evodevo/helpers/pareto.hpp"
+#include "evodevo/helpers/rows.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
 
 using evodevo::Candidate;
-using evodevo::Point;
 
 /// The paper's replacement. The paper leaves some choices open. Here, a child competes with its parent for the parent's
 /// place; if a parent has several children, only the best of them can win. Individuals without a parent compete for the
@@ -29,7 +28,7 @@ class ParetoLayers final : public evodevo::Selection {
                                        evodevo::Rng&) const override {
     const auto order = best_first(rows);
     const auto sorted = in_order(rows, order);
-    const auto points = age_ ? evodevo::scores_and_youth(sorted) : scores(sorted);
+    const auto points = age_ ? evodevo::scores_and_youth(sorted) : evodevo::points_of(sorted);
     const auto layer = evodevo::pareto_layers(points);
 
     // from best to worst: by layer, and within a layer by fitness, by which the rows are sorted already
@@ -49,12 +48,6 @@ class ParetoLayers final : public evodevo::Selection {
   }
 
  private:
-  static std::vector<Point> scores(const std::vector<Candidate>& rows) {
-    std::vector<Point> points;
-    for (const Candidate& row : rows) points.emplace_back(row.scores.begin(), row.scores.end());
-    return points;
-  }
-
   /// Returns, for every row of the sorted table, the position of its parent in that table, or rows.size() for no
   /// parent.
   static std::vector<std::size_t> parent_positions(std::span<const Candidate> rows,

@@ -24,8 +24,8 @@ TEST(Experiments, EachRunsForTwoGenerationsWhenShrunk) {
     SCOPED_TRACE(entry.path());
     const std::string folder = (scratch / std::to_string(count++)).string();
     std::vector<std::string> command = {EVODEVO_PROGRAM, "run", entry.path(), "--out", folder};
-    std::vector<std::string> shrunk = {"experiment.population=8", "experiment.evaluations=16", "fitness.0.settle=0.1",
-                                       "fitness.0.window=0.1"};
+    std::vector<std::string> shrunk = {"experiment.population=8", "experiment.children=8", "experiment.evaluations=16",
+                                       "fitness.0.settle=0.1", "fitness.0.window=0.1"};
     const Experiment experiment = read_experiment({entry.path(), {}});
     if (experiment.resolved.find("\npoints = ") != std::string::npos) shrunk.push_back("encoding.points=60");
     if (experiment.development.cycles > 0)
@@ -37,7 +37,7 @@ TEST(Experiments, EachRunsForTwoGenerationsWhenShrunk) {
     EXPECT_EQ(archive.generations().size(), 2u);
     EXPECT_GT(archive.statuses().at("ok"), 0);
   }
-  EXPECT_EQ(count, 24);
+  EXPECT_EQ(count, 25);
 }
 
 TEST(Experiments, TheEnvironmentsDifferInTheirSceneAlone) {

@@ -1,4 +1,4 @@
-// Newborns, and the table that selection operators see.
+// Newborns.
 #include "evolution/breeding.hpp"
 
 #include <gtest/gtest.h>
@@ -11,35 +11,6 @@
 
 namespace evodevo {
 namespace {
-
-Individual scored(std::uint32_t id, std::uint32_t origin, std::vector<double> objectives) {
-  Individual individual;
-  individual.id = id;
-  individual.origin = origin;
-  individual.genome = {1, 1};
-  individual.result.status = objectives.empty() ? Status::diverged : Status::ok;
-  individual.result.objectives = std::move(objectives);
-  return individual;
-}
-
-TEST(SelectionTable, TurnsScoresAndCountsAges) {
-  std::vector<Individual> everyone = {scored(3, 0, {2, 5}), scored(8, 4, {})};
-  everyone.push_back(scored(9, 0, {1, 1}));
-  everyone.back().born = 6;
-  everyone.back().parents = {8, 3};
-  everyone.push_back(scored(10, 6, {1, 1}));
-  everyone.back().born = 6;
-  const SelectionTable table(everyone, {{"distance", "", true}, {"work", "", false}}, 6);
-  const auto rows = table.rows();
-  EXPECT_EQ(rows[0].scores[0], 2);
-  EXPECT_EQ(rows[0].scores[1], -5) << "less work is better";
-  EXPECT_EQ(rows[0].age, 6u);
-  EXPECT_EQ(rows[1].age, 2u);
-  EXPECT_FALSE(rows[1].ok());
-  EXPECT_FALSE(rows[0].challenges.has_value());
-  EXPECT_EQ(rows[2].challenges, 1u);
-  EXPECT_FALSE(rows[3].challenges.has_value()) << "a random individual";
-}
 
 TEST(Breeding, TheFirstGenerationIsRandom) {
   const Experiment experiment = testing::read(testing::small_experiment);

@@ -83,7 +83,9 @@ TEST(BuiltIn, AllOperatorsLoad) {
                           "mass-turnover", "spring-turnover", "stiffness-adaptation"));
   EXPECT_THAT(registry().names("fitness"),
               ElementsAre("actuation-work", "descriptor", "distance", "efficiency", "jump", "reach", "straightness"));
-  EXPECT_THAT(registry().names("selection"), ElementsAre("age-fitness-pareto", "elitist", "pareto-layers"));
+  EXPECT_THAT(registry().names("selection"),
+              ElementsAre("age-fitness-pareto", "cma-es", "comma", "differential", "elitist", "lexicase", "map-elites",
+                          "novelty", "nsga2", "pareto-layers", "species", "tournament"));
 }
 
 TEST(BuiltIn, DefaultsAreInRangeAndDescribed) {

@@ -186,7 +186,8 @@ TEST_P(AnySelection, DependsOnItsKeyAlone) {
   from_eight_threads([&] { return survivors(*selection, rows, 20); });
 }
 
-INSTANTIATE_TEST_SUITE_P(Selections, AnySelection, testing::Values("age-fitness-pareto", "pareto-layers", "elitist"));
+INSTANTIATE_TEST_SUITE_P(Selections, AnySelection,
+                         testing::Values("age-fitness-pareto", "pareto-layers", "elitist", "nsga2"));
 
 /// Returns how often each of ten rows, best first, is a parent, in percent.
 std::vector<double> shares(const Selection& selection) {

@@ -76,7 +76,7 @@ def undocumented(text):
 def headers():
     """Returns all installed headers but the interfaces; those in the folder `helpers` come last."""
     found = [file for folder in INCLUDE_FOLDERS for file in folder.rglob("*.hpp") if file.name not in INTERFACES]
-    return sorted(found, key=lambda file: (file.parent.name == "helpers", file.name))
+    return sorted(found, key=lambda file: ("helpers" in file.parts, file.name))
 
 
 def without_comments(file):

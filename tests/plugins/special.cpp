@@ -1,5 +1,7 @@
 // Operators that need more than generated inputs: an encoding with blocks of its own, a mutation that works on such
-// blocks, one that works on blocks that no encoding of the library has, and one that requires a file.
+// blocks, one that works on blocks that no encoding of the library has, one that requires a file, and selections that
+// choose either parents or survivors alone, or need three objectives.
+#include "evodevo/helpers/rows.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
@@ -74,10 +76,38 @@ struct ByFile final : evodevo::Mutation {
   evodevo::InputFile file_;
 };
 
+/// Chooses parents alone, all with the same chance.
+struct Lottery : evodevo::Selection {
+  evodevo::Traits traits() const override { return {.chooses_survivors = false}; }
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const evodevo::Candidate> rows,
+                                                               std::uint32_t count, Rng& rng) const override {
+    return draw_pairs(rows, count, rng, evodevo::draw_any);
+  }
+};
+
+/// Chooses survivors alone: the best.
+struct Best final : evodevo::Selection {
+  evodevo::Traits traits() const override { return {.chooses_parents = false}; }
+  std::vector<std::uint32_t> survivors(std::span<const evodevo::Candidate> rows, std::uint32_t population,
+                                       Rng&) const override {
+    auto order = best_first(rows);
+    order.resize(std::min<std::size_t>(order.size(), population));
+    return order;
+  }
+};
+
+/// Chooses parents alone, and needs three objectives.
+struct ThreeGoals final : Lottery {
+  evodevo::Traits traits() const override { return {.chooses_survivors = false, .least_objectives = 3}; }
+};
+
 }  // namespace
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<Twigs>("twigs", "Grows a tree of springs."),
                evodevo::operator_entry<BendTwig>("bend-twig", "Gives each twig another direction."),
                evodevo::operator_entry<BendLeaf>("bend-leaf", "Gives each leaf another direction."),
-               evodevo::operator_entry<ByFile>("by-file", "Sets a gene to what a file says."))
+               evodevo::operator_entry<ByFile>("by-file", "Sets a gene to what a file says."),
+               evodevo::operator_entry<Lottery>("lottery", "All have the same chance to breed."),
+               evodevo::operator_entry<Best>("best", "The best survive."),
+               evodevo::operator_entry<ThreeGoals>("three-goals", "Needs three objectives."))

@@ -107,6 +107,34 @@ struct Wrong final : evodevo::Fitness {
   }
 };
 
+#elif defined(WRONG_GENERATIONS) || defined(WRONG_GENERATIONS_NOTE) || defined(WRONG_GENERATIONS_CHILDREN)
+
+struct Wrong final : evodevo::Selection {
+  evodevo::Traits traits() const override { return {.is_elitist = false, .makes_children = true}; }
+  std::vector<evodevo::NoteTitle> notes() const override { return {{"share"}}; }
+  std::vector<evodevo::Child> children(const evodevo::SelectionContext& context, std::uint32_t count,
+                                       Rng& rng) const override {
+    std::vector<evodevo::Child> children;
+    for (std::uint32_t i = 0; i < count; ++i) children.push_back({random_genome(context.layout, rng)});
+#if defined(WRONG_GENERATIONS_CHILDREN)
+    if (context.rows.empty()) children.front().genome.genes.front() = 1000;  // in the first generation alone
+#endif
+    return children;
+  }
+  evodevo::Survival survive([[maybe_unused]] const evodevo::SelectionContext& context, std::uint32_t,
+                            Rng&) const override {
+    evodevo::Survival survival{{0}};
+#if defined(WRONG_GENERATIONS)
+    static int calls = 0;
+    survival.memory = {std::byte(++calls)};
+#elif defined(WRONG_GENERATIONS_NOTE)
+    const double failed = std::count_if(context.rows.begin(), context.rows.end(), [](auto& row) { return !row.ok(); });
+    survival.notes = {{ 0, 0, 1 / failed }};  // if none failed, no number
+#endif
+    return survival;
+  }
+};
+
 #elif defined(WRONG_ORDER) || defined(WRONG_ELITE) || defined(WRONG_FAILED)
 
 struct Wrong final : evodevo::Selection {

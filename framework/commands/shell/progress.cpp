@@ -84,7 +84,7 @@ void ProgressDisplay::generation_done(const Summary& summary) {
 
 void ProgressDisplay::generation_progress(double done) {
   if (!live_) return;
-  const auto batch = std::min(experiment_.population, experiment_.evaluations - last_.evaluations);
+  const auto batch = std::min(experiment_.newborns(), experiment_.evaluations - last_.evaluations);
   show_live(static_cast<double>(last_.evaluations) + done * static_cast<double>(batch));
 }
 

@@ -17,8 +17,8 @@ Topic experiment() {
                "experiment` prints the keys of all tables with their ranges."},
       .definitions =
           {{"[experiment]",
-            "How long the run takes: seed, evaluations, spring_evaluations, population, and verify, the "
-            "number of best individuals that are verified at the end."},
+            "How long the run takes: seed, evaluations, spring_evaluations; population, and children, the number of "
+            "newborns of a generation; verify, the number of best individuals that are verified at the end."},
            {"[encoding]",
             "The operator that builds a body from a genome: name, and the parameters of that operator. The "
             "neural encoding has points, neighbours and mass (kg), among others."},
@@ -45,7 +45,9 @@ Topic experiment() {
            {"[[fitness]]",
             "The operators that score a life: name, and parameters such as settle and window (s). Several "
             "define a Pareto front."},
-           {"[selection]", "The operator that chooses survivors and parents: name, and parameters."},
+           {"[selection]",
+            "The operator that chooses survivors and parents: name, and parameters. [selection.survivors] and "
+            "[selection.parents] name two operators instead."},
            {"[materials.NAME]",
             "A material: stiffness (N/m), amplitude, frequency (Hz) and phase (rad). The names "
             "muscle, muscle2, tissue, bone and air exist already and can be changed."},

@@ -96,6 +96,9 @@ Archive Archive::create(const fs::path& folder, const Experiment& experiment, co
                  has_range ? std::optional(measure.low) : std::nullopt,
                  has_range ? std::optional(measure.high) : std::nullopt);
   }
+  for (std::size_t i = 0; i < experiment.notes.size(); ++i)
+    Statement(run, "note_titles", "INSERT INTO note_titles VALUES(?, ?, ?)")
+        .execute(static_cast<std::uint32_t>(i), experiment.notes[i].name, experiment.notes[i].unit);
   for (std::size_t i = 0; i < experiment.scenarios.size(); ++i)
     Statement(run, "scenarios", "INSERT INTO scenarios VALUES(?, ?)")
         .execute(static_cast<std::uint32_t>(i), experiment.scenarios[i].name);

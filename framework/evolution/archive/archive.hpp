@@ -48,6 +48,12 @@ struct Membership {
   double value = 0;
 };
 
+/// A number that the selection operator has noted about an individual.
+struct ArchivedNote {
+  std::string name, unit;
+  double value = 0;
+};
+
 /// A group of individuals that have no fitness for the same reason.
 struct Failure {
   std::string status;
@@ -77,10 +83,12 @@ class Archive {
   ~Archive();
 
   /// Adds one generation in one transaction: its newborns with their results, the ids of the individuals that selection
-  /// dropped, records of lives by id, and its summary. An empty record is stored too; it means that the individual was
-  /// on the front and that its body did not change.
+  /// dropped, records of lives by id, its summary, and what the selection operator remembers and notes. An empty record
+  /// is stored too; it means that the individual was on the front and that its body did not change. The memory replaces
+  /// that of the generation before, and a note an earlier one about the same individual.
   void commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,
-              const std::map<std::uint32_t, LifeRecord>& lives, const Summary& summary);
+              const std::map<std::uint32_t, LifeRecord>& lives, const Summary& summary,
+              const Remembered& remembered = {});
 
   /// Adds verifications. They replace earlier verifications of the same individuals.
   void add_verifications(const std::vector<Verification>& verifications);
@@ -118,7 +126,7 @@ class Archive {
   std::vector<Failure> failures() const;
   /// Returns the number of individuals with each status.
   std::map<std::string, std::int64_t> statuses() const;
-  /// Returns the individuals that are alive after the last generation, in the order of birth.
+  /// Returns the individuals that are alive after the last generation, in the order of birth, with all their scores.
   std::vector<Individual> population() const;
   /// Returns an individual, or nullopt if there is none with this id.
   std::optional<ArchivedIndividual> individual(std::uint32_t id) const;
@@ -134,6 +142,12 @@ class Archive {
   std::vector<MeasureKind> measures() const;
   /// Returns the scores of an individual that are not objectives, in the order of the experiment.
   std::vector<ArchivedMeasure> measures(std::uint32_t id) const;
+  /// Returns the names and units of the numbers that the selection operator may note.
+  std::vector<NoteTitle> note_titles() const;
+  /// Returns what the selection operator has noted about an individual, in the order of note_titles().
+  std::vector<ArchivedNote> notes(std::uint32_t id) const;
+  /// Returns what the selection operator remembers after the last generation; empty if that is nothing.
+  std::vector<std::byte> memory() const;
   /// Returns the scores of an individual in each repeat of each scenario, in the order of the experiment.
   std::vector<ArchivedTest> tests(std::uint32_t id) const;
   /// Returns the record of an individual's life, or nullopt if the individual never reached the front.

@@ -56,7 +56,13 @@ class Individuals {
         layout_(layout),
         objectives_(count_of(run, "objectives")),
         row_(run, "individuals", individual_columns + which),
-        scores_(run, "scores", "SELECT objective, value FROM scores WHERE individual = ? ORDER BY objective") {
+        measures_(count_of(run, "measures")),
+        scenarios_(count_of(run, "scenarios")),
+        scores_(run, "scores", "SELECT objective, value FROM scores WHERE individual = ? ORDER BY objective"),
+        measured_(run, "measured", "SELECT measure, value FROM measured WHERE individual = ? ORDER BY measure"),
+        tests_(run, "tests",
+               "SELECT scenario, repeat, objective, value FROM tests WHERE individual = ? "
+               "ORDER BY scenario, repeat, objective") {
     Statement last(run, "generations",
                    "SELECT generation, evaluations FROM generations ORDER BY generation DESC LIMIT 1");
     if (!last.step()) return;
@@ -80,13 +86,16 @@ class Individuals {
     if (!row_.is_null(11))
       individual.died = static_cast<std::uint32_t>(row_.integer(11, individual.born, *last_generation_));
     read_scores(individual);
+    read_measures(individual);
+    read_tests(individual);
     return individual;
   }
 
  private:
   /// Checks that no table has a row for an id that a later individual of the run will get.
   void check_ids(std::int64_t evaluations) {
-    for (const char* column : {"individuals.id", "scores.individual", "lives.individual", "verifications.individual"}) {
+    for (const char* column : {"individuals.id", "scores.individual", "lives.individual", "verifications.individual",
+                               "measured.individual", "tests.individual", "notes.individual"}) {
       const std::string_view name(column);
       const std::string table(name.substr(0, name.find('.'))), key(name.substr(table.size() + 1));
       Statement last(run_, table, "SELECT max(" + key + ") AS " + key + " FROM " + table);
@@ -125,10 +134,37 @@ class Individuals {
                   ", has " + std::to_string(objectives.size()) + " scores, expected " + std::to_string(expected));
   }
 
+  /// Reads the scores that are not objectives. An individual that failed has none, or all if it violates a constraint.
+  void read_measures(ArchivedIndividual& individual) {
+    std::vector<double>& measures = individual.result.measures;
+    measured_.bind(individual.id);
+    while (measured_.step()) {
+      const auto position = static_cast<std::int64_t>(measures.size());
+      measured_.integer(0, position, position);
+      measures.push_back(measured_.number(1));
+    }
+    const auto count = static_cast<std::int64_t>(measures.size());
+    const bool may_have_none = individual.result.status != Status::ok;
+    if (count != measures_ && !(may_have_none && count == 0))
+      run_.refuse("individual " + std::to_string(individual.id) + ", which is " + name(individual.result.status) +
+                  ", has " + std::to_string(count) + " measures, expected " + std::to_string(measures_));
+  }
+
+  void read_tests(ArchivedIndividual& individual) {
+    if (scenarios_ == 0) return;
+    tests_.bind(individual.id);
+    while (tests_.step())
+      individual.result.tests.push_back(
+          {static_cast<std::size_t>(tests_.integer(0, 0, scenarios_ - 1)), tests_.integer(1, 0, most),
+           static_cast<std::size_t>(tests_.integer(2, 0, objectives_ - 1)), tests_.number(3)});
+  }
+
   const RunDatabase& run_;
   const Layout& layout_;
   std::int64_t objectives_;
-  Statement row_, scores_;
+  Statement row_;
+  std::int64_t measures_, scenarios_;
+  Statement scores_, measured_, tests_;
   std::optional<std::uint32_t> last_generation_;
 };
 
@@ -149,6 +185,38 @@ std::vector<MeasureKind> Archive::measures() const {
   std::vector<MeasureKind> measures;
   while (row.step()) measures.push_back({line(row, 0), line(row, 1), line(row, 2)});
   return measures;
+}
+
+std::vector<NoteTitle> Archive::note_titles() const {
+  std::vector<NoteTitle> titles;
+  Statement row(*run_, "note_titles", "SELECT position, name, unit FROM note_titles ORDER BY position");
+  for (std::uint32_t position = 0; row.step(); ++position) {
+    row.integer(0, position, position);
+    titles.push_back({line(row, 1), line(row, 2)});
+  }
+  return titles;
+}
+
+std::vector<ArchivedNote> Archive::notes(std::uint32_t id) const {
+  Statement row(*run_, "notes",
+                "SELECT name, unit, value FROM notes JOIN note_titles ON position = note WHERE individual = ? "
+                "ORDER BY position");
+  row.bind(id);
+  std::vector<ArchivedNote> notes;
+  while (row.step()) notes.push_back({line(row, 0), line(row, 1), row.number(2)});
+  return notes;
+}
+
+std::vector<std::byte> Archive::memory() const {
+  Statement row(*run_, "memory",
+                "SELECT generation, bytes, (SELECT max(generation) FROM generations) AS last FROM memory");
+  if (!row.step()) return {};
+  if (row.is_null(2)) refuse("the selection operator remembers something, but there are no generations");
+  row.integer(0, row.index(2), row.index(2));
+  const auto bytes = std::as_bytes(std::span(row.bytes(1)));
+  std::vector<std::byte> memory(bytes.begin(), bytes.end());
+  if (row.step()) refuse("the table memory has more than one row");
+  return memory;
 }
 
 std::vector<ArchivedTest> Archive::tests(std::uint32_t id) const {

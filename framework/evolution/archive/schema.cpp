@@ -53,6 +53,13 @@ CREATE TABLE measured(
 CREATE TABLE tests(
   individual INTEGER NOT NULL, scenario INTEGER NOT NULL, repeat INTEGER NOT NULL, objective INTEGER NOT NULL,
   value REAL NOT NULL, PRIMARY KEY(individual, scenario, repeat, objective)) WITHOUT ROWID;
+-- what the selection operator noted about individuals, each number the last one with its title
+CREATE TABLE note_titles(position INTEGER PRIMARY KEY, name TEXT NOT NULL, unit TEXT NOT NULL);
+CREATE TABLE notes(
+  individual INTEGER NOT NULL, note INTEGER NOT NULL, value REAL NOT NULL,
+  PRIMARY KEY(individual, note)) WITHOUT ROWID;
+-- what it remembers after the last generation; at most one row
+CREATE TABLE memory(generation INTEGER PRIMARY KEY, bytes BLOB NOT NULL);
 -- what development did to those who reached the front; see life_record.hpp
 CREATE TABLE lives(individual INTEGER PRIMARY KEY, record BLOB NOT NULL);
 CREATE TABLE generations(

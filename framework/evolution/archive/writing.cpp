@@ -42,10 +42,20 @@ void insert_newborns(const RunDatabase& run, const std::vector<Individual>& newb
   }
 }
 
+void write_remembered(const RunDatabase& run, const Remembered& remembered, std::uint32_t generation) {
+  Statement insert(run, "notes", "INSERT OR REPLACE INTO notes VALUES(?, ?, ?)");
+  for (const NoteOf& note : remembered.notes) insert.execute(note.individual, note.title, note.value);
+  Statement(run, "memory", "DELETE FROM memory").execute();
+  if (remembered.memory.empty()) return;
+  const std::string_view bytes(reinterpret_cast<const char*>(remembered.memory.data()), remembered.memory.size());
+  Statement(run, "memory", "INSERT INTO memory VALUES(?, ?)").execute(generation, bytes);
+}
+
 }  // namespace
 
 void Archive::commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,
-                     const std::map<std::uint32_t, LifeRecord>& lives, const Summary& summary) {
+                     const std::map<std::uint32_t, LifeRecord>& lives, const Summary& summary,
+                     const Remembered& remembered) {
   WriteTransaction transaction(*run_);
   insert_newborns(*run_, newborns, layout());
   Statement insert_life(*run_, "lives", "INSERT INTO lives VALUES(?, ?)");
@@ -56,6 +66,7 @@ void Archive::commit(const std::vector<Individual>& newborns, const std::vector<
       .execute(summary.generation, summary.evaluations, summary.best, summary.median, summary.diverged, summary.invalid,
                summary.clones, static_cast<std::int64_t>(summary.spring_evaluations), summary.wall_time,
                summary.provenance);
+  write_remembered(*run_, remembered, summary.generation);
   transaction.commit();
 }
 

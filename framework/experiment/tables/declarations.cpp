@@ -27,11 +27,16 @@ void declare_run(SettingsVisitor& v, Settings& s) {
   v.real(s.spring_evaluations, "spring_evaluations", {0, 1e18},
          "The run also ends after the generation that reaches this number of spring evaluations; 0: no such limit.");
   v.integer(s.population, "population", {1, 1e6}, "Number of individuals that survive each generation.");
+  v.integer(
+      s.children, "children", {0, 1e6},
+      "Number of individuals that are born in each generation, the first included; 0: as many as the population.");
   v.integer(s.random_individuals, "random_individuals", {0, 1e6},
-            "Number of random individuals that are added in each generation.");
+            "Number of random individuals among those that are born in each generation; by default 0 if the selection "
+            "operator makes the children itself.");
   v.integer(s.verify, "verify", {0, 1000}, "Number of best individuals that are verified when the run ends.");
-  v.require(s.random_individuals <= s.population, "random_individuals",
-            "expected at most the population, " + std::to_string(s.population));
+  v.require(s.random_individuals <= s.newborns(), "random_individuals",
+            std::string("expected at most the ") + (s.children > 0 ? "children" : "population") + ", " +
+                std::to_string(s.newborns()));
 }
 
 void declare_mass(SettingsVisitor& v, Settings& s) {

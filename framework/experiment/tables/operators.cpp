@@ -5,6 +5,7 @@
 
 #include "base/text.hpp"
 #include "experiment/tables/declarations.hpp"
+#include "experiment/tables/selection.hpp"
 #include "operators/host_keys.hpp"
 
 namespace evodevo {
@@ -56,7 +57,6 @@ class OperatorTables {
       mutation.own_section = add_own_section(t, [&] { return mutation.op->layout(mutation.layout); });
     });
     read_variation("crossover", out_.crossovers, [](TomlReader&, Varied<Crossover>&) {});
-    check_variation();
     complete_layouts(out_.mutations);
     complete_layouts(out_.crossovers);
     read_array(top_, "fitness", record_, [&](TomlReader& t, TomlWriter& writer) { read_fitness(t, writer); });
@@ -70,10 +70,8 @@ class OperatorTables {
                 "or add such an operator");
     if (out_.objectives.empty())
       top_.fail("fitness", "no operator has an objective by which individuals could be selected; add one that has");
-    read_one("selection", [&](TomlReader& t, TomlWriter& writer) {
-      out_.selection = factory_.make<Selection>(t);
-      factory_.write(t, *out_.selection, writer);
-    });
+    read_selection(top_, factory_, references(), out_, record_);
+    check_variation();
   }
 
  private:
@@ -190,6 +188,7 @@ class OperatorTables {
   }
 
   void check_variation() const {
+    if (out_.makes_children()) return refuse_variation();
     if (out_.mutations.empty() && out_.crossovers.empty())
       top_.fail("mutation", "is missing; add a table [[mutation]] or [[crossover]]");
     double sum = 0;
@@ -199,6 +198,14 @@ class OperatorTables {
       top_.fail("mutation",
                 "no operator has a probability above 0, so every child would be a clone; give one of them a higher "
                 "probability");
+  }
+
+  void refuse_variation() const {
+    const std::string why = "the selection operator \"" + out_.child_maker +
+                            "\" makes the children itself (its trait makes_children); remove the tables of this name, "
+                            "or choose another selection operator";
+    if (!out_.mutations.empty()) top_.fail("mutation", why);
+    if (!out_.crossovers.empty()) top_.fail("crossover", why);
   }
 
   void read_development_operators(TomlReader& t) {
@@ -267,7 +274,9 @@ class OperatorTables {
     const std::string& label = out_.uses.back().label;
     for (Objective& objective : objectives) {
       if (!label.empty()) objective.name = objectives.size() == 1 ? label : label + "-" + objective.name;
+      const bool is_objective = objective.role == Role::objective;
       add_objective(t, std::move(objective));
+      if (is_objective) add_cases(request.cycle.has_value());
     }
     out_.fitness.push_back(std::move(scored));
   }
@@ -287,6 +296,17 @@ class OperatorTables {
       scored.over = static_cast<Over>(place);
     else
       scored.scenario = place - names_of<Over>.size();
+  }
+
+  /// Adds the cases of the objective that was read last. A window within the life is scored in the scenarios in which
+  /// robots develop.
+  void add_cases(bool is_within_life) {
+    const auto objective = static_cast<std::uint32_t>(out_.objectives.size() - 1);
+    const std::size_t before = out_.cases.size();
+    for (const Scenario& scenario : out_.scenarios)
+      for (std::uint32_t repeat = 0; repeat < scenario.repeat && (scenario.develops || !is_within_life); ++repeat)
+        out_.cases.push_back({objective, scenario.name, repeat});
+    if (out_.cases.size() == before) out_.cases.push_back({objective});
   }
 
   /// Throws ConfigError if the settling time or the window of a fitness operator is out of range.

@@ -19,7 +19,7 @@ template <class Read>
 void read_table(TomlReader& parent, std::string_view name, bool required, const Read& read,
                 const References& references = {}) {
   const toml::table* table = parent.table(name);
-  if (table == nullptr && required) parent.fail(name, "is missing; add a table [" + std::string(name) + "]");
+  if (table == nullptr && required) parent.fail(name, "is missing; add a table [" + parent.full_name(name) + "]");
   if (table == nullptr) return;
   TomlReader reader(*table, parent.full_name(name), references);
   read(reader);

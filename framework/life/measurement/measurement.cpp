@@ -227,8 +227,7 @@ void Measurement::set_scores(const std::vector<Scores>& tests, Life& life) const
     if (measure.role != Role::constraint || !(result.measures[i] > 0)) continue;
     life.end(Status::invalid,
              "constraint " + measure.name + ": " + short_number(result.measures[i]) + " " + measure.unit + " above 0");
-    result.objectives.clear();
-    result.measures.clear();
+    result.objectives.clear();  // but not the measures, so that selection can tell how far it is from feasible
     return;
   }
 }

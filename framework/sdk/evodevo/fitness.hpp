@@ -62,7 +62,8 @@ struct Observation {
 enum class Role : std::uint8_t {
   objective,   ///< selection makes it greater or smaller
   descriptor,  ///< says where an individual lies in the space of behaviours
-  constraint,  ///< how far an individual is from feasible: one that is above 0 makes its evaluation `invalid`
+  constraint,  ///< how far an individual is from feasible: one that is above 0 makes its evaluation `invalid`, and
+               ///< selection sees only by how much (Candidate::violation)
   measure,     ///< is recorded, and never selected by
 };
 

@@ -1,6 +1,7 @@
 // The base class of all operators.
 #pragma once
 
+#include <cstdint>
 #include <stdexcept>  // for exceptions of prepare()
 #include <string>
 #include <vector>
@@ -18,6 +19,14 @@ struct Traits {
   std::vector<std::string> block_types = {};
   /// Selection: the row with the best first score always lives on.
   bool is_elitist = true;
+  /// Selection: whether it can choose parents, or make children instead, and whether it can choose survivors.
+  bool chooses_parents = true, chooses_survivors = true;
+  /// Selection: it makes the children itself. The experiment then has neither mutation nor crossover.
+  bool makes_children = false;
+  /// Selection: it works on genomes that have the same blocks in all individuals, and real genes alone.
+  bool needs_real_genes = false;
+  /// Selection: the smallest numbers of objectives and of descriptors with which it can work.
+  std::uint32_t least_objectives = 1, least_descriptors = 0;
   /// Fitness: scores depend on where the body is, not only on how it moves.
   bool depends_on_place = false;
 };

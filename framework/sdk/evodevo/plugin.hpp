@@ -18,23 +18,23 @@ namespace evodevo {
 inline constexpr std::uint64_t plugin_magic = 0x6f7665646f7665ull;  // "evodevo", little-endian
 /// Version of the interface. It must be raised whenever a declaration that plugins see changes its meaning, or is
 /// changed, moved, added or removed; tests/host/plugin_border_test.cpp finds changed declarations.
-inline constexpr std::uint32_t plugin_epoch = 10;
+inline constexpr std::uint32_t plugin_epoch = 11;
+
+/// Returns a hash of the sizes of structs.
+template <class... Structs>
+constexpr std::uint32_t digest_of_sizes() {
+  std::uint32_t digest = 2166136261u;  // FNV-1a
+  for (const std::size_t size : {sizeof(Structs)...}) digest = (digest ^ static_cast<std::uint32_t>(size)) * 16777619u;
+  return digest;
+}
 
 /// A hash of the sizes of all structs that host and plugin exchange.
-inline constexpr std::uint32_t plugin_struct_digest = [] {
-  std::uint32_t digest = 2166136261u;  // FNV-1a
-  for (const std::size_t size :
-       {sizeof(Body),        sizeof(Mass),      sizeof(Spring),          sizeof(Material),      sizeof(State),
-        sizeof(Rng),         sizeof(GeneSpec),  sizeof(BlockType),       sizeof(Block),         sizeof(Genome),
-        sizeof(Layout),      sizeof(Parents),   sizeof(EncodingContext), sizeof(Blueprint),     sizeof(DevoContext),
-        sizeof(Edits),       sizeof(NewMass),   sizeof(NewSpring),       sizeof(ChangedSpring), sizeof(SpringRequest),
-        sizeof(Measure),     sizeof(Request),   sizeof(Observation),     sizeof(Samples),       sizeof(StoredSample),
-        sizeof(BodyVersion), sizeof(Objective), sizeof(Candidate),       sizeof(Size),          sizeof(Growth),
-        sizeof(Causes),      sizeof(Traits),    sizeof(InputFile),       sizeof(Range),         sizeof(Box),
-        sizeof(Vec3)})
-    digest = (digest ^ static_cast<std::uint32_t>(size)) * 16777619u;
-  return digest;
-}();
+inline constexpr std::uint32_t plugin_struct_digest =
+    digest_of_sizes<Body, Mass, Spring, Material, State, Rng, GeneSpec, BlockType, Block, Genome, Layout, Parents,
+                    EncodingContext, Blueprint, DevoContext, Edits, NewMass, NewSpring, ChangedSpring, SpringRequest,
+                    Measure, Request, Observation, Samples, StoredSample, BodyVersion, Objective, Candidate,
+                    SelectionContext, Case, NoteTitle, Note, Survival, Child, Size, Growth, Causes, Traits, InputFile,
+                    Range, Box, Vec3>();
 
 #define EVODEVO_TEXT_(x) #x
 #define EVODEVO_TEXT(x) EVODEVO_TEXT_(x)

@@ -1,4 +1,4 @@
-// For encodings that map points to masses with a network (paper, section IV-A1). The only header that needs Eigen 3.4.
+// For encodings that map points to masses with a network (paper, section IV-A1). Needs Eigen 3.4.
 #pragma once
 
 #include <Eigen/Core>

@@ -140,4 +140,27 @@ inline std::vector<std::uint32_t> least_crowded(const std::vector<Point>& points
   return stay;
 }
 
+/// Returns the points, at most `count`, that survive by layers (Deb et al. 2002): whole layers, the front first, and of
+/// the layer that does not fit as a whole the least crowded points.
+inline std::vector<std::uint32_t> best_layers(const std::vector<Point>& points, std::size_t count) {
+  const auto layer = pareto_layers(points);
+  std::vector<std::uint32_t> chosen;
+  for (std::uint32_t depth = 0; chosen.size() < count; ++depth) {
+    std::vector<std::uint32_t> members;
+    for (std::uint32_t i = 0; i < layer.size(); ++i)
+      if (layer[i] == depth) members.push_back(i);
+    if (members.empty()) break;
+    const auto stay = least_crowded(points, members, count - chosen.size());
+    chosen.insert(chosen.end(), stay.begin(), stay.end());
+  }
+  return chosen;
+}
+
+/// Returns one point for each candidate: its scores.
+inline std::vector<Point> points_of(std::span<const Candidate> rows) {
+  std::vector<Point> points;
+  for (const Candidate& row : rows) points.emplace_back(row.scores.begin(), row.scores.end());
+  return points;
+}
+
 }  // namespace evodevo

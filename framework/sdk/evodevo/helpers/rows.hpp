@@ -12,8 +12,9 @@
 namespace evodevo {
 
 /// Returns the rows from best to worst: by the first score, ties by the other scores in their order, then by youth,
-/// then by the order of birth. Failed rows come last. An operator that works in this order gives a result that depends
-/// on the order of birth only for exact ties.
+/// then by the order of birth. Failed rows come last, and among them those first that violate the constraints least
+/// (Deb 2000). An operator that works in this order gives a result that depends on the order of birth only for exact
+/// ties.
 inline std::vector<std::uint32_t> best_first(std::span<const Candidate> rows) {
   std::vector<std::uint32_t> order(rows.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -21,6 +22,7 @@ inline std::vector<std::uint32_t> best_first(std::span<const Candidate> rows) {
     const auto &a = rows[i].scores, &b = rows[j].scores;
     if (!std::equal(a.begin(), a.end(), b.begin(), b.end()))
       return std::lexicographical_compare(b.begin(), b.end(), a.begin(), a.end());
+    if (rows[i].violation != rows[j].violation) return rows[i].violation < rows[j].violation;
     return rows[i].age < rows[j].age;
   });
   return order;
@@ -33,15 +35,19 @@ inline std::vector<Candidate> in_order(std::span<const Candidate> rows, const st
   return sorted;
 }
 
-/// Returns `count` pairs of a parent and a mate. Both are drawn from the rows that did not fail, or from all rows if
-/// all failed. `draw(n, rng)` returns a rank from 0 (the best) to n-1. The mate differs from the parent if there is
-/// more than one row to draw from.
-template <class Draw>
-std::vector<std::pair<std::uint32_t, std::uint32_t>> draw_pairs(std::span<const Candidate> rows, std::uint32_t count,
-                                                                Rng& rng, const Draw& draw) {
+/// Returns the rows that may breed, from best to worst: those that did not fail, or all if all failed.
+inline std::vector<std::uint32_t> breeding_rows(std::span<const Candidate> rows) {
   auto pool = best_first(rows);
+  if (!pool.empty() && rows[pool.front()].ok()) std::erase_if(pool, [&](std::uint32_t i) { return !rows[i].ok(); });
+  return pool;
+}
+
+/// Returns `count` pairs of a parent and a mate, both from `pool`. `draw(n, rng)` returns a position from 0 to n-1. The
+/// mate differs from the parent if the pool has more than one row.
+template <class Draw>
+std::vector<std::pair<std::uint32_t, std::uint32_t>> draw_pairs(const std::vector<std::uint32_t>& pool,
+                                                                std::uint32_t count, Rng& rng, const Draw& draw) {
   if (pool.empty()) return {};
-  if (rows[pool.front()].ok()) std::erase_if(pool, [&](std::uint32_t i) { return !rows[i].ok(); });
   const auto size = static_cast<std::uint32_t>(pool.size());
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -52,8 +58,25 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> draw_pairs(std::span<const 
   }
   return pairs;
 }
+/// The same for breeding_rows(): position 0 is the best row.
+template <class Draw>
+std::vector<std::pair<std::uint32_t, std::uint32_t>> draw_pairs(std::span<const Candidate> rows, std::uint32_t count,
+                                                                Rng& rng, const Draw& draw) {
+  return draw_pairs(breeding_rows(rows), count, rng, draw);
+}
 
 /// Draws a row uniformly: for draw_pairs(), a draw in which all rows have the same chance.
 inline std::uint32_t draw_any(std::uint32_t rows, Rng& rng) { return rng.below(rows); }
+
+/// For draw_pairs(): of some rows drawn uniformly, the best wins (tournament: Goldberg & Deb 1991).
+struct Tournament {
+  std::int64_t size;  ///< number of rows drawn, some perhaps more than once
+
+  std::uint32_t operator()(std::uint32_t rows, Rng& rng) const {
+    std::uint32_t best = rng.below(rows);
+    for (std::int64_t i = 1; i < size; ++i) best = std::min(best, rng.below(rows));
+    return best;
+  }
+};
 
 }  // namespace evodevo

@@ -1,0 +1,64 @@
+// Tables of individuals, made up at random, for selection operators to choose from.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "conformance/trials.hpp"
+
+namespace evodevo::conformance {
+
+/// What a selection operator sees of a population and its newborns, with all that the rows refer to.
+class SampleTable {
+ public:
+  /// A random table in which all scores differ, for an operator with its traits. The rows of the second half are
+  /// newborns, most of which are children of rows of the first half. `failed` rows, chosen at random, have no scores;
+  /// half of them violate a constraint.
+  SampleTable(const Subject& subject, const Selection& op, std::uint64_t seed, std::uint32_t input, std::size_t rows,
+              std::size_t failed);
+  /// The same table in another order: its row i is row order[i] of the other table.
+  SampleTable(const SampleTable& other, const std::vector<std::uint32_t>& order);
+  SampleTable(const SampleTable&) = delete;  // because the rows refer to the lists
+  SampleTable& operator=(const SampleTable&) = delete;
+
+  /// What the operator sees if it remembers `memory`.
+  SelectionContext context(std::span<const std::byte> memory = {}) const;
+  /// What the operator sees before the first generation.
+  SelectionContext empty_context() const;
+
+  const std::vector<Candidate>& rows() const { return rows_; }
+  /// All numbers of the table.
+  Numbers numbers() const;
+
+ private:
+  /// What one row refers to.
+  struct Lists {
+    Numbers scores, cases, descriptors;
+    std::vector<std::uint32_t> parents;
+    Genome genome;
+  };
+  void set_titles(const Subject& subject, const Selection& op, std::uint32_t input);
+  void set_rows(const std::vector<std::uint8_t>& fails, Rng& rng);
+  void refer();
+
+  std::vector<Objective> objectives_, descriptors_;
+  std::vector<Case> cases_;
+  Layout layout_;
+  std::vector<Lists> lists_;
+  std::vector<Candidate> rows_;
+};
+
+/// Calls the functions of a selection operator that its traits claim, and returns all results as numbers.
+Numbers try_selection(const Subject& subject, const Selection& op, std::uint64_t seed, std::uint32_t input);
+
+/// Returns the result of survive() as numbers.
+Numbers numbers_of(const Survival& survival);
+
+/// Returns the survivors. Throws Violation unless they are 1 to `population` different rows of the table, and the notes
+/// are finite and about rows of the table.
+Survival sound_survival(const Selection& op, const SelectionContext& context, std::uint32_t population, Rng& rng);
+/// Returns the children that an operator makes. Throws Violation unless they are `count` genomes of the layout whose
+/// parents are rows of the table.
+std::vector<Child> sound_children(const Selection& op, const SelectionContext& context, std::uint32_t count, Rng& rng);
+
+}  // namespace evodevo::conformance

@@ -1,0 +1,132 @@
+#include "experiment/tables/selection.hpp"
+
+#include <algorithm>
+
+namespace evodevo {
+namespace {
+
+/// What an operator is to choose.
+struct Choice {
+  bool parents = true, survivors = true;
+};
+
+/// Returns the name of the first type of blocks that is not an array of real genes of the same length in all genomes,
+/// or an empty text if there is none.
+std::string unreal_type(const Layout& layout) {
+  const auto is_real = [](const GeneSpec& gene) { return gene.is_real(); };
+  for (const BlockType& type : layout.types)
+    if (!type.is_fixed() || !std::all_of(type.genes.begin(), type.genes.end(), is_real))
+      return "\"" + printable(type.name) + "\" of " + printable(layout.sections[type.section]);
+  return "";
+}
+
+void check_choice(const TomlReader& t, const Traits& traits, const Choice& choice) {
+  if (choice.survivors && !traits.chooses_survivors)
+    t.fail("name",
+           "this operator chooses no survivors (its trait chooses_survivors); name it in [selection.parents], and "
+           "another one in [selection.survivors]");
+  if (choice.parents && !traits.chooses_parents)
+    t.fail("name",
+           "this operator chooses no parents (its trait chooses_parents); name it in [selection.survivors], and "
+           "another one in [selection.parents]");
+}
+
+/// Throws ConfigError if fewer scores than an operator needs have a role.
+void check_scores(const TomlReader& t, std::size_t needed, std::size_t given, const std::string& role) {
+  if (given < needed)
+    t.fail("name", "this operator needs " + std::to_string(needed) + " " + role +
+                       "s or more, and the fitness operators give " + std::to_string(given) +
+                       "; add a table [[fitness]] with an operator that gives one, or choose another operator");
+}
+
+/// Throws ConfigError if an operator cannot work in the experiment.
+void check_traits(const TomlReader& t, const Traits& traits, const Choice& choice, const Experiment& experiment) {
+  check_choice(t, traits, choice);
+  check_scores(t, traits.least_objectives, experiment.objectives.size(), name(Role::objective));
+  const auto descriptors = std::count_if(experiment.measures.begin(), experiment.measures.end(),
+                                         [](const Objective& measure) { return measure.role == Role::descriptor; });
+  check_scores(t, traits.least_descriptors, static_cast<std::size_t>(descriptors), name(Role::descriptor));
+  if (const std::string type = unreal_type(experiment.layout); traits.needs_real_genes && !type.empty())
+    t.fail("name",
+           "this operator works on real genes alone, whose number is the same in all genomes (its trait "
+           "needs_real_genes), and the blocks " +
+               type + " are not such genes; choose another encoding, or another operator");
+}
+
+void check_notes(const TomlReader& t, const std::vector<NoteTitle>& notes) {
+  for (auto note = notes.begin(); note != notes.end(); ++note) {
+    if (note->name.empty()) t.fail("name", "this operator has a note without a name; name it in notes()");
+    for (const std::string& text : {note->name, note->unit})
+      if (const std::string fault = text_fault(text); !fault.empty())
+        t.fail("name", "its note's name or unit " + fault);
+    if (std::any_of(notes.begin(), note, [&](const NoteTitle& other) { return other.name == note->name; }))
+      t.fail("name", "it has two notes \"" + note->name + "\"; rename one of them in notes()");
+  }
+}
+
+class SelectionTables {
+ public:
+  SelectionTables(const OperatorFactory& factory, const References& references, Experiment& experiment)
+      : factory_(factory), references_(references), out_(experiment) {}
+
+  void read(TomlReader& top, toml::table& record) {
+    const toml::table* table = top.table("selection");
+    const auto names = [&](const char* name) { return table != nullptr && (*table)[name].is_table(); };
+    toml::table written;
+    if (names("parents") || names("survivors"))
+      read_table(top, "selection", true, [&](TomlReader& t) {
+        out_.selection = read_one(t, "survivors", {.parents = false}, written);
+        out_.parent_selection = read_one(t, "parents", {.survivors = false}, written);
+      });
+    else
+      read_table(
+          top, "selection", true, [&](TomlReader& t) { out_.selection = read(t, {}, written); }, references_);
+    record.insert_or_assign("selection", std::move(written));
+  }
+
+ private:
+  std::unique_ptr<Selection> read_one(TomlReader& parent, const char* name, const Choice& choice, toml::table& record) {
+    std::unique_ptr<Selection> op;
+    toml::table written;
+    read_table(
+        parent, name, true, [&](TomlReader& t) { op = read(t, choice, written); }, references_);
+    record.insert(name, std::move(written));
+    return op;
+  }
+
+  std::unique_ptr<Selection> read(TomlReader& t, const Choice& choice, toml::table& record) {
+    std::unique_ptr<Selection> op = factory_.make<Selection>(t);
+    TomlWriter writer;
+    factory_.write(t, *op, writer);
+    record = writer.take();
+    const Traits traits = factory_.ask(t, [&] { return op->traits(); });
+    check_traits(t, traits, choice, out_);
+    if (choice.parents && traits.makes_children) out_.child_maker = out_.uses.back().name;
+    if (!choice.survivors) return op;
+    out_.notes = factory_.ask(t, [&] { return op->notes(); });
+    check_notes(t, out_.notes);
+    return op;
+  }
+
+  const OperatorFactory& factory_;
+  const References& references_;
+  Experiment& out_;
+};
+
+/// Whether the experiment says how many random individuals it wants.
+bool asks_for_random_individuals(TomlReader& top) {
+  const toml::table* table = top.table("experiment");
+  return table != nullptr && table->contains("random_individuals");
+}
+
+}  // namespace
+
+void read_selection(TomlReader& top, const OperatorFactory& factory, const References& references,
+                    Experiment& experiment, toml::table& record) {
+  SelectionTables(factory, references, experiment).read(top, record);
+  if (!experiment.makes_children() || asks_for_random_individuals(top)) return;
+  experiment.random_individuals = 0;
+  record["experiment"].as_table()->insert_or_assign("random_individuals", 0);
+}
+
+}  // namespace evodevo

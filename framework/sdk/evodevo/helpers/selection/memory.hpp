@@ -1,0 +1,88 @@
+// The memory of selection operators as bytes: numbers and lists of numbers, written and read in the same order.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace evodevo {
+
+/// Writes numbers and lists of numbers as bytes.
+class MemoryWriter {
+ public:
+  template <class T>
+  void write(T number) {
+    static_assert(std::is_arithmetic_v<T>, "only numbers have the same bytes in every process");
+    append(&number, sizeof number);
+  }
+  template <class T>
+  void write(const std::vector<T>& numbers) {
+    static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>, "a list of numbers");
+    write(static_cast<std::uint64_t>(numbers.size()));
+    append(numbers.data(), numbers.size() * sizeof(T));
+  }
+
+  const std::vector<std::byte>& bytes() const { return bytes_; }
+
+ private:
+  void append(const void* from, std::size_t count) {
+    const auto* first = static_cast<const std::byte*>(from);
+    bytes_.insert(bytes_.end(), first, first + count);
+  }
+
+  std::vector<std::byte> bytes_;
+};
+
+/// Reads what MemoryWriter has written, in the same order. Throws std::runtime_error if there are too few bytes.
+class MemoryReader {
+ public:
+  explicit MemoryReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  template <class T>
+  T read() {
+    static_assert(std::is_arithmetic_v<T>, "a number");
+    T number{};
+    take(&number, 1, sizeof number);
+    return number;
+  }
+  template <class T>
+  std::vector<T> read_list() {
+    const auto count = read<std::uint64_t>();
+    require(count, sizeof(T));  // before memory is allocated for them
+    std::vector<T> numbers(count);
+    take(numbers.data(), count, sizeof(T));
+    return numbers;
+  }
+
+  /// The number of bytes that have not been read.
+  std::size_t left() const { return bytes_.size() - next_; }
+  /// Throws std::runtime_error if bytes are left.
+  void finish() const {
+    if (left() > 0) fail("has " + std::to_string(left()) + " bytes too many");
+  }
+
+ private:
+  void require(std::uint64_t count, std::size_t size) const {
+    if (count > left() / size)
+      fail("ends after " + std::to_string(bytes_.size()) + " bytes; expected " + std::to_string(count) +
+           " numbers of " + std::to_string(size) + " bytes at byte " + std::to_string(next_));
+  }
+  void take(void* to, std::uint64_t count, std::size_t size) {
+    require(count, size);
+    if (count > 0) std::memcpy(to, bytes_.data() + next_, count * size);
+    next_ += count * size;
+  }
+  [[noreturn]] static void fail(const std::string& what) {
+    throw std::runtime_error("memory " + what + "; it was written by another version of this operator");
+  }
+
+  std::span<const std::byte> bytes_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace evodevo

@@ -1,0 +1,99 @@
+// CMA-ES: children are drawn from a normal distribution that learns from them (Hansen and Ostermeier 2001).
+#include "evodevo/helpers/selection/cma_es.hpp"
+
+#include "evodevo/helpers/rows.hpp"
+#include "evodevo/helpers/selection/memory.hpp"
+#include "evodevo/plugin.hpp"
+
+namespace {
+
+using evodevo::Candidate;
+using evodevo::SelectionContext;
+
+/// The range of each gene becomes [0, 1]. The distribution learns from the first scores of the newborns; those who
+/// failed are the worst, and among them those are better that violate the constraints less. The best individuals so far
+/// survive, but they do not breed: the memory holds the distribution.
+class Cma final : public evodevo::Selection {
+ public:
+  void parameters(evodevo::Parameters& p) override {
+    p.real(step_, "step", {1e-6, 1.0 / 3, "1"},
+           "Standard deviation of the genes in the first generation, relative to their ranges.");
+  }
+
+  evodevo::Traits traits() const override { return {.makes_children = true, .needs_real_genes = true}; }
+
+  std::vector<evodevo::Child> children(const SelectionContext& context, std::uint32_t count,
+                                       evodevo::Rng& rng) const override {
+    const auto genes = specs(context.layout);
+    std::vector<evodevo::Child> children;
+    for (const auto& point : distribution(context).sample(count, rng)) {
+      evodevo::Genome genome(genes.size());
+      for (std::size_t i = 0; i < genes.size(); ++i)
+        genome[i] = std::clamp(static_cast<float>(genes[i].low + point[i] * (double{genes[i].high} - genes[i].low)),
+                               genes[i].low, genes[i].high);
+      children.push_back({genome});
+    }
+    return children;
+  }
+
+  evodevo::Survival survive(const SelectionContext& context, std::uint32_t population,
+                            evodevo::Rng& rng) const override {
+    evodevo::Survival survival{best_first(context.rows)};
+    const auto genes = specs(context.layout);
+    std::vector<std::vector<double>> points;
+    std::vector<std::uint32_t> ranks;
+    const Candidate* last = nullptr;
+    for (const std::uint32_t i : survival.rows) {
+      const Candidate& row = context.rows[i];
+      if (!row.is_newborn) continue;
+      ranks.push_back(last != nullptr && are_equal(*last, row) ? ranks.back()
+                                                               : static_cast<std::uint32_t>(ranks.size()));
+      last = &row;
+      std::vector<double>& point = points.emplace_back();
+      for (std::size_t g = 0; g < genes.size(); ++g) {
+        const double range = double{genes[g].high} - genes[g].low;
+        point.push_back(range > 0 ? (double{(*row.genome)[g]} - genes[g].low) / range : 0.5);
+      }
+    }
+    auto learned = distribution(context);
+    learned.update(points, ranks, rng);
+    evodevo::MemoryWriter writer;
+    writer.write(learned.state());
+    survival.memory = writer.bytes();
+    survival.rows.resize(std::min<std::size_t>(survival.rows.size(), population));
+    return survival;
+  }
+
+ private:
+  static constexpr std::size_t most_genes = 1000;  // with more, each generation would take seconds
+
+  static bool are_equal(const Candidate& a, const Candidate& b) {
+    return a.ok() == b.ok() && (a.ok() ? a.scores[0] == b.scores[0] : a.violation == b.violation);
+  }
+
+  static std::vector<evodevo::GeneSpec> specs(const evodevo::Layout& layout) {
+    std::vector<evodevo::GeneSpec> genes;
+    for (const evodevo::Block& block : layout.first_blocks)
+      for (std::uint32_t gene = 0; gene < block.count; ++gene) genes.push_back(layout.types[block.type].gene(gene));
+    return genes;
+  }
+
+  evodevo::CmaEs distribution(const SelectionContext& context) const {
+    const std::size_t genes = context.layout.first_size();
+    if (genes > most_genes)
+      throw std::runtime_error("genomes have " + std::to_string(genes) + " genes; expected at most " +
+                               std::to_string(most_genes) + "; choose a smaller encoding, or the selection " +
+                               "\"differential\"");
+    if (context.memory.empty()) return {genes, step_};
+    return {genes, evodevo::MemoryReader(context.memory).read_list<double>()};
+  }
+
+  double step_ = 0.3;
+};
+
+}  // namespace
+
+EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
+               evodevo::operator_entry<Cma>("cma-es",
+                                            "Children are drawn from a normal distribution that learns from them "
+                                            "(CMA-ES: Hansen & Ostermeier 2001)."))

@@ -1,0 +1,109 @@
+// Differential evolution, DE/rand/1/bin (Storn and Price 1997).
+#include "evodevo/helpers/rows.hpp"
+#include "evodevo/plugin.hpp"
+
+namespace {
+
+using evodevo::Candidate;
+using evodevo::GeneSpec;
+using evodevo::Genome;
+
+/// Each child competes with its parent for the parent's place, and takes it unless its first score is lower. If a
+/// parent has several children, only the best of them competes. Those who lose survive only if places are left, or are
+/// taken by individuals that failed.
+class Differential final : public evodevo::Selection {
+ public:
+  void parameters(evodevo::Parameters& p) override {
+    p.real(factor_, "factor", {0, 2, "1"},
+           "Factor of the difference between two genomes that is added to a third one.");
+    p.real(crossover_, "crossover", {0, 1, "1"},
+           "Probability that a gene comes from that sum, and not from the parent.");
+  }
+
+  evodevo::Traits traits() const override { return {.makes_children = true, .needs_real_genes = true}; }
+
+  std::vector<evodevo::Child> children(const evodevo::SelectionContext& context, std::uint32_t count,
+                                       evodevo::Rng& rng) const override {
+    std::vector<evodevo::Child> children;
+    const auto order = best_first(context.rows);
+    std::vector<std::uint32_t> turns;  // everyone is a parent once before anyone is again
+    while (children.size() < count) {
+      if (order.size() < 4) {  // the first generation
+        children.push_back({random_genome(context.layout, rng)});
+        continue;
+      }
+      if (turns.empty()) {
+        turns = order;
+        rng.shuffle(turns);
+      }
+      children.push_back({varied(context, order, turns.back(), rng), {turns.back()}});
+      turns.pop_back();
+    }
+    return children;
+  }
+
+  std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
+                                       evodevo::Rng&) const override {
+    const auto order = best_first(rows);
+    std::vector<bool> lost(rows.size(), false), challenged(rows.size(), false);
+    for (const std::uint32_t child : order) {
+      if (!rows[child].challenges) continue;
+      const std::uint32_t parent = *rows[child].challenges;
+      const bool wins = !challenged[parent] && !is_worse(rows[child], rows[parent]);
+      challenged[parent] = true;
+      lost[wins ? parent : child] = true;
+    }
+    std::vector<std::uint32_t> living, losers, failed;
+    for (const std::uint32_t row : order) (!rows[row].ok() ? failed : lost[row] ? losers : living).push_back(row);
+    for (const auto* group : {&losers, &failed}) living.insert(living.end(), group->begin(), group->end());
+    living.resize(std::min<std::size_t>(living.size(), population));
+    return living;
+  }
+
+ private:
+  static bool is_worse(const Candidate& a, const Candidate& b) {
+    if (a.ok() && b.ok()) return a.scores[0] < b.scores[0];
+    return a.ok() == b.ok() ? a.violation > b.violation : b.ok();
+  }
+
+  Genome varied(const evodevo::SelectionContext& context, const std::vector<std::uint32_t>& order, std::uint32_t parent,
+                evodevo::Rng& rng) const {
+    auto others = order;
+    std::erase(others, parent);
+    const Genome* chosen[3];
+    for (const Genome*& one : chosen) {
+      const auto at = others.begin() + rng.below(static_cast<std::uint32_t>(others.size()));
+      one = context.rows[*at].genome;
+      others.erase(at);
+    }
+    Genome child = *context.rows[parent].genome;
+    if (child.empty()) return child;
+    const std::uint32_t certain = rng.below(static_cast<std::uint32_t>(child.size()));  // at least one gene changes
+    for (const evodevo::Block& block : context.layout.first_blocks)
+      for (std::uint32_t i = block.first; i < block.first + block.count; ++i) {
+        if (!rng.chance(crossover_) && i != certain) continue;
+        const double sum = (*chosen[0])[i] + factor_ * (double{(*chosen[1])[i]} - (*chosen[2])[i]);
+        child[i] = within(context.layout.types[block.type].gene(i - block.first), sum, (*chosen[0])[i], rng);
+      }
+    return child;
+  }
+
+  /// Returns a value within the bounds of a gene. One that is not is replaced by a random one between the bound and the
+  /// value from which it started (Price et al. 2005).
+  static float within(const GeneSpec& spec, double value, double start, evodevo::Rng& rng) {
+    if (value < spec.low) value = rng.uniform(spec.low, start);
+    if (value > spec.high) value = rng.uniform(start, spec.high);
+    return std::clamp(static_cast<float>(value), spec.low, spec.high);
+  }
+
+  double factor_ = 0.5;
+  double crossover_ = 0.9;
+};
+
+}  // namespace
+
+EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
+               evodevo::operator_entry<Differential>("differential",
+                                                     "Children differ from their parents by the differences between "
+                                                     "others, and take their places if they are not worse (Storn & "
+                                                     "Price 1997)."))

@@ -1,0 +1,90 @@
+// MAP-Elites (Mouret and Clune 2015; with centroidal cells: Vassiliades et al. 2018).
+#include <map>
+#include <optional>
+
+#include "evodevo/helpers/rows.hpp"
+#include "evodevo/helpers/selection/memory.hpp"
+#include "evodevo/helpers/selection/niches.hpp"
+#include "evodevo/plugin.hpp"
+
+namespace {
+
+using evodevo::Coordinates;
+
+/// The space of the descriptors is divided into cells, and the best individual of each cell survives: the population is
+/// the map. Individuals are compared by their first score; ties are broken by the other scores, then by youth. All
+/// elites have the same chance to breed. If the population has fewer places than there are elites, the worst of them
+/// die. The memory holds the centres of the cells.
+class MapElites final : public evodevo::Selection {
+ public:
+  void parameters(evodevo::Parameters& p) override {
+    p.choice(cells_, "cells", {"grid", "centroidal"},
+             "Shape of the cells: a grid, or a given number of cells of similar size, for many descriptors.");
+    p.integer(bins_, "bins", {1, 1000, "1"}, "Number of cells of the grid along each descriptor.");
+    p.integer(count_, "count", {1, 10'000, "1"}, "Number of centroidal cells.");
+  }
+
+  evodevo::Traits traits() const override { return {.least_descriptors = 1}; }
+  std::vector<evodevo::NoteTitle> notes() const override { return {{"cell"}}; }
+  /// Draws the same cells in all runs, so that their maps can be compared.
+  void prepare(const evodevo::EncodingContext& context) override { rng_ = context.rng(1); }
+
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const evodevo::Candidate> rows,
+                                                               std::uint32_t count, evodevo::Rng& rng) const override {
+    return draw_pairs(rows, count, rng, evodevo::draw_any);
+  }
+
+  evodevo::Survival survive(const evodevo::SelectionContext& context, std::uint32_t population,
+                            evodevo::Rng&) const override {
+    const bool is_grid = cells_ == "grid";
+    const evodevo::Neighbours centres(is_grid ? std::vector<Coordinates>() : centres_in(context));
+    const auto order = breeding_rows(context.rows);
+    std::map<std::uint64_t, std::uint32_t> elites;
+    evodevo::Survival survival;
+    for (const std::uint32_t row : order) {
+      const evodevo::Candidate& candidate = context.rows[row];
+      if (!candidate.ok()) {  // all failed
+        survival.rows.push_back(row);
+        continue;
+      }
+      const Coordinates place = place_of(candidate, context.descriptors);
+      const std::uint64_t cell = is_grid ? evodevo::grid_cell(place, static_cast<std::uint32_t>(bins_))
+                                         : centres.nearest(place, 1).front().index;
+      survival.notes.push_back({row, 0, static_cast<double>(cell)});
+      if (elites.emplace(cell, row).second) survival.rows.push_back(row);
+    }
+    survival.rows.resize(std::min<std::size_t>(survival.rows.size(), population));
+    survival.memory = written(centres.places());
+    return survival;
+  }
+
+ private:
+  std::vector<Coordinates> centres_in(const evodevo::SelectionContext& context) const {
+    const std::size_t dimension = context.descriptors.size();
+    if (context.memory.empty()) {
+      evodevo::Rng rng = *rng_;
+      return evodevo::voronoi_centres(static_cast<std::uint32_t>(count_), dimension, rng);
+    }
+    evodevo::MemoryReader reader(context.memory);
+    std::vector<Coordinates> centres;
+    while (reader.left() > 0) centres.push_back(reader.read_list<double>());
+    return centres;
+  }
+
+  static std::vector<std::byte> written(const std::vector<Coordinates>& centres) {
+    evodevo::MemoryWriter writer;
+    for (const Coordinates& centre : centres) writer.write(centre);
+    return writer.bytes();
+  }
+
+  std::string cells_ = "grid";
+  std::int64_t bins_ = 10, count_ = 1000;
+  std::optional<evodevo::Rng> rng_;
+};
+
+}  // namespace
+
+EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
+               evodevo::operator_entry<MapElites>("map-elites",
+                                                  "The best individual of each cell of the space of descriptors "
+                                                  "survives (Mouret & Clune 2015; Vassiliades et al. 2018)."))

@@ -1,0 +1,278 @@
+// CMA-ES on functions with known optima, compared with published numbers of evaluations.
+#include "evodevo/helpers/selection/cma_es.hpp"
+
+#include <functional>
+#include <numeric>
+
+#include "support.hpp"
+
+namespace evodevo::test {
+namespace {
+
+using Point = std::vector<double>;
+using Function = std::function<double(const Point&)>;
+
+double sphere(const Point& x) {
+  double sum = 0;
+  for (const double one : x) sum += one * one;
+  return sum;
+}
+
+/// An ellipsoid whose axes differ by a factor of 1000.
+double ellipsoid(const Point& x) {
+  double sum = 0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    sum += std::pow(1e6, static_cast<double>(i) / static_cast<double>(x.size() - 1)) * x[i] * x[i];
+  return sum;
+}
+
+double rosenbrock(const Point& x) {
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < x.size(); ++i)
+    sum += 100 * std::pow(x[i] * x[i] - x[i + 1], 2) + std::pow(1 - x[i], 2);
+  return sum;
+}
+
+/// A random rotation of a space.
+struct Rotation {
+  Rotation(std::size_t dimension, Rng& rng) {
+    for (std::size_t i = 0; i < dimension; ++i) {
+      Point axis(dimension);
+      for (double& one : axis) one = rng.normal();
+      for (const Point& other : axes) {
+        double along = 0;
+        for (std::size_t j = 0; j < dimension; ++j) along += axis[j] * other[j];
+        for (std::size_t j = 0; j < dimension; ++j) axis[j] -= along * other[j];
+      }
+      const double length = std::sqrt(sphere(axis));
+      for (double& one : axis) one /= length;
+      axes.push_back(axis);
+    }
+  }
+  Point operator()(const Point& x) const {
+    Point rotated(x.size(), 0);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      for (std::size_t j = 0; j < x.size(); ++j) rotated[i] += axes[i][j] * x[j];
+    return rotated;
+  }
+  std::vector<Point> axes;
+};
+
+/// Where a search begins, in a cube that is so large that its bounds do not matter.
+struct Search {
+  std::size_t dimension;
+  double start, step, target;
+  std::size_t children = 0;  ///< 0: the tutorial's default
+};
+
+void learn(CmaEs& strategy, const std::vector<Point>& points, const std::vector<double>& values, Rng& rng) {
+  std::vector<std::uint32_t> order(points.size()), ranks;
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return values[a] < values[b]; });
+  std::vector<Point> sorted;
+  for (const std::uint32_t i : order) sorted.push_back(points[i]);
+  for (std::uint32_t i = 0; i < order.size(); ++i)
+    ranks.push_back(i > 0 && values[order[i]] == values[order[i - 1]] ? ranks.back() : i);
+  strategy.update(sorted, ranks, rng);
+}
+
+/// Returns the number of evaluations until a value is below the target, at most 100,000.
+double evaluations(const Function& function, const Search& search, std::uint64_t seed) {
+  const double side = 40;
+  CmaEs strategy(search.dimension, search.step / side);
+  Rng rng = stream(seed);
+  const auto standard = static_cast<std::size_t>(4 + std::floor(3 * std::log(search.dimension)));
+  const std::size_t children = search.children > 0 ? search.children : standard;
+  for (int count = 0; count < 100'000;) {
+    const auto points = strategy.sample(children, rng);
+    std::vector<double> values;
+    for (Point x : points) {
+      for (double& one : x) one = search.start + side * (one - 0.5);
+      values.push_back(function(x));
+      ++count;
+      if (values.back() < search.target) return count;
+    }
+    learn(strategy, points, values, rng);
+  }
+  return 100'000;
+}
+
+double median_evaluations(const Function& function, const Search& search) {
+  std::vector<double> counts;
+  for (std::uint64_t seed = 0; seed < 11; ++seed) counts.push_back(evaluations(function, search, seed));
+  std::sort(counts.begin(), counts.end());
+  return counts[5];
+}
+
+// The published numbers are those that Hansen's own programs print in their documentation, at the same function,
+// dimension, start, step size and value.
+TEST(CmaEs, NeedsAsManyEvaluationsAsPublished) {
+  const double least = 0.5, most = 1.5;
+  const auto expect = [&](const Function& function, const Search& search, double published, const char* name) {
+    const double found = median_evaluations(function, search);
+    EXPECT_LT(found, most * published) << name;
+    EXPECT_GT(found, least * published) << name << ": too good to be true";
+  };
+  expect(ellipsoid, {3, 0.5, 0.3, 4.8e-13}, 1400, "purecma, felli");
+  expect(ellipsoid, {10, 0.5, 0.3, 5.3e-10}, 6000, "purecma, ff.elli");
+  expect(rosenbrock, {4, 0.5, 0.5, 1.15e-11}, 1600, "barecmaes2, Fcts.rosenbrock");
+  expect(rosenbrock, {8, 0, 0.5, 1.27e-11}, 4000, "pycma, README");
+}
+
+TEST(CmaEs, NeedsNoMoreEvaluationsOnARotatedEllipsoid) {
+  Rng rng = stream(1);
+  for (const std::size_t dimension : {5, 20}) {
+    const Rotation rotation(dimension, rng);
+    const Search search{dimension, 0.5, 0.3, 1e-10};
+    const double straight = median_evaluations(ellipsoid, search);
+    const double rotated = median_evaluations([&](const Point& x) { return ellipsoid(rotation(x)); }, search);
+    EXPECT_NEAR(rotated, straight, 0.15 * straight) << dimension;
+    // the tutorial expects between 100 n and 300 n^2 evaluations
+    EXPECT_LT(straight, 300.0 * static_cast<double>(dimension * dimension));
+  }
+}
+
+TEST(CmaEs, ConvergesLinearlyOnTheSphere) {
+  for (const std::size_t dimension : {5, 10, 20}) {
+    const double half = median_evaluations(sphere, {dimension, 1, 0.5, 1e-5});
+    const double whole = median_evaluations(sphere, {dimension, 1, 0.5, 1e-10});
+    const double quarters = median_evaluations(sphere, {dimension, 1, 0.5, 1e-15});
+    EXPECT_NEAR((quarters - whole) / (whole - half), 1, 0.15) << dimension;
+    EXPECT_LT(whole, 200.0 * static_cast<double>(dimension));
+  }
+}
+
+/// Only the order of the values matters: a growing function of them gives the same points.
+TEST(CmaEs, DependsOnTheOrderOfValuesAlone) {
+  const auto last = [&](const Function& function) {
+    CmaEs strategy(6, 0.1);
+    Rng rng = stream(3);
+    for (int i = 0; i < 50; ++i) {
+      const auto points = strategy.sample(9, rng);
+      std::vector<double> values;
+      for (const Point& x : points) values.push_back(function(x));
+      learn(strategy, points, values, rng);
+    }
+    return strategy.state();
+  };
+  EXPECT_EQ(last(ellipsoid), last([](const Point& x) { return std::cbrt(ellipsoid(x)) - 5; }));
+}
+
+/// Returns the least value that a search in the unit cube finds.
+double least_found(const Function& function, std::size_t dimension, int generations, std::uint64_t seed) {
+  CmaEs strategy(dimension, 0.3);
+  Rng rng = stream(seed);
+  double least = 1e300;
+  for (int i = 0; i < generations; ++i) {
+    const auto points = strategy.sample(10, rng);
+    std::vector<double> values;
+    for (const Point& x : points) {
+      for (const double one : x) EXPECT_TRUE(one >= 0 && one <= 1);
+      values.push_back(function(x));
+    }
+    least = std::min(least, *std::min_element(values.begin(), values.end()));
+    learn(strategy, points, values, rng);
+  }
+  return least;
+}
+
+TEST(CmaEs, FindsOptimaOnTheBounds) {
+  // at (0, 1, 0.3, 0), with a slope at the first two bounds
+  const auto corner = [](const Point& x) { return sphere({x[0] + 0.5, x[1] - 1.5, x[2] - 0.3, x[3]}) - 0.5; };
+  const auto slope = [](const Point& x) { return std::accumulate(x.begin(), x.end(), 0.0); };
+  // at (0, 0.75): the second axis of this narrow valley depends on the first
+  const auto valley = [](const Point& x) { return 100 * std::pow(x[1] - x[0] - 0.75, 2) + x[0] * x[0] + x[0]; };
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    EXPECT_NEAR(least_found(corner, 4, 300, seed), 0, 1e-6) << seed;
+    EXPECT_NEAR(least_found(slope, 8, 800, seed), 0, 1e-6) << seed;
+    EXPECT_NEAR(least_found(valley, 2, 300, seed), 0, 1e-6) << seed;
+  }
+}
+
+TEST(CmaEs, DoesNotGetLostBetweenTheImages) {
+  const auto inside = [](const Point& x) {
+    double sum = 0;
+    for (std::size_t i = 0; i < 4; ++i) sum += std::pow(1e4, static_cast<double>(i) / 3) * std::pow(x[i] - 0.3, 2);
+    return sum;
+  };
+  for (std::uint64_t seed = 0; seed < 20; ++seed) EXPECT_NEAR(least_found(inside, 4, 200, seed), 0, 1e-6) << seed;
+}
+
+TEST(CmaEs, ContinuesFromItsState) {
+  CmaEs one(5, 0.2);
+  Rng rng = stream(1);
+  for (int i = 0; i < 20; ++i) {
+    CmaEs copy(5, one.state());
+    EXPECT_EQ(copy.state(), one.state());
+    Rng same = rng;
+    const auto points = one.sample(7, rng);
+    ASSERT_EQ(copy.sample(7, same), points);
+    std::vector<double> values;
+    for (const Point& x : points) values.push_back(ellipsoid(x));
+    same = rng;
+    learn(one, points, values, rng);
+    learn(copy, points, values, same);
+    EXPECT_EQ(copy.state(), one.state());
+  }
+  EXPECT_EQ(one.state().size(), 6u * 7);
+  EXPECT_THROW(CmaEs(4, one.state()), std::runtime_error);
+}
+
+TEST(CmaEs, EquallyGoodPointsHaveEqualWeight) {
+  Rng rng = stream(1);
+  const CmaEs start(3, 0.01);  // far from the bounds, so that the images of points are those drawn
+  const auto points = start.sample(6, rng);
+  auto swapped = points;
+  std::swap(swapped[1], swapped[3]);
+  CmaEs one = start, other = start;
+  Rng first = stream(2), second = stream(2), third = stream(2);
+  one.update(points, {0, 1, 1, 1, 4, 5}, first);
+  other.update(swapped, {0, 1, 1, 1, 4, 5}, second);
+  const auto a = one.state(), b = other.state();
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-12);
+  CmaEs ranked = start;
+  ranked.update(swapped, {0, 1, 2, 3, 4, 5}, third);
+  EXPECT_GT(std::abs(ranked.mean()[0] - one.mean()[0]), 1e-5);
+}
+
+TEST(CmaEs, OnePointTeachesNothing) {
+  CmaEs strategy(3, 0.2);
+  const auto before = strategy.state();
+  Rng rng = stream(1);
+  strategy.update({{0.1, 0.2, 0.3}}, {0}, rng);
+  strategy.update({}, {}, rng);
+  EXPECT_EQ(strategy.state(), before);
+}
+
+TEST(CmaEs, EndsWithFiniteNumbersWhereNothingDiffers) {
+  CmaEs strategy(3, 0.2);
+  Rng rng = stream(1);
+  for (int i = 0; i < 500; ++i) {
+    const auto points = strategy.sample(7, rng);
+    strategy.update(points, std::vector<std::uint32_t>(7, 0), rng);
+  }
+  for (const double number : strategy.state()) EXPECT_TRUE(std::isfinite(number));
+  const std::vector<Point> middle(7, strategy.mean());
+  strategy.update(middle, std::vector<std::uint32_t>(7, 0), rng);
+  for (const double number : strategy.state()) EXPECT_TRUE(std::isfinite(number));
+}
+
+/// Tutorial, equation 53: with the default settings, the weights of the better half sum to 1, and the greatest is the
+/// first.
+TEST(CmaSettings, FulfilWhatTheTutorialSaysOfThem) {
+  for (const std::size_t children : {2, 3, 7, 10, 100})
+    for (const double n : {1, 2, 10, 500}) {
+      const CmaSettings settings(children, n);
+      double better = 0, worse = 0;
+      for (const double weight : settings.weights) (weight > 0 ? better : worse) += weight;
+      EXPECT_NEAR(better, 1, 1e-12);
+      EXPECT_LE(worse, 0);
+      EXPECT_TRUE(std::is_sorted(settings.weights.rbegin(), settings.weights.rend()));
+      EXPECT_LE(settings.rank_one + settings.rank_mu, 1);
+      // the covariance stays positive definite: what is taken away is less than what is kept
+      EXPECT_GE(1 - settings.rank_one - settings.rank_mu + n * settings.rank_mu * worse, -1e-12);
+    }
+}
+
+}  // namespace
+}  // namespace evodevo::test

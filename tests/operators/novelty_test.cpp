@@ -1,0 +1,120 @@
+// Novelty search and its archive.
+#include "evodevo/helpers/selection/memory.hpp"
+#include "evolution.hpp"
+
+namespace evodevo::test {
+namespace {
+
+const std::vector<Objective> one_range{{"x", "m", true, Role::descriptor, 0, 10}};
+
+Table at(const std::vector<double>& places) {
+  Table table{.descriptors = one_range};
+  for (const double place : places)
+    table.rows.push_back({.scores = {0},
+                          .descriptors = {place},
+                          .id = static_cast<std::uint32_t>(table.rows.size()),
+                          .is_newborn = true});
+  return table;
+}
+
+std::vector<double> archived(const std::vector<std::byte>& memory) {
+  MemoryReader reader(memory);
+  std::vector<double> places;
+  while (reader.left() > 0) {
+    places.push_back(10 * reader.read_list<double>().at(0));
+    reader.read<double>();
+  }
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
+TEST(NoveltySearch, TheMostDistantSurviveWhateverTheirScores) {
+  const auto selection = make<Selection>("novelty", "neighbours = 2\narchived = 0");
+  EXPECT_FALSE(selection->traits().is_elitist);
+  Table table = at({0, 1, 1.5, 2, 9});
+  table.rows[2].scores = {1000};
+  const Survival survival = table.survive(*selection, 2);
+  EXPECT_THAT(survival.rows, testing::UnorderedElementsAre(0, 4));
+  std::map<std::uint32_t, double> noted;
+  for (const Note& note : survival.notes) noted[note.row] = note.value;
+  // mean distances to the two nearest, relative to the range of 10
+  EXPECT_NEAR(noted[0], (1 + 1.5) / 2 / 10, 1e-12);
+  EXPECT_NEAR(noted[2], 0.05, 1e-12);
+  EXPECT_NEAR(noted[4], (7 + 7.5) / 2 / 10, 1e-12);
+}
+
+TEST(NoveltySearch, WhatIsInTheArchiveIsNotNovel) {
+  const auto selection = make<Selection>("novelty", "neighbours = 1\narchived = 100");
+  Table table = at({9, 9.1});
+  table.memory = table.survive(*selection, 2).memory;
+  EXPECT_THAT(archived(table.memory),
+              testing::ElementsAre(testing::DoubleNear(9, 1e-9), testing::DoubleNear(9.1, 1e-9)));
+  table.rows = at({2, 3, 9}).rows;
+  EXPECT_THAT(table.survive(*selection, 2).rows, testing::UnorderedElementsAre(0, 1));
+}
+
+TEST(NoveltySearch, TheArchiveGrowsByRandomNewborns) {
+  const auto selection = make<Selection>("novelty", "archived = 3");
+  Table table = at({1, 2, 3, 4, 5, 6, 7, 8});
+  for (std::uint32_t i = 0; i < 4; ++i) table.rows[i].is_newborn = false;
+  table.rows[7].scores.clear();
+  table.rows[7].descriptors.clear();
+  const auto first = archived(table.survive(*selection, 4, 1).memory);
+  ASSERT_EQ(first.size(), 3u);
+  for (const double place : first) EXPECT_TRUE(place > 4.5 && place < 7.5) << place;
+  table = at({1, 2, 3, 4, 5, 6, 7, 8});
+  EXPECT_NE(archived(table.survive(*selection, 4, 1).memory), archived(table.survive(*selection, 4, 2).memory));
+  for (std::uint64_t generation = 1; generation <= 5; ++generation) {
+    table.memory = table.survive(*selection, 4, generation).memory;
+    EXPECT_EQ(archived(table.memory).size(), 3 * generation);
+  }
+}
+
+TEST(NoveltySearch, LocalCompetitionKeepsTheBestAmongNeighbours) {
+  // at each of two places, one individual is better than its neighbours
+  Table table = at({1, 1.01, 1.02, 9, 9.02, 9.05});
+  table.rows[1].scores = {5};
+  table.rows[4].scores = {3};
+  table.rows[5].scores = {2};
+  const auto alone = make<Selection>("novelty", "neighbours = 2\narchived = 0");
+  EXPECT_THAT(table.survive(*alone, 2).rows, testing::UnorderedElementsAre(3, 5));
+  // row 4 beats two neighbours, and row 5 one; row 1 also beats two, but is less novel than row 4
+  const auto competing = make<Selection>("novelty", "neighbours = 2\narchived = 0\nlocal_competition = true");
+  EXPECT_THAT(table.survive(*competing, 2).rows, testing::UnorderedElementsAre(4, 5));
+}
+
+TEST(NoveltySearch, FailedRowsComeLastAndAreNotNoted) {
+  const auto selection = make<Selection>("novelty");
+  Table table = at({1, 1, 1});
+  table.rows.push_back({.id = 3, .is_newborn = true, .violation = 2});
+  table.rows.push_back({.id = 4, .is_newborn = true, .violation = 1});
+  const Survival survival = table.survive(*selection, 4);
+  EXPECT_THAT(survival.rows, testing::UnorderedElementsAre(0, 1, 2, 4));
+  for (const Note& note : survival.notes) EXPECT_LT(note.row, 3u);
+}
+
+/// A search for a score is stopped by the trap at 0; one for novelty gets to all places.
+TEST(NoveltySearch, VisitsEverything) {
+  const auto visited = [](const char* name) {
+    const auto selection = make<Selection>(name);
+    std::vector<bool> visits(20, false);
+    Evolution evolution(
+        *selection, real_genes(3, 0, 1),
+        [&](Individual& one) {
+          // the descriptor grows slowly with all genes, so that great ones are rare at first
+          const double product = double{one.genome[0]} * one.genome[1] * one.genome[2];
+          one.descriptors = {10 * product};
+          one.scores = {-product};
+          visits[static_cast<std::size_t>(std::min(19.0, 20 * product))] = true;
+        },
+        3);
+    evolution.table.descriptors = one_range;
+    evolution.run(40, 20, 20);
+    return std::count(visits.begin(), visits.end(), true);
+  };
+  EXPECT_EQ(visited("novelty"), 20);
+  EXPECT_LT(visited("elitist"), 18);
+}
+
+}  // namespace
+}  // namespace evodevo::test
