@@ -168,6 +168,10 @@ TEST_F(ForeignRecord, WhatDoesNotFitTogetherIsNamed) {
       {"UPDATE generations SET evaluations = 3 WHERE generation = 1", "generations.evaluations"},
       {"UPDATE generations SET provenance = 7", "generations.provenance"},
       {"UPDATE individuals SET origin = born + 1", "individuals.origin"},
+      {"INSERT INTO memory VALUES(0, x'00')", "memory.generation"},
+      {"INSERT INTO note_titles VALUES(0, 'novelty', 'm')", "novelty in m"},
+      {"INSERT INTO notes VALUES(999, 0, 1)", "notes.individual"},
+      {"INSERT INTO measured VALUES(0, 0, 1)", "measured"},
   };
   for (const auto& [sql, named] : cases) {
     ASSERT_TRUE(change(sql)) << sql;

@@ -137,6 +137,36 @@ TEST_F(Remembering, TheRecordOfAnotherOperatorIsRefused) {
               ::testing::ThrowsMessage<ArchiveError>(testing::naming("sum in ids", "calls in 1")));
 }
 
+/// Makes children that are all equal, and counts those that it sees again.
+struct Twins final : Selection {
+  std::vector<Child> children(const SelectionContext& context, std::uint32_t count, Rng&) const override {
+    return std::vector<Child>(count, {Genome(context.layout.first_size(), 1)});
+  }
+  Survival survive(const SelectionContext& context, std::uint32_t, Rng&) const override {
+    const auto newborns =
+        std::count_if(context.rows.begin(), context.rows.end(), [](const Candidate& row) { return row.is_newborn; });
+    return {{0}, {static_cast<std::byte>(newborns)}};
+  }
+};
+
+TEST_F(Remembering, AnOperatorSeesAllChildrenThatItHasMadeItself) {
+  experiment_.selection = std::make_unique<Twins>();
+  experiment_.notes.clear();
+  experiment_.child_maker = "twins";
+  experiment_.random_individuals = 0;
+  experiment_.children = 4;
+  const auto seen = [&](const char* folder) {
+    Archive archive = Archive::create(scratch_ / folder, experiment_, "test");
+    evolve_to(archive, 2);
+    EXPECT_EQ(archive.generations().back().evaluations, 8) << "four in each generation, the first included";
+    EXPECT_EQ(archive.generations().back().clones, 4);
+    return std::to_integer<int>(archive.memory().at(0));
+  };
+  EXPECT_EQ(seen("own"), 4);
+  experiment_.parent_selection = std::make_unique<Twins>();
+  EXPECT_EQ(seen("apart"), 1) << "copies are removed if another operator chooses the survivors";
+}
+
 TEST(Memory, IsReadAsItWasWritten) {
   MemoryWriter writer;
   writer.write(std::uint32_t{7});
