@@ -16,7 +16,7 @@ using evodevo::SelectionContext;
 class Cma final : public evodevo::Selection {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.real(step_, "step", {1e-6, 1.0 / 3, "1"},
+    p.real(step_, "step", {1e-6, 0.33, "1"},
            "Standard deviation of the genes in the first generation, relative to their ranges.");
   }
 

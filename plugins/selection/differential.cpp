@@ -25,7 +25,7 @@ class Differential final : public evodevo::Selection {
   std::vector<evodevo::Child> children(const evodevo::SelectionContext& context, std::uint32_t count,
                                        evodevo::Rng& rng) const override {
     std::vector<evodevo::Child> children;
-    const auto order = best_first(context.rows);
+    const auto order = by_genes(context.rows);
     std::vector<std::uint32_t> turns;  // everyone is a parent once before anyone is again
     while (children.size() < count) {
       if (order.size() < 4) {  // the first generation
@@ -61,6 +61,16 @@ class Differential final : public evodevo::Selection {
   }
 
  private:
+  /// Returns the rows in an order that depends on their genes alone: individuals that failed breed too, and scores do
+  /// not tell them apart.
+  static std::vector<std::uint32_t> by_genes(std::span<const Candidate> rows) {
+    std::vector<std::uint32_t> order(rows.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](auto a, auto b) { return rows[a].genome->genes < rows[b].genome->genes; });
+    return order;
+  }
+
   static bool is_worse(const Candidate& a, const Candidate& b) {
     if (a.ok() && b.ok()) return a.scores[0] < b.scores[0];
     return a.ok() == b.ok() ? a.violation > b.violation : b.ok();

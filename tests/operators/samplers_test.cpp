@@ -171,6 +171,20 @@ TEST(Differential, ChildrenAreSumsOfOthers) {
   EXPECT_NEAR(changed / 70.0, 1 + 0.4 * 7, 0.5);
 }
 
+TEST(Differential, ChildrenDoNotDependOnTheOrderOfThoseWhoFailed) {
+  const auto selection = make<Selection>("differential");
+  Table table{.layout = real_genes(2, 0, 1)};
+  for (const float gene : {0.1f, 0.7f, 0.3f, 0.9f, 0.5f}) table.rows.push_back({.genome = {gene, 1 - gene}});
+  const auto made = [&] {
+    std::vector<std::vector<float>> genes;
+    for (const Child& child : table.children(*selection, 10)) genes.push_back(child.genome.genes);
+    return genes;
+  };
+  const auto straight = made();
+  std::reverse(table.rows.begin(), table.rows.end());
+  EXPECT_EQ(made(), straight);
+}
+
 TEST(Differential, AChildTakesItsParentsPlaceUnlessItIsWorse) {
   const auto selection = make<Selection>("differential");
   const Table table{.rows = {{.scores = {5}},
