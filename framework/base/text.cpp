@@ -108,6 +108,10 @@ std::string short_number(double value) {
   return std::isfinite(value) ? fmt::format("{:.4g}", value + 0.0) : word_for(value);
 }
 
+std::string short_quantity(double value, const std::string& unit) {
+  return short_number(value) + (unit.empty() || unit == "1" ? "" : " " + unit);
+}
+
 std::string to_text(const Range& range) {
   if (std::isinf(range.low) && std::isinf(range.high)) return "";
   if (std::isinf(range.high)) return "at least " + to_text(range.low);

@@ -31,6 +31,10 @@ std::string to_text(double value);
 /// the same text as to_text().
 std::string short_number(double value);
 
+/// Returns a number with four significant digits and its unit, such as "0.1234 m". The unit "1", of a number without
+/// dimension, is left out.
+std::string short_quantity(double value, const std::string& unit);
+
 /// Returns a text such as "0 to 1", "at least 0" or "at most 1", without the unit, or an empty text if every value is
 /// allowed.
 std::string to_text(const Range& range);

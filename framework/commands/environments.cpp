@@ -31,11 +31,14 @@ void print(const std::optional<SceneEffect>& effect) {
 }
 
 void print(const SceneStudy& study, std::size_t measure, std::size_t cycles) {
-  fmt::print(std::cout, "\n{}\n{:<32}", body_distances[measure].title, "");
+  std::size_t width = 15;
+  for (const Environment& environment : study.environments) width = std::max(width, environment.name.size());
+  fmt::print(std::cout, "\n{}\n{:<{}}", body_distances[measure].title, "", 2 * width + 2);
   for (std::size_t cycle = 1; cycle <= cycles; ++cycle) fmt::print(std::cout, "        after cycle {:2}", cycle);
   std::cout << '\n';
   for (const ScenePair& pair : study.pairs) {
-    fmt::print(std::cout, "{:<15} {:<16}", study.environments[pair.a].name, study.environments[pair.b].name);
+    fmt::print(std::cout, "{:<{}} {:<{}}", study.environments[pair.a].name, width, study.environments[pair.b].name,
+               width + 1);
     for (const auto& effect : pair.effects[measure]) print(effect);
     std::cout << '\n';
   }
@@ -96,6 +99,39 @@ void warn_of_other_differences(const Experiment& experiment, const std::string& 
                 << "; this alone may make bodies differ, whatever the scene\n";
 }
 
+bool is_same_environment(const Experiment& a, const Experiment& b) {
+  return a.scene == b.scene && a.payload == b.payload && difference(a, b, {"development", "simulation"}).empty();
+}
+
+/// Returns an experiment with the scene of one of its scenarios in place of its own.
+Experiment in_scene_of(const Scenario& scenario, const Experiment& experiment, const std::string& file,
+                       const Given& given) {
+  Experiment other =
+      read_experiment(experiment.resolved, {.file = file,
+                                            .overrides = {},
+                                            .plugin_path = given_plugin_path(given),
+                                            .files = experiment.files});  // what it was read from may be a pipe
+  other.scene = scenario.scene;
+  other.payload = scenario.payload;
+  return other;
+}
+
+/// Adds an experiment in the scene of each scenario of the last experiment, unless there is already one in an equal
+/// scene.
+void add_scenes_of_scenarios(std::vector<Experiment>& experiments, const std::string& file, bool is_only_file,
+                             const Given& given) {
+  const std::size_t last = experiments.size() - 1;
+  for (const Scenario& scenario : std::vector(experiments[last].scenarios)) {
+    Experiment other = in_scene_of(scenario, experiments[last], file, given);
+    if (std::any_of(experiments.begin(), experiments.end(),
+                    [&](const Experiment& experiment) { return is_same_environment(experiment, other); }))
+      continue;
+    other.name = is_only_file ? scenario.name : experiments[last].name + ": " + scenario.name;
+    experiments.push_back(std::move(other));
+  }
+}
+
+/// Returns the experiments in all of their scenes: each file's own scene, and then the scenes of its scenarios.
 std::vector<Experiment> read_experiments(const std::vector<std::string>& files, const Given& given) {
   std::vector<Experiment> experiments;
   for (const std::string& file : files) {
@@ -104,6 +140,7 @@ std::vector<Experiment> read_experiments(const std::vector<std::string>& files, 
       throw ConfigError(file + ": development.cycles: is 0, so no body develops; set 1 or more");
     expect_same_meaning(experiments.back(), file, experiments.front());
     warn_of_other_differences(experiments.back(), file, experiments.front());
+    add_scenes_of_scenarios(experiments, file, files.size() == 1, given);
   }
   return experiments;
 }
@@ -178,7 +215,8 @@ Command environments_command() {
       .name = "environments",
       .arguments = {{"EXPERIMENT.toml", Count::one_or_more}},
       .summary = "Compare the bodies that one genome grows in several scenes",
-      .text = {"The genome develops in the scene of each experiment, several times with start noise. For each pair of "
+      .text = {"The genome develops in the scene of each experiment, several times with start noise. An experiment "
+               "with scenarios adds the scene of each scenario that differs from the scenes so far. For each pair of "
                "scenes and each cycle, the table gives the mean distance between bodies of the two scenes, the mean "
                "distance by start noise between bodies of the same scene, and p of a permutation test. All experiments "
                "need the same [encoding] and [materials]."},

@@ -30,8 +30,8 @@ Shown newborn(const Evaluation& evaluation, const Individual& individual) {
   return {{std::move(built.body), std::nullopt}, ""};
 }
 
-Shown matured(const Evaluation& evaluation, const Newborn& newborn) {
-  std::vector<Life> lives = evaluation.birth.of({&newborn, 1});
+Shown matured(const Evaluation& evaluation, const Newborn& newborn, const Scenario* scenario) {
+  std::vector<Life> lives = evaluation.birth.of({&newborn, 1}, scenario);
   evaluation.development.run(lives, [](double) {});
   const Result& result = lives.front().result;
   if (!lives.front().alive()) return {{}, std::string(name(result.status)) + ", " + result.reason};
@@ -46,9 +46,14 @@ int body(const Given& given) {
   check_genes(archive, experiment, individual);
   const auto simulator = opened_simulator(experiment);
   const Evaluation evaluation(experiment, *simulator);
-  const Shown shown = given.contains("matured")
-                          ? matured(evaluation, for_resimulation(archive, experiment, individual, simulator->device()))
-                          : newborn(evaluation, individual);
+  const Scenario* scenario = given_developing_scenario(experiment, given);
+  if (scenario != nullptr && !given.contains("matured"))
+    throw UsageError(option_text("scenario", scenario->name) +
+                     ": robots are born with the same body in every scene; add --matured");
+  const Shown shown =
+      given.contains("matured")
+          ? matured(evaluation, for_resimulation(archive, experiment, individual, simulator->device()), scenario)
+          : newborn(evaluation, individual);
   if (!shown.failure.empty()) {
     std::cerr << "individual " << individual.id << " has no body to show: " << shown.failure << '\n';
     return 1;
@@ -107,6 +112,7 @@ Command body_command() {
   Options options;
   add_individual_option(options);
   options.add_options()("matured", "print the body after development, with its positions and velocities at that time");
+  add_scenario_option(options, "with --matured: the body that has matured in this scenario");
   add_plugin_option(options);
   return {.name = "body",
           .arguments = {{"DIR"}},

@@ -86,11 +86,12 @@ class LifeReport {
   LifeReport(const Archive& archive, const ArchivedIndividual& individual, const Given& given)
       : individual_(individual),
         experiment_(experiment_of_run(archive, given)),
+        scenario_(given_developing_scenario(experiment_, given)),
         operators_(narrated_operators(experiment_)) {
     const auto simulator = opened_simulator(experiment_);
     const Evaluation evaluation(experiment_, *simulator);
     const Newborn newborn = for_resimulation(archive, experiment_, individual_, simulator->device());
-    std::vector<Life> lives = evaluation.birth.of({&newborn, 1});
+    std::vector<Life> lives = evaluation.birth.of({&newborn, 1}, scenario_);
     born_ = lives.front().living.body;
     timed("simulating the development again", [&] { evaluation.development.run(lives, [](double) {}); });
     LifeEvents told = life_events(born_, lives.front().result.record);
@@ -104,6 +105,7 @@ class LifeReport {
     fmt::print(std::cout, "individual {}: born with {} masses and {} springs, matured with {} and {}; {}{}\n",
                individual_.id, born_.masses.size(), born_.springs.size(), matured_.masses.size(),
                matured_.springs.size(), name(result.status), result.reason.empty() ? "" : ": " + result.reason);
+    if (scenario_ != nullptr) std::cout << "in the scenario \"" << scenario_->name << "\"\n";
     switch (experiment_.development.control) {
       case Control::random_places:
         std::cout
@@ -123,6 +125,7 @@ class LifeReport {
     for (const Narrated& op : operators_) operators.push_back({{"name", op.name}});
     for (const Event& event : events_) edits.push_back(to_json(event, operators_));
     return {{"individual", individual_.id},
+            {"scenario", scenario_ != nullptr ? Json(scenario_->name) : Json(nullptr)},
             {"control", name_of(experiment_.development.control)},
             {"status", name(individual_.result.status)},
             {"reason", individual_.result.reason},
@@ -137,6 +140,7 @@ class LifeReport {
 
   ArchivedIndividual individual_;
   Experiment experiment_;
+  const Scenario* scenario_;         ///< of `experiment_`, in which the life took place; null: its own scene
   std::vector<Narrated> operators_;  ///< devo operators of `experiment_`, to which they refer
   Body born_, matured_;
   std::vector<Event> events_;
@@ -158,6 +162,7 @@ Command life_command() {
   Options options;
   add_individual_option(options);
   options.add_options()("json", "print JSON");
+  add_scenario_option(options, "tell the life in this scenario, in which robots develop");
   add_plugin_option(options);
   return {
       .name = "life",

@@ -44,6 +44,7 @@ Json filmed_run(const Archive& archive, const Experiment& experiment, const Give
 Json reported(const std::string& folder, const Given& given, std::size_t budget) {
   const Archive archive = Archive::read(folder);
   Cast cast{.best = static_cast<std::size_t>(given["best"].as<std::int64_t>())};
+  if (cast.best == 0) cast.best_of_others = 0;
   if (given.contains("individual"))
     for (const std::int64_t id : given["individual"].as<std::vector<std::int64_t>>())
       cast.individuals.push_back(individual_named(archive, id).id);
@@ -101,8 +102,8 @@ int film(const Given& given) {
   const std::string page = page_template();
   const Archive archive = Archive::read(folder);
   const ArchivedIndividual shown = chosen_individual(archive, given);
-  const Cast cast =
-      given.contains("individual") ? Cast{.best = 0, .individuals = {shown.id}} : Cast{.best = 1, .ancestors = 0};
+  const Cast cast = given.contains("individual") ? Cast{.best = 0, .best_of_others = 0, .individuals = {shown.id}}
+                                                 : Cast{.best = 1, .best_of_others = 0, .ancestors = 0};
   const Experiment experiment = experiment_of_run(archive, given);
   refuse_to_overwrite("--out", file, libraries_of(experiment));
   OutputFile output(file, file);
@@ -150,9 +151,12 @@ Command report_command() {
       .name = "report",
       .arguments = {{"DIR", Count::one_or_more}},
       .summary = "Write a page that shows runs and their robots",
-      .text = {"The page is one HTML file that needs neither network nor server. It shows fitness, the Pareto front, "
-               "the experiment, and the best robots, some of their ancestors and the named individuals in 3D. For "
-               "several runs, it is one page that compares them."},
+      .text =
+          {"The page is one HTML file that needs neither network nor server. It shows the progress in each objective, "
+           "the Pareto front, the experiment, and the best robots, some of their ancestors and the named "
+           "individuals in 3D. For several runs, it is one page that compares them.",
+           "The best robots are those with the best first objective. If there are other objectives, the page also "
+           "shows the best robot by each of them."},
       .examples = {"report runs/quickstart-1 --out report.html"},
       .options = options,
       .function = report};

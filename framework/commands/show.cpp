@@ -19,7 +19,22 @@ namespace evodevo {
 namespace {
 
 constexpr std::size_t best_shown = 5;
+constexpr std::size_t best_of_others_shown = 1;  ///< by each objective after the first
 constexpr std::size_t generations_shown = 20;
+
+/// The progress in an objective, as two columns of a table: the best and the median.
+struct Column {
+  std::string head;
+  std::size_t width;  ///< of the best
+  std::vector<BestAndMedian> progress;
+};
+
+/// Returns a text such as: reach (m), lower is better.
+std::string head_of(const Objective& objective) {
+  const bool has_unit = !objective.unit.empty() && objective.unit != "1";
+  return objective.name + (has_unit ? " (" + objective.unit + ")" : "") +
+         (objective.maximise ? "" : ", lower is better");
+}
 
 class Report {
  public:
@@ -28,7 +43,14 @@ class Report {
         objectives_(archive.objectives()),
         layout_(archive.layout()),
         generations_(archive.generations()),
-        last_generation_(generations_.empty() ? 0 : generations_.back().generation) {}
+        last_generation_(generations_.empty() ? 0 : generations_.back().generation) {
+    constexpr std::size_t narrowest = 10, of_median = 11, gap = 2;
+    for (std::size_t k = 0; k < objectives_.size(); ++k) {
+      const std::string head = objectives_.size() > 1 ? head_of(objectives_[k]) : "";
+      columns_.push_back({head, std::max(narrowest + of_median, head.size() + gap) - of_median,
+                          progress_in(archive, generations_, k)});
+    }
+  }
 
   void print() const {
     const auto recorded = [&](const char* key) { return printable(archive_.record(key)); };
@@ -51,14 +73,15 @@ class Report {
     if (individual.result.status != Status::ok)
       fmt::print(std::cout, "{}, {}, ", name(individual.result.status), individual.result.reason);
     for (std::size_t i = 0; i < individual.result.objectives.size(); ++i)
-      fmt::print(std::cout, "{} {} {}, ", objectives_[i].name, number(individual.result.objectives[i]),
-                 objectives_[i].unit);
+      fmt::print(std::cout, "{} {}, ", objectives_[i].name,
+                 short_quantity(individual.result.objectives[i], objectives_[i].unit));
     fmt::print(std::cout, "born in generation {}, age {}", individual.born, last_age(individual, last_generation_));
     if (const auto verification = archive_.verification(id))
       std::cout << ", " << marks_text(*verification, objectives_.front().maximise);
     std::cout << '\n';
     print_measures(id);
-    print_tests(id);
+    const std::vector<ArchivedTest> tests = archive_.tests(id);
+    for (const Objective& objective : objectives_) print_tests(tests, objective);
     std::cout << "    " << line_text(line) << '\n';
   }
 
@@ -75,15 +98,29 @@ class Report {
   }
 
   void print_generations() const {
-    constexpr const char* row = "{:>10} {:>12} {:>10} {:>10} {:>9} {:>8} {:>7}\n";
-    fmt::print(std::cout, row, "generation", "evaluations", "best", "median", "diverged", "invalid", "clones");
+    if (objectives_.size() > 1) print_objective_heads();
+    fmt::print(std::cout, "{:>10} {:>12}", "generation", "evaluations");
+    for (const Column& column : columns_) fmt::print(std::cout, " {:>{}} {:>10}", "best", column.width, "median");
+    fmt::print(std::cout, " {:>9} {:>8} {:>7}\n", "diverged", "invalid", "clones");
     const std::size_t stride = (generations_.size() + generations_shown - 1) / generations_shown;
-    for (std::size_t i = 0; i < generations_.size(); ++i) {
-      if (i % stride != 0 && i + 1 != generations_.size()) continue;
-      const Summary& s = generations_[i];
-      fmt::print(std::cout, row, s.generation, s.evaluations, number(s.best), number(s.median), s.diverged, s.invalid,
-                 s.clones);
-    }
+    for (std::size_t i = 0; i < generations_.size(); ++i)
+      if (i % stride == 0 || i + 1 == generations_.size()) print_generation(i);
+  }
+
+  /// Prints the name of each objective above its columns.
+  void print_objective_heads() const {
+    fmt::print(std::cout, "{:23}", "");
+    for (const Column& column : columns_) fmt::print(std::cout, " {:>{}}", column.head, column.width + 11);
+    std::cout << '\n';
+  }
+
+  void print_generation(std::size_t i) const {
+    const Summary& s = generations_[i];
+    fmt::print(std::cout, "{:>10} {:>12}", s.generation, s.evaluations);
+    for (const Column& column : columns_)
+      fmt::print(std::cout, " {:>{}} {:>10}", number(column.progress[i].best), column.width,
+                 number(column.progress[i].median));
+    fmt::print(std::cout, " {:>9} {:>8} {:>7}\n", s.diverged, s.invalid, s.clones);
   }
 
   void print_failures() const {
@@ -95,32 +132,35 @@ class Report {
   }
 
   void print_best() const {
-    if (archive_.best(1).empty()) return;
-    std::cout << "\nbest individuals\n";
-    for (const std::uint32_t id : archive_.best(best_shown)) print_individual(id);
+    for (std::size_t k = 0; k < objectives_.size(); ++k) {
+      const std::vector<std::uint32_t> best = archive_.best(k == 0 ? best_shown : best_of_others_shown, k);
+      if (best.empty()) return;
+      std::cout << "\nbest individuals" << (objectives_.size() > 1 ? " in " + objectives_[k].name : "") << '\n';
+      for (const std::uint32_t id : best) print_individual(id);
+    }
   }
 
   /// Prints the scores that are not objectives, and what the selection operator has noted.
   void print_measures(std::uint32_t id) const {
     std::vector<std::string> texts;
     for (const ArchivedMeasure& measure : archive_.measures(id))
-      texts.push_back(measure.name + " " + short_number(measure.value) + " " + measure.unit);
+      texts.push_back(measure.name + " " + short_quantity(measure.value, measure.unit));
     for (const ArchivedNote& note : archive_.notes(id))
-      texts.push_back(note.name + " " + short_number(note.value) + (note.unit == "1" ? "" : " " + note.unit));
+      texts.push_back(note.name + " " + short_quantity(note.value, note.unit));
     if (!texts.empty()) std::cout << "    " << joined(texts, ", ") << '\n';
   }
 
-  /// Prints the mean of the first objective over the repeats of each scenario.
-  void print_tests(std::uint32_t id) const {
+  /// Prints the mean of an objective over the repeats of each scenario.
+  static void print_tests(const std::vector<ArchivedTest>& tests, const Objective& objective) {
     std::vector<std::string> scenarios;
     std::map<std::string, std::vector<double>> values;
-    for (const ArchivedTest& test : archive_.tests(id)) {
-      if (test.objective != objectives_.front().name) continue;
+    for (const ArchivedTest& test : tests) {
+      if (test.objective != objective.name) continue;
       if (!values.contains(test.scenario)) scenarios.push_back(test.scenario);
       values[test.scenario].push_back(test.value);
     }
     if (scenarios.empty()) return;
-    std::cout << "    " << objectives_.front().name << " by scenario:";
+    std::cout << "    " << objective.name << " by scenario:";
     for (std::size_t i = 0; i < scenarios.size(); ++i) {
       const std::vector<double>& repeats = values[scenarios[i]];
       const double mean = std::accumulate(repeats.begin(), repeats.end(), 0.0) / static_cast<double>(repeats.size());
@@ -148,6 +188,7 @@ class Report {
   Layout layout_;
   std::vector<Summary> generations_;
   std::uint32_t last_generation_;
+  std::vector<Column> columns_;  ///< of the objectives
 };
 
 int show(const Given& given) {
@@ -175,10 +216,10 @@ Command show_command() {
       .arguments = {{"DIR"}},
       .summary = "Show the progress and the best robots of a run",
       .text =
-          {"It prints the best and the median fitness by generation, why individuals have no fitness, and the "
-           "best individuals with their ancestors, and the blocks of genes that came and went from one to the next. "
-           "The run may still be in progress. With --individual, it prints one individual: its scores, what the "
-           "selection operator has noted about it, and its ancestors."},
+          {"It prints the best and the median of each objective by generation, why individuals have no fitness, and "
+           "the best individuals with their scores, their ancestors, and the blocks of genes that came and went from "
+           "one to the next. The run may still be in progress. With --individual, it prints one individual alone, and "
+           "what the selection operator has noted about it."},
       .examples = {"show runs/quickstart-1", "show runs/quickstart-1 --individual 531",
                    "show runs/quickstart-1 --json"},
       .options = options,

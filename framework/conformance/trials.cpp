@@ -199,7 +199,6 @@ Numbers numbers_of(const Edits& edits) {
 DevoContext SampleLife::context(const SpringRequest& request) const {
   DevoContext context{.body = living.body,
                       .state = living.state,
-                      .stress = {},
                       .cycle = cycle,
                       .cycles = 20,
                       .application = cycle,

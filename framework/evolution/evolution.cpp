@@ -148,15 +148,12 @@ bool needs_all_children(const Experiment& experiment) {
   return experiment.makes_children() && !experiment.parent_selection;
 }
 
-void add_best_and_median(Summary& summary, const std::vector<Individual>& population, bool maximise) {
+/// Returns the first objective of the individuals whose status is `ok`.
+std::vector<double> first_scores(const std::vector<Individual>& population) {
   std::vector<double> scores;
   for (const Individual& individual : population)
     if (individual.result.status == Status::ok) scores.push_back(individual.result.objectives.front());
-  if (scores.empty()) return;
-  std::sort(scores.begin(), scores.end());
-  summary.best = maximise ? scores.back() : scores.front();
-  const std::size_t half = scores.size() / 2;
-  summary.median = scores.size() % 2 == 1 ? scores[half] : (scores[half - 1] + scores[half]) / 2;
+  return scores;
 }
 
 Summary summarise(const std::vector<Individual>& population, const std::vector<Individual>& newborns,
@@ -173,6 +170,14 @@ Summary summarise(const std::vector<Individual>& population, const std::vector<I
 }
 
 }  // namespace
+
+BestAndMedian best_and_median(std::vector<double> scores, bool maximise) {
+  if (scores.empty()) return {};
+  std::sort(scores.begin(), scores.end());
+  const std::size_t half = scores.size() / 2;
+  return {maximise ? scores.back() : scores.front(),
+          scores.size() % 2 == 1 ? scores[half] : (scores[half - 1] + scores[half]) / 2};
+}
 
 bool is_finished(const Settings& settings, const std::vector<Summary>& generations) {
   if (generations.empty()) return false;
@@ -247,7 +252,9 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
     lives.keep_front(population, generation);
     select(population, experiment, generation, dropped, remembered);
     lives.keep_front(population, generation);
-    add_best_and_median(summary, population, experiment.objectives.front().maximise);
+    const auto [best, median] = best_and_median(first_scores(population), experiment.objectives.front().maximise);
+    summary.best = best;
+    summary.median = median;
     summary.evaluations = evaluations;
     summary.wall_time = seconds_since(start);
     summary.provenance = provenance_index;

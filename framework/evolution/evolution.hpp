@@ -30,6 +30,9 @@ void record_time_spent(Archive& archive, const TimeSpent& time);
 /// yet.
 std::optional<TimeSpent> recorded_time_spent(const Archive& archive);
 
+/// Returns the best and the median of some scores of one objective.
+BestAndMedian best_and_median(std::vector<double> scores, bool maximise);
+
 /// Returns whether a run with these generations has used up the experiment's evaluations or spring evaluations.
 bool is_finished(const Settings& settings, const std::vector<Summary>& generations);
 

@@ -23,6 +23,11 @@ struct Individual {
   std::uint32_t age(std::uint32_t generation) const { return generation - origin; }
 };
 
+/// The best and the median of the scores of several individuals; none without individuals.
+struct BestAndMedian {
+  std::optional<double> best, median;
+};
+
 /// The summary of one generation.
 struct Summary {
   std::uint32_t generation = 0;

@@ -75,7 +75,7 @@ Experiment::~Experiment() {
   for (std::size_t i = 0; i < mutations.size(); ++i) end(Mutation::kind, i, mutations[i].op);
   for (std::size_t i = 0; i < crossovers.size(); ++i) end(Crossover::kind, i, crossovers[i].op);
   for (std::size_t i = 0; i < devo.size(); ++i) end(Devo::kind, i, devo[i].op);
-  for (std::size_t i = 0; i < fitness.size(); ++i) end(Fitness::kind, i, fitness[i]);
+  for (std::size_t i = 0; i < fitness.size(); ++i) end(Fitness::kind, i, fitness[i].op);
 }
 
 OperatorCall Experiment::call_of(std::string_view kind, std::size_t index, CallSubject subject) const {
@@ -90,7 +90,7 @@ SpringRequest devo_request(const Experiment& experiment, std::size_t index) {
 
 Request fitness_request(const Experiment& experiment, std::size_t index) {
   return call_operator(experiment.call_of(Fitness::kind, index),
-                       [&] { return experiment.fitness.at(index)->observes(); });
+                       [&] { return experiment.fitness.at(index).op->observes(); });
 }
 
 Recording recording(const Experiment& experiment, std::int64_t cycle) {

@@ -35,6 +35,13 @@ struct Scheduled {
   std::optional<std::uint32_t> own_section{};  ///< the section that it owns
 };
 
+/// A fitness operator, and how its scores in several tests become one.
+struct Scored {
+  std::unique_ptr<Fitness> op;
+  Over over = Over::mean;
+  std::optional<std::size_t> scenario{};  ///< index of the only scenario whose tests count; if not given, all count
+};
+
 struct Experiment : Settings {
   Experiment() = default;
   Experiment(Experiment&&) = default;
@@ -48,8 +55,7 @@ struct Experiment : Settings {
   std::vector<Varied<Mutation>> mutations;
   std::vector<Varied<Crossover>> crossovers;
   std::vector<Scheduled> devo;
-  std::vector<std::unique_ptr<Fitness>> fitness;
-  std::vector<Over> over;             ///< for each fitness operator, how its scores in several tests become one
+  std::vector<Scored> fitness;
   std::vector<Objective> objectives;  ///< objectives of all fitness operators, in the order of the operators
   std::vector<Objective> measures;    ///< likewise their scores with other roles
   std::vector<Case> cases;  ///< what selection operators see of the scores in scenarios; refers to `scenarios`

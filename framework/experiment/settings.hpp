@@ -72,7 +72,7 @@ struct Payload {
   bool operator==(const Payload&) const = default;
 };
 
-/// How the scores of several tests become one.
+/// How the scores of several tests become one. No scenario has one of these names.
 enum class Over { mean, worst, median };
 template <>
 inline constexpr std::array<std::string_view, 3> names_of<Over>{"mean", "worst", "median"};

@@ -71,6 +71,7 @@ std::vector<Life> Birth::of(std::span<const Newborn> newborns, const Scenario* s
       lives[i].end(Status::invalid, std::move(built[i].failure));
     }
     lives[i].newborn = newborns[i];
+    if (scenario != nullptr) lives[i].newborn.record.reset();
   });
   return lives;
 }

@@ -25,7 +25,8 @@ class Birth {
   /// Only decodes genomes and builds bodies, without a payload, a state or a time step.
   std::vector<BuiltBody> build(std::span<const Newborn> newborns) const;
   /// Returns the lives of newborns, in the same order. They begin in the scene of a scenario, or in that of the
-  /// experiment.
+  /// experiment. In a scenario, operators develop them even if a newborn comes with a record, because records are of
+  /// lives in the experiment's scene.
   std::vector<Life> of(std::span<const Newborn> newborns, const Scenario* scenario = nullptr) const;
   /// Returns the life of a body that no genome of the experiment describes, such as one from a file.
   Life of(Body body) const;

@@ -176,7 +176,6 @@ DevoContext DevelopmentLoop::context_of(const Life& life, int cycle, const Sched
   const LivingBody& living = life.living;
   DevoContext context{.body = living.body,
                       .state = living.state,
-                      .stress = {},
                       .cycle = cycle,
                       .cycles = static_cast<int>(development.cycles),
                       .application = static_cast<int>(schedule.applications(cycle)),

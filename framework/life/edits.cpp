@@ -332,11 +332,10 @@ void apply(const Edits& resolved, Body& body) {
 }
 
 void show_records(const SpringRecords& records, const SpringRequest& request, DevoContext& context) {
-  using Shown = std::span<const double>;
-  context.stress = request.stress ? Shown(records.stress) : Shown();
-  context.peak_force = request.peak_force ? Shown(records.peak_force) : Shown();
-  context.muscle_work = request.muscle_work ? Shown(records.muscle_work) : Shown();
-  context.tension = request.tension ? Shown(records.tension) : Shown();
+  if (request.stress) context.stress.show(records.stress);
+  if (request.peak_force) context.peak_force.show(records.peak_force);
+  if (request.muscle_work) context.muscle_work.show(records.muscle_work);
+  if (request.tension) context.tension.show(records.tension);
 }
 
 }  // namespace evodevo

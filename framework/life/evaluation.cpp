@@ -70,11 +70,12 @@ std::vector<Result> Evaluation::evaluate_cohort(std::span<const Newborn> newborn
 
 Matured Evaluation::matured(std::vector<Life> born, const Progress& progress) const {
   const auto count = static_cast<std::ptrdiff_t>(born.size());
-  std::vector<Newborn> again;  // in the scenarios the operators develop them, whatever a record says
-  for (const Life& life : born) again.push_back({life.newborn.id, life.newborn.generation, life.newborn.genome});
+  std::vector<Newborn> newborns;
+  if (!developing_scenarios_.empty())
+    for (const Life& life : born) newborns.push_back(life.newborn);
   std::vector<Life> all = std::move(born);  // they develop in one batch, which uses a device better than several
   for (const std::size_t scenario : developing_scenarios_) {
-    std::vector<Life> lives = birth.of(again, &experiment_.scenarios[scenario]);
+    std::vector<Life> lives = birth.of(newborns, &experiment_.scenarios[scenario]);
     std::move(lives.begin(), lives.end(), std::back_inserter(all));
   }
   development.run(all, progress);

@@ -83,7 +83,7 @@ const Trial* find(const Verification& verification, const std::string& name) {
 bool is_verifiable(const Experiment& experiment) {
   for (std::size_t i = 0; i < experiment.fitness.size(); ++i) {
     const auto scores =
-        call_operator(experiment.call_of(Fitness::kind, i), [&] { return experiment.fitness[i]->objectives(); });
+        call_operator(experiment.call_of(Fitness::kind, i), [&] { return experiment.fitness[i].op->objectives(); });
     const auto is_objective = [](const Objective& score) { return score.role == Role::objective; };
     if (std::any_of(scores.begin(), scores.end(), is_objective)) return !fitness_request(experiment, i).cycle;
   }

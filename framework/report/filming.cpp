@@ -92,15 +92,6 @@ bool has_sums(std::span<const Task> tasks, const Recording& recording) {
          });
 }
 
-/// Births lives as those that film_lives() films; in the scene of the test's scenario if they develop in it.
-std::vector<Life> born(const Experiment& experiment, const Birth& birth, std::span<const Newborn> newborns,
-                       const Test& test) {
-  if (experiment.scenarios.empty() || !experiment.scenarios[test.scenario].develops) return birth.of(newborns);
-  std::vector<Newborn> again;  // a record is of the life in the scene of the experiment
-  for (const Newborn& newborn : newborns) again.push_back({newborn.id, newborn.generation, newborn.genome});
-  return birth.of(again, &experiment.scenarios[test.scenario]);
-}
-
 /// The times at which windows after maturing open and close, s since birth.
 std::vector<double> ends_of_windows(const Experiment& experiment) {
   const DevelopmentSettings& development = experiment.development;
@@ -148,7 +139,8 @@ std::vector<FilmedLife> film_lives(const Experiment& experiment, Simulator& simu
                                    std::span<const Newborn> newborns, const Test& test) {
   FilmingSimulator camera(simulator, filmed_frames_per_second);
   const Evaluation evaluation(experiment, camera);
-  Matured matured{born(experiment, evaluation.birth, newborns, test)};
+  const Scenario* scenario = experiment.scenarios.empty() ? nullptr : &experiment.scenarios[test.scenario];
+  Matured matured{evaluation.birth.of(newborns, scenario != nullptr && scenario->develops ? scenario : nullptr)};
   std::vector<Life>& lives = matured.lives;
   std::vector<std::vector<std::vector<std::uint32_t>>> numbers(lives.size());  // by life and cycle
   const auto note_numbers = [&] {
@@ -160,7 +152,7 @@ std::vector<FilmedLife> film_lives(const Experiment& experiment, Simulator& simu
     note_numbers();
   });
   camera.cut_at(ends_of_windows(experiment));
-  if (experiment.scenarios.empty())
+  if (scenario == nullptr)
     evaluation.measurement.run(matured, [](double) {});
   else
     evaluation.measurement.run_in(test, lives);

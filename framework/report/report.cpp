@@ -30,13 +30,22 @@ class Casting {
 
   std::vector<Actor> choose(const Cast& cast) {
     const std::vector<std::uint32_t> best = archive_.best(cast.best);
-    for (std::size_t i = 0; i < best.size(); ++i) add(best[i], i == 0 ? "best" : "best " + std::to_string(i + 1));
+    const std::vector<Objective> objectives = archive_.objectives();
+    for (std::size_t k = 0; k < objectives.size(); ++k)
+      add_best(k == 0 ? best : archive_.best(cast.best_of_others, k),
+               objectives.size() > 1 ? " in " + objectives[k].name : "");
     for (const std::uint32_t id : cast.individuals) add(id, "chosen");
     if (!best.empty()) add_ancestors(ancestry(archive_, best.front()), cast.ancestors);
     return std::move(roles_);
   }
 
  private:
+  /// Adds the best individuals by an objective. `where` says by which, if there are several.
+  void add_best(const std::vector<std::uint32_t>& ids, const std::string& where) {
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      add(ids[i], "best" + (i == 0 ? "" : " " + std::to_string(i + 1)) + where);
+  }
+
   void add(std::uint32_t id, const std::string& role) {
     if (std::any_of(roles_.begin(), roles_.end(), [&](const Actor& r) { return r.individual.id == id; })) return;
     roles_.push_back({archive_.known_individual(id), role});
@@ -79,11 +88,14 @@ std::vector<Title> titles_of(const FilmedLife& life, const Experiment& experimen
 }
 
 Json population_json(const Archive& archive, std::uint32_t generation) {
+  const std::vector<Objective> objectives = archive.objectives();
   Json list = Json::array();
   for (const Individual& individual : archive.population())
     if (individual.result.status == Status::ok)
-      list.push_back(
-          {{"id", individual.id}, {"age", individual.age(generation)}, {"values", individual.result.objectives}});
+      list.push_back({{"id", individual.id},
+                      {"age", individual.age(generation)},
+                      {"objectives", objectives_json(objectives, individual.result)},
+                      {"measures", measures_json(archive, individual.id)}});
   return list;
 }
 
@@ -146,8 +158,7 @@ Json robot_json(const Archive& archive, const Actor& role, const FilmedLife& lif
   Json robot = individual_json(archive, role.individual);
   robot["role"] = role.role;
   robot["reason"] = role.individual.result.reason;
-  // the objectives of several tests cannot be compared with the scores of the test that is filmed
-  robot["again"] = experiment.scenarios.empty() ? life.result.objectives : std::vector<double>();
+  robot["again"] = life.result.objectives;  // of the test that is filmed
   robot["film"] = film_json(life.film, titles_of(life, experiment, scenario), budget);
   return robot;
 }
@@ -166,6 +177,7 @@ Json reported_run(const Archive& archive, const Experiment& experiment, Simulato
   run["resolved"] = archive.record("experiment");
   run["scene"] =
       scene_json(experiment.scenarios.empty() ? experiment.scene : experiment.scenarios[scenario].scene, lives);
+  run["filmed_scenario"] = experiment.scenarios.empty() ? Json(nullptr) : Json(experiment.scenarios[scenario].name);
   run["material_names"] = experiment.context.material_names;
   run["population"] = population_json(
       archive, run["generations"].empty() ? 0 : run["generations"].back()["generation"].get<std::uint32_t>());
@@ -174,7 +186,8 @@ Json reported_run(const Archive& archive, const Experiment& experiment, Simulato
   for (std::size_t i = 0; i < roles.size(); ++i) {
     // robots share the budget evenly; what one robot does not use is left to those after it
     const std::size_t share = budget / (roles.size() - i);
-    const Json& robot = run["robots"].emplace_back(robot_json(archive, roles[i], lives[i], experiment, scenario, share));
+    const Json& robot =
+        run["robots"].emplace_back(robot_json(archive, roles[i], lives[i], experiment, scenario, share));
     budget -= std::min(budget, robot.dump().size());
   }
   return run;

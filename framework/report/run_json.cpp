@@ -12,9 +12,24 @@ using Json = nlohmann::ordered_json;
 
 Json optional_json(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
-Json objectives_json(const std::vector<Objective>& objectives) {
+/// The objectives, and of each the best individual.
+Json objectives_json(const Archive& archive) {
+  const std::vector<Objective> objectives = archive.objectives();
   Json list = Json::array();
-  for (const Objective& o : objectives) list.push_back({{"name", o.name}, {"unit", o.unit}, {"maximise", o.maximise}});
+  for (std::size_t i = 0; i < objectives.size(); ++i) {
+    Json& objective = list.emplace_back(Json{{"name", objectives[i].name},
+                                             {"unit", objectives[i].unit},
+                                             {"maximise", objectives[i].maximise},
+                                             {"best", nullptr}});
+    for (const std::uint32_t id : archive.best(1, i))
+      objective["best"] = {{"individual", id}, {"value", archive.known_individual(id).result.objectives.at(i)}};
+  }
+  return list;
+}
+
+Json measures_json(const std::vector<MeasureKind>& measures) {
+  Json list = Json::array();
+  for (const MeasureKind& m : measures) list.push_back({{"name", m.name}, {"unit", m.unit}, {"role", m.role}});
   return list;
 }
 
@@ -45,19 +60,29 @@ bool is_verified(const Archive& archive, const Settings& settings) {
   return std::all_of(best.begin(), best.end(), [&](std::uint32_t id) { return archive.verification(id).has_value(); });
 }
 
-Json generations_json(const std::vector<Summary>& generations) {
+Json generations_json(const Archive& archive, const std::vector<Summary>& generations) {
+  const std::vector<Objective> objectives = archive.objectives();
+  std::vector<std::vector<BestAndMedian>> progress;
+  for (std::size_t i = 0; i < objectives.size(); ++i) progress.push_back(progress_in(archive, generations, i));
   Json list = Json::array();
-  for (const Summary& s : generations)
+  for (const Summary& s : generations) {
+    Json of_each = Json::object();
+    for (std::size_t i = 0; i < objectives.size(); ++i) {
+      const auto& [best, median] = progress[i].at(s.generation);
+      of_each[objectives[i].name] = {{"best", optional_json(best)}, {"median", optional_json(median)}};
+    }
     list.push_back({{"generation", s.generation},
                     {"evaluations", s.evaluations},
                     {"best", optional_json(s.best)},
                     {"median", optional_json(s.median)},
+                    {"objectives", std::move(of_each)},
                     {"diverged", s.diverged},
                     {"invalid", s.invalid},
                     {"clones", s.clones},
                     {"spring_evaluations", s.spring_evaluations},
                     {"wall_time", s.wall_time},
                     {"provenance", s.provenance}});
+  }
   return list;
 }
 
@@ -80,6 +105,12 @@ Json tests_json(const std::vector<ArchivedTest>& tests) {
   return list;
 }
 
+Json notes_json(const Archive& archive, std::uint32_t id) {
+  Json notes = Json::object();
+  for (const ArchivedNote& note : archive.notes(id)) notes[note.name] = note.value;
+  return notes;
+}
+
 }  // namespace
 
 std::int64_t clones(const std::vector<Summary>& generations) {
@@ -92,17 +123,43 @@ std::uint32_t last_age(const ArchivedIndividual& individual, std::uint32_t last_
   return individual.age(individual.died.value_or(last_generation));
 }
 
+std::vector<BestAndMedian> progress_in(const Archive& archive, const std::vector<Summary>& generations,
+                                       std::size_t objective) {
+  std::vector<BestAndMedian> progress;
+  if (objective == 0) {
+    for (const Summary& summary : generations) progress.push_back({summary.best, summary.median});
+    return progress;
+  }
+  const bool maximise = archive.objectives().at(objective).maximise;
+  const std::vector<Membership> memberships = archive.memberships(objective);
+  std::vector<Membership> members;
+  auto next = memberships.begin();
+  for (const Summary& summary : generations) {
+    for (; next != memberships.end() && next->born <= summary.generation; ++next) members.push_back(*next);
+    std::erase_if(members, [&](const Membership& one) { return one.died && *one.died <= summary.generation; });
+    std::vector<double> scores;
+    for (const Membership& one : members) scores.push_back(one.value);
+    progress.push_back(best_and_median(std::move(scores), maximise));
+  }
+  return progress;
+}
+
+Json objectives_json(const std::vector<Objective>& objectives, const Result& result) {
+  Json values = Json::object();
+  for (std::size_t i = 0; i < result.objectives.size(); ++i) values[objectives.at(i).name] = result.objectives[i];
+  return values;
+}
+
+Json measures_json(const Archive& archive, std::uint32_t id) {
+  Json measures = Json::object();
+  for (const ArchivedMeasure& measure : archive.measures(id)) measures[measure.name] = measure.value;
+  return measures;
+}
+
 Json individual_json(const Archive& archive, const ArchivedIndividual& individual) {
   const std::vector<Objective> objectives = archive.objectives();
   const auto line = ancestry(archive, individual.id);
   const std::vector<Summary> generations = archive.generations();
-  Json values = Json::object();
-  for (std::size_t i = 0; i < individual.result.objectives.size(); ++i)
-    values[objectives[i].name] = individual.result.objectives[i];
-  Json measures = Json::object();
-  for (const ArchivedMeasure& measure : archive.measures(individual.id)) measures[measure.name] = measure.value;
-  Json notes = Json::object();
-  for (const ArchivedNote& note : archive.notes(individual.id)) notes[note.name] = note.value;
   Json ancestors = Json::array();
   for (std::size_t i = 1; i < line.size(); ++i) ancestors.push_back(line[i].id);
   const auto verification = archive.verification(individual.id);
@@ -110,9 +167,9 @@ Json individual_json(const Archive& archive, const ArchivedIndividual& individua
           {"generation", individual.born},
           {"age", last_age(individual, generations.empty() ? 0 : generations.back().generation)},
           {"status", name(individual.result.status)},
-          {"objectives", std::move(values)},
-          {"measures", std::move(measures)},
-          {"notes", std::move(notes)},
+          {"objectives", objectives_json(objectives, individual.result)},
+          {"measures", measures_json(archive, individual.id)},
+          {"notes", notes_json(archive, individual.id)},
           {"scenarios", tests_json(archive.tests(individual.id))},
           {"parents", individual.parents},
           {"made_by", individual.made_by},
@@ -148,9 +205,10 @@ Json run_json(const Archive& archive, const Settings& settings) {
                {"statuses", archive.statuses()},
                {"clones", clones(generations)},
                {"failures", failures_json(archive.failures())},
-               {"objectives", objectives_json(archive.objectives())},
+               {"objectives", objectives_json(archive)},
+               {"measures", measures_json(archive.measures())},
                {"provenances", provenances_json(archive.provenances())},
-               {"generations", generations_json(generations)}};
+               {"generations", generations_json(archive, generations)}};
   const auto best = archive.best(1);
   root["best"] = best.empty() ? Json(nullptr) : individual_json(archive, archive.known_individual(best.front()));
   return root;

@@ -13,6 +13,16 @@ std::int64_t clones(const std::vector<Summary>& generations);
 /// Returns an individual's age, in generations, when it was dropped, or in the last generation if it is still alive.
 std::uint32_t last_age(const ArchivedIndividual& individual, std::uint32_t last_generation);
 
+/// Returns the best score and the median in an objective, given by its index, in each generation, over the survivors
+/// whose status is `ok`.
+std::vector<BestAndMedian> progress_in(const Archive& archive, const std::vector<Summary>& generations,
+                                       std::size_t objective);
+
+/// Returns the objectives of an individual by their names; none if it has no fitness.
+nlohmann::ordered_json objectives_json(const std::vector<Objective>& objectives, const Result& result);
+/// Returns the scores of an individual that are not objectives, by their names.
+nlohmann::ordered_json measures_json(const Archive& archive, std::uint32_t id);
+
 /// Returns an individual with its objectives, parents, ancestors, the blocks that came and went on the way, and its
 /// verification. If it has no fitness, the JSON has
 /// no objectives.

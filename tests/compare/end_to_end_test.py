@@ -175,6 +175,25 @@ class Comparison(unittest.TestCase):
         self.assertLess(max(before.values()), budget)
         self.assertLess(len(rows), 16)
 
+    def test_the_best_are_compared_in_scenarios(self):
+        self.plain.write_text(PLAIN + '\n[[scenario]]\nname = "flat"\n')
+        uphill = '[[scenario]]\nname = "uphill"\nrepeat = 2\n[scenario.gravity]\nslope = -5\n'
+        self.developing.write_text(DEVELOPING + uphill + '[[scenario]]\nname = "flat"\n')
+        done = self.compare("--sweep", "fitness.0.over=worst,flat")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout.count("| flat |"), 1)
+        self.assertNotIn("| uphill |", done.stdout)
+        self.assertRegex(done.stdout, 'Not compared: "uphill"')
+        xml.etree.ElementTree.parse(self.folder / "out" / "scenarios.svg")
+        with open(self.folder / "out" / "scenarios.csv", newline="") as stream:
+            rows = list(csv.DictReader(stream))
+        self.assertEqual(len(rows), 2 * 2 * (1 + 2))  # values, seeds, scenarios of both experiments
+        _, *generations = self.results()
+        best = {(row[0], row[1]): float(row[4]) for row in generations}  # of the last generation
+        for row in rows:
+            if "over=flat" in row["experiment"] and row["scenario"] == "flat":
+                self.assertEqual(float(row["score"]), best[row["experiment"], row["seed"]])
+
     def test_experiments_are_added_without_a_folder_named(self):
         # --set affects only the second experiment, which has that table; the run of the first one exists already
         for more in ([], [self.developing, "--set", "development.cycles=1"]):

@@ -7,16 +7,19 @@ import unittest
 from compare import chart, report
 from compare.history import Objective, common_span, history
 from compare.runs import Run, Variant
+from compare.scenarios import shared
 
 FAR = Objective("distance", "m", True)
 CHEAP = Objective("work", "J", False)
 
 
-def shown(best, springs=10, evaluations=5, marks=None):
-    """Returns the output of `show --json` for a run in which every generation costs the same."""
+def shown(best, springs=10, evaluations=5, marks=None, scenarios=()):
+    """Returns the output of `show --json` for a run in which every generation costs the same. `scenarios` are the
+    scores of the best robot: pairs of a scenario and the score in one repeat."""
+    tests = [{"scenario": name, "repeat": 1, "objectives": {"distance": score, "work": 0}} for name, score in scenarios]
     verification = None if marks is None else {"marks": marks}
     return {
-        "best": None if set(best) == {None} else {"verification": verification},
+        "best": None if set(best) == {None} else {"verification": verification, "scenarios": tests},
         "generations": [
             {
                 "evaluations": evaluations * (i + 1),
@@ -223,6 +226,63 @@ class Reports(unittest.TestCase):
     def test_numbers(self):
         for value, text in ((0.12345, "0.123"), (600, "600"), (15000, "15000"), (1.3e12, "1.3e12"), (2e-7, "2e-7")):
             self.assertEqual(report.number(value), text)
+
+
+class Scenarios(unittest.TestCase):
+    def histories(self, **scores):
+        """Returns histories of runs, given the scores of the best robot of each run by scenario."""
+        return {
+            Variant(pathlib.Path(name)): [history(shown([1], scenarios=some.items()), FAR) for some in runs]
+            for name, runs in scores.items()
+        }
+
+    def test_repeats_count_by_their_mean(self):
+        run = history(shown([1], scenarios=[("flat", 3), ("rough", 1), ("rough", 2)]), FAR)
+        self.assertEqual(run.scenarios, {"flat": 3, "rough": 1.5})
+        self.assertEqual(history(shown([None]), FAR).scenarios, {})
+        self.assertEqual(history(shown([1], scenarios=[("flat", 3)]), Objective("speed", "m/s", True)).scenarios, {})
+
+    def test_those_that_all_share_are_compared(self):
+        histories = self.histories(
+            robust=[{"flat": 0.1 * i, "rough": 0.2 * i, "steep": 1} for i in range(1, 8)],
+            plain=[{}] * 7,
+            fast=[{"rough": 0.3 * i, "flat": i} for i in range(1, 8)],
+        )
+        text = report.in_scenarios(histories, FAR)
+        self.assertIn("| scenario | `robust` | `fast` |", text)
+        self.assertRegex(text, r"\| flat \| 0\.4 \(0\.[0-9]+ to 0\.[0-9]+\) \| 4 \([0-9] to [0-9]\) \|")
+        self.assertRegex(text, r"\| rough \| 0\.8 .*\| 1\.2 ")
+        self.assertNotIn("| steep", text)
+        self.assertRegex(text, 'Not compared: "steep".*`robust`')
+        self.assertRegex(text, "`plain` has no scenarios")
+
+    def test_where_none_is_shared_nothing_is_compared(self):
+        histories = self.histories(first=[{"flat": 1}], second=[{"rough": 1}])
+        text = report.in_scenarios(histories, FAR)
+        self.assertNotIn("| scenario", text)
+        self.assertNotIn("scenarios.svg", text)
+        self.assertIn("share no scenario", text)
+
+    def test_where_there_are_none_nothing_is_said(self):
+        self.assertEqual(report.in_scenarios(self.histories(plain=[{}]), FAR), "")
+
+    def test_a_run_without_a_fitness_is_the_worst(self):
+        histories = self.histories(some=[{"flat": 1}, {}, {"flat": 3}], none=[{"flat": 1}, {}, {}])
+        some, none = (by_name["flat"] for by_name in shared(histories, FAR).scores.values())
+        self.assertEqual((some, none), ([1, -math.inf, 3], [1, -math.inf, -math.inf]))
+        self.assertIn("| flat | 1 | none |", report.in_scenarios(histories, FAR))
+
+    def test_the_chart_has_each_variant_in_each_scenario(self):
+        histories = self.histories(
+            robust=[{"flat": 0.1 * i, "rough": 0.2 * i} for i in range(7)],
+            none=[{"flat": 1, "rough": 1}] + [{}] * 6,
+            fast=[{"flat": i, "rough": 0.3 * i} for i in range(7)],
+        )
+        (axes,) = chart.scenario_figure(shared(histories, FAR).scores, FAR).axes
+        self.assertEqual([tick.get_text() for tick in axes.get_xticklabels()], ["flat", "rough"])
+        medians = [tuple(map(float, *zip(line.get_ydata()))) for line in axes.lines if line.get_marker() == "_"]
+        self.assertEqual([round(*median, 9) for median in medians], [0.3, 0.6, 3, 0.9])
+        self.assertEqual(labels(axes), ["robust", "fast"])
 
 
 class Charts(unittest.TestCase):

@@ -81,7 +81,8 @@ TEST_F(Command, ShowAgreesWithTheArchive) {
   EXPECT_THAT(text.output, HasSubstr("24 evaluations"));
   EXPECT_EQ(json.at("clones"), clones);
   EXPECT_THAT(text.output, HasSubstr(std::to_string(clones) + " of them clones"));
-  EXPECT_THAT(text.output, HasSubstr("best individuals\n  " + champion.at("individual").dump() + ": distance"));
+  EXPECT_THAT(text.output,
+              HasSubstr("best individuals in distance\n  " + champion.at("individual").dump() + ": distance"));
   EXPECT_THAT(text.output, ::testing::Not(HasSubstr("nan")));
 }
 

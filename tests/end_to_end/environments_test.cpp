@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "support/experiments.hpp"
@@ -75,6 +76,49 @@ TEST_F(Environments, EveryGenomeHasItsBodiesAndDistances) {
   EXPECT_EQ(answer.at("pairs")[1].at("scenes"), nlohmann::json({0, 2}));
   EXPECT_EQ(answer.at("pairs")[1].at("springs")[5].at("p"), 1) << "a scene differs from itself";
   EXPECT_GT(answer.at("pairs")[0].at("springs")[5].at("between"), 0) << "the slope has changed nothing";
+}
+
+TEST_F(Environments, ScenesOfScenariosAreThereOnce) {
+  const std::string tested = scratch_.write("tested.toml", small_experiment + R"(
+[[scenario]]
+name = "as it is"
+[[scenario]]
+name = "hurt"
+damage = 0.1
+[[scenario]]
+name = "uphill"
+[scenario.gravity]
+slope = -30
+[[scenario]]
+name = "uphill again"
+repeat = 2
+[scenario.gravity]
+slope = -30
+[[scenario]]
+name = "laden"
+[scenario.payload]
+share = 0.5
+)");
+  const auto names = [](const nlohmann::json& answer) {
+    std::vector<std::string> found;
+    for (const auto& scene : answer.at("scenes")) found.push_back(scene.at("name"));
+    return found;
+  };
+  const auto alone = json({tested, "--starts", "1"})[0];
+  EXPECT_EQ(names(alone), (std::vector<std::string>{"tested", "uphill", "laden"}));
+  EXPECT_EQ(alone.at("scenes")[1].at("slope"), -30);
+  const auto heaviest = [&](std::size_t scene) {
+    double most = 0;
+    for (const auto& mass : alone.at("scenes")[scene].at("starts")[0].at("body").at("masses"))
+      most = std::max(most, mass.at("mass").get<double>());
+    return most;
+  };
+  EXPECT_GT(heaviest(2), heaviest(0)) << "the scenario's payload";
+
+  const std::string slope = other("slope.toml", "[scene.gravity]", "[scene.gravity]\nslope = -30");
+  const auto both = json({slope, tested, "--starts", "1"})[0];
+  EXPECT_EQ(names(both), (std::vector<std::string>{"slope", "tested", "tested: laden"}));
+  EXPECT_EQ(both.at("scenes")[0].at("starts"), alone.at("scenes")[1].at("starts")) << "the same scene, the same body";
 }
 
 TEST_F(Environments, WhereNothingDevelopsTheBodyStaysTheSameHoweverItLies) {

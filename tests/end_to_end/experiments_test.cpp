@@ -66,7 +66,7 @@ TEST(Experiments, PaperHoldsThePapersValues) {
   EXPECT_EQ(paper.scene.gravity->acceleration, 9.81);
   EXPECT_NEAR(std::exp(-paper.scene.damping->rate * 0.0005), 0.99, 1e-12);
   EXPECT_EQ(paper.evaluations, 10000);
-  const Request request = paper.fitness.at(0)->observes();
+  const Request request = paper.fitness.at(0).op->observes();
   EXPECT_EQ(request.settle, 3);
   EXPECT_EQ(request.window, 10);
   EXPECT_EQ(paper.layout.first_size(), 100u + 650u + 208u) << "a 3-25-25-8 network";
@@ -146,9 +146,9 @@ TEST(Experiments, TheStudysEndAtTheSameCost) {
 
 TEST(Experiments, EveryWalkerButThePapersSettlesTenSeconds) {
   for (const char* name : {"quickstart.toml", "evo.toml", "evo-devo.toml", "growth.toml"})
-    EXPECT_EQ(read_experiment({experiment_file(name), {}}).fitness.at(0)->observes().settle, 10) << name;
+    EXPECT_EQ(read_experiment({experiment_file(name), {}}).fitness.at(0).op->observes().settle, 10) << name;
   const Experiment swimmer = read_experiment({experiment_file("swimmer.toml"), {}});
-  EXPECT_EQ(swimmer.fitness.at(0)->observes().settle, 0);
+  EXPECT_EQ(swimmer.fitness.at(0).op->observes().settle, 0);
   EXPECT_TRUE(swimmer.scene.drag.has_value());
   EXPECT_FALSE(swimmer.scene.floor || swimmer.scene.damping);
 }

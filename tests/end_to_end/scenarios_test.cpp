@@ -13,6 +13,7 @@ namespace evodevo {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using testing::Finished;
 using ::testing::HasSubstr;
 
@@ -80,7 +81,10 @@ TEST_F(ScenarioRun, KeepsTheScoresOfEveryTest) {
 
 TEST_F(ScenarioRun, IsShown) {
   EXPECT_THAT(evodevo({"show", folder_}).output,
-              AllOf(HasSubstr("distance by scenario: flat "), HasSubstr(", hurt "), HasSubstr("touching ")));
+              AllOf(HasSubstr("distance by scenario: flat "), HasSubstr(", hurt "),
+                    HasSubstr("actuation-work by scenario: flat "), HasSubstr("actuation-work (J), lower is better"),
+                    HasSubstr("best individuals in actuation-work"),
+                    ContainsRegex("touching [0-9.e-]+\n")));  // no unit "1"
   const auto best = nlohmann::json::parse(evodevo({"show", folder_, "--json"}).output).at("best");
   ASSERT_EQ(best.at("scenarios").size(), 3u);
   EXPECT_EQ(best.at("scenarios")[2].at("scenario"), "hurt");
@@ -114,6 +118,35 @@ TEST_F(ScenarioRun, ABodyIsSimulatedInAScenarioByName) {
   const Finished unknown = simulate({"--scenario", "flatt"});
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_THAT(unknown.output, AllOf(HasSubstr("--scenario flatt"), HasSubstr("flat, hurt")));
+}
+
+TEST_F(ScenarioRun, TellsALifeInAScenarioThatDevelops) {
+  const std::string mud = scratch_.write(
+      "mud.toml", text + "\n[[scenario]]\nname = 'mud'\ndevelops = true\n[scenario.drag]\ncoefficient = 3\n");
+  const std::string folder = (scratch_ / "mud").string();
+  ASSERT_EQ(evodevo({"run", mud, "--out", folder, "--device", "cpu"}).exit_code, 0);
+  const auto life = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"life", folder, "--json"});
+    return nlohmann::json::parse(evodevo(more).output);
+  };
+  const auto here = life({}), there = life({"--scenario", "mud"});
+  EXPECT_TRUE(here.at("scenario").is_null());
+  EXPECT_EQ(there.at("scenario"), "mud");
+  EXPECT_EQ(there.at("born"), here.at("born"));
+  EXPECT_EQ(there.at("edits").size(), here.at("edits").size()) << "the operators do as much";
+  EXPECT_NE(there.at("edits"), here.at("edits")) << "but for other causes";
+  const auto body = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"body", folder, "--matured"});
+    return evodevo(more).output;
+  };
+  EXPECT_NE(body({}), body({"--scenario", "mud"}));
+
+  const Finished other = evodevo({"life", folder, "--scenario", "hurt"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.output, AllOf(HasSubstr("--scenario hurt"), HasSubstr("develop")));
+  const Finished newborn = evodevo({"body", folder, "--scenario", "mud"});
+  EXPECT_EQ(newborn.exit_code, 2);
+  EXPECT_THAT(newborn.output, AllOf(HasSubstr("--scenario mud"), HasSubstr("--matured")));
 }
 
 TEST_F(ScenarioRun, GivesTheSameScoresAgain) {

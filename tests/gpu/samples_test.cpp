@@ -42,6 +42,11 @@ TEST_P(GpuSamples, AreTrue) {
   test::expect_samples_to_be_true(factory(), test::random_body(61, 9, 5, 6), rounding());
 }
 
+TEST_P(GpuSamples, AreTrueAfterRemovals) {
+  EVODEVO_NEEDS_GPU();
+  test::expect_samples_to_be_true_after_removals(factory(), rounding());
+}
+
 TEST_P(GpuSamples, OfLargeBodiesAreTrue) {
   EVODEVO_NEEDS_GPU();
   test::expect_samples_to_be_true(factory(), test::random_body(1701, 14, 5, 8), rounding());

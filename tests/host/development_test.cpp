@@ -36,7 +36,7 @@ struct Line {
   }
 
   DevoContext context(bool resets = false) const {
-    return {living.body, living.state, living.stress, 1, 2, 1, 2, 0.25, {}, 0.2, resets, genome, layout};
+    return {living.body, living.state, 1, 2, 1, 2, 0.25, {}, 0.2, resets, genome, layout};
   }
 
   void apply(const Edits& edits, bool resets = false) { evodevo::apply(resolved(edits, context(resets)), living); }
@@ -50,6 +50,30 @@ struct Line {
     return "accepted";
   }
 };
+
+TEST(Records, AreThereOnlyIfRequested) {
+  Line line;
+  DevoContext context = line.context();
+  show_records(line.living, {.stress = true}, context);
+  EXPECT_EQ(context.stress.size(), 3u);
+  EXPECT_EQ(context.stress[1], 20);
+  EXPECT_THAT([&] { static_cast<void>(context.stress[3]); },
+              ::testing::ThrowsMessage<std::out_of_range>(naming("\"stress\"", "3")));
+  const auto told = [](const RequestedRecord& record) {
+    try {
+      static_cast<void>(record.size());
+    } catch (const std::logic_error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(told(context.stress), "");
+  EXPECT_THAT(told(context.peak_force), naming("\"peak_force\"", "SpringRequest::peak_force"));
+  EXPECT_THAT(told(context.muscle_work), naming("\"muscle_work\"", "SpringRequest::muscle_work"));
+  EXPECT_THAT(told(context.tension), naming("\"tension\"", "SpringRequest::tension"));
+  EXPECT_THROW(static_cast<void>(context.tension[0]), std::logic_error);
+  EXPECT_THROW(static_cast<void>(context.tension.begin()), std::logic_error);
+}
 
 TEST(Development, ALoadComesOnOthersWhenItsCarrierGoes) {
   Line line;

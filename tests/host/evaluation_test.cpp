@@ -119,8 +119,8 @@ TEST(Evaluation, AFitnessThatIsNotANumberIsNoFitness) {
   Experiment experiment = testing::read(testing::small_experiment);
   for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     experiment.fitness.clear();
-    experiment.fitness.push_back(std::make_unique<Constant>(value));
-    experiment.objectives = experiment.fitness[0]->objectives();
+    experiment.fitness.push_back({std::make_unique<Constant>(value)});
+    experiment.objectives = experiment.fitness[0].op->objectives();
     const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
     EXPECT_EQ(result.status, Status::invalid);
     EXPECT_THAT(result.reason, testing::naming("not finite", "constant"));
@@ -151,7 +151,7 @@ TEST(Evaluation, EveryFitnessSeesItsOwnWindow) {
   experiment.scene.gravity = Gravity{};  // the body only falls: z = -g t^2 / 2
   Observation early, late, whole;
   const auto observe = [&](Request request, Observation& seen) {
-    experiment.fitness.push_back(std::make_unique<Watcher>(request, seen));
+    experiment.fitness.push_back({std::make_unique<Watcher>(request, seen)});
   };
   experiment.fitness.clear();
   observe({.settle = 0.1, .window = 0.2}, early);
@@ -176,7 +176,7 @@ TEST(Evaluation, ABodysOwnStepEndsWithItsWindow) {
   experiment.development.cycle_time = 0.0513;  // not a multiple of any step
   Observation seen;
   experiment.fitness.clear();
-  experiment.fitness.push_back(std::make_unique<Watcher>(Request{.settle = 0.1, .window = 0.2, .work = true}, seen));
+  experiment.fitness.push_back({std::make_unique<Watcher>(Request{.settle = 0.1, .window = 0.2, .work = true}, seen)});
   experiment.objectives = {{"a", "", true}};
   const Result result = evaluate(experiment, {{.genome = {2, 2}}}).front();
   ASSERT_EQ(result.status, Status::ok) << result.reason;
@@ -255,7 +255,7 @@ TEST(Evaluation, ALoadSinksTheFasterInWater) {
   experiment.scene.damping.reset();
   Observation seen;
   experiment.fitness.clear();
-  experiment.fitness.push_back(std::make_unique<Watcher>(Request{.settle = 2, .window = 0.5}, seen));
+  experiment.fitness.push_back({std::make_unique<Watcher>(Request{.settle = 2, .window = 0.5}, seen)});
   experiment.objectives = {{"a", "", true}};
   const auto speed = [&] {
     EXPECT_EQ(evaluate(experiment, {{.genome = {1, 1}}}).front().status, Status::ok);
@@ -304,8 +304,8 @@ TEST(Evaluation, ABodysLengthIsThatOfTheStartOfTheWindow) {
   experiment.development.cycles = 1;
   Observation born, grown;
   experiment.fitness.clear();
-  experiment.fitness.push_back(std::make_unique<Watcher>(Request{.settle = 0, .window = 1}, born));
-  experiment.fitness.push_back(std::make_unique<Watcher>(Request{.settle = 1, .window = 1}, grown));
+  experiment.fitness.push_back({std::make_unique<Watcher>(Request{.settle = 0, .window = 1}, born)});
+  experiment.fitness.push_back({std::make_unique<Watcher>(Request{.settle = 1, .window = 1}, grown)});
   experiment.objectives = {{"a", "", true}, {"b", "", true}};
   const Result result = evaluate(experiment, {{.genome = {1, 1}}}).front();
   ASSERT_EQ(result.status, Status::ok) << result.reason;

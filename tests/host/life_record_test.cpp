@@ -241,7 +241,7 @@ TEST(LifeRecord, CausesStayWithTheirEdits) {
   const LivingBody& living = lived.life.living;
   const Genome genome;
   const Layout layout;
-  const DevoContext context{living.body, living.state, {}, 4, 9, 1, 1, 0, {}, 0.2, false, genome, layout};
+  const DevoContext context{living.body, living.state, 4, 9, 1, 1, 0, {}, 0.2, false, genome, layout};
   const Change change = change_by(edits, 1, context);
   EXPECT_EQ(change.cycle, 4u);
   EXPECT_EQ(change.edits.removed_springs, (std::vector<std::uint32_t>{2, 5, 7}));

@@ -85,7 +85,7 @@ TEST(Materials, AreNoMoreThanTheSpringsAreHoweverOftenTheseChange) {
   LifeRecord record;
   Rng rng(philox, {7, 0, 0, 0});
   for (int cycle = 1; cycle <= 16; ++cycle) {
-    const DevoContext context{living.body, living.state, {}, cycle, 16, cycle, 16, 0, {}, 0.2, false, genome, layout};
+    const DevoContext context{living.body, living.state, cycle, 16, cycle, 16, 0, {}, 0.2, false, genome, layout};
     Edits edits;
     std::vector<Material> wanted;
     for (std::uint32_t s = 0; s < living.body.springs.size(); ++s) {

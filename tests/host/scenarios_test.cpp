@@ -57,8 +57,7 @@ std::vector<Seen> seen_in(const std::string& scenarios, std::vector<Override> ov
   Experiment experiment = with(scenarios, std::move(overrides));
   std::vector<Seen> seen;
   experiment.fitness.clear();
-  experiment.fitness.push_back(std::make_unique<Witness>(seen));
-  experiment.over = {Over::mean};
+  experiment.fitness.push_back({std::make_unique<Witness>(seen)});
   experiment.objectives = {{"number", "1"}};
   const Life life = lived(experiment, {2, 1}, id);
   EXPECT_TRUE(life.alive()) << life.result.reason;
@@ -200,8 +199,7 @@ TEST(Scenarios, LeaveTheMassesTheirNumbers) {
       with("\n[[scenario]]\nname = 'whole'\n[[scenario]]\nname = 'hurt'\ndamage = 0.6\nrepeat = 4\n");
   std::vector<std::vector<std::uint32_t>> numbers;
   experiment.fitness.clear();
-  experiment.fitness.push_back(std::make_unique<Counter>(numbers));
-  experiment.over = {Over::mean};
+  experiment.fitness.push_back({std::make_unique<Counter>(numbers)});
   experiment.objectives = {{"masses", "1"}};
   const Genome genome{2, 1};
   const Life life = lived(experiment, genome);
@@ -242,15 +240,54 @@ TEST(Scenarios, AreSummedUpAsTheExperimentSays) {
     Experiment experiment = with(four);
     std::vector<Seen> seen;
     experiment.fitness.clear();
-    experiment.fitness.push_back(std::make_unique<Witness>(seen));  // scores 1, 2, 3, 10
-    experiment.over = {over};
+    experiment.fitness.push_back({std::make_unique<Witness>(seen), over});  // scores 1, 2, 3, 10
     experiment.objectives = {{"number", "1", true}};
     EXPECT_EQ(lived(experiment).result.objectives, std::vector{expected});
     experiment.objectives[0].maximise = false;
     seen.clear();
     EXPECT_EQ(lived(experiment).result.objectives, std::vector{over == Over::worst ? 10.0 : expected});
   }
-  EXPECT_EQ(with(four, {{"fitness.0.over", "worst", ""}}).over, (std::vector{Over::worst, Over::mean}));
+  const Experiment read = with(four, {{"fitness.0.over", "worst", ""}});
+  EXPECT_EQ(read.fitness.at(0).over, Over::worst);
+  EXPECT_EQ(read.fitness.at(1).over, Over::mean);
+}
+
+TEST(Scenarios, OneAloneMayCount) {
+  const std::string four = "\n[[scenario]]\nname = 'a'\nrepeat = 3\n[[scenario]]\nname = 'b'\n";
+  for (const auto& [scenario, expected] : {std::pair<std::size_t, double>{0, 2.0}, {1, 10.0}}) {
+    Experiment experiment = with(four);
+    std::vector<Seen> seen;
+    experiment.fitness.clear();
+    experiment.fitness.push_back({std::make_unique<Witness>(seen), Over::mean, scenario});  // scores 1, 2, 3, 10
+    experiment.objectives = {{"number", "1", true}};
+    const Life life = lived(experiment);
+    EXPECT_EQ(life.result.objectives, std::vector{expected});
+    EXPECT_EQ(life.result.tests.size(), 4u) << "the others are measured all the same";
+  }
+}
+
+TEST(Scenarios, OneAloneIsNamedByTheKeyOver) {
+  const std::string two = "\n[[scenario]]\nname = 'flat'\n[[scenario]]\nname = 'slope'\n";
+  const Experiment read = with(two, {{"fitness.0.over", "slope", ""}});
+  EXPECT_EQ(read.fitness.at(0).scenario, 1u);
+  EXPECT_FALSE(read.fitness.at(1).scenario.has_value());
+  EXPECT_EQ(testing::read(read.resolved).fitness.at(0).scenario, 1u) << "the record says it too";
+  EXPECT_THAT(
+      [&] {
+        with(two, {{"fitness.0.over", "slop", "--set"}});
+      },
+      ::testing::ThrowsMessage<ConfigError>(testing::naming("--set: fitness.0.over ", "slop", "slope")));
+  EXPECT_THAT(
+      [&] {
+        with("", {{"fitness.0.over", "flat", "--set"}});
+      },
+      ::testing::ThrowsMessage<ConfigError>(testing::naming("--set: fitness.0.over ", "flat", "median")));
+  for (const char* name : {"mean", "worst", "median"})
+    EXPECT_THAT(
+        [&] {
+          with(two, {{"scenario.1.name", name, "--set"}});
+        },
+        ::testing::ThrowsMessage<ConfigError>(testing::naming("--set: scenario.1.name ", name, "another name")));
 }
 
 TEST(Scenarios, ThatFailAreNamed) {
@@ -323,9 +360,8 @@ TEST(Scenarios, ThatDevelopHoldTheWindowsWithinTheLife) {
   std::vector<std::string> seen_in;
   std::vector<Seen> seen;
   experiment.fitness.clear();
-  experiment.fitness.push_back(std::make_unique<Grower>(seen_in));
-  experiment.fitness.push_back(std::make_unique<Witness>(seen));
-  experiment.over = {Over::mean, Over::mean};
+  experiment.fitness.push_back({std::make_unique<Grower>(seen_in)});
+  experiment.fitness.push_back({std::make_unique<Witness>(seen)});
   experiment.objectives = {{"way", "m", true}, {"number", "1", true}};
   const Life life = lived(experiment);
   ASSERT_TRUE(life.alive()) << life.result.reason;
@@ -438,9 +474,8 @@ class AllRoles final : public Fitness {
 Life with_all_roles(double violation) {
   Experiment experiment = with("\n[[scenario]]\nname = 'a'\nrepeat = 3\n");
   experiment.fitness.clear();
-  experiment.fitness.push_back(std::make_unique<AllRoles>(violation));
-  experiment.over = {Over::worst};
-  const std::vector<Objective> all = experiment.fitness[0]->objectives();
+  experiment.fitness.push_back({std::make_unique<AllRoles>(violation), Over::worst});
+  const std::vector<Objective> all = experiment.fitness[0].op->objectives();
   experiment.objectives = {all[1]};
   experiment.measures = {all[0], all[2], all[3]};
   return lived(experiment);

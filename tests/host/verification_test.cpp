@@ -153,8 +153,8 @@ TEST(Verify, WhatOnlyTheStepBringsForthIsAnArtefact) {
   experiment.step = {.dt = dt};
   experiment.encoding = std::make_unique<StrainedPair>(h * h * mass / (2 * dt * dt));
   experiment.fitness.clear();
-  experiment.fitness.push_back(std::make_unique<Stretch>(when * dt));
-  experiment.objectives = experiment.fitness[0]->objectives();
+  experiment.fitness.push_back({std::make_unique<Stretch>(when * dt)});
+  experiment.objectives = experiment.fitness[0].op->objectives();
   const auto simulator = simulator_for(experiment);
   const auto individuals = evaluated(experiment, *simulator, {Individual{}});
   ASSERT_EQ(individuals[0].result.status, Status::ok) << individuals[0].result.reason;

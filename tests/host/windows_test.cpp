@@ -39,9 +39,8 @@ class Spy final : public Fitness {
   See see_;
 };
 
-void set_fitness(Experiment& experiment, std::vector<std::unique_ptr<Fitness>> fitness) {
+void set_fitness(Experiment& experiment, std::vector<Scored> fitness) {
   experiment.fitness = std::move(fitness);
-  experiment.over.assign(experiment.fitness.size(), Over::mean);
   experiment.objectives.clear();
   for (std::size_t i = 0; i < experiment.fitness.size(); ++i)
     experiment.objectives.push_back({"way" + std::to_string(i), "m", true});
@@ -49,8 +48,8 @@ void set_fitness(Experiment& experiment, std::vector<std::unique_ptr<Fitness>> f
 
 template <class... Spies>
 void spy_on(Experiment& experiment, Spies... spies) {
-  std::vector<std::unique_ptr<Fitness>> fitness;
-  (fitness.push_back(std::make_unique<Spy>(std::move(spies))), ...);
+  std::vector<Scored> fitness;
+  (fitness.push_back({std::make_unique<Spy>(std::move(spies))}), ...);
   set_fitness(experiment, std::move(fitness));
 }
 
@@ -213,7 +212,8 @@ TEST(Windows, SampleOnlyAsManyBodiesAtOnceAsFitInMemory) {
          Spy({.settle = 0, .window = 0.05, .cycle = 0, .rate = 1e6, .channels = {.positions = true}}));
   // a window has 50,001 samples, each with three floats for each mass
   std::vector<Life> lives(5);
-  for (Life& life : lives) life.living.body.masses.resize(static_cast<std::size_t>(most_sample_bytes / 50'001 / 12 / 2.5));
+  for (Life& life : lives)
+    life.living.body.masses.resize(static_cast<std::size_t>(most_sample_bytes / 50'001 / 12 / 2.5));
   const Windows windows(experiment, 0);
   EXPECT_EQ(windows.fitting_after_maturing(lives), 2u);
   EXPECT_EQ(windows.fitting_within_life(lives), 2u);

@@ -23,8 +23,8 @@ struct Life {
   Layout layout;
 
   DevoContext context() const {
-    DevoContext context{living.body, living.state, {},   3,      100,    application, applications,
-                        time,        bounds,       mass, resets, genome, layout};
+    DevoContext context{living.body, living.state, 3,    100,    application, applications,
+                        time,        bounds,       mass, resets, genome,      layout};
     show_records(living, {.stress = true, .peak_force = true, .muscle_work = true, .tension = true}, context);
     return context;
   }

@@ -18,6 +18,9 @@ void expect_samples_to_change_nothing(const SimulatorFactory& simulator_for, con
 void expect_samples_to_be_true(const SimulatorFactory& simulator_for, const Body& body, double rounding,
                                Materials materials = Materials::table);
 
+/// Expects the same of bodies that have lost masses since they were simulated last.
+void expect_samples_to_be_true_after_removals(const SimulatorFactory& simulator_for, double rounding);
+
 /// Expects that a body which is sampled in pieces has the samples of the whole.
 void expect_samples_in_pieces(const SimulatorFactory& simulator_for, const Body& body);
 

@@ -98,6 +98,15 @@ test("the chart of ages holds the living, and its front is what none of them bea
   assert.deepEqual(points(front), sorted(distinct));
 });
 
+test("where there is nothing to choose, there are no choices, and no tests where there are no scenarios", async () => {
+  assert.equal(await page.locator(".choosers").count(), 0);
+  assert.equal(await page.locator(".tests").count(), 0);
+  assert.equal(
+    await page.locator("figcaption").nth(2).textContent(),
+    "Age and fitness of the living, and the front of the best",
+  );
+});
+
 test("it says where the time went", async () => {
   const recorded = Number(archived(scratch.run, "SELECT value FROM record WHERE key = 'seconds_simulate'")[0][0]);
   assert.ok(recorded > 0);

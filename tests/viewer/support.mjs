@@ -74,7 +74,7 @@ export function evodevo(...words) {
 /** Returns the result of an SQL query in a run's archive, without using evodevo. */
 export function archived(folder, query) {
   const program =
-    "import json,sqlite3,sys; print(json.dumps(sqlite3.connect(sys.argv[1]).execute(sys.argv[2]).fetchall()))";
+    "import json,sqlite3,sys; db = sqlite3.connect(sys.argv[1]); print(json.dumps(db.execute(sys.argv[2]).fetchall())); db.commit()";
   return JSON.parse(execFileSync("python3", ["-c", program, join(folder, "run.sqlite"), query], { encoding: "utf8" }));
 }
 

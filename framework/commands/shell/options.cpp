@@ -90,6 +90,15 @@ std::optional<std::size_t> given_scenario(const Experiment& experiment, const Gi
       (names.empty() ? "no scenarios; leave the option out" : "no scenario of this name" + suggestion(name, names)));
 }
 
+const Scenario* given_developing_scenario(const Experiment& experiment, const Given& given) {
+  const std::optional<std::size_t> index = given_scenario(experiment, given);
+  if (!index) return nullptr;
+  const Scenario& scenario = experiment.scenarios[*index];
+  if (scenario.develops) return &scenario;
+  throw UsageError(option_text("scenario", scenario.name) +
+                   ": robots do not develop in it, because its key develops is false; leave the option out");
+}
+
 void add_experiment_options(Options& options) {
   add_plugin_option(options);
   for (const Shorthand& shorthand : shorthands)

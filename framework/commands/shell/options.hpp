@@ -32,6 +32,9 @@ void add_scenario_option(Options& options, const char* text);
 /// Returns the index of the scenario that --scenario names, or nothing without this option. Throws UsageError if the
 /// experiment has no scenario of this name.
 std::optional<std::size_t> given_scenario(const Experiment& experiment, const Given& given);
+/// Returns the scenario that --scenario names, for commands on development; null if the option is not given. Throws
+/// UsageError if robots do not develop in it.
+const Scenario* given_developing_scenario(const Experiment& experiment, const Given& given);
 
 /// Adds --set, --plugin-path, and the options that are shorthands for single keys.
 void add_experiment_options(Options& options);

@@ -60,9 +60,10 @@ std::string ProgressDisplay::line(double evaluations) const {
   const double rate = (evaluations - static_cast<double>(evaluations_before_)) / seconds();
   const double diverged =
       last_.evaluations > 0 ? 100.0 * static_cast<double>(diverged_) / static_cast<double>(last_.evaluations) : 0.0;
-  std::string text = fmt::format("generation {}  evaluations {:.0f}/{}  best {}  median {}  diverged {:.1f} %",
+  const std::string of = experiment_.objectives.size() > 1 ? " of " + experiment_.objectives.front().name : "";
+  std::string text = fmt::format("generation {}  evaluations {:.0f}/{}  best {}  median {}{}  diverged {:.1f} %",
                                  last_.generation, evaluations, experiment_.evaluations, optional_text(last_.best),
-                                 optional_text(last_.median), diverged);
+                                 optional_text(last_.median), of, diverged);
   if (rate > 0) text += fmt::format("  {:.3g} evaluations/s  {} left", rate, duration_text(seconds_left(evaluations)));
   if (stop_) text += "  (stopping after this generation; Ctrl-C again stops now)";
   return text;
@@ -97,8 +98,8 @@ void print_outcome(const Experiment& experiment, const Archive& archive, const P
     std::cout << "best: individual " << individual.id << " of generation " << individual.born << " in "
               << archive.folder().string();
     for (std::size_t i = 0; i < experiment.objectives.size(); ++i)
-      std::cout << ", " << experiment.objectives[i].name << ' ' << short_number(individual.result.objectives[i]) << ' '
-                << experiment.objectives[i].unit;
+      std::cout << ", " << experiment.objectives[i].name << ' '
+                << short_quantity(individual.result.objectives[i], experiment.objectives[i].unit);
     std::cout << std::endl;
     remarks() << "      look at the run: " << program_name() << " show " << archive.folder().string()
               << "\n      its body:        " << program_name() << " body " << archive.folder().string()

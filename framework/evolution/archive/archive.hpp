@@ -31,9 +31,20 @@ struct ArchivedTest {
   double value = 0;
 };
 
-/// A score of an individual that is not an objective.
-struct ArchivedMeasure {
+/// A kind of score that is not an objective.
+struct MeasureKind {
   std::string name, unit, role;
+};
+
+/// A score of an individual that is not an objective.
+struct ArchivedMeasure : MeasureKind {
+  double value = 0;
+};
+
+/// A score of an objective, and the generations in which its individual was in the population.
+struct Membership {
+  std::uint32_t born = 0;             ///< first generation
+  std::optional<std::uint32_t> died;  ///< generation whose selection dropped it
   double value = 0;
 };
 
@@ -121,9 +132,14 @@ class Archive {
   std::optional<ArchivedIndividual> individual(std::uint32_t id) const;
   /// Returns an individual to which the archive itself refers. Throws ArchiveError if there is none with this id.
   ArchivedIndividual known_individual(std::uint32_t id) const;
-  /// Returns the ids of the `count` individuals with the best first objective, best first; ties are in the order of
-  /// birth.
-  std::vector<std::uint32_t> best(std::size_t count) const;
+  /// Returns the ids of the `count` individuals with the best score in an objective, given by its index, best first;
+  /// ties are in the order of birth.
+  std::vector<std::uint32_t> best(std::size_t count, std::size_t objective = 0) const;
+  /// Returns the scores in an objective, given by its index, of all individuals that survived the selection of at least
+  /// one generation, in the order of birth.
+  std::vector<Membership> memberships(std::size_t objective) const;
+  /// Returns the kinds of scores that are not objectives, in the order of the experiment.
+  std::vector<MeasureKind> measures() const;
   /// Returns the scores of an individual that are not objectives, in the order of the experiment.
   std::vector<ArchivedMeasure> measures(std::uint32_t id) const;
   /// Returns the names and units of the numbers that the selection operator may note.

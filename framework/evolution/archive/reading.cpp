@@ -176,40 +176,15 @@ std::vector<ArchivedMeasure> Archive::measures(std::uint32_t id) const {
                 "WHERE individual = ? ORDER BY position");
   row.bind(id);
   std::vector<ArchivedMeasure> measures;
-  while (row.step()) measures.push_back({line(row, 0), line(row, 1), line(row, 2), row.number(3)});
+  while (row.step()) measures.push_back({{line(row, 0), line(row, 1), line(row, 2)}, row.number(3)});
   return measures;
 }
 
-std::vector<NoteTitle> Archive::note_titles() const {
-  std::vector<NoteTitle> titles;
-  Statement row(*run_, "note_titles", "SELECT position, name, unit FROM note_titles ORDER BY position");
-  for (std::uint32_t position = 0; row.step(); ++position) {
-    row.integer(0, position, position);
-    titles.push_back({line(row, 1), line(row, 2)});
-  }
-  return titles;
-}
-
-std::vector<ArchivedNote> Archive::notes(std::uint32_t id) const {
-  Statement row(*run_, "notes",
-                "SELECT name, unit, value FROM notes JOIN note_titles ON position = note WHERE individual = ? "
-                "ORDER BY position");
-  row.bind(id);
-  std::vector<ArchivedNote> notes;
-  while (row.step()) notes.push_back({line(row, 0), line(row, 1), row.number(2)});
-  return notes;
-}
-
-std::vector<std::byte> Archive::memory() const {
-  Statement row(*run_, "memory",
-                "SELECT generation, bytes, (SELECT max(generation) FROM generations) AS last FROM memory");
-  if (!row.step()) return {};
-  if (row.is_null(2)) refuse("the selection operator remembers something, but there are no generations");
-  row.integer(0, row.index(2), row.index(2));
-  const auto bytes = std::as_bytes(std::span(row.bytes(1)));
-  std::vector<std::byte> memory(bytes.begin(), bytes.end());
-  if (row.step()) refuse("the table memory has more than one row");
-  return memory;
+std::vector<MeasureKind> Archive::measures() const {
+  Statement row(*run_, "measures", "SELECT name, unit, role FROM measures ORDER BY position");
+  std::vector<MeasureKind> measures;
+  while (row.step()) measures.push_back({line(row, 0), line(row, 1), line(row, 2)});
+  return measures;
 }
 
 std::vector<ArchivedTest> Archive::tests(std::uint32_t id) const {
@@ -383,15 +358,28 @@ std::optional<LifeRecord> Archive::life(std::uint32_t id) const try {
   refuse("individual " + std::to_string(id) + ": " + error.what());
 }
 
-std::vector<std::uint32_t> Archive::best(std::size_t count) const {
-  const bool maximise = objectives().front().maximise;
+std::vector<std::uint32_t> Archive::best(std::size_t count, std::size_t objective) const {
+  const bool maximise = objectives().at(objective).maximise;
   std::vector<std::uint32_t> ids;
   Statement row(*run_, "scores",
-                std::string("SELECT individual FROM scores WHERE objective = 0 ORDER BY value ") +
+                std::string("SELECT individual FROM scores WHERE objective = ? ORDER BY value ") +
                     (maximise ? "DESC" : "ASC") + ", individual LIMIT ?");
-  row.bind(static_cast<std::int64_t>(count));
+  row.bind(static_cast<std::int64_t>(objective), static_cast<std::int64_t>(count));
   while (row.step()) ids.push_back(row.index(0));
   return ids;
+}
+
+std::vector<Membership> Archive::memberships(std::size_t objective) const {
+  Statement row(*run_, "individuals",
+                "SELECT born, died, value FROM individuals JOIN scores ON individual = id "
+                "WHERE objective = ? AND (died IS NULL OR died > born) ORDER BY born, id");
+  row.bind(static_cast<std::int64_t>(objective));
+  std::vector<Membership> memberships;
+  while (row.step()) {
+    Membership& one = memberships.emplace_back(Membership{row.index(0), {}, row.number(2)});
+    if (!row.is_null(1)) one.died = row.index(1);
+  }
+  return memberships;
 }
 
 }  // namespace evodevo

@@ -89,8 +89,11 @@ void declare_scenario(SettingsVisitor& v, Scenario& s) {
          "scene of the experiment. Noise, damage and still muscles begin when it has matured.");
 }
 
-void declare_over(SettingsVisitor& v, Over& over) {
-  choice(v, over, host_key::over, "How the scores in all scenarios and repeats become one score.");
+void declare_over(SettingsVisitor& v, std::string& over) {
+  v.text(
+      over, host_key::over,
+      "How the scores in several tests become one: \"mean\", \"worst\" or \"median\" of all scenarios and repeats, or "
+      "the name of a scenario: the mean of its repeats.");
 }
 
 void declare_schedule(SettingsVisitor& v, Schedule& s) {

@@ -13,7 +13,7 @@ void declare_accuracy(SettingsVisitor& visitor, Settings& settings);      ///< f
 void declare_simulation(SettingsVisitor& visitor, Settings& settings);    ///< other keys of [simulation]
 void declare_development(SettingsVisitor& visitor, Settings& settings);   ///< [development] without its operators
 void declare_scenario(SettingsVisitor& visitor, Scenario& scenario);      ///< [[scenario]] without its name and forces
-void declare_over(SettingsVisitor& visitor, Over& over);                  ///< the host's key of a fitness operator
+void declare_over(SettingsVisitor& visitor, std::string& over);           ///< the host's key of a fitness operator
 void declare_schedule(SettingsVisitor& visitor, Schedule& schedule);      ///< the host's keys of a devo operator
 void declare_probability(SettingsVisitor& visitor, double& probability);  ///< the host's key of a variation operator
 

@@ -61,7 +61,7 @@ class OperatorTables {
     complete_layouts(out_.crossovers);
     read_array(top_, "fitness", record_, [&](TomlReader& t, TomlWriter& writer) { read_fitness(t, writer); });
     if (out_.fitness.empty()) top_.fail("fitness", "is missing; add a table [[fitness]]");
-    const auto is_within_life = [&](const std::unique_ptr<Fitness>& op) { return op->observes().cycle.has_value(); };
+    const auto is_within_life = [&](const Scored& scored) { return scored.op->observes().cycle.has_value(); };
     const auto develops = [](const Scenario& scenario) { return scenario.develops; };
     if (!std::all_of(out_.scenarios.begin(), out_.scenarios.end(), develops) &&
         std::all_of(out_.fitness.begin(), out_.fitness.end(), is_within_life))
@@ -257,16 +257,19 @@ class OperatorTables {
   }
 
   void read_fitness(TomlReader& t, TomlWriter& writer) {
-    std::unique_ptr<Fitness> fitness = factory_.make<Fitness>(t);
-    factory_.write(t, *fitness, writer);
-    Over& over = out_.over.emplace_back(Over::mean);
-    declare_over(t, over);
-    declare_over(writer, over);
-    const Request request = factory_.ask(t, [&] { return fitness->observes(); });
+    Scored scored{factory_.make<Fitness>(t)};
+    const Fitness& fitness = *scored.op;
+    factory_.write(t, *scored.op, writer);
+    read_over(t, writer, scored);
+    const Request request = factory_.ask(t, [&] { return fitness.observes(); });
     check_request(t, request);
+    if (scored.scenario && request.cycle && !out_.scenarios[*scored.scenario].develops)
+      t.fail(host_key::over,
+             "the operator measures robots while they develop, which they do not do in this scenario; "
+             "set develops = true there, or choose another scenario");
     check_duration(t, "settle", request.settle, out_.step);
     check_duration(t, "window", request.window, out_.step);
-    std::vector<Objective> objectives = factory_.ask(t, [&] { return fitness->objectives(); });
+    std::vector<Objective> objectives = factory_.ask(t, [&] { return fitness.objectives(); });
     if (objectives.empty()) t.fail("name", "this operator gives no scores; expected one or more from objectives()");
     const std::string& label = out_.uses.back().label;
     for (Objective& objective : objectives) {
@@ -275,7 +278,24 @@ class OperatorTables {
       add_objective(t, std::move(objective));
       if (is_objective) add_cases(request.cycle.has_value());
     }
-    out_.fitness.push_back(std::move(fitness));
+    out_.fitness.push_back(std::move(scored));
+  }
+
+  /// Reads how the scores of a fitness operator in several tests become one.
+  void read_over(TomlReader& t, TomlWriter& writer, Scored& scored) const {
+    std::string over(name_of(scored.over));
+    declare_over(t, over);
+    declare_over(writer, over);
+    std::vector<std::string> names(names_of<Over>.begin(), names_of<Over>.end());
+    for (const Scenario& scenario : out_.scenarios) names.push_back(scenario.name);
+    const auto place = static_cast<std::size_t>(std::find(names.begin(), names.end(), over) - names.begin());
+    if (place == names.size())
+      t.fail(host_key::over,
+             "expected \"mean\", \"worst\", \"median\" or the name of a scenario" + suggestion(over, names));
+    if (place < names_of<Over>.size())
+      scored.over = static_cast<Over>(place);
+    else
+      scored.scenario = place - names_of<Over>.size();
   }
 
   /// Adds the cases of the objective that was read last. A window within the life is scored in the scenarios in which

@@ -69,7 +69,7 @@ std::string experiment_reference() {
   text +=
       section("`[[fitness]]`", "The keys that every fitness operator has in addition to `name` and its own parameters.",
               [&](SettingsVisitor& v) {
-                Over over = Over::mean;
+                std::string over(name_of(Scored().over));
                 declare_over(v, over);
               });
   text +=

@@ -24,6 +24,10 @@ Scenario read_scenario(TomlReader& table, const Settings& settings) {
   Scenario scenario{.name = table.text("name"), .scene = settings.scene, .payload = settings.payload};
   if (const std::string fault = text_fault(scenario.name); scenario.name.empty() || !fault.empty())
     table.fail("name", scenario.name.empty() ? "is empty; give the scenario a name" : fault);
+  constexpr auto& taken = names_of<Over>;
+  if (std::find(taken.begin(), taken.end(), scenario.name) != taken.end())
+    table.fail("name", "over = \"" + scenario.name +
+                           "\" of a fitness operator means all scenarios; give this scenario another name");
   declare_scenario(table, scenario);
   read_forces(table, scenario);
   return scenario;

@@ -48,7 +48,7 @@ Measurement::Measurement(const Experiment& experiment, const LifeSimulation& sim
   for (std::size_t op = 0; op < experiment.fitness.size(); ++op) {
     std::vector<Place>& places = places_.emplace_back();
     for (const Objective& score :
-         call_operator(experiment.call_of(Fitness::kind, op), [&] { return experiment.fitness[op]->objectives(); }))
+         call_operator(experiment.call_of(Fitness::kind, op), [&] { return experiment.fitness[op].op->objectives(); }))
       places.push_back({score.role, score.role == Role::objective ? objectives++ : measures++});
   }
   if (objectives != experiment.objectives.size() || measures != experiment.measures.size())
@@ -95,8 +95,6 @@ void Measurement::measure_in_scenarios(Matured& matured, std::vector<std::vector
   std::map<std::size_t, std::vector<Scores>> within_scenario;
   for (auto& [scenario, others] : matured.in_scenarios)
     within_scenario[scenario] = scores_within(others, experiment_.scenarios[scenario].name);
-  if (within_scenario.empty())
-    for (std::size_t i = 0; i < lives.size(); ++i) tests[i].push_back(within_life[i]);
 
   const std::vector<Test> all = tests_of(experiment_);
   for (std::size_t t = 0; t < all.size(); ++t) {
@@ -113,6 +111,9 @@ void Measurement::measure_in_scenarios(Matured& matured, std::vector<std::vector
     }
     progress(static_cast<double>(t + 1) / static_cast<double>(all.size()));
   }
+  if (within_scenario.empty())  // after those of all tests, whose indices tell their scenarios
+    for (std::size_t i = 0; i < lives.size(); ++i)
+      if (lives[i].alive()) tests[i].push_back(within_life[i]);
 }
 
 std::vector<Life> Measurement::started(const Test& test, std::span<const Life> lives,
@@ -137,8 +138,7 @@ void Measurement::add_test(const Test& test, const Scores& scores, const Result&
         life.result.tests.push_back({test.scenario, test.repeat, place.index, scores[op][i]});
 }
 
-std::vector<Measurement::Scores> Measurement::scores_within(std::span<Life> lives,
-                                                             std::string_view scenario) const {
+std::vector<Measurement::Scores> Measurement::scores_within(std::span<Life> lives, std::string_view scenario) const {
   std::vector<Scores> scores(lives.size(), Scores(places_.size()));
   simulation_.simulator().workers().for_each(lives.size(), [&](std::size_t i) {
     for (std::size_t op = 0; op < places_.size() && lives[i].alive(); ++op)
@@ -164,7 +164,7 @@ void Measurement::measure(std::span<Life> lives, std::string_view scenario, std:
 }
 
 std::vector<double> Measurement::score(std::size_t op, std::string_view scenario, Life& life) const {
-  const Fitness& fitness = *experiment_.fitness[op];
+  const Fitness& fitness = *experiment_.fitness[op].op;
   const Window& window = windows_.all()[op];
   const StoredSample &before = life.samples[window.opens], &after = life.samples[window.closes];
   if (!has_extent(std::vector{before.box.low, before.box.high})) life.end(Status::invalid, "no extent");
@@ -195,17 +195,22 @@ std::vector<double> Measurement::score(std::size_t op, std::string_view scenario
 }
 
 double Measurement::over_tests(std::size_t op, std::size_t i, const std::vector<Scores>& tests) const {
-  std::vector<double> scores;
-  for (const Scores& test : tests)
-    if (!test[op].empty()) scores.push_back(test[op][i]);
-  if (scores.size() == 1) return scores.front();
+  if (tests.size() == 1) return tests.front()[op][i];
+  const std::vector<Test> all = tests_of(experiment_);
+  const auto scores_in = [&](std::optional<std::size_t> scenario) {
+    std::vector<double> scores;
+    for (std::size_t t = 0; t < tests.size(); ++t)
+      if (!tests[t][op].empty() && (!scenario || all.at(t).scenario == *scenario)) scores.push_back(tests[t][op][i]);
+    return scores;
+  };
+  const Scored& scored = experiment_.fitness[op];
   switch (const Place& place = places_[op][i]; place.role) {
     case Role::descriptor:
-      return combined(std::move(scores), Over::mean, true);
+      return combined(scores_in({}), Over::mean, true);
     case Role::constraint:
-      return combined(std::move(scores), Over::worst, false);
+      return combined(scores_in({}), Over::worst, false);
     default:
-      return combined(std::move(scores), experiment_.over.at(op), title_of(place).maximise);
+      return combined(scores_in(scored.scenario), scored.over, title_of(place).maximise);
   }
 }
 

@@ -57,7 +57,7 @@ class Measurement {
   /// Makes the scores of a life from those in all tests. Ends a life that violates a constraint.
   void set_scores(const std::vector<Scores>& tests, Life& life) const;
   /// Makes one score of the i-th scores of an operator in all tests that have any: the mean of a descriptor, the worst
-  /// of a constraint; all others are combined as the experiment says.
+  /// of a constraint; all others are combined as the experiment says, over all tests or those of one scenario.
   double over_tests(std::size_t op, std::size_t i, const std::vector<Scores>& tests) const;
   const Objective& title_of(const Place& place) const;
 

@@ -89,7 +89,8 @@ void start_scenario(const Test& test, const Experiment& experiment, const LifeSi
   LivingBody& living = life.living;
   Rng random = stream(test, experiment);
   const Scene& before = *std::exchange(life.scene, &scenario.scene);
-  if (!scenario.develops && scenario.payload != experiment.payload) change_payload(scenario.payload, living);
+  const bool was_here = &before == &scenario.scene;
+  if (!was_here && scenario.payload != experiment.payload) change_payload(scenario.payload, living);
   if (!scenario.muscles)
     for (Material& material : living.body.materials) material.amplitude = 0;
   if (scenario.damage > 0) do_damage(scenario.damage, random, living);

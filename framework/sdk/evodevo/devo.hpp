@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,31 +24,63 @@ struct SpringRequest {
   bool tension = false;      ///< whether DevoContext::tension is needed
 };
 
+/// A record of the last cycle: one number for every spring. Reading it throws a std::logic_error that names it unless
+/// Devo::observes() asks for it; an index out of range throws a std::out_of_range.
+class RequestedRecord {
+ public:
+  /// `name` is that of the member of SpringRequest.
+  explicit constexpr RequestedRecord(const char* name) : name_(name) {}
+  /// Makes the record readable. For the host.
+  void show(std::span<const double> values) { values_ = values; }
+
+  std::size_t size() const { return values().size(); }
+  auto begin() const { return values().begin(); }
+  auto end() const { return values().end(); }
+  double operator[](std::size_t spring) const {
+    if (spring >= size())
+      throw std::out_of_range(std::string("reads the record \"") + name_ + "\" of spring " + std::to_string(spring) +
+                              " of " + std::to_string(size()) + ", numbered from 0");
+    return values()[spring];
+  }
+  operator std::span<const double>() const { return values(); }  // NOLINT: converts on purpose
+
+ private:
+  std::span<const double> values() const {
+    if (!values_)
+      throw std::logic_error(std::string("reads the record \"") + name_ +
+                             "\" of the springs, which observes() does not ask for; set SpringRequest::" + name_);
+    return *values_;
+  }
+
+  const char* name_;
+  std::optional<std::span<const double>> values_ = std::nullopt;
+};
+
 /// The context of a devo operator: everything that the operator may look at after a cycle.
 ///
 /// `stress`, `peak_force`, `muscle_work` and `tension` are the records of the last cycle, with one number for every
-/// spring of `body`. A record is empty unless Devo::observes() asks for it. For a spring that another operator has
+/// spring of `body`. Only those that Devo::observes() asks for can be read. For a spring that another operator has
 /// added since the cycle ended, the record is the mean of the records of the other springs.
 struct DevoContext {
   const Body& body;
   const State& state;
-  std::span<const double> stress;  ///< mean absolute force of each spring, N; if the experiment's probe is skip-shift,
-                                   ///< points instead: +1 for each tally in which the spring was the most stressed of
-                                   ///< its group, -1 for each in which it was the least stressed
-  int cycle;                       ///< number of cycles simulated so far, from 1
-  int cycles;                      ///< number of cycles in the whole development
-  int application;                 ///< number of applications of this operator so far, including this one
-  int applications;                ///< number of applications of this operator in the whole development
-  double time;                     ///< simulated time since birth, s
-  Box bounds;                      ///< bounding box of all position(), cut off at the floor if the scene has one, m
-  double mass;                     ///< mass that a new point mass should have, kg
-  bool resets;                     ///< whether the body returns to its rest positions before the next cycle
-  const Genome& genome;            ///< genes of the encoding
-  const Layout& layout;            ///< layout of `genome`
-  const Genome& own = no_genes;    ///< genes that the operator owns; see Devo::layout()
-  std::span<const double> peak_force = {};   ///< largest absolute force of each spring, N
-  std::span<const double> muscle_work = {};  ///< positive work that each spring's muscle did on the body, J
-  std::span<const double> tension = {};      ///< mean force of each spring, N; positive: it pulled, negative: it pushed
+  int cycle;                     ///< number of cycles simulated so far, from 1
+  int cycles;                    ///< number of cycles in the whole development
+  int application;               ///< number of applications of this operator so far, including this one
+  int applications;              ///< number of applications of this operator in the whole development
+  double time;                   ///< simulated time since birth, s
+  Box bounds;                    ///< bounding box of all position(), cut off at the floor if the scene has one, m
+  double mass;                   ///< mass that a new point mass should have, kg
+  bool resets;                   ///< whether the body returns to its rest positions before the next cycle
+  const Genome& genome;          ///< genes of the encoding
+  const Layout& layout;          ///< layout of `genome`
+  const Genome& own = no_genes;  ///< genes that the operator owns; see Devo::layout()
+  /// Mean absolute force of each spring, N. If the experiment's probe is skip-shift, points instead: +1 for each tally
+  /// in which the spring was the most stressed of its group, -1 for each in which it was the least stressed.
+  RequestedRecord stress{"stress"};
+  RequestedRecord peak_force{"peak_force"};    ///< largest absolute force of each spring, N
+  RequestedRecord muscle_work{"muscle_work"};  ///< positive work that each spring's muscle did on the body, J
+  RequestedRecord tension{"tension"};  ///< mean force of each spring, N; positive: it pulled, negative: it pushed
 
   /// Returns the position from which a mass continues, m: its rest position if `resets`, else its present position.
   Vec3 position(std::uint32_t mass_index) const {

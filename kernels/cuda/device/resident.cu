@@ -169,7 +169,7 @@ __device__ __forceinline__ void take_samples(const Body& body, const Share& shar
     const SampleLists lists(mark, sampling.masses);
     Reduction reduction;
     for_each_mover(body, [&](unsigned i, unsigned index, unsigned offset) {
-      if (index >= sampling.masses) return;  // padding
+      if (sampling.mass_share[index] < 0) return;  // padding
       sample_mass(sampling, mark, lists, index, position_at(offset), movers.velocity[i], reduction);
       if constexpr (contacts) sample_contact(mark, lists, index, movers.contact_steps[i], reduction);
     });

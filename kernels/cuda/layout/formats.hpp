@@ -121,7 +121,7 @@ struct ReducedSample {
 /// check spans is used again for the next range but one.
 struct Sampling {
   const SampleMark* marks;       ///< [count + 1] in ascending order of their steps; that of the last is never reached
-  const double* mass_share;      ///< [masses] share of a mass in the body's mass
+  const double* mass_share;      ///< [masses] share of a mass in the body's mass; below 0: padding, not a mass
   std::uint32_t* contact_steps;  ///< [masses] number of steps after which each mass touched the ground, if counted
   std::uint64_t spans_per_range;
   std::uint32_t count, masses;

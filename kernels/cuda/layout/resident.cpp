@@ -99,7 +99,8 @@ std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features
   resident.divide_chip(true, chip);
   if (resident.chip_.size > chip) return std::nullopt;
   resident.divide_chip(features.work, chip);
-  if (features.samples) resident.samples_ = SampleLayout(task, spans_per_range, resident.slots());
+  if (features.samples)
+    resident.samples_ = SampleLayout(task, spans_per_range, resident.padded_masses(), resident.slots());
   resident.reserve();
   return resident;
 }
@@ -143,24 +144,23 @@ std::size_t Resident<T>::waves_in(std::size_t slots) const {
 
 template <class T>
 void Resident<T>::reserve() {
-  const std::size_t padded_masses = lanes * arrangement().groups;
   Extent input, state, sums;
   records_ = input.add<Record<T>>(arrangement().slots.size());
   waves_ = input.add<std::uint32_t>(waves_in(arrangement().slots.size()));
   first_group_ = input.add<std::uint32_t>(arrangement().first_group.size());
   group_ends_ = input.add<std::uint32_t>(arrangement().group_ends.size());
   actuators_ = input.add<Actuator>(task_->body->materials.size() + 1);
-  mass_ = input.add<T>(padded_masses);
-  inverse_mass_ = input.add<T>(padded_masses);
-  start_ = input.add<typename FixedPoint<T>::Integer>(padded_masses);
-  for (Section<T>& plane : motion_) plane = state.add<T>(padded_masses);
+  mass_ = input.add<T>(padded_masses());
+  inverse_mass_ = input.add<T>(padded_masses());
+  start_ = input.add<typename FixedPoint<T>::Integer>(padded_masses());
+  for (Section<T>& plane : motion_) plane = state.add<T>(padded_masses());
   answer_ = state.add<Answer>(1);
   stress_ = sums.add<double>(features_.stress ? arrangement().slots.size() : 0);
   recent_stress_ = sums.add<T>(features_.stress && form().chunked ? arrangement().slots.size() : 0);
   peak_ = sums.add<typename FixedPoint<T>::Integer>(features_.peak_force ? arrangement().slots.size() : 0);
   powers_ = sums.add<double>(features_.muscle_work ? arrangement().slots.size() : 0);
   tensions_ = sums.add<double>(features_.tension ? arrangement().slots.size() : 0);
-  samples_.reserve(padded_masses, input, sums);
+  samples_.reserve(input, sums);
   sizes_ = {input.size(), state.size(), sums.size(), 0, samples_.bytes()};
 }
 
@@ -214,10 +214,9 @@ void Resident<T>::pack_waves(std::uint32_t* to, const MaterialUnits& units) cons
 
 template <class T>
 void Resident<T>::pack_masses(const Regions& host) const {
-  const std::size_t padded_masses = lanes * arrangement().groups;
-  std::fill_n(mass_.in(host.input), padded_masses, T(0));
-  std::fill_n(inverse_mass_.in(host.input), padded_masses, T(0));
-  for (const Section<T>& plane : motion_) std::fill_n(plane.in(host.state), padded_masses, T(0));
+  std::fill_n(mass_.in(host.input), padded_masses(), T(0));
+  std::fill_n(inverse_mass_.in(host.input), padded_masses(), T(0));
+  for (const Section<T>& plane : motion_) std::fill_n(plane.in(host.state), padded_masses(), T(0));
   for (std::size_t i = 0; i < task_->body->masses.size(); ++i) {
     const std::uint32_t index = arrangement().index_of[i];
     const double mass = task_->body->masses[i].mass;

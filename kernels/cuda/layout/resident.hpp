@@ -64,6 +64,8 @@ class Resident {
   const Features& features() const { return features_; }
   unsigned threads() const { return 32 * arrangement().shape.block; }
   std::size_t slots() const { return arrangement().slots.size(); }
+  /// The number of masses with the padding that fills groups; masses may have any indices below it.
+  std::size_t padded_masses() const { return lanes * arrangement().groups; }
   std::size_t chip_bytes() const { return chip_.size; }
   Sizes sizes() const { return sizes_; }
   const SampleLayout& samples() const { return samples_; }

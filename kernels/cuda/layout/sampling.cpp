@@ -111,8 +111,8 @@ void take_samples_of_nothing(Task& task, Course course) {
   }
 }
 
-SampleLayout::SampleLayout(const Task& task, std::uint64_t spans_per_range, std::size_t forces)
-    : task_(&task), spans_per_range_(spans_per_range), forces_(forces) {
+SampleLayout::SampleLayout(const Task& task, std::uint64_t spans_per_range, std::size_t masses, std::size_t forces)
+    : task_(&task), spans_per_range_(spans_per_range), masses_(masses), forces_(forces) {
   ranges_ = span_of_sample(task, task.steps) / spans_per_range + 1;
   points_.reserve(task.sampled_at.size());
   std::uint64_t range = 0;
@@ -135,16 +135,16 @@ SampleLayout::SampleLayout(const Task& task, std::uint64_t spans_per_range, std:
 }
 
 std::size_t SampleLayout::bytes_of(const Channels& channels) const {
-  const std::size_t lists = bytes_of_lists(channels, task_->body->masses.size(), forces_);
+  const std::size_t lists = bytes_of_lists(channels, masses_, forces_);
   return sizeof(ReducedSample) + (lists + 31) / 32 * 32;
 }
 
-void SampleLayout::reserve(std::size_t masses, Extent& input, Extent& sums) {
+void SampleLayout::reserve(Extent& input, Extent& sums) {
   if (empty()) return;
   const Channels channels = channels_on_device(*task_);
   marks_ = input.add<SampleMark>(points_.size() + 1);
-  mass_share_ = input.add<double>(masses);
-  contact_steps_ = sums.add<std::uint32_t>(channels.contact || channels.contacts ? masses : 0);
+  mass_share_ = input.add<double>(masses_);
+  contact_steps_ = sums.add<std::uint32_t>(channels.contact || channels.contacts ? masses_ : 0);
 }
 
 Sampling SampleLayout::pack(std::span<const std::uint32_t> index_of, const Regions& host, const Regions& device) const {
@@ -156,24 +156,25 @@ Sampling SampleLayout::pack(std::span<const std::uint32_t> index_of, const Regio
   *mark = {.step = std::numeric_limits<std::uint64_t>::max()};
   double total = 0;
   for (const Mass& mass : task_->body->masses) total += mass.mass;
+  double* const share = mass_share_.in(host.input);
+  std::fill(share, share + masses_, -1.0);  // padding, also between the masses if some have been removed
   for (std::size_t i = 0; i < index_of.size(); ++i)
-    mass_share_.in(host.input)[index_of[i]] = total > 0 ? task_->body->masses[i].mass / total : 0;
+    share[index_of[i]] = total > 0 ? task_->body->masses[i].mass / total : 0;
   return {.marks = marks_.in(device.input),
           .mass_share = mass_share_.in(device.input),
           .contact_steps = contact_steps_.in(device.sums),
           .spans_per_range = spans_per_range_,
           .count = static_cast<std::uint32_t>(points_.size()),
-          .masses = static_cast<std::uint32_t>(index_of.size())};
+          .masses = static_cast<std::uint32_t>(masses_)};
 }
 
-/// Reads a list of vectors, [3][masses], and returns its end.
+/// Reads a list of vectors, [3][masses_], and returns its end.
 const float* SampleLayout::read_vectors(const float* from, std::span<const std::uint32_t> index_of,
                                         std::vector<float>& to) const {
-  const std::size_t masses = index_of.size();
-  to.reserve(3 * masses);
+  to.reserve(3 * index_of.size());
   for (const std::uint32_t index : index_of)
-    for (std::size_t axis = 0; axis < 3; ++axis) to.push_back(from[axis * masses + index]);
-  return from + 3 * masses;
+    for (std::size_t axis = 0; axis < 3; ++axis) to.push_back(from[axis * masses_ + index]);
+  return from + 3 * masses_;
 }
 
 void SampleLayout::unpack(std::uint64_t range, std::span<const std::uint32_t> index_of,
@@ -203,7 +204,7 @@ void SampleLayout::unpack(std::uint64_t range, std::span<const std::uint32_t> in
       const auto* steps = reinterpret_cast<const std::uint32_t*>(list);
       sample.contacts.reserve(index_of.size());
       for (const std::uint32_t index : index_of) sample.contacts.push_back(steps[index]);
-      list += index_of.size();
+      list += masses_;
     }
     if (channels.forces) {
       sample.forces.reserve(force_of.size());

@@ -37,16 +37,17 @@ void take_samples_of_nothing(Task& task, Course course);
 class SampleLayout {
  public:
   SampleLayout() = default;
-  /// `forces` is the length of the list of forces that the device writes.
-  SampleLayout(const Task& task, std::uint64_t spans_per_range, std::size_t forces);
+  /// `masses` and `forces` are the lengths of the lists by mass and by spring that the device writes. They may be
+  /// longer than those of the body, whose masses may have any indices below `masses`.
+  SampleLayout(const Task& task, std::uint64_t spans_per_range, std::size_t masses, std::size_t forces);
 
   bool empty() const { return points_.empty(); }
   std::uint64_t ranges() const { return ranges_; }  ///< in which the body moves
   /// The size of the memory for samples, bytes.
   std::size_t bytes() const { return empty() || points_.back().range == 0 ? half_ : 2 * half_; }
 
-  /// Adds the arrays that the device needs to a body's regions. `masses` may be padded.
-  void reserve(std::size_t masses, Extent& input, Extent& sums);
+  /// Adds the arrays that the device needs to a body's regions.
+  void reserve(Extent& input, Extent& sums);
   /// Writes the arrays; index_of[i] is the device's index of mass i.
   Sampling pack(std::span<const std::uint32_t> index_of, const Regions& host, const Regions& device) const;
 
@@ -76,7 +77,7 @@ class SampleLayout {
 
   const Task* task_ = nullptr;
   std::uint64_t spans_per_range_ = 0, ranges_ = 1;
-  std::size_t forces_ = 0, half_ = 0, first_ = 0;
+  std::size_t masses_ = 0, forces_ = 0, half_ = 0, first_ = 0;
   std::vector<Point> points_;
   Section<SampleMark> marks_;
   Section<double> mass_share_;

@@ -11,7 +11,7 @@ namespace evodevo::tools::accuracy {
 
 Fitnesses measure(const Experiment& experiment, std::span<const Body> bodies, const Setting& setting,
                   const Device& device, double perturbation) {
-  const Fitness& fitness = *experiment.fitness.front();
+  const Fitness& fitness = *experiment.fitness.front().op;
   const Request request = fitness.observes();
   std::vector<Traveller> robots;
   for (const Body& body : bodies)

@@ -1,4 +1,5 @@
-"""The chart of a comparison: the median of the best score so far, with its interval, against both kinds of cost."""
+"""The charts of a comparison: the median of the best score so far, with its interval, against both kinds of cost, and
+the scores of the best robots by scenario."""
 
 import itertools
 import math
@@ -45,6 +46,10 @@ def draw_panel(axes, histories, curves, axis):
     charts.label_ends(axes, ends)
 
 
+def drawn(seeds):
+    return f"median and {INTERVAL}" if seeds >= inference.INTERVAL_FROM else "median"
+
+
 def figure(histories, objective):
     curves = {
         axis: [
@@ -58,15 +63,58 @@ def figure(histories, objective):
     low, high = min([0.0, *scores]), max([0.0, *scores])
     high += 0.06 * (high - low) or 1.0
     seeds = len(next(iter(histories.values())))
-    drawn = f"median and {INTERVAL}" if seeds >= inference.INTERVAL_FROM else "median"
     page, panels = charts.page(
         len(AXES),
         len(AXES),
         (3.6, 3.4),
-        title=f"best {objective.name} so far ({objective.unit}), {drawn}",
+        title=f"best {objective.name} so far ({objective.unit}), {drawn(seeds)}",
         right=0.6 + 0.06 * max(len(variant.label) for variant in histories),  # for the labels
     )
     for axes, axis in zip(panels, AXES):
         axes.set_ylim(low, high)
         draw_panel(axes, histories, curves[axis], axis)
+    return page
+
+
+def draw_column(axes, place, scores, colour):
+    """Draws the scores of the runs of one variant in one scenario as points, and their median with its interval.
+    Returns the median, or None if it is not finite."""
+    finite = list(filter(math.isfinite, scores))
+    axes.plot([place] * len(finite), finite, "o", color=colour, alpha=0.3, markeredgewidth=0)
+    middle = inference.median(scores)
+    if not math.isfinite(middle):
+        return None
+    axes.plot(place, middle, "_", color=colour, markersize=13, markeredgewidth=2)
+    bounds = inference.median_interval(scores)
+    if bounds and all(map(math.isfinite, bounds)):
+        axes.vlines(place, *bounds, color=colour, linewidth=1.5)
+    return middle
+
+
+def scenario_figure(scores, objective):
+    """Draws the scores of the best robots: scenarios from left to right, and in each the variants side by side.
+    `scores` is that of scenarios.Shared."""
+    names = list(next(iter(scores.values())))
+    width = 0.8 / len(scores)
+    seeds = len(next(iter(next(iter(scores.values())).values())))
+    page, (axes,) = charts.page(
+        1,
+        1,
+        (max(3.6, 0.5 * len(names) * max(2, len(scores))), 3.4),
+        title=f"{objective.name} of the best robots ({objective.unit})",
+        legend=f"points: runs; bars: {drawn(seeds)}",
+        right=0.6 + 0.06 * max(len(variant.label) for variant in scores),  # for the labels
+    )
+    ends = []
+    for i, ((variant, by_name), (colour, _)) in enumerate(zip(scores.items(), itertools.cycle(STYLES))):
+        for k, name in enumerate(names):
+            place = k + (i - (len(scores) - 1) / 2) * width
+            middle = draw_column(axes, place, by_name[name], colour)
+        if middle is not None:
+            ends.append((variant.label, (place, middle), colour))
+    axes.axhline(0, color=charts.SOFT, linewidth=0.8)
+    axes.set_xticks(range(len(names)), names)
+    axes.set(xlim=(-0.5, len(names) - 0.5), ylim=axes.get_ylim())  # final limits, which the labels need
+    axes.grid(axis="x", visible=False)
+    charts.label_ends(axes, ends)
     return page

@@ -5,12 +5,19 @@ import dataclasses
 import itertools
 import math
 
+from .scenarios import by_scenario
+
 
 @dataclasses.dataclass(frozen=True)
 class Objective:
     name: str
     unit: str
     maximise: bool
+
+    @classmethod
+    def of(cls, shown):
+        """The objective that `show --json` describes, with other facts about it."""
+        return cls(shown["name"], shown["unit"], shown["maximise"])
 
     @property
     def worst(self):
@@ -35,6 +42,7 @@ class History:
     invalid: list
     seconds: list
     marks: list | None  # of the run's best robot, such as "artefact"; None if it was not verified
+    scenarios: dict  # scores of the run's best robot by scenario
 
     def at(self, axis, cost, what="best"):
         """Returns the value of the list `what` after the last generation that was complete at that cost."""
@@ -60,6 +68,7 @@ def history(shown, objective):
         invalid=summed("invalid"),
         seconds=summed("wall_time"),
         marks=verification and verification["marks"],
+        scenarios=by_scenario(shown["best"], objective),
     )
 
 

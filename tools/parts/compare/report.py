@@ -8,6 +8,7 @@ import re
 
 from . import inference
 from .history import common_span
+from .scenarios import shared
 
 AXES = {"spring_evaluations": "spring evaluations", "evaluations": "evaluations"}
 INTERVAL = f"{100 * inference.LEVEL:.0f} % interval"
@@ -33,6 +34,13 @@ is no difference; 0.56, 0.64 and 0.71 (or 0.44, 0.36 and 0.29) count as a small,
 
 p is that of the two-sided Mann-Whitney U test: exact up to {inference.EXACT_UP_TO} runs of both together, with ties up
 to {inference.EXACT_WITH_TIES_UP_TO}, and by the normal distribution beyond, corrected for ties. p (Holm) allows for all rows of its table. Below {inference.SIGNIFICANT} a difference counts as shown.
+"""
+
+
+SCENARIOS = """\
+The best robot of each run, by the first objective of its own experiment. Its score in a scenario is the mean of the
+repeats. Each cell has the median of the runs and, if there are enough seeds, its interval. Experiments that
+differ in the key `over` score their robots by different tests; this table has their scores in the same ones.
 """
 
 
@@ -216,6 +224,29 @@ def whole_runs(histories):
     return f"## All runs, each to its end\n\n{table(header, rows)}"
 
 
+def in_scenarios(histories, objective):
+    """Returns the section on the best robots in each scenario that all experiments with scenarios share, or an empty
+    text if no experiment has any."""
+    found = shared(histories, objective)
+    if not found.scores:
+        return ""
+    said = "".join(f"`{name}` has no scenarios and is not in this comparison.\n" for name in found.without)
+    for scenario, names in found.left_out.items():
+        said += f"Not compared: \"{scenario}\", which only {' and '.join(f'`{name}`' for name in names)} has.\n"
+    title = f"## {objective.name.capitalize()} of the best robots in each scenario\n\n"
+    if not found.names:
+        return f"{title}{said}The experiments share no scenario.\n"
+
+    def cell(scores):
+        bounds = inference.median_interval(scores)
+        return number(inference.median(scores)) + (" ({} to {})".format(*map(number, bounds)) if bounds else "")
+
+    rows = [[name, *(cell(scores[name]) for scores in found.scores.values())] for name in found.names]
+    header = ["scenario", *(f"`{variant.name}`" for variant in found.scores)]
+    chart = "![The best robots in each scenario](scenarios.svg)\n"
+    return title + "\n".join(part for part in (SCENARIOS, said, table(header, rows), chart) if part)
+
+
 def differences(made):
     """Returns a warning if runs were made by different builds or devices, since these may cause differences between
     experiments."""
@@ -245,6 +276,7 @@ def markdown(histories, objective, setting):
         too_few_seeds(setting.seeds, len(histories)),
         "![Best so far over spring evaluations and over evaluations](chart.svg)\n",
         *(section(histories, objective, axis, setting.against) for axis in AXES),
+        in_scenarios(histories, objective),
         whole_runs(histories),
         METHOD,
         TESTS if len(histories) > 1 else "",
@@ -266,3 +298,13 @@ def write_csv(file, histories):
                 for evaluations, springs, best, *failures, seconds in generations:
                     best_text = "" if math.isinf(best) else best
                     writer.writerow([variant.name, seed, evaluations, springs, best_text, *failures, f"{seconds:.3f}"])
+
+
+def write_scenarios_csv(file, histories):
+    """Writes the score of the best robot of each run in each scenario of its experiment; one line for each."""
+    with open(file, "w", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(["experiment", "seed", "scenario", "score"])
+        for variant, runs in histories.items():
+            for seed, run in enumerate(runs, 1):
+                writer.writerows([variant.name, seed, *score] for score in run.scenarios.items())

@@ -59,10 +59,10 @@ class StressMeasure {
 
   /// Returns the chosen quantity of every spring, N or J.
   std::vector<double> of(const DevoContext& context) const {
-    const std::span<const double> record = by_ == "mean-force" ? context.stress
-                                           : by_ == "peak"     ? context.peak_force
-                                           : by_ == "work"     ? context.muscle_work
-                                                               : context.tension;
+    const RequestedRecord& record = by_ == "mean-force" ? context.stress
+                                    : by_ == "peak"     ? context.peak_force
+                                    : by_ == "work"     ? context.muscle_work
+                                                        : context.tension;
     std::vector<double> stress(record.begin(), record.end());
     if (by_ == "compression")
       for (double& value : stress) value = -value;

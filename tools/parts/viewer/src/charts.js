@@ -1,17 +1,28 @@
 // The charts of a report.
 import uPlot from "uplot";
 import { element, short, style } from "./elements.js";
+import { age, directionOf, listed, measuresOf, objectivesOf, own, scoreChooser, titled } from "./scores.js";
 
 const height = 250;
 const nothing = "Nothing to show: no individual has ended with a fitness.";
 
-/** Returns the Pareto front of low age and good fitness, sorted by age. */
-export function paretoFront(population, maximise) {
-  const better = (a, b) => (maximise ? a > b : a < b);
-  const sorted = [...population].sort((a, b) => a.age - b.age || (better(a.values[0], b.values[0]) ? -1 : 1));
+/** Returns the Pareto front of points {x, y}, sorted by x. High values are good where a direction is 1, and low ones
+*  where it is -1. */
+function paretoFront(points, xBetter, yBetter) {
+  const sorted = [...points].sort((a, b) => xBetter * (b.x - a.x) || yBetter * (b.y - a.y));
   const front = [];
-  for (const one of sorted) if (front.length === 0 || better(one.values[0], front.at(-1).values[0])) front.push(one);
-  return front;
+  for (const one of sorted) if (front.length === 0 || yBetter * (one.y - front.at(-1).y) > 0) front.push(one);
+  return front.sort((a, b) => a.x - b.x);
+}
+
+/** Returns points sorted by x. A chart has one value for each x, but several points can have the same x. Such points are
+*  moved apart by an invisible distance. */
+function apart(points) {
+  const sorted = points.map(({ x, y }) => ({ x, y })).sort((a, b) => a.x - b.x);
+  const [low, high] = [sorted[0]?.x ?? 0, sorted.at(-1)?.x ?? 0];
+  const step = Math.max(1e-9 * (high - low), 4 * Number.EPSILON * Math.max(-low, high)) || 1e-9;
+  for (let i = 1; i < sorted.length; ++i) sorted[i].x = Math.max(sorted[i].x, sorted[i - 1].x + step);
+  return sorted;
 }
 
 /** Merges series with different x values into columns over a common list of x values; null where a series has no
@@ -41,21 +52,40 @@ const line = (name, stroke, dash) => ({
 const runColour = (index) => style("--series").split(/\s+/)[index % style("--series").split(/\s+/).length];
 const runName = (run, runs) => (runs.length > 1 ? `${run.label} ` : "");
 
-/** A figure with a chart that fills its width. `describe` returns the data, the series, the names of the axes and
-*  options. */
+/** A figure with a chart that fills its width. `describe` returns the data, the series, the names of the axes, options
+*  and, if it depends on the scores chosen, the title. It is given one score of each of the `choices`, {label, scores, first}, which the user can change if there are
+*  several scores. */
 class Chart {
-  constructor(name, title, describe) {
+  constructor(name, title, describe, choices = []) {
     this.name = name;
-    this.describe = describe;
+    this.chosen = choices.map(({ first }) => first);
+    this.describe = () => describe(...this.chosen);
+    this.title = title;
+    this.caption = element("figcaption", { textContent: title });
     this.box = element("div", { className: "plot" });
-    this.root = element("figure", {}, element("figcaption", { textContent: title }), this.box);
+    const choosers = choices.flatMap(({ label, scores, first }, i) =>
+      scores.length > 1 ? [scoreChooser(label, scores, first, (score) => this.#choose(i, score))] : [],
+    );
+    this.root = element(
+      "figure",
+      {},
+      this.caption,
+      choosers.length > 0 ? element("div", { className: "choosers" }, ...choosers) : null,
+      this.box,
+    );
     new ResizeObserver(() => this.plot?.setSize({ width: this.box.clientWidth, height })).observe(this.box);
+  }
+
+  #choose(i, score) {
+    this.chosen[i] = score;
+    this.draw();
   }
 
   draw() {
     this.plot?.destroy();
     this.plot = undefined;
-    const { data, series, x, y, wholeX, options } = this.describe();
+    const { title, data, series, x, y, wholeX, options } = this.describe();
+    this.caption.textContent = title ?? this.title;
     this.data = data;
     const isEmpty = data.slice(1).every((column) => column.every((value) => value === null));
     this.box.replaceChildren(...(isEmpty ? [element("p", { className: "note", textContent: nothing })] : []));
@@ -89,10 +119,11 @@ class Chart {
 }
 
 function progress(runs, name, title, x, xOf) {
-  return new Chart(name, title, () => {
+  const objectives = objectivesOf(runs);
+  const describe = (objective) => {
     const all = runs.flatMap((run, index) => {
       const xs = xOf(run.generations);
-      const of = (key) => ({ x: xs, y: run.generations.map((g) => g[key]) });
+      const of = (key) => ({ x: xs, y: run.generations.map((g) => own(g.objectives, objective.name)?.[key] ?? null) });
       const colours = runs.length > 1 ? [runColour(index), runColour(index)] : [runColour(0), runColour(1)];
       return [
         [of("best"), line(`${runName(run, runs)}best`, colours[0])],
@@ -103,56 +134,63 @@ function progress(runs, name, title, x, xOf) {
       data: joined(all.map(([values]) => values)),
       series: all.map(([, series]) => series),
       x,
-      y: objectiveText(runs),
+      y: axisText(objective),
     };
-  });
+  };
+  return new Chart(name, title, describe, [{ label: "Objective", scores: objectives, first: objectives[0] }]);
 }
 
-const objectiveText = (runs) =>
-  [...new Set(runs.map(({ objectives: [first] }) => `${first.name} (${first.unit})`))].join(", ");
+/** Returns the name of an axis. */
+const axisText = (score) => listed(titled(score), directionOf(score));
 
 function cumulative(numbers) {
   let sum = 0;
   return numbers.map((number) => (sum += number));
 }
 
-function agesAndFitness(runs) {
-  return new Chart("ages", "Age and fitness of the living, and the front of the best", () => {
-    const all = runs.flatMap((run, index) => {
-      const front = paretoFront(run.population, run.objectives[0].maximise);
-      const dots = {
-        stroke: undefined,
-        fill: runColour(index),
-        points: { show: true, size: 7, fill: runColour(index), stroke: "transparent" },
-        paths: () => null,
-      };
-      // A chart has one value for each x, but several individuals can have the same age. Such individuals are moved
-      // apart by an invisible distance.
-      const seen = new Map();
-      const x = run.population.map(({ age }) => {
-        const times = seen.get(age) ?? 0;
-        seen.set(age, times + 1);
-        return age + times * 1e-7;
-      });
-      return [
-        [
-          { x, y: run.population.map(({ values }) => values[0]) },
-          { label: `${runName(run, runs)}individual`, value: shown, ...dots },
-        ],
-        [
-          { x: front.map(({ age }) => age + 1e-8), y: front.map(({ values }) => values[0]) },
-          { ...line(`${runName(run, runs)}front`, runColour(index)), paths: uPlot.paths.stepped({ align: 1 }) },
-        ],
-      ];
-    });
+/** The living as points, with a choice of what the axes show. There is a front where both axes say what is better. */
+function living(runs) {
+  const objectives = objectivesOf(runs);
+  const scores = [...objectives, ...measuresOf(runs)];
+  const all = [age, ...scores];
+  const describe = (x, y) => {
+    const columns = runs.flatMap((run, index) => livingOf(run, x, y, runColour(index), runName(run, runs)));
     return {
-      data: joined(all.map(([values]) => values)),
-      series: all.map(([, series]) => series),
-      x: "age (generations)",
-      wholeX: true,
-      y: objectiveText(runs),
+      title: scores.length > 1 ? `The living${hasFront(x, y) ? ", and the front of the best" : ""}` : undefined,
+      data: joined(columns.map(([values]) => values)),
+      series: columns.map(([, series]) => series),
+      x: axisText(x),
+      wholeX: x === age,
+      y: axisText(y),
     };
-  });
+  };
+  const choices = [
+    { label: "x axis", scores: scores.length > 1 ? all : [age], first: age },
+    { label: "y axis", scores: scores.length > 1 ? all : scores, first: objectives[0] },
+  ];
+  return new Chart("ages", "Age and fitness of the living, and the front of the best", describe, choices);
+}
+
+const hasFront = (x, y) => x.better !== 0 && y.better !== 0;
+
+/** Returns the columns and series of one run: its individuals, and their front if there is one. */
+function livingOf(run, x, y, colour, name) {
+  const points = run.population
+    .map((individual) => ({ x: x.of(individual), y: y.of(individual) }))
+    .filter((point) => Number.isFinite(point.x) && Number.isFinite(point.y));
+  const column = (list) => ({ x: list.map((point) => point.x), y: list.map((point) => point.y) });
+  const dots = {
+    label: `${name}individual`,
+    value: shown,
+    fill: colour,
+    points: { show: true, size: 7, fill: colour, stroke: "transparent" },
+    paths: () => null,
+  };
+  const individuals = [column(apart(points)), dots];
+  if (!hasFront(x, y)) return [individuals];
+  const front = paretoFront(points, x.better, y.better);
+  const steps = uPlot.paths.stepped({ align: x.better < 0 ? 1 : -1 });
+  return [individuals, [column(front), { ...line(`${name}front`, colour), paths: steps }]];
 }
 
 /** The status of the evaluations of each generation, as stacked shares. */
@@ -226,7 +264,7 @@ export class Charts {
       progress(runs, "springs", "Fitness over springs simulated", "spring evaluations", (g) =>
         cumulative(g.map((s) => s.spring_evaluations)),
       ),
-      agesAndFitness(runs),
+      living(runs),
     ];
     const ends = runs.map((run) => statuses(run, titleOf("How evaluations ended", run)));
     this.list = [...shared, ...ends];

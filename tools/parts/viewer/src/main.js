@@ -2,9 +2,11 @@
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
 import { Charts } from "./charts.js";
+import { readPalette } from "./colours.js";
 import { element, short } from "./elements.js";
 import { Gallery } from "./gallery.js";
-import { readPalette } from "./colours.js";
+import { directionOf, hasUnit, listed, own, quantityText } from "./scores.js";
+import { robotTable, TestTable } from "./tables.js";
 import { Viewer } from "./viewer.js";
 
 const data = JSON.parse(document.getElementById("data").textContent);
@@ -12,17 +14,23 @@ const { runs } = data;
 const isGallery = data.kind === "gallery";
 runs.forEach((run) => (run.label = run.folder ? `${run.folder.split("/").filter(Boolean).at(-1)}` : run.experiment));
 
-const objectiveOf = (run, robot) => {
-  const value = robot.objectives?.[run.objectives?.[0].name];
-  return value === undefined ? robot.status : `${short(value)} ${run.objectives[0].unit}`;
+/** Returns the objectives of a robot with their units and, if there are several, their names; otherwise its status. */
+const scoreText = (run, robot) => {
+  const known = (run.objectives ?? []).filter(({ name }) => own(robot.objectives, name) !== undefined);
+  const named = (objective) => (known.length > 1 ? `${objective.name} ` : "");
+  const texts = known.map((objective) => named(objective) + quantityText(robot.objectives[objective.name], objective));
+  return texts.length > 0 ? texts.join(", ") : robot.status;
 };
-const labelOf = (run, robot) => {
+const nameOf = (run, robot) => {
   const whose = runs.length > 1 ? `${run.label}: ` : "";
-  return isGallery
-    ? `Robot ${robot.individual}`
-    : `${whose}${robot.role}, individual ${robot.individual}, ${objectiveOf(run, robot)}`;
+  return isGallery ? `Robot ${robot.individual}` : `${whose}${robot.role}, individual ${robot.individual}`;
 };
-const robots = runs.flatMap((run) => run.robots.map((robot) => ({ run, robot, label: labelOf(run, robot) })));
+const robots = runs.flatMap((run) =>
+  run.robots.map((robot) => {
+    const name = nameOf(run, robot);
+    return { run, robot, name, label: isGallery ? name : `${name}, ${scoreText(run, robot)}` };
+  }),
+);
 
 /** Formats a share in percent, which is shown as 100 only if it is exactly 100. */
 const share = (part, all) => (part === all ? "100" : Math.min(99.9, (100 * part) / all).toFixed(1));
@@ -35,7 +43,6 @@ function facts(run) {
       element("dt", { textContent: label }),
       element("dd", {}, element("b", { textContent: value }), note ? element("span", { textContent: note }) : null),
     );
-  const [objective] = run.objectives;
   const all = Object.values(run.statuses).reduce((sum, n) => sum + n, 0);
   const springs = run.generations.reduce((sum, g) => sum + g.spring_evaluations, 0);
   const marks = run.best?.verification?.marks;
@@ -43,7 +50,9 @@ function facts(run) {
     "dl",
     { className: "facts" },
     runs.length > 1 ? fact("Run", run.label, `${run.experiment}, seed ${run.seed}`) : null,
-    fact(`Best ${objective.name}`, short(run.best?.objectives[objective.name]), objective.unit),
+    ...run.objectives.map((o) =>
+      fact(`Best ${o.name}`, short(o.best?.value), listed(hasUnit(o.unit) ? o.unit : "", directionOf(o))),
+    ),
     fact(
       "Evaluations",
       run.evaluations.toLocaleString("en"),
@@ -78,70 +87,6 @@ function header() {
   return element("header", {}, element("h1", { textContent: title }), element("p", { textContent: subtitle }));
 }
 
-function robotTable(viewer) {
-  const [{ objectives }] = runs;
-  const names = objectives.map((o) => o.name);
-  const cell = (text) => element("td", { textContent: text });
-  const rows = robots.map(({ run, robot }, i) =>
-    element(
-      "tr",
-      {},
-      element(
-        "td",
-        {},
-        element("button", {
-          type: "button",
-          textContent: robot.role,
-          onclick: () => (viewer.show(i), viewer.root.scrollIntoView({ behavior: "smooth" })),
-        }),
-      ),
-      ...(runs.length > 1 ? [cell(run.label)] : []),
-      cell(String(robot.individual)),
-      ...names.map((name, k) =>
-        cell(name in robot.objectives ? `${short(robot.objectives[name])}${again(robot, name, k)}` : robot.status),
-      ),
-      cell(String(robot.generation)),
-      cell(String(robot.age)),
-      cell(robot.made_by),
-      cell(robot.ancestry.length > 0 ? robot.ancestry.join(" ‹ ") : "none"),
-    ),
-  );
-  const heads = [
-    "",
-    ...(runs.length > 1 ? ["Run"] : []),
-    "Individual",
-    ...objectives.map((o) => `${o.name} (${o.unit})`),
-    "Born",
-    "Age",
-    "Made by",
-    "First parents",
-  ];
-  return element(
-    "section",
-    { className: "table" },
-    element("h2", { textContent: "Robots shown" }),
-    element(
-      "div",
-      { className: "scroll" },
-      element(
-        "table",
-        {},
-        element("thead", {}, element("tr", {}, ...heads.map((text) => element("th", { textContent: text })))),
-        element("tbody", {}, ...rows),
-      ),
-    ),
-  );
-}
-
-/** Returns a note if the fitness in the life shown differs from that in the archive by more than 1 %, for example
- *  because it was simulated on another device. */
-function again(robot, name, k) {
-  const shown = robot.again[k];
-  return shown === undefined || Math.abs(shown - robot.objectives[name]) <= 0.01 * Math.abs(robot.objectives[name])
-    ? ""
-    : ` (as shown: ${short(shown)})`;
-}
-
 const experiments = () =>
   element(
     "section",
@@ -168,7 +113,9 @@ async function begin() {
   const page = { data, film: location.hash === "#film" };
   if (robots.length > 0) {
     page.viewer = new Viewer(robots);
-    main.append(page.viewer.root);
+    const tests = new TestTable(robots);
+    page.viewer.onshow = (shown) => tests.show(shown);
+    main.append(page.viewer.root, tests.root);
     const first = robots.findIndex(({ robot }) => robot.film.shots.length > 0);
     await page.viewer.show(Math.max(0, first));
   }
@@ -180,7 +127,7 @@ async function begin() {
     page.charts = new Charts(runs);
     main.append(page.charts.root);
     page.charts.draw();
-    if (page.viewer) main.append(robotTable(page.viewer));
+    if (page.viewer) main.append(robotTable(runs, robots, page.viewer));
   }
   main.append(experiments(), element("footer", { textContent: `evodevo ${data.evodevo}` }));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {

@@ -22,6 +22,7 @@ export class Viewer {
     this.speed = 1;
     this.follow = true;
     this.mode = "material";
+    this.onshow = () => {}; // called with the indices of the robots shown
     this.works = robots.some(({ robot }) => robot.film.most_stress > 0); // false if no robot was simulated
     this.#build();
     this.#makeRenderer();
@@ -224,6 +225,7 @@ export class Viewer {
     this.#frameBody();
     this.#explain();
     this.seek(this.begin);
+    this.onshow(indices);
   }
 
   async #life(index) {
@@ -378,7 +380,7 @@ export class Viewer {
     const name = this.robots[this.chosen.filter((i) => i !== undefined)[k]].label;
     if (life.shots.length === 0) return [name, `${life.robot.status}: ${life.robot.reason}`];
     const shot = life.shots[life.shotAt(this.time)];
-    const measured = life.shots.find(({ name: n }) => n === "measured");
+    const measured = life.shots.find(({ name: n }) => n.startsWith("measured")); // and where, if there are scenarios
     const gone = shot.gone.length;
     const { springs, masses } = shot;
     const text = [shot.name, springs.length > 0 ? `${springs.length} springs` : `${masses.length} points`];

@@ -1,0 +1,123 @@
+// The numbers of a run with several objectives: the progress in each, the best of each, and the scores of the living.
+#include "report/run_json.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "evolution/evolution.hpp"
+#include "report/report.hpp"
+#include "support/experiments.hpp"
+#include "support/scratch.hpp"
+
+namespace evodevo {
+namespace {
+
+using ::testing::ElementsAre;
+using Json = nlohmann::ordered_json;
+
+/// A finished run with the objectives distance and actuation-work, of which the second is minimised, a descriptor, and
+/// two scenarios.
+class RunJson : public ::testing::Test {
+ protected:
+  static inline const std::string text = testing::small_experiment + R"(
+[[fitness]]
+name = "descriptor"
+what = "height"
+label = "stature"
+settle = 0.05
+window = 0.1
+
+[[scenario]]
+name = "flat"
+
+[[scenario]]
+name = "hurt"
+damage = 0.1
+repeat = 2
+)";
+
+  void SetUp() override {
+    const std::atomic<bool> stop = false;
+    evolve(experiment_, *simulator_, archive_, stop,
+           Observer{.generation_done = [&](const Summary&) { population_.push_back(archive_.population()); }});
+  }
+
+  /// The scores in an objective of the individuals alive after a generation.
+  std::vector<double> living(std::size_t generation, std::size_t objective) const {
+    std::vector<double> scores;
+    for (const Individual& individual : population_.at(generation))
+      if (individual.result.status == Status::ok) scores.push_back(individual.result.objectives.at(objective));
+    std::sort(scores.begin(), scores.end());
+    return scores;
+  }
+
+  testing::Scratch scratch_;
+  Experiment experiment_ = testing::read(text);
+  std::unique_ptr<Simulator> simulator_ = make_cpu_simulator(experiment_.scene, experiment_.stepping, 1);
+  Archive archive_ = Archive::create(scratch_ / "run", experiment_, simulator_->device());
+  std::vector<std::vector<Individual>> population_;  ///< after each generation
+};
+
+double median(const std::vector<double>& sorted) {
+  const std::size_t n = sorted.size();
+  return n % 2 == 1 ? sorted[n / 2] : (sorted[n / 2 - 1] + sorted[n / 2]) / 2;
+}
+
+TEST_F(RunJson, HasTheProgressOfTheLivingInEachObjective) {
+  const Json generations = run_json(archive_, experiment_)["generations"];
+  ASSERT_EQ(generations.size(), population_.size());
+  ASSERT_GT(generations.size(), 2u);
+  for (std::size_t g = 0; g < generations.size(); ++g) {
+    const auto &distance = generations[g]["objectives"]["distance"],
+               &work = generations[g]["objectives"]["actuation-work"];
+    EXPECT_EQ(distance["best"], generations[g]["best"]);
+    EXPECT_EQ(distance["best"], living(g, 0).back());
+    EXPECT_EQ(distance["median"], median(living(g, 0)));
+    EXPECT_EQ(work["best"], living(g, 1).front()) << "the least";
+    EXPECT_EQ(work["median"], median(living(g, 1)));
+  }
+}
+
+TEST_F(RunJson, HasTheBestOfEachObjective) {
+  const Json objectives = run_json(archive_, experiment_)["objectives"];
+  std::vector<double> distances, works;
+  for (std::uint32_t id = 0; id < 24; ++id)
+    if (const auto individual = archive_.known_individual(id); individual.result.status == Status::ok) {
+      distances.push_back(individual.result.objectives[0]);
+      works.push_back(individual.result.objectives[1]);
+    }
+  EXPECT_EQ(objectives[0]["best"]["value"], *std::max_element(distances.begin(), distances.end()));
+  EXPECT_EQ(objectives[1]["best"]["value"], *std::min_element(works.begin(), works.end()));
+  const auto best = objectives[1]["best"]["individual"].get<std::uint32_t>();
+  EXPECT_EQ(archive_.known_individual(best).result.objectives[1], objectives[1]["best"]["value"]);
+}
+
+TEST_F(RunJson, NamesTheScoresThatAreNotObjectives) {
+  const Json measures = run_json(archive_, experiment_)["measures"];
+  ASSERT_EQ(measures.size(), 1u);
+  EXPECT_EQ(measures[0].dump(), R"({"name":"stature","unit":"m","role":"descriptor"})");
+}
+
+TEST_F(RunJson, AReportHasTheScoresOfTheLivingAndTheBestInEachObjective) {
+  const Json run = reported_run(archive_, experiment_, *simulator_, {.best = 1, .ancestors = 0}, 1'000'000, 1);
+  EXPECT_EQ(run["filmed_scenario"], "hurt");
+  ASSERT_EQ(run["population"].size(), living(population_.size() - 1, 0).size());
+  for (const Json& one : run["population"]) {
+    const auto id = one["id"].get<std::uint32_t>();
+    EXPECT_EQ(one["objectives"]["actuation-work"], archive_.known_individual(id).result.objectives[1]);
+    EXPECT_EQ(one["measures"]["stature"], archive_.measures(id)[0].value);
+  }
+  std::vector<std::string> roles;
+  std::vector<Json> shown;
+  for (const Json& robot : run["robots"]) {
+    roles.push_back(robot["role"]);
+    shown.push_back(robot["individual"]);
+  }
+  EXPECT_THAT(roles, ElementsAre("best in distance", "best in actuation-work"));
+  EXPECT_THAT(shown, ElementsAre(archive_.best(1).at(0), run["objectives"][1]["best"]["individual"]));
+}
+
+}  // namespace
+}  // namespace evodevo

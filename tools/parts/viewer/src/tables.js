@@ -1,0 +1,136 @@
+// The tables of a report: the robots, and the scores of the robots shown in each test.
+import { element, short } from "./elements.js";
+import { directionOf, listed, measuresOf, objectivesOf, own, titled } from "./scores.js";
+
+const cell = (text, tag = "td") => element(tag, { textContent: text });
+
+function table(name, title, heads, rows) {
+  return element(
+    "section",
+    { className: `table ${name}` },
+    element("h2", { textContent: title }),
+    element(
+      "div",
+      { className: "scroll" },
+      element("table", {}, element("thead", {}, ...heads), element("tbody", {}, ...rows)),
+    ),
+  );
+}
+
+/** Lists all robots of the page with their scores. */
+export function robotTable(runs, robots, viewer) {
+  const objectives = objectivesOf(runs);
+  const measures = measuresOf(runs);
+  const rows = robots.map(({ run, robot }, i) =>
+    element(
+      "tr",
+      {},
+      element(
+        "td",
+        {},
+        element("button", {
+          type: "button",
+          textContent: robot.role,
+          onclick: () => (viewer.show(i), viewer.root.scrollIntoView({ behavior: "smooth" })),
+        }),
+      ),
+      ...(runs.length > 1 ? [cell(run.label)] : []),
+      cell(String(robot.individual)),
+      ...objectives.map((objective) => cell(scoreText(robot, objective, again(run, robot, objective)))),
+      ...measures.map((measure) => cell(scoreText(robot, measure, ""))),
+      cell(String(robot.generation)),
+      cell(String(robot.age)),
+      cell(robot.made_by),
+      cell(robot.ancestry.length > 0 ? robot.ancestry.join(" ‹ ") : "none"),
+    ),
+  );
+  const heads = [
+    "",
+    ...(runs.length > 1 ? ["Run"] : []),
+    "Individual",
+    ...[...objectives, ...measures].map(titled),
+    "Born",
+    "Age",
+    "Made by",
+    "First parents",
+  ];
+  return table("robots", "Robots shown", [element("tr", {}, ...heads.map((text) => cell(text, "th")))], rows);
+}
+
+function scoreText(robot, score, note) {
+  const value = score.of(robot);
+  if (value !== undefined) return short(value) + note;
+  return robot.status === "ok" ? "–" : robot.status;
+}
+
+/** Returns a note if an objective in the life shown differs from that in the archive. If the robot was tested in
+ *  scenarios, the life shown is that of one test, and its note stands there. */
+function again(run, robot, objective) {
+  return run.filmed_scenario ? "" : asShown(run, robot, objective.name, objective.of(robot));
+}
+
+/** Returns a note if a score in the life shown differs from `value`, that in the archive, by more than 1 %, for example
+ *  because it was simulated on another device. */
+function asShown(run, robot, objective, value) {
+  const shown = robot.again[run.objectives.findIndex(({ name }) => name === objective)];
+  return shown === undefined || Math.abs(shown - value) <= 0.01 * Math.abs(value) ? "" : ` (as shown: ${short(shown)})`;
+}
+
+/** Returns the name of a test: that of its scenario and, if the scenario is repeated, the number of the repeat. */
+function testName({ scenario, repeat }, tests) {
+  const isRepeated = tests.some((other) => other.scenario === scenario && other.repeat > 1);
+  return isRepeated ? `${scenario}, repeat ${repeat}` : scenario;
+}
+
+/** The scores in each test of the robots in the viewer; nothing if they were not tested in scenarios. */
+export class TestTable {
+  constructor(robots) {
+    this.robots = robots;
+    this.root = element("div");
+  }
+
+  /** Shows the tests of the robots with these indices. */
+  show(indices) {
+    const tested = indices.map((i) => this.robots[i]).filter(({ robot }) => robot.scenarios?.length > 0);
+    this.root.replaceChildren(...(tested.length > 0 ? [table("tests", "Scores by test", heads(tested), rows(tested))] : []));
+  }
+}
+
+function heads(tested) {
+  const spans = tested.map(({ run, name }) =>
+    element("th", { textContent: name, colSpan: run.objectives.length, scope: "colgroup" }),
+  );
+  const names = tested.flatMap(({ run }) =>
+    run.objectives.map((o) => cell(listed(titled(o), directionOf(o)), "th")),
+  );
+  return [element("tr", {}, cell("", "th"), ...spans), element("tr", {}, cell("Test", "th"), ...names)];
+}
+
+function rows(tested) {
+  const names = [
+    ...new Set(tested.flatMap(({ robot }) => robot.scenarios.map((test) => testName(test, robot.scenarios)))),
+  ];
+  const testOf = (robot, name) => robot.scenarios.find((test) => testName(test, robot.scenarios) === name);
+  const isFilmed = ({ run, robot }, name) => {
+    const test = testOf(robot, name);
+    return test?.scenario === run.filmed_scenario && test?.repeat === 1;
+  };
+  const scoreIn = (one, name, objective) => {
+    const value = own(testOf(one.robot, name)?.objectives, objective);
+    return short(value) + (isFilmed(one, name) ? asShown(one.run, one.robot, objective, value) : "");
+  };
+  const row = (name, note, textOf) =>
+    element(
+      "tr",
+      {},
+      element("th", { scope: "row" }, name, note ? element("span", { textContent: note }) : null),
+      ...tested.flatMap((one) => one.run.objectives.map((o) => cell(textOf(one, o.name)))),
+    );
+  return [
+    ...names.map((name) => {
+      const note = tested.some((one) => isFilmed(one, name)) ? "in the film" : "";
+      return row(name, note, (one, objective) => scoreIn(one, name, objective));
+    }),
+    row("combined", "", ({ robot }, objective) => short(own(robot.objectives, objective))),
+  ];
+}
