@@ -105,6 +105,12 @@ Json tests_json(const std::vector<ArchivedTest>& tests) {
   return list;
 }
 
+Json notes_json(const Archive& archive, std::uint32_t id) {
+  Json notes = Json::object();
+  for (const ArchivedNote& note : archive.notes(id)) notes[note.name] = note.value;
+  return notes;
+}
+
 }  // namespace
 
 std::int64_t clones(const std::vector<Summary>& generations) {
@@ -154,8 +160,6 @@ Json individual_json(const Archive& archive, const ArchivedIndividual& individua
   const std::vector<Objective> objectives = archive.objectives();
   const auto line = ancestry(archive, individual.id);
   const std::vector<Summary> generations = archive.generations();
-  Json notes = Json::object();
-  for (const ArchivedNote& note : archive.notes(individual.id)) notes[note.name] = note.value;
   Json ancestors = Json::array();
   for (std::size_t i = 1; i < line.size(); ++i) ancestors.push_back(line[i].id);
   const auto verification = archive.verification(individual.id);
@@ -165,7 +169,7 @@ Json individual_json(const Archive& archive, const ArchivedIndividual& individua
           {"status", name(individual.result.status)},
           {"objectives", objectives_json(objectives, individual.result)},
           {"measures", measures_json(archive, individual.id)},
-          {"notes", std::move(notes)},
+          {"notes", notes_json(archive, individual.id)},
           {"scenarios", tests_json(archive.tests(individual.id))},
           {"parents", individual.parents},
           {"made_by", individual.made_by},

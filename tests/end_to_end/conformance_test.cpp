@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"order", "order", "failed", {"order of birth"}},
         Broken{"elite", "elite", "failed", {"best first score"}}, Broken{"failed", "failed", "failed", {"failed row"}},
         Broken{"generations", "generations", "failed", {"survive()", "different"}},
-        Broken{"generations_note", "generations", "failed", {"finite", "notes()", "= inf"}},
+        Broken{"generations_note", "generations", "failed", {"finite", "notes()", "infinity"}},
         Broken{"generations_children", "generations", "failed", {"gene 0 = 1000"}},
         Broken{"hidden_state", "hidden-state", "failed", {"input ", "calls"}},
         Broken{"surroundings", "surroundings", "failed", {"the locale", "calls"}},

@@ -4,6 +4,7 @@
 #include "evolution/archive/archive.hpp"
 #include "evolution/archive/database.hpp"
 #include "evolution/archive/genes.hpp"
+#include "evolution/archive/remembered.hpp"
 
 namespace evodevo {
 namespace {
@@ -40,15 +41,6 @@ void insert_newborns(const RunDatabase& run, const std::vector<Individual>& newb
       insert_test.execute(individual.id, static_cast<std::uint32_t>(test.scenario), test.repeat,
                           static_cast<std::uint32_t>(test.objective), test.value);
   }
-}
-
-void write_remembered(const RunDatabase& run, const Remembered& remembered, std::uint32_t generation) {
-  Statement insert(run, "notes", "INSERT OR REPLACE INTO notes VALUES(?, ?, ?)");
-  for (const NoteOf& note : remembered.notes) insert.execute(note.individual, note.title, note.value);
-  Statement(run, "memory", "DELETE FROM memory").execute();
-  if (remembered.memory.empty()) return;
-  const std::string_view bytes(reinterpret_cast<const char*>(remembered.memory.data()), remembered.memory.size());
-  Statement(run, "memory", "INSERT INTO memory VALUES(?, ?)").execute(generation, bytes);
 }
 
 }  // namespace

@@ -1,0 +1,12 @@
+// What the selection operator remembers and notes, in the archive.
+#pragma once
+
+#include "evolution/archive/database.hpp"
+#include "evolution/population.hpp"
+
+namespace evodevo {
+
+/// Writes the notes of a generation, and its memory in place of that of the generation before.
+void write_remembered(const RunDatabase& run, const Remembered& remembered, std::uint32_t generation);
+
+}  // namespace evodevo
