@@ -387,10 +387,12 @@ TEST(Configuration, MaterialsOfOnesOwn) {
 TEST(Configuration, MissingParts) {
   EXPECT_THAT(complaint(""), testing::at_place("test.toml:1:1: experiment: ", "missing", "[experiment]"));
   EXPECT_THAT(complaint(with("name = \"voxel\"", "")), testing::at_place("test.toml:8:1: encoding.name: ", "missing"));
-  EXPECT_THAT(complaint("[experiment]\n[encoding]\nname = 'voxel'\n"),
+  const std::string begun = "[experiment]\n[encoding]\nname = 'voxel'\n";
+  EXPECT_THAT(complaint(begun), testing::at_place("test.toml:1:1: fitness: ", "missing", "[[fitness]]"));
+  const std::string scored = begun + "[[fitness]]\nname = 'distance'\n";
+  EXPECT_THAT(complaint(scored), testing::at_place("test.toml:1:1: selection: ", "missing", "[selection]"));
+  EXPECT_THAT(complaint(scored + "[selection]\nname = 'elitist'\n"),
               testing::at_place("test.toml:1:1: mutation: ", "missing", "[[mutation]]", "[[crossover]]"));
-  EXPECT_THAT(complaint("[experiment]\n[encoding]\nname = 'voxel'\n[[mutation]]\nname = 'reset-weight'\n"),
-              testing::at_place("test.toml:1:1: fitness: ", "missing", "[[fitness]]"));
 }
 
 TEST(Configuration, ItsOwnOperatorsComeBeforeThoseBuiltIn) {
@@ -459,9 +461,10 @@ TEST(Configuration, Overrides) {
 
   EXPECT_THAT(complaint(small_experiment, {{"experiment.population", "-1", "--set experiment.population=-1"}}),
               testing::at_place("--set experiment.population=-1: experiment.population = -1: ", "1 to 1000000"));
-  EXPECT_THAT(complaint(small_experiment, {{"experiment.size", "3", "--set experiment.size=3"}}),
-              testing::at_place("--set experiment.size=3: experiment.size: ", "[experiment]",
-                                "seed, evaluations, spring_evaluations, population, random_individuals, verify"));
+  EXPECT_THAT(
+      complaint(small_experiment, {{"experiment.size", "3", "--set experiment.size=3"}}),
+      testing::at_place("--set experiment.size=3: experiment.size: ", "[experiment]",
+                        "seed, evaluations, spring_evaluations, population, children, random_individuals, verify"));
   EXPECT_THAT(complaint(small_experiment, {{"fitness.7.window", "3", "--set fitness.7.window=3"}}),
               testing::at_place("--set fitness.7.window=3: fitness.7.window: ", "item 7"));
   EXPECT_THAT(complaint(small_experiment, {{"fitness.0", "3", "--set fitness.0=3"}}),

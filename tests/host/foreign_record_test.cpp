@@ -171,7 +171,7 @@ TEST_F(ForeignRecord, WhatDoesNotFitTogetherIsNamed) {
       {"INSERT INTO memory VALUES(0, x'00')", "memory.generation"},
       {"INSERT INTO note_titles VALUES(0, 'novelty', 'm')", "novelty in m"},
       {"INSERT INTO notes VALUES(999, 0, 1)", "notes.individual"},
-      {"INSERT INTO measured VALUES(0, 0, 1)", "measured"},
+      {"INSERT INTO measured SELECT id, 0, 1 FROM individuals WHERE died IS NULL", "1 measures"},
   };
   for (const auto& [sql, named] : cases) {
     ASSERT_TRUE(change(sql)) << sql;

@@ -55,7 +55,7 @@ TEST(SelectionSettings, ParentsAndSurvivorsCanHaveOperatorsOfTheirOwn) {
   EXPECT_EQ(&experiment.breeder(), experiment.parent_selection.get());
   EXPECT_THAT(experiment.call_of(Selection::kind, experiment.breeder_index()).title->whole,
               ::testing::HasSubstr("lottery"));
-  const Experiment again = read(experiment.resolved);
+  const Experiment again = testing::read(experiment.resolved);
   EXPECT_EQ(again.resolved, experiment.resolved);
   const Experiment both = read(selecting(selection));
   EXPECT_EQ(&both.breeder(), both.selection.get());
