@@ -43,7 +43,8 @@ Json filmed_run(const Archive& archive, const Experiment& experiment, const Give
 
 Json reported(const std::string& folder, const Given& given, std::size_t budget) {
   const Archive archive = Archive::read(folder);
-  Cast cast{.best = static_cast<std::size_t>(given["best"].as<std::int64_t>())};
+  Cast cast{.best = static_cast<std::size_t>(given["best"].as<std::int64_t>()),
+            .elites = static_cast<std::size_t>(given["elites"].as<std::int64_t>())};
   if (cast.best == 0) cast.best_of_others = 0;
   if (given.contains("individual"))
     for (const std::int64_t id : given["individual"].as<std::vector<std::int64_t>>())
@@ -57,6 +58,8 @@ int report(const Given& given) {
   const auto folders = given["DIR"].as<std::vector<std::string>>();
   const auto best = given["best"].as<std::int64_t>();
   if (best < 0 || best > 100) throw UsageError("--best " + std::to_string(best) + ": expected 0 to 100");
+  const auto elites = given["elites"].as<std::int64_t>();
+  if (elites < 0 || elites > 1000) throw UsageError("--elites " + std::to_string(elites) + ": expected 0 to 1000");
   const auto file = given["out"].as<std::string>();
   for (const std::string& folder : folders) refuse_to_overwrite("--out", file, files_of_run(folder));
   const std::string page = page_template();
@@ -67,7 +70,7 @@ int report(const Given& given) {
   output.write(filled);
   output.finish();
   std::cout << file << '\n';
-  say_size(file, filled.size(), "--best");
+  say_size(file, filled.size(), "--best or --elites");
   return 0;
 }
 
@@ -143,6 +146,8 @@ Command report_command() {
   Options options;
   options.add_options()("best", value<std::int64_t>("N")->default_value(3),
                         "how many of the best individuals of each run to show")(
+      "elites", value<std::int64_t>("N")->default_value(100),
+      "how many elites of the map of niches of each run to show, the best first")(
       "individual", values<std::int64_t>("ID"), "another individual of each run to show; may be repeated")(
       "out", value<std::string>("FILE")->default_value("report.html"), "the page to write");
   add_scenario_option(options, "the scenario in which the films end; default: the first");
@@ -156,7 +161,8 @@ Command report_command() {
            "the Pareto front, the experiment, and the best robots, some of their ancestors and the named "
            "individuals in 3D. For several runs, it is one page that compares them.",
            "The best robots are those with the best first objective. If there are other objectives, the page also "
-           "shows the best robot by each of them."},
+           "shows the best robot by each of them. If the experiment has descriptors, it shows the map of their niches, "
+           "whose cells open their robots."},
       .examples = {"report runs/quickstart-1 --out report.html"},
       .options = options,
       .function = report};

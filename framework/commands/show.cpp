@@ -5,13 +5,16 @@
 #include <iostream>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "commands/commands.hpp"
 #include "commands/shell/options.hpp"
 #include "evolution/archive/archive.hpp"
+#include "evolution/evolution.hpp"
 #include "experiment/toml_reader.hpp"
+#include "report/diversity.hpp"
 #include "report/lineage.hpp"
 #include "report/run_json.hpp"
 
@@ -43,6 +46,7 @@ class Report {
         objectives_(archive.objectives()),
         layout_(archive.layout()),
         generations_(archive.generations()),
+        map_(niche_map(archive)),
         last_generation_(generations_.empty() ? 0 : generations_.back().generation) {
     constexpr std::size_t narrowest = 10, of_median = 11, gap = 2;
     for (std::size_t k = 0; k < objectives_.size(); ++k) {
@@ -62,6 +66,7 @@ class Report {
     std::cout << done() << " evaluations: " << statuses.at("ok") << " ok, " << statuses.at("invalid") << " invalid, "
               << statuses.at("diverged") << " diverged; " << clones(generations_) << " of them clones\n\n";
     print_generations();
+    print_diversity();
     print_failures();
     print_best();
   }
@@ -101,6 +106,7 @@ class Report {
     if (objectives_.size() > 1) print_objective_heads();
     fmt::print(std::cout, "{:>10} {:>12}", "generation", "evaluations");
     for (const Column& column : columns_) fmt::print(std::cout, " {:>{}} {:>10}", "best", column.width, "median");
+    if (!map_.axes.empty()) fmt::print(std::cout, " {:>8} {:>10}", "coverage", "QD score");
     fmt::print(std::cout, " {:>9} {:>8} {:>7}\n", "diverged", "invalid", "clones");
     const std::size_t stride = (generations_.size() + generations_shown - 1) / generations_shown;
     for (std::size_t i = 0; i < generations_.size(); ++i)
@@ -120,7 +126,36 @@ class Report {
     for (const Column& column : columns_)
       fmt::print(std::cout, " {:>{}} {:>10}", number(column.progress[i].best), column.width,
                  number(column.progress[i].median));
+    if (!map_.axes.empty()) {
+      const MapState& state = map_.history.at(i);
+      fmt::print(std::cout, " {:>8} {:>10}", percent(map_.coverage(state)), number(map_.qd_score(state)));
+    }
     fmt::print(std::cout, " {:>9} {:>8} {:>7}\n", s.diverged, s.invalid, s.clones);
+  }
+
+  /// Prints how many niches are filled, and what selection has noted about the living.
+  void print_diversity() const {
+    if (generations_.empty()) return;
+    std::vector<std::string> lines;
+    if (!map_.axes.empty()) {
+      std::vector<std::string> axes;
+      for (const Objective& axis : map_.axes) axes.push_back(axis.name);
+      lines.push_back(
+          fmt::format("{} of {} niches filled, by {}", map_.elites.size(), map_.cells(), joined(axes, " and ")));
+    }
+    for (const NoteHistory& history : archive_.note_histories())
+      if (!history.living.back().empty()) lines.push_back(noted_text(history.title, history.living.back()));
+    if (!lines.empty()) std::cout << "\ndiversity\n";
+    for (const std::string& line : lines) std::cout << "  " << line << '\n';
+  }
+
+  /// Returns a text such as: species of the living: 3; or: novelty of the living: at most 0.31, median 0.2.
+  static std::string noted_text(const NoteTitle& title, const std::vector<double>& values) {
+    const std::string what = title.name + " of the living: ";
+    if (title.is_label) return what + std::to_string(std::set(values.begin(), values.end()).size());
+    const auto [greatest, median] = best_and_median(values, true);
+    return what + "at most " + short_quantity(*greatest, title.unit) + ", median " +
+           short_quantity(*median, title.unit);
   }
 
   void print_failures() const {
@@ -181,12 +216,14 @@ class Report {
     return text;
   }
 
+  static std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
   static std::string number(const std::optional<double>& value) { return value ? short_number(*value) : "-"; }
 
   const Archive& archive_;
   std::vector<Objective> objectives_;
   Layout layout_;
   std::vector<Summary> generations_;
+  NicheMap map_;
   std::uint32_t last_generation_;
   std::vector<Column> columns_;  ///< of the objectives
 };

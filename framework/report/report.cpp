@@ -7,6 +7,7 @@
 #include "evolution/evolution.hpp"
 #include "evolution/resimulation.hpp"
 #include "life/body_building.hpp"
+#include "report/diversity.hpp"
 #include "report/film_json.hpp"
 #include "report/filming.hpp"
 #include "report/lineage.hpp"
@@ -36,6 +37,8 @@ class Casting {
                objectives.size() > 1 ? " in " + objectives[k].name : "");
     for (const std::uint32_t id : cast.individuals) add(id, "chosen");
     if (!best.empty()) add_ancestors(ancestry(archive_, best.front()), cast.ancestors);
+    if (cast.elites > 0)
+      for (const std::uint32_t id : best_elites(niche_map(archive_), cast.elites)) add(id, "elite");
     return std::move(roles_);
   }
 
@@ -163,33 +166,45 @@ Json robot_json(const Archive& archive, const Actor& role, const FilmedLife& lif
   return robot;
 }
 
+constexpr std::size_t filmed_together = 16;  ///< number of robots whose films are in memory at the same time
+
+std::vector<FilmedLife> filmed(const Archive& archive, const Experiment& experiment, Simulator& simulator,
+                               std::span<const Actor> actors, std::size_t scenario) {
+  std::vector<Newborn> newborns;
+  for (const Actor& actor : actors)
+    newborns.push_back(for_resimulation(archive, experiment, actor.individual, simulator.device()));
+  return film_lives(experiment, simulator, newborns, {scenario});
+}
+
 }  // namespace
 
 Json reported_run(const Archive& archive, const Experiment& experiment, Simulator& simulator, const Cast& cast,
                   std::size_t budget, std::size_t scenario) {
-  const std::vector<Actor> roles = Casting(archive).choose(cast);
-  std::vector<Newborn> newborns;
-  for (const Actor& role : roles)
-    newborns.push_back(for_resimulation(archive, experiment, role.individual, simulator.device()));
-  const std::vector<FilmedLife> lives = film_lives(experiment, simulator, newborns, {scenario});
-
+  const std::vector<Actor> actors = Casting(archive).choose(cast);
   Json run = run_json(archive, experiment);
   run["resolved"] = archive.record("experiment");
-  run["scene"] =
-      scene_json(experiment.scenarios.empty() ? experiment.scene : experiment.scenarios[scenario].scene, lives);
   run["filmed_scenario"] = experiment.scenarios.empty() ? Json(nullptr) : Json(experiment.scenarios[scenario].name);
   run["material_names"] = experiment.context.material_names;
   run["population"] = population_json(
       archive, run["generations"].empty() ? 0 : run["generations"].back()["generation"].get<std::uint32_t>());
+  run["labels"] = labels_json(archive.note_histories());
   run["time"] = time_json(archive);
   run["robots"] = Json::array();
-  for (std::size_t i = 0; i < roles.size(); ++i) {
-    // robots share the budget evenly; what one robot does not use is left to those after it
-    const std::size_t share = budget / (roles.size() - i);
-    const Json& robot =
-        run["robots"].emplace_back(robot_json(archive, roles[i], lives[i], experiment, scenario, share));
-    budget -= std::min(budget, robot.dump().size());
+  SeenRegion region;
+  for (std::size_t first = 0; first < actors.size(); first += filmed_together) {
+    const auto group = std::span(actors).subspan(first, std::min(filmed_together, actors.size() - first));
+    const std::vector<FilmedLife> lives = filmed(archive, experiment, simulator, group, scenario);
+    region.include(lives);
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      // robots share the budget evenly; what one robot does not use is left to those after it
+      const std::size_t share = budget / (actors.size() - first - i);
+      const Json& robot =
+          run["robots"].emplace_back(robot_json(archive, group[i], lives[i], experiment, scenario, share));
+      budget -= std::min(budget, robot.dump().size());
+    }
   }
+  run["scene"] =
+      scene_json(experiment.scenarios.empty() ? experiment.scene : experiment.scenarios[scenario].scene, region);
   return run;
 }
 
@@ -204,7 +219,7 @@ Json gallery_data(const Experiment& experiment, std::size_t count) {
   Json run = {{"experiment", experiment.name},
               {"seed", experiment.seed},
               {"resolved", experiment.resolved},
-              {"scene", scene_json({}, {})},
+              {"scene", scene_json({}, SeenRegion())},
               {"material_names", experiment.context.material_names},
               {"robots", std::move(robots)}};
   return {{"kind", "gallery"}, {"evodevo", EVODEVO_VERSION}, {"runs", Json::array({std::move(run)})}};

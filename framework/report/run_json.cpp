@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "evolution/evolution.hpp"
+#include "report/diversity.hpp"
 #include "report/lineage.hpp"
 
 namespace evodevo {
@@ -60,7 +61,8 @@ bool is_verified(const Archive& archive, const Settings& settings) {
   return std::all_of(best.begin(), best.end(), [&](std::uint32_t id) { return archive.verification(id).has_value(); });
 }
 
-Json generations_json(const Archive& archive, const std::vector<Summary>& generations) {
+Json generations_json(const Archive& archive, const std::vector<Summary>& generations, const NicheMap& map,
+                      const std::vector<NoteHistory>& notes) {
   const std::vector<Objective> objectives = archive.objectives();
   std::vector<std::vector<BestAndMedian>> progress;
   for (std::size_t i = 0; i < objectives.size(); ++i) progress.push_back(progress_in(archive, generations, i));
@@ -71,11 +73,14 @@ Json generations_json(const Archive& archive, const std::vector<Summary>& genera
       const auto& [best, median] = progress[i].at(s.generation);
       of_each[objectives[i].name] = {{"best", optional_json(best)}, {"median", optional_json(median)}};
     }
+    const std::size_t i = list.size();
     list.push_back({{"generation", s.generation},
                     {"evaluations", s.evaluations},
                     {"best", optional_json(s.best)},
                     {"median", optional_json(s.median)},
                     {"objectives", std::move(of_each)},
+                    {"map", map.axes.empty() ? Json(nullptr) : state_json(map, map.history.at(i))},
+                    {"notes", notes_json(notes, i)},
                     {"diverged", s.diverged},
                     {"invalid", s.invalid},
                     {"clones", s.clones},
@@ -194,6 +199,8 @@ Json verification_json(const Verification& verification, const Objective& object
 
 Json run_json(const Archive& archive, const Settings& settings) {
   const std::vector<Summary> generations = archive.generations();
+  const NicheMap map = niche_map(archive);
+  const std::vector<NoteHistory> notes = archive.note_histories();
   Json root = {{"folder", archive.folder().string()},
                {"experiment", archive.record("name")},
                {"seed", settings.seed},
@@ -207,8 +214,10 @@ Json run_json(const Archive& archive, const Settings& settings) {
                {"failures", failures_json(archive.failures())},
                {"objectives", objectives_json(archive)},
                {"measures", measures_json(archive.measures())},
+               {"map", map_json(map)},
+               {"notes", note_titles_json(notes)},
                {"provenances", provenances_json(archive.provenances())},
-               {"generations", generations_json(archive, generations)}};
+               {"generations", generations_json(archive, generations, map, notes)}};
   const auto best = archive.best(1);
   root["best"] = best.empty() ? Json(nullptr) : individual_json(archive, archive.known_individual(best.front()));
   return root;

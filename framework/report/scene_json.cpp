@@ -17,27 +17,6 @@ constexpr double most_samples = 256;          ///< largest number of samples alo
 
 Vec3 position(const SeenPlace& p) { return {p[0], p[1], p[2]}; }
 
-/// Returns the bounding box of all positions in the films, extended horizontally by the margin, m. For a life that
-/// failed, only the first frame counts, because a diverging body may move arbitrarily far.
-Box seen_box(const std::vector<FilmedLife>& lives) {
-  std::vector<Vec3> corners;
-  double side = 0;
-  for (const FilmedLife& life : lives)
-    for (const Shot& shot : life.film)
-      for (const Frame& frame : shot.frames) {
-        const bool first = &shot == &life.film.front() && &frame == &shot.frames.front();
-        if (!first && life.result.status != Status::ok) continue;
-        std::vector<Vec3> positions;
-        std::transform(frame.positions.begin(), frame.positions.end(), std::back_inserter(positions), position);
-        const Box box = bounding_box(positions);
-        if (first) side = std::max(side, box.longest_side());
-        corners.insert(corners.end(), {box.low, box.high});
-      }
-  const Box box = bounding_box(corners);
-  const Vec3 around{margin * side, margin * side, 0};
-  return {box.low - around, box.high + around};
-}
-
 Json ground_json(const Scene& scene, const Box& box) {
   const double width = box.high.x - box.low.x, depth = box.high.y - box.low.y;
   const double spacing =
@@ -63,12 +42,32 @@ Json ground_json(const Scene& scene, const Box& box) {
 
 }  // namespace
 
-Json scene_json(const Scene& scene, const std::vector<FilmedLife>& lives) {
+void SeenRegion::include(const std::vector<FilmedLife>& lives) {
+  for (const FilmedLife& life : lives)
+    for (const Shot& shot : life.film)
+      for (const Frame& frame : shot.frames) {
+        const bool first = &shot == &life.film.front() && &frame == &shot.frames.front();
+        if (!first && life.result.status != Status::ok) continue;
+        std::vector<Vec3> positions;
+        std::transform(frame.positions.begin(), frame.positions.end(), std::back_inserter(positions), position);
+        const Box box = bounding_box(positions);
+        if (first) side_ = std::max(side_, box.longest_side());
+        corners_.insert(corners_.end(), {box.low, box.high});
+      }
+}
+
+Box SeenRegion::box() const {
+  const Box box = bounding_box(corners_);
+  const Vec3 around{margin * side_, margin * side_, 0};
+  return {box.low - around, box.high + around};
+}
+
+Json scene_json(const Scene& scene, const SeenRegion& region) {
   const bool rough = scene.floor && scene.floor->rough();
   return {{"floor", scene.floor.has_value()},
           {"water", scene.drag.has_value()},
           {"slope", scene.gravity ? scene.gravity->slope : 0.0},
-          {"ground", rough ? ground_json(scene, seen_box(lives)) : Json(nullptr)}};
+          {"ground", rough ? ground_json(scene, region.box()) : Json(nullptr)}};
 }
 
 }  // namespace evodevo

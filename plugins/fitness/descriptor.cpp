@@ -15,6 +15,7 @@ class Descriptor final : public evodevo::Fitness {
              "mean of the longer horizontal side of its bounding box, or its number of masses.");
     p.reals(range_, "range", {-1e9, 1e9},
             "Smallest and largest value that is expected, in the unit of the descriptor.");
+    p.integer(bins_, "bins", {1, 1000, "1"}, "Number of cells into which maps of niches divide the range.");
     window_.declare_sampled(p);
     p.require(range_.empty() || (range_.size() == 2 && range_[0] < range_[1]), "range",
               "expected two numbers, the smaller first");
@@ -29,6 +30,7 @@ class Descriptor final : public evodevo::Fitness {
     descriptor.role = evodevo::Role::descriptor;
     descriptor.low = range_.empty() ? 0 : range_[0];
     descriptor.high = range_.empty() ? (what_ == "masses" ? 1000 : what_ == "contact" ? 1 : 2) : range_[1];
+    descriptor.bins = static_cast<std::uint32_t>(bins_);
     return {descriptor};
   }
 
@@ -49,6 +51,7 @@ class Descriptor final : public evodevo::Fitness {
 
   std::string what_ = "height";
   std::vector<double> range_;
+  std::int64_t bins_ = 10;
   evodevo::MeasuringWindow window_;
 };
 

@@ -19,13 +19,12 @@ class MapElites final : public evodevo::Selection {
  public:
   void parameters(evodevo::Parameters& p) override {
     p.choice(cells_, "cells", {"grid", "centroidal"},
-             "Shape of the cells: a grid, or a given number of cells of similar size, for many descriptors.");
-    p.integer(bins_, "bins", {1, 1000, "1"}, "Number of cells of the grid along each descriptor.");
+             "Shape of the cells: the grid of the descriptors' bins, or cells of similar size for many descriptors.");
     p.integer(count_, "count", {1, 10'000, "1"}, "Number of centroidal cells.");
   }
 
   evodevo::Traits traits() const override { return {.least_descriptors = 1}; }
-  std::vector<evodevo::NoteTitle> notes() const override { return {{"cell"}}; }
+  std::vector<evodevo::NoteTitle> notes() const override { return {{.name = "cell", .is_label = true}}; }
   /// Draws the same cells in all runs, so that their maps can be compared.
   void prepare(const evodevo::EncodingContext& context) override { rng_ = context.rng(1); }
 
@@ -47,9 +46,8 @@ class MapElites final : public evodevo::Selection {
         survival.rows.push_back(row);
         continue;
       }
-      const Coordinates place = place_of(candidate, context.descriptors);
-      const std::uint64_t cell = is_grid ? evodevo::grid_cell(place, static_cast<std::uint32_t>(bins_))
-                                         : centres.nearest(place, 1).front().index;
+      const std::uint64_t cell = is_grid ? evodevo::grid_cell(candidate.descriptors, context.descriptors)
+                                         : centres.nearest(place_of(candidate, context.descriptors), 1).front().index;
       survival.notes.push_back({row, 0, static_cast<double>(cell)});
       if (elites.emplace(cell, row).second) survival.rows.push_back(row);
     }
@@ -78,7 +76,7 @@ class MapElites final : public evodevo::Selection {
   }
 
   std::string cells_ = "grid";
-  std::int64_t bins_ = 10, count_ = 1000;
+  std::int64_t count_ = 1000;
   std::optional<evodevo::Rng> rng_;
 };
 

@@ -29,7 +29,7 @@ class SpeciesSelection final : public evodevo::Selection {
     p.real(weight_, "gene_weight", {0, 100, "1"}, "Weight of the differences between homologous genes.");
   }
 
-  std::vector<evodevo::NoteTitle> notes() const override { return {{"species"}}; }
+  std::vector<evodevo::NoteTitle> notes() const override { return {{.name = "species", .is_label = true}}; }
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> couples(const SelectionContext& context, std::uint32_t count,
                                                                evodevo::Rng& rng) const override {

@@ -8,8 +8,10 @@
 namespace evodevo::test {
 namespace {
 
-const std::vector<Objective> ranges{{"height", "m", true, Role::descriptor, 0, 2},
-                                    {"contact", "1", true, Role::descriptor, -1, 1}};
+std::vector<Objective> ranges_with(std::uint32_t bins) {
+  return {{"height", "m", true, Role::descriptor, 0, 2, bins}, {"contact", "1", true, Role::descriptor, -1, 1, bins}};
+}
+const std::vector<Objective> ranges = ranges_with(4);
 
 Table random_table(std::uint64_t seed, std::uint32_t count) {
   Rng rng = stream(seed);
@@ -26,7 +28,7 @@ Table random_table(std::uint64_t seed, std::uint32_t count) {
 }
 
 TEST(MapElites, TheBestOfEachCellOfAGridSurvives) {
-  const auto selection = make<Selection>("map-elites", "bins = 4");
+  const auto selection = make<Selection>("map-elites", "");
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const Table table = random_table(seed, 60);
     const auto index = [](double share) { return std::min(3, std::max(0, static_cast<int>(std::floor(4 * share)))); };
@@ -84,7 +86,7 @@ TEST(MapElites, TheBestOfTheCellWithTheNearestCentreSurvives) {
 }
 
 TEST(MapElites, TheWorstElitesDieIfThereAreTooFewPlaces) {
-  const auto selection = make<Selection>("map-elites", "bins = 4");
+  const auto selection = make<Selection>("map-elites", "");
   const Table table{.rows = {{.scores = {1}, .descriptors = {0.1, 0}},
                              {.scores = {9}, .descriptors = {1.9, 0}},
                              {.scores = {8}, .descriptors = {1.8, 0}},
@@ -103,7 +105,7 @@ TEST(MapElites, LifeGoesOnWhereAllFailed) {
 
 /// Every cell can be reached, and the best score in it is known: that of the corner nearest to the middle.
 TEST(MapElites, FillsTheMapWithItsBest) {
-  const auto selection = make<Selection>("map-elites", "bins = 5");
+  const auto selection = make<Selection>("map-elites", "");
   Evolution evolution(
       *selection, real_genes(2, -1, 1),
       [](Individual& one) {
@@ -112,7 +114,7 @@ TEST(MapElites, FillsTheMapWithItsBest) {
         one.scores = {-x * x - y * y};
       },
       1);
-  evolution.table.descriptors = ranges;
+  evolution.table.descriptors = ranges_with(5);
   evolution.run(200, 100, 40);
   ASSERT_EQ(evolution.table.rows.size(), 25u);
   for (const Individual& one : evolution.table.rows) {

@@ -60,18 +60,35 @@ TEST(Neighbours, MayLieAtOnePlace) {
   EXPECT_EQ(neighbours.nearest(Coordinates{0.25, 0.5}, 60).back().distance, 0.25);
 }
 
-TEST(GridCell, CountsTheFirstAxisFirst) {
-  EXPECT_EQ(grid_cell(Coordinates{0.05, 0.95}, 10), 9u);
-  EXPECT_EQ(grid_cell(Coordinates{0.95, 0.05}, 10), 90u);
-  EXPECT_EQ(grid_cell(Coordinates{0.35, 0.25, 0.15}, 10), 321u);
+/// Returns descriptors with the range 0 to 2 and these numbers of bins.
+std::vector<Objective> axes(const std::vector<std::uint32_t>& bins) {
+  std::vector<Objective> axes;
+  for (const std::uint32_t count : bins) axes.push_back({"x", "m", true, Role::descriptor, 0, 2, count});
+  return axes;
+}
+
+TEST(GridCell, CountsTheLastAxisFastest) {
+  EXPECT_EQ(grid_cell(Coordinates{0.1, 1.9}, axes({10, 10})), 9u);
+  EXPECT_EQ(grid_cell(Coordinates{1.9, 0.1}, axes({10, 10})), 90u);
+  EXPECT_EQ(grid_cell(Coordinates{0.7, 0.5, 0.3}, axes({10, 10, 10})), 321u);
+  EXPECT_EQ(grid_cell(Coordinates{0.7, 0.5, 0.3}, axes({3, 4, 7})), 1u * 28 + 1 * 7 + 1);
 }
 
 TEST(GridCell, BordersAndWhatLiesOutsideBelongToTheNearestCell) {
-  EXPECT_EQ(grid_cell(Coordinates{0}, 4), 0u);
-  EXPECT_EQ(grid_cell(Coordinates{0.25}, 4), 1u);
-  EXPECT_EQ(grid_cell(Coordinates{1}, 4), 3u);
-  EXPECT_EQ(grid_cell(Coordinates{-1e300}, 4), 0u);
-  EXPECT_EQ(grid_cell(Coordinates{1e300}, 4), 3u);
+  const std::vector<Objective> four = axes({4});
+  EXPECT_EQ(grid_cell(Coordinates{0}, four), 0u);
+  EXPECT_EQ(grid_cell(Coordinates{0.5}, four), 1u);
+  EXPECT_EQ(grid_cell(Coordinates{2}, four), 3u);
+  EXPECT_EQ(grid_cell(Coordinates{-1e300}, four), 0u);
+  EXPECT_EQ(grid_cell(Coordinates{1e300}, four), 3u);
+}
+
+TEST(GridCell, MoreCellsThanNotesCanNumberAreRefused) {
+  const Coordinates corner(17, 2.0);
+  EXPECT_THAT([&] { grid_cell(corner, axes(std::vector<std::uint32_t>(17, 10))); },
+              testing::ThrowsMessage<std::invalid_argument>(testing::AllOf(
+                  testing::HasSubstr("17"), testing::HasSubstr("bins"), testing::HasSubstr("centroidal"))));
+  EXPECT_EQ(grid_cell(Coordinates(53, 2.0), axes(std::vector<std::uint32_t>(53, 2))), (std::uint64_t{1} << 53) - 1);
 }
 
 TEST(MoveCentroids, LowersTheCostUntilItStays) {

@@ -91,14 +91,16 @@ Archive Archive::create(const fs::path& folder, const Experiment& experiment, co
   for (std::size_t i = 0; i < experiment.measures.size(); ++i) {
     const Objective& measure = experiment.measures[i];
     const bool has_range = measure.role == Role::descriptor;
-    Statement(run, "measures", "INSERT INTO measures VALUES(?, ?, ?, ?, ?, ?)")
+    Statement(run, "measures", "INSERT INTO measures VALUES(?, ?, ?, ?, ?, ?, ?)")
         .execute(static_cast<std::uint32_t>(i), measure.name, measure.unit, name(measure.role),
                  has_range ? std::optional(measure.low) : std::nullopt,
-                 has_range ? std::optional(measure.high) : std::nullopt);
+                 has_range ? std::optional(measure.high) : std::nullopt,
+                 has_range ? std::optional(measure.bins) : std::nullopt);
   }
   for (std::size_t i = 0; i < experiment.notes.size(); ++i)
-    Statement(run, "note_titles", "INSERT INTO note_titles VALUES(?, ?, ?)")
-        .execute(static_cast<std::uint32_t>(i), experiment.notes[i].name, experiment.notes[i].unit);
+    Statement(run, "note_titles", "INSERT INTO note_titles VALUES(?, ?, ?, ?)")
+        .execute(static_cast<std::uint32_t>(i), experiment.notes[i].name, experiment.notes[i].unit,
+                 experiment.notes[i].is_label ? 1 : 0);
   for (std::size_t i = 0; i < experiment.scenarios.size(); ++i)
     Statement(run, "scenarios", "INSERT INTO scenarios VALUES(?, ?)")
         .execute(static_cast<std::uint32_t>(i), experiment.scenarios[i].name);

@@ -36,6 +36,13 @@ struct MeasureKind {
   std::string name, unit, role;
 };
 
+/// An individual without failure, its first objective and the values of some descriptors.
+struct Described {
+  std::uint32_t id = 0, born = 0;
+  double score = 0;
+  std::vector<double> descriptors;
+};
+
 /// A score of an individual that is not an objective.
 struct ArchivedMeasure : MeasureKind {
   double value = 0;
@@ -52,6 +59,12 @@ struct Membership {
 struct ArchivedNote {
   std::string name, unit;
   double value = 0;
+};
+
+/// The numbers with one title that the selection operator has noted about the living, generation by generation.
+struct NoteHistory {
+  NoteTitle title;
+  std::vector<std::vector<double>> living;  ///< for each generation, the notes about those who survived its selection
 };
 
 /// A group of individuals that have no fitness for the same reason.
@@ -85,7 +98,7 @@ class Archive {
   /// Adds one generation in one transaction: its newborns with their results, the ids of the individuals that selection
   /// dropped, records of lives by id, its summary, and what the selection operator remembers and notes. An empty record
   /// is stored too; it means that the individual was on the front and that its body did not change. The memory replaces
-  /// that of the generation before, and a note an earlier one about the same individual.
+  /// that of the generation before; a note is added if it differs from the last one about the same individual.
   void commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,
               const std::map<std::uint32_t, LifeRecord>& lives, const Summary& summary,
               const Remembered& remembered = {});
@@ -142,10 +155,17 @@ class Archive {
   std::vector<MeasureKind> measures() const;
   /// Returns the scores of an individual that are not objectives, in the order of the experiment.
   std::vector<ArchivedMeasure> measures(std::uint32_t id) const;
-  /// Returns the names and units of the numbers that the selection operator may note.
+  /// Returns the descriptors of the experiment with their ranges and bins.
+  std::vector<Objective> descriptors() const;
+  /// Returns the individuals without failure, in the order of birth, each with the values of the first `count` of
+  /// descriptors().
+  std::vector<Described> described(std::size_t count) const;
+  /// Returns what numbers the selection operator may note.
   std::vector<NoteTitle> note_titles() const;
-  /// Returns what the selection operator has noted about an individual, in the order of note_titles().
+  /// Returns the last numbers that the selection operator has noted about an individual, in the order of note_titles().
   std::vector<ArchivedNote> notes(std::uint32_t id) const;
+  /// Returns what the selection operator had noted about the living after each generation, for each of note_titles().
+  std::vector<NoteHistory> note_histories() const;
   /// Returns what the selection operator remembers after the last generation; empty if that is nothing.
   std::vector<std::byte> memory() const;
   /// Returns the scores of an individual in each repeat of each scenario, in the order of the experiment.

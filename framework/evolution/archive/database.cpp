@@ -241,6 +241,11 @@ std::string Statement::text(int column) const {
   return Json::parse(Json(value.getString()).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
 }
 
+std::string Statement::line(int column) const {
+  constexpr std::size_t longest = 5000;  // bytes, longer than any path
+  return printable(text(column), longest);
+}
+
 std::string_view Statement::bytes(int column) const {
   const SQLite::Column value = statement_.getColumn(column);
   if (!value.isBlob()) refuse(column, "bytes");

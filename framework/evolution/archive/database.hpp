@@ -127,6 +127,8 @@ class Statement {
   std::optional<double> optional_number(int column) const;
   /// Reads a text; replaces what is not valid UTF-8.
   std::string text(int column) const;
+  /// Reads a text and makes it safe to print: escapes control characters and cuts it if it is too long.
+  std::string line(int column) const;
   /// Reads bytes; they are valid until the next step().
   std::string_view bytes(int column) const;
 

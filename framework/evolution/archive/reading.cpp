@@ -22,13 +22,7 @@ Status status_in(const Statement& row, int column) {
   row.refuse(column, "\"ok\", \"invalid\" or \"diverged\"");
 }
 
-/// Reads a text and makes it safe to print: escapes control characters and cuts it if it is too long.
-std::string line(const Statement& row, int column) {
-  constexpr std::size_t longest = 5000;  // bytes, longer than any path
-  return printable(row.text(column), longest);
-}
-
-std::string line_or_empty(const Statement& row, int column) { return row.is_null(column) ? "" : line(row, column); }
+std::string line_or_empty(const Statement& row, int column) { return row.is_null(column) ? "" : row.line(column); }
 
 /// Returns the number of seconds in a text, or nullopt if the text is not a finite number of at least 0.
 std::optional<double> seconds_in(const std::string& text) {
@@ -80,7 +74,7 @@ class Individuals {
     individual.born = row_.index(1, *last_generation_);
     individual.origin = row_.index(2, individual.born);
     read_parents(individual);
-    individual.made_by = line(row_, 5);
+    individual.made_by = row_.line(5);
     individual.genome = read_genome(row_, 6, 12, layout_);
     read_result(individual.result);
     if (!row_.is_null(11))
@@ -170,40 +164,13 @@ class Individuals {
 
 }  // namespace
 
-std::vector<ArchivedMeasure> Archive::measures(std::uint32_t id) const {
-  Statement row(*run_, "measured",
-                "SELECT name, unit, role, value FROM measured JOIN measures ON position = measure "
-                "WHERE individual = ? ORDER BY position");
-  row.bind(id);
-  std::vector<ArchivedMeasure> measures;
-  while (row.step()) measures.push_back({{line(row, 0), line(row, 1), line(row, 2)}, row.number(3)});
-  return measures;
-}
-
-std::vector<MeasureKind> Archive::measures() const {
-  Statement row(*run_, "measures", "SELECT name, unit, role FROM measures ORDER BY position");
-  std::vector<MeasureKind> measures;
-  while (row.step()) measures.push_back({line(row, 0), line(row, 1), line(row, 2)});
-  return measures;
-}
-
-std::vector<ArchivedTest> Archive::tests(std::uint32_t id) const {
-  Statement row(*run_, "tests",
-                "SELECT scenarios.name, repeat, objectives.name, value FROM tests JOIN scenarios USING (scenario) "
-                "JOIN objectives ON position = objective WHERE individual = ? ORDER BY scenario, repeat, objective");
-  row.bind(id);
-  std::vector<ArchivedTest> tests;
-  while (row.step()) tests.push_back({line(row, 0), row.integer(1, 0, most), line(row, 2), row.number(3)});
-  return tests;
-}
-
 std::optional<Verification> Archive::verification(std::uint32_t id) const {
   Statement row(*run_, "verifications",
                 "SELECT trial, status, reason, value FROM verifications WHERE individual = ? ORDER BY position");
   row.bind(id);
   Verification verification{id, 0, {}};
   while (row.step())
-    verification.trials.push_back({line(row, 0), status_in(row, 1), line_or_empty(row, 2), row.optional_number(3)});
+    verification.trials.push_back({row.line(0), status_in(row, 1), line_or_empty(row, 2), row.optional_number(3)});
   if (verification.trials.empty()) return std::nullopt;
   const ArchivedIndividual verified = known_individual(id);
   if (verified.result.objectives.empty())
@@ -240,13 +207,13 @@ std::vector<Provenance> Archive::provenances() const {
                 "SELECT provenance, device, evodevo, program FROM provenances ORDER BY provenance");
   for (std::uint32_t position = 0; row.step(); ++position) {
     row.integer(0, position, position);
-    provenances.push_back({line(row, 1), line(row, 2), line(row, 3), {}});
+    provenances.push_back({row.line(1), row.line(2), row.line(3), {}});
   }
   if (provenances.empty()) refuse("the table provenances is empty");
   Statement use(*run_, "operators", "SELECT provenance, kind, name, version, file, hash FROM operators ORDER BY rowid");
   while (use.step())
     provenances[use.index(0, static_cast<std::uint32_t>(provenances.size() - 1))].operators.push_back(
-        {line(use, 1), line(use, 2), line(use, 3), line(use, 4), line(use, 5)});
+        {use.line(1), use.line(2), use.line(3), use.line(4), use.line(5)});
   return provenances;
 }
 
@@ -263,7 +230,7 @@ std::vector<Objective> Archive::objectives() const {
   Statement row(*run_, "objectives", "SELECT position, name, unit, maximise FROM objectives ORDER BY position");
   for (std::uint32_t position = 0; row.step(); ++position) {
     row.integer(0, position, position);
-    objectives.push_back({line(row, 1), line(row, 2), row.integer(3, 0, 1) != 0});
+    objectives.push_back({row.line(1), row.line(2), row.integer(3, 0, 1) != 0});
   }
   if (objectives.empty()) refuse("the table objectives is empty");
   return objectives;
@@ -367,19 +334,6 @@ std::vector<std::uint32_t> Archive::best(std::size_t count, std::size_t objectiv
   row.bind(static_cast<std::int64_t>(objective), static_cast<std::int64_t>(count));
   while (row.step()) ids.push_back(row.index(0));
   return ids;
-}
-
-std::vector<Membership> Archive::memberships(std::size_t objective) const {
-  Statement row(*run_, "individuals",
-                "SELECT born, died, value FROM individuals JOIN scores ON individual = id "
-                "WHERE objective = ? AND (died IS NULL OR died > born) ORDER BY born, id");
-  row.bind(static_cast<std::int64_t>(objective));
-  std::vector<Membership> memberships;
-  while (row.step()) {
-    Membership& one = memberships.emplace_back(Membership{row.index(0), {}, row.number(2)});
-    if (!row.is_null(1)) one.died = row.index(1);
-  }
-  return memberships;
 }
 
 }  // namespace evodevo

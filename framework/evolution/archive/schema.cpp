@@ -16,7 +16,7 @@ CREATE TABLE operators(provenance INTEGER NOT NULL, kind TEXT NOT NULL, name TEX
 CREATE TABLE objectives(position INTEGER PRIMARY KEY, name TEXT NOT NULL, unit TEXT NOT NULL, maximise INTEGER NOT NULL);
 -- scores that are not objectives
 CREATE TABLE measures(position INTEGER PRIMARY KEY, name TEXT NOT NULL, unit TEXT NOT NULL, role TEXT NOT NULL,
-  low REAL, high REAL);
+  low REAL, high REAL, bins INTEGER);    -- of descriptors
 CREATE TABLE scenarios(scenario INTEGER PRIMARY KEY, name TEXT NOT NULL);
 -- contents of the files that parameters of operators name
 CREATE TABLE files(path TEXT PRIMARY KEY, content BLOB NOT NULL) WITHOUT ROWID;
@@ -53,11 +53,11 @@ CREATE TABLE measured(
 CREATE TABLE tests(
   individual INTEGER NOT NULL, scenario INTEGER NOT NULL, repeat INTEGER NOT NULL, objective INTEGER NOT NULL,
   value REAL NOT NULL, PRIMARY KEY(individual, scenario, repeat, objective)) WITHOUT ROWID;
--- what the selection operator noted about individuals, each number the last one with its title
-CREATE TABLE note_titles(position INTEGER PRIMARY KEY, name TEXT NOT NULL, unit TEXT NOT NULL);
+-- what the selection operator noted about individuals; a number holds until the generation that has another one
+CREATE TABLE note_titles(position INTEGER PRIMARY KEY, name TEXT NOT NULL, unit TEXT NOT NULL, is_label INTEGER NOT NULL);
 CREATE TABLE notes(
-  individual INTEGER NOT NULL, note INTEGER NOT NULL, value REAL NOT NULL,
-  PRIMARY KEY(individual, note)) WITHOUT ROWID;
+  individual INTEGER NOT NULL, note INTEGER NOT NULL, generation INTEGER NOT NULL, value REAL NOT NULL,
+  PRIMARY KEY(individual, note, generation)) WITHOUT ROWID;
 -- what it remembers after the last generation; at most one row
 CREATE TABLE memory(generation INTEGER PRIMARY KEY, bytes BLOB NOT NULL);
 -- what development did to those who reached the front; see life_record.hpp

@@ -1,6 +1,7 @@
 // Fitness operators: they score what a body did in a window, after it has matured or within its life.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
@@ -88,6 +89,13 @@ struct Objective {
   bool maximise = true;  ///< whether larger values are better; of an objective or a measure
   Role role = Role::objective;
   double low = 0, high = 1;  ///< the range of a descriptor, in its unit; values outside are allowed
+  std::uint32_t bins = 10;   ///< number of cells of equal size into which maps divide this range; 1 to 1,000
+
+  /// Returns the cell of a descriptor's range in which a finite value lies, from 0. Values outside belong to the first
+  /// or the last cell.
+  std::uint32_t bin(double value) const {
+    return static_cast<std::uint32_t>(std::clamp((value - low) / (high - low) * bins, 0.0, bins - 1.0));
+  }
 };
 
 class Fitness : public Operator {

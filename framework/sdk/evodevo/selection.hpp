@@ -67,6 +67,7 @@ struct SelectionContext {
 struct NoteTitle {
   std::string name;
   std::string unit = "1";
+  bool is_label = false;  ///< whether the number names a group, such as a cell or a species, and measures nothing
 };
 
 /// A number that a selection operator notes about an individual. The archive keeps the last one with each title.

@@ -3,21 +3,27 @@
 #pragma once
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 #include "evodevo/helpers/selection/neighbours.hpp"
 #include "evodevo/rng.hpp"
 
 namespace evodevo {
 
-/// Returns the cell of a grid with `bins` cells along each axis in which a place lies, counted from 0, the first axis
-/// first.
-inline std::uint64_t grid_cell(std::span<const double> place, std::uint32_t bins) {
-  std::uint64_t cell = 0;
-  for (const double coordinate : place) {
-    const double bin = std::clamp(std::floor(coordinate * bins), 0.0, bins - 1.0);
-    cell = cell * bins + static_cast<std::uint64_t>(bin);
+/// Returns the cell of the grid of the descriptors' bins in which their values lie, counted from 0, the last descriptor
+/// fastest. Throws std::invalid_argument if the grid has more than 2^53 cells.
+inline std::uint64_t grid_cell(std::span<const double> values, std::span<const Objective> descriptors) {
+  constexpr double most = 9007199254740992;  // up to which all whole numbers are doubles, as notes are
+  double cells = 1, cell = 0;
+  for (std::size_t axis = 0; axis < values.size(); ++axis) {
+    cells *= descriptors[axis].bins;
+    cell = cell * descriptors[axis].bins + descriptors[axis].bin(values[axis]);
   }
-  return cell;
+  if (cells > most)
+    throw std::invalid_argument("a grid of the " + std::to_string(descriptors.size()) +
+                                " descriptors has more than 2^53 cells; give them fewer bins, or use centroidal cells");
+  return static_cast<std::uint64_t>(cell);
 }
 
 /// Moves each centroid to the mean of the samples to which it is the nearest one (Lloyd's algorithm), and returns the

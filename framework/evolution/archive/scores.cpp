@@ -1,0 +1,81 @@
+// The functions of Archive that read scores apart from the individuals that have them.
+#include <limits>
+
+#include "base/text.hpp"
+#include "evolution/archive/archive.hpp"
+#include "evolution/archive/database.hpp"
+
+namespace evodevo {
+
+std::vector<ArchivedMeasure> Archive::measures(std::uint32_t id) const {
+  Statement row(*run_, "measured",
+                "SELECT name, unit, role, value FROM measured JOIN measures ON position = measure "
+                "WHERE individual = ? ORDER BY position");
+  row.bind(id);
+  std::vector<ArchivedMeasure> measures;
+  while (row.step()) measures.push_back({{row.line(0), row.line(1), row.line(2)}, row.number(3)});
+  return measures;
+}
+
+std::vector<MeasureKind> Archive::measures() const {
+  Statement row(*run_, "measures", "SELECT name, unit, role FROM measures ORDER BY position");
+  std::vector<MeasureKind> measures;
+  while (row.step()) measures.push_back({row.line(0), row.line(1), row.line(2)});
+  return measures;
+}
+
+std::vector<Objective> Archive::descriptors() const {
+  Statement row(*run_, "measures",
+                "SELECT name, unit, low, high, bins FROM measures WHERE role = 'descriptor' ORDER BY position");
+  std::vector<Objective> descriptors;
+  while (row.step()) {
+    Objective& descriptor = descriptors.emplace_back(Objective{row.line(0), row.line(1)});
+    descriptor.role = Role::descriptor;
+    descriptor.low = row.number(2);
+    descriptor.high = row.number(3);
+    if (!(descriptor.low < descriptor.high)) row.refuse(3, "more than measures.low, " + to_text(descriptor.low));
+    descriptor.bins = static_cast<std::uint32_t>(row.integer(4, 1, 1000));
+  }
+  return descriptors;
+}
+
+std::vector<Described> Archive::described(std::size_t count) const {
+  Statement row(*run_, "measured",
+                "SELECT id, born, scores.value, measured.value FROM individuals JOIN scores ON scores.individual = id "
+                "JOIN measured ON measured.individual = id JOIN measures ON position = measure "
+                "WHERE objective = 0 AND status = 'ok' AND role = 'descriptor' ORDER BY id, measure");
+  std::vector<Described> described;
+  while (row.step()) {
+    if (described.empty() || described.back().id != row.index(0))
+      described.push_back({row.index(0), row.index(1), row.number(2), {}});
+    if (described.back().descriptors.size() < count) described.back().descriptors.push_back(row.number(3));
+  }
+  return described;
+}
+
+std::vector<ArchivedTest> Archive::tests(std::uint32_t id) const {
+  Statement row(*run_, "tests",
+                "SELECT scenarios.name, repeat, objectives.name, value FROM tests JOIN scenarios USING (scenario) "
+                "JOIN objectives ON position = objective WHERE individual = ? ORDER BY scenario, repeat, objective");
+  row.bind(id);
+  std::vector<ArchivedTest> tests;
+  while (row.step())
+    tests.push_back(
+        {row.line(0), row.integer(1, 0, std::numeric_limits<std::int64_t>::max()), row.line(2), row.number(3)});
+  return tests;
+}
+
+std::vector<Membership> Archive::memberships(std::size_t objective) const {
+  Statement row(*run_, "individuals",
+                "SELECT born, died, value FROM individuals JOIN scores ON individual = id "
+                "WHERE objective = ? AND (died IS NULL OR died > born) ORDER BY born, id");
+  row.bind(static_cast<std::int64_t>(objective));
+  std::vector<Membership> memberships;
+  while (row.step()) {
+    Membership& one = memberships.emplace_back(Membership{row.index(0), {}, row.number(2)});
+    if (!row.is_null(1)) one.died = row.index(1);
+  }
+  return memberships;
+}
+
+}  // namespace evodevo

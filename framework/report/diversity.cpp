@@ -1,0 +1,166 @@
+#include "report/diversity.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "evolution/evolution.hpp"
+
+namespace evodevo {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool is_better(double score, double other, const Objective& objective) {
+  return objective.maximise ? score > other : score < other;
+}
+
+/// The numbers of members of one label after each generation.
+struct Group {
+  double label = 0;
+  std::vector<std::size_t> counts;
+
+  std::size_t members() const { return std::accumulate(counts.begin(), counts.end(), std::size_t{0}); }
+};
+
+/// Returns the groups of a history, in the order in which they came up.
+std::vector<Group> groups_of(const NoteHistory& history) {
+  std::vector<Group> groups;
+  std::map<double, std::size_t> index;  // into groups, by label
+  for (std::size_t generation = 0; generation < history.living.size(); ++generation)
+    for (const double label : history.living[generation]) {
+      const auto [found, is_new] = index.emplace(label, groups.size());
+      if (is_new) groups.push_back({label, std::vector<std::size_t>(history.living.size())});
+      ++groups[found->second].counts[generation];
+    }
+  return groups;
+}
+
+/// Returns the least number of members over the run of one of the `most` greatest groups.
+std::size_t threshold(const std::vector<Group>& groups, std::size_t most) {
+  if (groups.size() <= most) return 0;
+  std::vector<std::size_t> members;
+  for (const Group& group : groups) members.push_back(group.members());
+  std::nth_element(members.begin(), members.begin() + static_cast<std::ptrdiff_t>(most) - 1, members.end(),
+                   std::greater());
+  return members[most - 1];
+}
+
+}  // namespace
+
+std::size_t NicheMap::cells() const {
+  return std::accumulate(axes.begin(), axes.end(), std::size_t{1},
+                         [](std::size_t product, const Objective& axis) { return product * axis.bins; });
+}
+
+double NicheMap::coverage(const MapState& state) const {
+  return static_cast<double>(state.filled) / static_cast<double>(cells());
+}
+
+std::optional<double> NicheMap::qd_score(const MapState& state) const {
+  return objective.maximise ? std::optional(state.sum) : std::nullopt;
+}
+
+NicheMap niche_map(const Archive& archive) {
+  NicheMap map{archive.objectives().front(), archive.descriptors(), {}, {}};
+  map.axes.resize(std::min<std::size_t>(map.axes.size(), 2));
+  if (map.axes.empty()) return map;
+  const std::vector<Described> everyone = archive.described(map.axes.size());
+  std::map<std::vector<std::uint32_t>, Elite> elites;
+  MapState state;
+  auto next = everyone.begin();
+  for (const Summary& summary : archive.generations()) {
+    for (; next != everyone.end() && next->born <= summary.generation; ++next) {
+      std::vector<std::uint32_t> cell;
+      for (std::size_t axis = 0; axis < map.axes.size(); ++axis)
+        cell.push_back(map.axes[axis].bin(next->descriptors.at(axis)));
+      const auto [found, is_new] = elites.emplace(cell, Elite{cell, next->id, next->score});
+      Elite& elite = found->second;
+      state.filled += is_new;
+      if (is_new) state.sum += elite.score;
+      if (!is_better(next->score, elite.score, map.objective)) continue;
+      state.sum += next->score - elite.score;
+      elite = {cell, next->id, next->score};
+    }
+    map.history.push_back(state);
+  }
+  for (auto& [cell, elite] : elites) map.elites.push_back(std::move(elite));
+  return map;
+}
+
+std::vector<std::uint32_t> best_elites(const NicheMap& map, std::size_t count) {
+  std::vector<Elite> elites = map.elites;
+  std::ranges::stable_sort(elites,
+                           [&](const Elite& a, const Elite& b) { return is_better(a.score, b.score, map.objective); });
+  std::vector<std::uint32_t> ids;
+  for (const Elite& elite : elites) ids.push_back(elite.individual);
+  ids.resize(std::min(ids.size(), count));
+  return ids;
+}
+
+Json map_json(const NicheMap& map) {
+  if (map.axes.empty()) return nullptr;
+  Json axes = Json::array(), elites = Json::array();
+  for (const Objective& axis : map.axes)
+    axes.push_back(
+        {{"name", axis.name}, {"unit", axis.unit}, {"low", axis.low}, {"high", axis.high}, {"bins", axis.bins}});
+  for (const Elite& elite : map.elites)
+    elites.push_back({{"cell", elite.cell}, {"individual", elite.individual}, {"value", elite.score}});
+  return {{"objective", map.objective.name},
+          {"axes", std::move(axes)},
+          {"cells", map.cells()},
+          {"elites", std::move(elites)}};
+}
+
+Json state_json(const NicheMap& map, const MapState& state) {
+  const auto qd_score = map.qd_score(state);
+  return {{"filled", state.filled},
+          {"coverage", map.coverage(state)},
+          {"qd_score", qd_score ? Json(*qd_score) : Json(nullptr)}};
+}
+
+Json note_titles_json(const std::vector<NoteHistory>& histories) {
+  Json list = Json::array();
+  for (const NoteHistory& history : histories)
+    list.push_back({{"name", history.title.name}, {"unit", history.title.unit}, {"is_label", history.title.is_label}});
+  return list;
+}
+
+Json notes_json(const std::vector<NoteHistory>& histories, std::size_t generation) {
+  Json notes = Json::object();
+  for (const NoteHistory& history : histories) {
+    const std::vector<double>& values = history.living.at(generation);
+    if (values.empty()) continue;
+    if (history.title.is_label) {
+      notes[history.title.name] = {{"groups", std::set(values.begin(), values.end()).size()}};
+    } else {
+      const auto [greatest, median] = best_and_median(values, true);
+      notes[history.title.name] = {{"greatest", *greatest}, {"median", *median}};
+    }
+  }
+  return notes;
+}
+
+Json labels_json(const std::vector<NoteHistory>& histories, std::size_t most) {
+  Json list = Json::array();
+  for (const NoteHistory& history : histories) {
+    if (!history.title.is_label) continue;
+    const std::vector<Group> groups = groups_of(history);
+    const auto is_shared = [](const Group& group) { return std::ranges::max(group.counts) > 1; };
+    if (std::ranges::none_of(groups, is_shared)) continue;
+    const std::size_t least = threshold(groups, most);
+    Json shown = Json::array();
+    std::vector<std::size_t> others(history.living.size());
+    for (const Group& group : groups) {
+      if (shown.size() < most && group.members() >= least)
+        shown.push_back({{"label", group.label}, {"counts", group.counts}});
+      else
+        std::ranges::transform(others, group.counts, others.begin(), std::plus());
+    }
+    list.push_back({{"name", history.title.name}, {"groups", std::move(shown)}, {"others", others}});
+  }
+  return list;
+}
+
+}  // namespace evodevo
