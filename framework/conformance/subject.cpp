@@ -216,10 +216,15 @@ toml::table selection_with(const toml::table& own, const Traits& traits) {
 
 std::string small_experiment(const Subject& subject, std::uint64_t seed) {
   toml::table root = parse_toml(
-      "[experiment]\nevaluations = 24\npopulation = 6\n[scene.gravity]\n[scene.floor]\n[scene.friction]\n"
+      "[experiment]\n[scene.gravity]\n[scene.floor]\n[scene.friction]\n"
       "[scene.damping]\n[simulation]\ndevice = \"cpu\"\nthreads = 2\n[development]\ncycles = 2\ncycle_time = 0.05\n",
       "the conformance kit's experiment");
-  root["experiment"].as_table()->insert("seed", static_cast<std::int64_t>(seed % (1u << 31)));
+  const Traits traits = create_operator(subject)->traits();
+  const std::int64_t population = std::max({6u, traits.least_population, traits.least_children});
+  toml::table& experiment = *root["experiment"].as_table();
+  experiment.insert("seed", static_cast<std::int64_t>(seed % (1u << 31)));
+  experiment.insert("population", population);
+  experiment.insert("evaluations", 4 * population);
   toml::table own = with_name(subject.name());
   if (subject.use) {
     own = subject.use->own;
@@ -236,7 +241,6 @@ std::string small_experiment(const Subject& subject, std::uint64_t seed) {
   mutation.insert_or_assign(host_key::probability, 0.8);
   crossover.insert_or_assign(host_key::probability, 0.5);
   root.insert("encoding", subject.kind() == Encoding::kind ? own : encoding_for(subject));
-  const Traits traits = create_operator(subject)->traits();
   if (!traits.makes_children) {
     root.insert("mutation", toml::array{std::move(mutation)});
     root.insert("crossover", toml::array{std::move(crossover)});

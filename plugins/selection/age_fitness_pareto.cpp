@@ -19,11 +19,7 @@ class AgeFitnessPareto final : public evodevo::Selection {
 
   std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
                                        evodevo::Rng&) const override {
-    const auto order = best_first(rows);
-    const auto points = evodevo::scores_and_youth(in_order(rows, order));
-    auto living = evodevo::best_layers(points, population);
-    for (std::uint32_t& i : living) i = order[i];
-    return living;
+    return evodevo::best_layers(evodevo::scores_and_youth(rows), best_first(rows), population);
   }
 };
 

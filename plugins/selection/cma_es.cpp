@@ -10,9 +10,9 @@ namespace {
 using evodevo::Candidate;
 using evodevo::SelectionContext;
 
-/// The range of each gene becomes [0, 1]. The distribution learns from the first scores of the newborns; those who
-/// failed are the worst, and among them those are better that violate the constraints less. The best individuals so far
-/// survive, but they do not breed: the memory holds the distribution.
+/// The range of each gene becomes [0, 1]; genes that can have only one value are left out. The distribution learns from
+/// the first scores of the newborns; those who failed are the worst, and among them those are better that violate the
+/// constraints less. The best individuals so far survive, but they do not breed: the memory holds the distribution.
 class Cma final : public evodevo::Selection {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -20,7 +20,9 @@ class Cma final : public evodevo::Selection {
            "Standard deviation of the genes in the first generation, relative to their ranges.");
   }
 
-  evodevo::Traits traits() const override { return {.makes_children = true, .needs_real_genes = true}; }
+  evodevo::Traits traits() const override {
+    return {.makes_children = true, .needs_real_genes = true, .needs_memory = true, .least_children = 2};
+  }
 
   std::vector<evodevo::Child> children(const SelectionContext& context, std::uint32_t count,
                                        evodevo::Rng& rng) const override {
@@ -28,9 +30,11 @@ class Cma final : public evodevo::Selection {
     std::vector<evodevo::Child> children;
     for (const auto& point : distribution(context).sample(count, rng)) {
       evodevo::Genome genome(genes.size());
-      for (std::size_t i = 0; i < genes.size(); ++i)
-        genome[i] = std::clamp(static_cast<float>(genes[i].low + point[i] * (double{genes[i].high} - genes[i].low)),
-                               genes[i].low, genes[i].high);
+      auto coordinate = point.begin();
+      for (std::size_t i = 0; i < genes.size(); ++i) {
+        const double value = is_free(genes[i]) ? genes[i].low + *coordinate++ * range(genes[i]) : genes[i].low;
+        genome[i] = std::clamp(static_cast<float>(value), genes[i].low, genes[i].high);
+      }
       children.push_back({genome});
     }
     return children;
@@ -46,30 +50,27 @@ class Cma final : public evodevo::Selection {
     for (const std::uint32_t i : survival.rows) {
       const Candidate& row = context.rows[i];
       if (!row.is_newborn) continue;
-      ranks.push_back(last != nullptr && are_equal(*last, row) ? ranks.back()
-                                                               : static_cast<std::uint32_t>(ranks.size()));
+      const bool is_tied = last != nullptr && !evodevo::is_better(*last, row);
+      ranks.push_back(is_tied ? ranks.back() : static_cast<std::uint32_t>(ranks.size()));
       last = &row;
       std::vector<double>& point = points.emplace_back();
-      for (std::size_t g = 0; g < genes.size(); ++g) {
-        const double range = double{genes[g].high} - genes[g].low;
-        point.push_back(range > 0 ? (double{(*row.genome)[g]} - genes[g].low) / range : 0.5);
-      }
+      for (std::size_t g = 0; g < genes.size(); ++g)
+        if (is_free(genes[g])) point.push_back((double{(*row.genome)[g]} - genes[g].low) / range(genes[g]));
     }
     auto learned = distribution(context);
     learned.update(points, ranks, rng);
     evodevo::MemoryWriter writer;
     writer.write(learned.state());
     survival.memory = writer.bytes();
-    survival.rows.resize(std::min<std::size_t>(survival.rows.size(), population));
+    survival.rows = evodevo::first_rows(std::move(survival.rows), population);
     return survival;
   }
 
  private:
   static constexpr std::size_t most_genes = 1000;  // with more, each generation would take seconds
 
-  static bool are_equal(const Candidate& a, const Candidate& b) {
-    return a.ok() == b.ok() && (a.ok() ? a.scores[0] == b.scores[0] : a.violation == b.violation);
-  }
+  static bool is_free(const evodevo::GeneSpec& gene) { return gene.high > gene.low; }
+  static double range(const evodevo::GeneSpec& gene) { return double{gene.high} - gene.low; }
 
   static std::vector<evodevo::GeneSpec> specs(const evodevo::Layout& layout) {
     std::vector<evodevo::GeneSpec> genes;
@@ -79,13 +80,17 @@ class Cma final : public evodevo::Selection {
   }
 
   evodevo::CmaEs distribution(const SelectionContext& context) const {
-    const std::size_t genes = context.layout.first_size();
-    if (genes > most_genes)
-      throw std::runtime_error("genomes have " + std::to_string(genes) + " genes; expected at most " +
-                               std::to_string(most_genes) + "; choose a smaller encoding, or the selection " +
+    const auto all = specs(context.layout);
+    const auto genes = static_cast<std::size_t>(std::count_if(all.begin(), all.end(), is_free));
+    if (genes < 1 || genes > most_genes)
+      throw std::runtime_error("genomes have " + std::to_string(genes) + " genes with a range; expected 1 to " +
+                               std::to_string(most_genes) + "; choose another encoding, or the selection " +
                                "\"differential\"");
     if (context.memory.empty()) return {genes, step_};
-    return {genes, evodevo::MemoryReader(context.memory).read_list<double>()};
+    evodevo::MemoryReader reader(context.memory);
+    const auto state = reader.read_list<double>();
+    reader.finish();
+    return {genes, state};
   }
 
   double step_ = 0.3;

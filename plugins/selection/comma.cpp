@@ -25,8 +25,7 @@ class Comma final : public evodevo::Selection {
     const auto newborn = [&](std::uint32_t i) { return rows[i].is_newborn; };
     std::stable_partition(living.begin(), failed, newborn);
     std::stable_partition(failed, living.end(), newborn);
-    living.resize(std::min<std::size_t>(living.size(), population));
-    return living;
+    return evodevo::first_rows(std::move(living), population);
   }
 };
 

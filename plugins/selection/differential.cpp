@@ -10,7 +10,7 @@ using evodevo::Genome;
 
 /// Each child competes with its parent for the parent's place, and takes it unless its first score is lower. If a
 /// parent has several children, only the best of them competes. Those who lose survive only if places are left, or are
-/// taken by individuals that failed.
+/// taken by individuals that failed; of these, those who lose come last.
 class Differential final : public evodevo::Selection {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -20,7 +20,9 @@ class Differential final : public evodevo::Selection {
            "Probability that a gene comes from that sum, and not from the parent.");
   }
 
-  evodevo::Traits traits() const override { return {.makes_children = true, .needs_real_genes = true}; }
+  evodevo::Traits traits() const override {
+    return {.makes_children = true, .needs_real_genes = true, .least_population = least};
+  }
 
   std::vector<evodevo::Child> children(const evodevo::SelectionContext& context, std::uint32_t count,
                                        evodevo::Rng& rng) const override {
@@ -28,7 +30,7 @@ class Differential final : public evodevo::Selection {
     const auto order = by_genes(context.rows);
     std::vector<std::uint32_t> turns;  // everyone is a parent once before anyone is again
     while (children.size() < count) {
-      if (order.size() < 4) {  // the first generation
+      if (order.size() < least) {  // in the first generation, and as long as too few are alive
         children.push_back({random_genome(context.layout, rng)});
         continue;
       }
@@ -45,22 +47,18 @@ class Differential final : public evodevo::Selection {
   std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
                                        evodevo::Rng&) const override {
     const auto order = best_first(rows);
-    std::vector<bool> lost(rows.size(), false), challenged(rows.size(), false);
-    for (const std::uint32_t child : order) {
-      if (!rows[child].challenges) continue;
-      const std::uint32_t parent = *rows[child].challenges;
-      const bool wins = !challenged[parent] && !is_worse(rows[child], rows[parent]);
-      challenged[parent] = true;
-      lost[wins ? parent : child] = true;
-    }
-    std::vector<std::uint32_t> living, losers, failed;
-    for (const std::uint32_t row : order) (!rows[row].ok() ? failed : lost[row] ? losers : living).push_back(row);
-    for (const auto* group : {&losers, &failed}) living.insert(living.end(), group->begin(), group->end());
-    living.resize(std::min<std::size_t>(living.size(), population));
-    return living;
+    const auto lost = lost_challenges(
+        rows, order, [&](auto child, auto parent) { return !evodevo::is_better(rows[parent], rows[child]); });
+    std::vector<std::uint32_t> groups[4];  // winners, losers, and then both of those who failed
+    for (const std::uint32_t row : order) groups[(rows[row].ok() ? 0 : 2) + (lost[row] ? 1 : 0)].push_back(row);
+    std::vector<std::uint32_t> living;
+    for (const auto& group : groups) living.insert(living.end(), group.begin(), group.end());
+    return evodevo::first_rows(std::move(living), population);
   }
 
  private:
+  static constexpr std::uint32_t least = 4;  ///< the parent, and three others for the sum
+
   /// Returns the rows in an order that depends on their genes alone: individuals that failed breed too, and scores do
   /// not tell them apart.
   static std::vector<std::uint32_t> by_genes(std::span<const Candidate> rows) {
@@ -69,11 +67,6 @@ class Differential final : public evodevo::Selection {
     std::stable_sort(order.begin(), order.end(),
                      [&](auto a, auto b) { return rows[a].genome->genes < rows[b].genome->genes; });
     return order;
-  }
-
-  static bool is_worse(const Candidate& a, const Candidate& b) {
-    if (a.ok() && b.ok()) return a.scores[0] < b.scores[0];
-    return a.ok() == b.ok() ? a.violation > b.violation : b.ok();
   }
 
   Genome varied(const evodevo::SelectionContext& context, const std::vector<std::uint32_t>& order, std::uint32_t parent,

@@ -21,9 +21,7 @@ class Elitist final : public evodevo::Selection {
 
   std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
                                        evodevo::Rng&) const override {
-    auto living = best_first(rows);
-    living.resize(std::min<std::size_t>(living.size(), population));
-    return living;
+    return evodevo::first_rows(best_first(rows), population);
   }
 
  private:

@@ -1,6 +1,6 @@
 // MAP-Elites (Mouret and Clune 2015; with centroidal cells: Vassiliades et al. 2018).
-#include <map>
 #include <optional>
+#include <set>
 
 #include "evodevo/helpers/rows.hpp"
 #include "evodevo/helpers/selection/memory.hpp"
@@ -38,7 +38,7 @@ class MapElites final : public evodevo::Selection {
     const bool is_grid = cells_ == "grid";
     const evodevo::Neighbours centres(is_grid ? std::vector<Coordinates>() : centres_in(context));
     const auto order = breeding_rows(context.rows);
-    std::map<std::uint64_t, std::uint32_t> elites;
+    std::set<std::uint64_t> filled;
     evodevo::Survival survival;
     for (const std::uint32_t row : order) {
       const evodevo::Candidate& candidate = context.rows[row];
@@ -49,10 +49,13 @@ class MapElites final : public evodevo::Selection {
       const std::uint64_t cell = is_grid ? evodevo::grid_cell(candidate.descriptors, context.descriptors)
                                          : centres.nearest(place_of(candidate, context.descriptors), 1).front().index;
       survival.notes.push_back({row, 0, static_cast<double>(cell)});
-      if (elites.emplace(cell, row).second) survival.rows.push_back(row);
+      if (filled.insert(cell).second) survival.rows.push_back(row);
     }
-    survival.rows.resize(std::min<std::size_t>(survival.rows.size(), population));
-    survival.memory = written(centres.places());
+    survival.rows = evodevo::first_rows(std::move(survival.rows), population);
+    if (is_grid) return survival;
+    evodevo::MemoryWriter writer;
+    writer.write(centres.places());
+    survival.memory = writer.bytes();
     return survival;
   }
 
@@ -64,15 +67,12 @@ class MapElites final : public evodevo::Selection {
       return evodevo::voronoi_centres(static_cast<std::uint32_t>(count_), dimension, rng);
     }
     evodevo::MemoryReader reader(context.memory);
-    std::vector<Coordinates> centres;
-    while (reader.left() > 0) centres.push_back(reader.read_list<double>());
+    const auto centres = reader.read_lists<double>();
+    reader.finish();
+    const auto fits = [&](const Coordinates& centre) { return centre.size() == dimension; };
+    if (centres.empty() || !std::all_of(centres.begin(), centres.end(), fits))
+      reader.fail("has no centres of " + std::to_string(dimension) + " descriptors");
     return centres;
-  }
-
-  static std::vector<std::byte> written(const std::vector<Coordinates>& centres) {
-    evodevo::MemoryWriter writer;
-    for (const Coordinates& centre : centres) writer.write(centre);
-    return writer.bytes();
   }
 
   std::string cells_ = "grid";

@@ -1,6 +1,8 @@
 // Novelty search (Lehman and Stanley 2011a), with local competition (Lehman and Stanley 2011b).
 #include "evodevo/helpers/selection/novelty.hpp"
 
+#include <set>
+
 #include "evodevo/helpers/pareto.hpp"
 #include "evodevo/helpers/rows.hpp"
 #include "evodevo/helpers/selection/memory.hpp"
@@ -11,9 +13,9 @@ namespace {
 using evodevo::Behaviour;
 
 /// The individuals survive whose descriptors are farthest from those of their nearest neighbours, in the population and
-/// in an archive. With local competition, the number of these neighbours that have a lower first score is a second
-/// objective, and whole Pareto layers survive. Some newborns of each generation, drawn at random, join the archive for
-/// good (Lehman and Stanley 2010). The memory holds the archive.
+/// in an archive of those who died. With local competition, the number of these neighbours that have a lower first
+/// score is a second objective, and whole Pareto layers survive. Some newborns of each generation, drawn at random,
+/// join the archive for good (Lehman and Stanley 2010). The memory holds the archive.
 class NoveltySearch final : public evodevo::Selection {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -38,48 +40,76 @@ class NoveltySearch final : public evodevo::Selection {
     const auto order = best_first(context.rows);
     std::vector<Behaviour> behaviours;  // of those who did not fail, which come first
     for (const std::uint32_t row : order)
-      if (const evodevo::Candidate& candidate = context.rows[row]; candidate.ok())
-        behaviours.push_back({place_of(candidate, context.descriptors), candidate.scores[0]});
-    std::vector<Behaviour> archive = archive_in(context);
-    const auto found = evodevo::novelty(behaviours, archive, static_cast<std::size_t>(neighbours_));
+      if (context.rows[row].ok()) behaviours.push_back(behaviour_of(context.rows[row], context));
+    Archive archive(context);
+    const auto found =
+        evodevo::novelty(behaviours, archive.of_others(context.rows), static_cast<std::size_t>(neighbours_));
 
     evodevo::Survival survival;
-    std::vector<evodevo::Point> points(order.size());
+    std::vector<evodevo::Point> points(order.size());  // by row
     for (std::uint32_t i = 0; i < found.size(); ++i) {
-      points[i] = {found[i].distance};
-      if (competition_) points[i].push_back(found[i].beaten);
+      points[order[i]] = {found[i].distance};
+      if (competition_) points[order[i]].push_back(found[i].beaten);
       survival.notes.push_back({order[i], 0, found[i].distance});
     }
-    for (const std::uint32_t i : evodevo::best_layers(points, population)) survival.rows.push_back(order[i]);
+    survival.rows = evodevo::best_layers(points, order, population);
 
-    std::vector<std::uint32_t> newborns;
-    for (std::uint32_t i = 0; i < behaviours.size(); ++i)
-      if (context.rows[order[i]].is_newborn) newborns.push_back(i);
+    auto newborns = order;
+    std::erase_if(newborns, [&](auto row) { return !context.rows[row].ok() || !context.rows[row].is_newborn; });
     rng.shuffle(newborns);
-    newborns.resize(std::min(newborns.size(), static_cast<std::size_t>(archived_)));
-    for (const std::uint32_t i : newborns) archive.push_back(behaviours[i]);
-    survival.memory = written(archive);
+    for (const std::uint32_t row : evodevo::first_rows(std::move(newborns), static_cast<std::size_t>(archived_)))
+      archive.add(context.rows[row].id, behaviour_of(context.rows[row], context));
+    survival.memory = archive.written();
     return survival;
   }
 
  private:
-  static std::vector<Behaviour> archive_in(const evodevo::SelectionContext& context) {
-    evodevo::MemoryReader reader(context.memory);
-    std::vector<Behaviour> archive;
-    while (reader.left() > 0) {
-      auto place = reader.read_list<double>();
-      archive.push_back({std::move(place), reader.read<double>()});
+  /// The memory: individuals with their behaviours.
+  class Archive {
+   public:
+    explicit Archive(const evodevo::SelectionContext& context) {
+      if (context.memory.empty()) return;
+      evodevo::MemoryReader reader(context.memory);
+      ids_ = reader.read_list<std::uint32_t>();
+      scores_ = reader.read_list<double>();
+      places_ = reader.read_lists<double>();
+      reader.finish();
+      const auto fits = [&](const auto& place) { return place.size() == context.descriptors.size(); };
+      if (scores_.size() != ids_.size() || places_.size() != ids_.size() ||
+          !std::all_of(places_.begin(), places_.end(), fits))
+        reader.fail("does not have " + std::to_string(context.descriptors.size()) + " descriptors for each individual");
     }
-    return archive;
-  }
 
-  static std::vector<std::byte> written(const std::vector<Behaviour>& archive) {
-    evodevo::MemoryWriter writer;
-    for (const Behaviour& one : archive) {
-      writer.write(one.place);
-      writer.write(one.score);
+    /// Returns the behaviours of those who are not in the table.
+    std::vector<Behaviour> of_others(std::span<const evodevo::Candidate> rows) const {
+      std::set<std::uint32_t> present;
+      for (const evodevo::Candidate& row : rows) present.insert(row.id);
+      std::vector<Behaviour> others;
+      for (std::size_t i = 0; i < ids_.size(); ++i)
+        if (!present.contains(ids_[i])) others.push_back({places_[i], scores_[i]});
+      return others;
     }
-    return writer.bytes();
+    void add(std::uint32_t id, const Behaviour& behaviour) {
+      ids_.push_back(id);
+      scores_.push_back(behaviour.score);
+      places_.push_back(behaviour.place);
+    }
+    std::vector<std::byte> written() const {
+      evodevo::MemoryWriter writer;
+      writer.write(ids_);
+      writer.write(scores_);
+      writer.write(places_);
+      return writer.bytes();
+    }
+
+   private:
+    std::vector<std::uint32_t> ids_;
+    std::vector<double> scores_;
+    std::vector<evodevo::Coordinates> places_;
+  };
+
+  static Behaviour behaviour_of(const evodevo::Candidate& row, const evodevo::SelectionContext& context) {
+    return {place_of(row, context.descriptors), row.scores[0]};
   }
 
   std::int64_t neighbours_ = 15;

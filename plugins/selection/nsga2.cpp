@@ -9,46 +9,41 @@ using evodevo::Candidate;
 
 /// The best Pareto layers survive. Of the first layer that does not fit into the population as a whole, the least
 /// crowded members survive; crowding is measured anew after each removal, which spreads them more evenly (Kukkonen and
-/// Deb 2006). Parents are the winners of tournaments between two: the better layer wins, then the less crowded one.
+/// Deb 2006). Parents are the winners of tournaments between two: the better layer wins, then the less crowded one, and
+/// among equals chance decides.
 /// Individuals that failed lose to all others, and among them those win that violate the constraints least.
 class Nsga2 final : public evodevo::Selection {
  public:
   std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
                                                                evodevo::Rng& rng) const override {
-    const auto pool = breeding_rows(rows);
-    const auto points = evodevo::points_of(in_order(rows, pool));
-    std::vector<std::uint32_t> ranked;
-    for (const std::uint32_t i : by_layer_and_room(points)) ranked.push_back(pool[i]);
-    return draw_pairs(ranked, count, rng, evodevo::Tournament{2});
+    auto pool = breeding_rows(rows);
+    rng.shuffle(pool);  // a random order among equals
+    return draw_pairs(by_layer_and_room(evodevo::points_of(rows), std::move(pool)), count, rng, evodevo::Tournament{2});
   }
 
   std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
                                        evodevo::Rng&) const override {
-    const auto order = best_first(rows);
-    auto living = evodevo::best_layers(evodevo::points_of(in_order(rows, order)), population);
-    for (std::uint32_t& i : living) i = order[i];
-    return living;
+    return evodevo::best_layers(evodevo::points_of(rows), best_first(rows), population);
   }
 
  private:
-  /// Returns the points from best to worst, by the crowded comparison of NSGA-II.
-  static std::vector<std::uint32_t> by_layer_and_room(const std::vector<evodevo::Point>& points) {
+  /// Returns the rows of a pool from best to worst, by the crowded comparison of NSGA-II. Equals stay in their order.
+  static std::vector<std::uint32_t> by_layer_and_room(const std::vector<evodevo::Point>& points,
+                                                      std::vector<std::uint32_t> pool) {
     const auto layer = evodevo::pareto_layers(points);
     std::vector<double> room(points.size());
     std::vector<std::vector<std::uint32_t>> layers;
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-      layers.resize(std::max<std::size_t>(layers.size(), layer[i] + 1));
-      layers[layer[i]].push_back(i);
+    for (const std::uint32_t row : pool) {
+      layers.resize(std::max<std::size_t>(layers.size(), layer[row] + 1));
+      layers[layer[row]].push_back(row);
     }
     for (const auto& members : layers) {
       const evodevo::Crowd crowd(points, members);
       for (std::uint32_t i = 0; i < members.size(); ++i) room[members[i]] = crowd.room(i);
     }
-    std::vector<std::uint32_t> ranked(points.size());
-    std::iota(ranked.begin(), ranked.end(), 0u);
-    std::stable_sort(ranked.begin(), ranked.end(),
+    std::stable_sort(pool.begin(), pool.end(),
                      [&](auto a, auto b) { return layer[a] != layer[b] ? layer[a] < layer[b] : room[a] > room[b]; });
-    return ranked;
+    return pool;
   }
 };
 

@@ -26,58 +26,25 @@ class ParetoLayers final : public evodevo::Selection {
 
   std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
                                        evodevo::Rng&) const override {
-    const auto order = best_first(rows);
-    const auto sorted = in_order(rows, order);
-    const auto points = age_ ? evodevo::scores_and_youth(sorted) : evodevo::points_of(sorted);
+    auto order = best_first(rows);
+    const auto points = age_ ? evodevo::scores_and_youth(rows) : evodevo::points_of(rows);
     const auto layer = evodevo::pareto_layers(points);
-
     // from best to worst: by layer, and within a layer by fitness, by which the rows are sorted already
-    std::vector<std::uint32_t> ranked(rows.size());
-    std::iota(ranked.begin(), ranked.end(), 0u);
-    std::stable_sort(ranked.begin(), ranked.end(), [&](auto a, auto b) { return layer[a] < layer[b]; });
-    const auto lost = losers(sorted, parent_positions(rows, order), layer, ranked);
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return layer[a] < layer[b]; });
+    const auto lost = lost_challenges(rows, order, [&](auto child, auto parent) {
+      if (layer[child] != layer[parent]) return layer[child] < layer[parent];
+      return rows[child].ok() && rows[child].scores[0] > rows[parent].scores[0];
+    });
 
-    std::vector<std::uint32_t> front, winners, others, failed;
-    for (const std::uint32_t i : ranked)
-      (layer[i] == 0 ? front : !sorted[i].ok() ? failed : lost[i] ? others : winners).push_back(i);
+    std::vector<std::uint32_t> front, winners, losers, failed;
+    for (const std::uint32_t row : order)
+      (layer[row] == 0 ? front : !rows[row].ok() ? failed : lost[row] ? losers : winners).push_back(row);
     std::vector<std::uint32_t> living = evodevo::least_crowded(points, front, population);
-    for (const auto* group : {&winners, &others, &failed}) living.insert(living.end(), group->begin(), group->end());
-    living.resize(std::min<std::size_t>(living.size(), population));
-    for (std::uint32_t& i : living) i = order[i];
-    return living;
+    for (const auto* group : {&winners, &losers, &failed}) living.insert(living.end(), group->begin(), group->end());
+    return evodevo::first_rows(std::move(living), population);
   }
 
  private:
-  /// Returns, for every row of the sorted table, the position of its parent in that table, or rows.size() for no
-  /// parent.
-  static std::vector<std::size_t> parent_positions(std::span<const Candidate> rows,
-                                                   const std::vector<std::uint32_t>& order) {
-    std::vector<std::size_t> location_of(rows.size()), parents;
-    for (std::size_t i = 0; i < order.size(); ++i) location_of[order[i]] = i;
-    for (const std::uint32_t row : order)
-      parents.push_back(rows[row].challenges ? location_of[*rows[row].challenges] : rows.size());
-    return parents;
-  }
-
-  /// Returns which rows lost: a parent if its best child is better, and a child if it is not better than its parent, or
-  /// if it is not the best of its parent's children.
-  static std::vector<bool> losers(const std::vector<Candidate>& rows, const std::vector<std::size_t>& parents,
-                                  const std::vector<std::uint32_t>& layer, const std::vector<std::uint32_t>& ranked) {
-    const auto better = [&](std::size_t a, std::size_t b) {
-      if (layer[a] != layer[b]) return layer[a] < layer[b];
-      return rows[a].ok() && rows[a].scores[0] > rows[b].scores[0];
-    };
-    std::vector<bool> lost(rows.size(), false), replaced(rows.size(), false);
-    for (const std::uint32_t child : ranked) {
-      const std::size_t parent = parents[child];
-      if (parent == rows.size()) continue;
-      const bool wins = !replaced[parent] && better(child, parent);
-      (wins ? replaced[parent] : lost[child]) = true;
-      if (wins) lost[parent] = true;
-    }
-    return lost;
-  }
-
   bool age_ = true;
 };
 

@@ -1,5 +1,6 @@
 // Species of similar genomes that share their fitness (NEAT: Stanley and Miikkulainen 2002).
 #include <map>
+#include <queue>
 #include <set>
 
 #include "evodevo/helpers/rows.hpp"
@@ -29,6 +30,7 @@ class SpeciesSelection final : public evodevo::Selection {
     p.real(weight_, "gene_weight", {0, 100, "1"}, "Weight of the differences between homologous genes.");
   }
 
+  evodevo::Traits traits() const override { return {.needs_memory = true}; }
   std::vector<evodevo::NoteTitle> notes() const override { return {{.name = "species", .is_label = true}}; }
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> couples(const SelectionContext& context, std::uint32_t count,
@@ -84,8 +86,11 @@ class SpeciesSelection final : public evodevo::Selection {
       evodevo::MemoryReader reader(memory);
       next = reader.read<std::uint32_t>();
       const auto ids = reader.read_list<std::uint32_t>(), numbers = reader.read_list<std::uint32_t>();
-      for (std::size_t i = 0; i < std::min(ids.size(), numbers.size()); ++i) species[ids[i]] = numbers[i];
       reader.finish();
+      if (ids.size() != numbers.size())
+        reader.fail("has the species of " + std::to_string(numbers.size()) + " individuals; expected " +
+                    std::to_string(ids.size()));
+      for (std::size_t i = 0; i < ids.size(); ++i) species[ids[i]] = numbers[i];
     }
     std::vector<std::byte> written() const {
       Numbers ids, numbers;
@@ -119,18 +124,22 @@ class SpeciesSelection final : public evodevo::Selection {
   }
 
   /// Returns the positions of at most `count` individuals, chosen one by one by their worth, which is shared with the
-  /// members of the same species that were chosen before.
+  /// members of the same species that were chosen before. Positions are from best to worst, so the next one of each
+  /// species is its first one that is left.
   static Numbers chosen(const std::vector<double>& worth, const Numbers& species, std::uint32_t count) {
+    std::map<std::uint32_t, std::queue<std::uint32_t>> left;  // positions
     std::map<std::uint32_t, double> members;
-    Numbers left(worth.size()), chosen;
-    std::iota(left.begin(), left.end(), 0u);
-    while (chosen.size() < count && !left.empty()) {
-      const auto shared = [&](std::uint32_t i) { return worth[i] / (1 + members[species[i]]); };
-      const auto best =
-          std::max_element(left.begin(), left.end(), [&](auto a, auto b) { return shared(a) < shared(b); });
-      ++members[species[*best]];
-      chosen.push_back(*best);
-      left.erase(best);
+    for (std::uint32_t i = 0; i < species.size(); ++i) left[species[i]].push(i);
+    const auto share = [&](std::uint32_t i) { return worth[i] / (1 + members[species[i]]); };
+    std::set<std::pair<double, std::uint32_t>> next;  // with the negative share, so that the best comes first
+    for (const auto& [number, positions] : left) next.emplace(-share(positions.front()), positions.front());
+    Numbers chosen;
+    while (chosen.size() < count && !next.empty()) {
+      chosen.push_back(next.extract(next.begin()).value().second);
+      const std::uint32_t number = species[chosen.back()];
+      ++members[number];
+      left[number].pop();
+      if (!left[number].empty()) next.emplace(-share(left[number].front()), left[number].front());
     }
     return chosen;
   }

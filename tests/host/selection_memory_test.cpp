@@ -174,11 +174,14 @@ TEST(Memory, IsReadAsItWasWritten) {
   writer.write(std::vector<float>{1.5F, -2});
   writer.write(-0.0);
   writer.write(std::vector<double>{});
+  const std::vector<std::vector<double>> lists{{1, 2}, {}, {3}};
+  writer.write(lists);
   MemoryReader reader(writer.bytes());
   EXPECT_EQ(reader.read<std::uint32_t>(), 7u);
   EXPECT_EQ(reader.read_list<float>(), (std::vector<float>{1.5F, -2}));
   EXPECT_TRUE(std::signbit(reader.read<double>()));
   EXPECT_TRUE(reader.read_list<double>().empty());
+  EXPECT_EQ(reader.read_lists<double>(), lists);
   reader.finish();
 }
 
@@ -196,6 +199,7 @@ TEST(Memory, ThatIsTooShortOrTooLongIsRefused) {
   MemoryWriter huge;
   huge.write(std::numeric_limits<std::uint64_t>::max());
   EXPECT_THROW(MemoryReader(huge.bytes()).read_list<double>(), std::runtime_error) << "no memory is allocated for it";
+  EXPECT_THROW(MemoryReader(huge.bytes()).read_lists<double>(), std::runtime_error) << "nor for lists";
 }
 
 }  // namespace

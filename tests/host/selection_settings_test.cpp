@@ -78,6 +78,30 @@ TEST(SelectionSettings, AnOperatorOfOneHalfIsNotTakenForBoth) {
               testing::naming("selection.name = \"best\"", "chooses_parents", "[selection.survivors]"));
 }
 
+TEST(SelectionSettings, AnOperatorThatNeedsAMemoryCannotChooseParentsAlone) {
+  const std::string survivors = "[selection.survivors]\nname = \"best\"\n";
+  EXPECT_THAT(complaint(selecting("[selection.parents]\nname = \"species\"\n" + survivors)),
+              testing::naming("selection.parents.name = \"species\"", "needs_memory", "[selection]"));
+  EXPECT_THAT(complaint(sampling("[selection.parents]\nname = \"cma-es\"\n" + survivors)),
+              testing::naming("selection.parents.name = \"cma-es\"", "needs_memory", "[selection]"));
+  EXPECT_TRUE(read(selecting("[selection.parents]\nname = \"lottery\"\n"
+                             "[selection.survivors]\nname = \"species\"\n"))
+                  .parent_selection);
+}
+
+TEST(SelectionSettings, AnOperatorThatNeedsMoreIndividualsIsRefused) {
+  const auto with = [](const std::string& name, const std::string& keys) {
+    return replaced(sampling("[selection]\nname = \"" + name + "\"\n"), "population = 6\n", keys);
+  };
+  EXPECT_THAT(complaint(with("differential", "population = 3\nchildren = 9\n")),
+              testing::naming("selection.name = \"differential\"", "population = 4", "has 3", "[experiment]"));
+  EXPECT_EQ(read(with("differential", "population = 4\nchildren = 1\n")).population, 4);
+  EXPECT_THAT(complaint(with("cma-es", "population = 9\nchildren = 1\n")),
+              testing::naming("selection.name = \"cma-es\"", "children = 2", "has 1", "[experiment]"));
+  EXPECT_THAT(complaint(with("cma-es", "population = 1\n")), testing::naming("population = 2", "has 1"));
+  EXPECT_EQ(read(with("cma-es", "population = 1\nchildren = 2\n")).newborns(), 2);
+}
+
 TEST(SelectionSettings, AnOperatorThatNeedsMoreScoresIsRefused) {
   EXPECT_THAT(complaint(selecting("[selection]\nname = \"outside.novelty\"\n")),
               testing::naming("selection.name = \"outside.novelty\"", "1 descriptor", "give 0", "[[fitness]]"));

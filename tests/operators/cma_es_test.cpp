@@ -76,7 +76,7 @@ void learn(CmaEs& strategy, const std::vector<Point>& points, const std::vector<
   strategy.update(sorted, ranks, rng);
 }
 
-/// Returns the number of evaluations until a value is below the target, at most 100,000.
+/// Returns the number of evaluations until a value is below the target. More than 100,000 are a failure.
 double evaluations(const Function& function, const Search& search, std::uint64_t seed) {
   const double side = 40;
   CmaEs strategy(search.dimension, search.step / side);
@@ -94,6 +94,7 @@ double evaluations(const Function& function, const Search& search, std::uint64_t
     }
     learn(strategy, points, values, rng);
   }
+  ADD_FAILURE() << "no value below " << search.target << " in dimension " << search.dimension;
   return 100'000;
 }
 
@@ -121,24 +122,31 @@ TEST(CmaEs, NeedsAsManyEvaluationsAsPublished) {
 
 TEST(CmaEs, NeedsNoMoreEvaluationsOnARotatedEllipsoid) {
   Rng rng = stream(1);
-  for (const std::size_t dimension : {5, 20}) {
+  for (const std::size_t dimension : {5, 10, 20}) {
     const Rotation rotation(dimension, rng);
-    const Search search{dimension, 0.5, 0.3, 1e-10};
+    const Search search{dimension, 0.5, 0.3, 5.3e-10};
     const double straight = median_evaluations(ellipsoid, search);
     const double rotated = median_evaluations([&](const Point& x) { return ellipsoid(rotation(x)); }, search);
     EXPECT_NEAR(rotated, straight, 0.15 * straight) << dimension;
-    // the tutorial expects between 100 n and 300 n^2 evaluations
-    EXPECT_LT(straight, 300.0 * static_cast<double>(dimension * dimension));
+    if (dimension == 10) {
+      EXPECT_LT(rotated, 1.5 * 6000) << "purecma, ff.elli, which is not rotated";
+    }
   }
 }
 
+TEST(CmaEs, NeedsAsFewEvaluationsOnTheSphereAsPycmaAsksOfItself) {
+  // pycma's test.py asks for fewer than 1000 from 1 with the step size 2 to 1e-8, in 2 to 4 dimensions
+  for (const std::size_t dimension : {2, 3, 4})
+    EXPECT_LT(median_evaluations(sphere, {dimension, 1, 2, 1e-8}), 1000) << dimension;
+}
+
+/// Each further digit takes the same number of evaluations.
 TEST(CmaEs, ConvergesLinearlyOnTheSphere) {
   for (const std::size_t dimension : {5, 10, 20}) {
-    const double half = median_evaluations(sphere, {dimension, 1, 0.5, 1e-5});
-    const double whole = median_evaluations(sphere, {dimension, 1, 0.5, 1e-10});
-    const double quarters = median_evaluations(sphere, {dimension, 1, 0.5, 1e-15});
-    EXPECT_NEAR((quarters - whole) / (whole - half), 1, 0.15) << dimension;
-    EXPECT_LT(whole, 200.0 * static_cast<double>(dimension));
+    const double five_digits = median_evaluations(sphere, {dimension, 1, 0.5, 1e-5});
+    const double ten_digits = median_evaluations(sphere, {dimension, 1, 0.5, 1e-10});
+    const double fifteen_digits = median_evaluations(sphere, {dimension, 1, 0.5, 1e-15});
+    EXPECT_NEAR((fifteen_digits - ten_digits) / (ten_digits - five_digits), 1, 0.15) << dimension;
   }
 }
 
@@ -247,14 +255,62 @@ TEST(CmaEs, OnePointTeachesNothing) {
 TEST(CmaEs, EndsWithFiniteNumbersWhereNothingDiffers) {
   CmaEs strategy(3, 0.2);
   Rng rng = stream(1);
+  const auto before = strategy.state();
   for (int i = 0; i < 500; ++i) {
     const auto points = strategy.sample(7, rng);
     strategy.update(points, std::vector<std::uint32_t>(7, 0), rng);
   }
-  for (const double number : strategy.state()) EXPECT_TRUE(std::isfinite(number));
+  EXPECT_EQ(strategy.state(), before) << "equally good points teach nothing";
   const std::vector<Point> middle(7, strategy.mean());
-  strategy.update(middle, std::vector<std::uint32_t>(7, 0), rng);
+  strategy.update(middle, {0, 1, 2, 3, 4, 5, 6}, rng);
   for (const double number : strategy.state()) EXPECT_TRUE(std::isfinite(number));
+}
+
+/// Chance decides which points are good. With and without ties, the step size must not collapse: it moves at random.
+TEST(CmaEs, TiesDoNotShrinkTheSteps) {
+  const std::vector<std::uint32_t> ties[] = {{0, 1, 2, 3, 4, 5, 6, 7, 8, 9},
+                                             {0, 1, 1, 1, 1, 1, 1, 1, 1, 1},
+                                             {0, 0, 0, 0, 0, 5, 5, 5, 5, 5},
+                                             {0, 0, 2, 2, 2, 5, 5, 7, 8, 8}};
+  for (const auto& ranks : ties) {
+    std::vector<double> steps;
+    for (std::uint64_t seed = 0; seed < 11; ++seed) {
+      CmaEs strategy(10, 1e-3);
+      Rng rng = stream(seed);
+      for (int i = 0; i < 200; ++i) strategy.update(strategy.sample(10, rng), ranks, rng);
+      steps.push_back(strategy.state()[1]);
+    }
+    std::sort(steps.begin(), steps.end());
+    EXPECT_GT(steps[5], 1e-4) << ranks[1] << ranks[4];
+  }
+}
+
+TEST(CmaEs, BearsPointsThatWereDrawnByOthers) {
+  CmaEs strategy(3, 1e-7);
+  Rng rng = stream(1);
+  for (int i = 0; i < 100; ++i) {
+    auto points = strategy.sample(6, rng);
+    for (double& coordinate : points.front()) coordinate = rng.uniform();  // at first, a million times too far away
+    const double before = strategy.state()[1];
+    strategy.update(points, {0, 1, 2, 3, 4, 5}, rng);
+    for (const double number : strategy.state()) ASSERT_TRUE(std::isfinite(number)) << i;
+    const double growth = strategy.state()[1] / before;  // beside e, by the unit of the covariances
+    EXPECT_LT(growth, 2 * std::exp(1.0)) << i;
+  }
+  EXPECT_GT(strategy.state()[1], 1e-3) << "it goes where the best points are";
+  EXPECT_LT(least_found(sphere, 3, 200, 1), 1e-6);
+}
+
+/// The path is measured in the same units as the covariances.
+TEST(CmaEs, ThePathStaysInProportionWhenTheDistributionIsLimited) {
+  const auto path_after = [](double step) {
+    Rng rng = stream(1);
+    CmaEs strategy(2, std::vector<double>{50, step, 0.5, 0.5, 1, 0, 1, 0, 1, 0, 0, 1});
+    strategy.update(std::vector<Point>(6, strategy.mean()), {0, 1, 2, 3, 4, 5}, rng);
+    const auto state = strategy.state();
+    return std::abs(state[6]) / std::sqrt(state[8]);  // relative to the standard deviation along the first axis
+  };
+  EXPECT_NEAR(path_after(30) / path_after(0.01), 1, 0.2);
 }
 
 /// Tutorial, equation 53: with the default settings, the weights of the better half sum to 1, and the greatest is the

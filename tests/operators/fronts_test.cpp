@@ -18,6 +18,41 @@ struct Problem {
   std::vector<Point> front;
 };
 
+/// ZDT6: the points of its front are spread unevenly, and are rarer the nearer they are to it.
+Problem zdt6() {
+  const auto first = [](double x) { return 1 - std::exp(-4 * x) * std::pow(std::sin(6 * pi * x), 6); };
+  const auto objectives = [first](const Genome& x) {
+    double sum = 0;
+    for (std::size_t i = 1; i < x.size(); ++i) sum += x[i];
+    const double g = 1 + 9 * std::pow(sum / static_cast<double>(x.size() - 1), 0.25), f = first(x[0]);
+    return Point{f, g - f * f / g};
+  };
+  double least = 1;
+  for (int i = 0; i <= 10'000; ++i) least = std::min(least, first(i / 10'000.0));
+  std::vector<Point> front;
+  for (int i = 0; i <= 1000; ++i) {
+    const double f = least + (1 - least) * i / 1000;
+    front.push_back({f, 1 - f * f});
+  }
+  return {"ZDT6", 10, objectives, front};
+}
+
+/// The front of DTLZ1 is a triangle, on which the objectives sum to 0.5. There are many local fronts before it.
+Problem dtlz1() {
+  const auto on_triangle = [](double a, double b) { return Point{a * b / 2, a * (1 - b) / 2, (1 - a) / 2}; };
+  const auto objectives = [on_triangle](const Genome& x) {
+    double g = static_cast<double>(x.size() - 2);
+    for (std::size_t i = 2; i < x.size(); ++i) g += (x[i] - 0.5) * (x[i] - 0.5) - std::cos(20 * pi * (x[i] - 0.5));
+    Point point = on_triangle(x[0], x[1]);
+    for (double& one : point) one *= 1 + 100 * g;
+    return point;
+  };
+  std::vector<Point> front;
+  for (int i = 0; i <= 12; ++i)
+    for (int j = 0; i + j <= 12; ++j) front.push_back({i / 24.0, j / 24.0, (12 - i - j) / 24.0});
+  return {"DTLZ1", 7, objectives, front};
+}
+
 /// A problem of the ZDT family: the second objective is g h(f1, g), and g is 1 on the front.
 Problem zdt(const char* name, double (*h)(double f, double g)) {
   const auto objectives = [h](const Genome& x) {
@@ -87,7 +122,10 @@ TEST(Nsga2, FindsTheWholeFront) {
   const Problem problems[] = {
       zdt("ZDT1", [](double f, double g) { return 1 - std::sqrt(f / g); }),
       zdt("ZDT2", [](double f, double g) { return 1 - f * f / (g * g); }),
-      zdt("ZDT3", [](double f, double g) { return 1 - std::sqrt(f / g) - f / g * std::sin(10 * pi * f); }), dtlz2()};
+      zdt("ZDT3", [](double f, double g) { return 1 - std::sqrt(f / g) - f / g * std::sin(10 * pi * f); }),
+      zdt6(),
+      dtlz1(),
+      dtlz2()};
   for (const Problem& problem : problems) {
     const auto found = evolved(*selection, problem, 250);
     ASSERT_EQ(found.size(), 100u);
@@ -142,6 +180,20 @@ TEST(Nsga2, ParentsAreOfBetterLayersOrLessCrowded) {
   EXPECT_NEAR(share[0] + share[2], 12, 0.5);
   EXPECT_NEAR(share[1], 3, 0.3);
   EXPECT_NEAR(share[3], 1, 0.2);
+}
+
+TEST(Nsga2, ChanceDecidesAmongEquals) {
+  const auto selection = make<Selection>("nsga2");
+  // the ends of the front, which have the same room; that with the higher first score is no better
+  const Table table{.rows = {{.scores = {0, 10}}, {.scores = {5, 5}}, {.scores = {10, 0}}}};
+  double ends[2] = {0, 0};
+  const int seeds = 400, couples = 40;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed)
+    for (const auto& [parent, mate] : table.couples(*selection, couples, seed))
+      if (parent != 1) ends[parent / 2] += 1.0 / (seeds * couples);
+  // one of them wins 5 and the other 3 of the 9 draws of two
+  EXPECT_NEAR(ends[0], 4 / 9.0, 0.03);
+  EXPECT_NEAR(ends[1], 4 / 9.0, 0.03);
 }
 
 TEST(Nsga2, TheLeastInfeasibleSurviveAmongTheFailed) {

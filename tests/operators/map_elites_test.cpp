@@ -59,8 +59,7 @@ TEST(MapElites, TheBestOfTheCellWithTheNearestCentreSurvives) {
   Table table = random_table(1, 80);
   const Survival first = table.survive(*selection, 100);
   MemoryReader reader(first.memory);
-  std::vector<Coordinates> centres;
-  while (reader.left() > 0) centres.push_back(reader.read_list<double>());
+  const auto centres = reader.read_lists<double>();
   ASSERT_EQ(centres.size(), 12u);
 
   std::map<std::size_t, std::uint32_t> best;
@@ -93,6 +92,27 @@ TEST(MapElites, TheWorstElitesDieIfThereAreTooFewPlaces) {
                              {.scores = {5}, .descriptors = {0.6, 0}}},
                     .descriptors = ranges};
   EXPECT_THAT(table.survive(*selection, 2).rows, testing::ElementsAre(1, 3));
+}
+
+TEST(MapElites, WhatLiesFarOutsideBelongsToTheNearestCell) {
+  for (const char* cells : {"grid", "centroidal"}) {
+    const auto selection = make<Selection>("map-elites", std::string("cells = \"") + cells + "\"\ncount = 30");
+    const Table table{.rows = {{.scores = {1}, .descriptors = {2000, 0.1}, .id = 0},
+                               {.scores = {2}, .descriptors = {1e300, 0.1}, .id = 1},
+                               {.scores = {3}, .descriptors = {1.7e308, 0.1}, .id = 2},
+                               {.scores = {4}, .descriptors = {-1.7e308, 0.1}, .id = 3}},
+                      .descriptors = ranges};
+    EXPECT_THAT(table.survive(*selection, 4).rows, testing::ElementsAre(3, 2)) << cells;
+  }
+}
+
+TEST(MapElites, AMemoryThatIsNotItsOwnIsRefused) {
+  const auto selection = make<Selection>("map-elites", "cells = \"centroidal\"\ncount = 5");
+  Table table = random_table(1, 20);
+  table.memory = table.survive(*selection, 5).memory;
+  table.descriptors.pop_back();
+  EXPECT_THAT([&] { table.survive(*selection, 5); },
+              testing::ThrowsMessage<std::runtime_error>(testing::HasSubstr("1 descriptors")));
 }
 
 TEST(MapElites, LifeGoesOnWhereAllFailed) {

@@ -20,10 +20,10 @@ Table at(const std::vector<double>& places) {
 std::vector<double> archived(const std::vector<std::byte>& memory) {
   MemoryReader reader(memory);
   std::vector<double> places;
-  while (reader.left() > 0) {
-    places.push_back(10 * reader.read_list<double>().at(0));
-    reader.read<double>();
-  }
+  reader.read_list<std::uint32_t>();  // ids
+  reader.read_list<double>();         // scores
+  for (const auto& place : reader.read_lists<double>()) places.push_back(10 * place.at(0));
+  reader.finish();
   std::sort(places.begin(), places.end());
   return places;
 }
@@ -50,7 +50,40 @@ TEST(NoveltySearch, WhatIsInTheArchiveIsNotNovel) {
   EXPECT_THAT(archived(table.memory),
               testing::ElementsAre(testing::DoubleNear(9, 1e-9), testing::DoubleNear(9.1, 1e-9)));
   table.rows = at({2, 3, 9}).rows;
+  for (Individual& one : table.rows) one.id += 100;
   EXPECT_THAT(table.survive(*selection, 2).rows, testing::UnorderedElementsAre(0, 1));
+}
+
+TEST(NoveltySearch, ThoseInTheArchiveWhoAreAliveCountOnce) {
+  for (const char* competition : {"false", "true"}) {
+    const auto selection =
+        make<Selection>("novelty", std::string("neighbours = 2\narchived = 100\nlocal_competition = ") + competition);
+    Table table = at({1, 2, 4, 8});
+    const Survival first = table.survive(*selection, 2);
+    table.memory = first.memory;
+    const Survival second = table.survive(*selection, 2);
+    EXPECT_EQ(second.rows, first.rows);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(second.notes.at(i).value, first.notes.at(i).value) << i;
+  }
+}
+
+TEST(NoveltySearch, BearsTheGreatestDescriptors) {
+  const auto selection = make<Selection>("novelty", "neighbours = 1\narchived = 1");
+  Table table = at({1e300, -1e308, 1.7e308, 1, 2});
+  const Survival survival = table.survive(*selection, 3);
+  EXPECT_THAT(survival.rows, testing::Contains(1));
+  ASSERT_EQ(survival.notes.size(), 5u);
+  for (const Note& note : survival.notes) EXPECT_TRUE(std::isfinite(note.value)) << note.row;
+}
+
+TEST(NoveltySearch, AMemoryThatIsNotItsOwnIsRefused) {
+  const auto selection = make<Selection>("novelty", "archived = 100");
+  Table table = at({1, 2, 4});
+  table.memory = table.survive(*selection, 2).memory;
+  table.descriptors.push_back(table.descriptors.front());
+  for (Individual& one : table.rows) one.descriptors.push_back(1);
+  EXPECT_THAT([&] { table.survive(*selection, 2); },
+              testing::ThrowsMessage<std::runtime_error>(testing::HasSubstr("2 descriptors")));
 }
 
 TEST(NoveltySearch, TheArchiveGrowsByRandomNewborns) {

@@ -101,7 +101,7 @@ TEST(CmaEsSelection, LearnsFromNewbornsAlone) {
     table.rows.push_back(newborn);
   }
   const auto memory = table.survive(*selection, 5).memory;
-  EXPECT_EQ(MemoryReader(memory).read_list<double>().size(), 7u * 8);
+  EXPECT_EQ(MemoryReader(memory).read_list<double>().size(), 6u * 7) << "one of the six genes has only one value";
   Individual old{.scores = {1e9}, .genome = table.rows[0].genome, .id = 100};
   table.rows.push_back(old);
   const Survival survival = table.survive(*selection, 5);
@@ -111,12 +111,49 @@ TEST(CmaEsSelection, LearnsFromNewbornsAlone) {
   EXPECT_NE(table.survive(*selection, 5).memory, memory);
 }
 
-TEST(CmaEsSelection, ASmallGenerationOrNoneTeachesLittle) {
+TEST(CmaEsSelection, OneNewbornOrNoneTeachesNothing) {
   const auto selection = make<Selection>("cma-es");
-  Table table{.rows = {{.scores = {1}, .genome = Genome(6, 3), .id = 1, .is_newborn = true}}, .layout = uneven_genes()};
-  const auto before = table.survive(*selection, 5).memory;
-  table.memory = before;
-  EXPECT_EQ(table.survive(*selection, 5).memory, before);
+  EXPECT_EQ(selection->traits().least_children, 2u);
+  Evolution evolution(*selection, uneven_genes(), evaluate_bowl, 1);
+  evolution.run(5, 10, 10);
+  Table table = evolution.table;
+  ASSERT_FALSE(table.memory.empty());
+  EXPECT_EQ(table.survive(*selection, 5).memory, table.memory);
+  table.rows.push_back({.scores = {1}, .genome = Genome(6, 3), .id = 1000, .is_newborn = true});
+  EXPECT_EQ(table.survive(*selection, 5).memory, table.memory);
+  table.rows.push_back({.scores = {2}, .genome = Genome(6, 3), .id = 1001, .is_newborn = true});
+  EXPECT_NE(table.survive(*selection, 5).memory, table.memory);
+}
+
+TEST(CmaEsSelection, GenesWithOneValueChangeNothing) {
+  const auto selection = make<Selection>("cma-es");
+  const auto free_genes = [&](bool with_fixed) {
+    Layout layout = real_genes(4, -5, 5);
+    if (with_fixed) layout.add_block(9, {3, 3});
+    Evolution evolution(
+        *selection, layout, [](Individual& one) { one.scores = {-std::abs(one.genome[0]) - std::abs(one.genome[3])}; },
+        1);
+    evolution.run(20, 10, 10);
+    std::vector<std::vector<float>> genes;
+    for (const Individual& one : evolution.table.rows) {
+      genes.emplace_back(one.genome.begin(), one.genome.begin() + 4);
+      for (std::size_t i = 4; i < one.genome.size(); ++i) EXPECT_EQ(one.genome[i], 3);
+    }
+    return genes;
+  };
+  EXPECT_EQ(free_genes(true), free_genes(false));
+  const Table fixed{.layout = real_genes(4, 3, 3)};
+  EXPECT_THAT([&] { fixed.children(*selection, 1); },
+              testing::ThrowsMessage<std::runtime_error>(
+                  testing::AllOf(testing::HasSubstr(" 0 genes"), testing::HasSubstr("encoding"))));
+}
+
+TEST(CmaEsSelection, AMemoryThatIsNotItsOwnIsRefused) {
+  const auto selection = make<Selection>("cma-es");
+  Evolution evolution(*selection, uneven_genes(), evaluate_bowl, 1);
+  evolution.run(2, 10, 10);
+  evolution.table.memory.push_back(std::byte{0});
+  EXPECT_THROW(evolution.table.children(*selection, 5), std::runtime_error);
 }
 
 TEST(CmaEsSelection, RefusesGenomesThatAreTooLong) {
@@ -129,6 +166,44 @@ TEST(CmaEsSelection, RefusesGenomesThatAreTooLong) {
     EXPECT_THAT(error.what(), testing::HasSubstr("1001"));
     EXPECT_THAT(error.what(), testing::HasSubstr("1000"));
     EXPECT_THAT(error.what(), testing::HasSubstr("differential"));
+  }
+}
+
+TEST(Differential, DrawsGenomesWhileTooFewAreAlive) {
+  const auto selection = make<Selection>("differential");
+  EXPECT_EQ(selection->traits().least_population, 4u);
+  Evolution evolution(*selection, uneven_genes(), evaluate_bowl, 1);
+  evolution.step(20, 3);
+  for (const Child& child : evolution.table.children(*selection, 10)) {
+    expect_within(uneven_genes(), child.genome);
+    EXPECT_TRUE(child.parents.empty());
+  }
+  evolution.step(20, 3);
+  for (const Child& child : evolution.table.children(*selection, 10)) EXPECT_EQ(child.parents.size(), 1u);
+}
+
+TEST(Differential, WhatWouldLeaveTheBoundsLiesBetweenThemAndWhereItStarted) {
+  const auto selection = make<Selection>("differential", "factor = 2\ncrossover = 1");
+  for (const bool is_high : {true, false}) {
+    Table table{.layout = real_genes(1, 0, 1)};
+    for (const float gene : {0.8f, 0.9f, 0.95f, 0.99f}) table.rows.push_back({.genome = {is_high ? gene : 1 - gene}});
+    int returned = 0;
+    for (const Child& child : table.children(*selection, 400)) {
+      const double gene = child.genome[0];
+      bool is_sum = false, is_between = false;
+      for (std::uint32_t a = 0; a < 4; ++a)
+        for (std::uint32_t b = 0; b < 4; ++b)
+          for (std::uint32_t c = 0; c < 4; ++c) {
+            if (std::set{a, b, c, child.parents.at(0)}.size() < 4) continue;
+            const double start = table.rows[a].genome[0];
+            const double sum = start + 2 * (double{table.rows[b].genome[0]} - table.rows[c].genome[0]);
+            is_sum |= gene == static_cast<float>(sum);
+            is_between |= (sum > 1 && gene >= start && gene < 1) || (sum < 0 && gene > 0 && gene <= start);
+          }
+      EXPECT_TRUE(is_sum || is_between) << gene;
+      returned += !is_sum;
+    }
+    EXPECT_GT(returned, 100);
   }
 }
 
@@ -206,6 +281,14 @@ TEST(Differential, OfSeveralChildrenTheBestCompetes) {
                              {.scores = {8}, .challenges = 0},
                              {.scores = {0}, .challenges = 1}}};
   EXPECT_THAT(table.survive(*selection, 2).rows, testing::UnorderedElementsAre(2, 1));
+}
+
+TEST(Differential, ThoseWhoFailedCompeteByTheirViolations) {
+  const auto selection = make<Selection>("differential");
+  const Table table{
+      .rows = {
+          {.violation = 1}, {.violation = 3}, {.violation = 2, .challenges = 0}, {.violation = 4, .challenges = 1}}};
+  EXPECT_THAT(table.survive(*selection, 2).rows, testing::UnorderedElementsAre(0, 1));
 }
 
 TEST(Differential, LosersTakeThePlacesOfThoseWhoFailed) {

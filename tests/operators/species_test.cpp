@@ -1,6 +1,7 @@
 // Species by homology, and how they share fitness.
 #include <set>
 
+#include "evodevo/helpers/selection/memory.hpp"
 #include "evolution.hpp"
 
 namespace evodevo::test {
@@ -98,6 +99,40 @@ TEST(Species, DoNotTakeOver) {
   EXPECT_THAT(living, testing::ElementsAre(0, 1, 8, 2, 3, 4));
   EXPECT_THAT(table.survive(*make<Selection>("species", "threshold = 10"), 6).rows,
               testing::ElementsAre(0, 1, 2, 3, 4, 5));
+}
+
+/// Those who survive are chosen one by one, each for the greatest share that is left.
+TEST(Species, SurvivorsAreThoseOfAFullSearch) {
+  const auto selection = make<Selection>("species", "threshold = 0.1");
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Rng rng = stream(seed);
+    std::vector<std::pair<float, double>> rows;
+    for (int i = 0; i < 40; ++i) rows.emplace_back(static_cast<float>(rng.uniform()), rng.below(20));
+    const Table table = with_genes(rows);
+    const Survival survival = table.survive(*selection, 15);
+    std::map<std::uint32_t, double> species;
+    for (const Note& note : survival.notes) species[note.row] = note.value;
+    std::map<double, int> members;
+    std::set<std::uint32_t> chosen;
+    for (const std::uint32_t row : survival.rows) {
+      const auto share = [&](std::uint32_t i) { return rows[i].second / (1 + members[species[i]]); };
+      for (std::uint32_t i = 0; i < 40; ++i) EXPECT_TRUE(chosen.contains(i) || share(row) >= share(i)) << seed;
+      ++members[species[row]];
+      chosen.insert(row);
+    }
+    EXPECT_EQ(chosen.size(), 15u);
+  }
+}
+
+TEST(Species, AMemoryThatIsNotItsOwnIsRefused) {
+  const auto selection = make<Selection>("species");
+  Table table = with_genes({{0.1f, 5}, {0.11f, 4}});
+  MemoryWriter writer;
+  writer.write(std::uint32_t{3});
+  writer.write(std::vector<std::uint32_t>{0, 1});
+  writer.write(std::vector<std::uint32_t>{1});
+  table.memory = writer.bytes();
+  EXPECT_THROW(table.couples(*selection, 2), std::runtime_error);
 }
 
 TEST(Species, ParentsShareTheFitnessOfTheirSpecies) {

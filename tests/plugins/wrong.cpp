@@ -9,6 +9,8 @@
 #include <numeric>
 #include <random>
 
+#include "evodevo/helpers/rows.hpp"
+#include "evodevo/helpers/selection/memory.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
@@ -132,6 +134,31 @@ struct Wrong final : evodevo::Selection {
     survival.notes = {{ 0, 0, 1 / failed }};  // if none failed, no number
 #endif
     return survival;
+  }
+};
+
+#elif defined(WRONG_ORDER_MEMORY) || defined(WRONG_GENERATIONS_MEMORY)
+
+/// The best survive, and all children are equal to the individual that was born last.
+struct Wrong final : evodevo::Selection {
+  evodevo::Traits traits() const override {
+#if defined(WRONG_ORDER_MEMORY)
+    return {.makes_children = true, .needs_real_genes = true, .needs_memory = true};
+#else
+    return {.makes_children = true, .needs_real_genes = true};
+#endif
+  }
+  std::vector<evodevo::Child> children(const evodevo::SelectionContext& context, std::uint32_t count,
+                                       Rng& rng) const override {
+    if (context.memory.empty()) return std::vector<evodevo::Child>(count, {random_genome(context.layout, rng)});
+    Genome genome(context.layout.first_size());
+    genome.genes = evodevo::MemoryReader(context.memory).read_list<float>();
+    return std::vector<evodevo::Child>(count, {genome});
+  }
+  evodevo::Survival survive(const evodevo::SelectionContext& context, std::uint32_t population, Rng&) const override {
+    evodevo::MemoryWriter writer;
+    writer.write(context.rows.back().genome->genes);
+    return {evodevo::first_rows(evodevo::best_first(context.rows), population), writer.bytes()};
   }
 };
 

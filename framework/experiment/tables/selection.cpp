@@ -29,6 +29,23 @@ void check_choice(const TomlReader& t, const Traits& traits, const Choice& choic
     t.fail("name",
            "this operator chooses no parents (its trait chooses_parents); name it in [selection.survivors], and "
            "another one in [selection.parents]");
+  if (!choice.survivors && traits.needs_memory)
+    t.fail("name",
+           "this operator needs a memory to breed (its trait needs_memory), which only the operator that chooses the "
+           "survivors has; name it in [selection] for both, or another one in [selection.parents]");
+}
+
+/// Throws ConfigError if an operator needs a larger population, or more children, than a generation has.
+void check_sizes(const TomlReader& t, const Traits& traits, const Experiment& experiment) {
+  const auto check = [&](std::int64_t needed, std::int64_t given, const std::string& key, const std::string& trait) {
+    if (given < needed)
+      t.fail("name", "this operator needs " + key + " = " + std::to_string(needed) + " or more (its trait " + trait +
+                         "), and the experiment has " + std::to_string(given) + "; raise " + key +
+                         " in [experiment], or choose another operator");
+  };
+  check(traits.least_population, experiment.population, "population", "least_population");
+  check(traits.least_children, experiment.newborns(), experiment.children > 0 ? "children" : "population",
+        "least_children");
 }
 
 /// Throws ConfigError if fewer scores than an operator needs have a role.
@@ -42,6 +59,7 @@ void check_scores(const TomlReader& t, std::size_t needed, std::size_t given, co
 /// Throws ConfigError if an operator cannot work in the experiment.
 void check_traits(const TomlReader& t, const Traits& traits, const Choice& choice, const Experiment& experiment) {
   check_choice(t, traits, choice);
+  check_sizes(t, traits, experiment);
   check_scores(t, traits.least_objectives, experiment.objectives.size(), name(Role::objective));
   const auto descriptors = std::count_if(experiment.measures.begin(), experiment.measures.end(),
                                          [](const Objective& measure) { return measure.role == Role::descriptor; });

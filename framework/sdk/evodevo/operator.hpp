@@ -25,8 +25,12 @@ struct Traits {
   bool makes_children = false;
   /// Selection: it works on genomes that have the same blocks in all individuals, and real genes alone.
   bool needs_real_genes = false;
+  /// Selection: couples() or children() depends on the memory, which only the operator that chooses the survivors has.
+  bool needs_memory = false;
   /// Selection: the smallest numbers of objectives and of descriptors with which it can work.
   std::uint32_t least_objectives = 1, least_descriptors = 0;
+  /// Selection: the smallest population, and the smallest number of children of a generation, with which it can work.
+  std::uint32_t least_population = 1, least_children = 1;
   /// Fitness: scores depend on where the body is, not only on how it moves.
   bool depends_on_place = false;
 };

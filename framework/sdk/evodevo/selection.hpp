@@ -99,7 +99,7 @@ struct Child {
 ///
 /// Rows are in the order of birth. The result must not depend on that order, except to break exact ties. No two rows
 /// are equal in all genes and in all scores: of such individuals, the host keeps only the youngest. But it keeps all
-/// for an operator that makes the children itself.
+/// if one operator makes the children and also chooses the survivors.
 class Selection : public Operator {
  public:
   static constexpr std::string_view kind = "selection";

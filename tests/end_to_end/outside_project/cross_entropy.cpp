@@ -17,7 +17,9 @@ class CrossEntropy final : public evodevo::Selection {
     p.real(rate_, "rate", {0.01, 1, "1"}, "Part of the way that it moves.");
   }
 
-  evodevo::Traits traits() const override { return {.makes_children = true, .needs_real_genes = true}; }
+  evodevo::Traits traits() const override {
+    return {.makes_children = true, .needs_real_genes = true, .needs_memory = true};
+  }
   std::vector<evodevo::NoteTitle> notes() const override { return {{"distance from the mean"}}; }
 
   std::vector<evodevo::Child> children(const evodevo::SelectionContext& context, std::uint32_t count,

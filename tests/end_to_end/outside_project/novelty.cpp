@@ -29,13 +29,14 @@ class Novelty final : public evodevo::Selection {
 
   evodevo::Survival survive(const evodevo::SelectionContext& context, std::uint32_t population,
                             evodevo::Rng&) const override {
-    std::vector<double> archive = archive_in(context.memory);
+    Archive archive(context.memory);
+    const std::vector<double> others = archive.of_others(context);
     auto order = best_first(context.rows);
     evodevo::Survival survival;
     std::vector<double> novelty(order.size(), -1);  // failed rows come last
     for (const std::uint32_t row : order) {
       if (!context.rows[row].ok()) continue;
-      novelty[row] = novelty_of(row, context, archive);
+      novelty[row] = novelty_of(row, context, others);
       survival.notes.push_back({row, 0, novelty[row]});
     }
     std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return novelty[a] > novelty[b]; });
@@ -44,28 +45,49 @@ class Novelty final : public evodevo::Selection {
     std::int64_t left = archived_;
     for (const std::uint32_t row : order) {
       const Candidate& one = context.rows[row];
-      if (one.ok() && one.is_newborn && left-- > 0)
-        archive.insert(archive.end(), one.descriptors.begin(), one.descriptors.end());
+      if (one.ok() && one.is_newborn && left-- > 0) archive.add(one);
     }
-    evodevo::MemoryWriter writer;
-    writer.write(archive);
-    survival.memory = writer.bytes();
+    survival.memory = archive.written();
     return survival;
   }
 
  private:
-  static std::vector<double> archive_in(std::span<const std::byte> memory) {
-    if (memory.empty()) return {};
-    evodevo::MemoryReader reader(memory);
-    auto archive = reader.read_list<double>();
-    reader.finish();
-    return archive;
-  }
+  /// The memory: ids of individuals, and the descriptors of all of them.
+  struct Archive {
+    explicit Archive(std::span<const std::byte> memory) {
+      if (memory.empty()) return;
+      evodevo::MemoryReader reader(memory);
+      ids = reader.read_list<std::uint32_t>();
+      values = reader.read_list<double>();
+      reader.finish();
+    }
+    /// Returns the descriptors of those who are not in the table.
+    std::vector<double> of_others(const evodevo::SelectionContext& context) const {
+      const std::size_t size = context.descriptors.size();
+      std::vector<double> others;
+      for (std::size_t i = 0; i < ids.size(); ++i)
+        if (std::none_of(context.rows.begin(), context.rows.end(), [&](auto& row) { return row.id == ids[i]; }))
+          others.insert(others.end(), &values.at(i * size), &values.at(i * size) + size);
+      return others;
+    }
+    void add(const Candidate& one) {
+      ids.push_back(one.id);
+      values.insert(values.end(), one.descriptors.begin(), one.descriptors.end());
+    }
+    std::vector<std::byte> written() const {
+      evodevo::MemoryWriter writer;
+      writer.write(ids);
+      writer.write(values);
+      return writer.bytes();
+    }
+    std::vector<std::uint32_t> ids;
+    std::vector<double> values;
+  };
 
-  /// Returns the mean distance of a row to its nearest neighbours in the table and in the archive. Each descriptor
-  /// counts relative to its range.
+  /// Returns the mean distance of a row to its nearest neighbours in the table and among others, given by their
+  /// descriptors. Each descriptor counts relative to its range.
   double novelty_of(std::uint32_t row, const evodevo::SelectionContext& context,
-                    const std::vector<double>& archive) const {
+                    const std::vector<double>& others) const {
     const auto own = context.rows[row].descriptors;
     const auto distance = [&](std::span<const double> other) {
       double sum = 0;
@@ -76,8 +98,8 @@ class Novelty final : public evodevo::Selection {
     std::vector<double> distances;
     for (std::uint32_t other = 0; other < context.rows.size(); ++other)
       if (other != row && context.rows[other].ok()) distances.push_back(distance(context.rows[other].descriptors));
-    for (std::size_t i = 0; i + own.size() <= archive.size(); i += own.size())
-      distances.push_back(distance(std::span(archive).subspan(i, own.size())));
+    for (std::size_t i = 0; i < others.size(); i += own.size())
+      distances.push_back(distance(std::span(others).subspan(i, own.size())));
     std::sort(distances.begin(), distances.end());
     distances.resize(std::min<std::size_t>(distances.size(), neighbours_));
     double sum = 0;

@@ -141,13 +141,15 @@ inline std::vector<std::uint32_t> least_crowded(const std::vector<Point>& points
 }
 
 /// Returns the points, at most `count`, that survive by layers (Deb et al. 2002): whole layers, the front first, and of
-/// the layer that does not fit as a whole the least crowded points.
-inline std::vector<std::uint32_t> best_layers(const std::vector<Point>& points, std::size_t count) {
+/// the layer that does not fit as a whole the least crowded points. `order` has the indices of all points; of several
+/// equally crowded points, the last in it goes first.
+inline std::vector<std::uint32_t> best_layers(const std::vector<Point>& points, const std::vector<std::uint32_t>& order,
+                                              std::size_t count) {
   const auto layer = pareto_layers(points);
   std::vector<std::uint32_t> chosen;
   for (std::uint32_t depth = 0; chosen.size() < count; ++depth) {
     std::vector<std::uint32_t> members;
-    for (std::uint32_t i = 0; i < layer.size(); ++i)
+    for (const std::uint32_t i : order)
       if (layer[i] == depth) members.push_back(i);
     if (members.empty()) break;
     const auto stay = least_crowded(points, members, count - chosen.size());

@@ -1,5 +1,5 @@
-// For selection operators: an order of the rows that does not depend on the order of birth, and the choice of
-// parents.
+// For selection operators: an order of the rows that does not depend on the order of birth, competition between parents
+// and children, and the choice of parents.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +11,16 @@
 
 namespace evodevo {
 
+/// Returns whether a row is better than another one by the first `objectives` scores: by the first, ties by the others
+/// in their order. A row that did not fail is better than one that failed. Of two that failed, the one is better that
+/// violates the constraints less (Deb 2000).
+inline bool is_better(const Candidate& one, const Candidate& other, std::size_t objectives = 1) {
+  if (one.ok() != other.ok()) return one.ok();
+  if (!one.ok()) return one.violation < other.violation;
+  const auto a = one.scores.first(objectives), b = other.scores.first(objectives);
+  return std::lexicographical_compare(b.begin(), b.end(), a.begin(), a.end());
+}
+
 /// Returns the rows from best to worst: by the first score, ties by the other scores in their order, then by youth,
 /// then by the order of birth. Failed rows come last, and among them those first that violate the constraints least
 /// (Deb 2000). An operator that works in this order gives a result that depends on the order of birth only for exact
@@ -19,20 +29,34 @@ inline std::vector<std::uint32_t> best_first(std::span<const Candidate> rows) {
   std::vector<std::uint32_t> order(rows.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
-    const auto &a = rows[i].scores, &b = rows[j].scores;
-    if (!std::equal(a.begin(), a.end(), b.begin(), b.end()))
-      return std::lexicographical_compare(b.begin(), b.end(), a.begin(), a.end());
-    if (rows[i].violation != rows[j].violation) return rows[i].violation < rows[j].violation;
-    return rows[i].age < rows[j].age;
+    const std::size_t objectives = rows[i].scores.size();
+    if (is_better(rows[i], rows[j], objectives)) return true;
+    return !is_better(rows[j], rows[i], objectives) && rows[i].age < rows[j].age;
   });
   return order;
 }
 
-/// Returns the rows in the given order.
-inline std::vector<Candidate> in_order(std::span<const Candidate> rows, const std::vector<std::uint32_t>& order) {
-  std::vector<Candidate> sorted;
-  for (const std::uint32_t i : order) sorted.push_back(rows[i]);
-  return sorted;
+/// Returns the first `count` of some rows, or all of them if there are fewer.
+inline std::vector<std::uint32_t> first_rows(std::vector<std::uint32_t> rows, std::size_t count) {
+  rows.resize(std::min(rows.size(), count));
+  return rows;
+}
+
+/// Lets children compete with the parents whose places they may take (Candidate::challenges), and returns which rows
+/// lost. Of the children of one parent, all lose but the best, which is the first in `order`; it loses, too, unless
+/// `wins(child, parent)`. If it wins, the parent loses. `order` has all rows, from best to worst.
+template <class Wins>
+std::vector<bool> lost_challenges(std::span<const Candidate> rows, const std::vector<std::uint32_t>& order,
+                                  const Wins& wins) {
+  std::vector<bool> lost(rows.size(), false), challenged(rows.size(), false);
+  for (const std::uint32_t child : order) {
+    if (!rows[child].challenges) continue;
+    const std::uint32_t parent = *rows[child].challenges;
+    const bool has_won = !challenged[parent] && wins(child, parent);
+    challenged[parent] = true;
+    lost[has_won ? parent : child] = true;
+  }
+  return lost;
 }
 
 /// Returns the rows that may breed, from best to worst: those that did not fail, or all if all failed.

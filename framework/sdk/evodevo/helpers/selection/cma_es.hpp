@@ -39,8 +39,25 @@ struct CmaSettings {
     for (double& weight : weights) weight *= weight >= 0 ? 1 / sum[0] : negative / -sum[1];
   }
 
+  /// Gives points with equal ranks, which follow each other, the mean of their weights. The positive weights sum to 1
+  /// afterwards, and `effective` is adapted to them; it is 0 if there are none.
+  void share(const std::vector<std::uint32_t>& ranks) {
+    double sum = 0, squares = 0;
+    for (std::size_t first = 0, last = 0; first < weights.size(); first = last) {
+      double group = 0;
+      for (last = first; last < weights.size() && ranks[last] == ranks[first]; ++last) group += weights[last];
+      const double mean = group / static_cast<double>(last - first), better = std::max(group, 0.0);
+      for (std::size_t i = first; i < last; ++i) weights[i] = mean;
+      sum += better;
+      squares += better * mean;
+    }
+    for (double& weight : weights)
+      if (weight > 0) weight /= sum;
+    effective = sum > 0 ? sum * sum / squares : 0;
+  }
+
   std::vector<double> weights;
-  double effective;  ///< number of parents if all had the same weight
+  double effective;  ///< number of parents if all had the same weight; adapted by share()
   double step_rate, damping, path_rate, rank_one, rank_mu;
 };
 
@@ -48,6 +65,10 @@ struct CmaSettings {
 /// coordinate that is drawn outside is reflected at its bounds. The distribution learns from one of the images that may
 /// have been reflected, drawn by how likely they are; if it took the reflected points themselves, it would shrink too
 /// early wherever the best points lie on bounds.
+///
+/// It may also learn from points that were not drawn from it. A step to a point that is so far away that it could not
+/// have been drawn is shortened, and the step size grows at most by a factor of e in an update (Hansen 2011: injecting
+/// external solutions into CMA-ES).
 class CmaEs {
  public:
   /// Starts in the middle of the cube with the given step size in each dimension.
@@ -98,18 +119,20 @@ class CmaEs {
   }
 
   /// Learns from points, of which the best comes first. Points with equal ranks, which must follow each other, are
-  /// equally good, and share the mean of their weights. Fewer than two points teach nothing.
+  /// equally good, and share their weights. Fewer than two points, or points that are all equally good, teach nothing.
   void update(const std::vector<std::vector<double>>& points, const std::vector<std::uint32_t>& ranks, Rng& rng) {
     if (points.size() < 2) return;
     const auto n = static_cast<double>(mean_.size());
-    const CmaSettings s(points.size(), n);
-    const std::vector<double> weights = shared(s.weights, ranks);
-    const Matrix steps = unreflected_steps(points, rng);
+    CmaSettings s(points.size(), n);
+    s.share(ranks);
+    if (ranks.front() == ranks.back() || s.effective == 0) return;
+    const Axes axes(covariance_);
+    Matrix steps = unreflected_steps(points, rng);
+    shorten(steps, axes);
     Vector mean_step = Vector::Zero(mean_.size());
     for (std::size_t i = 0; i < points.size(); ++i)
-      mean_step += std::max(weights[i], 0.0) * steps.col(static_cast<Eigen::Index>(i));
+      mean_step += std::max(s.weights[i], 0.0) * steps.col(static_cast<Eigen::Index>(i));
 
-    const Axes axes(covariance_);
     mean_ += step_ * mean_step;
     step_path_ = (1 - s.step_rate) * step_path_ +
                  std::sqrt(s.step_rate * (2 - s.step_rate) * s.effective) * axes.whitened(mean_step);
@@ -121,14 +144,14 @@ class CmaEs {
             (moves_on ? std::sqrt(s.path_rate * (2 - s.path_rate) * s.effective) : 0) * mean_step;
 
     double kept = 1 - s.rank_one * (moves_on ? 1 : 1 - s.path_rate * (2 - s.path_rate));
-    for (const double weight : weights) kept -= s.rank_mu * weight;
+    for (const double weight : s.weights) kept -= s.rank_mu * weight;
     covariance_ = kept * covariance_ + s.rank_one * path_ * path_.transpose();
     for (std::size_t i = 0; i < points.size(); ++i) {
       const auto step = steps.col(static_cast<Eigen::Index>(i));
-      const double squared = weights[i] < 0 ? axes.whitened(step).squaredNorm() : n;
-      if (squared > 0) covariance_ += s.rank_mu * weights[i] * n / squared * step * step.transpose();
+      const double squared = s.weights[i] < 0 ? axes.whitened(step).squaredNorm() : n;
+      if (squared > 0) covariance_ += s.rank_mu * s.weights[i] * n / squared * step * step.transpose();
     }
-    step_ *= std::exp(s.step_rate / s.damping * (length - 1));
+    step_ *= std::exp(std::min(1.0, s.step_rate / s.damping * (length - 1)));
     stay_near_the_cube();
     normalise();
     ++updates_;
@@ -180,6 +203,13 @@ class CmaEs {
     return steps;
   }
 
+  /// Shortens steps that no drawn point makes: hardly any standard normal vector is that long.
+  static void shorten(Matrix& steps, const Axes& axes) {
+    const double longest = std::sqrt(static_cast<double>(steps.rows())) + 5;
+    for (Eigen::Index i = 0; i < steps.cols(); ++i)
+      if (const double length = axes.whitened(steps.col(i)).norm(); length > longest) steps.col(i) *= longest / length;
+  }
+
   /// Draws one of the images of a coordinate, with the chances that the distribution along this axis gives them. Other
   /// images are too far away, since the mean lies in the cube and the standard deviation is limited.
   double image(double coordinate, Eigen::Index axis, Rng& rng) const {
@@ -204,9 +234,9 @@ class CmaEs {
       if (const double mean = reflected(mean_[axis]); mean != mean_[axis]) {
         mean_[axis] = mean;
         step_path_[axis] *= -1;
-        path_[axis] *= -1;
         factor *= -1;
       }
+      path_[axis] *= factor;
       covariance_.row(axis) *= factor;
       covariance_.col(axis) *= factor;
     }
@@ -218,18 +248,7 @@ class CmaEs {
     const double largest = covariance_.diagonal().maxCoeff();
     covariance_ /= largest;
     path_ /= std::sqrt(largest);
-    step_ = std::max(step_ * std::sqrt(largest), 1e-15);  // below this, points of the cube cannot be told apart
-  }
-
-  static std::vector<double> shared(std::vector<double> weights, const std::vector<std::uint32_t>& ranks) {
-    for (std::size_t first = 0, last = 0; first < weights.size(); first = last) {
-      double sum = 0;
-      for (last = first; last < weights.size() && ranks[last] == ranks[first]; ++last) sum += weights[last];
-      const double each = sum / static_cast<double>(last - first);
-      std::fill(weights.begin() + static_cast<std::ptrdiff_t>(first),
-                weights.begin() + static_cast<std::ptrdiff_t>(last), each);
-    }
-    return weights;
+    step_ = std::max(step_ * std::sqrt(largest), 1e-15);  // smaller steps are lost when they are added to the mean
   }
 
   double updates_ = 0;  ///< number of updates so far

@@ -1,4 +1,5 @@
-// The memory of selection operators as bytes: numbers and lists of numbers, written and read in the same order.
+// The memory of selection operators as bytes: numbers, lists of numbers and lists of such lists, written and read in
+// the same order.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +13,7 @@
 
 namespace evodevo {
 
-/// Writes numbers and lists of numbers as bytes.
+/// Writes numbers, lists of numbers and lists of such lists as bytes.
 class MemoryWriter {
  public:
   template <class T>
@@ -25,6 +26,11 @@ class MemoryWriter {
     static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>, "a list of numbers");
     write(static_cast<std::uint64_t>(numbers.size()));
     append(numbers.data(), numbers.size() * sizeof(T));
+  }
+  template <class T>
+  void write(const std::vector<std::vector<T>>& lists) {
+    write(static_cast<std::uint64_t>(lists.size()));
+    for (const std::vector<T>& list : lists) write(list);
   }
 
   const std::vector<std::byte>& bytes() const { return bytes_; }
@@ -58,12 +64,24 @@ class MemoryReader {
     take(numbers.data(), count, sizeof(T));
     return numbers;
   }
+  template <class T>
+  std::vector<std::vector<T>> read_lists() {
+    const auto count = read<std::uint64_t>();
+    require(count, sizeof count);  // at least the length of each list
+    std::vector<std::vector<T>> lists(count);
+    for (std::vector<T>& list : lists) list = read_list<T>();
+    return lists;
+  }
 
   /// The number of bytes that have not been read.
   std::size_t left() const { return bytes_.size() - next_; }
   /// Throws std::runtime_error if bytes are left.
   void finish() const {
     if (left() > 0) fail("has " + std::to_string(left()) + " bytes too many");
+  }
+  /// Throws std::runtime_error: the memory is not what the operator writes. `what` says why, after "memory ".
+  [[noreturn]] static void fail(const std::string& what) {
+    throw std::runtime_error("memory " + what + "; it was written by another version of this operator");
   }
 
  private:
@@ -76,9 +94,6 @@ class MemoryReader {
     require(count, size);
     if (count > 0) std::memcpy(to, bytes_.data() + next_, count * size);
     next_ += count * size;
-  }
-  [[noreturn]] static void fail(const std::string& what) {
-    throw std::runtime_error("memory " + what + "; it was written by another version of this operator");
   }
 
   std::span<const std::byte> bytes_;

@@ -17,11 +17,15 @@ namespace evodevo {
 using Coordinates = std::vector<double>;
 
 /// Returns where an individual that did not fail lies in the space of the descriptors. The range of each descriptor
-/// becomes [0, 1].
+/// becomes [0, 1]. A value that lies outside by more than a million ranges counts as that far outside, so that
+/// distances are finite, and those to different cells differ.
 inline Coordinates place_of(const Candidate& row, std::span<const Objective> descriptors) {
+  const double most = 1e6;
   Coordinates place;
-  for (std::size_t i = 0; i < descriptors.size(); ++i)
-    place.push_back((row.descriptors[i] - descriptors[i].low) / (descriptors[i].high - descriptors[i].low));
+  for (std::size_t i = 0; i < descriptors.size(); ++i) {
+    const double low = descriptors[i].low / 2, range = descriptors[i].high / 2 - low;  // half, so that none overflows
+    place.push_back(std::clamp((row.descriptors[i] / 2 - low) / range, -most, most));
+  }
   return place;
 }
 
@@ -33,7 +37,7 @@ class Neighbours {
     double distance;
   };
 
-  /// All places must have the same dimension, at least 1.
+  /// All places must have the same dimension, at least 1, and coordinates up to 1e150.
   explicit Neighbours(std::vector<Coordinates> places)
       : cloud_{std::move(places)}, tree_(cloud_.dimension(), cloud_, {leaf_size}) {}
   Neighbours(const Neighbours&) = delete;  // the tree refers to the places
