@@ -13,9 +13,9 @@ namespace {
 using evodevo::Behaviour;
 
 /// The individuals survive whose descriptors are farthest from those of their nearest neighbours, in the population and
-/// in an archive of those who died. With local competition, the number of these neighbours that have a lower first
-/// score is a second objective, and whole Pareto layers survive. Some newborns of each generation, drawn at random,
-/// join the archive for good (Lehman and Stanley 2010). The memory holds the archive.
+/// in an archive; who is in both counts once. With local competition, the number of these neighbours that have a lower
+/// first score is a second objective, and whole Pareto layers survive. Some newborns of each generation, drawn at
+/// random, join the archive for good (Lehman and Stanley 2010). The memory holds the archive.
 class NoveltySearch final : public evodevo::Selection {
  public:
   void parameters(evodevo::Parameters& p) override {
