@@ -1,5 +1,5 @@
-"""The charts of a comparison: the medians of quantities, with their intervals, against costs, and the scores of the best
-robots by scenario."""
+"""The charts of a comparison: the medians of quantities, with their intervals, against costs, and the scores of the
+best robots by scenario."""
 
 import itertools
 import math
@@ -16,8 +16,8 @@ POINTS = 120  # intervals on each curve
 
 
 def curve(runs, quantity, axis):
-    """Returns points (cost, median, low, high) of a variant, from the cost at which all of its runs have the quantity to
-    the cost at which the first of them ends."""
+    """Returns points (cost, median, low, high) of a variant, from the cost at which all of its runs have the quantity
+    to the cost at which the first of them ends."""
     start, end = common_span(runs, axis)
     points = []
     if end < start:

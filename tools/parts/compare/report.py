@@ -173,8 +173,8 @@ def by_maps(histories, objective, against):
     title = f"## {capitalised(' and '.join(quantity.name for quantity in found.quantities))}"
     if not found.histories:
         return (
-            f"{title}\n\nNot compared: `{against}` has no map of niches to test others against; name another experiment "
-            "with `--against`.\n"
+            f"{title}\n\nNot compared: `{against}` has no map of niches to test others against; name another "
+            "experiment with `--against`.\n"
         )
     cost, obstacle = common_cost(found.histories, "evaluations")
     parts = [f"{title} after {number(cost)} evaluations\n", not_in_maps(found, objective, against), obstacle]

@@ -92,8 +92,8 @@ def too_few_seeds(seeds, experiments):
 
 
 def common_cost(histories, axis):
-    """Returns the highest cost that every run has reached, and a text that explains why nothing is compared there, which
-    is empty if every run has completed a generation by then."""
+    """Returns the highest cost that every run has reached, and a text that explains why nothing is compared there. The
+    text is empty if every run has completed a generation by then."""
     start, cost = common_span([run for runs in histories.values() for run in runs], axis)
     return cost, too_early(histories, axis, cost) if cost < start else ""
 
