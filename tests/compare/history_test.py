@@ -21,10 +21,12 @@ def shown(best, springs=10, evaluations=5, marks=None, scenarios=()):
     verification = None if marks is None else {"marks": marks}
     return {
         "best": None if set(best) == {None} else {"verification": verification, "scenarios": tests},
+        "map": None,
         "generations": [
             {
                 "evaluations": evaluations * (i + 1),
                 "best": score,
+                "map": None,
                 "diverged": 1,
                 "invalid": 0,
                 "spring_evaluations": springs,

@@ -65,8 +65,7 @@ def history(shown, objective):
         return list(itertools.accumulate((generation[key] for generation in generations), initial=0))
 
     def of_the_map(key):
-        maps = [generation.get("map") for generation in generations]
-        values = [known and known[key] for known in maps]
+        values = [generation["map"] and generation["map"][key] for generation in generations]
         return None if None in values else [0, *values]
 
     better = max if objective.maximise else min
@@ -84,7 +83,7 @@ def history(shown, objective):
         seconds=summed("wall_time"),
         marks=verification and verification["marks"],
         scenarios=by_scenario(shown["best"], objective),
-        axes=(shown.get("map") or {}).get("axes"),
+        axes=shown["map"] and shown["map"]["axes"],
     )
 
 
