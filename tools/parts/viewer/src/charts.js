@@ -129,25 +129,27 @@ class Chart {
   }
 }
 
+/** Returns the data and series of two numbers over the generations of each run. of() returns the object of a generation
+ *  that holds the numbers by their `names`, or undefined. */
+function twoNumbers(runs, names, xOf, of) {
+  const all = runs.flatMap((run, index) => {
+    const column = (key) => ({ x: xOf(run.generations), y: run.generations.map((g) => of(g)?.[key] ?? null) });
+    const several = runs.length > 1;
+    return names.map((name, k) => [
+      column(name),
+      line(runName(run, runs) + name, runColour(several ? index : k), several && k > 0 ? [5, 4] : undefined),
+    ]);
+  });
+  return { data: joined(all.map(([values]) => values)), series: all.map(([, series]) => series) };
+}
+
 function progress(runs, name, title, x, xOf) {
   const objectives = objectivesOf(runs);
-  const describe = (objective) => {
-    const all = runs.flatMap((run, index) => {
-      const xs = xOf(run.generations);
-      const of = (key) => ({ x: xs, y: run.generations.map((g) => own(g.objectives, objective.name)?.[key] ?? null) });
-      const colours = runs.length > 1 ? [runColour(index), runColour(index)] : [runColour(0), runColour(1)];
-      return [
-        [of("best"), line(`${runName(run, runs)}best`, colours[0])],
-        [of("median"), line(`${runName(run, runs)}median`, colours[1], runs.length > 1 ? [5, 4] : undefined)],
-      ];
-    });
-    return {
-      data: joined(all.map(([values]) => values)),
-      series: all.map(([, series]) => series),
-      x,
-      y: axisText(objective),
-    };
-  };
+  const describe = (objective) => ({
+    ...twoNumbers(runs, ["best", "median"], xOf, (g) => own(g.objectives, objective.name)),
+    x,
+    y: axisText(objective),
+  });
   return new Chart(name, title, describe, [{ label: "Objective", scores: objectives, first: objectives[0] }]);
 }
 
@@ -176,32 +178,20 @@ function niches(runs) {
   return [new Chart("niches", title, describe, [choice])];
 }
 
+const numbersOf = (generations) => generations.map((g) => g.generation);
+
 /** Returns a text that begins with a capital letter. */
 const capitalised = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
 /** The greatest and the median of each quantity that selection notes about the living. */
 function notedQuantities(runs) {
-  const describe = (note) => () => {
-    const all = runs.flatMap((run, index) => {
-      const of = (key) => ({
-        x: run.generations.map((g) => g.generation),
-        y: run.generations.map((g) => own(g.notes, note.name)?.[key] ?? null),
-      });
-      const [first, second] = runs.length > 1 ? [index, index] : [0, 1];
-      return [
-        [of("greatest"), line(`${runName(run, runs)}greatest`, runColour(first))],
-        [of("median"), line(`${runName(run, runs)}median`, runColour(second), runs.length > 1 ? [5, 4] : undefined)],
-      ];
-    });
-    return {
-      data: joined(all.map(([values]) => values)),
-      series: all.map(([, series]) => series),
-      x: "generation",
-      wholeX: true,
-      y: titled(note),
-    };
-  };
   const isThere = ({ name }) => runs.some((run) => run.generations.some((g) => own(g.notes, name)));
+  const describe = (note) => () => ({
+    ...twoNumbers(runs, ["greatest", "median"], numbersOf, (g) => own(g.notes, note.name)),
+    x: "generation",
+    wholeX: true,
+    y: titled(note),
+  });
   return notesOf(runs)
     .filter((note) => !note.is_label && isThere(note))
     .map((note) => new Chart(`note ${note.name}`, `${capitalised(note.name)} over generations`, describe(note)));
@@ -210,7 +200,11 @@ function notedQuantities(runs) {
 /** The sizes of the groups that a note of selection divides the living of a run into, stacked. */
 function groups(run, { name, groups: listedGroups, others }, title) {
   return new Chart(`groups ${name}`, title, () => {
-    const all = listedGroups.map(({ label, counts }, i) => ({ text: `${name} ${label}`, counts, colour: groupColour(i) }));
+    const all = listedGroups.map(({ label, counts }, i) => ({
+      text: `${name} ${label}`,
+      counts,
+      colour: groupColour(i),
+    }));
     if (others.some((count) => count > 0)) all.push({ text: "others", counts: others, colour: style("--rule") });
     const tops = run.generations.map(() => 0);
     const stacked = all.map(({ text, counts, colour }) => ({
@@ -226,7 +220,7 @@ function groups(run, { name, groups: listedGroups, others }, title) {
     }));
     stacked.reverse(); // a lower area is drawn over a higher one
     return {
-      data: [run.generations.map((g) => g.generation), ...stacked.map(({ data }) => data)],
+      data: [numbersOf(run.generations), ...stacked.map(({ data }) => data)],
       series: stacked.map(({ series }) => series),
       x: "generation",
       wholeX: true,

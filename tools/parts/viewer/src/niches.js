@@ -6,10 +6,10 @@ import { directionOf, listed, quantityText, titled } from "./scores.js";
 const intervals = 5; // at most, between the values written at an axis
 const finest = 30; // bins along an axis that leave room for marks in the cells
 
-/** Returns the value at a border between the cells of an axis: 0 is the lower end, and the number of bins the upper one. */
+/** Returns the value at a border of an axis's cells: 0 is the lower end, and the number of bins the upper one. */
 const border = ({ low, high, bins }, k) => (low * (bins - k) + high * k) / bins;
 
-/** Returns the borders whose values are written at an axis: at equal distances and, where possible, including both ends. */
+/** Returns the borders whose values are written at an axis: at equal distances and, if possible, including both ends. */
 function ticks({ bins }) {
   const least = Math.ceil(bins / intervals);
   const steps = Array.from({ length: least }, (_, i) => least + i);
@@ -86,6 +86,9 @@ class NicheMap {
 
   #figure(title, [low, high]) {
     const { axes } = this.run.map;
+    const most = quantityText(high, this.objective);
+    const swatch = (name, text) =>
+      element("span", { className: "swatch" }, element("i", { className: name }), text);
     const isFine = Math.max(this.columns, this.rows) > finest;
     this.grid = element(
       "div",
@@ -107,9 +110,9 @@ class NicheMap {
         "div",
         { className: "legend" },
         element("span", { textContent: listed(this.objective.name, directionOf(this.objective)) }),
-        element("span", { className: "bar-of-colours" }, ...colourBar(nicheColour, short(low), quantityText(high, this.objective))),
-        element("span", { className: "swatch" }, element("i", { className: "empty" }), "empty"),
-        isFine ? null : element("span", { className: "swatch" }, element("i", { className: "filmed" }), "with a film"),
+        element("span", { className: "bar-of-colours" }, ...colourBar(nicheColour, short(low), most)),
+        swatch("empty", "empty"),
+        isFine ? null : swatch("filmed", "with a film"),
       ),
       element(
         "div",
@@ -147,7 +150,7 @@ class NicheMap {
     if (cell.robot !== undefined) this.viewer.open(cell.robot);
   }
 
-  /** Goes to another robot: left and right as one reads, up and down to the nearest robot of the next row that has any. */
+  /** Goes to another robot: left and right as one reads, up and down to the nearest one of the next row that has any. */
   #pressed(event) {
     const from = this.cells.findIndex(({ button }) => button === event.target);
     const { column, row } = this.cells[from];
@@ -175,23 +178,28 @@ class NicheMap {
     this.#explain(this.at.get(this.#place({ column, row })) ?? { column, row });
   }
 
-  #textOf({ column, row, individual, value }) {
-    const ranges = this.run.map.axes.map((axis, i) => rangeText(axis, [column, row][i]));
-    const robot = individual === undefined ? "empty" : `individual ${individual}, ${quantityText(value, this.objective)}`;
-    return `${ranges.join(", ")}: ${robot}`;
+  #textOf({ column, row, individual, value, robot }) {
+    const ranges = this.run.map.axes.map((axis, i) => rangeText(axis, [column, row][i])).join(", ");
+    if (individual === undefined) return `${ranges}: empty`;
+    const elite = `${ranges}: individual ${individual}, ${quantityText(value, this.objective)}`;
+    return robot === undefined ? `${elite}; it has no film on this page` : elite;
   }
 
   /** Writes about a cell or, without one, about the map. */
   #explain(cell) {
     if (cell === this.explained && this.info.hasChildNodes()) return;
     this.explained = cell;
+    const hasFilm = cell ? cell.robot !== undefined : this.cells.some(({ robot }) => robot !== undefined);
+    const isEmpty = cell && cell.individual === undefined;
+    const text = cell ? this.#textOf(cell) : `${this.cells.length} of ${this.run.map.cells} cells hold a robot`;
+    const invitation = cell ? [] : [". Click one to see it."];
+    this.info.replaceChildren(text, ...(hasFilm || isEmpty ? invitation : this.#advice(cell)));
+  }
+
+  /** Returns a sentence on how to get the film of the robot in a cell or, without a cell, of any robot. */
+  #advice(cell) {
     const command = `evodevo report ${shellWord(this.run.folder)} --individual ${cell?.individual ?? "ID"}`;
-    const advice = [`. To film ${cell ? "it" : "one"}, run `, element("code", { textContent: command })];
-    const count = `${this.cells.length} of ${this.run.map.cells} cells hold a robot`;
-    const hasFilms = this.cells.some(({ robot }) => robot !== undefined);
-    if (!cell) this.info.replaceChildren(count, ...(hasFilms ? [". Click one to see it."] : advice));
-    else if (cell.individual === undefined || cell.robot !== undefined) this.info.replaceChildren(this.#textOf(cell));
-    else this.info.replaceChildren(this.#textOf(cell), "; it has no film on this page", ...advice);
+    return [`. To film ${cell ? "it" : "one"}, run `, element("code", { textContent: command })];
   }
 }
 
