@@ -27,6 +27,8 @@ class RunJson : public ::testing::Test {
 name = "descriptor"
 what = "height"
 label = "stature"
+range = [0.0, 1.0]
+bins = 1000
 settle = 0.05
 window = 0.1
 
@@ -107,7 +109,7 @@ TEST_F(RunJson, AReportShowsTheBestElites) {
   const Json run = reported_run(archive_, experiment_, *simulator_,
                                 {.best = 1, .best_of_others = 0, .ancestors = 0, .elites = 2}, 1'000'000);
   ASSERT_EQ(run["robots"].size(), 2u) << "the best is an elite, too";
-  EXPECT_EQ(run["robots"][0]["role"], "best");
+  EXPECT_EQ(run["robots"][0]["role"], "best in distance");
   EXPECT_EQ(run["robots"][0]["individual"], ids[0]);
   EXPECT_EQ(run["robots"][1]["role"], "elite");
   EXPECT_EQ(run["robots"][1]["individual"], ids[1]);
