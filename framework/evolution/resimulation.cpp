@@ -1,10 +1,31 @@
 #include "evolution/resimulation.hpp"
 
+#include <algorithm>
 #include <iostream>
+#include <map>
 
+#include "base/text.hpp"
 #include "evolution/record_check.hpp"
 
 namespace evodevo {
+namespace {
+
+std::string difference(const Provenance& then, const Provenance& now) {
+  return now.device != then.device ? "on " + now.device + ", not on " + then.device + " as in the run"
+                                   : "by another build of evodevo or of an operator than in the run";
+}
+
+void warn(std::vector<std::string> ids, const std::string& what) {
+  constexpr std::size_t most_named = 5;
+  const std::size_t count = ids.size();
+  ids.resize(std::min(count, most_named));
+  std::cerr << "warning: " << (count == 1 ? "individual " : "individuals ") << joined(ids)
+            << (count > most_named ? " and " + std::to_string(count - most_named) + " others" : "")
+            << (count == 1 ? " was" : " were") << " simulated again " << what << "; the run has no record of "
+            << (count == 1 ? "its edits, so it" : "their edits, so they") << " may have developed differently\n";
+}
+
+}  // namespace
 
 Experiment experiment_for_resimulation(const Archive& archive, std::vector<std::filesystem::path> plugin_path) {
   Experiment experiment = recorded_experiment(archive, std::move(plugin_path));
@@ -12,20 +33,27 @@ Experiment experiment_for_resimulation(const Archive& archive, std::vector<std::
   return experiment;
 }
 
+std::vector<Newborn> for_resimulation(const Archive& archive, const Experiment& experiment,
+                                      const std::vector<const Individual*>& individuals, const std::string& device) {
+  const Provenance now = this_provenance(experiment, device);
+  std::vector<Newborn> newborns;
+  std::map<std::string, std::vector<std::string>> elsewhere;  // ids by what differs
+  for (const Individual* individual : individuals) {
+    check_genes(archive, experiment, *individual);
+    Newborn& newborn = newborns.emplace_back(
+        Newborn{individual->id, individual->born, &individual->genome, archive.life(individual->id),
+                archive.folder().string() + ": individual " + std::to_string(individual->id)});
+    if (newborn.record) check_life(archive, experiment, individual->id, *newborn.record);
+    const Provenance then = archive.provenance(individual->born);
+    if (!newborn.record && !are_same(then, now)) elsewhere[difference(then, now)].push_back(std::to_string(newborn.id));
+  }
+  for (const auto& [what, ids] : elsewhere) warn(ids, what);
+  return newborns;
+}
+
 Newborn for_resimulation(const Archive& archive, const Experiment& experiment, const Individual& individual,
                          const std::string& device) {
-  check_genes(archive, experiment, individual);
-  Newborn newborn{individual.id, individual.born, &individual.genome, archive.life(individual.id),
-                  archive.folder().string() + ": individual " + std::to_string(individual.id)};
-  if (newborn.record) check_life(archive, experiment, individual.id, *newborn.record);
-  const Provenance then = archive.provenance(individual.born), now = this_provenance(experiment, device);
-  if (newborn.record || are_same(then, now)) return newborn;
-  const std::string difference = now.device != then.device
-                                     ? "on " + now.device + ", not on " + then.device + " as in the run"
-                                     : "by another build of evodevo or of an operator than in the run";
-  std::cerr << "warning: individual " << individual.id << " was simulated again " << difference
-            << "; the run has no record of its edits, so it may have developed differently\n";
-  return newborn;
+  return std::move(for_resimulation(archive, experiment, std::vector{&individual}, device).front());
 }
 
 }  // namespace evodevo

@@ -13,10 +13,13 @@ namespace evodevo {
 /// Returns the experiment of a run, changed so that it can be simulated on a machine without a GPU.
 Experiment experiment_for_resimulation(const Archive& archive, std::vector<std::filesystem::path> plugin_path);
 
-/// Returns an individual of a run as a newborn to be simulated again on `device`, with the record of its life if the
+/// Returns individuals of a run as newborns to be simulated again on `device`, each with the record of its life if the
 /// run has one. If there is no record, and the individual was made by another device or by other builds, its
-/// development may differ from that in the run; the function then warns on stderr. The newborn refers to the
-/// individual's genome.
+/// development may differ from that in the run; the function then warns on stderr, once for all individuals. The
+/// newborns refer to the individuals' genomes.
+std::vector<Newborn> for_resimulation(const Archive& archive, const Experiment& experiment,
+                                      const std::vector<const Individual*>& individuals, const std::string& device);
+/// Does the same for one individual.
 Newborn for_resimulation(const Archive& archive, const Experiment& experiment, const Individual& individual,
                          const std::string& device);
 

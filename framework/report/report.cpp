@@ -168,14 +168,6 @@ Json robot_json(const Archive& archive, const Actor& role, const FilmedLife& lif
 
 constexpr std::size_t filmed_together = 16;  ///< number of robots whose films are in memory at the same time
 
-std::vector<FilmedLife> filmed(const Archive& archive, const Experiment& experiment, Simulator& simulator,
-                               std::span<const Actor> actors, std::size_t scenario) {
-  std::vector<Newborn> newborns;
-  for (const Actor& actor : actors)
-    newborns.push_back(for_resimulation(archive, experiment, actor.individual, simulator.device()));
-  return film_lives(experiment, simulator, newborns, {scenario});
-}
-
 }  // namespace
 
 Json reported_run(const Archive& archive, const Experiment& experiment, Simulator& simulator, const Cast& cast,
@@ -190,16 +182,20 @@ Json reported_run(const Archive& archive, const Experiment& experiment, Simulato
   run["labels"] = labels_json(archive.note_histories());
   run["time"] = time_json(archive);
   run["robots"] = Json::array();
+  std::vector<const Individual*> individuals;
+  for (const Actor& actor : actors) individuals.push_back(&actor.individual);
+  const std::vector<Newborn> newborns = for_resimulation(archive, experiment, individuals, simulator.device());
   SeenRegion region;
   for (std::size_t first = 0; first < actors.size(); first += filmed_together) {
-    const auto group = std::span(actors).subspan(first, std::min(filmed_together, actors.size() - first));
-    const std::vector<FilmedLife> lives = filmed(archive, experiment, simulator, group, scenario);
+    const std::size_t count = std::min(filmed_together, actors.size() - first);
+    const std::vector<FilmedLife> lives =
+        film_lives(experiment, simulator, std::span(newborns).subspan(first, count), {scenario});
     region.include(lives);
-    for (std::size_t i = 0; i < group.size(); ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
       // robots share the budget evenly; what one robot does not use is left to those after it
       const std::size_t share = budget / (actors.size() - first - i);
       const Json& robot =
-          run["robots"].emplace_back(robot_json(archive, group[i], lives[i], experiment, scenario, share));
+          run["robots"].emplace_back(robot_json(archive, actors[first + i], lives[i], experiment, scenario, share));
       budget -= std::min(budget, robot.dump().size());
     }
   }

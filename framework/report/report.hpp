@@ -15,9 +15,9 @@ inline constexpr std::size_t page_budget = 27'000'000;
 /// The robots of a run that a page shows.
 struct Cast {
   std::size_t best = 3;                    ///< number of best individuals by the first objective
-  std::size_t elites = 0;                  ///< number of best individuals of niches, if the run has any
   std::size_t best_of_others = 1;          ///< number of best individuals by each further objective
   std::size_t ancestors = 3;               ///< number of ancestors of the best individual, evenly spaced, founder first
+  std::size_t elites = 0;                  ///< number of best individuals of niches, if the run has any
   std::vector<std::uint32_t> individuals;  ///< ids of further individuals, which are in the archive
 };
 

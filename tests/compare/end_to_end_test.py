@@ -194,6 +194,24 @@ class Comparison(unittest.TestCase):
             if "over=flat" in row["experiment"] and row["scenario"] == "flat":
                 self.assertEqual(float(row["score"]), best[row["experiment"], row["seed"]])
 
+    def test_maps_of_niches_are_compared(self):
+        described = '\n[[fitness]]\nname = "descriptor"\nrange = [0, 1]\nsettle = 0.05\nwindow = 0.1\n'
+        self.plain.write_text(PLAIN + described)
+        self.developing.write_text(DEVELOPING + described)
+        done = self.compare()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        section = done.stdout.split("## Coverage and QD score after 20 evaluations")[1].split("\n## ")[0]
+        for name in ("plain", "developing"):
+            self.assertEqual(section.count(f"| `{name}` |"), 2, section)
+        xml.etree.ElementTree.parse(self.folder / "out" / "map.svg")
+        header, *rows = self.results()
+        column = header.index("coverage")
+        for name, seed in {(row[0], row[1]) for row in rows}:
+            coverage = [float(row[column]) for row in rows if (row[0], row[1]) == (name, seed)]
+            self.assertEqual(coverage, sorted(coverage))  # a cell that is filled stays so
+            self.assertGreater(coverage[-1], 0)
+            self.assertLessEqual(coverage[-1], 1)
+
     def test_experiments_are_added_without_a_folder_named(self):
         # --set affects only the second experiment, which has that table; the run of the first one exists already
         for more in ([], [self.developing, "--set", "development.cycles=1"]):

@@ -5,12 +5,13 @@ import pathlib
 import unittest
 
 from compare import chart, report
-from compare.history import Objective, common_span, history
+from compare.history import Quantity, common_span, history
 from compare.runs import Run, Variant
 from compare.scenarios import shared
+from compare.standings import number, standings
 
-FAR = Objective("distance", "m", True)
-CHEAP = Objective("work", "J", False)
+FAR = Quantity("distance", "m", True)
+CHEAP = Quantity("work", "J", False)
 
 
 def shown(best, springs=10, evaluations=5, marks=None, scenarios=()):
@@ -20,10 +21,12 @@ def shown(best, springs=10, evaluations=5, marks=None, scenarios=()):
     verification = None if marks is None else {"marks": marks}
     return {
         "best": None if set(best) == {None} else {"verification": verification, "scenarios": tests},
+        "map": None,
         "generations": [
             {
                 "evaluations": evaluations * (i + 1),
                 "best": score,
+                "map": None,
                 "diverged": 1,
                 "invalid": 0,
                 "spring_evaluations": springs,
@@ -35,7 +38,7 @@ def shown(best, springs=10, evaluations=5, marks=None, scenarios=()):
 
 
 def panels(histories):
-    return chart.figure(histories, FAR).axes
+    return chart.best_figure(histories, FAR).axes
 
 
 def labels(axes):
@@ -46,8 +49,8 @@ class Histories(unittest.TestCase):
     def test_the_best_so_far_is_never_lost_and_never_early(self):
         run = history(shown([1, 3, 2]), FAR)
         for cost, expected in ((0, -math.inf), (9, -math.inf), (10, 1), (19, 1), (20, 3), (30, 3), (99, 3)):
-            self.assertEqual(run.at("spring_evaluations", cost), expected, cost)
-        self.assertEqual(run.at("evaluations", 14), 3)
+            self.assertEqual(run.at("spring_evaluations", cost, "best"), expected, cost)
+        self.assertEqual(run.at("evaluations", 14, "best"), 3)
         self.assertEqual(run.at("spring_evaluations", 29, "evaluations"), 10)
         self.assertEqual(run.diverged[-1], 3)
 
@@ -75,7 +78,7 @@ class Reports(unittest.TestCase):
         for objective, better in ((FAR, high), (CHEAP, low)):
             worse = low if better is high else high
             histories = self.histories(objective, first=worse, second=better)
-            first, second = report.standings(histories, objective, "evaluations", 10, "first")
+            first, second = standings(histories, objective, "evaluations", 10, "first")
             self.assertEqual((first.a12, first.p, second.a12), (0.5, 1, 1))
             self.assertAlmostEqual(second.p, 2 / 12870, places=14)  # 2 of the C(16, 8) splits
             self.assertRegex(second.verdict("first"), "`second`, beside `first`: better")
@@ -96,7 +99,7 @@ class Reports(unittest.TestCase):
 
     def test_a_small_difference_is_no_finding(self):
         histories = self.histories(FAR, first=[[1], [2], [3]], second=[[4], [5], [6]])
-        second = report.standings(histories, FAR, "evaluations", 5, "first")[1]
+        second = standings(histories, FAR, "evaluations", 5, "first")[1]
         self.assertIn("no difference is shown", second.verdict("first"))
 
     def report(self, histories, against=None):
@@ -225,7 +228,7 @@ class Reports(unittest.TestCase):
 
     def test_numbers(self):
         for value, text in ((0.12345, "0.123"), (600, "600"), (15000, "15000"), (1.3e12, "1.3e12"), (2e-7, "2e-7")):
-            self.assertEqual(report.number(value), text)
+            self.assertEqual(number(value), text)
 
 
 class Scenarios(unittest.TestCase):
@@ -240,7 +243,7 @@ class Scenarios(unittest.TestCase):
         run = history(shown([1], scenarios=[("flat", 3), ("rough", 1), ("rough", 2)]), FAR)
         self.assertEqual(run.scenarios, {"flat": 3, "rough": 1.5})
         self.assertEqual(history(shown([None]), FAR).scenarios, {})
-        self.assertEqual(history(shown([1], scenarios=[("flat", 3)]), Objective("speed", "m/s", True)).scenarios, {})
+        self.assertEqual(history(shown([1], scenarios=[("flat", 3)]), Quantity("speed", "m/s", True)).scenarios, {})
 
     def test_those_that_all_share_are_compared(self):
         histories = self.histories(

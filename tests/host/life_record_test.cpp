@@ -548,6 +548,12 @@ TEST_F(GoneOn, OnAnotherDeviceWarnsByTheGenerationOfBirth) {
                   testing::at_place("warning: individual " + std::to_string(one.id) + " ", "on there", "on here"));
     }
   }
+  ::testing::internal::CaptureStderr();
+  std::vector<const Individual*> everyone;
+  for (const ArchivedIndividual& one : all) everyone.push_back(&one);
+  EXPECT_EQ(for_resimulation(archive, experiment_, everyone, "elsewhere").size(), all.size());
+  const std::string warning = ::testing::internal::GetCapturedStderr();
+  EXPECT_EQ(std::count(warning.begin(), warning.end(), '\n'), 2) << "one line for each device of the run: " << warning;
   EXPECT_GT(warned_here, 0);
   EXPECT_GT(warned_there, 0);
 }

@@ -435,12 +435,18 @@ FilmedLife life_at(const std::vector<SeenPlace>& positions, Status status = Stat
   return life;
 }
 
+SeenRegion region_of(const std::vector<FilmedLife>& lives) {
+  SeenRegion region;
+  for (const FilmedLife& life : lives) region.include({life});  // one by one, as reports do
+  return region;
+}
+
 TEST(SceneJson, HoldsTheGroundAroundWhatIsSeen) {
   Scene scene;
   scene.floor = Floor{.roughness = 0.1, .wavelength = 0.9, .seed = 7};
   FilmedLife walker = life_at({{-3, 1, 0}, {-1, 1, 1}});
   walker.film.front().frames.push_back({1, {{3, 2, 0}, {5, 2, 1}}});
-  const auto json = scene_json(scene, {walker});
+  const auto json = scene_json(scene, region_of({walker}));
   const auto& ground = json["ground"];
   const double x = ground["x"], y = ground["y"], spacing = ground["spacing"];
   const std::size_t columns = ground["columns"], rows = ground["rows"];
@@ -464,8 +470,8 @@ TEST(SceneJson, GroundStaysSmallWhereverBodiesGo) {
   const FilmedLife born = life_at({{0, 0, 0}, {1, 0, 0}});
   FilmedLife lost = life_at({{0, 0, 0}, {1, 0, 0}}, Status::diverged);
   lost.film.front().frames.push_back({1, {{1e30F, 0, 0}, {0, 1e30F, 0}}});
-  const auto ground = scene_json(scene, {lost})["ground"];
-  EXPECT_EQ(ground, scene_json(scene, {born})["ground"]);
+  const auto ground = scene_json(scene, region_of({lost}))["ground"];
+  EXPECT_EQ(ground, scene_json(scene, region_of({born}))["ground"]);
   EXPECT_EQ(ground["columns"], 256);
   EXPECT_LE(ground["rows"], 256);
 }

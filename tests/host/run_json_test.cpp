@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "evolution/evolution.hpp"
+#include "report/diversity.hpp"
 #include "report/report.hpp"
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"
@@ -26,6 +27,8 @@ class RunJson : public ::testing::Test {
 name = "descriptor"
 what = "height"
 label = "stature"
+range = [0.0, 1.0]
+bins = 1000
 settle = 0.05
 window = 0.1
 
@@ -98,6 +101,19 @@ TEST_F(RunJson, NamesTheScoresThatAreNotObjectives) {
   const Json measures = run_json(archive_, experiment_)["measures"];
   ASSERT_EQ(measures.size(), 1u);
   EXPECT_EQ(measures[0].dump(), R"({"name":"stature","unit":"m","role":"descriptor"})");
+}
+
+TEST_F(RunJson, AReportShowsTheBestElites) {
+  const auto ids = best_elites(niche_map(archive_), 2);
+  ASSERT_EQ(ids.size(), 2u);
+  const Json run = reported_run(archive_, experiment_, *simulator_,
+                                {.best = 1, .best_of_others = 0, .ancestors = 0, .elites = 2}, 1'000'000);
+  ASSERT_EQ(run["robots"].size(), 2u) << "the best is an elite, too";
+  EXPECT_EQ(run["robots"][0]["role"], "best in distance");
+  EXPECT_EQ(run["robots"][0]["individual"], ids[0]);
+  EXPECT_EQ(run["robots"][1]["role"], "elite");
+  EXPECT_EQ(run["robots"][1]["individual"], ids[1]);
+  EXPECT_FALSE(run["robots"][1]["film"]["shots"].empty());
 }
 
 TEST_F(RunJson, AReportHasTheScoresOfTheLivingAndTheBestInEachObjective) {

@@ -107,9 +107,9 @@ export async function inPage(page, action, argument) {
   );
 }
 
-/** Waits until a function of the page's parts returns true. */
-export async function until(page, condition) {
-  while (!(await inPage(page, condition)));
+/** Waits until a function of the page's parts, and of an argument, returns true. */
+export async function until(page, condition, argument) {
+  while (!(await inPage(page, condition, argument)));
 }
 
 /** Takes a picture of the stage without captions. The picture stays in the page, since counting pixels there is faster

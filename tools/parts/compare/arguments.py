@@ -7,6 +7,7 @@ DESCRIPTION = """\
 Runs each experiment with several seeds and compares the fitness of their best robots, after equal numbers of
 evaluations and after equal numbers of spring evaluations. Writes a report with medians and effect sizes, each with its
 interval, with rank tests of all experiments against one of them, with the shares of failed evaluations, and a chart.
+If the experiments have the same descriptors, it also compares coverage and QD score of their maps of niches.
 If the experiments have scenarios, it also compares the best robots in each scenario that the experiments share.
 The same command continues a comparison that was stopped; more seeds, experiments or values may be added."""
 EXAMPLE = """\

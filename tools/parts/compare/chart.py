@@ -1,5 +1,5 @@
-"""The charts of a comparison: the median of the best score so far, with its interval, against both kinds of cost, and
-the scores of the best robots by scenario."""
+"""The charts of a comparison: the medians of quantities, with their intervals, against costs, and the scores of the
+best robots by scenario."""
 
 import itertools
 import math
@@ -8,31 +8,32 @@ from common import charts
 
 from . import inference
 from .history import common_span
-from .report import AXES, INTERVAL, number
+from .standings import AXES, INTERVAL, number
 
 COLOURS = [charts.BLUE, charts.VERMILION, charts.GREEN, charts.PURPLE, charts.ORANGE, charts.SKY, charts.BLACK]
 STYLES = [(colour, dashes) for dashes in ("-", "--", ":") for colour in COLOURS]
 POINTS = 120  # intervals on each curve
 
 
-def curve(runs, axis):
-    """Returns points (cost, median, low, high) of a variant, from the cost at which all of its runs have a fitness to
-    the cost at which the first of them ends."""
+def curve(runs, quantity, axis):
+    """Returns points (cost, median, low, high) of a variant, from the cost at which all of its runs have the quantity
+    to the cost at which the first of them ends."""
     start, end = common_span(runs, axis)
     points = []
     if end < start:
         return points
     for i in range(POINTS + 1):
         cost = start + (end - start) * i / POINTS
-        scores = [run.at(axis, cost) for run in runs]
-        if all(map(math.isfinite, scores)):
-            middle = inference.median(scores)
-            points.append((cost, middle, *(inference.median_interval(scores) or (middle, middle))))
+        values = [run.at(axis, cost, quantity.column) for run in runs]
+        if all(map(math.isfinite, values)):
+            middle = inference.median(values)
+            points.append((cost, middle, *(inference.median_interval(values) or (middle, middle))))
     return points
 
 
 def draw_panel(axes, histories, curves, axis):
-    """Draws one panel. `curves` does not contain variants with a run that has no fitness."""
+    """Draws one panel. `curves` does not contain variants with a run that has no fitness. The limits of the vertical
+    axis must be final."""
     axes.set(xlabel=AXES[axis], xlim=(0, max(common_span(runs, axis)[1] for runs in histories.values())))
     start, end = common_span([run for runs in histories.values() for run in runs], axis)
     if start <= end:
@@ -46,33 +47,54 @@ def draw_panel(axes, histories, curves, axis):
     charts.label_ends(axes, ends)
 
 
-def drawn(seeds):
+def drawn(histories):
+    seeds = len(next(iter(histories.values())))
     return f"median and {INTERVAL}" if seeds >= inference.INTERVAL_FROM else "median"
 
 
-def figure(histories, objective):
+def limits(curves):
+    """Returns the limits of the vertical axis for these curves, which contain 0."""
+    values = [value for _, points, _ in curves for point in points for value in point[1:]]
+    low, high = min([0.0, *values]), max([0.0, *values])
+    return low, high + (0.06 * (high - low) or 1.0)
+
+
+def figure(histories, panels, title, legend=""):
+    """Draws one panel for each of `panels`: pairs of a quantity and an axis. Panels of the same quantity have the same
+    limits."""
     curves = {
-        axis: [
+        (quantity, axis): [
             (variant.label, points, style)
             for (variant, runs), style in zip(histories.items(), itertools.cycle(STYLES))
-            if (points := curve(runs, axis))
+            if (points := curve(runs, quantity, axis))
         ]
-        for axis in AXES
+        for quantity, axis in panels
     }
-    scores = [score for some in curves.values() for _, points, _ in some for point in points for score in point[1:]]
-    low, high = min([0.0, *scores]), max([0.0, *scores])
-    high += 0.06 * (high - low) or 1.0
-    seeds = len(next(iter(histories.values())))
-    page, panels = charts.page(
-        len(AXES),
-        len(AXES),
+    page, places = charts.page(
+        len(panels),
+        len(panels),
         (3.6, 3.4),
-        title=f"best {objective.name} so far ({objective.unit}), {drawn(seeds)}",
+        title=title,
+        legend=legend,
         right=0.6 + 0.06 * max(len(variant.label) for variant in histories),  # for the labels
     )
-    for axes, axis in zip(panels, AXES):
-        axes.set_ylim(low, high)
-        draw_panel(axes, histories, curves[axis], axis)
+    for axes, (quantity, axis) in zip(places, panels):
+        axes.set_ylim(limits([each for (shown, _), some in curves.items() if shown == quantity for each in some]))
+        draw_panel(axes, histories, curves[quantity, axis], axis)
+    return page
+
+
+def best_figure(histories, objective):
+    """Draws the best score so far against both kinds of cost."""
+    title = f"best {objective.name} so far ({objective.unit}), {drawn(histories)}"
+    return figure(histories, [(objective, axis) for axis in AXES], title)
+
+
+def map_figure(histories, quantities):
+    """Draws what the maps of niches amount to against evaluations."""
+    page = figure(histories, [(quantity, "evaluations") for quantity in quantities], "map of niches", drawn(histories))
+    for axes, quantity in zip(page.axes, quantities):
+        axes.set_title(f"{quantity.name} ({quantity.unit})")
     return page
 
 
@@ -96,13 +118,12 @@ def scenario_figure(scores, objective):
     `scores` is that of scenarios.Shared."""
     names = list(next(iter(scores.values())))
     width = 0.8 / len(scores)
-    seeds = len(next(iter(next(iter(scores.values())).values())))
     page, (axes,) = charts.page(
         1,
         1,
         (max(3.6, 0.5 * len(names) * max(2, len(scores))), 3.4),
         title=f"{objective.name} of the best robots ({objective.unit})",
-        legend=f"points: runs; bars: {drawn(seeds)}",
+        legend=f"points: runs; bars: {drawn(next(iter(scores.values())))}",
         right=0.6 + 0.06 * max(len(variant.label) for variant in scores),  # for the labels
     )
     ends = []

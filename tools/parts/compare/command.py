@@ -7,15 +7,15 @@ import sys
 
 from common import charts
 
-from . import arguments, chart, report
-from .history import Objective, history
+from . import arguments, chart, niches, report, tables
+from .history import history, objective_of
 from .runs import Failure, Interrupted, Runs, make_variants, parse_setting, parse_sweep
 from .scenarios import shared
 
 
 def first_objective(shown):
     """Returns the first objective, by which runs are compared. It must be the same in all runs."""
-    objectives = {Objective.of(run["objectives"][0]) for run in shown}
+    objectives = {objective_of(run["objectives"][0]) for run in shown}
     if len(objectives) > 1:
         names = ", ".join(sorted(f"{o.name} ({o.unit})" for o in objectives))
         raise Failure(f"the experiments differ in their first objective: {names}; only the same can be compared")
@@ -53,10 +53,13 @@ def compare(words, program):
     )
     text = report.markdown(histories, objective, setting)
     (out / "report.md").write_text(text)
-    report.write_csv(out / "results.csv", histories)
-    charts.save(chart.figure(histories, objective), out / "chart.svg")
+    tables.write_csv(out / "results.csv", histories)
+    charts.save(chart.best_figure(histories, objective), out / "chart.svg")
+    maps = niches.shared(histories, objective, against)
+    if maps.histories:
+        charts.save(chart.map_figure(maps.histories, maps.quantities), out / "map.svg")
     if in_scenarios := shared(histories, objective).scores:
-        report.write_scenarios_csv(out / "scenarios.csv", histories)
+        tables.write_scenarios_csv(out / "scenarios.csv", histories)
         if all(in_scenarios.values()):
             charts.save(chart.scenario_figure(in_scenarios, objective), out / "scenarios.svg")
     print(f"\n{text}\nwritten to {out}")

@@ -1,4 +1,5 @@
-"""The history of a run: the best score so far against evaluations and against spring evaluations."""
+"""The history of a run: the quantities that runs are compared by, against evaluations and against spring
+evaluations."""
 
 import bisect
 import dataclasses
@@ -9,42 +10,49 @@ from .scenarios import by_scenario
 
 
 @dataclasses.dataclass(frozen=True)
-class Objective:
+class Quantity:
+    """A number that runs are compared by: the best first objective, or what a run's map of niches amounts to."""
+
     name: str
     unit: str
     maximise: bool
-
-    @classmethod
-    def of(cls, shown):
-        """The objective that `show --json` describes, with other facts about it."""
-        return cls(shown["name"], shown["unit"], shown["maximise"])
+    column: str = "best"  # the list of a history that has the quantity after each generation
 
     @property
     def worst(self):
-        """The score of a run in which no robot has a fitness."""
+        """The value of a run in which no robot has a fitness."""
         return -math.inf if self.maximise else math.inf
 
-    def upwards(self, scores):
-        """Returns the scores, negated if less is better, so that more is better."""
-        return scores if self.maximise else [-score for score in scores]
+    def upwards(self, values):
+        """Returns the values, negated if less is better, so that more is better."""
+        return values if self.maximise else [-value for value in values]
+
+
+def objective_of(shown):
+    """Returns the best score by the objective that `show --json` describes, with other facts about it."""
+    return Quantity(shown["name"], shown["unit"], shown["maximise"])
 
 
 @dataclasses.dataclass(frozen=True)
 class History:
     """The history of one run. The first element of each list stands for the time before the first generation. `best` is
-    the best score so far; all other lists are sums over the generations so far."""
+    the best score so far, `coverage` and `qd_score` are those of the map of all individuals so far, and all other lists
+    are sums over the generations so far."""
 
     generations: list
     evaluations: list
     spring_evaluations: list
     best: list
+    coverage: list | None  # None if the run has no map
+    qd_score: list | None  # None if the run has no map, or less of the objective is better
     diverged: list
     invalid: list
     seconds: list
     marks: list | None  # of the run's best robot, such as "artefact"; None if it was not verified
     scenarios: dict  # scores of the run's best robot by scenario
+    axes: list | None  # of the run's map; None if it has no map
 
-    def at(self, axis, cost, what="best"):
+    def at(self, axis, cost, what):
         """Returns the value of the list `what` after the last generation that was complete at that cost."""
         return getattr(self, what)[bisect.bisect_right(getattr(self, axis), cost) - 1]
 
@@ -56,6 +64,10 @@ def history(shown, objective):
     def summed(key):
         return list(itertools.accumulate((generation[key] for generation in generations), initial=0))
 
+    def of_the_map(key):
+        values = [generation["map"] and generation["map"][key] for generation in generations]
+        return None if None in values else [0, *values]
+
     better = max if objective.maximise else min
     scores = [objective.worst if generation["best"] is None else generation["best"] for generation in generations]
     verification = (shown["best"] or {}).get("verification")
@@ -64,11 +76,14 @@ def history(shown, objective):
         evaluations=[0, *(generation["evaluations"] for generation in generations)],
         spring_evaluations=summed("spring_evaluations"),
         best=list(itertools.accumulate(scores, better, initial=objective.worst)),
+        coverage=of_the_map("coverage"),
+        qd_score=of_the_map("qd_score"),
         diverged=summed("diverged"),
         invalid=summed("invalid"),
         seconds=summed("wall_time"),
         marks=verification and verification["marks"],
         scenarios=by_scenario(shown["best"], objective),
+        axes=shown["map"] and shown["map"]["axes"],
     )
 
 

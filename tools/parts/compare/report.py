@@ -1,17 +1,10 @@
-"""Writes a comparison as text: report.md for people, results.csv for other programs."""
+"""Writes report.md, the report on a comparison."""
 
 import collections
-import csv
 import dataclasses
-import math
-import re
 
-from . import inference
-from .history import common_span
-from .scenarios import shared
-
-AXES = {"spring_evaluations": "spring evaluations", "evaluations": "evaluations"}
-INTERVAL = f"{100 * inference.LEVEL:.0f} % interval"
+from . import inference, niches, scenarios
+from .standings import AXES, common_cost, comparison, number, table, too_few_seeds
 
 METHOD = f"""\
 ## How to read this
@@ -36,6 +29,12 @@ p is that of the two-sided Mann-Whitney U test: exact up to {inference.EXACT_UP_
 to {inference.EXACT_WITH_TIES_UP_TO}, and by the normal distribution beyond, corrected for ties. p (Holm) allows for all rows of its table. Below {inference.SIGNIFICANT} a difference counts as shown.
 """
 
+NICHES = """\
+The map of niches divides the ranges of one or two descriptors into cells. It counts all individuals that the run ever
+evaluated, whatever its selection operator. Coverage is the share of the cells that some individual of the run lies in.
+The QD score is the sum of the best scores of the filled cells (Pugh, Soros & Stanley 2016); a cell whose best score is
+negative lowers it. Both are compared after equal numbers of evaluations only.
+"""
 
 SCENARIOS = """\
 The best robot of each run, by the first objective of its own experiment. Its score in a scenario is the mean of the
@@ -77,119 +76,21 @@ def parts_of(provenance):
         yield f"{operator['kind']} `{operator['name']}`", f"{operator['version']} ({operator['hash']})"
 
 
-def number(value):
-    if math.isinf(value):
-        return "none"
-    if 1e3 <= abs(value) < 1e6:
-        return f"{value:.0f}"
-    return re.sub(r"e\+?(-?)0*", r"e\1", f"{value:.3g}")
+def capitalised(text):
+    return text[0].upper() + text[1:]
 
 
 def share(part, whole):
     return f"{100 * part / whole:.2f} %"
 
 
-def table(header, rows):
-    lines = [header, ["---"] * len(header), *rows]
-    return "".join("| " + " | ".join(line) + " |\n" for line in lines)
-
-
-@dataclasses.dataclass(frozen=True)
-class Standing:
-    """One variant at one cost, compared with the variant that it is tested against."""
-
-    name: str
-    scores: list
-    a12: float
-    p: float
-    holm: float
-
-    def achieved(self, spent, generations):
-        """Returns the first cells of the variant's row in the table: the median score with its interval, and the median
-        costs."""
-        bounds = inference.median_interval(self.scores)
-        interval = "{} to {}".format(*map(number, bounds)) if bounds else "-"
-        score, *costs = (number(inference.median(values)) for values in (self.scores, spent, generations))
-        return [f"`{self.name}`", score, interval, *costs]
-
-    def interval(self):
-        return "{:.2f} to {:.2f}".format(*inference.superiority_interval(self.a12, len(self.scores)))
-
-    def tests(self, judged):
-        """Returns the remaining cells of the variant's row: the comparison with the variant that it is tested
-        against."""
-        return [f"{self.a12:.2f}", self.interval() if judged else "-", f"{self.p:.2g}", f"{self.holm:.2g}"]
-
-    def verdict(self, baseline):
-        """Returns a sentence that claims a difference only if the test shows one."""
-        beside = f"`{self.name}`, beside `{baseline}`: "
-        numbers = f"A12 {self.a12:.2f}, {self.interval()}, p (Holm) {self.holm:.2g}"
-        if self.holm >= inference.SIGNIFICANT:
-            return f"- {beside}no difference is shown ({numbers})."
-        return f"- {beside}{'better' if self.a12 > 0.5 else 'worse'} ({numbers})."
-
-
-def standings(histories, objective, axis, cost, against):
-    """Returns the standings of all variants at one cost, tested against the variant with the name `against`."""
-    scores = {variant.name: [history.at(axis, cost) for history in runs] for variant, runs in histories.items()}
-    upwards = {name: objective.upwards(values) for name, values in scores.items()}
-    ps = {name: inference.rank_sum_test(values, upwards[against]) for name, values in upwards.items()}
-    others = [name for name in scores if name != against]
-    adjusted = {against: 1.0, **dict(zip(others, inference.holm([ps[name] for name in others])))}
-    return [
-        Standing(name, scores[name], inference.superiority(upwards[name], upwards[against]), ps[name], adjusted[name])
-        for name in scores
-    ]
-
-
-def verdicts_possible(seeds, experiments):
-    return seeds >= inference.runs_for_verdict(experiments - 1)
-
-
-def too_few_seeds(seeds, experiments):
-    """Returns a text on the statistics that are left out because there are too few runs."""
-    said = ""
-    if seeds < inference.INTERVAL_FROM:
-        said += f"No intervals of medians: they take {inference.INTERVAL_FROM} seeds (`--seeds`).\n"
-    if not verdicts_possible(seeds, experiments):
-        said += (
-            f"No verdicts: whatever the runs come to, {seeds} seeds cannot show a difference between {experiments} "
-            f"experiments; that takes {inference.runs_for_verdict(experiments - 1)}.\n"
-        )
-    return said
-
-
-def too_early(histories, axis, cost):
-    """Explains why nothing is compared at a cost at which some run has not completed a generation."""
-    late = " and ".join(f"`{variant.name}`" for variant, runs in histories.items() if common_span(runs, axis)[0] > cost)
-    ending = min(histories, key=lambda variant: common_span(histories[variant], axis)[1]).name
-    return (
-        f"Not compared: a run of `{ending}` ends before the first generation of every run of {late} is complete. "
-        f"Let `{ending}` run longer (`experiment.evaluations`, `experiment.spring_evaluations`), or give {late} a "
-        "smaller `experiment.population`.\n"
-    )
-
-
 def section(histories, objective, axis, against):
-    """Returns the section on the comparison at the highest cost that every run has reached."""
-    start, cost = common_span([history for runs in histories.values() for history in runs], axis)
-    title = f"## After {number(cost)} {AXES[axis]}\n\n"
-    if cost < start:
-        return title + too_early(histories, axis, cost)
-    all_standings = standings(histories, objective, axis, cost, against)
-    others = [standing for standing in all_standings if standing.name != against]
+    """Returns the section on the best scores at the highest cost that every run has reached."""
+    cost, obstacle = common_cost(histories, axis)
     other = next(name for name in AXES if name != axis)
-    header = ["", f"median {objective.name}", INTERVAL, f"{AXES[other]} by then", "generations"]
-    rows = [
-        standing.achieved(*([history.at(axis, cost, what) for history in runs] for what in (other, "generations")))
-        for standing, runs in zip(all_standings, histories.values())
-    ]
-    if not others:
-        return title + table(header, rows)
-    judged = verdicts_possible(len(others[0].scores), len(histories))
-    verdicts = "".join(f"{standing.verdict(against)}\n" for standing in others) + "\n" if judged else ""
-    tests = [["-"] * 4 if standing.name == against else standing.tests(judged) for standing in all_standings]
-    return title + verdicts + table(header + ["A12", INTERVAL, "p", "p (Holm)"], map(list.__add__, rows, tests))
+    spent = [(f"{AXES[other]} by then", other), ("generations", "generations")]
+    compared = obstacle or comparison(histories, objective, axis, cost, against, spent)
+    return f"## After {number(cost)} {AXES[axis]}\n\n{compared}"
 
 
 def verified(runs):
@@ -227,13 +128,13 @@ def whole_runs(histories):
 def in_scenarios(histories, objective):
     """Returns the section on the best robots in each scenario that all experiments with scenarios share, or an empty
     text if no experiment has any."""
-    found = shared(histories, objective)
+    found = scenarios.shared(histories, objective)
     if not found.scores:
         return ""
     said = "".join(f"`{name}` has no scenarios and is not in this comparison.\n" for name in found.without)
     for scenario, names in found.left_out.items():
         said += f"Not compared: \"{scenario}\", which only {' and '.join(f'`{name}`' for name in names)} has.\n"
-    title = f"## {objective.name.capitalize()} of the best robots in each scenario\n\n"
+    title = f"## {capitalised(objective.name)} of the best robots in each scenario\n\n"
     if not found.names:
         return f"{title}{said}The experiments share no scenario.\n"
 
@@ -245,6 +146,43 @@ def in_scenarios(histories, objective):
     header = ["scenario", *(f"`{variant.name}`" for variant in found.scores)]
     chart = "![The best robots in each scenario](scenarios.svg)\n"
     return title + "\n".join(part for part in (SCENARIOS, said, table(header, rows), chart) if part)
+
+
+def not_in_maps(found, objective, against):
+    """Returns sentences on what the comparison by maps leaves out, and why."""
+    said = ""
+    for names, reason in (
+        (found.without, "they have no map of niches"),
+        (found.different, f"their maps have other axes than that of `{against}`"),
+    ):
+        if names:
+            said += f"Not compared, because {reason}: {', '.join(f'`{name}`' for name in names)}.\n"
+    if not objective.maximise:
+        said += (
+            f"No QD score, because less {objective.name} is better: a sum over the filled cells would favour runs that "
+            "fill fewer of them.\n"
+        )
+    return said
+
+
+def by_maps(histories, objective, against):
+    """Returns the section on the maps of niches, or an empty text if no experiment has one."""
+    found = niches.shared(histories, objective, against)
+    if len(found.without) == len(histories):
+        return ""
+    title = f"## {capitalised(' and '.join(quantity.name for quantity in found.quantities))}"
+    if not found.histories:
+        return (
+            f"{title}\n\nNot compared: `{against}` has no map of niches to test others against; name another "
+            "experiment with `--against`.\n"
+        )
+    cost, obstacle = common_cost(found.histories, "evaluations")
+    parts = [f"{title} after {number(cost)} evaluations\n", not_in_maps(found, objective, against), obstacle]
+    for quantity in [] if obstacle else found.quantities:
+        parts.append(f"### {capitalised(quantity.name)} ({quantity.unit})\n")
+        parts.append(comparison(found.histories, quantity, "evaluations", cost, against))
+    parts.append("![The maps of niches over evaluations](map.svg)\n")
+    return "\n".join(part for part in parts if part)
 
 
 def differences(made):
@@ -270,41 +208,18 @@ def markdown(histories, objective, setting):
         f"# {objective.name} ({objective.unit}, {'more' if objective.maximise else 'less'} is better)\n\n"
         f"{seeds} of each experiment{tested}, on {devices}, evodevo {programs}. Made by\n\n```sh\n{setting.command}\n```\n"
     )
+    maps = by_maps(histories, objective, setting.against)
     parts = [
         head,
         differences(setting.builds),
         too_few_seeds(setting.seeds, len(histories)),
         "![Best so far over spring evaluations and over evaluations](chart.svg)\n",
         *(section(histories, objective, axis, setting.against) for axis in AXES),
+        maps,
         in_scenarios(histories, objective),
         whole_runs(histories),
         METHOD,
+        NICHES if maps else "",
         TESTS if len(histories) > 1 else "",
     ]
     return "\n".join(part for part in parts if part)
-
-
-def write_csv(file, histories):
-    """Writes one line for each generation of each run. `best` is the best score so far; all other numbers are sums over
-    the generations so far."""
-    with open(file, "w", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        columns = ["evaluations", "spring_evaluations", "best", "diverged", "invalid", "seconds"]
-        writer.writerow(["experiment", "seed", *columns])
-        for variant, runs in histories.items():
-            for seed, run in enumerate(runs, 1):
-                generations = zip(*(getattr(run, column) for column in columns))
-                next(generations)  # skips the state before the first generation
-                for evaluations, springs, best, *failures, seconds in generations:
-                    best_text = "" if math.isinf(best) else best
-                    writer.writerow([variant.name, seed, evaluations, springs, best_text, *failures, f"{seconds:.3f}"])
-
-
-def write_scenarios_csv(file, histories):
-    """Writes the score of the best robot of each run in each scenario of its experiment; one line for each."""
-    with open(file, "w", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(["experiment", "seed", "scenario", "score"])
-        for variant, runs in histories.items():
-            for seed, run in enumerate(runs, 1):
-                writer.writerows([variant.name, seed, *score] for score in run.scenarios.items())

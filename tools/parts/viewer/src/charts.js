@@ -1,7 +1,18 @@
 // The charts of a report.
 import uPlot from "uplot";
+import { faded } from "./colours.js";
 import { element, short, style } from "./elements.js";
-import { age, directionOf, listed, measuresOf, objectivesOf, own, scoreChooser, titled } from "./scores.js";
+import {
+  age,
+  directionOf,
+  listed,
+  measuresOf,
+  notesOf,
+  objectivesOf,
+  own,
+  scoreChooser,
+  titled,
+} from "./scores.js";
 
 const height = 250;
 const nothing = "Nothing to show: no individual has ended with a fitness.";
@@ -118,26 +129,111 @@ class Chart {
   }
 }
 
+/** Returns the data and series of two numbers over the generations of each run. of() returns the object of a generation
+ *  that holds the numbers by their `names`, or undefined. */
+function twoNumbers(runs, names, xOf, of) {
+  const all = runs.flatMap((run, index) => {
+    const column = (key) => ({ x: xOf(run.generations), y: run.generations.map((g) => of(g)?.[key] ?? null) });
+    const several = runs.length > 1;
+    return names.map((name, k) => [
+      column(name),
+      line(runName(run, runs) + name, runColour(several ? index : k), several && k > 0 ? [5, 4] : undefined),
+    ]);
+  });
+  return { data: joined(all.map(([values]) => values)), series: all.map(([, series]) => series) };
+}
+
 function progress(runs, name, title, x, xOf) {
   const objectives = objectivesOf(runs);
-  const describe = (objective) => {
-    const all = runs.flatMap((run, index) => {
-      const xs = xOf(run.generations);
-      const of = (key) => ({ x: xs, y: run.generations.map((g) => own(g.objectives, objective.name)?.[key] ?? null) });
-      const colours = runs.length > 1 ? [runColour(index), runColour(index)] : [runColour(0), runColour(1)];
-      return [
-        [of("best"), line(`${runName(run, runs)}best`, colours[0])],
-        [of("median"), line(`${runName(run, runs)}median`, colours[1], runs.length > 1 ? [5, 4] : undefined)],
-      ];
-    });
-    return {
-      data: joined(all.map(([values]) => values)),
-      series: all.map(([, series]) => series),
-      x,
-      y: axisText(objective),
-    };
-  };
+  const describe = (objective) => ({
+    ...twoNumbers(runs, ["best", "median"], xOf, (g) => own(g.objectives, objective.name)),
+    x,
+    y: axisText(objective),
+  });
   return new Chart(name, title, describe, [{ label: "Objective", scores: objectives, first: objectives[0] }]);
+}
+
+/** Coverage of the map of niches and, where it has one, its QD score; nothing if no run has a map. */
+function niches(runs) {
+  const mapped = runs.filter((run) => run.map);
+  if (mapped.length === 0) return [];
+  const unitOf = (run) => run.objectives.find(({ name }) => name === run.map.objective).unit;
+  const isScored = (run) => run.generations.some((g) => (g.map?.qd_score ?? null) !== null);
+  const units = [...new Set(mapped.filter(isScored).map(unitOf))];
+  const coverage = { name: "coverage", unit: "%", of: (_, map) => 100 * map.coverage };
+  const scoreIn = (unit) => ({ name: "QD score", unit, of: (run, map) => (unitOf(run) === unit ? map.qd_score : null) });
+  const choice = { label: "y axis", scores: [coverage, ...units.map(scoreIn)], first: coverage };
+  const describe = (score) => ({
+    data: joined(
+      mapped.map(({ generations, ...run }) => ({
+        x: generations.map((g) => g.evaluations),
+        y: generations.map((g) => (g.map ? score.of(run, g.map) : null)),
+      })),
+    ),
+    series: mapped.map((run) => line(`${runName(run, runs)}${score.name}`, runColour(runs.indexOf(run)))),
+    x: "evaluations",
+    y: titled(score),
+  });
+  const title = `Coverage${units.length > 0 ? " and QD score" : ""} over evaluations`;
+  return [new Chart("niches", title, describe, [choice])];
+}
+
+const numbersOf = (generations) => generations.map((g) => g.generation);
+
+/** Returns a text that begins with a capital letter. */
+const capitalised = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+
+/** The greatest and the median of each quantity that selection notes about the living. */
+function notedQuantities(runs) {
+  const isThere = ({ name }) => runs.some((run) => run.generations.some((g) => own(g.notes, name)));
+  const describe = (note) => () => ({
+    ...twoNumbers(runs, ["greatest", "median"], numbersOf, (g) => own(g.notes, note.name)),
+    x: "generation",
+    wholeX: true,
+    y: titled(note),
+  });
+  return notesOf(runs)
+    .filter((note) => !note.is_label && isThere(note))
+    .map((note) => new Chart(`note ${note.name}`, `${capitalised(note.name)} over generations`, describe(note)));
+}
+
+/** The sizes of the groups that a note of selection divides the living of a run into, stacked. */
+function groups(run, { name, groups: listedGroups, others }, title) {
+  return new Chart(`groups ${name}`, title, () => {
+    const all = listedGroups.map(({ label, counts }, i) => ({
+      text: `${name} ${label}`,
+      counts,
+      colour: groupColour(i),
+    }));
+    if (others.some((count) => count > 0)) all.push({ text: "others", counts: others, colour: style("--rule") });
+    const tops = run.generations.map(() => 0);
+    const stacked = all.map(({ text, counts, colour }) => ({
+      data: counts.map((count, i) => (tops[i] += count)),
+      series: {
+        label: text,
+        stroke: style("--paper"),
+        fill: colour,
+        width: 0.5,
+        points: { show: false },
+        value: (_, v, k, i) => (i === null ? "" : short(counts[i])),
+      },
+    }));
+    stacked.reverse(); // a lower area is drawn over a higher one
+    return {
+      data: [numbersOf(run.generations), ...stacked.map(({ data }) => data)],
+      series: stacked.map(({ series }) => series),
+      x: "generation",
+      wholeX: true,
+      y: "individuals",
+      options: { scales: { x: { time: false }, y: { range: [0, Math.max(...tops)] } } },
+    };
+  });
+}
+
+/** The colour of the i-th group: those of runs, then the same ones paler. */
+function groupColour(i) {
+  const count = style("--series").split(/\s+/).length;
+  return i % (2 * count) < count ? runColour(i) : faded(runColour(i));
 }
 
 /** Returns the name of an axis. */
@@ -260,19 +356,26 @@ export class Charts {
   constructor(runs) {
     const titleOf = (title, run) => (runs.length > 1 ? `${title}: ${run.label}` : title);
     const shared = [
+      ...niches(runs),
       progress(runs, "evaluations", "Fitness over evaluations", "evaluations", (g) => g.map((s) => s.evaluations)),
       progress(runs, "springs", "Fitness over springs simulated", "spring evaluations", (g) =>
         cumulative(g.map((s) => s.spring_evaluations)),
       ),
       living(runs),
+      ...notedQuantities(runs),
     ];
+    const grouped = runs.flatMap((run) =>
+      (run.labels ?? []).map((label) =>
+        groups(run, label, titleOf(`${capitalised(label.name)} over generations`, run)),
+      ),
+    );
     const ends = runs.map((run) => statuses(run, titleOf("How evaluations ended", run)));
-    this.list = [...shared, ...ends];
+    this.list = [...shared, ...grouped, ...ends];
     this.byName = Object.fromEntries(this.list.map((chart) => [chart.name, chart]));
     this.root = element(
       "section",
       { className: "charts" },
-      ...shared.map((chart) => chart.root),
+      ...[...shared, ...grouped].map((chart) => chart.root),
       ...runs.flatMap((run, i) => [ends[i].root, timeSpent(run, titleOf("Where the time went", run))]),
     );
   }

@@ -1,5 +1,5 @@
-// The colours of springs, by material, by stress or by the cycle in which they were added.
-import { style } from "./elements.js";
+// The colours of springs, by material, by stress or by the cycle in which they were added, and those of niches.
+import { element, style } from "./elements.js";
 
 const mix = (a, b, t) => a.map((x, i) => x + (b[i] - x) * t);
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
@@ -19,6 +19,7 @@ export function readPalette() {
     stress: list("--stress"),
     cycles: list("--cycles"),
     born: rgb(style("--born")),
+    niches: list("--niches"),
   };
 }
 
@@ -38,6 +39,22 @@ export const stressColour = (part) => ramp(palette.stress, part);
 
 export const cycleColour = (cameWith, shots) =>
   cameWith <= 0 ? palette.born : ramp(palette.cycles, shots > 2 ? (cameWith - 1) / (shots - 2) : 1);
+
+/** Returns a colour of the style sheet, halfway to that of the page. */
+export const faded = (colour) => css(mix(rgb(colour), rgb(style("--paper")), 0.5));
+
+/** The colour of a niche; `part` is 0 for the lowest value and 1 for the highest one. */
+export const nicheColour = (part) => ramp(palette.niches, part);
+
+/** Returns the elements of a legend: a bar with the colours that colour() gives for 0 to 1, between two texts. */
+export function colourBar(colour, low, high) {
+  const stops = Array.from({ length: 9 }, (_, i) => css(colour(i / 8)));
+  return [
+    element("span", { textContent: low }),
+    element("i", { className: "scale", style: `background:linear-gradient(90deg,${stops.join(",")})` }),
+    element("span", { textContent: high }),
+  ];
+}
 
 /** The number of shots up to the last one in which springs were added. */
 export const developing = (life) => 1 + life.cameWith.reduce((last, index) => Math.max(last, index), 0);

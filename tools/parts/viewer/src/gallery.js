@@ -16,10 +16,7 @@ export class Gallery {
         {
           type: "button",
           className: "tile",
-          onclick: () => (
-            viewer.show(i).then(() => viewer.toggle()),
-            viewer.root.scrollIntoView({ behavior: "smooth" })
-          ),
+          onclick: () => viewer.open(i).then(() => viewer.toggle()),
         },
         this.pictures[i],
         element("span", { textContent: robot.film.shots.length > 0 ? label : robot.reason }),

@@ -5,6 +5,7 @@ import { Charts } from "./charts.js";
 import { readPalette } from "./colours.js";
 import { element, short } from "./elements.js";
 import { Gallery } from "./gallery.js";
+import { NicheMaps } from "./niches.js";
 import { directionOf, hasUnit, listed, own, quantityText } from "./scores.js";
 import { robotTable, TestTable } from "./tables.js";
 import { Viewer } from "./viewer.js";
@@ -25,24 +26,34 @@ const nameOf = (run, robot) => {
   const whose = runs.length > 1 ? `${run.label}: ` : "";
   return isGallery ? `Robot ${robot.individual}` : `${whose}${robot.role}, individual ${robot.individual}`;
 };
-const robots = runs.flatMap((run) =>
-  run.robots.map((robot) => {
-    const name = nameOf(run, robot);
-    return { run, robot, name, label: isGallery ? name : `${name}, ${scoreText(run, robot)}` };
-  }),
-);
+const isElite = ({ robot }) => robot.role === "elite";
+const robots = runs
+  .flatMap((run) =>
+    run.robots.map((robot) => {
+      const name = nameOf(run, robot);
+      return { run, robot, name, label: isGallery ? name : `${name}, ${scoreText(run, robot)}` };
+    }),
+  )
+  .sort((a, b) => isElite(a) - isElite(b)); // the many elites of all runs come last
 
 /** Formats a share in percent, which is shown as 100 only if it is exactly 100. */
 const share = (part, all) => (part === all ? "100" : Math.min(99.9, (100 * part) / all).toFixed(1));
 
+const fact = (label, value, note) =>
+  element(
+    "div",
+    { className: "fact" },
+    element("dt", { textContent: label }),
+    element("dd", {}, element("b", { textContent: value }), note ? element("span", { textContent: note }) : null),
+  );
+
+function coverageFact({ map, generations }) {
+  const score = generations.at(-1)?.map?.qd_score ?? null;
+  const filled = `${map.elites.length.toLocaleString("en")} of ${map.cells.toLocaleString("en")}`;
+  return fact("Coverage", filled, listed("cells", score === null ? "" : `QD score ${short(score)}`));
+}
+
 function facts(run) {
-  const fact = (label, value, note) =>
-    element(
-      "div",
-      { className: "fact" },
-      element("dt", { textContent: label }),
-      element("dd", {}, element("b", { textContent: value }), note ? element("span", { textContent: note }) : null),
-    );
   const all = Object.values(run.statuses).reduce((sum, n) => sum + n, 0);
   const springs = run.generations.reduce((sum, g) => sum + g.spring_evaluations, 0);
   const marks = run.best?.verification?.marks;
@@ -60,6 +71,7 @@ function facts(run) {
         ? `in ${run.generations.length} generation${run.generations.length === 1 ? "" : "s"}`
         : `of ${run.evaluations_asked.toLocaleString("en")}, not finished`,
     ),
+    run.map ? coverageFact(run) : null,
     fact("Springs simulated", short(springs), "spring evaluations"),
     fact(
       "Ended well",
@@ -111,10 +123,14 @@ async function begin() {
   main.append(header());
   if (!isGallery) main.append(...runs.map(facts));
   const page = { data, film: location.hash === "#film" };
-  if (robots.length > 0) {
-    page.viewer = new Viewer(robots);
+  if (robots.length > 0) page.viewer = new Viewer(robots);
+  page.niches = new NicheMaps(runs, robots, page.viewer);
+  if (page.viewer) {
     const tests = new TestTable(robots);
-    page.viewer.onshow = (shown) => tests.show(shown);
+    page.viewer.onshow = (shown) => {
+      tests.show(shown);
+      page.niches.show(shown);
+    };
     main.append(page.viewer.root, tests.root);
     const first = robots.findIndex(({ robot }) => robot.film.shots.length > 0);
     await page.viewer.show(Math.max(0, first));
@@ -126,6 +142,7 @@ async function begin() {
   } else {
     page.charts = new Charts(runs);
     main.append(page.charts.root);
+    page.charts.root.prepend(...page.niches.figures);
     page.charts.draw();
     if (page.viewer) main.append(robotTable(runs, robots, page.viewer));
   }

@@ -40,6 +40,14 @@ export function measuresOf(runs) {
   }));
 }
 
+/** Likewise what selection notes about individuals, such as their novelty or species. */
+export function notesOf(runs) {
+  return distinct(runs.flatMap((run) => run.notes ?? [])).map((note) => ({
+    ...note,
+    of: (individual) => own(individual.notes, note.name),
+  }));
+}
+
 /** Returns a value of an object by a name that anybody may have given, such as "constructor". */
 export const own = (object, name) => (object && Object.hasOwn(object, name) ? object[name] : undefined);
 

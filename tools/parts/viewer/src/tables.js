@@ -1,6 +1,6 @@
 // The tables of a report: the robots, and the scores of the robots shown in each test.
 import { element, short } from "./elements.js";
-import { directionOf, listed, measuresOf, objectivesOf, own, titled } from "./scores.js";
+import { directionOf, listed, measuresOf, notesOf, objectivesOf, own, titled } from "./scores.js";
 
 const cell = (text, tag = "td") => element(tag, { textContent: text });
 
@@ -21,6 +21,7 @@ function table(name, title, heads, rows) {
 export function robotTable(runs, robots, viewer) {
   const objectives = objectivesOf(runs);
   const measures = measuresOf(runs);
+  const notes = notesOf(runs);
   const rows = robots.map(({ run, robot }, i) =>
     element(
       "tr",
@@ -31,13 +32,14 @@ export function robotTable(runs, robots, viewer) {
         element("button", {
           type: "button",
           textContent: robot.role,
-          onclick: () => (viewer.show(i), viewer.root.scrollIntoView({ behavior: "smooth" })),
+          onclick: () => viewer.open(i),
         }),
       ),
       ...(runs.length > 1 ? [cell(run.label)] : []),
       cell(String(robot.individual)),
       ...objectives.map((objective) => cell(scoreText(robot, objective, again(run, robot, objective)))),
       ...measures.map((measure) => cell(scoreText(robot, measure, ""))),
+      ...notes.map((note) => cell(noteText(note.of(robot), note))),
       cell(String(robot.generation)),
       cell(String(robot.age)),
       cell(robot.made_by),
@@ -48,7 +50,7 @@ export function robotTable(runs, robots, viewer) {
     "",
     ...(runs.length > 1 ? ["Run"] : []),
     "Individual",
-    ...[...objectives, ...measures].map(titled),
+    ...[...objectives, ...measures, ...notes].map(titled),
     "Born",
     "Age",
     "Made by",
@@ -62,6 +64,9 @@ function scoreText(robot, score, note) {
   if (value !== undefined) return short(value) + note;
   return robot.status === "ok" ? "–" : robot.status;
 }
+
+/** Returns what selection noted about a robot; a number that names a group is not rounded. */
+const noteText = (value, note) => (note.is_label && value !== undefined ? String(value) : short(value));
 
 /** Returns a note if an objective in the life shown differs from that in the archive. If the robot was tested in
  *  scenarios, the life shown is that of one test, and its note stands there. */

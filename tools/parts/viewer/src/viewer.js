@@ -1,7 +1,7 @@
 // The 3D viewer: one or two robots, a clock, and the controls.
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { css, cycleColour, developing, materialColour, readPalette, stressColour } from "./colours.js";
+import { colourBar, css, cycleColour, developing, materialColour, readPalette, stressColour } from "./colours.js";
 import { element, short } from "./elements.js";
 import { Ground } from "./ground.js";
 import { Life } from "./life.js";
@@ -228,6 +228,12 @@ export class Viewer {
     this.onshow(indices);
   }
 
+  /** Shows a robot, and scrolls to the viewer. */
+  async open(index) {
+    this.root.scrollIntoView({ behavior: "smooth" });
+    await this.show(index);
+  }
+
   async #life(index) {
     if (!this.lives.has(index)) this.lives.set(index, Life.of(this.robots[index].robot));
     return this.lives.get(index);
@@ -345,23 +351,15 @@ export class Viewer {
         element("i", { style: `background:${css(colour)}` }),
         element("span", { textContent: text }),
       );
-    const scale = (colour, low, high) => {
-      const stops = Array.from({ length: 9 }, (_, i) => css(colour(i / 8)));
-      return [
-        element("span", { textContent: low }),
-        element("i", { className: "scale", style: `background:linear-gradient(90deg,${stops.join(",")})` }),
-        element("span", { textContent: high }),
-      ];
-    };
     if (this.mode === "stress")
-      return scale(stressColour, "0 N", `${short(this.scale.stress)} N (root scale)`);
+      return colourBar(stressColour, "0 N", `${short(this.scale.stress)} N (root scale)`);
     if (this.mode === "cycle") {
       const { cycles } = this.scale;
       const born = swatch(cycleColour(0, cycles), "there from birth");
       return cycles > 1
         ? [
             born,
-            ...scale((t) => cycleColour(1 + t * (cycles - 2), cycles), "after cycle 1", `after cycle ${cycles - 1}`),
+            ...colourBar((t) => cycleColour(1 + t * (cycles - 2), cycles), "after cycle 1", `after cycle ${cycles - 1}`),
           ]
         : [born];
     }

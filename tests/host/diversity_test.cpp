@@ -1,0 +1,202 @@
+// The map of the niches of a run, and what selection notes about the living, against runs whose answer is known.
+#include "report/diversity.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "report/run_json.hpp"
+#include "support/experiments.hpp"
+#include "support/messages.hpp"
+#include "support/scratch.hpp"
+
+namespace evodevo {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* height = R"(
+[[fitness]]
+name = "descriptor"
+what = "height"
+range = [0.0, 2.0]
+bins = 4
+settle = 0.05
+window = 0.1
+)";
+constexpr const char* contact = R"(
+[[fitness]]
+name = "descriptor"
+what = "contact"
+bins = 3
+settle = 0.05
+window = 0.1
+)";
+
+/// Makes archives by hand.
+class Diversity : public ::testing::Test {
+ protected:
+  explicit Diversity(const std::string& text = testing::small_experiment + height + contact)
+      : experiment_(testing::read(text)) {}
+
+  /// Adds an individual to the next generation. It has failed if it has no scores.
+  void add(std::vector<double> objectives, std::vector<double> measures) {
+    Individual& one = newborns_.emplace_back();
+    one.id = next_++;
+    one.born = one.origin = generation_;
+    one.genome = experiment_.layout.first_size() > 0 ? Genome(experiment_.layout.first_size(), 0) : Genome();
+    if (objectives.empty()) one.result = {Status::invalid, "no springs", 0, {}, 0};
+    one.result.objectives = std::move(objectives);
+    one.result.measures = std::move(measures);
+  }
+  void commit(const std::vector<std::uint32_t>& dropped, const std::vector<NoteOf>& notes = {}) {
+    archive().commit(newborns_, dropped, {}, {.generation = generation_++, .evaluations = next_},
+                     {.memory = {}, .notes = notes});
+    newborns_.clear();
+  }
+  Archive& archive() {
+    if (!archive_) archive_.emplace(Archive::create(scratch_ / "run", experiment_, "test"));
+    return *archive_;
+  }
+
+  testing::Scratch scratch_;
+  Experiment experiment_;
+
+ private:
+  std::optional<Archive> archive_;
+  std::vector<Individual> newborns_;
+  std::uint32_t next_ = 0, generation_ = 0;
+};
+
+TEST_F(Diversity, TheBestIndividualOfEachCellIsItsElite) {
+  add({0.25, 9}, {0.1, 0.9});   // 0: cell 0, 2
+  add({0.5, 9}, {0.4, 0.7});    // 1: the same cell, and better
+  add({}, {});                  // 2: has failed
+  add({-0.25, 9}, {1.0, 0.5});  // 3: cell 2, 1; on the lower border along the first axis
+  commit({0});
+  add({0.5, 1}, {0.3, 0.8});   // 4: as good as 1, which is older
+  add({0.125, 9}, {5.0, -1});  // 5: outside of both ranges
+  commit({1, 3});              // the dead count, too
+  const NicheMap map = niche_map(archive());
+  EXPECT_EQ(map.cells(), 12u);
+  EXPECT_EQ(map_json(map).dump(),
+            R"({"objective":"distance","axes":[{"name":"height","unit":"m","low":0.0,"high":2.0,"bins":4},)"
+            R"({"name":"contact","unit":"1","low":0.0,"high":1.0,"bins":3}],"cells":12,"elites":[)"
+            R"({"cell":[0,2],"individual":1,"value":0.5},{"cell":[2,1],"individual":3,"value":-0.25},)"
+            R"({"cell":[3,0],"individual":5,"value":0.125}]})");
+  ASSERT_EQ(map.history.size(), 2u);
+  EXPECT_EQ(state_json(map, map.history[0]).dump(), R"({"filled":2,"coverage":0.16666666666666666,"qd_score":0.25})");
+  EXPECT_EQ(state_json(map, map.history[1]).dump(), R"({"filled":3,"coverage":0.25,"qd_score":0.375})");
+  EXPECT_THAT(best_elites(map, 2), ElementsAre(1, 5));
+  EXPECT_THAT(best_elites(map, 9), ElementsAre(1, 5, 3));
+
+  const Json run = run_json(archive(), experiment_);
+  EXPECT_EQ(run["map"], map_json(map));
+  EXPECT_EQ(run["generations"][1]["map"]["filled"], 3);
+}
+
+class OneAxis : public Diversity {
+ protected:
+  OneAxis() : Diversity(testing::small_experiment + height) {}
+};
+
+TEST_F(OneAxis, MakesAMapOfOneRow) {
+  add({1, 0}, {1.99});
+  commit({});
+  const NicheMap map = niche_map(archive());
+  EXPECT_EQ(map.cells(), 4u);
+  ASSERT_EQ(map.elites.size(), 1u);
+  EXPECT_THAT(map.elites[0].cell, ElementsAre(3));
+}
+
+class LessIsBetter : public Diversity {
+ protected:
+  static std::string text() {
+    const std::string all = testing::small_experiment + height;
+    const std::size_t begin = all.find("[[fitness]]"), end = all.find("[[fitness]]", begin + 1);
+    return all.substr(0, begin) + all.substr(end);  // without the distance
+  }
+  LessIsBetter() : Diversity(text()) {}
+};
+
+TEST_F(LessIsBetter, HasElitesWithTheLeastScoresAndNoQdScore) {
+  add({3}, {0.1});
+  add({2}, {0.2});
+  add({1}, {0.9});
+  commit({});
+  const NicheMap map = niche_map(archive());
+  EXPECT_THAT(best_elites(map, 3), ElementsAre(2, 1));
+  EXPECT_EQ(state_json(map, map.history[0]).dump(), R"({"filled":2,"coverage":0.5,"qd_score":null})");
+}
+
+class NoAxis : public Diversity {
+ protected:
+  NoAxis() : Diversity(testing::small_experiment) {}
+};
+
+TEST_F(NoAxis, HasNoMap) {
+  add({1, 0}, {});
+  commit({});
+  EXPECT_TRUE(map_json(niche_map(archive())).is_null());
+  const Json run = run_json(archive(), experiment_);
+  EXPECT_TRUE(run["map"].is_null());
+  EXPECT_TRUE(run["generations"][0]["map"].is_null());
+  EXPECT_THAT(run["notes"], IsEmpty());
+}
+
+class Noted : public Diversity {
+ protected:
+  Noted() : Diversity(testing::small_experiment) { experiment_.notes = {{"species", "1", true}, {"novelty", "m"}}; }
+};
+
+TEST_F(Noted, NotesHoldUntilAnotherIsMadeOrTheIndividualDies) {
+  for (int i = 0; i < 3; ++i) add({1, 0}, {});
+  commit({2}, {{0, 0, 7}, {1, 0, 7}, {2, 0, 8}, {0, 1, 0.5}, {1, 1, 0.25}, {2, 1, 4}});
+  add({1, 0}, {});
+  commit({}, {{0, 0, 7}, {1, 0, 9}, {1, 1, 0.25}, {3, 1, 1}});
+  commit({0}, {});
+  const auto histories = archive().note_histories();
+  ASSERT_EQ(histories.size(), 2u);
+  EXPECT_TRUE(histories[0].title.is_label);
+  EXPECT_FALSE(histories[1].title.is_label);
+  EXPECT_THAT(histories[0].living, ElementsAre(ElementsAre(7, 7), ElementsAre(7, 9), ElementsAre(9)));
+  EXPECT_THAT(histories[1].living,
+              ElementsAre(ElementsAre(0.5, 0.25), ElementsAre(0.5, 0.25, 1), ElementsAre(0.25, 1)));
+  EXPECT_EQ(archive().notes(1).at(0).value, 9);
+  EXPECT_EQ(archive().notes(1).at(1).value, 0.25);
+  EXPECT_EQ(archive().notes(2).at(1).value, 4) << "the dead keep their notes";
+
+  const Json run = run_json(archive(), experiment_);
+  EXPECT_EQ(run["notes"].dump(), R"([{"name":"species","unit":"1","is_label":true},)"
+                                 R"({"name":"novelty","unit":"m","is_label":false}])");
+  EXPECT_EQ(run["generations"][1]["notes"].dump(),
+            R"({"species":{"groups":2},"novelty":{"greatest":1.0,"median":0.5}})");
+}
+
+TEST_F(Noted, NotesOfGenerationsThatTheRunDoesNotHaveAreRefused) {
+  add({1, 0}, {});
+  commit({}, {{0, 0, 7}});
+  archive().commit({}, {}, {}, {.generation = 1, .evaluations = 1}, {.memory = {}, .notes = {{0, 0, 8}}});
+  {
+    SQLite::Database database((scratch_ / "run" / "run.sqlite").string(), SQLite::OPEN_READWRITE);
+    database.exec("UPDATE notes SET generation = 5 WHERE generation = 1");
+  }
+  EXPECT_THAT([&] { (void)archive().note_histories(); },
+              ::testing::ThrowsMessage<ArchiveError>(testing::naming("notes.generation", "5")));
+}
+
+TEST(Labels, AreCountedByGeneration) {
+  const std::vector<NoteHistory> histories = {{{"species", "1", true}, {{4, 4, 2}, {2, 3, 3, 3}, {3}}},
+                                              {{"cell", "1", true}, {{1, 2, 3}, {2, 3}, {}}},
+                                              {{"novelty", "1", false}, {{1, 1}, {1}, {1}}}};
+  EXPECT_EQ(labels_json(histories).dump(),
+            R"([{"name":"species","groups":[{"label":4.0,"counts":[2,0,0]},{"label":2.0,"counts":[1,1,0]},)"
+            R"({"label":3.0,"counts":[0,3,1]}],"others":[0,0,0]}])");
+  EXPECT_EQ(labels_json(histories, 1).dump(),
+            R"([{"name":"species","groups":[{"label":3.0,"counts":[0,3,1]}],"others":[3,1,0]}])");
+}
+
+}  // namespace
+}  // namespace evodevo
