@@ -119,7 +119,8 @@ class CmaEs {
   }
 
   /// Learns from points, of which the best comes first. Points with equal ranks, which must follow each other, are
-  /// equally good, and share their weights. Fewer than two points, or points that are all equally good, teach nothing.
+  /// equally good, and share their weights. Nothing is learned from fewer than two points, or if all points, or nearly
+  /// all with the best one among them, are equally good.
   void update(const std::vector<std::vector<double>>& points, const std::vector<std::uint32_t>& ranks, Rng& rng) {
     if (points.size() < 2) return;
     const auto n = static_cast<double>(mean_.size());
