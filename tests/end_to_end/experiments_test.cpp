@@ -28,6 +28,7 @@ TEST(Experiments, EachRunsForTwoGenerationsWhenShrunk) {
                                        "fitness.0.settle=0.1", "fitness.0.window=0.1"};
     const Experiment experiment = read_experiment({entry.path(), {}});
     if (experiment.resolved.find("\npoints = ") != std::string::npos) shrunk.push_back("encoding.points=60");
+    if (experiment.random_individuals > 8) shrunk.push_back("experiment.random_individuals=8");
     if (experiment.development.cycles > 0)
       shrunk.insert(shrunk.end(), {"development.cycles=2", "development.cycle_time=0.1"});
     for (const std::string& set : shrunk) command.insert(command.end(), {"--set", set});
@@ -37,7 +38,7 @@ TEST(Experiments, EachRunsForTwoGenerationsWhenShrunk) {
     EXPECT_EQ(archive.generations().size(), 2u);
     EXPECT_GT(archive.statuses().at("ok"), 0);
   }
-  EXPECT_EQ(count, 25);
+  EXPECT_EQ(count, 32);
 }
 
 TEST(Experiments, TheEnvironmentsDifferInTheirSceneAlone) {
@@ -94,12 +95,12 @@ std::tuple<std::string, std::int64_t, std::int64_t, double, std::int64_t> terms(
           experiment.evaluations};
 }
 
-TEST(Experiments, TheStudysDifferInDevelopmentAlone) {
-  for (const fs::directory_entry& study : fs::directory_iterator(experiment_file("study"))) {
-    const Experiment evo = read_experiment({study.path() / "evo.toml", {}});
+TEST(Experiments, TheStudiesOfDevelopmentDifferInDevelopmentAlone) {
+  for (const fs::path study : {experiment_file("study/neural"), experiment_file("study/voxel")}) {
+    const Experiment evo = read_experiment({study / "evo.toml", {}});
     EXPECT_GT(evo.spring_evaluations, 0);
     EXPECT_EQ(evo.development.cycles, 0);
-    const Experiment sized = read_experiment({study.path() / "evo.toml", {{"encoding.size_range", "0.25", ""}}});
+    const Experiment sized = read_experiment({study / "evo.toml", {{"encoding.size_range", "0.25", ""}}});
     for (const fs::directory_entry& entry : fs::directory_iterator(study)) {
       const bool ballistic = entry.path().filename() == "ballistic.toml";  // ballistic growth needs genes for sizes
       EXPECT_EQ(terms(read_experiment({entry.path(), {}})), terms(ballistic ? sized : evo)) << entry.path();
@@ -107,6 +108,32 @@ TEST(Experiments, TheStudysDifferInDevelopmentAlone) {
   }
   EXPECT_EQ(rest_of(read_experiment({experiment_file("study/neural/evo.toml"), {}})),
             rest_of(read_experiment({experiment_file("evo.toml"), {}})));
+}
+
+/// Returns the tables of an experiment with this name, as text.
+std::string table_of(const Experiment& experiment, const std::string& name) {
+  const std::string& text = experiment.resolved;
+  const std::size_t begin = text.find("[" + name);
+  return text.substr(begin, text.find("\n[", text.rfind("[" + name)) - begin);
+}
+
+TEST(Experiments, TheStudyOfSelectionHasTheRobotsOfEvoAndOneBudget) {
+  const Experiment evo = read_experiment({experiment_file("evo.toml"), {}});
+  std::set<std::string> selections;
+  for (const fs::directory_entry& entry : fs::directory_iterator(experiment_file("study/selection"))) {
+    SCOPED_TRACE(entry.path());
+    const Experiment experiment = read_experiment({entry.path(), {}});
+    EXPECT_EQ(table_of(experiment, "encoding"), table_of(evo, "encoding"));
+    EXPECT_EQ(table_of(experiment, "scene."), table_of(evo, "scene."));
+    EXPECT_EQ(std::tuple(experiment.evaluations, experiment.population, experiment.newborns()),
+              std::tuple(5000, 100, 100));
+    EXPECT_EQ(experiment.objectives.front().name, "distance");
+    EXPECT_EQ(experiment.measures.at(0).high, 2);
+    EXPECT_EQ(experiment.measures.at(1).high, 0.5);
+    const std::string random = experiment.random_individuals > 1 ? "random" : "";
+    EXPECT_TRUE(selections.insert(random + table_of(experiment, "selection")).second) << "as another one";
+  }
+  EXPECT_EQ(selections.size(), 7u);
 }
 
 TEST(Experiments, TheStudysControlsDifferInTheControlAlone) {

@@ -340,3 +340,22 @@ test("the map fits a phone", async () => {
   assert.ok(box.width > 24 && box.height > 24);
   await phone.close();
 });
+
+test("every cell of a real run opens its robot", async () => {
+  const descriptor = (what) => `[[fitness]]\nname = "descriptor"\nwhat = "${what}"\nsettle = 0.5\nwindow = 1.0\nbins = 3\n`;
+  const file = scratch.path("map.toml");
+  const text = readFileSync(scratch.file, "utf8").replace("age-fitness-pareto", "map-elites");
+  writeFileSync(file, text + descriptor("height") + descriptor("contact"));
+  evodevo("run", file, "--out", scratch.path("map"));
+  evodevo("report", scratch.path("map"), "--best", "0", "--out", scratch.path("map.html"));
+  const real = await opened(browser, scratch.path("map.html"));
+  const elites = await inPage(real, ({ data }) => data.runs[0].map.elites);
+  assert.ok(elites.length > 1);
+  for (const { individual } of elites) {
+    await niche(individual, real).click();
+    await until(real, ({ viewer: { stages } }, id) => stages[0].life.robot.individual === id, individual);
+  }
+  const cell = await inPage(real, ({ viewer }) => viewer.stages[0].life.robot.notes.cell);
+  assert.equal(cell, 3 * elites.at(-1).cell[0] + elites.at(-1).cell[1]);
+  assert.deepEqual(real.complaints, []);
+});

@@ -91,8 +91,9 @@ def best_figure(histories, objective):
 
 
 def map_figure(histories, quantities):
-    """Draws what the maps of niches amount to against evaluations."""
-    page = figure(histories, [(quantity, "evaluations") for quantity in quantities], "map of niches", drawn(histories))
+    """Draws the best score so far, and what the maps of niches amount to, against evaluations."""
+    title = "best robots and maps of niches"
+    page = figure(histories, [(quantity, "evaluations") for quantity in quantities], title, drawn(histories))
     for axes, quantity in zip(page.axes, quantities):
         axes.set_title(f"{quantity.name} ({quantity.unit})")
     return page

@@ -57,7 +57,7 @@ def compare(words, program):
     charts.save(chart.best_figure(histories, objective), out / "chart.svg")
     maps = niches.shared(histories, objective, against)
     if maps.histories:
-        charts.save(chart.map_figure(maps.histories, maps.quantities), out / "map.svg")
+        charts.save(chart.map_figure(maps.histories, [objective, *maps.quantities]), out / "map.svg")
     if in_scenarios := shared(histories, objective).scores:
         tables.write_scenarios_csv(out / "scenarios.csv", histories)
         if all(in_scenarios.values()):
