@@ -149,10 +149,14 @@ class Report {
     for (const std::string& line : lines) std::cout << "  " << line << '\n';
   }
 
-  /// Returns a text such as: species of the living: 3; or: novelty of the living: at most 0.31, median 0.2.
+  /// Returns a text such as: 3 different values of species among the living; or: novelty of the living: at most 0.31,
+  /// median 0.2.
   static std::string noted_text(const NoteTitle& title, const std::vector<double>& values) {
+    const std::size_t different = std::set(values.begin(), values.end()).size();
+    if (title.is_label)
+      return fmt::format("{} different value{} of {} among the living", different, different == 1 ? "" : "s",
+                         title.name);
     const std::string what = title.name + " of the living: ";
-    if (title.is_label) return what + std::to_string(std::set(values.begin(), values.end()).size());
     const auto [greatest, median] = best_and_median(values, true);
     return what + "at most " + short_quantity(*greatest, title.unit) + ", median " +
            short_quantity(*median, title.unit);
@@ -253,7 +257,9 @@ Command show_command() {
       .arguments = {{"DIR"}},
       .summary = "Show the progress and the best robots of a run",
       .text =
-          {"It prints the best and the median of each objective by generation, why individuals have no fitness, and "
+          {"It prints the best and the median of each objective by generation, the coverage and the QD score of the "
+           "map "
+           "of niches if the experiment has descriptors, why individuals have no fitness, and "
            "the best individuals with their scores, their ancestors, and the blocks of genes that came and went from "
            "one to the next. The run may still be in progress. With --individual, it prints one individual: its "
            "scores, what the selection operator has noted about it, and its ancestors."},

@@ -140,8 +140,9 @@ void fits_generations_of_any_size(const Subject& subject, std::uint64_t seed) {
         sound_children(*op, memory.empty() ? table.empty_context() : table.context(memory), rows, rng);
       if (!traits.chooses_survivors) continue;
       Rng same_rng = rng;
-      const Survival survival = sound_survival(*op, table.context(memory), rows / 2, rng);
-      if (!same(numbers_of(survival), numbers_of(op->survive(table.context(memory), rows / 2, same_rng))))
+      const std::uint32_t population = std::max(rows / 2, traits.least_population);
+      const Survival survival = sound_survival(*op, table.context(memory), population, rng);
+      if (!same(numbers_of(survival), numbers_of(op->survive(table.context(memory), population, same_rng))))
         throw Violation(
             "two calls of survive() with equal arguments give different results; keep nothing between calls");
       memory = survival.memory;

@@ -147,11 +147,16 @@ Survival sound_survival(const Selection& op, const SelectionContext& context, st
     throw Violation("it chooses " + std::to_string(survival.rows.size()) + " survivors of " +
                     std::to_string(context.rows.size()) + " rows; expected 1 to " + std::to_string(population) +
                     " different ones");
-  for (const Note& note : survival.notes)
+  std::set<std::pair<std::uint32_t, std::uint32_t>> noted;
+  for (const Note& note : survival.notes) {
+    if (!noted.emplace(note.row, note.title).second)
+      throw Violation("it notes number " + std::to_string(note.title) + " twice about row " + std::to_string(note.row) +
+                      "; expected one note for each row and number");
     if (note.row >= context.rows.size() || note.title >= titles || !std::isfinite(note.value))
       throw Violation("it notes number " + std::to_string(note.title) + " = " + to_text(note.value) + " about row " +
                       std::to_string(note.row) + "; expected a finite number, one of the " + std::to_string(titles) +
                       " of notes(), about one of " + std::to_string(context.rows.size()) + " rows");
+  }
   return survival;
 }
 
@@ -172,19 +177,20 @@ std::vector<Child> sound_children(const Selection& op, const SelectionContext& c
 }
 
 Numbers try_selection(const Subject& subject, const Selection& op, std::uint64_t seed, std::uint32_t input) {
-  const SampleTable table(subject, op, seed, input, 24, 4);
-  const Numbers before = table.numbers();
   const Traits traits = op.traits();
+  const std::uint32_t population = std::max(10u, traits.least_population), count = std::max(20u, traits.least_children);
+  const SampleTable table(subject, op, seed, input, population + 14, 4);
+  const Numbers before = table.numbers();
   Rng rng = stream(seed, input, 1);
   Numbers result;
   std::vector<std::byte> memory;
   if (traits.chooses_survivors) {
-    const Survival survival = op.survive(table.context(), 10, rng);
+    const Survival survival = op.survive(table.context(), population, rng);
     memory = survival.memory;
     append(result, numbers_of(survival));
   }
   if (traits.makes_children)
-    for (const Child& child : op.children(table.context(memory), 20, rng))
+    for (const Child& child : op.children(table.context(memory), count, rng))
       append(result, conformance::numbers_of(child.genome));
   else if (traits.chooses_parents)
     for (const auto& [parent, mate] : op.couples(table.context(memory), 20, rng))

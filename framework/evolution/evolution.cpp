@@ -30,6 +30,7 @@ void check_remembered(const Survival& survival, const Experiment& experiment, st
   if (survival.memory.size() > most_memory)
     throw std::runtime_error("returned a memory of " + std::to_string(survival.memory.size()) +
                              " bytes, expected at most " + std::to_string(most_memory));
+  std::set<std::pair<std::uint32_t, std::uint32_t>> noted;
   for (const Note& note : survival.notes) {
     if (note.row >= rows || note.title >= experiment.notes.size())
       throw std::runtime_error("noted number " + std::to_string(note.title) + " about row " + std::to_string(note.row) +
@@ -38,6 +39,9 @@ void check_remembered(const Survival& survival, const Experiment& experiment, st
     if (!std::isfinite(note.value))
       throw std::runtime_error("noted " + experiment.notes[note.title].name + " = " + to_text(note.value) +
                                " about row " + std::to_string(note.row) + ", expected a finite number");
+    if (!noted.emplace(note.row, note.title).second)
+      throw std::runtime_error("noted " + experiment.notes[note.title].name + " twice about row " +
+                               std::to_string(note.row) + ", expected one note for each row and number");
   }
 }
 

@@ -48,7 +48,8 @@ void check_scores(const Archive& archive, const Experiment& experiment, const In
 void check_notes(const Archive& archive, const Experiment& experiment) {
   const auto titles = [](const std::vector<NoteTitle>& notes) {
     std::vector<std::string> texts;
-    for (const NoteTitle& note : notes) texts.push_back(note.name + (note.is_label ? " as a label" : " in " + note.unit));
+    for (const NoteTitle& note : notes)
+      texts.push_back(note.name + (note.is_label ? " as a label" : " in " + note.unit));
     return joined(texts);
   };
   const std::string recorded = titles(archive.note_titles()), now = titles(experiment.notes);

@@ -17,11 +17,11 @@ std::string difference(const Provenance& then, const Provenance& now) {
 
 void warn(std::vector<std::string> ids, const std::string& what) {
   constexpr std::size_t most_named = 5;
-  const std::size_t count = ids.size();
-  ids.resize(std::min(count, most_named));
+  const std::size_t count = ids.size(), others = count > most_named + 1 ? count - most_named : 0;
+  ids.resize(count - others);
   std::cerr << "warning: " << (count == 1 ? "individual " : "individuals ") << joined(ids)
-            << (count > most_named ? " and " + std::to_string(count - most_named) + " others" : "")
-            << (count == 1 ? " was" : " were") << " simulated again " << what << "; the run has no record of "
+            << (others > 0 ? " and " + std::to_string(others) + " others" : "") << (count == 1 ? " was" : " were")
+            << " simulated again " << what << "; the run has no record of "
             << (count == 1 ? "its edits, so it" : "their edits, so they") << " may have developed differently\n";
 }
 
@@ -45,7 +45,8 @@ std::vector<Newborn> for_resimulation(const Archive& archive, const Experiment& 
                 archive.folder().string() + ": individual " + std::to_string(individual->id)});
     if (newborn.record) check_life(archive, experiment, individual->id, *newborn.record);
     const Provenance then = archive.provenance(individual->born);
-    if (!newborn.record && !are_same(then, now)) elsewhere[difference(then, now)].push_back(std::to_string(newborn.id));
+    if (experiment.development.cycles > 0 && !newborn.record && !are_same(then, now))
+      elsewhere[difference(then, now)].push_back(std::to_string(newborn.id));
   }
   for (const auto& [what, ids] : elsewhere) warn(ids, what);
   return newborns;

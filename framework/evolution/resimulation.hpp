@@ -14,9 +14,9 @@ namespace evodevo {
 Experiment experiment_for_resimulation(const Archive& archive, std::vector<std::filesystem::path> plugin_path);
 
 /// Returns individuals of a run as newborns to be simulated again on `device`, each with the record of its life if the
-/// run has one. If there is no record, and the individual was made by another device or by other builds, its
-/// development may differ from that in the run; the function then warns on stderr, once for all individuals. The
-/// newborns refer to the individuals' genomes.
+/// run has one. If bodies develop, there is no record, and the individual was made by another device or by other
+/// builds, its development may differ from that in the run; the function then warns on stderr, once for all individuals
+/// that were made in the same other way. The newborns refer to the individuals' genomes.
 std::vector<Newborn> for_resimulation(const Archive& archive, const Experiment& experiment,
                                       const std::vector<const Individual*>& individuals, const std::string& device);
 /// Does the same for one individual.

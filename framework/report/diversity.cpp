@@ -16,35 +16,34 @@ bool is_better(double score, double other, const Objective& objective) {
   return objective.maximise ? score > other : score < other;
 }
 
-/// The numbers of members of one label after each generation.
-struct Group {
-  double label = 0;
-  std::vector<std::size_t> counts;
-
-  std::size_t members() const { return std::accumulate(counts.begin(), counts.end(), std::size_t{0}); }
-};
-
-/// Returns the groups of a history, in the order in which they came up.
-std::vector<Group> groups_of(const NoteHistory& history) {
+/// Returns the labels that are shown one by one: the `most` with the most members over the whole run, of several with
+/// equally many those that came up first. They are in the order in which they came up.
+std::vector<double> greatest_labels(const NoteHistory& history, std::size_t most) {
+  struct Group {
+    double label;
+    std::size_t members = 0;
+  };
   std::vector<Group> groups;
   std::map<double, std::size_t> index;  // into groups, by label
-  for (std::size_t generation = 0; generation < history.living.size(); ++generation)
-    for (const double label : history.living[generation]) {
+  for (const std::vector<double>& living : history.living)
+    for (const double label : living) {
       const auto [found, is_new] = index.emplace(label, groups.size());
-      if (is_new) groups.push_back({label, std::vector<std::size_t>(history.living.size())});
-      ++groups[found->second].counts[generation];
+      if (is_new) groups.push_back({label});
+      ++groups[found->second].members;
     }
-  return groups;
+  std::ranges::stable_sort(groups, std::greater(), &Group::members);
+  groups.resize(std::min(groups.size(), most));
+  std::ranges::sort(groups, {}, [&](const Group& group) { return index.at(group.label); });
+  std::vector<double> labels;
+  for (const Group& group : groups) labels.push_back(group.label);
+  return labels;
 }
 
-/// Returns the least number of members over the run of one of the `most` greatest groups.
-std::size_t threshold(const std::vector<Group>& groups, std::size_t most) {
-  if (groups.size() <= most) return 0;
-  std::vector<std::size_t> members;
-  for (const Group& group : groups) members.push_back(group.members());
-  std::nth_element(members.begin(), members.begin() + static_cast<std::ptrdiff_t>(most) - 1, members.end(),
-                   std::greater());
-  return members[most - 1];
+/// Returns whether two of the living ever had the same label.
+bool is_shared(const NoteHistory& history) {
+  return std::ranges::any_of(history.living, [](const std::vector<double>& living) {
+    return std::set(living.begin(), living.end()).size() < living.size();
+  });
 }
 
 }  // namespace
@@ -74,7 +73,7 @@ NicheMap niche_map(const Archive& archive) {
     for (; next != everyone.end() && next->born <= summary.generation; ++next) {
       std::vector<std::uint32_t> cell;
       for (std::size_t axis = 0; axis < map.axes.size(); ++axis)
-        cell.push_back(map.axes[axis].bin(next->descriptors.at(axis)));
+        cell.push_back(map.axes[axis].bin(next->descriptors[axis]));
       const auto [found, is_new] = elites.emplace(cell, Elite{cell, next->id, next->score});
       Elite& elite = found->second;
       state.filled += is_new;
@@ -145,20 +144,16 @@ Json notes_json(const std::vector<NoteHistory>& histories, std::size_t generatio
 Json labels_json(const std::vector<NoteHistory>& histories, std::size_t most) {
   Json list = Json::array();
   for (const NoteHistory& history : histories) {
-    if (!history.title.is_label) continue;
-    const std::vector<Group> groups = groups_of(history);
-    const auto is_shared = [](const Group& group) { return std::ranges::max(group.counts) > 1; };
-    if (std::ranges::none_of(groups, is_shared)) continue;
-    const std::size_t least = threshold(groups, most);
-    Json shown = Json::array();
-    std::vector<std::size_t> others(history.living.size());
-    for (const Group& group : groups) {
-      if (shown.size() < most && group.members() >= least)
-        shown.push_back({{"label", group.label}, {"counts", group.counts}});
-      else
-        std::ranges::transform(others, group.counts, others.begin(), std::plus());
-    }
-    list.push_back({{"name", history.title.name}, {"groups", std::move(shown)}, {"others", others}});
+    if (!history.title.is_label || !is_shared(history)) continue;
+    const std::vector<double> labels = greatest_labels(history, most);
+    const std::size_t generations = history.living.size();
+    std::vector<std::vector<std::size_t>> counts(labels.size() + 1, std::vector<std::size_t>(generations));
+    for (std::size_t generation = 0; generation < generations; ++generation)
+      for (const double label : history.living[generation])
+        ++counts[static_cast<std::size_t>(std::ranges::find(labels, label) - labels.begin())][generation];
+    Json groups = Json::array();
+    for (std::size_t i = 0; i < labels.size(); ++i) groups.push_back({{"label", labels[i]}, {"counts", counts[i]}});
+    list.push_back({{"name", history.title.name}, {"groups", std::move(groups)}, {"others", counts.back()}});
   }
   return list;
 }

@@ -19,10 +19,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* elite_role = "elite";
+
 /// An individual and the role for which it is shown, such as "best" or "ancestor".
 struct Actor {
   ArchivedIndividual individual;
   std::string role;
+
+  bool is_elite() const { return role == elite_role; }
 };
 
 class Casting {
@@ -38,7 +42,7 @@ class Casting {
     for (const std::uint32_t id : cast.individuals) add(id, "chosen");
     if (!best.empty()) add_ancestors(ancestry(archive_, best.front()), cast.ancestors);
     if (cast.elites > 0)
-      for (const std::uint32_t id : best_elites(niche_map(archive_), cast.elites)) add(id, "elite");
+      for (const std::uint32_t id : best_elites(niche_map(archive_), cast.elites)) add(id, elite_role);
     return std::move(roles_);
   }
 
@@ -166,6 +170,27 @@ Json robot_json(const Archive& archive, const Actor& role, const FilmedLife& lif
   return robot;
 }
 
+/// Divides a budget of bytes among films. Half of it is for the elites, if there are any, and the other half for those
+/// before them; each half is shared evenly. What is not used is left to the films after it.
+class FilmBudget {
+ public:
+  FilmBudget(std::size_t bytes, const std::vector<Actor>& actors) : left_(bytes) {
+    for (const Actor& actor : actors) ++(actor.is_elite() ? elites_ : others_);
+    reserved_ = others_ > 0 && elites_ > 0 ? bytes / 2 : 0;
+  }
+
+  std::size_t share(const Actor& actor) const {
+    return actor.is_elite() ? left_ / elites_ : (left_ - std::min(left_, reserved_)) / others_;
+  }
+  void spend(const Actor& actor, std::size_t bytes) {
+    left_ -= std::min(left_, bytes);
+    --(actor.is_elite() ? elites_ : others_);
+  }
+
+ private:
+  std::size_t left_, reserved_ = 0, elites_ = 0, others_ = 0;
+};
+
 constexpr std::size_t filmed_together = 16;  ///< number of robots whose films are in memory at the same time
 
 }  // namespace
@@ -186,17 +211,17 @@ Json reported_run(const Archive& archive, const Experiment& experiment, Simulato
   for (const Actor& actor : actors) individuals.push_back(&actor.individual);
   const std::vector<Newborn> newborns = for_resimulation(archive, experiment, individuals, simulator.device());
   SeenRegion region;
+  FilmBudget films(budget, actors);
   for (std::size_t first = 0; first < actors.size(); first += filmed_together) {
     const std::size_t count = std::min(filmed_together, actors.size() - first);
     const std::vector<FilmedLife> lives =
         film_lives(experiment, simulator, std::span(newborns).subspan(first, count), {scenario});
     region.include(lives);
     for (std::size_t i = 0; i < count; ++i) {
-      // robots share the budget evenly; what one robot does not use is left to those after it
-      const std::size_t share = budget / (actors.size() - first - i);
+      const Actor& actor = actors[first + i];
       const Json& robot =
-          run["robots"].emplace_back(robot_json(archive, actors[first + i], lives[i], experiment, scenario, share));
-      budget -= std::min(budget, robot.dump().size());
+          run["robots"].emplace_back(robot_json(archive, actor, lives[i], experiment, scenario, films.share(actor)));
+      films.spend(actor, robot.dump().size());
     }
   }
   run["scene"] =

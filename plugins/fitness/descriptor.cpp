@@ -15,7 +15,8 @@ class Descriptor final : public evodevo::Fitness {
              "mean of the longer horizontal side of its bounding box, or its number of masses.");
     p.reals(range_, "range", {-1e9, 1e9},
             "Smallest and largest value that is expected, in the unit of the descriptor.");
-    p.integer(bins_, "bins", {1, 1000, "1"}, "Number of cells into which maps of niches divide the range.");
+    p.integer(bins_, "bins", {1, evodevo::Objective::most_bins, "1"},
+              "Number of cells into which maps of niches divide the range.");
     window_.declare_sampled(p);
     p.require(range_.empty() || (range_.size() == 2 && range_[0] < range_[1]), "range",
               "expected two numbers, the smaller first");
@@ -59,4 +60,6 @@ class Descriptor final : public evodevo::Fitness {
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<Descriptor>(
-                   "descriptor", "Where a robot lies in the space of behaviours; recorded, but not selected by."))
+                   "descriptor",
+                   "Where a robot lies in the space of behaviours, for maps of niches and for selection operators "
+                   "such as map-elites."))

@@ -105,10 +105,12 @@ contents() {
   python3 - "$1" <<'END'
 import sqlite3, sys
 run = sqlite3.connect(sys.argv[1] + "/run.sqlite")
-for query in ("SELECT id, died, origin, parent, made_by, hex(genes) FROM individuals", "SELECT * FROM scores",
-              "SELECT * FROM notes", "SELECT generation, hex(bytes) FROM memory"):
+for query in ("SELECT id, born, died, origin, parent, mate, made_by, hex(genes), status, spring_evaluations FROM individuals",
+              "SELECT * FROM scores", "SELECT * FROM measured", "SELECT * FROM notes",
+              "SELECT generation, evaluations, best, median, diverged, invalid, clones FROM generations",
+              "SELECT generation, hex(bytes) FROM memory"):
     rows = run.execute(query).fetchall()
-    assert rows, query + " has no rows"
+    assert rows or "measured" in query, query + " has no rows"
     print(query, *rows, sep="\n")
 END
 }

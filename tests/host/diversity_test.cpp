@@ -97,6 +97,17 @@ TEST_F(Diversity, TheBestIndividualOfEachCellIsItsElite) {
   EXPECT_EQ(run["generations"][1]["map"]["filled"], 3);
 }
 
+TEST_F(Diversity, AMissingDescriptorIsRefused) {
+  add({1, 0}, {0.1, 0.2});
+  commit({});
+  {
+    SQLite::Database database((scratch_ / "run" / "run.sqlite").string(), SQLite::OPEN_READWRITE);
+    database.exec("DELETE FROM measured WHERE measure = 0");
+  }
+  EXPECT_THAT([&] { niche_map(archive()); },
+              ::testing::ThrowsMessage<ArchiveError>(testing::naming("individual 0", "descriptor")));
+}
+
 class OneAxis : public Diversity {
  protected:
   OneAxis() : Diversity(testing::small_experiment + height) {}
@@ -157,6 +168,8 @@ TEST_F(Noted, NotesHoldUntilAnotherIsMadeOrTheIndividualDies) {
   add({1, 0}, {});
   commit({}, {{0, 0, 7}, {1, 0, 9}, {1, 1, 0.25}, {3, 1, 1}});
   commit({0}, {});
+  SQLite::Database database((scratch_ / "run" / "run.sqlite").string());
+  EXPECT_EQ(database.execAndGet("SELECT count(*) FROM notes WHERE individual = 0").getInt(), 2) << "no note twice";
   const auto histories = archive().note_histories();
   ASSERT_EQ(histories.size(), 2u);
   EXPECT_TRUE(histories[0].title.is_label);
@@ -196,6 +209,11 @@ TEST(Labels, AreCountedByGeneration) {
             R"({"label":3.0,"counts":[0,3,1]}],"others":[0,0,0]}])");
   EXPECT_EQ(labels_json(histories, 1).dump(),
             R"([{"name":"species","groups":[{"label":3.0,"counts":[0,3,1]}],"others":[3,1,0]}])");
+  const std::vector<NoteHistory> late = {{{"species", "1", true}, {{1, 2}, {5, 5}}}};
+  EXPECT_EQ(labels_json(late, 2).dump(),
+            R"([{"name":"species","groups":[{"label":1.0,"counts":[1,0]},{"label":5.0,"counts":[0,2]}],)"
+            R"("others":[1,0]}])")
+      << "a large group that came up late is shown";
 }
 
 }  // namespace

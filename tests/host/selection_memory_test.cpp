@@ -18,7 +18,7 @@
 namespace evodevo {
 namespace {
 
-/// Remembers how often it was called, and the sum of the ids that it saw. Notes both about the first row.
+/// Remembers how often it was called, and notes that about the first row. It could also note a sum.
 struct Counting final : Selection {
   std::vector<NoteTitle> notes() const override { return {{"calls"}, {"sum", "ids"}}; }
   std::vector<std::pair<std::uint32_t, std::uint32_t>> couples(const SelectionContext& context, std::uint32_t count,
@@ -123,6 +123,7 @@ TEST_F(Remembering, FaultsAreNamedBeforeAnythingIsCommitted) {
               }),
               testing::naming("selection operator", "sum", "finite"));
   EXPECT_THAT(fault_of([](Survival& s) { s.notes.push_back({0, 2, 1}); }), testing::naming("number 2", "2 numbers"));
+  EXPECT_THAT(fault_of([](Survival& s) { s.notes.push_back({0, 0, 2}); }), testing::naming("calls", "twice", "row 0"));
   EXPECT_THAT(fault_of([](Survival& s) { s.notes.push_back({99, 0, 1}); }), testing::naming("row 99", "6 rows"));
   EXPECT_THAT(fault_of([](Survival& s) { s.rows.push_back(s.rows[0]); }), testing::naming("survivors", "different"));
   EXPECT_THAT(fault_of([](Survival& s) { s.memory.resize((std::size_t{128} << 20) + 1); }),

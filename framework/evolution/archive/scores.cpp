@@ -34,7 +34,7 @@ std::vector<Objective> Archive::descriptors() const {
     descriptor.low = row.number(2);
     descriptor.high = row.number(3);
     if (!(descriptor.low < descriptor.high)) row.refuse(3, "more than measures.low, " + to_text(descriptor.low));
-    descriptor.bins = static_cast<std::uint32_t>(row.integer(4, 1, 1000));
+    descriptor.bins = static_cast<std::uint32_t>(row.integer(4, 1, Objective::most_bins));
   }
   return descriptors;
 }
@@ -42,10 +42,12 @@ std::vector<Objective> Archive::descriptors() const {
 std::vector<Described> Archive::described(std::size_t count) const {
   Statement row(*run_, "measured",
                 "SELECT id, born, scores.value, measured.value FROM individuals JOIN scores ON scores.individual = id "
-                "JOIN measured ON measured.individual = id JOIN measures ON position = measure "
-                "WHERE objective = 0 AND status = 'ok' AND role = 'descriptor' ORDER BY id, measure");
+                "LEFT JOIN measures ON role = 'descriptor' "
+                "LEFT JOIN measured ON measured.individual = id AND measured.measure = position "
+                "WHERE objective = 0 AND status = 'ok' ORDER BY id, position");
   std::vector<Described> described;
   while (row.step()) {
+    if (row.is_null(3)) refuse("individual " + std::to_string(row.index(0)) + ", which is ok, lacks a descriptor");
     if (described.empty() || described.back().id != row.index(0))
       described.push_back({row.index(0), row.index(1), row.number(2), {}});
     if (described.back().descriptors.size() < count) described.back().descriptors.push_back(row.number(3));

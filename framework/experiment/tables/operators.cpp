@@ -358,6 +358,9 @@ class OperatorTables {
         !(objective.low < objective.high && std::isfinite(objective.low) && std::isfinite(objective.high)))
       t.fail("name", "its descriptor \"" + objective.name + "\" has the range " + to_text(objective.low) + " to " +
                          to_text(objective.high) + "; expected two numbers, the smaller first");
+    if (objective.bins < 1 || objective.bins > Objective::most_bins)
+      t.fail("name", "its descriptor \"" + objective.name + "\" has bins = " + std::to_string(objective.bins) +
+                         "; expected 1 to " + std::to_string(Objective::most_bins));
     const auto same = [&](const Objective& other) { return other.name == objective.name; };
     for (const auto* scores : {&out_.objectives, &out_.measures})
       if (std::any_of(scores->begin(), scores->end(), same))

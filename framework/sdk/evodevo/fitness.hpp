@@ -89,7 +89,9 @@ struct Objective {
   bool maximise = true;  ///< whether larger values are better; of an objective or a measure
   Role role = Role::objective;
   double low = 0, high = 1;  ///< the range of a descriptor, in its unit; values outside are allowed
-  std::uint32_t bins = 10;   ///< number of cells of equal size into which maps divide this range; 1 to 1,000
+  std::uint32_t bins = 10;   ///< number of cells of equal size into which maps divide this range; 1 to most_bins
+
+  static constexpr std::uint32_t most_bins = 1000;
 
   /// Returns the cell of a descriptor's range in which a finite value lies, from 0. Values outside belong to the first
   /// or the last cell.

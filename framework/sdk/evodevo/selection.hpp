@@ -70,7 +70,8 @@ struct NoteTitle {
   bool is_label = false;  ///< whether the number names a group, such as a cell or a species, and measures nothing
 };
 
-/// A number that a selection operator notes about an individual. The archive keeps the last one with each title.
+/// A number that a selection operator notes about an individual: at most one of each title in a generation. It holds
+/// until the operator notes another one of that title about the individual. The archive keeps all of them.
 struct Note {
   std::uint32_t row = 0;
   std::uint32_t title = 0;  ///< index into Selection::notes()

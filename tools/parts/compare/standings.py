@@ -104,8 +104,8 @@ def too_early(histories, axis, cost):
     ending = min(histories, key=lambda variant: common_span(histories[variant], axis)[1]).name
     return (
         f"Not compared: a run of `{ending}` ends before the first generation of every run of {late} is complete. "
-        f"Let `{ending}` run longer (`experiment.evaluations`, `experiment.spring_evaluations`), or give {late} a "
-        "smaller `experiment.population`.\n"
+        f"Let `{ending}` run longer (`experiment.evaluations`, `experiment.spring_evaluations`), or give {late} "
+        "smaller generations (`experiment.children` or, without it, `experiment.population`).\n"
     )
 
 

@@ -49,11 +49,16 @@ class NicheMap {
     this.viewer = viewer;
     this.columns = run.map.axes[0].bins;
     this.rows = run.map.axes[1]?.bins ?? 1;
+    const own = robots.map((one, index) => [one, index]).filter(([one]) => one.run === run);
+    const indices = new Map(own.map(([one, index]) => [one.robot.individual, index]));
     this.cells = run.map.elites
-      .map(({ cell: [column, row = 0], individual, value }) => {
-        const index = robots.findIndex((one) => one.run === run && one.robot.individual === individual);
-        return { column, row, individual, value, robot: index < 0 ? undefined : index };
-      })
+      .map(({ cell: [column, row = 0], individual, value }) => ({
+        column,
+        row,
+        individual,
+        value,
+        robot: indices.get(individual),
+      }))
       .sort((a, b) => b.row - a.row || a.column - b.column); // as one reads: from top to bottom, from left to right
     this.cells.forEach((cell) => (cell.button = this.#button(cell, range)));
     this.at = new Map(this.cells.map((cell) => [this.#place(cell), cell]));
