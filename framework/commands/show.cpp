@@ -258,11 +258,10 @@ Command show_command() {
       .summary = "Show the progress and the best robots of a run",
       .text =
           {"It prints the best and the median of each objective by generation, the coverage and the QD score of the "
-           "map "
-           "of niches if the experiment has descriptors, why individuals have no fitness, and "
-           "the best individuals with their scores, their ancestors, and the blocks of genes that came and went from "
-           "one to the next. The run may still be in progress. With --individual, it prints one individual: its "
-           "scores, what the selection operator has noted about it, and its ancestors."},
+           "map of niches if the experiment has descriptors, why individuals have no fitness, and the best individuals "
+           "with their scores, their ancestors, and the blocks of genes that came and went from one to the next. The "
+           "run may still be in progress. With --individual, it prints one individual: its scores, what the selection "
+           "operator has noted about it, and its ancestors."},
       .examples = {"show runs/quickstart-1", "show runs/quickstart-1 --individual 531",
                    "show runs/quickstart-1 --json"},
       .options = options,

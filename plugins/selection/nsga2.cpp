@@ -10,8 +10,8 @@ using evodevo::Candidate;
 /// The best Pareto layers survive. Of the first layer that does not fit into the population as a whole, the least
 /// crowded members survive; crowding is measured anew after each removal, which spreads them more evenly (Kukkonen and
 /// Deb 2006). Parents are the winners of tournaments between two: the better layer wins, then the less crowded one, and
-/// among equals chance decides.
-/// Individuals that failed lose to all others, and among them those win that violate the constraints least.
+/// among equals chance decides. Individuals that failed lose to all others; among them, those win that violate the
+/// constraints least.
 class Nsga2 final : public evodevo::Selection {
  public:
   std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,

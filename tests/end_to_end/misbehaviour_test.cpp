@@ -138,7 +138,10 @@ TEST_F(Misbehaviour, WhatNoLifeCanBeMeasuredByIsRefused) {
       {"early-window", "settle = -0.1 s and window = 0.1 s; expected"},
       {"window-that-is-no-number", "settle = no finite number and window = 0.1 s; expected"},
       {"no-objective", "no scores"},
-      {"nameless-objective", "an objective without a name"}};
+      {"nameless-objective", "an objective without a name"},
+      {"descriptor-without-cells", "has bins = 0; expected 1 to 1000"},
+      {"descriptor-with-too-many-cells", "has bins = 1001; expected 1 to 1000"},
+      {"empty-descriptor", "has the range 1 to 1; expected"}};
   for (const auto& [how, reason] : cases) {
     const Finished finished = testing::run(run_with("fitness.0", how));
     EXPECT_EQ(finished.exit_code, 2) << how << finished.output;

@@ -129,7 +129,8 @@ struct Fitness final : evodevo::Fitness {
   void parameters(Parameters& p) override {
     p.choice(how, "how",
              {"well", "no-window", "endless-window", "early-window", "window-that-is-no-number", "no-objective",
-              "nameless-objective", "one-score-too-many"},
+              "nameless-objective", "descriptor-without-cells", "descriptor-with-too-many-cells", "empty-descriptor",
+              "one-score-too-many"},
              "What it does.");
   }
   evodevo::Request observes() const override {
@@ -140,7 +141,11 @@ struct Fitness final : evodevo::Fitness {
     return {0, 0.1, false};
   }
   std::vector<evodevo::Objective> objectives() const override {
+    using evodevo::Role;
     if (how == "no-objective") return {};
+    if (how == "descriptor-without-cells") return {{"one", "1", true, Role::descriptor, 0, 1, 0}};
+    if (how == "descriptor-with-too-many-cells") return {{"one", "1", true, Role::descriptor, 0, 1, 1001}};
+    if (how == "empty-descriptor") return {{"one", "1", true, Role::descriptor, 1, 1}};
     return {{how == "nameless-objective" ? "" : "one", "1", true}};
   }
   std::vector<double> score(const evodevo::Observation&) const override {

@@ -155,13 +155,23 @@ test("points with the same x are all there", async () => {
   assert.deepEqual(sorted(shown), sorted(living));
 });
 
+/** Changes the theme, and waits until the page, which hears of it later, has heard of it. */
+async function useColours(colorScheme) {
+  await page.evaluate(() => {
+    const theme = matchMedia("(prefers-color-scheme: dark)");
+    window.heard = new Promise((done) => theme.addEventListener("change", done, { once: true }));
+  });
+  await page.emulateMedia({ colorScheme });
+  await page.evaluate(() => window.heard);
+}
+
 test("what is chosen stays when the theme changes", async () => {
   const choice = figure("The living").getByLabel("y axis");
   const chosen = await choice.inputValue();
   const before = await points(1);
-  await page.emulateMedia({ colorScheme: "dark" });
+  await useColours("dark");
   const dark = await inPage(page, ({ charts }) => charts.byName.ages.plot.series[1].points.fill());
-  await page.emulateMedia({ colorScheme: "light" });
+  await useColours("light");
   const light = await inPage(page, ({ charts }) => charts.byName.ages.plot.series[1].points.fill());
   assert.notEqual(dark, light);
   assert.equal(await choice.inputValue(), chosen);
