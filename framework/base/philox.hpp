@@ -28,11 +28,12 @@ constexpr std::uint32_t devo(std::size_t op, std::int64_t cycle) {
   return static_cast<std::uint32_t>(op + 1) << 24 | static_cast<std::uint32_t>(cycle);
 }
 inline constexpr std::int64_t most_cycles = (1 << 24) - 1;
-inline constexpr std::size_t most_operators = 0xfc;
+inline constexpr std::size_t most_operators = 0xfb;
 /// The streams of the controls and of the stress tallies come after those of the last possible devo operator.
-constexpr std::uint32_t random_places(std::int64_t cycle) { return devo(most_operators, cycle); }
-constexpr std::uint32_t stress_tallies(std::int64_t cycle) { return devo(most_operators + 1, cycle); }
-constexpr std::uint32_t stress_shuffle(std::int64_t cycle) { return devo(most_operators + 2, cycle); }
+constexpr std::uint32_t mass_shuffle(std::int64_t cycle) { return devo(most_operators, cycle); }
+constexpr std::uint32_t random_places(std::int64_t cycle) { return devo(most_operators + 1, cycle); }
+constexpr std::uint32_t stress_tallies(std::int64_t cycle) { return devo(most_operators + 2, cycle); }
+constexpr std::uint32_t stress_shuffle(std::int64_t cycle) { return devo(most_operators + 3, cycle); }
 }  // namespace rng_stream
 
 }  // namespace evodevo

@@ -46,6 +46,7 @@ Json to_json(const Event& event, const std::vector<Narrated>& operators) {
                         {"amplitude", event.material->amplitude},
                         {"frequency", event.material->frequency},
                         {"phase", event.material->phase}};
+  if (event.stiffness) json["stiffness"] = *event.stiffness;
   return json;
 }
 
@@ -77,6 +78,7 @@ void print(const Event& event, const std::vector<Narrated>& operators) {
   if (const auto& material = event.material)
     fmt::print(std::cout, ", {:.4g} N/m, amplitude {:.4g}, {:.4g} Hz, phase {:.4g}", material->stiffness,
                material->amplitude, material->frequency, material->phase);
+  if (event.stiffness) fmt::print(std::cout, ", stiffness {:.4g} N/m", *event.stiffness);
   std::cout << '\n';
 }
 

@@ -148,8 +148,8 @@ void require_measures(const Devo& op) {
       throw Violation("measure() returns no name or no unit; the unit of a pure number is \"1\"");
 }
 
-/// Checks over several cycles that the host can apply all edits, that new masses are within the bounds, and that some
-/// body still has springs after the first cycle.
+/// Checks over several cycles that the host can apply all edits, and keep what the operator remembers, that new masses
+/// do not lie below the bounds, and that some body still has springs after the first cycle.
 void bodies_stay_sound(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Devo>(subject);
   require_measures(*op);
@@ -161,15 +161,15 @@ void bodies_stay_sound(const Subject& subject, std::uint64_t seed) {
       Rng rng = stream(seed, input, static_cast<std::uint32_t>(life.cycle));
       const DevoContext context = life.context(op->observes());
       op->develop(context, edits, rng);
-      edited = edited || !numbers_of(edits).empty();
+      edited = edited || !edits.empty();
       if (edits.growth && !op->uses_growth()) throw Violation("it lets springs grow, but uses_growth() returns false");
       for (const NewMass& mass : edits.new_masses) {
-        const Vec3 p = mass.position, low = life.bounds.low, high = life.bounds.high;
         // written so that NaN fails
-        if (!(p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z))
-          throw Violation(numbered("body", input) + ": a new mass lies outside the bounds of the context");
+        if (!std::isfinite(norm(mass.position)) || !(mass.position.z >= context.bounds.low.z))
+          throw Violation(numbered("body", input) + ": a new mass lies below the bounds of the context");
       }
       try {
+        remember(edits, memory_names(*op), life.living.body, life.living.memory.front());
         apply(resolved(edits, context), life.living);
       } catch (const std::invalid_argument& error) {
         throw Violation(numbered("body", input) + ", " + numbered("cycle", std::uint32_t(life.cycle)) + ": it " +

@@ -101,6 +101,9 @@ void plain_names(const Subject& subject, std::uint64_t) {
       require_plain("the name of a measure", devo->measure(list).name);
       require_plain("the unit of a measure", devo->measure(list).unit);
     }
+    const MemoryNames names = memory_names(*devo);
+    for (const auto& list : {names.masses, names.springs})
+      for (const std::string& name : list) require_plain("the name of a number that it remembers", name);
   }
 }
 

@@ -19,6 +19,7 @@ namespace {
 using conformance::numbers_of;  // which the overloads below would otherwise hide
 
 void append(Numbers& numbers, std::initializer_list<double> more) { numbers.insert(numbers.end(), more); }
+void append(Numbers& numbers, const Numbers& more) { numbers.insert(numbers.end(), more.begin(), more.end()); }
 void append(Numbers& numbers, Vec3 v) { append(numbers, {v.x, v.y, v.z}); }
 
 void append(Numbers& numbers, const Material& m) { append(numbers, {m.stiffness, m.amplitude, m.frequency, m.phase}); }
@@ -34,7 +35,7 @@ void append(Numbers& numbers, const Body& body) {
     append(numbers, {m.mass, double(m.material), double(m.air_contacts)});
   }
   for (const Spring& s : body.springs)
-    append(numbers, {double(s.a), double(s.b), s.rest_length, double(s.material), s.growth});
+    append(numbers, {double(s.a), double(s.b), s.rest_length, double(s.material), s.growth, s.stiffness_factor});
   for (const Material& m : body.materials) append(numbers, m);
 }
 
@@ -57,14 +58,17 @@ Numbers numbers_of(const EncodingContext& context) {
 
 Numbers numbers_of(const SampleLife& life) {
   Numbers numbers;
-  for (const auto list : SpringRecords::lists)
-    numbers.insert(numbers.end(), (life.living.*list).begin(), (life.living.*list).end());
+  for (const auto list : SpringRecords::lists) append(numbers, life.living.*list);
+  for (const auto list : MassRecords::lists) append(numbers, life.living.*list);
+  for (const OperatorMemory& memory : life.living.memory) {
+    append(numbers, memory.masses.values);
+    append(numbers, memory.springs.values);
+  }
   append(numbers, life.living.body);
   for (const Vec3& position : life.living.state.position) append(numbers, position);
   for (const Vec3& velocity : life.living.state.velocity) append(numbers, velocity);
-  const Numbers genome = numbers_of(life.genome), layout = numbers_of(life.layout);
-  numbers.insert(numbers.end(), genome.begin(), genome.end());
-  numbers.insert(numbers.end(), layout.begin(), layout.end());
+  append(numbers, numbers_of(life.genome));
+  append(numbers, numbers_of(life.layout));
   return numbers;
 }
 
@@ -88,6 +92,7 @@ Numbers try_encoding(const Subject& subject, const Encoding& op, std::uint64_t s
   for (const Vec3& position : blueprint.paired_at) append(result, position);
   for (const Size& size : blueprint.sizes) append(result, {size.start, size.end});
   for (const Vec3& position : blueprint.origins) append(result, position);
+  for (const auto& [name, memory] : blueprint.mass_memory) append(result, memory);
   append(result, {double(blueprint.neighbours), double(blueprint.failure.size())});
   return result;
 }
@@ -118,8 +123,8 @@ Numbers try_devo(const Subject& subject, const Devo& op, std::uint64_t seed, std
   Edits edits;
   Rng rng = stream(seed, input, 1);
   op.develop(life.context(op.observes()), edits, rng);
-  require_untouched("the body, its state or its genes", numbers_of(sample_life(subject, op, seed, input)),
-                    numbers_of(life));
+  require_untouched("the body, its state, its records, its memory or its genes",
+                    numbers_of(sample_life(subject, op, seed, input)), numbers_of(life));
   return numbers_of(edits);
 }
 
@@ -152,9 +157,14 @@ Rng stream(std::uint64_t seed, std::uint32_t input, std::uint32_t part) { return
 
 SampleGenes sample_genes(const Mutation& op, const SampleGenomes& others, Rng& rng) {
   SampleGenes sample{.layout = {.sections = {}}, .genome = {}};
-  add_section(sample.layout, "sample", others.layout);
-  const Layout own = op.layout(others.layout);
   std::vector<Genome> sections = {others.draw(rng)};
+  if (others.layout.sections.size() > 1) {  // those of an experiment's operators
+    sample.layout = others.layout;
+    sections = split(sections.front(), others.layout);
+  } else {
+    add_section(sample.layout, "sample", others.layout);
+  }
+  const Layout own = op.layout(others.layout);
   if (!own.types.empty()) {
     sample.layout.own = add_section(sample.layout, "own", own);
     sections.push_back(op.random(own, rng));
@@ -180,7 +190,7 @@ Numbers numbers_of(const Edits& edits) {
   if (edits.growth) append(numbers, {edits.growth->from, edits.growth->to, edits.growth->whole});
   numbers.insert(numbers.end(), edits.removed_masses.begin(), edits.removed_masses.end());
   for (const ChangedSpring& s : edits.changed_springs) {
-    append(numbers, {double(s.spring), s.rest_length.value_or(-1)});
+    append(numbers, {double(s.spring), s.rest_length.value_or(-1), s.stiffness_factor.value_or(-1)});
     append(numbers, s.material.value_or(Material{}));
   }
   for (const NewMass& m : edits.new_masses) {
@@ -188,15 +198,16 @@ Numbers numbers_of(const Edits& edits) {
     append(numbers, {m.mass, double(m.material)});
   }
   for (const NewSpring& s : edits.new_springs) {
-    append(numbers, {double(s.a), double(s.b), s.rest_length.value_or(-1)});
+    append(numbers, {double(s.a), double(s.b), s.rest_length.value_or(-1), s.stiffness_factor});
     append(numbers, s.material);
   }
-  for (const auto list : Causes::lists)
-    numbers.insert(numbers.end(), (edits.causes.*list).begin(), (edits.causes.*list).end());
+  for (const auto list : Causes::lists) append(numbers, edits.causes.*list);
+  append(numbers, edits.mass_memory);
+  append(numbers, edits.spring_memory);
   return numbers;
 }
 
-DevoContext SampleLife::context(const SpringRequest& request) const {
+DevoContext SampleLife::context(const RecordRequest& request) const {
   DevoContext context{.body = living.body,
                       .state = living.state,
                       .cycle = cycle,
@@ -209,10 +220,29 @@ DevoContext SampleLife::context(const SpringRequest& request) const {
                       .resets = resets,
                       .genome = genome,
                       .layout = layout,
-                      .own = own};
+                      .own = own,
+                      .mass_memory = living.memory.front().masses.view("mass"),
+                      .spring_memory = living.memory.front().springs.view("spring")};
   show_records(living, request, context);
   return context;
 }
+
+namespace {
+
+/// Makes up the records of the masses and what the operator remembers. Degree and load are those of the body.
+void add_experience(const Devo& op, bool has_lived, Rng& rng, LivingBody& living) {
+  record_masses({.degree = true, .load = true}, living);
+  for (std::size_t i = 0; i < living.body.masses.size(); ++i) {
+    living.contact.push_back(std::max(0.0, rng.uniform(-1, 1)));  // about half of the masses touch no ground
+    living.age.push_back(1 + rng.below(20));
+  }
+  OperatorMemory& memory = living.memory.emplace_back(memory_at_birth(memory_names(op), {}, living.body));
+  if (!has_lived) return;
+  for (std::vector<double>* values : {&memory.masses.values, &memory.springs.values})
+    for (double& value : *values) value = rng.uniform();
+}
+
+}  // namespace
 
 SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t seed, std::uint32_t input) {
   Rng rng = stream(seed, input), own_rng = stream(seed, input, 2);
@@ -253,6 +283,10 @@ SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t see
     life.living.tension.push_back(stress * rng.uniform(-1, 1));
   }
   life.bounds = bounding_box(life.living.state.position);
+  Rng experience_rng = stream(seed, input, 100);
+  add_experience(op, input % 4 >= 2, experience_rng, life.living);
+  if (input % 4 >= 2)
+    for (Spring& spring : body.springs) spring.stiffness_factor = experience_rng.uniform(0.5, 2);
   return life;
 }
 

@@ -33,7 +33,7 @@ Numbers numbers_of(const Edits& edits);
 
 /// A body in the middle of its life, and everything else that a devo operator sees.
 struct SampleLife {
-  LivingBody living;
+  LivingBody living;  ///< with the memory of the operator alone
   Box bounds;
   Genome genome;
   Layout layout;
@@ -41,11 +41,11 @@ struct SampleLife {
   int cycle = 1;
   bool resets = false;
 
-  /// Returns the context with only those spring records that `request` asks for.
-  DevoContext context(const SpringRequest& request) const;
+  /// Returns the context with only those records that `request` asks for.
+  DevoContext context(const RecordRequest& request) const;
 };
-/// Returns a random life. `input` determines whether the masses have materials, and whether the body has many masses or
-/// only two.
+/// Returns a random life. `input` determines whether the masses have materials, whether the body has many masses or
+/// only two, and whether the operator remembers only zeros, as at birth, or numbers from 0 to 1.
 SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t seed, std::uint32_t input);
 
 /// Calls the functions of an operator with the input that has the number `input`, and returns all results as numbers.

@@ -1,6 +1,8 @@
 #include "experiment/experiment.hpp"
 
+#include <algorithm>
 #include <sstream>
+#include <stdexcept>
 
 #include "base/philox.hpp"
 #include "base/text.hpp"
@@ -84,8 +86,44 @@ OperatorCall Experiment::call_of(std::string_view kind, std::size_t index, CallS
   return {use == uses.end() ? nullptr : use->title, subject, seed, kind};
 }
 
-SpringRequest devo_request(const Experiment& experiment, std::size_t index) {
+RecordRequest devo_request(const Experiment& experiment, std::size_t index) {
   return call_operator(experiment.call_of(Devo::kind, index), [&] { return experiment.devo.at(index).op->observes(); });
+}
+
+RecordRequest cycle_request(const Experiment& experiment, std::int64_t cycle) {
+  RecordRequest all;
+  if (experiment.development.control == Control::no_change) return all;
+  for (std::size_t i = 0; i < experiment.devo.size(); ++i) {
+    if (!experiment.devo[i].schedule.contains(cycle)) continue;
+    const RecordRequest request = devo_request(experiment, i);
+    all.stress |= request.stress;
+    all.peak_force |= request.peak_force;
+    all.muscle_work |= request.muscle_work;
+    all.tension |= request.tension;
+    all.contact |= request.contact;
+    all.age |= request.age;
+    all.degree |= request.degree;
+    all.load |= request.load;
+  }
+  return all;
+}
+
+MemoryNames memory_names(const Devo& op) {
+  const auto checked = [](std::vector<std::string> names, const char* function) {
+    for (auto name = names.begin(); name != names.end(); ++name) {
+      const std::string place = std::string(function) + "() gives the name \"" + printable(*name) + "\"";
+      if (name->empty()) throw std::invalid_argument(place + "; expected a name that is not empty");
+      if (std::find(names.begin(), name, *name) != name)
+        throw std::invalid_argument(place + " twice; expected different names");
+    }
+    return names;
+  };
+  return {checked(op.mass_memory(), "mass_memory"), checked(op.spring_memory(), "spring_memory")};
+}
+
+MemoryNames memory_names(const Experiment& experiment, std::size_t index) {
+  return call_operator(experiment.call_of(Devo::kind, index),
+                       [&] { return memory_names(*experiment.devo.at(index).op); });
 }
 
 Request fitness_request(const Experiment& experiment, std::size_t index) {
@@ -93,18 +131,11 @@ Request fitness_request(const Experiment& experiment, std::size_t index) {
                        [&] { return experiment.fitness.at(index).op->observes(); });
 }
 
-Recording recording(const Experiment& experiment, std::int64_t cycle) {
-  Recording all;
-  if (experiment.development.control == Control::no_change) return all;
-  for (std::size_t i = 0; i < experiment.devo.size(); ++i) {
-    if (!experiment.devo[i].schedule.contains(cycle)) continue;
-    const SpringRequest request = devo_request(experiment, i);
-    all.stress |= request.stress;
-    all.peak_force |= request.peak_force;
-    all.muscle_work |= request.muscle_work;
-    all.tension |= request.tension;
-  }
-  return all;
+Recording recording(const RecordRequest& request) {
+  return {.stress = request.stress || request.load,
+          .peak_force = request.peak_force,
+          .muscle_work = request.muscle_work,
+          .tension = request.tension};
 }
 
 Experiment read_experiment(const ExperimentSource& source) { return compose(parse_toml_file(source.file), source); }

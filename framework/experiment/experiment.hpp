@@ -82,11 +82,22 @@ struct Experiment : Settings {
 };
 
 /// Returns the records that the devo operator with this index (from 0) asks for.
-SpringRequest devo_request(const Experiment& experiment, std::size_t index);
+RecordRequest devo_request(const Experiment& experiment, std::size_t index);
+/// Returns the records that the devo operators which are applied after a cycle ask for, all together.
+RecordRequest cycle_request(const Experiment& experiment, std::int64_t cycle);
+/// The names of the numbers that a devo operator remembers about each mass and about each spring.
+struct MemoryNames {
+  std::vector<std::string> masses, springs;
+};
+/// Returns the names that a devo operator declares. Throws std::invalid_argument if it gives a name twice, or an empty
+/// one.
+MemoryNames memory_names(const Devo& op);
+/// Returns the names that the devo operator with this index (from 0) declares.
+MemoryNames memory_names(const Experiment& experiment, std::size_t index);
 /// Returns what the fitness operator with this index (from 0) asks to observe.
 Request fitness_request(const Experiment& experiment, std::size_t index);
-/// Returns what must be recorded in a cycle of development for the devo operators that are applied after this cycle.
-Recording recording(const Experiment& experiment, std::int64_t cycle);
+/// Returns what must be recorded of springs to make the requested records.
+Recording recording(const RecordRequest& request);
 
 /// Where an experiment is read from, and how.
 struct ExperimentSource {

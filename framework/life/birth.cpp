@@ -49,6 +49,11 @@ Blueprint decoded(const Experiment& experiment, const Genome& genome, CallSubjec
   });
 }
 
+Birth::Birth(const Experiment& experiment, const LifeSimulation& simulation)
+    : experiment_(experiment), simulation_(simulation) {
+  for (std::size_t i = 0; i < experiment.devo.size(); ++i) names_.push_back(memory_names(experiment, i));
+}
+
 std::vector<BuiltBody> Birth::build(std::span<const Newborn> newborns) const {
   std::vector<Blueprint> blueprints(newborns.size());
   simulation_.simulator().workers().for_each(newborns.size(), [&](std::size_t i) {
@@ -66,7 +71,8 @@ std::vector<Life> Birth::of(std::span<const Newborn> newborns, const Scenario* s
     if (built[i].failure.empty()) {
       body.base_materials = static_cast<std::uint32_t>(experiment_.context.materials.size());
       drop_unused_materials(body);
-      lives[i] = scenario != nullptr ? begin(std::move(body), scenario->scene, scenario->payload) : of(std::move(body));
+      lives[i] = scenario != nullptr ? begin(std::move(built[i]), scenario->scene, scenario->payload)
+                                     : begin(std::move(built[i]), experiment_.scene, experiment_.payload);
     } else {
       lives[i].end(Status::invalid, std::move(built[i].failure));
     }
@@ -76,27 +82,34 @@ std::vector<Life> Birth::of(std::span<const Newborn> newborns, const Scenario* s
   return lives;
 }
 
-Life Birth::of(Body body) const { return begin(std::move(body), experiment_.scene, experiment_.payload); }
+Life Birth::of(Body body) const {
+  return begin({.body = std::move(body), .failure = {}, .kept = {}}, experiment_.scene, experiment_.payload);
+}
 
-Life Birth::begin(Body body, const Scene& scene, const std::optional<Payload>& payload) const {
-  if (payload) add_payload(body, payload->share, payload->top);
+Life Birth::begin(BuiltBody built, const Scene& scene, const std::optional<Payload>& payload) const {
+  if (payload) add_payload(built.body, payload->share, payload->top);
+  State state = state_at_birth(built.body, scene);
+  Life life = life_of(std::move(built), std::move(state), scene);
+  simulation_.choose_step(life);
+  return life;
+}
+
+Life Birth::life_of(BuiltBody built, State state, const Scene& scene) const {
   Life life;
   life.scene = &scene;
-  life.living.state = state_at_birth(body, scene);
-  life.living.body = std::move(body);
-  life.living.numbers = MassNumbers(life.living.body.masses.size());
-  simulation_.choose_step(life);
+  LivingBody& living = life.living;
+  for (const MemoryNames& names : names_)
+    living.memory.push_back(memory_at_birth(names, built.mass_memory, built.body));
+  living.body = std::move(built.body);
+  living.state = std::move(state);
+  living.numbers = MassNumbers(living.body.masses.size());
   return life;
 }
 
 Life Birth::amid_life(Body body, State state) const {
   // if the body lived in another scene before, the forces of this scene may add energy
   state.start_energy = std::max(state.start_energy, total_energy(body, state, experiment_.scene));
-  Life life;
-  life.scene = &experiment_.scene;
-  life.living.body = std::move(body);
-  life.living.state = std::move(state);
-  life.living.numbers = MassNumbers(life.living.body.masses.size());
+  Life life = life_of({.body = std::move(body), .failure = {}, .kept = {}}, std::move(state), experiment_.scene);
   if (std::string reason = throw_by_ground(life.living, experiment_.scene); !reason.empty())
     life.end(Status::invalid, std::move(reason));
   else

@@ -15,12 +15,11 @@ namespace evodevo {
 Blueprint decoded(const Experiment& experiment, const Genome& genome, CallSubject subject = {});
 
 /// Makes lives from genomes or bodies. It builds each body, adds the scene's payload, puts the body on the ground and
-/// chooses its time step. The life of a body that cannot be built or simulated ends as invalid. Experiment and
-/// simulation must outlive this object and the lives.
+/// chooses its time step. Operators remember what the encoding gives the masses to remember, or 0. The life of a body
+/// that cannot be built or simulated ends as invalid. Experiment and simulation must outlive this object and the lives.
 class Birth {
  public:
-  Birth(const Experiment& experiment, const LifeSimulation& simulation)
-      : experiment_(experiment), simulation_(simulation) {}
+  Birth(const Experiment& experiment, const LifeSimulation& simulation);
 
   /// Only decodes genomes and builds bodies, without a payload, a state or a time step.
   std::vector<BuiltBody> build(std::span<const Newborn> newborns) const;
@@ -37,10 +36,13 @@ class Birth {
   double seconds() const { return clock_.seconds(); }  ///< wall-clock time spent on making bodies from genomes, s
 
  private:
-  Life begin(Body body, const Scene& scene, const std::optional<Payload>& payload) const;
+  Life begin(BuiltBody built, const Scene& scene, const std::optional<Payload>& payload) const;
+  /// Returns the life of a body in the given state, for which no time step has been chosen yet.
+  Life life_of(BuiltBody built, State state, const Scene& scene) const;
 
   const Experiment& experiment_;
   const LifeSimulation& simulation_;
+  std::vector<MemoryNames> names_;  ///< of what each devo operator remembers
   mutable BusyClock clock_;
 };
 

@@ -138,15 +138,25 @@ std::vector<Vec3> pairing_positions(const Blueprint& blueprint) {
   return blueprint.paired_at.empty() ? rest_positions(blueprint.body) : blueprint.paired_at;
 }
 
-/// Completes a body whose neighbours have been joined.
-BuiltBody finish(Body body) {
+/// Leaves only the numbers of the masses that stay.
+void keep_memory(const std::vector<std::uint32_t>& kept, std::map<std::string, std::vector<double>>& mass_memory) {
+  for (auto& [name, numbers] : mass_memory) {
+    for (std::size_t i = 0; i < kept.size(); ++i) numbers[i] = numbers[kept[i]];
+    numbers.resize(kept.size());
+  }
+}
+
+/// Completes the body of a blueprint whose neighbours have been joined.
+BuiltBody finish(Blueprint blueprint) {
+  Body& body = blueprint.body;
   leave_out_air(body);
-  if (body.springs.empty()) return {{}, "no springs", {}};
+  if (body.springs.empty()) return {{}, "no springs", {}, {}};
   std::vector<std::uint32_t> kept = keep_largest_piece(body);
-  if (!has_extent(rest_positions(body))) return {{}, "no extent", {}};
+  if (!has_extent(rest_positions(body))) return {{}, "no extent", {}, {}};
   for (Spring& spring : body.springs) spring.first_length = spring.rest_length;
   place_on_origin(body);
-  return {std::move(body), "", std::move(kept)};
+  keep_memory(kept, blueprint.mass_memory);
+  return {std::move(body), "", std::move(kept), std::move(blueprint.mass_memory)};
 }
 
 /// Returns the first spring that joins a pair of masses which an earlier spring already joins. Groups the springs by
@@ -166,6 +176,21 @@ std::optional<std::size_t> doubled_spring(const Body& body) {
     if (last == lower(spring) && (!twin || i < *twin)) twin = i;
   }
   return twin;
+}
+
+/// Throws unless the blueprint gives a finite number for each mass under every name of its memory.
+void check_memory(const Blueprint& blueprint) {
+  const std::size_t masses = blueprint.body.masses.size();
+  for (const auto& [name, numbers] : blueprint.mass_memory) {
+    const std::string place = "mass_memory[\"" + printable(name) + "\"]";
+    if (numbers.size() != masses)
+      throw std::invalid_argument(place + " has " + std::to_string(numbers.size()) + " numbers for " +
+                                  std::to_string(masses) + " masses; expected one for each");
+    for (std::size_t i = 0; i < masses; ++i)
+      if (!std::isfinite(numbers[i]))
+        throw std::invalid_argument(place + " of mass " + std::to_string(i) + " is " + to_text(numbers[i]) +
+                                    "; expected a finite number");
+  }
 }
 
 }  // namespace
@@ -214,6 +239,8 @@ void check_blueprint(const Blueprint& blueprint, const EncodingContext& context)
     require_below(materials, spring.material, "spring", i, "has material", "materials");
     require(spring.growth > 0 && std::isfinite(spring.growth), "spring", i,
             "has a growth that is not finite or not above 0");
+    require(spring.stiffness_factor > 0 && std::isfinite(body.stiffness(spring)), "spring", i,
+            "has a stiffness_factor that is not above 0, or a stiffness that is not finite");
   }
   if (const std::optional<std::size_t> twin = doubled_spring(body)) {
     const Spring& spring = body.springs[*twin];
@@ -228,12 +255,13 @@ void check_blueprint(const Blueprint& blueprint, const EncodingContext& context)
   require_one_for_each_mass(blueprint.paired_at, "positions to pair at");
   require_one_for_each_mass(blueprint.sizes, "sizes");
   require_one_for_each_mass(blueprint.origins, "origins");
+  check_memory(blueprint);
 }
 
 BuiltBody build_body(Blueprint blueprint) {
-  if (std::string failure = blueprint_failure(blueprint); !failure.empty()) return {{}, std::move(failure), {}};
+  if (std::string failure = blueprint_failure(blueprint); !failure.empty()) return {{}, std::move(failure), {}, {}};
   join(blueprint, nearest_pairs(pairing_positions(blueprint), blueprint.neighbours));
-  return finish(std::move(blueprint.body));
+  return finish(std::move(blueprint));
 }
 
 std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, Workers& workers) {
@@ -248,7 +276,7 @@ std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, Neighbour
   search.find(clouds, workers, [&](std::size_t i, std::span<const IndexPair> pairs) {
     if (!built[i].failure.empty()) return;
     join(blueprints[i], pairs);
-    built[i] = finish(std::move(blueprints[i].body));
+    built[i] = finish(std::move(blueprints[i]));
   });
   return built;
 }

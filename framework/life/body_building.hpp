@@ -1,6 +1,7 @@
 // Builds bodies that can be simulated from the blueprints of encodings.
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@ struct BuiltBody {
   Body body;
   std::string failure;              ///< empty if there is a body
   std::vector<std::uint32_t> kept;  ///< indices that the body's masses have in the blueprint, ascending
+  std::map<std::string, std::vector<double>> mass_memory = {};  ///< what the body's masses remember at birth, by name
 };
 
 /// Throws a std::invalid_argument that names the fault if a blueprint is malformed: for example, if an index is out of

@@ -62,10 +62,12 @@ class BodyReader {
     const std::size_t masses = body_.masses.size();
     std::set<std::pair<std::uint32_t, std::uint32_t>> joined;
     input_.each(root, "springs", [&](const Json& item, const std::string& at) {
-      input_.expect(item, at, {"a", "b", "rest_length", "material"});
-      const Spring spring{input_.index(item, at, "a", masses), input_.index(item, at, "b", masses),
-                          input_.number(item, at, "rest_length", 0),
-                          input_.index(item, at, "material", body_.materials.size())};
+      input_.expect(item, at, {"a", "b", "rest_length", "material", "stiffness_factor"});
+      Spring spring{input_.index(item, at, "a", masses), input_.index(item, at, "b", masses),
+                    input_.number(item, at, "rest_length", 0),
+                    input_.index(item, at, "material", body_.materials.size())};
+      if (item.contains("stiffness_factor"))
+        spring.stiffness_factor = input_.number(item, at, "stiffness_factor", std::numeric_limits<double>::min());
       if (spring.a == spring.b) input_.fail(at, "joins mass " + std::to_string(spring.a) + " to itself");
       if (!joined.insert(std::minmax(spring.a, spring.b)).second)
         input_.fail(at,
@@ -110,9 +112,12 @@ Json masses_json(const GivenBody& given) {
 
 Json springs_json(const Body& body) {
   Json springs = Json::array();
-  for (const Spring& spring : body.springs)
-    springs.push_back(
-        {{"a", spring.a}, {"b", spring.b}, {"rest_length", spring.rest_length}, {"material", spring.material}});
+  for (const Spring& spring : body.springs) {
+    Json written = {
+        {"a", spring.a}, {"b", spring.b}, {"rest_length", spring.rest_length}, {"material", spring.material}};
+    if (spring.stiffness_factor != 1) written["stiffness_factor"] = spring.stiffness_factor;
+    springs.push_back(std::move(written));
+  }
   return springs;
 }
 

@@ -1,6 +1,7 @@
 #include "life/controls.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "base/materials.hpp"
 #include "life/edits.hpp"
@@ -19,22 +20,21 @@ std::optional<Material> mass_material(const Body& body, std::int32_t index) {
   return body.materials.at(static_cast<std::size_t>(index));
 }
 
-/// Springs or masses, grouped by material, to be drawn at random without replacement.
+/// Springs or masses, grouped by kind, to be drawn at random without replacement.
 class Pools {
  public:
-  /// Makes a pool for each of `materials` materials, and one for masses without a material.
-  explicit Pools(std::size_t materials) : pools_(materials + 1) {}
+  /// Makes a pool for each of `kinds` kinds, and one for masses without a material.
+  explicit Pools(std::size_t kinds) : pools_(kinds + 1) {}
 
-  void add(std::int32_t material, std::uint32_t item) {
-    pools_[index(material)].push_back(item);
+  void add(std::int32_t kind, std::uint32_t item) {
+    pools_[index(kind)].push_back(item);
     ++left_;
   }
 
-  /// Draws an item of this material, or of any material if no item of this one is left. Returns nullopt if no item is
-  /// left.
-  std::optional<std::uint32_t> draw(std::int32_t material, Rng& rng) {
+  /// Draws an item of this kind, or of any kind if no item of this one is left. Returns nullopt if no item is left.
+  std::optional<std::uint32_t> draw(std::int32_t kind, Rng& rng) {
     if (left_ == 0) return std::nullopt;
-    const std::size_t own = index(material);
+    const std::size_t own = index(kind);
     std::vector<std::uint32_t>& pool = own < pools_.size() && !pools_[own].empty() ? pools_[own] : any(rng);
     std::swap(pool[rng.below(static_cast<std::uint32_t>(pool.size()))], pool.back());
     const std::uint32_t item = pool.back();
@@ -44,7 +44,7 @@ class Pools {
   }
 
  private:
-  static std::size_t index(std::int32_t material) { return static_cast<std::size_t>(material - no_material); }
+  static std::size_t index(std::int32_t kind) { return static_cast<std::size_t>(kind - no_material); }
 
   /// Returns the pool of an item that is drawn at random from all pools; each item is equally likely.
   std::vector<std::uint32_t>& any(Rng& rng) {
@@ -83,11 +83,12 @@ class RandomPlacement {
         context_(context),
         body_(context.body),
         numbers_(numbered(body_.materials)),
+        kinds_(kinds_of(body_)),
         surplus_(surplus),
         rng_(rng),
         mass_goes_(body_.masses.size(), 0),
         spring_goes_(body_.springs.size(), 0),
-        staying_springs_(body_.materials.size()) {}
+        staying_springs_(kinds_.size()) {}
 
   Edits edits() {
     out_.growth = amount_.growth;
@@ -111,24 +112,24 @@ class RandomPlacement {
   }
 
   void remove_springs() {
-    for (const std::int32_t material : springs_due())
-      if (const auto spring = staying_springs_.draw(material, rng_)) {
+    for (const std::int32_t kind : springs_due())
+      if (const auto spring = staying_springs_.draw(kind, rng_)) {
         out_.removed_springs.push_back(*spring);
         spring_goes_[*spring] = 1;
       }
   }
 
-  /// Returns the materials of the springs to remove in addition to those of removed masses. Updates the surplus.
+  /// Returns the kinds of the springs to remove in addition to those of removed masses. Updates the surplus.
   std::vector<std::int32_t> springs_due() {
     std::vector<std::int32_t> due;
-    for (const Material& material : amount_.springs_gone) due.push_back(index_in_body(material));
+    for (const Amount::SpringKind& kind : amount_.springs_gone) due.push_back(kind_in_body(kind));
     for (std::uint32_t s = 0; s < body_.springs.size(); ++s) {
       const Spring& spring = body_.springs[s];
-      const auto material = static_cast<std::int32_t>(spring.material);
+      const std::int32_t kind = kind_in_body({body_.materials[spring.material], spring.stiffness_factor});
       spring_goes_[s] = mass_goes_[spring.a] | mass_goes_[spring.b];
       if (spring_goes_[s] == 0)
-        staying_springs_.add(material, s);
-      else if (const auto same = std::find(due.begin(), due.end(), material); same != due.end())
+        staying_springs_.add(kind, s);
+      else if (const auto same = std::find(due.begin(), due.end(), kind); same != due.end())
         due.erase(same);
       else
         ++surplus_;
@@ -142,10 +143,11 @@ class RandomPlacement {
 
   void change_springs() {
     for (const Amount::SpringChange& change : amount_.springs_changed)
-      if (const auto spring = staying_springs_.draw(index_in_body(change.before), rng_)) {
+      if (const auto spring = staying_springs_.draw(kind_in_body(change.before), rng_)) {
         ChangedSpring& changed = out_.changed_springs.emplace_back(ChangedSpring{.spring = *spring});
-        changed.material = change.after;
-        if (change.factor) changed.rest_length = *change.factor * body_.springs[*spring].rest_length;
+        changed.material = change.material;
+        changed.stiffness_factor = change.stiffness_factor;
+        if (change.length) changed.rest_length = *change.length * body_.springs[*spring].rest_length;
       }
   }
 
@@ -177,7 +179,7 @@ class RandomPlacement {
         const auto [a, b] = std::minmax(first, second);
         if (a == b || !(norm(position(b) - position(a)) > 0) || partners.joined(a, b)) continue;
         partners.join(a, b);
-        out_.new_springs.push_back({a, b, spring.material, {}});
+        out_.new_springs.push_back({a, b, spring.kind.material, {}, spring.kind.stiffness_factor});
         break;
       }
   }
@@ -195,10 +197,31 @@ class RandomPlacement {
     return static_cast<std::int32_t>(found != numbers_.end() ? found->second : body_.materials.size());
   }
 
+  using Kinds = std::map<std::pair<std::uint32_t, double>, std::int32_t>;
+
+  /// Numbers the kinds of a body's springs, by the index of their material among numbers_ and their stiffness factor.
+  Kinds kinds_of(const Body& body) const {
+    Kinds kinds;
+    for (const Spring& spring : body.springs)
+      kinds.try_emplace({numbers_.at(body.materials[spring.material]), spring.stiffness_factor},
+                        static_cast<std::int32_t>(kinds.size()));
+    return kinds;
+  }
+
+  /// Returns the number of a kind; one past the last number if the body has no such spring.
+  std::int32_t kind_in_body(const Amount::SpringKind& kind) const {
+    const auto beyond = static_cast<std::int32_t>(kinds_.size());
+    const auto material = numbers_.find(kind.material);
+    if (material == numbers_.end()) return beyond;
+    const auto found = kinds_.find({material->second, kind.stiffness_factor});
+    return found != kinds_.end() ? found->second : beyond;
+  }
+
   const Amount& amount_;
   const DevoContext& context_;
   const Body& body_;
   MaterialNumbers numbers_;  ///< indices of the body's materials
+  Kinds kinds_;
   std::size_t& surplus_;
   Rng& rng_;
   Edits out_;
@@ -212,18 +235,20 @@ Amount amount_of(const Edits& edits, const Body& body, std::uint32_t op) {
   const std::vector<std::uint8_t> mass_goes = marked(edits.removed_masses, body.masses.size()),
                                   spring_goes = marked(edits.removed_springs, body.springs.size());
   Amount amount{.op = op, .growth = edits.growth};
+  const auto kind_of = [&](const Spring& spring) {
+    return Amount::SpringKind{body.materials[spring.material], spring.stiffness_factor};
+  };
   for (std::size_t s = 0; s < body.springs.size(); ++s) {
     const Spring& spring = body.springs[s];
-    if (spring_goes[s] || mass_goes[spring.a] || mass_goes[spring.b])
-      amount.springs_gone.push_back(body.materials[spring.material]);
+    if (spring_goes[s] || mass_goes[spring.a] || mass_goes[spring.b]) amount.springs_gone.push_back(kind_of(spring));
   }
   for (std::size_t i = 0; i < body.masses.size(); ++i)
     if (mass_goes[i]) amount.masses_gone.push_back(mass_material(body, body.masses[i].material));
   for (const ChangedSpring& change : edits.changed_springs) {
     const Spring& spring = body.springs.at(change.spring);
-    std::optional<double> factor;
-    if (change.rest_length && spring.rest_length > 0) factor = *change.rest_length / spring.rest_length;
-    amount.springs_changed.push_back({body.materials[spring.material], factor, change.material});
+    std::optional<double> length;
+    if (change.rest_length && spring.rest_length > 0) length = *change.rest_length / spring.rest_length;
+    amount.springs_changed.push_back({kind_of(spring), length, change.material, change.stiffness_factor});
   }
   for (const NewMass& mass : edits.new_masses)
     amount.masses_come.push_back({mass.mass, mass_material(body, mass.material)});
@@ -232,7 +257,7 @@ Amount amount_of(const Edits& edits, const Body& body, std::uint32_t op) {
     return static_cast<std::uint32_t>(end - body.masses.size());
   };
   for (const NewSpring& spring : edits.new_springs)
-    amount.springs_come.push_back({spring.material, new_mass(spring.a), new_mass(spring.b)});
+    amount.springs_come.push_back({{spring.material, spring.stiffness_factor}, new_mass(spring.a), new_mass(spring.b)});
   return amount;
 }
 

@@ -8,23 +8,28 @@ namespace evodevo {
 /// How much an operator changed in one application, regardless of where in the body. It has no indices of masses or
 /// springs, so it can be applied to any body.
 struct Amount {
+  struct SpringKind {
+    Material material;
+    double stiffness_factor = 1;
+  };
   struct SpringChange {
-    Material before;                ///< material before the change
-    std::optional<double> factor;   ///< new rest length relative to the old one, 1; none: it stays the same
-    std::optional<Material> after;  ///< material after the change; none: it stays the same
+    SpringKind before;
+    std::optional<double> length;            ///< new rest length relative to the old one, 1; none: it stays the same
+    std::optional<Material> material;        ///< new material; none: it stays the same
+    std::optional<double> stiffness_factor;  ///< new one; none: it stays the same
   };
   struct MassCome {
     double mass;  ///< kg
     std::optional<Material> material;
   };
   struct SpringCome {
-    Material material;
+    SpringKind kind;
     std::optional<std::uint32_t> a, b;  ///< index into `masses_come` of each end; none: any mass that stays
   };
 
   std::uint32_t op = 0;                              ///< index into the experiment's devo operators
   std::optional<Growth> growth;                      ///< growth of all springs
-  std::vector<Material> springs_gone;                ///< materials of removed springs and of springs of removed masses
+  std::vector<SpringKind> springs_gone;              ///< removed springs and springs of removed masses
   std::vector<std::optional<Material>> masses_gone;  ///< materials of removed masses; nullopt for no material
   std::vector<SpringChange> springs_changed;
   std::vector<MassCome> masses_come;
@@ -36,8 +41,9 @@ Amount amount_of(const Edits& edits, const Body& body, std::uint32_t op);
 
 /// Returns edits that make the same amount of change at random places:
 ///
-/// - For each removed or changed spring and for each removed mass of `amount`, one of the same material is drawn at
-///   random, or, if none of that material is left, one of any material. Rest lengths change by the same factors.
+/// - For each removed or changed spring of `amount`, one of the same material and stiffness factor is drawn at random,
+///   or, if none is left, one of any kind; likewise for each removed mass, one of the same material. Rest lengths
+///   change by the same factors.
 /// - A new mass is placed at random within the bounds. It has the material given in `amount`, or no material if the
 ///   body does not have that one.
 /// - A new spring joins two random masses that stay and are not joined yet. An end that is at a new mass in `amount` is

@@ -70,11 +70,14 @@ template <class Action>
 void DevelopmentLoop::run_cycles(std::span<Life> lives, bool observed, const Action& change,
                                  const Progress& progress) const {
   const DevelopmentSettings& development = experiment_.development;
+  if (observed) begin_to_count(lives);
   for (int cycle = 1; cycle <= development.cycles; ++cycle) {
-    simulate_cycle(lives, cycle, observed ? recording(experiment_, cycle) : Recording{});
+    const RecordRequest request = observed ? cycle_request(experiment_, cycle) : RecordRequest{};
+    simulate_cycle(lives, cycle, request);
     const BusyClock::Span span(clock_);
     simulation_.simulator().workers().for_each(lives.size(), [&](std::size_t i) {
       if (!lives[i].alive()) return;
+      record_masses(request, lives[i].living);
       change(i, cycle);
       if (development.reset) allow_energy(lives[i], [&] { return_to_rest(lives[i]); });
       if (lives[i].living.body.springs.empty())
@@ -86,20 +89,29 @@ void DevelopmentLoop::run_cycles(std::span<Life> lives, bool observed, const Act
   }
 }
 
-void DevelopmentLoop::simulate_cycle(std::span<Life> lives, int cycle, Recording recording) const {
+void DevelopmentLoop::begin_to_count(std::span<Life> lives) const {
+  for (std::size_t i = 0; i < experiment_.devo.size(); ++i)
+    if (devo_request(experiment_, i).age)
+      for (Life& life : lives) life.living.cycles_lived.assign(life.living.body.masses.size(), 0.0);
+}
+
+void DevelopmentLoop::simulate_cycle(std::span<Life> lives, int cycle, const RecordRequest& request) const {
   const DevelopmentSettings& development = experiment_.development;
+  const Recording of_springs = recording(request);
+  Stretch stretch = windows_.in_cycle(cycle);
+  stretch.contact = request.contact;
   const auto tally = [&](std::span<Task> tasks, std::span<Life* const> alive) {
     std::vector<Rng> random;
     for (const Life* life : alive) random.push_back(stream(*life, rng_stream::stress_tallies(cycle)));
     run_with_tallies(simulation_.simulator(), tasks, static_cast<std::uint64_t>(development.skip), random);
   };
   const auto record = [&](std::span<Task> tasks, std::span<Life* const>) {
-    simulation_.simulator().run(tasks, recording);
+    simulation_.simulator().run(tasks, of_springs);
   };
-  if (recording.stress && development.probe == Probe::skip_shift)
-    simulation_.run(lives, windows_.in_cycle(cycle), tally);
+  if (of_springs.stress && development.probe == Probe::skip_shift)
+    simulation_.run(lives, stretch, tally);
   else
-    simulation_.run(lives, windows_.in_cycle(cycle), record);
+    simulation_.run(lives, stretch, record);
 }
 
 template <class Action>
@@ -129,16 +141,21 @@ void DevelopmentLoop::apply_operators(Life& life, int cycle) const {
 }
 
 void DevelopmentLoop::shuffle_records(Life& life, int cycle) const {
-  std::vector<std::size_t> order(life.living.body.springs.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  stream(life, rng_stream::stress_shuffle(cycle)).shuffle(order);
-  for (const auto list : SpringRecords::lists) {
-    std::vector<double>& record = life.living.*list;
-    if (record.empty()) continue;
-    std::vector<double> shuffled;
-    for (const std::size_t i : order) shuffled.push_back(record[i]);
-    record = std::move(shuffled);
-  }
+  const auto shuffle = [&](const auto& lists, std::size_t items, std::uint32_t id) {
+    std::vector<std::size_t> order(items);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    stream(life, id).shuffle(order);
+    for (const auto list : lists) {
+      std::vector<double>& record = life.living.*list;
+      if (record.empty()) continue;
+      std::vector<double> shuffled;
+      for (const std::size_t i : order) shuffled.push_back(record[i]);
+      record = std::move(shuffled);
+    }
+  };
+  const Body& body = life.living.body;
+  shuffle(SpringRecords::lists, body.springs.size(), rng_stream::stress_shuffle(cycle));
+  shuffle(MassRecords::lists, body.masses.size(), rng_stream::mass_shuffle(cycle));
 }
 
 void DevelopmentLoop::apply_operator(Life& life, int cycle, std::size_t index) const {
@@ -147,11 +164,15 @@ void DevelopmentLoop::apply_operator(Life& life, int cycle, std::size_t index) c
     return part_of(*life.newborn.genome, experiment_.layout, {section}, experiment_.own_layouts[section]);
   };
   const Genome genome = genes_of(0), own = own_section ? genes_of(*own_section) : no_genes;
-  const DevoContext context = context_of(life, cycle, schedule, devo_request(experiment_, index), genome, own);
+  OperatorMemory& memory = life.living.memory.at(index);
+  DevoContext context = context_of(life, cycle, schedule, devo_request(experiment_, index), genome, own);
+  context.mass_memory = memory.masses.view("mass");
+  context.spring_memory = memory.springs.view("spring");
   Rng rng = stream(life, rng_stream::devo(index, cycle));
   const auto develop = [&] {
     Edits edits;
     op->develop(context, edits, rng);
+    remember(edits, memory_names(*op), life.living.body, memory);
     make(change_by(edits, static_cast<std::uint32_t>(index), context), life);
   };
   call_operator(experiment_.call_of(Devo::kind, index, {.individual = life.newborn.id, .cycle = cycle}), develop);
@@ -171,7 +192,7 @@ Rng DevelopmentLoop::stream(const Life& life, std::uint32_t id) const {
 }
 
 DevoContext DevelopmentLoop::context_of(const Life& life, int cycle, const Schedule& schedule,
-                                        const SpringRequest& request, const Genome& genome, const Genome& own) const {
+                                        const RecordRequest& request, const Genome& genome, const Genome& own) const {
   const DevelopmentSettings& development = experiment_.development;
   const LivingBody& living = life.living;
   DevoContext context{.body = living.body,

@@ -15,7 +15,7 @@ namespace evodevo {
 /// Develops lives from birth to maturity, and records the changes of each. Every cycle has these steps:
 ///
 ///   1. simulate the bodies, and record what the operators ask for
-///   2. call the operators one after the other; resolve, apply and record the edits of each
+///   2. call the operators one after the other; keep what each remembers; resolve, apply and record its edits
 ///   3. remove the pieces that have been torn off; with DevelopmentSettings::reset, return bodies to rest
 ///   4. choose a time step for each changed body
 ///
@@ -41,8 +41,11 @@ class DevelopmentLoop {
   /// is recorded in each cycle.
   template <class Action>
   void run_cycles(std::span<Life> lives, bool observed, const Action& change, const Progress& progress) const;
-  /// Simulates a cycle and records what `recording` asks for, with stress measured by the experiment's probe.
-  void simulate_cycle(std::span<Life> lives, int cycle, Recording recording) const;
+  /// If an operator asks for the ages of masses, lets the host count them from birth.
+  void begin_to_count(std::span<Life> lives) const;
+  /// Simulates a cycle and records what is requested of springs, with stress measured by the experiment's probe, and
+  /// the contact of masses.
+  void simulate_cycle(std::span<Life> lives, int cycle, const RecordRequest& request) const;
   /// For the control random-places: lets a copy of each life without a record develop by the operators, and returns the
   /// changes to which the life itself will be yoked.
   std::vector<std::optional<Yoke>> yokes_of(std::span<const Life> lives) const;
@@ -57,13 +60,14 @@ class DevelopmentLoop {
 
   // ---- helper functions ----
   /// Returns the context that an operator sees after a cycle.
-  DevoContext context_of(const Life& life, int cycle, const Schedule& schedule, const SpringRequest& request,
+  DevoContext context_of(const Life& life, int cycle, const Schedule& schedule, const RecordRequest& request,
                          const Genome& genome = no_genes, const Genome& own = no_genes) const;
   /// Applies a change and records it.
   void make(Change change, Life& life) const;
   /// Removes the pieces of the body that development has torn off.
   void shed_loose_pieces(Life& life, int cycle) const;
-  /// Shuffles the recorded values among the springs. All values of one spring stay together.
+  /// Shuffles the recorded values among the springs, and among the masses. All values of one spring or mass stay
+  /// together.
   void shuffle_records(Life& life, int cycle) const;
   /// Calls `action`, which changes a body, and raises the energy that the guard allows by the energy that the change
   /// adds.

@@ -66,12 +66,11 @@ std::optional<double> forceless_length(const NewSpring& spring, const Edits& edi
 /// Applies edits to a body once.
 class Editor {
  public:
-  /// `state` and `records` are those of the body, or nullptr if they are not needed.
-  Editor(const Edits& edits, Body& body, State* state, SpringRecords* records)
+  /// `living` is the life of the body, or nullptr if the body stands alone.
+  Editor(const Edits& edits, Body& body, LivingBody* living)
       : edits_(edits),
         body_(body),
-        state_(state),
-        records_(records),
+        living_(living),
         old_materials_(body.materials.size()),
         materials_(body.materials),
         spring_gone_(marked(edits.removed_springs, body.springs.size(), "spring")),
@@ -125,6 +124,13 @@ class Editor {
       refuse(what + " by a spring whose rest length is " + to_text(length) + "; expected a finite value, at least 0");
   }
 
+  static void check_stiffness(const std::string& what, const Material& material, double factor) {
+    const double stiffness = factor * material.stiffness;
+    if (!(stiffness > 0) || !std::isfinite(stiffness))
+      refuse(what + " by a spring with " + to_text(factor) + " times the stiffness of its material, " +
+             to_text(material.stiffness) + " N/m; expected a finite stiffness above 0");
+  }
+
   static void check_growth(const Growth& growth) {
     // written so that NaN fails
     const auto on_the_way = [&](double gone) { return gone >= 0 && gone <= growth.whole; };
@@ -159,7 +165,9 @@ class Editor {
       if (change.material) check_material(what, *change.material);
       if (change.rest_length) check_rest_length(what, *change.rest_length);
       spring.rest_length = change.rest_length.value_or(spring.rest_length);
+      spring.stiffness_factor = change.stiffness_factor.value_or(spring.stiffness_factor);
       if (change.material) spring.material = materials_.index(*change.material);
+      check_stiffness(what, body.materials[spring.material], spring.stiffness_factor);
     }
   }
 
@@ -176,6 +184,7 @@ class Editor {
       check_end(spring, spring.b);
       if (spring.a == spring.b) refuse(pair_text(spring) + ", which are the same mass");
       check_material(pair_text(spring), spring.material);
+      check_stiffness(pair_text(spring), spring.material, spring.stiffness_factor);
       check_rest_length(pair_text(spring), spring.rest_length.value());
     }
   }
@@ -183,6 +192,7 @@ class Editor {
   void move_masses() {
     std::vector<Mass> masses;
     std::vector<Vec3> positions, velocities;
+    std::vector<std::uint32_t> staying;
     const auto add = [&](const Mass& mass, Vec3 position, Vec3 velocity) {
       new_index_.push_back(static_cast<std::uint32_t>(masses.size()));
       masses.push_back(mass);
@@ -190,10 +200,13 @@ class Editor {
       velocities.push_back(velocity);
     };
     for (std::size_t i = 0; i < old_masses(); ++i) {
-      if (mass_gone_[i])
+      if (mass_gone_[i]) {
         new_index_.push_back(0);  // never used: springs to it are removed, and check_end() refuses new ones
-      else if (state_ != nullptr)
-        add(body_.masses[i], state_->position[i], state_->velocity[i]);
+        continue;
+      }
+      staying.push_back(static_cast<std::uint32_t>(i));
+      if (living_ != nullptr)
+        add(body_.masses[i], living_->state.position[i], living_->state.velocity[i]);
       else
         add(body_.masses[i], {}, {});
     }
@@ -203,9 +216,24 @@ class Editor {
     }
     pass_payload_on(masses);
     body_.masses = std::move(masses);
-    if (state_ == nullptr) return;
-    state_->position = std::move(positions);
-    state_->velocity = std::move(velocities);
+    if (living_ == nullptr) return;
+    living_->state.position = std::move(positions);
+    living_->state.velocity = std::move(velocities);
+    move_numbers_of_masses(*living_, staying);
+  }
+
+  /// Lets everything that is known about masses follow the edits.
+  void move_numbers_of_masses(LivingBody& living, const std::vector<std::uint32_t>& staying) const {
+    const auto move = [&](std::vector<double>& list, std::size_t width) {
+      follow(list, width, old_masses(), staying, edits_.new_masses.size());
+    };
+    const auto move_if_there = [&](std::vector<double>& list) {
+      if (list.size() == old_masses()) move(list, 1);
+    };
+    for (const auto list : MassRecords::lists) move_if_there(living.*list);
+    move_if_there(living.contact_times);
+    move_if_there(living.cycles_lived);
+    for (OperatorMemory& memory : living.memory) move(memory.masses.values, memory.masses.width);
   }
 
   void check_new_mass(const NewMass& mass) const {
@@ -240,15 +268,21 @@ class Editor {
     staying.reserve(springs.size());
     for (std::uint32_t i = 0; i < springs.size(); ++i)
       if (!spring_gone_[i] && !goes(springs[i])) staying.push_back(i);
-    if (records_ != nullptr)
-      for (const auto list : SpringRecords::lists)
-        if ((records_->*list).size() == springs.size()) move_record(records_->*list, staying);
+    if (living_ != nullptr) move_numbers_of_springs(*living_, staying);
     for (std::size_t i = 0; i < staying.size(); ++i) {
       springs[i] = springs[staying[i]];
       springs[i].a = new_index_[springs[i].a];
       springs[i].b = new_index_[springs[i].b];
     }
     springs.resize(staying.size());
+  }
+
+  /// Lets everything that is known about springs follow the edits.
+  void move_numbers_of_springs(LivingBody& living, const std::vector<std::uint32_t>& staying) const {
+    for (const auto list : SpringRecords::lists)
+      if ((living.*list).size() == spring_gone_.size()) move_record(living.*list, staying);
+    for (OperatorMemory& memory : living.memory)
+      follow(memory.springs.values, memory.springs.width, spring_gone_.size(), staying, edits_.new_springs.size());
   }
 
   /// Keeps the values of the springs that stay, and adds the mean of these values for each new spring.
@@ -286,24 +320,17 @@ class Editor {
 
   void add_spring(const NewSpring& spring) {
     body_.springs.push_back({new_index_[spring.a], new_index_[spring.b], *spring.rest_length,
-                             materials_.index(spring.material), 1, *spring.rest_length});
+                             materials_.index(spring.material), 1, *spring.rest_length, spring.stiffness_factor});
   }
 
   const Edits& edits_;
   Body& body_;
-  State* state_;
-  SpringRecords* records_;
+  LivingBody* living_;
   std::size_t old_materials_;  ///< number of materials before the edits
   MaterialList materials_;
   std::vector<std::uint8_t> spring_gone_, mass_gone_;
   std::vector<std::uint32_t> new_index_;  ///< new index of every old and new mass
 };
-
-/// Erases elements, given by their indices in ascending order.
-void erase_at(std::vector<double>& list, const std::vector<std::uint32_t>& indices) {
-  for (auto index = indices.rbegin(); index != indices.rend(); ++index)
-    list.erase(list.begin() + static_cast<std::ptrdiff_t>(*index));
-}
 
 }  // namespace
 
@@ -319,23 +346,38 @@ Edits resolved(const Edits& edits, const DevoContext& context) {
 void apply(const Edits& resolved, LivingBody& living) {
   if (resolved.empty()) return;
   const bool is_numbered = living.numbers.numbers().size() == living.body.masses.size();
-  Editor(resolved, living.body, &living.state, &living).apply();
+  Editor(resolved, living.body, &living).apply();
   if (is_numbered) living.numbers.apply(resolved);
   living.version = nullptr;
-  if (living.contact_times.empty()) return;
-  erase_at(living.contact_times, resolved.removed_masses);
-  living.contact_times.resize(living.body.masses.size(), 0);
 }
 
 void apply(const Edits& resolved, Body& body) {
-  if (!resolved.empty()) Editor(resolved, body, nullptr, nullptr).apply();
+  if (!resolved.empty()) Editor(resolved, body, nullptr).apply();
 }
 
-void show_records(const SpringRecords& records, const SpringRequest& request, DevoContext& context) {
+void record_masses(const RecordRequest& request, LivingBody& living) {
+  const std::vector<Spring>& springs = living.body.springs;
+  const auto sum = [&](bool is_requested, const auto& of_spring) {
+    std::vector<double> sums(is_requested ? living.body.masses.size() : 0, 0.0);
+    for (std::size_t i = 0; is_requested && i < springs.size(); ++i)
+      for (const std::uint32_t end : {springs[i].a, springs[i].b}) sums[end] += of_spring(i);
+    return sums;
+  };
+  for (double& cycles : living.cycles_lived) ++cycles;
+  living.age = request.age ? living.cycles_lived : std::vector<double>();
+  living.degree = sum(request.degree, [](std::size_t) { return 1; });
+  living.load = sum(request.load, [&](std::size_t spring) { return living.stress[spring]; });
+}
+
+void show_records(const LivingBody& records, const RecordRequest& request, DevoContext& context) {
   if (request.stress) context.stress.show(records.stress);
   if (request.peak_force) context.peak_force.show(records.peak_force);
   if (request.muscle_work) context.muscle_work.show(records.muscle_work);
   if (request.tension) context.tension.show(records.tension);
+  if (request.contact) context.contact.show(records.contact);
+  if (request.age) context.age.show(records.age);
+  if (request.degree) context.degree.show(records.degree);
+  if (request.load) context.load.show(records.load);
 }
 
 }  // namespace evodevo

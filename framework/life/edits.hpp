@@ -7,17 +7,21 @@
 #include "core/simulator.hpp"
 #include "evodevo/devo.hpp"
 #include "evodevo/samples.hpp"
+#include "life/experience.hpp"
 #include "life/life_record.hpp"
 
 namespace evodevo {
 
-/// A body in the middle of its life, with its spring records of the last cycle.
-struct LivingBody : SpringRecords {
+/// A body in the middle of its life, with its records of the last cycle.
+struct LivingBody : SpringRecords, MassRecords {
   Body body;
   State state;
   /// [masses] time in which each mass has touched the ground, as far as it was counted, s; empty if it was not
   std::vector<double> contact_times = {};
-  MassNumbers numbers = MassNumbers(0);  ///< of the masses; empty if nobody gave them numbers
+  /// [masses] number of cycles that each mass has lived through; empty if no operator asks for it
+  std::vector<double> cycles_lived = {};
+  std::vector<OperatorMemory> memory = {};  ///< of each of the experiment's devo operators
+  MassNumbers numbers = MassNumbers(0);     ///< of the masses; empty if nobody gave them numbers
   /// The body as samples show it, until it changes; null if no sample shows it.
   std::shared_ptr<const BodyVersion> version = nullptr;
   double longest_dt = 0;                                     ///< LongestStep::dt, s
@@ -30,16 +34,21 @@ struct LivingBody : SpringRecords {
 Edits resolved(const Edits& edits, const DevoContext& context);
 
 /// Applies resolved edits, all of them together. New springs get the mean records of the springs that stay; new masses
-/// get the next numbers, and have not touched the ground. Materials that are no longer used are removed, except the
+/// get the next numbers, and their records are 0. What operators remember follows the edits, and is 0 for new masses
+/// and springs unless remember() has given more. Materials that are no longer used are removed, except the
 /// base materials. Throws a std::invalid_argument that names the edit if growth goes beyond its end, an index is out of
 /// range, a spring joins a mass to itself or to a removed mass, a pair of masses is joined twice, a spring is changed
 /// twice or is both changed and removed, a spring is of air, a number is not finite, or there are more or fewer causes
 /// than edits.
 void apply(const Edits& resolved, LivingBody& living);
-/// Does the same for a body alone, without its state and records.
+/// Does the same for a body alone, without its state, its records and what operators remember.
 void apply(const Edits& resolved, Body& body);
 
-/// Makes only those spring records visible in an operator's context that the operator asked for.
-void show_records(const SpringRecords& records, const SpringRequest& request, DevoContext& context);
+/// Makes the records of the masses that `request` asks for, at the end of a cycle. Contact is recorded during the
+/// cycle.
+void record_masses(const RecordRequest& request, LivingBody& living);
+
+/// Makes only those records visible in an operator's context that the operator asked for.
+void show_records(const LivingBody& records, const RecordRequest& request, DevoContext& context);
 
 }  // namespace evodevo

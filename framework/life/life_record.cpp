@@ -43,6 +43,8 @@ class Writer {
       whole(spring.a), whole(spring.b);
       material(spring.material);
       raw(spring.rest_length.value());
+      whole(spring.stiffness_factor == 1 ? 0 : 1);
+      if (spring.stiffness_factor != 1) raw(spring.stiffness_factor);
     }
     causes_and_growth(change);
   }
@@ -79,9 +81,10 @@ class Writer {
 
   void changed(const ChangedSpring& spring) {
     whole(spring.spring);
-    whole((spring.rest_length ? 1u : 0u) | (spring.material ? 2u : 0u));
+    whole((spring.rest_length ? 1u : 0u) | (spring.material ? 2u : 0u) | (spring.stiffness_factor ? 4u : 0u));
     if (spring.rest_length) raw(*spring.rest_length);
     if (spring.material) material(*spring.material);
+    if (spring.stiffness_factor) raw(*spring.stiffness_factor);
   }
 
   /// Writes the number of a material; at its first occurrence, also the material itself.
@@ -126,6 +129,7 @@ class Reader {
       spring.a = index(), spring.b = index();
       spring.material = material();
       spring.rest_length = raw<double>();
+      if (index() != 0) spring.stiffness_factor = raw<double>();
     }
     read_causes_and_growth(change);
     return change;
@@ -180,6 +184,7 @@ class Reader {
     const std::uint32_t parts = index();
     if ((parts & 1) != 0) spring.rest_length = raw<double>();
     if ((parts & 2) != 0) spring.material = material();
+    if ((parts & 4) != 0) spring.stiffness_factor = raw<double>();
     return spring;
   }
 

@@ -1,5 +1,6 @@
 #include "life/life_simulation.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "experiment/time_steps.hpp"
@@ -38,12 +39,23 @@ StoredSample stored(Sample& sample, const Channels& channels, double dt, Life& l
   return kept;
 }
 
+/// Returns the share of a task's steps after which each mass touched the ground.
+std::vector<double> contact_shares(const Sample& end, std::uint64_t steps) {
+  std::vector<double> shares;
+  for (const std::uint32_t contacts : end.contacts)
+    shares.push_back(static_cast<double>(contacts) / static_cast<double>(std::max<std::uint64_t>(1, steps)));
+  return shares;
+}
+
 /// Moves the samples of a task into its life. If anything is counted, the last sample is only there to count on.
-void keep_samples(Task& task, const Channels& counted, Life& life) {
-  const std::size_t asked = task.samples.size() - (counted.any() ? 1 : 0);
+void keep_samples(Task& task, const Stretch& stretch, Life& life) {
+  const Channels& counted = stretch.counted;
+  const std::size_t asked = task.samples.size() - (stretch.at_end().any() ? 1 : 0);
   for (std::size_t i = 0; i < asked; ++i)
     life.samples.push_back(stored(task.samples[i], task.sampled_at[i].channels, task.dt, life));
+  if (stretch.contact) life.living.contact = contact_shares(task.samples.back(), task.steps);
   if (!counted.any()) return;
+  if (!counted.contacts) task.samples.back().contacts.clear();
   StoredSample end = stored(task.samples.back(), {}, task.dt, life);
   life.contact_time = end.contact_time;
   life.work = end.work;
@@ -72,7 +84,7 @@ Task LifeSimulation::task_for(Life& life, const Stretch& stretch) const {
   task.preparation = std::move(life.living.preparation);
   for (const auto& [time, channels] : stretch.samples)
     task.sampled_at.push_back({std::min(pace.steps_to(time), pace.steps), channels});
-  if (stretch.counted.any()) task.sampled_at.push_back({pace.steps, stretch.counted});
+  if (stretch.at_end().any()) task.sampled_at.push_back({pace.steps, stretch.at_end()});
   return task;
 }
 
@@ -91,9 +103,10 @@ void LifeSimulation::run(std::span<Life> lives, const Stretch& stretch, const Mo
     Task& task = tasks[i];
     life.result.spring_evaluations += task.spring_evaluations;
     static_cast<SpringRecords&>(life.living) = std::move(static_cast<SpringRecords&>(task));
+    static_cast<MassRecords&>(life.living) = {};
     life.living.preparation = std::move(task.preparation);
     if (task.status == Status::ok)
-      keep_samples(task, stretch.counted, life);
+      keep_samples(task, stretch, life);
     else
       life.end(task.status, std::move(task.reason), task.ended_at);
   });

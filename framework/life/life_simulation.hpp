@@ -26,6 +26,10 @@ struct Stretch {
   bool ends_exactly = true;
   std::span<const SampleTime> samples = {};  ///< in ascending order of their times
   Channels counted = {};  ///< the channels that count from birth and are read in this stretch or later
+  bool contact = false;   ///< whether MassRecords::contact is recorded
+
+  /// What is sampled at its end, in addition to `samples`.
+  Channels at_end() const { return counted | Channels{.contacts = contact}; }
 };
 
 /// Simulates the bodies of lives for a given time, and stores in each life its new state, what was recorded and the

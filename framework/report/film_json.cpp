@@ -130,19 +130,28 @@ double most_stress(const Film& film) {
   return most;
 }
 
-/// The materials of all bodies of a film, those of the experiment first.
+/// The materials of all masses and springs of a film, those of the experiment first. A spring whose stiffness differs
+/// from that of its material has a material of its own here, with a stiffness in steps of 2^(1/16), which are too small
+/// for the eye.
 class FilmMaterials {
  public:
   explicit FilmMaterials(const Film& film) : materials_(base_materials(film.front().body)) {
     MaterialList list(materials_);
-    for (const Shot& shot : film)
-      for (std::vector<std::int64_t>& positions = positions_.emplace_back();
-           const Material& material : shot.body.materials)
-        positions.push_back(list.index(material));
+    for (const Shot& shot : film) {
+      Positions& positions = positions_.emplace_back();
+      for (const Material& material : shot.body.materials) positions.of_materials.push_back(list.index(material));
+      for (const Spring& spring : shot.body.springs)
+        positions.of_springs.push_back(list.index(seen(shot.body, spring)));
+    }
   }
 
   /// Returns the film's index of a material in the body of a shot.
-  std::int64_t position(std::size_t shot, std::size_t material) const { return positions_[shot][material]; }
+  std::int64_t of_material(std::size_t shot, std::size_t material) const {
+    return positions_[shot].of_materials[material];
+  }
+
+  /// Returns the film's index of the material of a spring in the body of a shot.
+  std::int64_t of_spring(std::size_t shot, std::size_t spring) const { return positions_[shot].of_springs[spring]; }
 
   Json json() const {
     Json materials = Json::array();
@@ -153,12 +162,23 @@ class FilmMaterials {
   }
 
  private:
+  struct Positions {  // indices in the film
+    std::vector<std::int64_t> of_materials, of_springs;
+  };
+
+  static Material seen(const Body& body, const Spring& spring) {
+    Material material = body.materials[spring.material];
+    if (spring.stiffness_factor != 1)
+      material.stiffness *= std::exp2(std::round(16 * std::log2(spring.stiffness_factor)) / 16);
+    return material;
+  }
+
   static std::vector<Material> base_materials(const Body& body) {
     return {body.materials.begin(), body.materials.begin() + body.base_materials};
   }
 
   std::vector<Material> materials_;
-  std::vector<std::vector<std::int64_t>> positions_;  ///< indices in the film, by shot and by material of its body
+  std::vector<Positions> positions_;  ///< by shot
 };
 
 /// Returns the materials of all masses, in the order of their numbers; -1 for a mass without a material.
@@ -167,7 +187,7 @@ std::string packed_mass_materials(const Film& film, const FilmMaterials& materia
   for (std::size_t s = 0; s < film.size(); ++s)
     for (std::size_t i = 0; i < film[s].numbers.size(); ++i)
       if (const std::int32_t material = film[s].body.masses[i].material; material != no_material)
-        of_masses[film[s].numbers[i]] = materials.position(s, static_cast<std::size_t>(material));
+        of_masses[film[s].numbers[i]] = materials.of_material(s, static_cast<std::size_t>(material));
   return packed(of_masses);
 }
 
@@ -258,8 +278,7 @@ class FilmWriter {
 
   std::vector<std::int64_t> materials_of(std::size_t shot, std::span<const std::size_t> springs) const {
     std::vector<std::int64_t> materials;
-    for (const std::size_t s : springs)
-      materials.push_back(materials_.position(shot, film_[shot].body.springs[s].material));
+    for (const std::size_t s : springs) materials.push_back(materials_.of_spring(shot, s));
     return materials;
   }
 

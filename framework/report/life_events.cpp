@@ -31,6 +31,7 @@ class EventLog {
       event.cause = cause_at(edits.causes, &Causes::changed_springs, i);
       event.rest_length = spring.rest_length;
       event.material = spring.material;
+      event.stiffness = stiffness_of(spring);
     }
     for (std::size_t i = 0; i < edits.new_masses.size(); ++i) {
       Event& event = add_event(change, "come", {masses_.add()});
@@ -43,6 +44,7 @@ class EventLog {
       event.cause = cause_at(edits.causes, &Causes::new_springs, i);
       event.rest_length = spring.rest_length;
       event.material = spring.material;
+      if (spring.stiffness_factor != 1) event.stiffness = spring.stiffness_factor * spring.material.stiffness;
     }
     masses_.remove(edits.removed_masses);
     apply(change.edits, body_);
@@ -73,6 +75,14 @@ class EventLog {
     for (const auto& [spring, cause] : gone) add_event(change, "gone", ends(spring)).cause = cause;
   }
 
+  /// Returns the stiffness (N/m) of a spring to which a change gives a factor or, with a factor, a new material.
+  std::optional<double> stiffness_of(const ChangedSpring& change) const {
+    const Spring& spring = body_.springs.at(change.spring);
+    const double factor = change.stiffness_factor.value_or(spring.stiffness_factor);
+    if (!change.stiffness_factor && (!change.material || factor == 1)) return std::nullopt;
+    return factor * change.material.value_or(body_.materials.at(spring.material)).stiffness;
+  }
+
   std::vector<std::uint32_t> ends(std::uint32_t index) const {
     const Spring& spring = body_.springs.at(index);
     return {number(spring.a), number(spring.b)};
@@ -99,7 +109,8 @@ std::vector<Narrated> narrated_operators(const Experiment& experiment) {
   for (const OperatorUse& use : experiment.uses) {
     if (use.kind != Devo::kind) continue;
     const std::size_t index = operators.size();
-    const bool tallied = experiment.development.probe == Probe::skip_shift && devo_request(experiment, index).stress;
+    const RecordRequest request = devo_request(experiment, index);
+    const bool tallied = experiment.development.probe == Probe::skip_shift && (request.stress || request.load);
     Narrated& narrated = operators.emplace_back(
         Narrated{.name = use.name, .experiment = &experiment, .index = index, .is_tallied = tallied});
     for (Narrated& other : std::span(operators).first(operators.size() - 1))

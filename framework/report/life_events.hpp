@@ -41,6 +41,7 @@ struct Event {
   std::optional<Vec3> position;       ///< position of a new mass, m
   std::optional<double> rest_length;  ///< rest length of a new spring, or the new one of a changed spring, m
   std::optional<Material> material;   ///< material of a new spring, or the new one of a changed spring
+  std::optional<double> stiffness;    ///< new stiffness of a spring that does not have that of its material, N/m
 
   bool is_spring() const { return masses.size() == 2; }
 };

@@ -154,7 +154,7 @@ Json random_robot(const Experiment& experiment, const Individual& individual, st
   robot["status"] = name(built.failure.empty() ? Status::ok : Status::invalid);
   Film film;
   if (built.failure.empty()) film = mapping_film(blueprint, std::move(built));
-  std::vector<Title> titles = {{"ball to cube"}, {"body"}};
+  std::vector<Title> titles = {{"mapping"}, {"body"}};
   if (film.size() == 1) titles.erase(titles.begin());
   robot["film"] = film_json(film, titles, budget);
   return robot;

@@ -24,8 +24,7 @@ double total_energy(const Body& body, const State& state, const Scene& scene) {
   }
   for (const Spring& spring : body.springs) {
     const auto s = physics::separation(triple(state.position[spring.a]), triple(state.position[spring.b]));
-    energy += physics::elastic_energy(s, body.materials[spring.material].stiffness,
-                                      spring.rest_length * relative_length[spring.material]);
+    energy += physics::elastic_energy(s, body.stiffness(spring), spring.rest_length * relative_length[spring.material]);
   }
   return energy;
 }

@@ -29,7 +29,7 @@ double drive_of(const Body& body) {
   for (const Spring& spring : body.springs) {
     const Material& material = body.materials[spring.material];
     const double rate = 2 * 3.14159265358979323846 * material.frequency * material.amplitude * spring.rest_length;
-    sum += material.stiffness * rate * rate;
+    sum += body.stiffness(spring) * rate * rate;
   }
   return std::sqrt(sum / 2);
 }
@@ -40,7 +40,7 @@ double strain_allowance(const Body& body) {
   for (const Spring& spring : body.springs) {
     const Material& material = body.materials[spring.material];
     const double stroke = 2 * material.amplitude * spring.rest_length;
-    sum += 0.5 * material.stiffness * stroke * stroke;
+    sum += 0.5 * body.stiffness(spring) * stroke * stroke;
   }
   return sum;
 }
@@ -52,7 +52,7 @@ double rounding_allowance(const Body& body, const State& state, Precision precis
   double sum = 0;
   for (const Spring& spring : body.springs) {
     const double noise = rounding * (spring.rest_length + positions);
-    sum += 0.5 * body.materials[spring.material].stiffness * noise * noise;
+    sum += 0.5 * body.stiffness(spring) * noise * noise;
   }
   return sum;
 }

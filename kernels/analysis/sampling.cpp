@@ -22,7 +22,7 @@ std::vector<float> forces_of(const Body& body, const State& state, double time) 
     const double distance = norm(state.position[spring.b] - state.position[spring.a]);
     const double length = spring.rest_length * relative_lengths[spring.material];
     // springs between masses at the same place exert no force
-    const double force = distance > 0 ? body.materials[spring.material].stiffness * (distance - length) : 0;
+    const double force = distance > 0 ? body.stiffness(spring) * (distance - length) : 0;
     forces.push_back(static_cast<float>(force));
   }
   return forces;

@@ -20,7 +20,7 @@ class StiffnessMatrix {
     for (const Spring& spring : body.springs) {
       const Vec3 d = positions[spring.b] - positions[spring.a];
       const double length = norm(d);
-      const double stiffness = body.materials[spring.material].stiffness;
+      const double stiffness = body.stiffness(spring);
       const Eigen::Vector3d direction =
           Eigen::Vector3d(d.x, d.y, d.z).normalized();  // zero for a spring of zero length
       links_.push_back({spring.a, spring.b, stiffness, length != 0, direction});
@@ -65,7 +65,7 @@ double eigenvalue_bound(const Body& body, std::span<const Vec3> positions) {
   std::vector<Eigen::Matrix3d> block(body.masses.size(), Eigen::Matrix3d::Zero());
   for (const Spring& spring : body.springs) {
     const Vec3 d = positions[spring.b] - positions[spring.a];
-    const double stiffness = body.materials[spring.material].stiffness, square = dot(d, d);
+    const double stiffness = body.stiffness(spring), square = dot(d, d);
     const Eigen::Vector3d e(d.x, d.y, d.z);
     const Eigen::Matrix3d k = square != 0 ? (stiffness / square * e * e.transpose()).eval()
                                           : (stiffness * Eigen::Matrix3d::Identity()).eval();
@@ -150,7 +150,7 @@ double largest_eigenvalue(const StiffnessMatrix& matrix, double enough) {
 double disc_bound(const Body& body, std::span<const Vec3> positions) {
   std::vector<double> sum(body.masses.size());
   for (const Spring& spring : body.springs) {
-    const double stiffness = body.materials[spring.material].stiffness;
+    const double stiffness = body.stiffness(spring);
     sum[spring.a] += stiffness;
     sum[spring.b] += stiffness;
   }

@@ -14,7 +14,7 @@ namespace {
 double force(const Body& body, const State& state, const Spring& spring) {
   const Material& material = body.materials[spring.material];
   const double distance = norm(state.position[spring.b] - state.position[spring.a]);
-  return std::abs(material.stiffness * (distance - spring.rest_length * material.relative_length(state.time)));
+  return std::abs(body.stiffness(spring) * (distance - spring.rest_length * material.relative_length(state.time)));
 }
 
 void refuse(Task& task, std::uint64_t skip) {

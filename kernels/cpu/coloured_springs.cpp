@@ -42,7 +42,7 @@ ColouredSprings<T>::ColouredSprings(const Body& body, const Layout<T>& layout) {
       a[at] = static_cast<std::uint32_t>(position_stride * index_of[spring.a]);
       b[at] = static_cast<std::uint32_t>(position_stride * index_of[spring.b]);
       slot[at] = layout.slot_of[i];
-      stiffness[at] = static_cast<T>(body.materials[spring.material].stiffness);
+      stiffness[at] = static_cast<T>(body.stiffness(spring));
       rest_length[at] = static_cast<T>(spring.rest_length);
       inverse_mass_a[at] = static_cast<T>(inverse(body.masses[spring.a].mass));
       inverse_mass_b[at] = static_cast<T>(inverse(body.masses[spring.b].mass));

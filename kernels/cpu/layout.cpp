@@ -65,7 +65,7 @@ Layout<T>::Layout(const Body& body, std::size_t lanes_)
       const Spring& spring = body.springs[i];
       const std::uint32_t other = spring.a == mass_at[index] ? spring.b : spring.a;
       neighbour[slot] = static_cast<std::uint32_t>(position_stride * index_of[other]);
-      stiffness[slot] = static_cast<T>(body.materials[spring.material].stiffness);
+      stiffness[slot] = static_cast<T>(body.stiffness(spring));
       rest_length[slot] = static_cast<T>(spring.rest_length);
       material[slot] = static_cast<Index<T>>(spring.material);
       slot_of[i] = static_cast<std::uint32_t>(slot);

@@ -7,6 +7,7 @@
 #include "analysis/computed_materials.hpp"
 #include "analysis/guard.hpp"
 #include "analysis/sampling.hpp"
+#include "analysis/stiffness_factors.hpp"
 #include "cpu/coloured_springs.hpp"
 
 namespace evodevo::cpu {
@@ -214,8 +215,7 @@ template <class T>
 class Sampler {
  public:
   /// `body` is the task's body with the materials that are simulated.
-  Sampler(const Body& body, Task& task)
-      : body_(body), task_(task), state_{task.state->position, task.state->velocity} {
+  Sampler(const Body& body, Task& task) : body_(body), task_(task), state_{task.state->position, task.state->velocity} {
     for (const SamplePoint& point : task.sampled_at) requested_ = requested_ | point.channels;
   }
 
@@ -238,8 +238,7 @@ class Sampler {
       if (channels.work) sample.work = task_.work + task_.dt * moving.uncollected_power();
       if (!channels.contact && !channels.contacts) continue;
       std::vector<std::uint32_t> contacts = moving.contacts();
-      if (channels.contact)
-        sample.contact_steps = std::accumulate(contacts.begin(), contacts.end(), std::uint64_t{0});
+      if (channels.contact) sample.contact_steps = std::accumulate(contacts.begin(), contacts.end(), std::uint64_t{0});
       if (channels.contacts) sample.contacts = std::move(contacts);
     }
   }
@@ -268,8 +267,9 @@ template <class T>
 void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels<T>& kernels, Recording recording) {
   Body coded;  // the body with rounded materials, if materials are computed
   if (stepping.materials == Materials::computed) {
-    coded = *task.body;
-    coded.materials = simulated_materials(*task.body, stepping.materials);
+    const auto plain = without_factors(*task.body);
+    coded = plain ? *plain : *task.body;
+    coded.materials = simulated_materials(coded, stepping.materials);
   }
   const Body& body = stepping.materials == Materials::computed ? coded : *task.body;
   State& state = *task.state;

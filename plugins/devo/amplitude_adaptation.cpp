@@ -20,10 +20,11 @@ class AmplitudeAdaptation final : public evodevo::Adaptation {
     return body.materials[body.springs[spring].material].amplitude;
   }
 
-  void change(const evodevo::Body& body, std::uint32_t spring, double value, evodevo::Edits& edits) const override {
+  std::optional<evodevo::ChangedSpring> changed(const evodevo::Body& body, std::uint32_t spring,
+                                                double value) const override {
     evodevo::Material material = body.materials[body.springs[spring].material];
     material.amplitude = value;
-    edits.changed_springs.push_back({.spring = spring, .material = material});
+    return evodevo::ChangedSpring{.spring = spring, .material = material};
   }
 };
 

@@ -10,7 +10,7 @@ namespace {
 /// are added during development do not grow.
 class BallisticGrowth final : public evodevo::Devo {
  public:
-  evodevo::SpringRequest observes() const override { return {}; }
+  evodevo::RecordRequest observes() const override { return {}; }
   bool uses_growth() const override { return true; }
 
   void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, evodevo::Rng&) const override {

@@ -21,8 +21,9 @@ class LengthAdaptation final : public evodevo::Adaptation {
     return spring.first_length > 0 ? spring.rest_length / spring.first_length : 0;
   }
 
-  void change(const evodevo::Body& body, std::uint32_t index, double value, evodevo::Edits& edits) const override {
-    edits.changed_springs.push_back({.spring = index, .rest_length = value * body.springs[index].first_length});
+  std::optional<evodevo::ChangedSpring> changed(const evodevo::Body& body, std::uint32_t index,
+                                                double value) const override {
+    return evodevo::ChangedSpring{.spring = index, .rest_length = value * body.springs[index].first_length};
   }
 };
 

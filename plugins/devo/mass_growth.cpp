@@ -14,7 +14,7 @@ class MassGrowth final : public evodevo::Devo {
     arrival_.declare(p);
   }
 
-  evodevo::SpringRequest observes() const override { return arrival_.request(); }
+  evodevo::RecordRequest observes() const override { return arrival_.request(); }
   evodevo::Measure measure(evodevo::Causes::List) const override { return arrival_.measure.measure(); }
 
   void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, evodevo::Rng& rng) const override {

@@ -23,7 +23,7 @@ class MassTurnover final : public evodevo::Devo {
     arrival_.declare(p);
   }
 
-  evodevo::SpringRequest observes() const override { return arrival_.request(); }
+  evodevo::RecordRequest observes() const override { return arrival_.request(); }
   evodevo::Measure measure(evodevo::Causes::List list) const override {
     if (list == &evodevo::Causes::removed_masses) return {"degree", "springs"};
     return arrival_.measure.measure();

@@ -79,7 +79,7 @@ class SpringTurnover final : public evodevo::Devo {
     measure_.declare(p);
   }
 
-  evodevo::SpringRequest observes() const override { return measure_.request(); }
+  evodevo::RecordRequest observes() const override { return measure_.request(); }
   evodevo::Measure measure(evodevo::Causes::List) const override { return measure_.measure(); }
 
   void develop(const DevoContext& context, Edits& edits, Rng& rng) const override {
@@ -105,7 +105,7 @@ class SpringTurnover final : public evodevo::Devo {
       taken.insert(pair);
       edits.removed_springs.push_back(leaves);
       edits.causes.removed_springs.push_back(stress[leaves]);
-      edits.new_springs.push_back({a, b, material, {}});
+      edits.new_springs.push_back({a, b, material, {}, mixed ? 1 : body.springs[leaves].stiffness_factor});
       if (beside) edits.causes.new_springs.push_back(stress[*beside]);
     }
   }

@@ -18,13 +18,12 @@ class StiffnessAdaptation final : public evodevo::Adaptation {
 
  private:
   double value(const evodevo::Body& body, std::uint32_t spring) const override {
-    return body.materials[body.springs[spring].material].stiffness;
+    return body.stiffness(body.springs[spring]);
   }
 
-  void change(const evodevo::Body& body, std::uint32_t spring, double value, evodevo::Edits& edits) const override {
-    evodevo::Material material = body.materials[body.springs[spring].material];
-    material.stiffness = value;
-    edits.changed_springs.push_back({.spring = spring, .material = material});
+  std::optional<evodevo::ChangedSpring> changed(const evodevo::Body& body, std::uint32_t spring,
+                                                double value) const override {
+    return evodevo::with_stiffness(body, spring, value);
   }
 };
 

@@ -425,6 +425,9 @@ TEST_F(Command, FaultyBodiesAreRefusedByPlace) {
   EXPECT_THAT(
       refusal("{" + materials + "," + masses + R"(, "springs": [{"a": 0, "b": 2, "rest_length": 1, "material": 0}]})"),
       testing::at_place(": springs[0].b: ", "2", "index"));
+  EXPECT_THAT(refusal("{" + materials + "," + masses +
+                      R"(, "springs": [{"a": 0, "b": 1, "rest_length": 1, "material": 0, "stiffness_factor": 0}]})"),
+              testing::at_place(": springs[0].stiffness_factor: ", "0"));
   EXPECT_THAT(
       refusal("{" + materials + "," + masses + R"(, "springs": [{"a": 0, "b": 1, "rest_length": 1, "material": 0},
                     {"a": 1, "b": 0, "rest_length": 1, "material": 0}]})"),
@@ -433,9 +436,9 @@ TEST_F(Command, FaultyBodiesAreRefusedByPlace) {
 
 TEST_F(Command, OperatorsDescribeThemselves) {
   const auto json = nlohmann::json::parse(evodevo({"operators", "--kind", "devo", "--json"}).output);
-  ASSERT_EQ(json.size(), 7u);
-  EXPECT_EQ(json[5].at("name"), "spring-turnover") << "in alphabetical order";
-  EXPECT_EQ(json[5].at("parameters")[0].at("default"), "125");
+  ASSERT_EQ(json.size(), 9u);
+  EXPECT_EQ(json[7].at("name"), "spring-turnover") << "in alphabetical order";
+  EXPECT_EQ(json[7].at("parameters")[0].at("default"), "125");
   const Finished described = evodevo({"describe", "spring-turnover"});
   EXPECT_EQ(described.exit_code, 0);
   EXPECT_THAT(described.output, HasSubstr("springs = 125"));

@@ -103,6 +103,8 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"bodies_dangling", "bodies", "failed", {"body 0, cycle 1: ", "masses 0 and "}},
         Broken{"bodies_nan", "bodies", "failed", {"body 0, cycle 1: ", "masses 0 and 1 ", "stiffness is not a number"}},
         Broken{"bodies_beyond", "bodies", "failed", {"body 0: ", "bounds"}},
+        Broken{"bodies_memory", "bodies", "failed", {"body 0, cycle 1: ", "Edits::mass_memory", "mass_memory()"}},
+        Broken{"decoding_memory", "decoding", "failed", {"mass_memory[\"stem\"]", "3 numbers", "2 masses"}},
         Broken{"bodies_growth", "bodies", "failed", {"uses_growth()"}},
         Broken{"translation", "translation", "failed", {"scores "}},
         Broken{"nan_hidden", "nan", "failed", {"scores 0"}},
@@ -167,6 +169,11 @@ TEST(Conformance, BlocksOfAnEncodingOfTheSameLibraryAreTried) {
   for (const std::string name : {"twigs", "bend-twig"})
     for (const auto& [one, outcome] : special(name))
       EXPECT_THAT(outcome, ::testing::AnyOf("passed ", testing::at_place("skipped ", "no parameters"))) << one;
+}
+
+TEST(Conformance, RecordsOfMassesAndMemoryAreTried) {
+  for (const auto& [one, outcome] : special("feeling"))
+    EXPECT_THAT(outcome, ::testing::AnyOf("passed ", testing::at_place("skipped ", "no parameters"))) << one;
 }
 
 TEST(Conformance, BlocksThatNobodyHasAreMissed) {

@@ -38,7 +38,7 @@ TEST(Experiments, EachRunsForTwoGenerationsWhenShrunk) {
     EXPECT_EQ(archive.generations().size(), 2u);
     EXPECT_GT(archive.statuses().at("ok"), 0);
   }
-  EXPECT_EQ(count, 32);
+  EXPECT_EQ(count, 37);
 }
 
 TEST(Experiments, TheEnvironmentsDifferInTheirSceneAlone) {

@@ -105,6 +105,31 @@ TEST_P(InterruptedJournal, KilledAtEachLineAndResumedEndsTheSame) {
 INSTANTIATE_TEST_SUITE_P(Journals, InterruptedJournal, ::testing::Values("wal", "delete"),
                          [](const auto& instance) { return std::string(instance.param); });
 
+TEST_F(Interruption, ARunWhoseDevoOperatorRemembersIsTheSameAfterAKill) {
+  const std::string library = (fs::path(EVODEVO_FAULTY_PLUGINS) / "special/plugin.evodevo.so").string();
+  const auto with_memory = [&](std::vector<std::string> command) {
+    command.insert(command.end(), {"--plugin-path", library});
+    return command;
+  };
+  const auto run = [&](const std::string& folder) {
+    std::vector<std::string> command = with_memory(run_command(folder));
+    command.insert(command.end(), {"--set", "development.operator.0={name='feeling'}"});
+    return command;
+  };
+  const testing::Finished straight = testing::run(run("straight"));
+  ASSERT_EQ(straight.exit_code, 0) << straight.output;
+  {
+    Process process(run("killed"));
+    for (int line = 0; line < 5; ++line) process.read_line();
+    process.send(SIGKILL);
+    process.wait();
+  }
+  EXPECT_LT(Archive::read(scratch_ / "killed").generations().size(), 13u) << "it was done before it could be killed";
+  const testing::Finished resumed = testing::run(with_memory(resume_command("killed")));
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.output;
+  expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(scratch_ / "killed"));
+}
+
 TEST_F(Interruption, AJournalThatThereIsNotIsRefused) {
   std::vector<std::string> command = run_command("run");
   command.insert(command.end(), {"--journal", "off"});

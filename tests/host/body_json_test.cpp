@@ -36,6 +36,7 @@ GivenBody awkward_body(bool lives) {
     given.body.materials.push_back({number.positive(), number.positive(), number.positive(), number.any()});
   for (int i = 0; i < 50; ++i) given.body.masses.push_back({number.position(), number.positive(), i % 4 - 1});
   for (std::uint32_t i = 1; i < 50; ++i) given.body.springs.push_back({i - 1, i, number.positive(), i % 3});
+  for (std::size_t i = 0; i < 40; ++i) given.body.springs[i].stiffness_factor = number.positive();
   given.body.masses[0].rest = {-0.0, 5e-324, std::numeric_limits<double>::max()};
   if (!lives) return given;
   State& state = given.state.emplace();
@@ -67,6 +68,7 @@ void expect_same(const Body& a, const Body& b) {
     EXPECT_EQ(a.springs[i].b, b.springs[i].b);
     EXPECT_EQ(a.springs[i].rest_length, b.springs[i].rest_length);
     EXPECT_EQ(a.springs[i].material, b.springs[i].material);
+    EXPECT_EQ(a.springs[i].stiffness_factor, b.springs[i].stiffness_factor);
   }
 }
 

@@ -21,6 +21,8 @@ const Material muscle{5000, 0.14, 1, 0};
 
 // changes at random places -------------------------------------------------------------------------------------------
 
+using Kinds = std::vector<Amount::SpringKind>;
+
 /// A ring of 40 masses, each joined to the two nearest ones on either side by springs that are alternately of bone and
 /// of muscle.
 struct Ring {
@@ -109,26 +111,26 @@ TEST(RandomPlaces, TheMixOfMaterialsStays) {
 TEST(RandomPlaces, AnyMaterialGoesWhereNoneOfItsOwnIsLeft) {
   const Ring ring;
   std::size_t surplus = 0;
-  const Edits moved = ring.moved({.springs_gone = std::vector<Material>(41, muscle)}, 1, surplus);
+  const Edits moved = ring.moved({.springs_gone = Kinds(41, {muscle})}, 1, surplus);
   ASSERT_EQ(moved.removed_springs.size(), 41u);
   const auto is_muscle = [&](std::uint32_t s) { return ring.living.body.springs[s].material == 1; };
   EXPECT_EQ(std::count_if(moved.removed_springs.begin(), moved.removed_springs.end(), is_muscle), 40);
   const Material tissue{4000, 0, 0, 0};
-  EXPECT_EQ(ring.moved({.springs_gone = {tissue, tissue}}, 1, surplus).removed_springs.size(), 2u);
-  EXPECT_EQ(ring.moved({.springs_gone = std::vector<Material>(81, bone)}, 1, surplus).removed_springs.size(), 80u);
+  EXPECT_EQ(ring.moved({.springs_gone = Kinds(2, {tissue})}, 1, surplus).removed_springs.size(), 2u);
+  EXPECT_EQ(ring.moved({.springs_gone = Kinds(81, {bone})}, 1, surplus).removed_springs.size(), 80u);
 }
 
 TEST(RandomPlaces, WhatGoesTooMuchWithAMassIsMadeUpForLater) {
   const Ring ring;
   std::size_t surplus = 0;
-  const Edits first = ring.moved({.springs_gone = {bone}, .masses_gone = {bone}}, 1, surplus);
+  const Edits first = ring.moved({.springs_gone = Kinds(1, {bone}), .masses_gone = {bone}}, 1, surplus);
   EXPECT_EQ(first.removed_masses.size(), 1u);
   EXPECT_TRUE(first.removed_springs.empty());
   EXPECT_EQ(surplus, 3u) << "four springs have gone with the mass";
-  const Edits second = ring.moved({.springs_gone = std::vector<Material>(2, bone)}, 2, surplus);
+  const Edits second = ring.moved({.springs_gone = Kinds(2, {bone})}, 2, surplus);
   EXPECT_TRUE(second.empty());
   EXPECT_EQ(surplus, 1u);
-  const Edits third = ring.moved({.springs_gone = std::vector<Material>(5, bone)}, 3, surplus);
+  const Edits third = ring.moved({.springs_gone = Kinds(5, {bone})}, 3, surplus);
   EXPECT_EQ(third.removed_springs.size(), 4u);
   EXPECT_EQ(surplus, 0u);
 }
@@ -175,6 +177,24 @@ TEST(RandomPlaces, SpringsOfTheSameMaterialChangeByTheSameFactors) {
   EXPECT_EQ(reached.size(), 40u);
 }
 
+TEST(RandomPlaces, SpringsOfTheSameKindBecomeAsStiff) {
+  Ring ring;
+  for (std::size_t i = 0; i < 80; ++i) ring.living.body.springs[i].stiffness_factor = i % 8 == 3 ? 4 : 2;
+  std::set<std::uint32_t> reached;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    const Edits moved = ring.moved({.changed_springs = {{.spring = 3, .stiffness_factor = 6}}}, seed);
+    ASSERT_EQ(moved.changed_springs.size(), 1u);
+    EXPECT_EQ(moved.changed_springs[0].stiffness_factor, 6);
+    EXPECT_FALSE(moved.changed_springs[0].material);
+    reached.insert(moved.changed_springs[0].spring);
+    EXPECT_EQ(moved.changed_springs[0].spring % 8, 3u) << "of muscle, with the factor 4";
+    const Edits removed = ring.moved({.removed_springs = {3}, .new_springs = {{0, 20, bone, {}, 0.7}}}, seed);
+    EXPECT_EQ(removed.removed_springs.at(0) % 8, 3u);
+    EXPECT_EQ(removed.new_springs.at(0).stiffness_factor, 0.7);
+  }
+  EXPECT_EQ(reached.size(), 10u);
+}
+
 TEST(RandomPlaces, GrowthHappensAsItIs) {
   const Ring ring;
   const Edits moved = ring.moved({.growth = Growth{1, 2, 5}}, 1);
@@ -206,8 +226,8 @@ struct Seen {
 /// An operator that records its contexts and changes nothing.
 class Watcher final : public Devo {
  public:
-  explicit Watcher(Seen& seen, SpringRequest request = {.stress = true}) : seen_(seen), request_(request) {}
-  SpringRequest observes() const override { return request_; }
+  explicit Watcher(Seen& seen, RecordRequest request = {.stress = true}) : seen_(seen), request_(request) {}
+  RecordRequest observes() const override { return request_; }
   void develop(const DevoContext& context, Edits&, Rng&) const override {
     if (request_.stress) seen_.stress.emplace_back(context.stress.begin(), context.stress.end());
     if (request_.peak_force) seen_.peak_force.emplace_back(context.peak_force.begin(), context.peak_force.end());
@@ -217,7 +237,7 @@ class Watcher final : public Devo {
 
  private:
   Seen& seen_;
-  SpringRequest request_;
+  RecordRequest request_;
 };
 
 /// An operator whose edits do not depend on the body.
@@ -286,7 +306,7 @@ TEST(Control, ShufflesAllThatIsKnownOfASpringTogether) {
     Seen seen;
     Experiment experiment = with_control(control);
     for (Scheduled& scheduled : experiment.devo)
-      scheduled.op = std::make_unique<Watcher>(seen, SpringRequest{.stress = true, .peak_force = true});
+      scheduled.op = std::make_unique<Watcher>(seen, RecordRequest{.stress = true, .peak_force = true});
     matured(experiment);
     std::vector<std::pair<double, double>> pairs;
     for (std::size_t s = 0; s < seen.stress.at(0).size(); ++s)
@@ -304,11 +324,11 @@ TEST(Development, OperatorsSeeWhatTheyAskForAlone) {
   Experiment experiment = with_control("off");
   auto& operators = experiment.devo;
   operators.clear();
-  operators.push_back({std::make_unique<Watcher>(nothing, SpringRequest{}), {}});
-  operators.push_back({std::make_unique<Watcher>(peak, SpringRequest{.peak_force = true}), {.from = 2}});
-  EXPECT_FALSE(recording(experiment, 1).of_springs()) << "the second comes later";
-  EXPECT_TRUE(recording(experiment, 2).peak_force);
-  EXPECT_FALSE(recording(experiment, 2).stress);
+  operators.push_back({std::make_unique<Watcher>(nothing, RecordRequest{}), {}});
+  operators.push_back({std::make_unique<Watcher>(peak, RecordRequest{.peak_force = true}), {.from = 2}});
+  EXPECT_FALSE(recording(cycle_request(experiment, 1)).of_springs()) << "the second comes later";
+  EXPECT_TRUE(recording(cycle_request(experiment, 2)).peak_force);
+  EXPECT_FALSE(recording(cycle_request(experiment, 2)).stress);
   matured(experiment);
   EXPECT_EQ(nothing.cycles, (std::vector<int>{1, 2}));
   ASSERT_EQ(peak.peak_force.size(), 1u);

@@ -68,9 +68,9 @@ TEST(Records, AreThereOnlyIfRequested) {
     return std::string();
   };
   EXPECT_EQ(told(context.stress), "");
-  EXPECT_THAT(told(context.peak_force), naming("\"peak_force\"", "SpringRequest::peak_force"));
-  EXPECT_THAT(told(context.muscle_work), naming("\"muscle_work\"", "SpringRequest::muscle_work"));
-  EXPECT_THAT(told(context.tension), naming("\"tension\"", "SpringRequest::tension"));
+  EXPECT_THAT(told(context.peak_force), naming("\"peak_force\"", "RecordRequest::peak_force"));
+  EXPECT_THAT(told(context.muscle_work), naming("\"muscle_work\"", "RecordRequest::muscle_work"));
+  EXPECT_THAT(told(context.tension), naming("\"tension\"", "RecordRequest::tension"));
   EXPECT_THROW(static_cast<void>(context.tension[0]), std::logic_error);
   EXPECT_THROW(static_cast<void>(context.tension.begin()), std::logic_error);
 }
@@ -159,6 +159,24 @@ TEST(Development, ASpringChangesWhereItIs) {
   EXPECT_EQ(living.stress, (std::vector<double>{20, 30, 25}));
 }
 
+TEST(Development, ASpringKeepsItsStiffnessFactorUntilItGetsAnotherOne) {
+  Line line;
+  const auto factor = [&](std::size_t spring) { return line.living.body.springs[spring].stiffness_factor; };
+  line.apply({.changed_springs = {{.spring = 0, .stiffness_factor = 1.5}, {.spring = 1, .stiffness_factor = 0.5}}});
+  EXPECT_EQ(line.living.body.stiffness(line.living.body.springs[0]), 1.5 * bone.stiffness);
+  EXPECT_THAT(line.living.body.materials, ::testing::SizeIs(Line().living.body.materials.size()));
+  line.apply({.changed_springs = {{.spring = 0, .rest_length = 0.5}, {.spring = 1, .material = muscle}}});
+  EXPECT_EQ(factor(0), 1.5);
+  EXPECT_EQ(factor(1), 0.5);
+  EXPECT_EQ(line.living.body.stiffness(line.living.body.springs[1]), 0.5 * muscle.stiffness);
+  line.apply({.removed_springs = {0},
+              .changed_springs = {{.spring = 1, .material = bone, .stiffness_factor = 0.25}},
+              .new_springs = {{0, 3, bone, 3.0}, {1, 3, bone, 3.0, 0.75}}});
+  EXPECT_EQ(factor(0), 0.25);
+  EXPECT_EQ(factor(2), 1) << "a new spring has the stiffness of its material";
+  EXPECT_EQ(factor(3), 0.75);
+}
+
 TEST(Development, AllSpringsGrowByAPartOfTheirWay) {
   Line line;
   line.living.body.springs[0].growth = 1.5f;
@@ -236,6 +254,12 @@ TEST(Development, FaultyEditsAreRefused) {
               naming("spring 1", "rest length is -1;", "at least 0"));
   EXPECT_THAT(Line().refusal({.changed_springs = {{.spring = 1, .material = Material{}}}}),
               naming("spring 1", "stiffness is 0;", "above 0"));
+  for (const double factor : {0.0, -1.0, nan, std::numeric_limits<double>::infinity(), 1e308}) {
+    EXPECT_THAT(Line().refusal({.changed_springs = {{.spring = 1, .stiffness_factor = factor}}}),
+                naming("spring 1", "times the stiffness", "above 0"));
+    EXPECT_THAT(Line().refusal({.new_springs = {{0, 3, bone, 3.0, factor}}}),
+                naming("masses 0 and 3", "times the stiffness", "above 0"));
+  }
 }
 
 }  // namespace

@@ -86,8 +86,8 @@ void expect_same(const Body& a, const Body& b) {
   ASSERT_EQ(a.springs.size(), b.springs.size());
   for (std::size_t i = 0; i < a.springs.size(); ++i) {
     const Spring &s = a.springs[i], &t = b.springs[i];
-    ASSERT_EQ(std::tie(s.a, s.b, s.rest_length, s.material, s.growth, s.first_length),
-              std::tie(t.a, t.b, t.rest_length, t.material, t.growth, t.first_length))
+    ASSERT_EQ(std::tie(s.a, s.b, s.rest_length, s.material, s.growth, s.first_length, s.stiffness_factor),
+              std::tie(t.a, t.b, t.rest_length, t.material, t.growth, t.first_length, t.stiffness_factor))
         << "spring " << i;
   }
 }
@@ -126,10 +126,13 @@ Change change_of_all_kinds() {
   change.edits.removed_springs = {3, 4, 70'000};
   change.edits.causes.removed_springs = {0, 1.5, 0x1p100};
   const Material one{5000, 0.14, 1, 0.1 + 0.2}, other{1, 0, 0, 0};
-  change.edits.changed_springs = {{.spring = 9, .rest_length = 1e-300}, {.spring = 8, .material = one}};
-  change.edits.causes.changed_springs = {2, -3};
+  change.edits.changed_springs = {{.spring = 9, .rest_length = 1e-300},
+                                  {.spring = 8, .material = one},
+                                  {.spring = 7, .material = one, .stiffness_factor = 0.1 + 0.2},
+                                  {.spring = 6, .stiffness_factor = 1e300}};
+  change.edits.causes.changed_springs = {2, -3, 4, 5};
   change.edits.new_masses = {{{-1, 0.1, 2}, 0.2, no_material}, {{0, 0, 0}, 0.3, 4}};
-  change.edits.new_springs = {{1, 200, one, 0.1}, {2, 0xfffffffe, other, 0.0}, {5, 6, other, 7.0}};
+  change.edits.new_springs = {{1, 200, one, 0.1}, {2, 0xfffffffe, other, 0.0}, {5, 6, other, 7.0, 0.1 + 0.2}};
   return change;
 }
 
@@ -152,7 +155,8 @@ void expect_same(const Change& a, const Change& b) {
   ASSERT_EQ(a.edits.changed_springs.size(), b.edits.changed_springs.size());
   for (std::size_t i = 0; i < a.edits.changed_springs.size(); ++i) {
     const ChangedSpring &s = a.edits.changed_springs[i], &t = b.edits.changed_springs[i];
-    EXPECT_EQ(std::tie(s.spring, s.rest_length, s.material), std::tie(t.spring, t.rest_length, t.material));
+    EXPECT_EQ(std::tie(s.spring, s.rest_length, s.material, s.stiffness_factor),
+              std::tie(t.spring, t.rest_length, t.material, t.stiffness_factor));
   }
   ASSERT_EQ(a.edits.new_masses.size(), b.edits.new_masses.size());
   for (std::size_t i = 0; i < a.edits.new_masses.size(); ++i) {
@@ -162,7 +166,8 @@ void expect_same(const Change& a, const Change& b) {
   ASSERT_EQ(a.edits.new_springs.size(), b.edits.new_springs.size());
   for (std::size_t i = 0; i < a.edits.new_springs.size(); ++i) {
     const NewSpring &s = a.edits.new_springs[i], &t = b.edits.new_springs[i];
-    EXPECT_EQ(std::tie(s.a, s.b, s.material, s.rest_length), std::tie(t.a, t.b, t.material, t.rest_length));
+    EXPECT_EQ(std::tie(s.a, s.b, s.material, s.rest_length, s.stiffness_factor),
+              std::tie(t.a, t.b, t.material, t.rest_length, t.stiffness_factor));
   }
 }
 

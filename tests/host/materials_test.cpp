@@ -32,10 +32,13 @@ Body body_of(std::vector<Material> materials, std::vector<std::uint32_t> springs
   return body;
 }
 
-/// The materials of all springs, then of all masses.
+/// The materials of all springs, with the springs' own stiffness, then of all masses.
 std::vector<Material> made_of(const Body& body) {
   std::vector<Material> made;
-  for (const Spring& spring : body.springs) made.push_back(body.materials.at(spring.material));
+  for (const Spring& spring : body.springs) {
+    made.push_back(body.materials.at(spring.material));
+    made.back().stiffness = body.stiffness(spring);
+  }
   for (const Mass& mass : body.masses)
     made.push_back(mass.material == no_material ? Material{} : body.materials.at(std::size_t(mass.material)));
   return made;

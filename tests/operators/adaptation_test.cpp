@@ -18,7 +18,7 @@ double relative_length(const Body& body, std::uint32_t s) {
   const Spring& spring = body.springs[s];
   return spring.rest_length / spring.first_length;
 }
-double stiffness(const Body& body, std::uint32_t s) { return body.materials[body.springs[s].material].stiffness; }
+double stiffness(const Body& body, std::uint32_t s) { return body.stiffness(body.springs[s]); }
 double amplitude(const Body& body, std::uint32_t s) { return body.materials[body.springs[s].material].amplitude; }
 
 struct Property {

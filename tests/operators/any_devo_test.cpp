@@ -18,6 +18,8 @@ const std::vector<std::pair<const char*, const char*>> uses = {
     {"stiffness-adaptation", "springs = 60"},
     {"amplitude-adaptation", "springs = 60"},
     {"ballistic-growth", ""},
+    {"regulated-growth", "min_distance = 0.0\nsprings = 4"},
+    {"hebbian", ""},
 };
 
 /// A life of 60 masses and 400 springs with random stress and growth.
@@ -32,6 +34,8 @@ Life busy_life() {
     if (a == b || !pairs.insert(ordered(a, b)).second) continue;
     life.add_spring(a, b, static_cast<std::uint32_t>(bone + pairs.size() % 4), rng.uniform(0, 100));
     life.living.body.springs.back().growth = static_cast<float>(rng.uniform(0.8, 1.2));
+    life.living.tension.push_back(rng.uniform(-50, 100));
+    life.living.muscle_work.push_back(rng.uniform(0, 10));
   }
   life.applications = 5;
   return life;
@@ -91,7 +95,7 @@ TEST(AnyDevo, OperatorsThatChangeDifferentThingsDoNotDependOnTheirOrder) {
     std::vector<double> springs;
     for (const Spring& spring : life.living.body.springs) {
       const Material& material = life.living.body.materials[spring.material];
-      springs.insert(springs.end(), {spring.rest_length, material.stiffness, material.amplitude});
+      springs.insert(springs.end(), {spring.rest_length, life.living.body.stiffness(spring), material.amplitude});
     }
     return springs;
   };

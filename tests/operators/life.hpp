@@ -21,12 +21,47 @@ struct Life {
   int application = 3, applications = 100;
   Genome genome;
   Layout layout;
+  Genome own;                                      ///< genes of the operator
+  std::vector<double> contact, age, degree, load;  ///< [masses]
+  std::vector<double> mass_memory, spring_memory;  ///< what the operator remembers
+  std::size_t mass_width = 0, spring_width = 0;    ///< numbers that it remembers about each mass and each spring
 
   DevoContext context() const {
-    DevoContext context{living.body, living.state, 3,    100,    application, applications,
-                        time,        bounds,       mass, resets, genome,      layout};
+    DevoContext context{living.body, living.state, 3,      100,    application, applications, time,
+                        bounds,      mass,         resets, genome, layout,      own};
     show_records(living, {.stress = true, .peak_force = true, .muscle_work = true, .tension = true}, context);
+    context.contact.show(contact);
+    context.age.show(age);
+    context.degree.show(degree);
+    context.load.show(load);
+    context.mass_memory = Memory(mass_memory, mass_width, "mass");
+    context.spring_memory = Memory(spring_memory, spring_width, "spring");
     return context;
+  }
+
+  /// Adds what the operator needs and the life does not have: random genes, records of the springs and memory of 0, and
+  /// records of masses that fit the springs.
+  void complete_for(const Devo& devo) {
+    const Body& body = living.body;
+    if (own.empty()) {
+      Rng rng = stream(17);
+      own = devo.random(devo.layout(test::context()), rng);
+    }
+    mass_width = devo.mass_memory().size();
+    spring_width = devo.spring_memory().size();
+    mass_memory.resize(mass_width * body.masses.size());
+    spring_memory.resize(spring_width * body.springs.size());
+    living.tension.resize(body.springs.size());
+    living.muscle_work.resize(body.springs.size());
+    contact.resize(body.masses.size());
+    age.resize(body.masses.size());
+    degree.assign(body.masses.size(), 0);
+    load.assign(body.masses.size(), 0);
+    for (std::size_t s = 0; s < body.springs.size(); ++s)
+      for (const std::uint32_t end : {body.springs[s].a, body.springs[s].b}) {
+        ++degree[end];
+        if (s < living.stress.size()) load[end] += living.stress[s];
+      }
   }
 
   void add_mass(Vec3 rest, std::int32_t material) {
@@ -73,7 +108,8 @@ inline std::set<Pair> joined(const Body& body) {
   return pairs;
 }
 
-inline Edits develop(const Devo& devo, const Life& life, std::uint64_t seed) {
+inline Edits develop(const Devo& devo, Life life, std::uint64_t seed) {
+  life.complete_for(devo);
   Edits edits;
   Rng rng = stream(seed);
   devo.develop(life.context(), edits, rng);
@@ -88,10 +124,12 @@ inline std::vector<double> digest(const Edits& edits) {
   for (const NewMass& m : edits.new_masses)
     digest.insert(digest.end(), {m.position.x, m.position.y, m.position.z, m.mass, static_cast<double>(m.material)});
   for (const NewSpring& s : edits.new_springs)
-    digest.insert(digest.end(), {double(s.a), double(s.b), s.material.stiffness, s.material.phase});
+    digest.insert(digest.end(), {double(s.a), double(s.b), s.material.stiffness, s.material.phase, s.stiffness_factor});
   for (const ChangedSpring& c : edits.changed_springs)
-    digest.insert(digest.end(), {double(c.spring), c.rest_length.value_or(-1),
+    digest.insert(digest.end(), {double(c.spring), c.rest_length.value_or(-1), c.stiffness_factor.value_or(-1),
                                  c.material.value_or(Material{}).stiffness, c.material.value_or(Material{}).amplitude});
+  digest.insert(digest.end(), edits.mass_memory.begin(), edits.mass_memory.end());
+  digest.insert(digest.end(), edits.spring_memory.begin(), edits.spring_memory.end());
   return digest;
 }
 

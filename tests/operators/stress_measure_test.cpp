@@ -16,7 +16,7 @@ Life chain() {
 
 struct Judgement {
   const char* by;
-  SpringRequest request;
+  RecordRequest request;
   std::uint32_t most, least;
 };
 
@@ -103,7 +103,7 @@ TEST_P(StressMeasure, DecidesWhereMassesCome) {
 }
 
 TEST_P(StressMeasure, IsWhatTheyAskFor) {
-  const auto expect_request = [](const SpringRequest& request, const SpringRequest& expected) {
+  const auto expect_request = [](const RecordRequest& request, const RecordRequest& expected) {
     EXPECT_EQ(request.stress, expected.stress);
     EXPECT_EQ(request.peak_force, expected.peak_force);
     EXPECT_EQ(request.muscle_work, expected.muscle_work);

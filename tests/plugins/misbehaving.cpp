@@ -112,7 +112,7 @@ struct Devo final : evodevo::Devo {
   void parameters(Parameters& p) override {
     p.choice(how, "how", {"well", "crash", "overflow", "crash-when-asked", "throw-when-asked"}, "What it does.");
   }
-  evodevo::SpringRequest observes() const override {
+  evodevo::RecordRequest observes() const override {
     if (how == "crash-when-asked") std::raise(SIGSEGV);
     if (how == "throw-when-asked") throw 7;
     return {};

@@ -1,6 +1,9 @@
 // Operators that need more than generated inputs: an encoding with blocks of its own, a mutation that works on such
-// blocks, one that works on blocks that no encoding of the library has, one that requires a file, and selections that
-// choose either parents or survivors alone, or need three objectives.
+// blocks, one that works on blocks that no encoding of the library has, one that requires a file, a devo operator that
+// asks for all records of masses and remembers numbers, and selections that choose either parents or survivors alone,
+// or need three objectives.
+#include <algorithm>
+
 #include "evodevo/helpers/rows.hpp"
 #include "evodevo/plugin.hpp"
 
@@ -55,6 +58,37 @@ struct BendLeaf final : Redraw {
   BendLeaf() : Redraw("leaf") {}
 };
 
+/// Replaces the mass that has felt least of the ground and of its springs, and remembers what each has felt.
+struct Feeling final : evodevo::Devo {
+  evodevo::RecordRequest observes() const override {
+    return {.contact = true, .age = true, .degree = true, .load = true};
+  }
+  evodevo::Measure measure(evodevo::Causes::List) const override { return {"feeling", "1"}; }
+  std::vector<std::string> mass_memory() const override { return {"feeling"}; }
+  std::vector<std::string> spring_memory() const override { return {"came"}; }
+  void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, Rng&) const override {
+    const auto masses = static_cast<std::uint32_t>(context.body.masses.size());
+    for (std::uint32_t i = 0; i < masses; ++i)
+      edits.mass_memory.push_back(context.mass_memory[i][0] + context.contact[i] +
+                                  context.load[i] / (1 + context.degree[i]) / (1 + context.age[i]));
+    for (std::uint32_t s = 0; s < context.body.springs.size(); ++s)
+      edits.spring_memory.push_back(context.spring_memory[s][0]);
+    if (masses < 4) return;
+    const auto least = static_cast<std::uint32_t>(std::min_element(edits.mass_memory.begin(), edits.mass_memory.end()) -
+                                                  edits.mass_memory.begin());
+    edits.removed_masses = {least};
+    edits.causes.removed_masses = {edits.mass_memory[least]};
+    edits.new_masses.push_back({context.bounds.low + 0.5 * (context.bounds.high - context.bounds.low), context.mass});
+    edits.mass_memory.push_back(0);
+    for (std::uint32_t i = 0, joined = 0; i < masses && joined < 3; ++i) {
+      if (i == least) continue;
+      edits.new_springs.push_back({i, masses, {1000, 0, 0, 0}, {}});
+      edits.spring_memory.push_back(context.cycle);
+      ++joined;
+    }
+  }
+};
+
 /// Gives the first real gene the value of a random character of a file.
 struct ByFile final : evodevo::Mutation {
   void parameters(evodevo::Parameters& p) override {
@@ -107,6 +141,7 @@ EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<Twigs>("twigs", "Grows a tree of springs."),
                evodevo::operator_entry<BendTwig>("bend-twig", "Gives each twig another direction."),
                evodevo::operator_entry<BendLeaf>("bend-leaf", "Gives each leaf another direction."),
+               evodevo::operator_entry<Feeling>("feeling", "Replaces the mass that has felt least."),
                evodevo::operator_entry<ByFile>("by-file", "Sets a gene to what a file says."),
                evodevo::operator_entry<Lottery>("lottery", "All have the same chance to breed."),
                evodevo::operator_entry<Best>("best", "The best survive."),

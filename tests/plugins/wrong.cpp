@@ -84,8 +84,36 @@ struct Wrong final : evodevo::Devo {
 #elif defined(WRONG_BODIES_GROWTH)
     edits.growth = {0, 1};
 #else
-    edits.new_masses.push_back({context.bounds.high + evodevo::Vec3{0, 0, 1}, context.mass});
+    edits.new_masses.push_back({context.bounds.low - evodevo::Vec3{0, 0, 1}, context.mass});
 #endif
+  }
+};
+
+#elif defined(WRONG_BODIES_MEMORY)
+
+struct Wrong final : evodevo::Devo {
+  std::vector<std::string> mass_memory() const override { return {"calls"}; }
+  void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, Rng&) const override {
+    edits.mass_memory.assign(context.body.masses.size() - 1, 1.0);
+  }
+};
+
+#elif defined(WRONG_DECODING_MEMORY)
+
+struct Wrong final : evodevo::Encoding {
+  Layout layout(const evodevo::EncodingContext&) const override {
+    Layout layout;
+    layout.add_block(2, {0, 1});
+    return layout;
+  }
+  evodevo::Blueprint decode(const Genome&, const evodevo::Layout&,
+                            const evodevo::EncodingContext& context) const override {
+    evodevo::Blueprint blueprint;
+    blueprint.body.materials = context.materials;
+    blueprint.body.masses = {{{0, 0, 0}, 1}, {{1, 0, 0}, 1}};
+    blueprint.body.springs = {{0, 1, 1, 1}};
+    blueprint.mass_memory["stem"] = {1, 2, 3};
+    return blueprint;
   }
 };
 

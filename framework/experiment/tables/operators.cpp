@@ -228,6 +228,7 @@ class OperatorTables {
     factory_.write(t, op, writer);
     out_.devo.back().own_section = add_own_section(t, [&] { return op.layout(out_.context); });
     check_request(t, factory_.ask(t, [&] { return op.observes(); }));
+    factory_.ask(t, [&] { return memory_names(op); });
     if (factory_.ask(t, [&] { return op.uses_growth() && !out_.encoding->sets_growth(); }))
       out_.warnings.push_back(t.full_name("name") + " = \"" + out_.uses.back().name +
                               "\": the encoding lets no spring grow, so this operator changes nothing; set "
@@ -249,7 +250,7 @@ class OperatorTables {
 
   /// Throws ConfigError if an operator asks for more than stress and the probe is skip-shift, whose tallies only
   /// estimate stress.
-  void check_request(const TomlReader& t, const SpringRequest& request) const {
+  void check_request(const TomlReader& t, const RecordRequest& request) const {
     if (out_.development.probe == Probe::skip_shift && (request.peak_force || request.muscle_work || request.tension))
       t.fail("name",
              "this operator needs measurements of springs that development.probe = \"skip-shift\" does not make; set "

@@ -15,63 +15,119 @@
 
 namespace evodevo {
 
-/// The records of the last cycle that a devo operator needs; each record has one number for every spring. The host
-/// makes no other records.
-struct SpringRequest {
+/// The records of the last cycle that a devo operator needs. The host makes no other records.
+struct RecordRequest {
+  // ---- one number for every spring ----
   bool stress = false;       ///< whether DevoContext::stress is needed
   bool peak_force = false;   ///< whether DevoContext::peak_force is needed
   bool muscle_work = false;  ///< whether DevoContext::muscle_work is needed
   bool tension = false;      ///< whether DevoContext::tension is needed
+  // ---- one number for every mass ----
+  bool contact = false;  ///< whether DevoContext::contact is needed
+  bool age = false;      ///< whether DevoContext::age is needed
+  bool degree = false;   ///< whether DevoContext::degree is needed
+  bool load = false;     ///< whether DevoContext::load is needed
 };
 
-/// A record of the last cycle: one number for every spring. Reading it throws a std::logic_error that names it unless
-/// Devo::observes() asks for it; an index out of range throws a std::out_of_range.
+/// A record of the last cycle: one number for every spring, or for every mass. Reading it throws a std::logic_error
+/// that names it unless Devo::observes() asks for it; an index out of range throws a std::out_of_range.
 class RequestedRecord {
  public:
-  /// `name` is that of the member of SpringRequest.
-  explicit constexpr RequestedRecord(const char* name) : name_(name) {}
+  /// `name` is that of the member of RecordRequest, and `of` what the numbers belong to, "spring" or "mass".
+  explicit constexpr RequestedRecord(const char* name, const char* of = "spring") : name_(name), of_(of) {}
   /// Makes the record readable. For the host.
   void show(std::span<const double> values) { values_ = values; }
 
   std::size_t size() const { return values().size(); }
   auto begin() const { return values().begin(); }
   auto end() const { return values().end(); }
-  double operator[](std::size_t spring) const {
-    if (spring >= size())
-      throw std::out_of_range(std::string("reads the record \"") + name_ + "\" of spring " + std::to_string(spring) +
-                              " of " + std::to_string(size()) + ", numbered from 0");
-    return values()[spring];
+  double operator[](std::size_t index) const {
+    if (index >= size())
+      throw std::out_of_range(std::string("reads the record \"") + name_ + "\" of " + of_ + " " +
+                              std::to_string(index) + " of " + std::to_string(size()) + ", numbered from 0");
+    return values()[index];
   }
   operator std::span<const double>() const { return values(); }  // NOLINT: converts on purpose
 
  private:
   std::span<const double> values() const {
     if (!values_)
-      throw std::logic_error(std::string("reads the record \"") + name_ +
-                             "\" of the springs, which observes() does not ask for; set SpringRequest::" + name_);
+      throw std::logic_error(std::string("reads the record \"") + name_ + "\" of each " + of_ +
+                             ", which observes() does not ask for; set RecordRequest::" + name_);
     return *values_;
   }
 
   const char* name_;
+  const char* of_;
   std::optional<std::span<const double>> values_ = std::nullopt;
+};
+
+/// What a devo operator remembers about masses or springs: the same number of values for each. An operator declares
+/// them in Devo::mass_memory() and Devo::spring_memory().
+class Memory {
+ public:
+  Memory() = default;
+  /// What is remembered about one item.
+  class Values {
+   public:
+    Values(std::span<const double> values, const char* of) : values_(values), of_(of) {}
+
+    /// Returns a value, in the order of the declared names. Throws std::out_of_range if there is no such value.
+    double operator[](std::size_t number) const {
+      if (number >= values_.size())
+        throw std::out_of_range("reads value " + std::to_string(number) + " of " + std::to_string(values_.size()) +
+                                " that it remembers about each " + of_ +
+                                ", numbered from 0; declare it in Devo::" + of_ + "_memory()");
+      return values_[number];
+    }
+    operator std::span<const double>() const { return values_; }  // NOLINT: converts on purpose
+
+   private:
+    std::span<const double> values_;
+    const char* of_;
+  };
+
+  /// `values` has `width` values for each item, one item after the other. `of` says what an item is, "mass" or
+  /// "spring".
+  Memory(std::span<const double> values, std::size_t width, const char* of) : values_(values), width_(width), of_(of) {}
+
+  /// Returns the values of one item. Throws std::out_of_range if there is no such item, or if nothing is remembered.
+  Values operator[](std::size_t item) const {
+    if (width_ == 0)
+      throw std::out_of_range(std::string("reads what it remembers about each ") + of_ + ", but Devo::" + of_ +
+                              "_memory() declares nothing");
+    if (item >= size())
+      throw std::out_of_range(std::string("reads what it remembers about ") + of_ + " " + std::to_string(item) +
+                              " of " + std::to_string(size()) + ", numbered from 0");
+    return {values_.subspan(item * width_, width_), of_};
+  }
+  std::size_t size() const { return width_ > 0 ? values_.size() / width_ : 0; }  ///< number of items
+  std::size_t width() const { return width_; }                                   ///< number of values for each item
+
+ private:
+  std::span<const double> values_;
+  std::size_t width_ = 0;
+  const char* of_ = "item";
 };
 
 /// The context of a devo operator: everything that the operator may look at after a cycle.
 ///
 /// `stress`, `peak_force`, `muscle_work` and `tension` are the records of the last cycle, with one number for every
-/// spring of `body`. Only those that Devo::observes() asks for can be read. For a spring that another operator has
-/// added since the cycle ended, the record is the mean of the records of the other springs.
+/// spring of `body`; `contact`, `age`, `degree` and `load` have one number for every mass. Only those that
+/// Devo::observes() asks for can be read. For a spring that another operator has added since the cycle ended, the
+/// record is the mean of the records of the other springs; for such a mass, it is 0.
 struct DevoContext {
   const Body& body;
   const State& state;
-  int cycle;                     ///< number of cycles simulated so far, from 1
-  int cycles;                    ///< number of cycles in the whole development
-  int application;               ///< number of applications of this operator so far, including this one
-  int applications;              ///< number of applications of this operator in the whole development
-  double time;                   ///< simulated time since birth, s
-  Box bounds;                    ///< bounding box of all position(), cut off at the floor if the scene has one, m
-  double mass;                   ///< mass that a new point mass should have, kg
-  bool resets;                   ///< whether the body returns to its rest positions before the next cycle
+  int cycle;         ///< number of cycles simulated so far, from 1
+  int cycles;        ///< number of cycles in the whole development
+  int application;   ///< number of applications of this operator so far, including this one
+  int applications;  ///< number of applications of this operator in the whole development
+  double time;       ///< simulated time since birth, s
+  Box bounds;   ///< bounding box of all position(), cut off at the floor if the scene has one, m; no new mass may lie
+                ///< below it
+  double mass;  ///< mass that a new point mass should have, kg
+  bool resets;  ///< whether the body returns to its rest positions before the next cycle
   const Genome& genome;          ///< genes of the encoding
   const Layout& layout;          ///< layout of `genome`
   const Genome& own = no_genes;  ///< genes that the operator owns; see Devo::layout()
@@ -81,6 +137,12 @@ struct DevoContext {
   RequestedRecord peak_force{"peak_force"};    ///< largest absolute force of each spring, N
   RequestedRecord muscle_work{"muscle_work"};  ///< positive work that each spring's muscle did on the body, J
   RequestedRecord tension{"tension"};  ///< mean force of each spring, N; positive: it pulled, negative: it pushed
+  RequestedRecord contact{"contact", "mass"};  ///< share of the last cycle in which each mass touched the ground, 1
+  RequestedRecord age{"age", "mass"};          ///< number of cycles that each mass has lived through, cycles
+  RequestedRecord degree{"degree", "mass"};    ///< number of springs at each mass when the cycle ended, 1
+  RequestedRecord load{"load", "mass"};        ///< sum of the stress of the springs at each mass, in the unit of stress
+  Memory mass_memory = {};    ///< what this operator remembers about each mass of `body`; see Devo::mass_memory()
+  Memory spring_memory = {};  ///< what this operator remembers about each spring of `body`
 
   /// Returns the position from which a mass continues, m: its rest position if `resets`, else its present position.
   Vec3 position(std::uint32_t mass_index) const {
@@ -98,13 +160,15 @@ struct NewSpring {
   std::uint32_t a = 0, b = 0;  ///< indices of the two masses; see Edits
   Material material;
   std::optional<double> rest_length;  ///< m; if not given, the length at which the new spring exerts no force
+  double stiffness_factor = 1;        ///< stiffness relative to that of the material, 1
 };
 
 /// New properties of an existing spring, which continues to join the same two masses.
 struct ChangedSpring {
-  std::uint32_t spring = 0;                ///< index of the spring
-  std::optional<double> rest_length = {};  ///< new rest length, m; if not given, it stays the same
-  std::optional<Material> material = {};   ///< new material; if not given, it stays the same
+  std::uint32_t spring = 0;                     ///< index of the spring
+  std::optional<double> rest_length = {};       ///< new rest length, m; if not given, it stays the same
+  std::optional<Material> material = {};        ///< new material; if not given, it stays the same
+  std::optional<double> stiffness_factor = {};  ///< new stiffness relative to that of the material, 1; likewise
 };
 
 /// One step in the linear growth of all springs. Over its whole growth, a spring's rest length changes linearly from L
@@ -138,7 +202,13 @@ struct Edits {
   std::vector<NewMass> new_masses;
   std::vector<NewSpring> new_springs;
   Causes causes;
+  /// What the operator remembers from now on, in the order of its names: the values of each mass of DevoContext::body,
+  /// then those of each of `new_masses`. If it is empty, the masses of the body keep theirs, and new masses start at 0.
+  std::vector<double> mass_memory = {};
+  /// Likewise for each spring of the body, then for each of `new_springs`.
+  std::vector<double> spring_memory = {};
 
+  /// Whether the body stays as it is.
   bool empty() const {
     return !growth && removed_springs.empty() && removed_masses.empty() && changed_springs.empty() &&
            new_masses.empty() && new_springs.empty();
@@ -159,11 +229,17 @@ class Devo : public Operator {
   static constexpr std::string_view kind = "devo";
 
   /// Returns the records that develop() needs. The host calls this function after it has set the parameters.
-  virtual SpringRequest observes() const { return {.stress = true}; }
+  virtual RecordRequest observes() const { return {.stress = true}; }
   /// Returns the name and unit of the causes in a list. If the probe is skip-shift, the host reports points, not N.
   virtual Measure measure([[maybe_unused]] Causes::List list) const { return {"stress", "N"}; }
   /// Returns whether the operator sets Edits::growth. Growth has an effect only if Encoding::sets_growth() is true.
   virtual bool uses_growth() const { return false; }
+  /// Returns the names of the numbers that the operator remembers about each mass. The host keeps them from cycle to
+  /// cycle and through all edits. At birth they are those that the encoding gives under the same names
+  /// (Blueprint::mass_memory), otherwise 0.
+  virtual std::vector<std::string> mass_memory() const { return {}; }
+  /// Likewise about each spring; they are 0 at birth.
+  virtual std::vector<std::string> spring_memory() const { return {}; }
   /// Declares genes that the operator owns, so that the rule of development evolves together with the bodies.
   virtual Layout layout([[maybe_unused]] const EncodingContext& context) const { return {}; }
   /// Returns the genes that it owns for a first genome. `own` is the layout that it declares.

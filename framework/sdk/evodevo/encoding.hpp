@@ -1,6 +1,7 @@
 // Encodings: they turn a genome into a body.
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,6 +49,9 @@ struct Blueprint {
                                      ///< empty: the rest positions
   std::vector<Size> sizes = {};  ///< sizes, one for each mass, for the springs that join `neighbours`; empty: all are 1
   std::vector<Vec3> origins = {};  ///< the point that the encoding mapped to each mass, for pictures; empty: no points
+  /// What masses remember at birth: a number for each mass by name. Devo operators take those that they have declared
+  /// under the same name (Devo::mass_memory).
+  std::map<std::string, std::vector<double>> mass_memory = {};
 };
 
 class Encoding : public Operator {

@@ -18,7 +18,7 @@ namespace evodevo {
 inline constexpr std::uint64_t plugin_magic = 0x6f7665646f7665ull;  // "evodevo", little-endian
 /// Version of the interface. It must be raised whenever a declaration that plugins see changes its meaning, or is
 /// changed, moved, added or removed; tests/host/plugin_border_test.cpp finds changed declarations.
-inline constexpr std::uint32_t plugin_epoch = 11;
+inline constexpr std::uint32_t plugin_epoch = 12;
 
 /// Returns a hash of the sizes of structs.
 template <class... Structs>
@@ -31,7 +31,7 @@ constexpr std::uint32_t digest_of_sizes() {
 /// A hash of the sizes of all structs that host and plugin exchange.
 inline constexpr std::uint32_t plugin_struct_digest =
     digest_of_sizes<Body, Mass, Spring, Material, State, Rng, GeneSpec, BlockType, Block, Genome, Layout, Parents,
-                    EncodingContext, Blueprint, DevoContext, Edits, NewMass, NewSpring, ChangedSpring, SpringRequest,
+                    EncodingContext, Blueprint, DevoContext, Edits, NewMass, NewSpring, ChangedSpring, RecordRequest,
                     Measure, Request, Observation, Samples, StoredSample, BodyVersion, Objective, Candidate,
                     SelectionContext, Case, NoteTitle, Note, Survival, Child, Size, Growth, Causes, Traits, InputFile,
                     Range, Box, Vec3>();

@@ -30,7 +30,7 @@ double stopping_force(const Body& body, const State& state) {
   double speed = 0, mass = 0, stiffness = 0;
   for (const Vec3& v : state.velocity) speed = std::max(speed, norm(v));
   for (const Mass& m : body.masses) mass = std::max(mass, m.mass);
-  for (const Spring& spring : body.springs) stiffness = std::max(stiffness, body.materials[spring.material].stiffness);
+  for (const Spring& spring : body.springs) stiffness = std::max(stiffness, body.stiffness(spring));
   return 2 * speed * std::sqrt(stiffness * mass / 2);
 }
 
@@ -62,8 +62,8 @@ ForceRange force_range(const Body& body, const State& state, const Scene& scene)
     const Material& material = body.materials[spring.material];
     const double length = spring.rest_length * (1 + std::abs(material.amplitude));
     const double strain = norm(state.position[spring.b] - state.position[spring.a]) - spring.rest_length;
-    doubled = std::max(doubled, std::abs(material.stiffness) * length);
-    largest = std::max(largest, std::abs(material.stiffness) * 2 * std::abs(strain));
+    doubled = std::max(doubled, std::abs(body.stiffness(spring)) * length);
+    largest = std::max(largest, std::abs(body.stiffness(spring)) * 2 * std::abs(strain));
     driven = driven || material.amplitude * material.frequency != 0;
     ++degree[spring.a], ++degree[spring.b];
   }

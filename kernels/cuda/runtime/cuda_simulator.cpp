@@ -9,6 +9,7 @@
 #include <string>
 
 #include "analysis/guard.hpp"
+#include "analysis/stiffness_factors.hpp"
 #include "cuda/runtime/cuda_neighbours.hpp"
 #include "cuda/runtime/device.hpp"
 #include "cuda/runtime/portion.hpp"
@@ -80,6 +81,7 @@ class DeviceSimulator final : public CudaSimulator {
         neighbours_(make_cuda_neighbour_search()) {}
 
   void run(std::span<Task> tasks, Recording recording) override {
+    const WithoutFactors plain(tasks, workers_);  // on the device, materials alone give springs their stiffness
     const std::vector<Task*> live = begin(tasks, recording);
     const cuda::Run run{scene_, stepping_, recording, device_.shared_bytes, cuda::spans_per_range(live)};
     std::vector<cuda::Plan<T>> plans = plan(live, run);

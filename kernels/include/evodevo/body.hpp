@@ -72,11 +72,12 @@ struct Mass {
 };
 
 struct Spring {
-  std::uint32_t a = 0, b = 0;  ///< indices into Body::masses, a != b
-  double rest_length = 0;      ///< L0, m
-  std::uint32_t material = 0;  ///< index into Body::materials
-  float growth = 1;            ///< rest length at the end of ballistic development relative to that at birth, 1
-  double first_length = 0;     ///< L0 when the spring was made, at birth or later, m; set by the host
+  std::uint32_t a = 0, b = 0;   ///< indices into Body::masses, a != b
+  double rest_length = 0;       ///< L0, m
+  std::uint32_t material = 0;   ///< index into Body::materials
+  float growth = 1;             ///< rest length at the end of ballistic development relative to that at birth, 1
+  double first_length = 0;      ///< L0 when the spring was made, at birth or later, m; set by the host
+  double stiffness_factor = 1;  ///< stiffness relative to that of the material, 1; above 0
 };
 
 /// A body without its motion. No two springs join the same pair of masses.
@@ -87,6 +88,11 @@ struct Body {
   /// The number of materials that come from the experiment; they are the first ones in the list. Set by the host at
   /// birth. These materials are always kept; every other material is removed when no spring or mass uses it any more.
   std::uint32_t base_materials = 0;
+
+  /// The stiffness of a spring of this body, N/m.
+  double stiffness(const Spring& spring) const {
+    return spring.stiffness_factor * materials[spring.material].stiffness;
+  }
 
   /// Returns the index of `material` in `materials`, and appends it if it is new. Searches linearly.
   std::uint32_t material_index(const Material& material) {

@@ -40,7 +40,7 @@ class EquationOfMotion {
     const double distance = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     const double length = spring.rest_length * (1 + m.amplitude * std::sin(full_turn * m.frequency * t + m.phase));
     for (std::size_t c = 0; c < 3; ++c) {
-      const double force = m.stiffness * (distance - length) * d[c] / distance;
+      const double force = body_.stiffness(spring) * (distance - length) * d[c] / distance;
       rate[half + a + c] += force / body_.masses[spring.a].mass;
       rate[half + b + c] -= force / body_.masses[spring.b].mass;
     }

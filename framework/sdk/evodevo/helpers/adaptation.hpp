@@ -1,5 +1,5 @@
-// For devo operators that change a property of the most stressed springs: "Modify the tension of highest stress
-// springs rather than adding new springs" (paper, section VII).
+// For devo operators that change a property of springs, such as that of the most stressed ones: "Modify the tension of
+// highest stress springs rather than adding new springs" (paper, section VII).
 #pragma once
 
 #include "evodevo/devo.hpp"
@@ -7,11 +7,26 @@
 
 namespace evodevo {
 
+/// Returns the new value of a property, held between `low` and `high`. A value that is already beyond a bound moves no
+/// further away from it.
+inline double within_bounds(double before, double after, double low, double high) {
+  return after < before ? std::max(after, std::min(before, low)) : std::min(after, std::max(before, high));
+}
+
+/// Returns the change that gives a spring a new stiffness, N/m, or nothing if it has this stiffness. Its material
+/// stays, so that bodies do not get a material for every spring.
+inline std::optional<ChangedSpring> with_stiffness(const Body& body, std::uint32_t index, double stiffness) {
+  const Spring& spring = body.springs[index];
+  const double factor = stiffness / body.materials[spring.material].stiffness;
+  if (factor == spring.stiffness_factor || stiffness == body.stiffness(spring)) return std::nullopt;
+  return ChangedSpring{.spring = index, .stiffness_factor = factor};
+}
+
 /// Multiplies a property of the most stressed springs by a factor, within bounds. Springs without the property are
 /// skipped. A value that is already beyond its bound stays as it is.
 class Adaptation : public Devo {
  public:
-  SpringRequest observes() const final { return measure_.request(); }
+  RecordRequest observes() const final { return measure_.request(); }
   Measure measure(Causes::List) const final { return measure_.measure(); }
 
   void develop(const DevoContext& context, Edits& edits, Rng& rng) const final {
@@ -24,9 +39,11 @@ class Adaptation : public Devo {
       stress.push_back(stress_of[s]);
     }
     for (const std::uint32_t i : most_stressed(stress, static_cast<std::size_t>(springs_), rng)) {
-      const double before = value(context.body, springs[i]), after = adapted(before);
-      if (after == before) continue;
-      change(context.body, springs[i], after, edits);
+      const double before = value(context.body, springs[i]),
+                   after = within_bounds(before, factor_ * before, low_, high_);
+      const std::optional<ChangedSpring> change = changed(context.body, springs[i], after);
+      if (after == before || !change) continue;
+      edits.changed_springs.push_back(*change);
       edits.causes.changed_springs.push_back(stress[i]);
     }
   }
@@ -49,13 +66,8 @@ class Adaptation : public Devo {
  private:
   /// Returns the property of a spring, or 0 if the spring does not have it.
   virtual double value(const Body& body, std::uint32_t spring) const = 0;
-  /// Adds to `edits` the change that gives the property of a spring a new value.
-  virtual void change(const Body& body, std::uint32_t spring, double value, Edits& edits) const = 0;
-
-  double adapted(double before) const {
-    const double after = factor_ * before;
-    return factor_ < 1 ? std::max(after, std::min(before, low_)) : std::min(after, std::max(before, high_));
-  }
+  /// Returns the change that gives the property of a spring a new value, or nothing if it has this value.
+  virtual std::optional<ChangedSpring> changed(const Body& body, std::uint32_t spring, double value) const = 0;
 
   std::int64_t springs_ = 125;
   double factor_, low_, high_;

@@ -28,7 +28,7 @@ struct ArrivalRule {
     measure.declare(p);
   }
 
-  SpringRequest request() const { return where == "by-stress" ? measure.request() : SpringRequest{}; }
+  RecordRequest request() const { return where == "by-stress" ? measure.request() : RecordRequest{}; }
 };
 
 /// Adds new masses to a body that has at least one spring. A new mass gets the material of a random mass that stays in
@@ -113,13 +113,16 @@ class Arrivals {
     for (std::uint32_t i = 0; i < std::min<std::int64_t>(count, rule_.springs); ++i) {
       if (rule_.join == "random") std::swap(partners[i], partners[i + rng.below(count - i)]);
       const auto mixed = material_between(body, own, body.masses[partners[i]].material);
-      edits.new_springs.push_back({partners[i], newest, mixed ? *mixed : random_spring_material(rng), {}});
+      edits.new_springs.push_back(mixed ? NewSpring{partners[i], newest, *mixed, {}}
+                                        : like_a_random_spring(partners[i], newest, rng));
     }
   }
 
-  Material random_spring_material(Rng& rng) const {
+  /// Returns a new spring with the stiffness, amplitude, frequency and phase of a random one.
+  NewSpring like_a_random_spring(std::uint32_t a, std::uint32_t b, Rng& rng) const {
     const auto& springs = context_.body.springs;
-    return context_.body.materials[springs[rng.below(static_cast<std::uint32_t>(springs.size()))].material];
+    const Spring& model = springs[rng.below(static_cast<std::uint32_t>(springs.size()))];
+    return {a, b, context_.body.materials[model.material], {}, model.stiffness_factor};
   }
 
   bool is_of_air(std::uint32_t mass) const {

@@ -14,22 +14,30 @@ namespace evodevo {
 /// proportion to the number of springs.
 class Partners {
  public:
-  explicit Partners(const Body& body) : first_(body.masses.size() + 1), partners_(2 * body.springs.size()) {
+  explicit Partners(const Body& body)
+      : first_(body.masses.size() + 1), partners_(2 * body.springs.size()), springs_(2 * body.springs.size()) {
     for (const Spring& spring : body.springs) {
       ++first_[spring.a + 1];
       ++first_[spring.b + 1];
     }
     for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
     auto next = first_;
-    for (const Spring& spring : body.springs) {
-      partners_[next[spring.a]++] = spring.b;
-      partners_[next[spring.b]++] = spring.a;
-    }
+    for (std::uint32_t s = 0; s < body.springs.size(); ++s)
+      for (const auto& [mass, other] :
+           {std::pair(body.springs[s].a, body.springs[s].b), {body.springs[s].b, body.springs[s].a}}) {
+        partners_[next[mass]] = other;
+        springs_[next[mass]++] = s;
+      }
   }
 
   /// Returns the partners of a mass, in the order of the springs.
   std::span<const std::uint32_t> of(std::uint32_t mass) const {
     return {partners_.data() + first_[mass], first_[mass + 1] - first_[mass]};
+  }
+
+  /// Returns the indices of the springs of a mass, ascending.
+  std::span<const std::uint32_t> springs_of(std::uint32_t mass) const {
+    return {springs_.data() + first_[mass], first_[mass + 1] - first_[mass]};
   }
 
   bool joined(std::uint32_t a, std::uint32_t b) const {
@@ -39,7 +47,7 @@ class Partners {
 
  private:
   std::vector<std::uint32_t> first_;  ///< for each mass, the index of its first partner in `partners_`
-  std::vector<std::uint32_t> partners_;
+  std::vector<std::uint32_t> partners_, springs_;
 };
 
 /// Returns the number of springs of each mass, including its contacts to air (paper, section IV-D3).

@@ -48,7 +48,7 @@ class StressMeasure {
              "or the mean force with which it pulls (tension) or pushes (compression).");
   }
 
-  SpringRequest request() const {
+  RecordRequest request() const {
     return {.stress = by_ == "mean-force",
             .peak_force = by_ == "peak",
             .muscle_work = by_ == "work",

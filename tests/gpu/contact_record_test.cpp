@@ -1,0 +1,50 @@
+// Devo operators see the same contact of masses with the ground on both devices.
+#include <gmock/gmock.h>
+
+#include "evolution/breeding.hpp"
+#include "gpu.hpp"
+#include "support/told.hpp"
+
+namespace evodevo::testing_gpu {
+namespace {
+
+using testing::Told;
+
+/// Returns the share of contact of the masses of ten developing robots after each cycle.
+std::vector<std::vector<double>> contact_on(Simulator& simulator, const Experiment& experiment) {
+  const Evaluation evaluation(experiment, simulator);
+  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 10);
+  std::vector<Newborn> newborns;
+  for (const Individual& individual : individuals) newborns.push_back({individual.id, 0, &individual.genome});
+  std::vector<Life> lives = evaluation.birth.of(newborns);
+  evaluation.development.run(lives, [](double) {});
+  std::vector<std::vector<double>> contact;
+  for (const Life& life : lives) contact.push_back(life.living.contact);
+  return contact;
+}
+
+class ContactRecord : public ::testing::TestWithParam<Way> {};
+
+TEST_P(ContactRecord, AgreesWithTheCpu) {
+  EVODEVO_NEEDS_GPU();
+  Experiment experiment = testing::with({Told({.contact = true}, [](const DevoContext&, Edits&) {})},
+                                        {{"development.cycles", "2", ""}, {"development.cycle_time", "0.5", ""}});
+  experiment.stepping = stepping(GetParam());
+  const auto cpu = contact_on(*make_cpu_simulator(experiment.scene, experiment.stepping, 0), experiment);
+  const auto gpu = contact_on(*make_cuda_simulator(experiment.scene, experiment.stepping), experiment);
+  ASSERT_EQ(gpu.size(), cpu.size());
+  double most = 0;
+  for (std::size_t i = 0; i < cpu.size(); ++i) {
+    ASSERT_EQ(gpu[i].size(), cpu[i].size()) << i;
+    for (std::size_t mass = 0; mass < cpu[i].size(); ++mass) {
+      EXPECT_NEAR(gpu[i][mass], cpu[i][mass], 0.05) << i << ' ' << mass;
+      most = std::max(most, gpu[i][mass]);
+    }
+  }
+  EXPECT_GT(most, 0.9) << "some masses rest on the ground";
+}
+
+INSTANTIATE_TEST_SUITE_P(Gpu, ContactRecord, all_ways(), [](const auto& test) { return name(test.param); });
+
+}  // namespace
+}  // namespace evodevo::testing_gpu

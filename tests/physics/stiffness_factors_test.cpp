@@ -1,0 +1,93 @@
+// Springs whose stiffness differs from that of their material by a factor.
+#include "analysis/stiffness_factors.hpp"
+
+#include <gtest/gtest.h>
+
+#include "analysis/energy.hpp"
+#include "analysis/stability.hpp"
+#include "support.hpp"
+
+namespace evodevo::test {
+namespace {
+
+/// A random body with muscles; every spring has a factor from 0.5 to 1.5, some of them equal, and some 1.
+Body varied_body() {
+  Body body = random_body(60, 10, 5, 5);
+  for (std::size_t i = 0; i < body.springs.size(); ++i)
+    body.springs[i].stiffness_factor = 0.5 + static_cast<double>(i % 21) / 20;
+  return body;
+}
+
+/// The same body, in which every spring has a material of its own instead.
+Body with_a_material_for_each(Body body) {
+  const std::vector<Material> shared = body.materials;
+  body.materials.clear();
+  for (Spring& spring : body.springs) {
+    Material own = shared[spring.material];
+    own.stiffness *= spring.stiffness_factor;
+    spring.stiffness_factor = 1;
+    spring.material = static_cast<std::uint32_t>(body.materials.size());
+    body.materials.push_back(own);
+  }
+  return body;
+}
+
+TEST(StiffnessFactors, BecomePartsOfMaterials) {
+  const Body body = varied_body();
+  const auto plain = without_factors(body);
+  ASSERT_NE(plain, nullptr);
+  for (std::size_t i = 0; i < body.springs.size(); ++i) {
+    EXPECT_EQ(plain->springs[i].stiffness_factor, 1);
+    EXPECT_EQ(plain->stiffness(plain->springs[i]), body.stiffness(body.springs[i])) << i;
+    const Material &shared = body.materials[body.springs[i].material],
+                   &own = plain->materials[plain->springs[i].material];
+    EXPECT_EQ(own.phase, shared.phase);
+    EXPECT_EQ(own.amplitude, shared.amplitude);
+  }
+  EXPECT_LE(plain->materials.size(), 21 * body.materials.size()) << "one for each pair of material and factor";
+  EXPECT_EQ(without_factors(*plain), nullptr);
+}
+
+TEST(StiffnessFactors, CountInEnergyAndTimeStep) {
+  const Body body = varied_body(), other = with_a_material_for_each(body);
+  const Scene scene = walking_scene();
+  State state = resting(body, scene);
+  for (Vec3& place : state.position) place = 1.1 * place;
+  EXPECT_DOUBLE_EQ(total_energy(body, state, scene), total_energy(other, state, scene));
+  for (const Method method : explicit_methods)
+    EXPECT_DOUBLE_EQ(largest_dt(body, state.position, method, 1), largest_dt(other, state.position, method, 1));
+}
+
+class StiffnessFactorsInMotion : public testing::TestWithParam<Arithmetic> {
+ protected:
+  static Answer moved(const Body& body, Materials materials) {
+    const auto [method, precision] = GetParam();
+    const Scene scene{Gravity{}, {}, {}, Damping{}, {}};
+    Answer answer{{}, resting(body, scene)};
+    answer.task = {.body = &body, .state = &answer.state, .dt = 0.0002, .steps = 300};
+    make_cpu_simulator(scene, {method, precision, materials}, 1)
+        ->run({&answer.task, 1}, {.stress = true, .work = true, .tension = true});
+    EXPECT_EQ(answer.task.status, Status::ok) << answer.task.reason;
+    return answer;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Methods, StiffnessFactorsInMotion,
+                         testing::Combine(testing::ValuesIn(all_methods),
+                                          testing::Values(Precision::float32, Precision::float64)),
+                         [](const auto& instance) { return name_of(instance.param); });
+
+TEST_P(StiffnessFactorsInMotion, AreLikeMaterialsWithThisStiffness) {
+  const Body body = varied_body(), other = with_a_material_for_each(body);
+  for (const Materials materials : {Materials::table, Materials::computed}) {
+    const Answer with = moved(body, materials), without = moved(other, materials);
+    EXPECT_TRUE(same_bits(with.state, without.state));
+    EXPECT_EQ(with.task.stress, without.task.stress);
+    EXPECT_EQ(with.task.tension, without.task.tension);
+    EXPECT_EQ(with.task.work, without.task.work);
+    EXPECT_EQ(with.task.body, &body);
+  }
+}
+
+}  // namespace
+}  // namespace evodevo::test

@@ -1,0 +1,81 @@
+// Devo operators that do what a test says, and the lives that they develop.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "life/evaluation.hpp"
+#include "support/experiments.hpp"
+
+namespace evodevo::testing {
+
+inline const auto unwatched = [](double) {};
+
+/// A devo operator that does what a test says.
+struct Told final : Devo {
+  RecordRequest request = {};
+  std::vector<std::string> of_masses = {}, of_springs = {};
+  std::function<void(const DevoContext&, Edits&)> action = {};
+
+  Told(RecordRequest wanted, std::function<void(const DevoContext&, Edits&)> then)
+      : request(wanted), action(std::move(then)) {}
+  RecordRequest observes() const override { return request; }
+  std::vector<std::string> mass_memory() const override { return of_masses; }
+  std::vector<std::string> spring_memory() const override { return of_springs; }
+  void develop(const DevoContext& context, Edits& edits, Rng&) const override { action(context, edits); }
+};
+
+/// A small experiment with these devo operators.
+inline Experiment with(const std::vector<Told>& operators, std::vector<Override> overrides = {}) {
+  Experiment experiment = read(small_experiment, std::move(overrides));
+  experiment.devo.clear();
+  for (const Told& told : operators) experiment.devo.push_back({std::make_unique<Told>(told), {}});
+  return experiment;
+}
+
+inline std::unique_ptr<Simulator> simulator_for(const Experiment& experiment, int threads = 1) {
+  return make_cpu_simulator(experiment.scene, experiment.stepping, threads);
+}
+
+inline Life matured(const Experiment& experiment, std::optional<LifeRecord> record = std::nullopt) {
+  static const Genome genome = {1, 2};
+  const Newborn newborn{0, 0, &genome, std::move(record)};
+  const auto simulator = simulator_for(experiment);
+  const Evaluation evaluation(experiment, *simulator);
+  std::vector<Life> lives = evaluation.birth.of({&newborn, 1});
+  evaluation.development.run(lives, unwatched);
+  EXPECT_EQ(lives.front().result.status, Status::ok) << lives.front().result.reason;
+  return std::move(lives.front());
+}
+
+inline std::string error_of(const Experiment& experiment) {
+  try {
+    matured(experiment);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+inline std::vector<double> numbers_of(std::span<const double> record) { return {record.begin(), record.end()}; }
+
+/// Joins a new mass to the first two masses.
+inline void add_mass(const DevoContext& context, Edits& edits) {
+  const auto mass = static_cast<std::uint32_t>(context.body.masses.size() + edits.new_masses.size());
+  const Box& box = context.bounds;
+  const double part = 0.3 + 0.1 * static_cast<double>(edits.new_masses.size());
+  edits.new_masses.push_back({box.low + part * (box.high - box.low), context.mass, 0});
+  edits.new_springs.push_back({0, mass, {10000, 0, 0, 0}, {}});
+  edits.new_springs.push_back({1, mass, {10000, 0, 0, 0}, {}});
+}
+
+inline constexpr RecordRequest all_of_masses{.contact = true, .age = true, .degree = true, .load = true};
+
+}  // namespace evodevo::testing
