@@ -27,8 +27,10 @@ class ContactRecord : public ::testing::TestWithParam<Way> {};
 
 TEST_P(ContactRecord, AgreesWithTheCpu) {
   EVODEVO_NEEDS_GPU();
+  // a mass that rests on the stiff floor bounces microscopically; from about 0.05 s on, rounding decides in which steps
+  // it touches the floor
   Experiment experiment = testing::with({Told({.contact = true}, [](const DevoContext&, Edits&) {})},
-                                        {{"development.cycles", "2", ""}, {"development.cycle_time", "0.5", ""}});
+                                        {{"development.cycles", "2", ""}, {"development.cycle_time", "0.02", ""}});
   experiment.stepping = stepping(GetParam());
   const auto cpu = contact_on(*make_cpu_simulator(experiment.scene, experiment.stepping, 0), experiment);
   const auto gpu = contact_on(*make_cuda_simulator(experiment.scene, experiment.stepping), experiment);
@@ -37,7 +39,7 @@ TEST_P(ContactRecord, AgreesWithTheCpu) {
   for (std::size_t i = 0; i < cpu.size(); ++i) {
     ASSERT_EQ(gpu[i].size(), cpu[i].size()) << i;
     for (std::size_t mass = 0; mass < cpu[i].size(); ++mass) {
-      EXPECT_NEAR(gpu[i][mass], cpu[i][mass], 0.05) << i << ' ' << mass;
+      EXPECT_NEAR(gpu[i][mass], cpu[i][mass], 0.03) << i << ' ' << mass << ": one of 40 steps";
       most = std::max(most, gpu[i][mass]);
     }
   }
