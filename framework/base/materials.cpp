@@ -7,7 +7,8 @@ namespace evodevo {
 
 std::size_t MaterialHash::operator()(const Material& material) const {
   std::size_t hash = 0;
-  for (const double value : {material.stiffness, material.amplitude, material.frequency, material.phase})
+  for (const double value :
+       {material.stiffness, material.amplitude, material.frequency, material.phase, material.damping})
     boost::hash_combine(hash, std::hash<double>()(value));  // equal for 0 and -0
   return hash;
 }

@@ -45,7 +45,8 @@ Json to_json(const Event& event, const std::vector<Narrated>& operators) {
     json["material"] = {{"stiffness", event.material->stiffness},
                         {"amplitude", event.material->amplitude},
                         {"frequency", event.material->frequency},
-                        {"phase", event.material->phase}};
+                        {"phase", event.material->phase},
+                        {"damping", event.material->damping}};
   if (event.stiffness) json["stiffness"] = *event.stiffness;
   return json;
 }
@@ -75,9 +76,11 @@ void print(const Event& event, const std::vector<Narrated>& operators) {
   if (event.cause) print(*event.cause, op->measure(event.cause->list));
   if (const auto& at = event.position) fmt::print(std::cout, " at ({:.4g}, {:.4g}, {:.4g}) m", at->x, at->y, at->z);
   if (event.rest_length) fmt::print(std::cout, ", rest length {:.4g} m", *event.rest_length);
-  if (const auto& material = event.material)
+  if (const auto& material = event.material) {
     fmt::print(std::cout, ", {:.4g} N/m, amplitude {:.4g}, {:.4g} Hz, phase {:.4g}", material->stiffness,
                material->amplitude, material->frequency, material->phase);
+    if (material->damping > 0) fmt::print(std::cout, ", damping {:.4g}", material->damping);
+  }
   if (event.stiffness) fmt::print(std::cout, ", stiffness {:.4g} N/m", *event.stiffness);
   std::cout << '\n';
 }

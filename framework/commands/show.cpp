@@ -64,7 +64,10 @@ class Report {
     if (const Control control = recorded_settings(archive_).development.control; control != Control::off)
       std::cout << "development under the control \"" << name_of(control) << "\"\n";
     std::cout << done() << " evaluations: " << statuses.at("ok") << " ok, " << statuses.at("invalid") << " invalid, "
-              << statuses.at("diverged") << " diverged; " << clones(generations_) << " of them clones\n\n";
+              << statuses.at("diverged") << " diverged";
+    if (has_refusals())
+      std::cout << ", " << statuses.at("artefact") << " artefact, " << statuses.at("passive") << " passive";
+    std::cout << "; " << clones(generations_) << " of them clones\n\n";
     print_generations();
     print_diversity();
     print_failures();
@@ -91,6 +94,10 @@ class Report {
   }
 
  private:
+  bool has_refusals() const {
+    return std::ranges::any_of(generations_, [](const Summary& s) { return s.artefact + s.passive > 0; });
+  }
+
   std::int64_t done() const { return generations_.empty() ? 0 : generations_.back().evaluations; }
 
   /// Returns the devices of the run, in the order in which they were first used.
@@ -107,7 +114,9 @@ class Report {
     fmt::print(std::cout, "{:>10} {:>12}", "generation", "evaluations");
     for (const Column& column : columns_) fmt::print(std::cout, " {:>{}} {:>10}", "best", column.width, "median");
     if (!map_.axes.empty()) fmt::print(std::cout, " {:>8} {:>10}", "coverage", "QD score");
-    fmt::print(std::cout, " {:>9} {:>8} {:>7}\n", "diverged", "invalid", "clones");
+    fmt::print(std::cout, " {:>9} {:>8}", "diverged", "invalid");
+    if (has_refusals()) fmt::print(std::cout, " {:>8} {:>8}", "artefact", "passive");
+    fmt::print(std::cout, " {:>7}\n", "clones");
     const std::size_t stride = (generations_.size() + generations_shown - 1) / generations_shown;
     for (std::size_t i = 0; i < generations_.size(); ++i)
       if (i % stride == 0 || i + 1 == generations_.size()) print_generation(i);
@@ -130,7 +139,9 @@ class Report {
       const MapState& state = map_.history.at(i);
       fmt::print(std::cout, " {:>8} {:>10}", percent(map_.coverage(state)), number(map_.qd_score(state)));
     }
-    fmt::print(std::cout, " {:>9} {:>8} {:>7}\n", s.diverged, s.invalid, s.clones);
+    fmt::print(std::cout, " {:>9} {:>8}", s.diverged, s.invalid);
+    if (has_refusals()) fmt::print(std::cout, " {:>8} {:>8}", s.artefact, s.passive);
+    fmt::print(std::cout, " {:>7}\n", s.clones);
   }
 
   /// Prints how many niches are filled, and what selection has noted about the living.

@@ -1,6 +1,7 @@
 #include "conformance/tables.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -81,6 +82,7 @@ void SampleTable::set_rows(const std::vector<std::uint8_t>& fails, Rng& rng) {
     for (std::size_t i = 0; i < count; ++i) numbers.push_back(rng.uniform(low, high));
     return numbers;
   };
+  constexpr std::array lost{Status::diverged, Status::artefact, Status::passive};
   const auto half = static_cast<std::uint32_t>(rows_.size() / 2);
   for (std::uint32_t i = 0; i < rows_.size(); ++i) {
     Lists& lists = lists_[i];
@@ -95,7 +97,7 @@ void SampleTable::set_rows(const std::vector<std::uint8_t>& fails, Rng& rng) {
     const Numbers scores = draw(objectives_.size(), -5, 5);
     if (fails[i] != 0) {
       const bool is_infeasible = rng.chance(0.5);
-      row.status = is_infeasible ? Status::invalid : Status::diverged;
+      row.status = is_infeasible ? Status::invalid : lost[i % lost.size()];
       row.violation = is_infeasible ? rng.uniform(0.1, 3) : std::numeric_limits<double>::infinity();
       continue;
     }

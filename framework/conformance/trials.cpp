@@ -22,7 +22,9 @@ void append(Numbers& numbers, std::initializer_list<double> more) { numbers.inse
 void append(Numbers& numbers, const Numbers& more) { numbers.insert(numbers.end(), more.begin(), more.end()); }
 void append(Numbers& numbers, Vec3 v) { append(numbers, {v.x, v.y, v.z}); }
 
-void append(Numbers& numbers, const Material& m) { append(numbers, {m.stiffness, m.amplitude, m.frequency, m.phase}); }
+void append(Numbers& numbers, const Material& m) {
+  append(numbers, {m.stiffness, m.amplitude, m.frequency, m.phase, m.damping});
+}
 
 void append(Numbers& numbers, const std::vector<Block>& blocks) {
   for (const Block& block : blocks)

@@ -29,7 +29,7 @@ std::int64_t count_clones(const std::vector<Individual>& population, const std::
                        [&](const Individual& newborn) { return !known.add(newborn.genome); });
 }
 
-std::vector<std::uint32_t> remove_copies(std::vector<Individual>& everyone) {
+std::vector<std::uint32_t> copies_in(const std::vector<Individual>& everyone) {
   std::vector<const Individual*> youngest_first;
   for (const Individual& individual : everyone) youngest_first.push_back(&individual);
   std::ranges::stable_sort(youngest_first, std::greater(), [](const Individual* one) { return one->origin; });
@@ -46,6 +46,11 @@ std::vector<std::uint32_t> remove_copies(std::vector<Individual>& everyone) {
       known.push_back(&own);
   }
   std::ranges::sort(copies);
+  return copies;
+}
+
+std::vector<std::uint32_t> remove_copies(std::vector<Individual>& everyone) {
+  std::vector<std::uint32_t> copies = copies_in(everyone);
   std::erase_if(everyone, [&](const Individual& one) { return std::ranges::binary_search(copies, one.id); });
   return copies;
 }

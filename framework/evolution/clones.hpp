@@ -33,10 +33,13 @@ class GenomeSet {
 /// Returns the number of newborns that are genetically equal to a member of `population` or to an earlier newborn.
 std::int64_t count_clones(const std::vector<Individual>& population, const std::vector<Individual>& newborns);
 
-/// Removes copies from `everyone`, so that they do not displace other individuals from the front. Copies are
-/// individuals with equal genes and equal values of all objectives; individuals without scores count as having equal
-/// scores. Of several copies, the youngest stays, and of equally young ones, the one with the lowest id. Returns the
-/// ids of the removed individuals in ascending order.
+/// Returns the ids of the copies in `everyone`, in ascending order. Copies are individuals with equal genes and equal
+/// values of all objectives; individuals without scores count as having equal scores. Of several such individuals, the
+/// youngest does not count as a copy, and of equally young ones, the one with the lowest id.
+std::vector<std::uint32_t> copies_in(const std::vector<Individual>& everyone);
+
+/// Removes the copies from `everyone`, so that they do not displace other individuals from the front. Returns the ids
+/// of the removed individuals in ascending order.
 std::vector<std::uint32_t> remove_copies(std::vector<Individual>& everyone);
 
 }  // namespace evodevo

@@ -8,9 +8,9 @@
 
 #include "base/philox.hpp"
 #include "base/text.hpp"
-#include "evodevo/helpers/pareto.hpp"
 #include "evolution/breeding.hpp"
 #include "evolution/clones.hpp"
+#include "evolution/front_verification.hpp"
 #include "evolution/selection_table.hpp"
 
 namespace evodevo {
@@ -63,8 +63,7 @@ Survival chosen_survivors(const Experiment& experiment, const SelectionTable& ta
 /// Returns the Pareto front of `everyone` in the objectives and in youth.
 std::vector<const Individual*> front(const std::vector<Individual>& everyone, const Experiment& experiment,
                                      std::uint32_t generation) {
-  const SelectionTable table(everyone, experiment, generation);
-  const std::vector<std::uint32_t> layer = pareto_layers(scores_and_youth(table.rows()));
+  const std::vector<std::uint32_t> layer = layers(everyone, experiment, generation);
   std::vector<const Individual*> front;
   for (std::size_t i = 0; i < everyone.size(); ++i)
     if (everyone[i].result.status == Status::ok && layer[i] == 0) front.push_back(&everyone[i]);
@@ -173,6 +172,13 @@ Summary summarise(const std::vector<Individual>& population, const std::vector<I
   return summary;
 }
 
+void add_refusals(const std::vector<Refusal>& refusals, Summary& summary) {
+  for (const Refusal& refusal : refusals) {
+    summary.artefact += refusal.status == Status::artefact;
+    summary.passive += refusal.status == Status::passive;
+  }
+}
+
 }  // namespace
 
 BestAndMedian best_and_median(std::vector<double> scores, bool maximise) {
@@ -201,6 +207,7 @@ void for_each_time(Time& time, const Use& use) {
   use("seconds_decode", time.evaluation.decode);
   use("seconds_simulate", time.evaluation.simulate);
   use("seconds_develop", time.evaluation.develop);
+  use("seconds_verify", time.verify);
 }
 
 }  // namespace
@@ -238,6 +245,7 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
   const Provenance provenance = this_provenance(experiment, simulator.device());
   const std::uint32_t provenance_index = archive.add_provenance(provenance);
   FrontLives lives(experiment, evaluation, archive, provenance);
+  FrontVerification verification(experiment, simulator, archive, provenance);
 
   for (; !is_finished(experiment, summaries) && !stop; ++generation) {
     const auto start = Clock::now();
@@ -251,6 +259,8 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
     Summary summary = summarise(population, newborns, generation);
     lives.take(newborns);
     population.insert(population.end(), newborns.begin(), newborns.end());
+    const std::vector<Refusal> refusals = verification.refuse(population, generation);
+    add_refusals(refusals, summary);
     std::vector<std::uint32_t> dropped;
     if (!needs_all_children(experiment)) dropped = remove_copies(population);
     lives.keep_front(population, generation);
@@ -263,13 +273,14 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
     summary.wall_time = seconds_since(start);
     summary.provenance = provenance_index;
     const auto commit = Clock::now();
-    archive.commit(newborns, dropped, lives.committed(), summary, remembered);
+    archive.commit(newborns, dropped, lives.committed(), summary, remembered, refusals);
     time.archive += seconds_since(commit);
     observer.generation_done(summary);
     summaries.push_back(summary);
   }
   time.whole = seconds_since(begin);
   time.evaluation = evaluation.phase_times();
+  time.verify = verification.seconds();
   return time;
 }
 

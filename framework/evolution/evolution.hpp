@@ -20,7 +20,8 @@ struct Observer {
 /// Wall-clock time that a run has spent, s. Phases overlap, so the sum of the phases may exceed the whole.
 struct TimeSpent {
   double whole = 0, archive = 0;  ///< time in evolve(), and the part of it spent writing the archive
-  PhaseTimes evaluation;          ///< time in each phase of evaluation
+  PhaseTimes evaluation;          ///< time in each phase of evaluation, without that of verification
+  double verify = 0;              ///< time spent verifying the front
 };
 
 /// Adds the time that this process has spent to the times in the run's record. The time of a process that is killed is

@@ -34,10 +34,18 @@ struct Summary {
   std::int64_t evaluations = 0;            ///< number of evaluations since the run began
   std::optional<double> best, median;      ///< of the first objective, over the survivors whose status is `ok`
   std::int64_t diverged = 0, invalid = 0;  ///< numbers of this generation's evaluations with this status
+  std::int64_t artefact = 0, passive = 0;  ///< numbers of individuals that got this status in this generation
   std::int64_t clones = 0;  ///< newborns genetically equal to a member of the population or to an earlier newborn
   std::uint64_t spring_evaluations = 0;  ///< spring evaluations of this generation
   double wall_time = 0;                  ///< wall-clock time of this generation, s
   std::uint32_t provenance = 0;          ///< index of this generation's provenance in Archive::provenances()
+};
+
+/// What verification found of an individual whose fitness does not hold.
+struct Refusal {
+  std::uint32_t individual = 0;
+  Status status = Status::artefact;  ///< artefact or passive
+  std::string reason;                ///< the trial, and the fitness in it and in the run
 };
 
 /// A number that the selection operator has noted about an individual.

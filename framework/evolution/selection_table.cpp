@@ -6,6 +6,8 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "evodevo/helpers/pareto.hpp"
+
 namespace evodevo {
 namespace {
 
@@ -48,6 +50,12 @@ void set_values(const Individual& individual, const Experiment& experiment, cons
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> layers(const std::vector<Individual>& individuals, const Experiment& experiment,
+                                  std::uint32_t generation) {
+  const SelectionTable table(individuals, experiment, generation);
+  return pareto_layers(scores_and_youth(table.rows()));
+}
 
 double violation(const Result& result, const Experiment& experiment) {
   if (result.status == Status::ok) return 0;

@@ -33,6 +33,11 @@ class SelectionTable {
   SelectionContext context_;
 };
 
+/// Returns the Pareto layer of each individual in the objectives and in youth, in the order of `individuals`. The front
+/// consists of the individuals in layer 0 whose status is `ok`.
+std::vector<std::uint32_t> layers(const std::vector<Individual>& individuals, const Experiment& experiment,
+                                  std::uint32_t generation);
+
 /// Returns the sum of the constraints of an individual that are above 0; 0 if its status is `ok`, and infinity if the
 /// evaluation failed before the constraints were known.
 double violation(const Result& result, const Experiment& experiment);

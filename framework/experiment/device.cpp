@@ -9,11 +9,14 @@
 namespace evodevo {
 
 std::unique_ptr<Simulator> make_simulator(const Experiment& experiment) {
+  return make_simulator(experiment, experiment.stepping);
+}
+
+std::unique_ptr<Simulator> make_simulator(const Experiment& experiment, const Stepping& stepping) {
   if (experiment.device != Device::cpu) {
 #ifdef EVODEVO_CUDA
     const std::string obstacle = why_cuda_is_unusable();
-    if (obstacle.empty())
-      return make_cuda_simulator(experiment.scene, experiment.stepping, static_cast<int>(experiment.threads));
+    if (obstacle.empty()) return make_cuda_simulator(experiment.scene, stepping, static_cast<int>(experiment.threads));
 #else
     const std::string obstacle = "this evodevo was built without CUDA; build it where the CUDA toolkit is installed";
 #endif
@@ -21,7 +24,7 @@ std::unique_ptr<Simulator> make_simulator(const Experiment& experiment) {
       throw ConfigError(experiment.device_location + ": simulation.device = \"cuda\": " + obstacle +
                         ", or set simulation.device to \"cpu\"");
   }
-  return make_cpu_simulator(experiment.scene, experiment.stepping, static_cast<int>(experiment.threads));
+  return make_cpu_simulator(experiment.scene, stepping, static_cast<int>(experiment.threads));
 }
 
 std::string remedy_for(const std::exception& failure) {

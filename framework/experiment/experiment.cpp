@@ -131,6 +131,16 @@ Request fitness_request(const Experiment& experiment, std::size_t index) {
                        [&] { return experiment.fitness.at(index).op->observes(); });
 }
 
+std::optional<Request> first_objective_request(const Experiment& experiment) {
+  for (std::size_t i = 0; i < experiment.fitness.size(); ++i) {
+    const auto scores =
+        call_operator(experiment.call_of(Fitness::kind, i), [&] { return experiment.fitness[i].op->objectives(); });
+    const auto is_objective = [](const Objective& score) { return score.role == Role::objective; };
+    if (std::ranges::any_of(scores, is_objective)) return fitness_request(experiment, i);
+  }
+  return std::nullopt;
+}
+
 Recording recording(const RecordRequest& request) {
   return {.stress = request.stress || request.load,
           .peak_force = request.peak_force,

@@ -96,6 +96,8 @@ MemoryNames memory_names(const Devo& op);
 MemoryNames memory_names(const Experiment& experiment, std::size_t index);
 /// Returns what the fitness operator with this index (from 0) asks to observe.
 Request fitness_request(const Experiment& experiment, std::size_t index);
+/// Returns what the fitness operator that has the first objective asks to observe; nullopt if no operator has one.
+std::optional<Request> first_objective_request(const Experiment& experiment);
 /// Returns what must be recorded of springs to make the requested records.
 Recording recording(const RecordRequest& request);
 

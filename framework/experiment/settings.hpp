@@ -105,6 +105,7 @@ struct Settings {
   std::int64_t children = 0;            ///< number of newborns of each generation; 0: as many as `population`
   std::int64_t random_individuals = 1;  ///< number of random individuals that enter each generation
   std::int64_t verify = 1;              ///< number of best individuals to verify when the run ends
+  bool verify_front = false;            ///< whether individuals are verified before they enter the front
 
   double mass = 0.2;  ///< mass of one point mass, kg
   std::map<std::string, Material> materials = base_materials();

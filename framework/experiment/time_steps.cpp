@@ -19,7 +19,9 @@ LongestStep longest_fixed_step(const StepRule& rule, const Body& body, std::span
   if (dt > largest_contact_dt(scene, body, method))
     return failed(to_text(dt) + " s is too long for the body's lightest mass on this floor");
   if (dt > largest_muscle_dt(body)) return failed(to_text(dt) + " s is too long for the body's fastest muscles");
-  if (!is_stable(body, positions, method, dt)) return failed(to_text(dt) + " s is too long for the body's springs");
+  if (!is_stable(body, positions, scene, method, dt))
+    return failed(to_text(dt) + " s is too long for the body's springs" +
+                  (method == Method::rk4 && scene.damping ? " and the scene's damping" : ""));
   return {*rule.dt, ""};
 }
 

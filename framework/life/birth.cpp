@@ -15,9 +15,9 @@ namespace {
 /// Returns the reason why a body in the middle of its life must not be simulated, or an empty text if it may be
 /// simulated. It must not be simulated if the floor would fling it out, that is, if the elastic energy of the floor
 /// below its masses is larger than the energy that the body can have put into the floor: its total energy plus the
-/// energy of a fall by its own size.
+/// energy of a fall by its own size. A rigid floor lets masses out slowly.
 std::string throw_by_ground(const LivingBody& living, const Scene& scene) {
-  if (!scene.floor) return {};
+  if (!scene.floor || scene.floor->rigid()) return {};
   const std::vector<Vec3>& positions = living.state.position;
   const double size = bounding_box(positions).longest_side(), rounding = 1e-6 * size;
   double weight = 0, held = 0, deepest = 0;  // N, J, m

@@ -36,10 +36,11 @@ class BodyReader {
  private:
   void read_materials(const Json& root) {
     input_.each(root, "materials", [&](const Json& item, const std::string& at) {
-      input_.expect(item, at, {"name", "stiffness", "amplitude", "frequency", "phase"});
+      input_.expect(item, at, {"name", "stiffness", "amplitude", "frequency", "phase", "damping"});
       if (item.contains("name") && !item.at("name").is_string()) input_.fail(at + ".name", "expected a text");
       body_.materials.push_back({input_.number(item, at, "stiffness", 0), input_.number(item, at, "amplitude", 0),
-                                 input_.number(item, at, "frequency", 0), input_.number(item, at, "phase", lowest)});
+                                 input_.number(item, at, "frequency", 0), input_.number(item, at, "phase", lowest),
+                                 item.contains("damping") ? input_.number(item, at, "damping", 0) : 0.0});
     });
   }
 
@@ -130,6 +131,7 @@ Json materials_json(const Body& body, const std::vector<std::string>& names) {
     material["amplitude"] = body.materials[i].amplitude;
     material["frequency"] = body.materials[i].frequency;
     material["phase"] = body.materials[i].phase;
+    if (body.materials[i].damping != 0) material["damping"] = body.materials[i].damping;
     materials.push_back(std::move(material));
   }
   return materials;

@@ -19,15 +19,15 @@ struct GivenBody {
 ///
 ///   masses     a list of {"position", "velocity", "mass", "material"}: m, m/s, kg and an index
 ///   springs    a list of {"a", "b", "rest_length", "material"}: indices of two masses, m and an index
-///   materials  a list of {"name", "stiffness", "amplitude", "frequency", "phase"}: N/m, 1, Hz and rad
+///   materials  a list of {"name", "stiffness", "amplitude", "frequency", "phase", "damping"}: N/m, 1, Hz, rad and 1
 ///   time       time since birth, s
 ///   start_energy  energy that the energy guard allows (State::start_energy), J
 ///
 /// With "time", the body is in the middle of its life: the positions are the present ones, and each "mass" includes the
 /// payload that the mass carries. Without "time", the body is not born yet: the positions are its rest positions, it
 /// has neither "velocity" nor "start_energy", and at birth the scene adds its payload and puts the body on the ground.
-/// These keys may be left out: "name", the "material" of a mass, "velocity" (then 0) and "start_energy" (then the
-/// energy that the body has in the scene).
+/// These keys may be left out: "name", the "material" of a mass, "damping" and "velocity" (then 0), and "start_energy"
+/// (then the energy that the body has in the scene).
 std::string body_to_json(const GivenBody& given, const std::vector<std::string>& material_names);
 
 /// Reads a body from a file in this format. Throws a ConfigError that gives the file, the place and a remedy if the

@@ -115,6 +115,9 @@ class Editor {
       refuse(what + " by a spring whose amplitude is " + to_text(material.amplitude) + "; expected 0 to below 1");
     if (!std::isfinite(material.frequency) || !std::isfinite(material.phase))
       refuse(what + " by a spring whose frequency or phase is not finite");
+    if (!(material.damping >= 0) || !std::isfinite(material.damping))
+      refuse(what + " by a spring whose damping ratio is " + to_text(material.damping) +
+             "; expected a finite value, at least 0");
   }
 
   static bool is_rest_length(double length) { return length >= 0 && std::isfinite(length); }

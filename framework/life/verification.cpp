@@ -16,6 +16,10 @@ constexpr std::int64_t step_parts = 4;
 
 const Progress unwatched = [](double) {};
 
+Method other_method(Method method) {
+  return method == Method::velocity_verlet ? Method::symplectic_euler : Method::velocity_verlet;
+}
+
 Matured matured(const Evaluation& evaluation, std::span<const Champion> champions) {
   std::vector<Newborn> newborns;
   for (const Champion& champion : champions) newborns.push_back(champion.newborn);
@@ -57,11 +61,26 @@ class Trials {
     }
   }
 
-  /// Repeats the final evaluation with the method and steps of `conditions`, in double precision on the CPU.
-  void add_exact(const std::string& name, const Conditions& conditions) {
-    const Stepping stepping{conditions.method, Precision::float64, experiment_.stepping.materials};
-    const auto simulator = make_cpu_simulator(experiment_.scene, stepping, static_cast<int>(experiment_.threads));
-    add(name, *simulator, conditions, [](Life& life) { life.living.preparation = nullptr; });
+  /// Adds the trials that find artefacts of the step and the method.
+  void add_other_steps(const ExactSimulators& exact) {
+    const auto unprepare = [](Life& life) { life.living.preparation = nullptr; };  // it belongs to the run's simulator
+    const Conditions as_in_the_run(experiment_);
+    Conditions quarter = as_in_the_run;
+    quarter.step.refine *= step_parts;
+    add("quarter-step", *exact.same_method, quarter, unprepare);
+    Conditions other = as_in_the_run;
+    other.method = other_method(as_in_the_run.method);
+    other.step = {.dt = std::nullopt, .refine = step_parts};
+    add("other-method", *exact.other_method, other, unprepare);
+  }
+
+  /// Adds the trials that find individuals which do not move by themselves.
+  void add_passive(Simulator& simulator) {
+    const Conditions as_in_the_run(experiment_);
+    add("no-muscles", simulator, as_in_the_run, still_muscles);
+    Conditions later = as_in_the_run;
+    later.later = more_settling;
+    add("settled", simulator, later, [](Life&) {});
   }
 
   std::vector<Verification> take() { return std::move(verifications_); }
@@ -81,13 +100,8 @@ const Trial* find(const Verification& verification, const std::string& name) {
 }  // namespace
 
 bool is_verifiable(const Experiment& experiment) {
-  for (std::size_t i = 0; i < experiment.fitness.size(); ++i) {
-    const auto scores =
-        call_operator(experiment.call_of(Fitness::kind, i), [&] { return experiment.fitness[i].op->objectives(); });
-    const auto is_objective = [](const Objective& score) { return score.role == Role::objective; };
-    if (std::any_of(scores.begin(), scores.end(), is_objective)) return !fitness_request(experiment, i).cycle;
-  }
-  return false;
+  const std::optional<Request> request = first_objective_request(experiment);
+  return request && !request->cycle;
 }
 
 std::vector<Verification> verify(const Experiment& experiment, Simulator& simulator,
@@ -96,45 +110,69 @@ std::vector<Verification> verify(const Experiment& experiment, Simulator& simula
   const Evaluation run(experiment, simulator);
   Trials trials(experiment, champions, matured(run, champions));
   trials.add("again", simulator, as_in_the_run, [](Life&) {});
-
-  Conditions quarter = as_in_the_run;
-  quarter.step.refine *= step_parts;
-  trials.add_exact("quarter-step", quarter);
-  Conditions other = as_in_the_run;
-  other.method = as_in_the_run.method == Method::velocity_verlet ? Method::symplectic_euler : Method::velocity_verlet;
-  other.step = {.dt = std::nullopt, .refine = step_parts};
-  trials.add_exact("other-method", other);
-
+  trials.add_other_steps(exact_simulators(experiment));
   for (std::uint32_t i = 0; i < perturbed_starts; ++i)
     trials.add("perturbed-" + std::to_string(i + 1), simulator, as_in_the_run,
                [&](Life& life) { perturb(life, experiment, i); });
-  trials.add("no-muscles", simulator, as_in_the_run, still_muscles);
-  Conditions later = as_in_the_run;
-  later.later = more_settling;
-  trials.add("settled", simulator, later, [](Life&) {});
+  trials.add_passive(simulator);
+  return trials.take();
+}
+
+ExactSimulators exact_simulators(const Experiment& experiment) {
+  const auto simulator = [&](Method method) {
+    const Stepping stepping{method, Precision::float64, experiment.stepping.materials};
+    return make_cpu_simulator(experiment.scene, stepping, static_cast<int>(experiment.threads));
+  };
+  const Method method = experiment.stepping.method;
+  return {simulator(method), simulator(other_method(method))};
+}
+
+std::vector<Verification> verify_marks(const Experiment& experiment, Simulator& simulator, const ExactSimulators& exact,
+                                       std::span<const Champion> champions) {
+  const Evaluation run(experiment, simulator);
+  Trials trials(experiment, champions, matured(run, champions));
+  trials.add_other_steps(exact);
+  trials.add_passive(simulator);
   return trials.take();
 }
 
 bool held(const Verification& verification, const Trial& trial, bool maximise) {
   if (!trial.value) return false;
-  const double fitness = verification.fitness;
-  if (maximise && fitness > 0) return *trial.value >= enough * fitness;
-  return std::abs(*trial.value - fitness) <= enough * std::abs(fitness);
+  const double lost = maximise ? verification.fitness - *trial.value : *trial.value - verification.fitness;
+  return lost <= (1 - enough) * std::abs(verification.fitness);
 }
 
-std::vector<std::string> marks(const Verification& verification, bool maximise) {
-  const auto lost = [&](const std::string& name) {
+namespace {
+
+/// Returns the marks of an individual, each with the first trial that shows it.
+std::vector<Mark> all_marks(const Verification& verification, bool maximise) {
+  std::vector<Mark> marks;
+  const auto mark_by = [&](const char* name, Status status, const auto& shows) {
     const Trial* trial = find(verification, name);
-    return trial != nullptr && !held(verification, *trial, maximise);
+    const bool is_marked = !marks.empty() && marks.back().status == status;
+    if (trial != nullptr && !is_marked && shows(*trial)) marks.push_back({status, *trial});
   };
-  std::vector<std::string> marks;
-  if (lost("quarter-step") || lost("other-method")) marks.emplace_back("artefact");
+  const auto is_lost = [&](const Trial& trial) { return !held(verification, trial, maximise); };
+  mark_by("quarter-step", Status::artefact, is_lost);
+  mark_by("other-method", Status::artefact, is_lost);
   if (!maximise || !(verification.fitness > 0)) return marks;
-  const Trial *still = find(verification, "no-muscles"), *settled = find(verification, "settled");
-  const bool needs_no_muscles = still != nullptr && still->value && *still->value > enough * verification.fitness;
-  const bool comes_to_rest = settled != nullptr && settled->value && *settled->value < enough * verification.fitness;
-  if (needs_no_muscles || comes_to_rest) marks.emplace_back("passive");
+  const double half = enough * verification.fitness;
+  mark_by("no-muscles", Status::passive, [&](const Trial& trial) { return trial.value && *trial.value > half; });
+  mark_by("settled", Status::passive, [&](const Trial& trial) { return trial.value && *trial.value < half; });
   return marks;
+}
+
+}  // namespace
+
+std::vector<std::string> marks(const Verification& verification, bool maximise) {
+  std::vector<std::string> names;
+  for (const Mark& mark : all_marks(verification, maximise)) names.emplace_back(name(mark.status));
+  return names;
+}
+
+std::optional<Mark> first_mark(const Verification& verification, bool maximise) {
+  std::vector<Mark> marks = all_marks(verification, maximise);
+  return marks.empty() ? std::nullopt : std::optional(std::move(marks.front()));
 }
 
 std::string marks_text(const Verification& verification, bool maximise) {

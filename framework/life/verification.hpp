@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,6 +38,13 @@ struct Verification {
 /// say nothing of an objective that is measured within the life.
 bool is_verifiable(const Experiment& experiment);
 
+/// Simulators on the CPU and in double precision, for the trials quarter-step and other-method.
+struct ExactSimulators {
+  std::unique_ptr<Simulator> same_method, other_method;
+};
+
+ExactSimulators exact_simulators(const Experiment& experiment);
+
 /// Simulates the development of champions as in the run, on `simulator`. Then repeats the final evaluation in the
 /// following trials:
 ///   again         unchanged;
@@ -46,13 +54,18 @@ bool is_verifiable(const Experiment& experiment);
 ///   perturbed-1   to -3: each mass moved along each axis at random by up to 1e-4 of the body's longest side;
 ///   no-muscles    with muscles that are not actuated;
 ///   settled       with windows that open 10 s later.
-/// quarter-step and other-method run on the CPU. Results on the same device are the same every time.
+/// quarter-step and other-method run on the CPU, so that they are independent of a GPU. Results on the same device are
+/// the same every time.
 std::vector<Verification> verify(const Experiment& experiment, Simulator& simulator,
                                  std::span<const Champion> champions);
 
-/// Whether an individual keeps its fitness in a trial: the trial's value is at least half the fitness. If the objective
-/// is minimised or the fitness is not above 0, the value differs from the fitness by at most half of its absolute
-/// value. False if the trial has no value.
+/// Like verify(), but only with the trials on which marks() depends: quarter-step, other-method, no-muscles and
+/// settled. The first two run on `exact`.
+std::vector<Verification> verify_marks(const Experiment& experiment, Simulator& simulator, const ExactSimulators& exact,
+                                       std::span<const Champion> champions);
+
+/// Whether an individual keeps its fitness in a trial: the trial's value is as good as the fitness, better, or worse by
+/// at most half of the fitness's absolute value. False if the trial has no value.
 bool held(const Verification& verification, const Trial& trial, bool maximise);
 
 /// Returns the marks of an individual, which are found from its trials:
@@ -60,6 +73,13 @@ bool held(const Verification& verification, const Trial& trial, bool maximise);
 ///   passive   it keeps over half its fitness in no-muscles, or loses over half in settled; only if the objective is
 ///             maximised and the fitness is above 0.
 std::vector<std::string> marks(const Verification& verification, bool maximise);
+/// The first of the marks of an individual, as a status, and the trial from which it was found.
+struct Mark {
+  Status status = Status::artefact;  ///< artefact or passive
+  Trial trial;
+};
+/// Returns the first mark of an individual; nullopt if it has none.
+std::optional<Mark> first_mark(const Verification& verification, bool maximise);
 /// Returns the marks as a text, such as "artefact, passive"; "verified" if there are none.
 std::string marks_text(const Verification& verification, bool maximise);
 

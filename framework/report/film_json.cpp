@@ -156,8 +156,11 @@ class FilmMaterials {
   Json json() const {
     Json materials = Json::array();
     for (const Material& m : materials_)
-      materials.push_back(
-          {{"stiffness", m.stiffness}, {"amplitude", m.amplitude}, {"frequency", m.frequency}, {"phase", m.phase}});
+      materials.push_back({{"stiffness", m.stiffness},
+                           {"amplitude", m.amplitude},
+                           {"frequency", m.frequency},
+                           {"phase", m.phase},
+                           {"damping", m.damping}});
     return materials;
   }
 

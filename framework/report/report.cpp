@@ -113,7 +113,8 @@ Json time_json(const Archive& archive) {
           {"archive", time->archive},
           {"decode", time->evaluation.decode},
           {"simulate", time->evaluation.simulate},
-          {"develop", time->evaluation.develop}};
+          {"develop", time->evaluation.develop},
+          {"verify", time->verify}};
 }
 
 /// Returns a film in which points move to the positions that the encoding maps them to, and then become a body. If the
@@ -206,7 +207,9 @@ Json reported_run(const Archive& archive, const Experiment& experiment, Simulato
       archive, run["generations"].empty() ? 0 : run["generations"].back()["generation"].get<std::uint32_t>());
   run["labels"] = labels_json(archive.note_histories());
   run["time"] = time_json(archive);
+  run["top_speed"] = nullptr;
   run["robots"] = Json::array();
+  const Scene& scene = experiment.scenarios.empty() ? experiment.scene : experiment.scenarios[scenario].scene;
   std::vector<const Individual*> individuals;
   for (const Actor& actor : actors) individuals.push_back(&actor.individual);
   const std::vector<Newborn> newborns = for_resimulation(archive, experiment, individuals, simulator.device());
@@ -222,10 +225,11 @@ Json reported_run(const Archive& archive, const Experiment& experiment, Simulato
       const Json& robot =
           run["robots"].emplace_back(robot_json(archive, actor, lives[i], experiment, scenario, films.share(actor)));
       films.spend(actor, robot.dump().size());
+      if (cast.best > 0 && first + i == 0)  // the best individual comes first
+        run["top_speed"] = top_speed_json(scene, lives[i].film, titles_of(lives[i], experiment, scenario));
     }
   }
-  run["scene"] =
-      scene_json(experiment.scenarios.empty() ? experiment.scene : experiment.scenarios[scenario].scene, region);
+  run["scene"] = scene_json(scene, region);
   return run;
 }
 

@@ -83,6 +83,8 @@ Json generations_json(const Archive& archive, const std::vector<Summary>& genera
                     {"notes", notes_json(notes, i)},
                     {"diverged", s.diverged},
                     {"invalid", s.invalid},
+                    {"artefact", s.artefact},
+                    {"passive", s.passive},
                     {"clones", s.clones},
                     {"spring_evaluations", s.spring_evaluations},
                     {"wall_time", s.wall_time},

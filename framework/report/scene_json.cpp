@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/ground.hpp"
+#include "life/measurement/top_speed.hpp"
 #include "report/packing.hpp"
 
 namespace evodevo {
@@ -16,6 +17,12 @@ constexpr double samples_in_wavelength = 12;  ///< error of linear interpolation
 constexpr double most_samples = 256;          ///< largest number of samples along each side
 
 Vec3 position(const SeenPlace& p) { return {p[0], p[1], p[2]}; }
+
+std::vector<Vec3> positions_in(const Frame& frame) {
+  std::vector<Vec3> positions;
+  std::transform(frame.positions.begin(), frame.positions.end(), std::back_inserter(positions), position);
+  return positions;
+}
 
 Json ground_json(const Scene& scene, const Box& box) {
   const double width = box.high.x - box.low.x, depth = box.high.y - box.low.y;
@@ -48,9 +55,7 @@ void SeenRegion::include(const std::vector<FilmedLife>& lives) {
       for (const Frame& frame : shot.frames) {
         const bool first = &shot == &life.film.front() && &frame == &shot.frames.front();
         if (!first && life.result.status != Status::ok) continue;
-        std::vector<Vec3> positions;
-        std::transform(frame.positions.begin(), frame.positions.end(), std::back_inserter(positions), position);
-        const Box box = bounding_box(positions);
+        const Box box = bounding_box(positions_in(frame));
         if (first) side_ = std::max(side_, box.longest_side());
         corners_.insert(corners_.end(), {box.low, box.high});
       }
@@ -68,6 +73,22 @@ Json scene_json(const Scene& scene, const SeenRegion& region) {
           {"water", scene.drag.has_value()},
           {"slope", scene.gravity ? scene.gravity->slope : 0.0},
           {"ground", rough ? ground_json(scene, region.box()) : Json(nullptr)}};
+}
+
+Json top_speed_json(const Scene& scene, const Film& film, const std::vector<Title>& titles) {
+  const auto measured = std::ranges::find_if(titles, &Title::measured);
+  if (!moves_by_friction(scene) || measured == titles.end()) return nullptr;
+  const Shot& opening = film.at(static_cast<std::size_t>(measured - titles.begin()));
+  const Frame &first = opening.frames.front(), &last = film.back().frames.back();
+  const double time = last.time - first.time;
+  if (!(time > 0)) return nullptr;
+  const std::vector<Vec3> before = positions_in(first), after = positions_in(last);
+  Vec3 way = centre_of_mass(film.back().body, after) - centre_of_mass(opening.body, before);
+  way.z = 0;
+  const double distance = norm(way), limit = top_speed(scene, distance > 0 ? way.x / distance : 0);
+  return {{"length", bounding_box(before).longest_side()},
+          {"speed", distance / time},
+          {"limit", std::isinf(limit) ? Json(nullptr) : Json(limit)}};
 }
 
 }  // namespace evodevo

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "report/filming.hpp"
+#include "report/film_json.hpp"
 
 namespace evodevo {
 
@@ -29,5 +29,13 @@ class SeenRegion {
 ///                  the first point (m), spacing (m), columns (along x) and rows, roughness (m), and heights, from 0
 ///                  (lowest) to 254 (highest), row by row, packed as differences
 nlohmann::ordered_json scene_json(const Scene& scene, const SeenRegion& region);
+
+/// Returns how near a filmed robot came to the top speed of its scene (top_speed() in life/measurement/top_speed.hpp),
+/// or null if more than friction can push robots there, or the robot was not measured. `titles` are those of the shots.
+///
+///   length   the robot's longest side when its measurement began, m
+///   speed    horizontal distance from where its centre of mass was then to where it was in the end, by the time, m/s
+///   limit    top speed in this direction, m/s; null if nothing but the muscles limits the speed
+nlohmann::ordered_json top_speed_json(const Scene& scene, const Film& film, const std::vector<Title>& titles);
 
 }  // namespace evodevo

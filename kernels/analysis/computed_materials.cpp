@@ -53,6 +53,7 @@ std::vector<Material> simulated_materials(const Body& body, Materials way) {
   const MaterialUnits units = material_units(body);
   for (const Spring& spring : body.springs)
     simulated[spring.material] = material_of(code_of(body.materials[spring.material], units), units);
+  for (std::size_t i = 0; i < simulated.size(); ++i) simulated[i].damping = body.materials[i].damping;
   return simulated;
 }
 

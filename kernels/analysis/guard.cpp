@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
+#include "analysis/ground.hpp"
 #include "physics/physics.hpp"
 
 namespace evodevo {
@@ -57,12 +59,33 @@ double rounding_allowance(const Body& body, const State& state, Precision precis
   return sum;
 }
 
-/// The gravitational energy that masses lose by sinking into the floor, J: m g (m g/k + g dt^2) for each mass.
+/// The gravitational energy that masses lose by sinking into the floor, J: m g (m g/k + g dt^2) for each mass, without
+/// the first part on a rigid floor.
 double sag_allowance(const Body& body, const Scene& scene, double dt) {
-  if (!scene.gravity || !scene.floor || scene.floor->stiffness <= 0) return 0;
+  if (!scene.gravity || !scene.floor || (!scene.floor->rigid() && scene.floor->stiffness <= 0)) return 0;
   const double g = scene.gravity->downwards();
   double sum = 0;
-  for (const Mass& mass : body.masses) sum += mass.mass * g * (mass.mass * g / scene.floor->stiffness + g * dt * dt);
+  for (const Mass& mass : body.masses) {
+    const double sag = scene.floor->rigid() ? 0 : mass.mass * g / scene.floor->stiffness;
+    sum += mass.mass * g * (sag + g * dt * dt);
+  }
+  return sum;
+}
+
+/// The energy that a rigid floor gives to masses inside the ground by moving them out, J: their kinetic energy, their
+/// weight times their depth, and what springs store whose one end moves by the depth while the other one stays.
+double exit_allowance(const Body& body, const State& state, const Scene& scene, double dt) {
+  if (!scene.floor || !scene.floor->rigid()) return 0;
+  const double g = scene.gravity ? std::max(0.0, scene.gravity->downwards()) : 0;
+  std::vector<double> depth;  // m
+  double sum = 0;
+  for (std::size_t i = 0; i < body.masses.size(); ++i) {
+    depth.push_back(std::max(0.0, ground_height(scene, state.position[i]) - state.position[i].z));
+    if (depth[i] > 0)
+      sum += body.masses[i].mass * (0.5 * std::pow(physics::lowest_rise(-depth[i], dt), 2) + g * depth[i]);
+  }
+  for (const Spring& spring : body.springs)
+    sum += 0.5 * body.stiffness(spring) * std::pow(std::max(depth[spring.a], depth[spring.b]), 2);
   return sum;
 }
 
@@ -84,7 +107,8 @@ Course course_of(const Task& task, const Scene& scene, Precision precision) {
   const EnergyBound bound{.start = state.start_energy,
                           .drive = drive_of(body),
                           .allowance = strain_allowance(body) + rounding_allowance(body, state, precision) +
-                                       sag_allowance(body, scene, task.dt)};
+                                       sag_allowance(body, scene, task.dt) +
+                                       exit_allowance(body, state, scene, task.dt)};
   return {.origin = state.time, .bound = bound, .fallen = fallen_energy(scene, height_moment_of(body, state, scene))};
 }
 

@@ -1,10 +1,10 @@
 // The guard against bodies that gain energy by numerical error.
 //
 // Let K be the kinetic, U the elastic and V the gravitational energy of a body, with V = 0 at the origin, W the energy
-// stored in the floor, and F the largest value that -V has had so far (a floor at z = 0 keeps F near 0). Damping, drag
-// and friction only take energy away, so only the power of muscles can increase K + U + V + W. A spring of stiffness k
-// that stores the energy U_i pulls with the force sqrt(2 k U_i). With L' as the rate of change of its length L(t), the
-// Cauchy-Schwarz inequality gives
+// stored in the floor, and F the largest value that -V has had so far (a floor at z = 0 keeps F near 0). Damping, drag,
+// dashpots and friction only take energy away, so only the power of muscles can increase K + U + V + W. A spring of
+// stiffness k that stores the energy U_i pulls with the force sqrt(2 k U_i). With L' as the rate of change of its
+// length L(t), the Cauchy-Schwarz inequality gives
 //
 //   d(K + U + V + W)/dt <= sum sqrt(2 k U_i) |L'| <= sqrt(2 U) sqrt(sum k L'^2) <= sqrt(2 (K + U + V + W + F)) P,
 //   P = sqrt(sum k (2 pi frequency amplitude L0)^2), in J^(1/2)/s,
@@ -16,8 +16,9 @@
 // This bound holds for any exact motion, including resonance. With finite time steps, the energy oscillates around that
 // of the exact motion, by a factor of 39 near the largest stable step, and contact increases it a little. The limit is
 // therefore ten times the sum of this bound, the strain energy of all muscles from full extension to full contraction,
-// the energy of springs strained by rounding, and the gravitational energy that masses lose by sinking into the floor.
-// The energy of a body that diverges grows beyond 1e20 times this limit.
+// the energy of springs strained by rounding, the gravitational energy that masses lose by sinking into the floor, and
+// what a rigid floor gives to masses inside it by moving them out. A rigid floor stores no energy. The energy of a body
+// that diverges grows beyond 1e20 times this limit.
 //
 // The bound at the end of a run, without F, becomes the State::start_energy of the next run; development adds the
 // energy of its edits. A life that is simulated in cycles therefore has the same bound as a life in one run.

@@ -10,17 +10,28 @@
 namespace evodevo {
 namespace {
 
-/// The mass-weighted stiffness matrix A = M^-1/2 K M^-1/2 of a body, 1/s^2; K is the sum of k e e^T over the springs,
-/// with e the direction of a spring. Its eigenvalues are the squares of the body's angular frequencies.
+/// What springs resist with: their stiffness, the coefficient of their dashpot, or a sum of both.
+struct Resistance {
+  double of_length = 1;  ///< factor of the stiffness k, N/m
+  double of_rate = 0;    ///< factor of the dashpot's coefficient c, N s/m
+
+  double operator()(const Body& body, const Spring& spring) const {
+    return of_length * body.stiffness(spring) + (of_rate != 0 ? of_rate * body.damping(spring) : 0);
+  }
+};
+
+/// The mass-weighted matrix A = M^-1/2 K M^-1/2 of a body; K is the sum of k e e^T over the springs, with k the
+/// resistance and e the direction of a spring. If k is the stiffness, the eigenvalues are the squares of the body's
+/// angular frequencies, 1/s^2.
 class StiffnessMatrix {
  public:
-  StiffnessMatrix(const Body& body, std::span<const Vec3> positions)
+  StiffnessMatrix(const Body& body, std::span<const Vec3> positions, Resistance resistance)
       : size_(3 * static_cast<Eigen::Index>(body.masses.size())) {
     for (const Mass& mass : body.masses) weight_.push_back(mass.mass > 0 ? 1 / std::sqrt(mass.mass) : 0);
     for (const Spring& spring : body.springs) {
       const Vec3 d = positions[spring.b] - positions[spring.a];
       const double length = norm(d);
-      const double stiffness = body.stiffness(spring);
+      const double stiffness = resistance(body, spring);
       const Eigen::Vector3d direction =
           Eigen::Vector3d(d.x, d.y, d.z).normalized();  // zero for a spring of zero length
       links_.push_back({spring.a, spring.b, stiffness, length != 0, direction});
@@ -61,11 +72,11 @@ class StiffnessMatrix {
 /// twice its diagonal blocks. The bound is therefore the maximum of 2 lambda/m over the masses, where lambda is the
 /// largest eigenvalue of the sum of k e e^T over the mass's springs. Gershgorin's bound, 2 sum(k)/m, is larger because
 /// it ignores that springs have different directions.
-double eigenvalue_bound(const Body& body, std::span<const Vec3> positions) {
+double eigenvalue_bound(const Body& body, std::span<const Vec3> positions, Resistance resistance) {
   std::vector<Eigen::Matrix3d> block(body.masses.size(), Eigen::Matrix3d::Zero());
   for (const Spring& spring : body.springs) {
     const Vec3 d = positions[spring.b] - positions[spring.a];
-    const double stiffness = body.stiffness(spring), square = dot(d, d);
+    const double stiffness = resistance(body, spring), square = dot(d, d);
     const Eigen::Vector3d e(d.x, d.y, d.z);
     const Eigen::Matrix3d k = square != 0 ? (stiffness / square * e * e.transpose()).eval()
                                           : (stiffness * Eigen::Matrix3d::Identity()).eval();
@@ -147,10 +158,10 @@ double largest_eigenvalue(const StiffnessMatrix& matrix, double enough) {
 
 /// The cheapest upper bound of the largest eigenvalue (1/s^2), by Gershgorin discs on blocks of one mass: the largest 2
 /// sum(k)/m. NaN if a position is not finite.
-double disc_bound(const Body& body, std::span<const Vec3> positions) {
+double disc_bound(const Body& body, std::span<const Vec3> positions, Resistance resistance) {
   std::vector<double> sum(body.masses.size());
   for (const Spring& spring : body.springs) {
-    const double stiffness = body.stiffness(spring);
+    const double stiffness = resistance(body, spring);
     sum[spring.a] += stiffness;
     sum[spring.b] += stiffness;
   }
@@ -173,6 +184,57 @@ double fastest_muscle(const Body& body) {
   return fastest;
 }
 
+bool is_damped(const Body& body) {
+  return std::any_of(body.springs.begin(), body.springs.end(),
+                     [&](const Spring& spring) { return body.materials[spring.material].damping != 0; });
+}
+
+/// The rate of uniform damping that acts as a force, 1/s; the other methods damp exactly.
+double uniform_damping(const Scene& scene, Method method) {
+  return method == Method::rk4 && scene.damping ? scene.damping->rate : 0;
+}
+
+/// A method is stable at a step dt if dt^2 lambda <= oscillation (oscillation - damped), with the largest eigenvalue
+/// lambda of K + (rate/dt) C for the stiffness matrix K and the damping matrix C. For one oscillation of the angular
+/// frequency w and the damping ratio z, without uniform damping, this is dt w <= oscillation (sqrt(1 + y^2) - y) with y
+/// = z rate/oscillation.
+struct Limit {
+  double oscillation, rate, damped = 0;
+
+  /// `uniform` is the product of dt and uniform_damping(), 1.
+  Limit(Method method, bool has_dashpots, double uniform = 0)
+      : oscillation(oscillation_limit(method)), rate(oscillation) {
+    // dashpots act at predicted velocities
+    if (method == Method::velocity_verlet) rate = 2 * oscillation;
+    // The largest half disc in rk4's region of stability has the radius 2.58. Uniform damping alone leaves the limit of
+    // undamped oscillations as it is up to a rate of 1.7/dt.
+    if (method == Method::rk4 && (has_dashpots || uniform > 1.5)) oscillation = rate = 2.58;
+    // the rates of dashpots and of uniform damping add up; without dashpots, each has the whole half disc
+    if (has_dashpots || uniform > oscillation) damped = uniform;
+  }
+
+  /// The largest eigenvalue lambda at a step dt, 1/s^2.
+  double eigenvalue(double dt) const { return oscillation * (oscillation - damped) / (dt * dt); }
+  Resistance at(double dt) const { return {1, rate / dt}; }
+
+  /// The largest dt for bounds of the eigenvalues of K and of C.
+  double dt(double stiffness, double damping) const {
+    const double half = rate * damping / 2;
+    return oscillation * oscillation / (half + std::sqrt(half * half + stiffness * oscillation * oscillation));
+  }
+};
+
+/// The largest stable dt of a body with dashpots, s. The first one follows from the largest eigenvalues of K and of C;
+/// it is safe, because the largest eigenvalue of their sum is at most the sum of both. The second one is nearer to the
+/// limit, and still safe.
+double largest_damped_dt(const Body& body, std::span<const Vec3> positions, const Limit& limit) {
+  const auto eigenvalue = [&](Resistance resistance) {
+    return largest_eigenvalue(StiffnessMatrix(body, positions, resistance), infinity);
+  };
+  const double first = limit.dt(eigenvalue({1, 0}), eigenvalue({0, 1}));
+  return limit.oscillation / std::sqrt(eigenvalue(limit.at(first)));
+}
+
 }  // namespace
 
 double oscillation_limit(Method method) {
@@ -191,7 +253,7 @@ double oscillation_limit(Method method) {
 }
 
 double largest_contact_dt(const Scene& scene, double mass, Method method) {
-  if (!is_explicit(method) || !scene.floor || scene.floor->stiffness <= 0) return infinity;
+  if (!is_explicit(method) || !scene.floor || scene.floor->rigid() || scene.floor->stiffness <= 0) return infinity;
   // rough ground has horizontal force components too
   const double stiffness = scene.floor->stiffness * (1 + std::pow(scene.floor->steepest(), 2));
   return 1.2 * std::sqrt(mass / stiffness);
@@ -206,7 +268,8 @@ double largest_contact_dt(const Scene& scene, const Body& body, Method method) {
 
 double largest_spring_dt(const Material& material, double mass, Method method) {
   if (!is_explicit(method) || material.stiffness <= 0) return infinity;
-  return oscillation_limit(method) / std::sqrt(2 * material.stiffness / mass);
+  const double stiffness = 2 * material.stiffness / mass;
+  return Limit(method, material.damping != 0).dt(stiffness, 2 * material.damping * std::sqrt(stiffness));
 }
 
 double largest_muscle_dt(const Material& material) {
@@ -221,11 +284,14 @@ double largest_muscle_dt(const Body& body) {
 
 double largest_dt(const Body& body, std::span<const Vec3> positions, Method method, double wanted) {
   if (!is_explicit(method)) return wanted;
-  const double limit = oscillation_limit(method);
-  if (wanted * std::sqrt(disc_bound(body, positions)) <= limit) return wanted;
-  const double bound = eigenvalue_bound(body, positions);
-  if (bound == 0 || wanted * std::sqrt(bound) <= limit) return wanted;
-  const double largest = limit / std::sqrt(largest_eigenvalue(StiffnessMatrix(body, positions), infinity));
+  const bool damped = is_damped(body);
+  const Limit limit(method, damped);
+  if (wanted * std::sqrt(disc_bound(body, positions, limit.at(wanted))) <= limit.oscillation) return wanted;
+  const double bound = eigenvalue_bound(body, positions, limit.at(wanted));
+  if (bound == 0 || wanted * std::sqrt(bound) <= limit.oscillation) return wanted;
+  const double largest =
+      damped ? largest_damped_dt(body, positions, limit)
+             : limit.oscillation / std::sqrt(largest_eigenvalue(StiffnessMatrix(body, positions, {}), infinity));
   return largest >= wanted ? wanted : largest;  // NaN stays NaN
 }
 
@@ -234,18 +300,21 @@ double safe_dt(const Body& body, std::span<const Vec3> positions, const Scene& s
   double other = std::min(longest, largest_contact_dt(scene, body, method));
   if (const double frequency = fastest_muscle(body); frequency > 0)
     other = std::min(other, 1 / (steps_of_a_stroke * frequency));
-  if (method == Method::rk4 && scene.damping && scene.damping->rate > 0)
-    other = std::min(other, 2 / scene.damping->rate);
+  const double rate = uniform_damping(scene, method);
+  if (rate > 0) other = std::min(other, 2 / rate);
   const double wanted = other / spring_margin;
-  const double springs = largest_dt(body, positions, method, wanted);
+  double springs = largest_dt(body, positions, method, wanted);
+  if (rate > 0 && is_damped(body)) springs = 1 / (1 / springs + rate / Limit(method, true).rate);  // the rates add up
   return springs == wanted ? other : spring_margin * springs;
 }
 
-bool is_stable(const Body& body, std::span<const Vec3> positions, Method method, double dt) {
+bool is_stable(const Body& body, std::span<const Vec3> positions, const Scene& scene, Method method, double dt) {
   if (!is_explicit(method)) return true;
-  const double limit = std::pow(oscillation_limit(method) / dt, 2);
-  return disc_bound(body, positions) <= limit || eigenvalue_bound(body, positions) <= limit ||
-         largest_eigenvalue(StiffnessMatrix(body, positions), limit) <= limit;
+  const Limit of_method(method, is_damped(body), uniform_damping(scene, method) * dt);
+  const double limit = of_method.eigenvalue(dt);
+  const Resistance resistance = of_method.at(dt);
+  return disc_bound(body, positions, resistance) <= limit || eigenvalue_bound(body, positions, resistance) <= limit ||
+         largest_eigenvalue(StiffnessMatrix(body, positions, resistance), limit) <= limit;
 }
 
 }  // namespace evodevo

@@ -11,20 +11,21 @@
 namespace evodevo {
 
 /// The largest product of dt and angular frequency (1) at which an undamped oscillation stays bounded: 2 for the
-/// semi-implicit Euler methods and velocity-verlet, 2 sqrt(2) for rk4, infinite for implicit and xpbd. Damping raises
-/// the limit of the Euler methods and does not change that of velocity-verlet. In rk4 damping is a force, so that in
-/// addition rate dt must stay below 2.78.
+/// semi-implicit Euler methods and velocity-verlet, 2 sqrt(2) for rk4, infinite for implicit and xpbd. Uniform damping
+/// raises the limit of the Euler methods and does not change that of velocity-verlet. In rk4 it is a force, so that in
+/// addition rate dt must stay below 2.78. Dashpots lower the limits (kernels/README.md).
 double oscillation_limit(Method method);
 
-/// The largest dt (s) for contact of a mass of `mass` kg with the floor: dt sqrt(stiffness / mass) <= 1.2. With longer
-/// steps, masses can leave the floor much faster than they hit it (kernels/README.md). Infinite without a floor and for
-/// methods that are not explicit.
+/// The largest dt (s) for contact of a mass of `mass` kg with an elastic floor: dt sqrt(stiffness / mass) <= 1.2. With
+/// longer steps, masses can leave the floor much faster than they hit it (kernels/README.md). Infinite without a floor,
+/// with a rigid floor, and for methods that are not explicit.
 double largest_contact_dt(const Scene& scene, double mass, Method method);
 /// The same for the lightest mass of a body.
 double largest_contact_dt(const Scene& scene, const Body& body, Method method);
 
-/// The largest dt (s) for one spring of `material` between two masses of `mass` kg: dt sqrt(2 k / m) is at most
-/// oscillation_limit().
+/// The largest dt (s) for one spring of `material` between two masses of `mass` kg. Without a dashpot, dt sqrt(2 k / m)
+/// is at most oscillation_limit(). With one, the semi-implicit Euler methods need dt w <= 2 (sqrt(1 + z^2) - z), with w
+/// = sqrt(2 k / m) and the damping ratio z.
 double largest_spring_dt(const Material& material, double mass, Method method);
 
 /// The largest dt (s) that samples the actuation of `material` correctly, with any method: half a period. Longer steps
@@ -33,9 +34,11 @@ double largest_muscle_dt(const Material& material);
 /// The same for all springs of a body; materials that no spring has do not count.
 double largest_muscle_dt(const Body& body);
 
-/// The largest stable dt (s) of `body` with its masses at `positions` (m): dt times the highest angular frequency of
-/// the undamped body is at most oscillation_limit(). Returns `wanted` (s) if the body is stable at that step, which is
-/// cheaper to determine, and also if it has no springs or the method is not explicit. NaN if a position is not finite.
+/// The largest stable dt (s) of `body` with its masses at `positions` (m): without dashpots, dt times the highest
+/// angular frequency of the body is at most oscillation_limit(). With dashpots the result is below the true limit if
+/// the fastest oscillation is not the most damped one; it does not consider uniform damping. Returns `wanted` (s) if
+/// the body is stable at that step, which is cheaper to determine, and also if it has no springs or the method is not
+/// explicit. NaN if a position is not finite.
 ///
 /// If an upper bound of the frequency shows that `wanted` is stable, no more is computed; for random robots, this bound
 /// is 1.35 times the true frequency on average and 1.40 times at most. Otherwise the Lanczos iteration finds the
@@ -49,11 +52,13 @@ double largest_dt(const Body& body, std::span<const Vec3> positions, Method meth
 inline constexpr double spring_margin = 0.9;
 
 /// A safe dt (s) for a body with an explicit method in a scene: the minimum of spring_margin times largest_dt(),
-/// largest_contact_dt() (which includes a margin), a twentieth of the fastest muscle's period, 0.01 s and, if damping
-/// is a force (rk4), 2/rate. NaN if a position is not finite.
+/// largest_contact_dt() (which includes a margin), a twentieth of the fastest muscle's period, 0.01 s and, if uniform
+/// damping is a force (rk4), 2/rate; if there are dashpots as well, both rates count together. NaN if a position is not
+/// finite.
 double safe_dt(const Body& body, std::span<const Vec3> positions, const Scene& scene, Method method);
 
-/// Whether `dt` is at most largest_dt().
-bool is_stable(const Body& body, std::span<const Vec3> positions, Method method, double dt);
+/// Whether `dt` is at most largest_dt() and, if uniform damping is a force (rk4), the body is stable with it, too:
+/// without dashpots, for rate dt up to 2.58; with dashpots, both dampings count together.
+bool is_stable(const Body& body, std::span<const Vec3> positions, const Scene& scene, Method method, double dt);
 
 }  // namespace evodevo

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
+#include "evodevo/body.hpp"
 #include "physics/energy_bound.hpp"
 
 namespace evodevo {
@@ -23,6 +25,9 @@ struct Course {
   double fallen = 0;        ///< largest energy lost by falling below the origin so far, J
   ForceRange forces;        ///< range of forces, on devices that limit forces
   bool left_range = false;  ///< whether a force has left that range since the last check
+  /// [masses] the velocities at which dashpots act next (m/s), with velocity-verlet, which has predicted them; empty if
+  /// these are the velocities of the masses
+  std::vector<Vec3> dashpot_velocity;
 
   double elapsed(double dt) const { return static_cast<double>(steps) * dt; }        ///< time since the beginning, s
   double time(double dt) const { return origin + static_cast<double>(steps) * dt; }  ///< time since birth, s

@@ -22,14 +22,19 @@ struct Gravity {
  private:
   double radians() const { return slope * (3.14159265358979323846 / 180); }
 };
-/// The plane z = 0, or rough ground around it. It pushes a mass below it upwards with a force of `stiffness` times the
-/// depth (paper, section IV-C1).
+/// The plane z = 0, or rough ground around it. An elastic floor pushes a mass below it upwards with a force of
+/// `stiffness` times the depth (paper, section IV-C1). A rigid floor, which has a restitution, lets no mass sink into
+/// it and has no stiffness.
 struct Floor {
-  double stiffness = 1e6;  ///< N/m
+  double stiffness = 1e6;  ///< of an elastic floor, N/m
   double roughness = 0;    ///< largest height of hills and largest depth of hollows, m
   double wavelength = 1;   ///< distance between two hills with a hollow between them, m
   std::int64_t seed = 1;   ///< seed of the random heights
+  /// The floor is rigid: the speed along its normal with which a mass bounces off, relative to the speed with which it
+  /// arrives, from 0 to 1. Without a value, the floor is elastic.
+  std::optional<double> restitution = {};
 
+  bool rigid() const { return restitution.has_value(); }
   bool rough() const { return roughness > 0; }
   /// The number of the grid line at y = 0. A height at a grid point is a hash of the number of its line along x, which
   /// increases with y, and of its position on the line. If this number were the seed itself, the next seed would give
@@ -42,7 +47,11 @@ struct Floor {
 };
 /// Coulomb friction on the floor.
 struct Friction {
-  double coefficient = 0.5;  ///< 1
+  double coefficient = 0.5;                       ///< of a mass that slides, 1
+  std::optional<double> static_coefficient = {};  ///< of a mass at rest, at least `coefficient`, 1; by default the same
+
+  /// The coefficient that holds a mass at rest, 1.
+  double holding() const { return static_coefficient.value_or(coefficient); }
 
   bool operator==(const Friction&) const = default;
 };

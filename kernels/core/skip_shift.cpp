@@ -10,11 +10,15 @@
 namespace evodevo {
 namespace {
 
-/// The absolute force of a spring in `state`, N.
+/// The absolute force of a spring and its dashpot in `state`, N.
 double force(const Body& body, const State& state, const Spring& spring) {
   const Material& material = body.materials[spring.material];
-  const double distance = norm(state.position[spring.b] - state.position[spring.a]);
-  return std::abs(body.stiffness(spring) * (distance - spring.rest_length * material.relative_length(state.time)));
+  const Vec3 d = state.position[spring.b] - state.position[spring.a];
+  const double distance = norm(d);
+  double force = body.stiffness(spring) * (distance - spring.rest_length * material.relative_length(state.time));
+  if (material.damping != 0 && distance > 0)
+    force += body.damping(spring) * dot(d, state.velocity[spring.b] - state.velocity[spring.a]) / distance;
+  return std::abs(force);
 }
 
 void refuse(Task& task, std::uint64_t skip) {

@@ -31,6 +31,7 @@ ColouredSprings<T>::ColouredSprings(const Body& body, const Layout<T>& layout) {
   for (auto* offsets : {&a, &b, &slot}) *offsets = Array<std::uint32_t>(size);
   for (auto* numbers : {&stiffness, &rest_length, &inverse_mass_a, &inverse_mass_b}) *numbers = Array<T>(size);
   material = Array<Index<T>>(size);
+  if (layout.damping.size() > 0) damping = Array<T>(size);
 
   std::vector<std::uint32_t> index_of(layout.masses);
   for (std::uint32_t index = 0; index < layout.masses; ++index) index_of[layout.mass_at[index]] = index;
@@ -44,6 +45,7 @@ ColouredSprings<T>::ColouredSprings(const Body& body, const Layout<T>& layout) {
       slot[at] = layout.slot_of[i];
       stiffness[at] = static_cast<T>(body.stiffness(spring));
       rest_length[at] = static_cast<T>(spring.rest_length);
+      if (damping.size() > 0) damping[at] = static_cast<T>(body.damping(spring));
       inverse_mass_a[at] = static_cast<T>(inverse(body.masses[spring.a].mass));
       inverse_mass_b[at] = static_cast<T>(inverse(body.masses[spring.b].mass));
       material[at] = static_cast<Index<T>>(spring.material);

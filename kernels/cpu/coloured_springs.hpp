@@ -17,6 +17,7 @@ struct ColouredSprings {
   Array<std::uint32_t> slot;                ///< Layout::slot_of the spring
   Array<T> stiffness;                       ///< N/m
   Array<T> rest_length;                     ///< m
+  Array<T> damping;                         ///< Layout::damping
   Array<T> inverse_mass_a, inverse_mass_b;  ///< 1/kg
   Array<Index<T>> material;                 ///< index into Body::materials
 };

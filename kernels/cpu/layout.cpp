@@ -55,6 +55,8 @@ Layout<T>::Layout(const Body& body, std::size_t lanes_)
   neighbour = Array<std::uint32_t>(slots() + lanes);  // the loop over rows reads one row ahead
   stiffness = Array<T>(slots());
   rest_length = Array<T>(slots());
+  const auto has_dashpot = [&](const Spring& spring) { return body.materials[spring.material].damping != 0; };
+  if (std::any_of(body.springs.begin(), body.springs.end(), has_dashpot)) damping = Array<T>(slots());
   material = Array<Index<T>>(slots());
   for (std::size_t g = 0; g < groups; ++g)
     for (std::size_t slot = first_row[g] * lanes; slot < first_row[g + 1] * lanes; ++slot)
@@ -67,6 +69,7 @@ Layout<T>::Layout(const Body& body, std::size_t lanes_)
       neighbour[slot] = static_cast<std::uint32_t>(position_stride * index_of[other]);
       stiffness[slot] = static_cast<T>(body.stiffness(spring));
       rest_length[slot] = static_cast<T>(spring.rest_length);
+      if (damping.size() > 0) damping[slot] = static_cast<T>(body.damping(spring));
       material[slot] = static_cast<Index<T>>(spring.material);
       slot_of[i] = static_cast<std::uint32_t>(slot);
       slot += lanes;

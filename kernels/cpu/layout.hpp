@@ -37,6 +37,7 @@ struct Layout {
       neighbour;         ///< [slots + lanes] position_stride times the index in mass_at of the mass at the other end
   Array<T> stiffness;    ///< [slots] N/m
   Array<T> rest_length;  ///< [slots] m
+  Array<T> damping;      ///< [slots] coefficient of the spring's dashpot, N s/m; empty if no spring has one
   Array<Index<T>> material;  ///< [slots] index into Body::materials
 
   std::size_t padded_masses() const { return groups * lanes; }

@@ -13,6 +13,16 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
+/// Lets dashpots act at the present velocities.
+template <class T>
+HWY_INLINE void interleave_velocities(const cpu::Motion<T>& m, std::size_t masses) {
+  const hn::ScalableTag<T> d;
+  for (std::size_t i = 0; i < masses; i += hn::Lanes(d))
+    store_positions(d,
+                    Triple<hn::Vec<decltype(d)>>{hn::Load(d, m.vx + i), hn::Load(d, m.vy + i), hn::Load(d, m.vz + i)},
+                    m.interleaved_velocities + cpu::position_stride * i);
+}
+
 template <class T>
 HWY_INLINE void add_gravity(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, std::size_t masses) {
   const hn::ScalableTag<T> d;
@@ -27,20 +37,14 @@ HWY_INLINE void add_gravity(const cpu::Motion<T>& m, const cpu::StepConstants<T>
   }
 }
 
-/// The rough ground under the masses of the vector that begins at index i.
+/// The ground under the masses of the vector that begins at index i.
 template <class T>
 HWY_INLINE auto ground_under(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, std::size_t i) {
   const hn::ScalableTag<T> d;
-  return ground_at(
-      hn::Load(d, m.x + i), hn::Load(d, m.y + i),
-      Roughness<hn::Vec<decltype(d)>>{hn::Set(d, constants.roughness), hn::Set(d, constants.cells), constants.seed});
-}
-
-/// Adds the vector up (-slope_x, -slope_y, 1), parallel to the ground's normal, to v.
-template <class V>
-HWY_INLINE Triple<V> add_along_normal(const Ground<V>& ground, const Triple<V>& v, V up) {
-  const Triple<V> sum = add_horizontal_part(ground, v, up);
-  return {sum.x, sum.y, sum.z + up};
+  using V = hn::Vec<decltype(d)>;
+  if (!constants.rough) return Ground<V>{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  return ground_at(hn::Load(d, m.x + i), hn::Load(d, m.y + i),
+                   Roughness<V>{hn::Set(d, constants.roughness), hn::Set(d, constants.cells), constants.seed});
 }
 
 template <class T>
@@ -62,6 +66,7 @@ HWY_INLINE void add_rough_floor(const cpu::Motion<T>& m, const cpu::StepConstant
 
 template <class T>
 HWY_INLINE void add_floor(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, std::size_t masses) {
+  if (constants.rigid) return;
   if (constants.rough) return add_rough_floor(m, constants, masses);
   const hn::ScalableTag<T> d;
   const auto stiffness = hn::Set(d, constants.floor_stiffness);
@@ -72,16 +77,112 @@ HWY_INLINE void add_floor(const cpu::Motion<T>& m, const cpu::StepConstants<T>& 
   }
 }
 
-/// Adds 1 to the number of contact steps of each mass that is below the ground.
+/// Notes how fast masses rise at the beginning of a step, before a rigid floor acts: with their present velocities,
+/// less what the present forces add in `since` seconds.
+template <class T>
+HWY_INLINE void note_arrivals(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, T since,
+                              std::size_t masses) {
+  const hn::ScalableTag<T> d;
+  using V = hn::Vec<decltype(d)>;
+  for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
+    const V by = hn::Set(d, since) * hn::Load(d, m.inverse_mass + i);
+    const Triple<V> before{negative_multiply_add(by, hn::Load(d, m.fx + i), hn::Load(d, m.vx + i)),
+                           negative_multiply_add(by, hn::Load(d, m.fy + i), hn::Load(d, m.vy + i)),
+                           negative_multiply_add(by, hn::Load(d, m.fz + i), hn::Load(d, m.vz + i))};
+    hn::Store(along_normal(ground_under(m, constants, i), before), d, m.arrival + i);
+  }
+}
+
+/// `lift` where a rigid floor acts, 0 elsewhere: the other forces have given a mass less than the lowest rise, and the
+/// mass is not one of 0 kg.
+template <class T, class V>
+HWY_INLINE V lift_of(const cpu::Motion<T>& m, std::size_t i, V rise, V lowest, V lift) {
+  const hn::ScalableTag<T> d;
+  return zero_unless_greater(hn::Load(d, m.inverse_mass + i), hn::Zero(d), zero_unless_greater(lowest, rise, lift));
+}
+
+/// Adds `lift` (m/s) to the rise of masses with the velocity v. Returns what this adds along the unit normal, m/s.
+template <class V>
+HWY_INLINE V push_off(const Ground<V>& ground, V lift, Triple<V>& v) {
+  const V squared = normal_squared(ground);
+  v = add_along_normal(ground, v, lift / squared);
+  return lift / square_root(squared);
+}
+
+/// Reduces velocities by the friction of a rigid floor that has added `push` (m/s) along its unit normal.
+template <class T, class V>
+HWY_INLINE void rub(const cpu::StepConstants<T>& constants, const Ground<V>& ground, V push, Triple<V>& v) {
+  const hn::ScalableTag<T> d;
+  if (!constants.friction) return;
+  v = after_friction(ground, v, push, hn::Set(d, constants.friction_coefficient),
+                     hn::Set(d, constants.static_coefficient));
+}
+
+/// Lets a rigid floor and its friction act on the velocities that all other forces have given the masses in a step.
+template <class T>
+HWY_INLINE void land(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, std::size_t masses) {
+  const hn::ScalableTag<T> d;
+  using V = hn::Vec<decltype(d)>;
+  const V dt = hn::Set(d, constants.step.dt), restitution = hn::Set(d, constants.restitution);
+  for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
+    const Ground<V> ground = ground_under(m, constants, i);
+    Triple<V> v{hn::Load(d, m.vx + i), hn::Load(d, m.vy + i), hn::Load(d, m.vz + i)};
+    const V rise = along_normal(ground, v), lowest = lowest_rise(hn::Load(d, m.z + i) - ground.height, dt);
+    const V after = rise_after_contact(lowest, bounce(restitution, hn::Load(d, m.arrival + i)));
+    const V push = push_off(ground, lift_of(m, i, rise, lowest, after - rise), v);
+    rub(constants, ground, push, v);
+    hn::Store(push, d, m.push + i);
+    hn::Store(v.x, d, m.vx + i);
+    hn::Store(v.y, d, m.vy + i);
+    hn::Store(v.z, d, m.vz + i);
+  }
+}
+
+/// Stops the descent of masses that a rigid floor has pushed in the step, with the friction under the push that this
+/// takes. `v` are velocities of the masses of the vector at index i.
+template <class T, class V>
+HWY_INLINE void stay_landed(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, std::size_t i,
+                            Triple<V>& v) {
+  const hn::ScalableTag<T> d;
+  const Ground<V> ground = ground_under(m, constants, i);
+  const V descent = maximum(hn::Zero(d) - along_normal(ground, v), hn::Zero(d));
+  const V lift = zero_unless_greater(hn::Load(d, m.push + i), hn::Zero(d), descent);
+  rub(constants, ground, push_off(ground, lift, v), v);
+}
+
+/// Lets dashpots act at the velocities that masses will have after half a step under the present forces and then half a
+/// step of drag and damping. Masses that a rigid floor has pushed in the step do not descend.
+template <class T>
+HWY_INLINE void interleave_predicted_velocities(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants,
+                                                std::size_t masses) {
+  const hn::ScalableTag<T> d;
+  using V = hn::Vec<decltype(d)>;
+  const cpu::TimeSpan<T>& half = constants.half_step;
+  for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
+    const V inverse_mass = hn::Load(d, m.inverse_mass + i), by = hn::Set(d, half.dt) * inverse_mass;
+    Triple<V> v{multiply_add(by, hn::Load(d, m.fx + i), hn::Load(d, m.vx + i)),
+                multiply_add(by, hn::Load(d, m.fy + i), hn::Load(d, m.vy + i)),
+                multiply_add(by, hn::Load(d, m.fz + i), hn::Load(d, m.vz + i))};
+    if (constants.rigid) stay_landed(m, constants, i, v);
+    V kept = hn::Set(d, constants.damping ? half.decay : T(1));
+    if (constants.drag)
+      kept = kept * drag_retention(hn::Set(d, constants.drag_coefficient * half.damped_dt) * inverse_mass, v);
+    store_positions(d, Triple<V>{kept * v.x, kept * v.y, kept * v.z},
+                    m.interleaved_velocities + cpu::position_stride * i);
+  }
+}
+
+/// Adds 1 to the number of contact steps of each mass that an elastic floor pushes now, or that a rigid floor has
+/// pushed in the step.
 template <class T>
 HWY_INLINE void count_contacts(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, std::size_t masses) {
   if (!constants.floor) return;
   const hn::ScalableTag<T> d;
   const auto one = hn::Set(d, T(1)), zero = hn::Zero(d);
   for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
-    auto height = hn::Load(d, m.z + i);
-    if (constants.rough) height = height - ground_under(m, constants, i).height;
-    const auto touches = hn::IfThenElseZero(hn::Lt(height, zero), one);
+    auto depth = hn::Load(d, m.push + i);
+    if (!constants.rigid) depth = ground_under(m, constants, i).height - hn::Load(d, m.z + i);
+    const auto touches = zero_unless_greater(depth, zero, one);
     hn::Store(hn::Load(d, m.contact_steps + i) + touches, d, m.contact_steps + i);
   }
 }
@@ -160,10 +261,12 @@ HWY_INLINE void apply_friction(const cpu::Motion<T>& m, const cpu::StepConstants
                                std::size_t masses) {
   const hn::ScalableTag<T> d;
   const auto coefficient_dt = hn::Set(d, constants.friction_coefficient * time);
+  const auto static_dt = hn::Set(d, constants.static_coefficient * time);
   for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
     const auto vx = hn::Load(d, vx_ + i), vy = hn::Load(d, vy_ + i);
-    const auto loss = coefficient_dt * hn::Load(d, m.floor_force + i) * hn::Load(d, m.inverse_mass + i);
-    const auto kept = friction_factor(vx, vy, loss);
+    const auto force = hn::Load(d, m.floor_force + i), inverse_mass = hn::Load(d, m.inverse_mass + i);
+    auto kept = friction_factor(vx, vy, coefficient_dt * force * inverse_mass);
+    if (constants.static_friction) kept = kept_unless_held(vx, vy, static_dt * force * inverse_mass, kept);
     hn::Store(vx * kept, d, vx_ + i);
     hn::Store(vy * kept, d, vy_ + i);
   }

@@ -7,7 +7,7 @@
 #include "analysis/computed_materials.hpp"
 #include "analysis/guard.hpp"
 #include "analysis/sampling.hpp"
-#include "analysis/stiffness_factors.hpp"
+#include "analysis/split_materials.hpp"
 #include "cpu/coloured_springs.hpp"
 
 namespace evodevo::cpu {
@@ -26,17 +26,21 @@ StepConstants<T> step_constants(const Scene& scene, double dt) {
   return {.gravity = scene.gravity.has_value(),
           .slope = scene.gravity && scene.gravity->slope != 0,
           .floor = scene.floor.has_value(),
+          .rigid = scene.floor && scene.floor->rigid(),
           .rough = scene.floor && scene.floor->rough(),
           .friction = scene.friction && scene.floor,
+          .static_friction = scene.friction && scene.friction->holding() > scene.friction->coefficient,
           .drag = scene.drag.has_value(),
           .damping = scene.damping.has_value(),
           .acceleration = as_t(scene.gravity ? scene.gravity->downwards() : 0),
           .grade = as_t(scene.gravity ? scene.gravity->grade() : 0),
           .floor_stiffness = as_t(scene.floor ? scene.floor->stiffness : 0),
+          .restitution = as_t(scene.floor ? scene.floor->restitution.value_or(0) : 0),
           .roughness = as_t(scene.floor ? scene.floor->roughness : 0),
           .cells = as_t(scene.floor ? 2 / scene.floor->wavelength : 0),
           .seed = scene.floor ? scene.floor->first_line() : 0,
           .friction_coefficient = as_t(scene.friction ? scene.friction->coefficient : 0),
+          .static_coefficient = as_t(scene.friction ? scene.friction->holding() : 0),
           .drag_coefficient = as_t(scene.drag ? scene.drag->coefficient : 0),
           .damping_rate = as_t(scene.damping ? scene.damping->rate : 0),
           .step = time_span<T>(scene, dt),
@@ -89,6 +93,7 @@ class MovingBody {
         mass_(layout_.padded_masses()),
         inverse_mass_(layout_.padded_masses()),
         interleaved_positions_(position_stride * layout_.padded_masses()),
+        interleaved_velocities_(layout_.damping.size() > 0 ? position_stride * layout_.padded_masses() : 0),
         mass_scratch_(integrator.mass_arrays * layout_.padded_masses()),
         slot_scratch_(integrator.slot_arrays * layout_.slots()),
         force_sum_(sums.force ? layout_.slots() : 0),
@@ -100,7 +105,7 @@ class MovingBody {
     if (integrator.coloured) coloured_ = ColouredSprings<T>(body, layout_);
     for (auto* arrays : {&position_, &velocity_, &force_})
       for (Array<T>& array : *arrays) array = Array<T>(layout_.padded_masses());
-    floor_force_ = Array<T>(layout_.padded_masses());
+    for (Array<T>* array : {&floor_force_, &arrival_, &push_}) *array = Array<T>(layout_.padded_masses());
     for (std::size_t i = 0; i < layout_.masses; ++i) {
       const std::uint32_t from = layout_.mass_at[i];
       const double mass = body.masses[from].mass;
@@ -119,6 +124,7 @@ class MovingBody {
             .neighbour = layout_.neighbour.data(),
             .stiffness = layout_.stiffness.data(),
             .rest_length = layout_.rest_length.data(),
+            .damping = data_of(layout_.damping),
             .material = layout_.material.data(),
             .coloured = {.size = coloured_.size,
                          .a = coloured_.a.data(),
@@ -128,6 +134,7 @@ class MovingBody {
                          .rest_length = coloured_.rest_length.data(),
                          .inverse_mass_a = coloured_.inverse_mass_a.data(),
                          .inverse_mass_b = coloured_.inverse_mass_b.data(),
+                         .damping = data_of(coloured_.damping),
                          .material = coloured_.material.data()},
             .mass = mass_.data(),
             .inverse_mass = inverse_mass_.data(),
@@ -138,10 +145,13 @@ class MovingBody {
             .vx = velocity_[0].data(),
             .vy = velocity_[1].data(),
             .vz = velocity_[2].data(),
+            .interleaved_velocities = data_of(interleaved_velocities_),
             .fx = force_[0].data(),
             .fy = force_[1].data(),
             .fz = force_[2].data(),
             .floor_force = floor_force_.data(),
+            .arrival = arrival_.data(),
+            .push = push_.data(),
             .mass_scratch = mass_scratch_.data(),
             .slot_scratch = slot_scratch_.data(),
             .slots = layout_.slots(),
@@ -186,6 +196,26 @@ class MovingBody {
     return sum;
   }
 
+  /// Lets dashpots act at these velocities [masses], m/s, in the next step. Does nothing if there are none.
+  void set_dashpot_velocities(std::span<const Vec3> velocities) {
+    if (interleaved_velocities_.size() == 0) return;
+    for (std::size_t i = 0; i < layout_.masses; ++i) {
+      const Vec3 v = velocities[layout_.mass_at[i]];
+      T* to = interleaved_velocities_.data() + position_stride * i;
+      to[0] = static_cast<T>(v.x), to[1] = static_cast<T>(v.y), to[2] = static_cast<T>(v.z);
+    }
+  }
+
+  /// The velocities at which dashpots act in the next step [masses], m/s; empty if there are no dashpots.
+  std::vector<Vec3> dashpot_velocities() const {
+    std::vector<Vec3> velocities(interleaved_velocities_.size() > 0 ? layout_.masses : 0);
+    for (std::size_t i = 0; i < velocities.size(); ++i) {
+      const T* from = interleaved_velocities_.data() + position_stride * i;
+      velocities[layout_.mass_at[i]] = {from[0], from[1], from[2]};
+    }
+    return velocities;
+  }
+
   void write(State& state) const {
     for (std::size_t i = 0; i < layout_.masses; ++i) {
       state.position[layout_.mass_at[i]] = {position_[0][i], position_[1][i], position_[2][i]};
@@ -204,7 +234,8 @@ class MovingBody {
 
   Layout<T> layout_;
   ColouredSprings<T> coloured_;
-  Array<T> mass_, inverse_mass_, interleaved_positions_, mass_scratch_, slot_scratch_, floor_force_;
+  Array<T> mass_, inverse_mass_, interleaved_positions_, interleaved_velocities_, mass_scratch_, slot_scratch_,
+      floor_force_, arrival_, push_;
   Array<T> force_sum_, power_sum_, peak_, tension_sum_, contact_steps_;
   std::vector<std::uint32_t> contacts_;  ///< contact steps as far as they have been collected
   Array<T> position_[3], velocity_[3], force_[3];
@@ -267,8 +298,8 @@ template <class T>
 void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels<T>& kernels, Recording recording) {
   Body coded;  // the body with rounded materials, if materials are computed
   if (stepping.materials == Materials::computed) {
-    const auto plain = without_factors(*task.body);
-    coded = plain ? *plain : *task.body;
+    const auto split = split_materials(*task.body);
+    coded = split ? *split : *task.body;
     coded.materials = simulated_materials(coded, stepping.materials);
   }
   const Body& body = stepping.materials == Materials::computed ? coded : *task.body;
@@ -284,6 +315,7 @@ void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels
   const Integrator<T>& integrator = kernels.integrator[static_cast<std::size_t>(stepping.method)];
   const std::size_t rows = integrator.rows_per_step;
   MovingBody<T> moving(body, state, kernels.lanes, integrator, sums, sampler.counts_contacts());
+  moving.set_dashpot_velocities(course.dashpot_velocity.empty() ? state.velocity : course.dashpot_velocity);
   ActuationTables<T> tables(body, guard_interval * rows + 1, kernels.table_size, sums);
   task.clear(recording, body.springs.size());
   task.work = 0;
@@ -308,6 +340,7 @@ void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels
     if (is_checked(task, course))
       check(task, course, scene, kernels.energies(moving.view(), constants, tables.view(now * rows)));
   }
+  if (stepping.method == Method::velocity_verlet) course.dashpot_velocity = moving.dashpot_velocities();
   apply_course(task, course);
   if (task.steps > 0) moving.write(state);  // without steps the state is not even rounded to T
   if (!recording.work || task.status != Status::ok) task.work = 0;

@@ -29,12 +29,23 @@ struct AnySums : cpu::Sums {
       : Sums{m.force_sum != nullptr, m.power_sum != nullptr, m.peak != nullptr, m.tension_sum != nullptr} {}
 };
 
+/// The vectors of consecutive masses, beginning with the mass of index i, in an interleaved array.
+template <class T>
+HWY_INLINE Triple<hn::Vec<hn::ScalableTag<T>>> own_interleaved(const T* interleaved, std::size_t i) {
+  const hn::ScalableTag<T> d;
+  Triple<hn::Vec<decltype(d)>> own;
+  [[maybe_unused]] hn::Vec<decltype(d)> padding;
+  hn::LoadInterleaved4(d, interleaved + cpu::position_stride * i, own.x, own.y, own.z, padding);
+  return own;
+}
+
 /// Computes the spring forces on the masses of one group.
 ///
-///   in:  positions, springs of the group, `lengths` (current relative length of each material), `rates` (its rate of
-///        change, 1/s; not read without sums.power)
-///   out: motion.fx, fy, fz: the sum of spring forces on each mass, N; the enabled sums, for each slot
-template <class Sums, class Table, class T>
+///   in:  positions, if `damped` also interleaved velocities, springs of the group, `lengths` (current relative length
+///        of each material), `rates` (its rate of change, 1/s; not read without sums.power)
+///   out: motion.fx, fy, fz: the sum of the forces of springs and dashpots on each mass, N; the enabled sums, for each
+///        slot. A muscle does the work of its spring alone.
+template <bool damped, class Sums, class Table, class T>
 HWY_INLINE void set_spring_forces(const cpu::Motion<T>& motion, const Sums& sums, std::size_t group,
                                   const Table& lengths, const Table& rates) {
   using D = hn::ScalableTag<T>;
@@ -43,7 +54,8 @@ HWY_INLINE void set_spring_forces(const cpu::Motion<T>& motion, const Sums& sums
   const std::size_t lanes = hn::Lanes(d);
   const std::size_t at = group * lanes;
   const Triple<V> own{hn::Load(d, motion.x + at), hn::Load(d, motion.y + at), hn::Load(d, motion.z + at)};
-  Triple<V> force{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  Triple<V> force{hn::Zero(d), hn::Zero(d), hn::Zero(d)}, own_velocity = force;
+  if constexpr (damped) own_velocity = own_interleaved(motion.interleaved_velocities, at);
   const std::size_t end = motion.first_row[group + 1] * lanes;
   std::size_t slot = motion.first_row[group] * lanes;
   // positions are read one row ahead, so that the loads overlap with the square root and division of this row
@@ -54,7 +66,13 @@ HWY_INLINE void set_spring_forces(const cpu::Motion<T>& motion, const Sums& sums
     next = separation(own, load_positions(d, motion.interleaved_positions, motion.neighbour + slot + lanes));
     const cpu::Index<T>* material = motion.material + slot;
     const V rest_length = hn::Load(d, motion.rest_length + slot);
-    const V factor = spring_factor(distance, hn::Load(d, motion.stiffness + slot), rest_length * lengths.at(material));
+    const V elastic = spring_factor(distance, hn::Load(d, motion.stiffness + slot), rest_length * lengths.at(material));
+    V factor = elastic;
+    if constexpr (damped) {
+      const Triple<V> other = load_positions(d, motion.interleaved_velocities, motion.neighbour + slot);
+      const Triple<V> velocity{other.x - own_velocity.x, other.y - own_velocity.y, other.z - own_velocity.z};
+      factor = factor + dashpot_factor(s, hn::Load(d, motion.damping + slot), velocity);
+    }
     force.x = multiply_add(factor, s.d.x, force.x);
     force.y = multiply_add(factor, s.d.y, force.y);
     force.z = multiply_add(factor, s.d.z, force.z);
@@ -65,7 +83,8 @@ HWY_INLINE void set_spring_forces(const cpu::Motion<T>& motion, const Sums& sums
     }
     if (sums.power) {
       T* sum = motion.power_sum + slot;
-      hn::Store(hn::Load(d, sum) + actuation_power(tension, rest_length * rates.at(material)), d, sum);
+      const V pull = damped ? spring_tension(s, distance, elastic) : tension;
+      hn::Store(hn::Load(d, sum) + actuation_power(pull, rest_length * rates.at(material)), d, sum);
     }
     if (sums.peak) {
       T* peak = motion.peak + slot;

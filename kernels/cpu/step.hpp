@@ -27,14 +27,15 @@ struct TimeSpan {
 /// The constants of a step: the scene and the step length as numbers of type T. Disabled forces are not computed.
 template <class T>
 struct StepConstants {
-  bool gravity, slope, floor, rough, friction, drag, damping;
+  bool gravity, slope, floor, rigid, rough, friction, static_friction, drag, damping;  ///< rigid implies floor
   T acceleration;      ///< acceleration of gravity along -z, m/s^2
   T grade;             ///< Gravity::grade()
-  T floor_stiffness;   ///< N/m
+  T floor_stiffness;   ///< of an elastic floor, N/m
+  T restitution;       ///< of a rigid floor
   T roughness;         ///< m
   T cells;             ///< number of cells of rough ground per metre, 1/m
   std::uint32_t seed;  ///< Floor::first_line()
-  T friction_coefficient;
+  T friction_coefficient, static_coefficient;
   T drag_coefficient;  ///< kg/m
   T damping_rate;      ///< 1/s
   TimeSpan<T> step, half_step;
@@ -54,6 +55,7 @@ struct ColouredView {
   std::size_t size;
   const std::uint32_t *a, *b, *slot;
   const T *stiffness, *rest_length, *inverse_mass_a, *inverse_mass_b;
+  const T* damping;  ///< null if no spring has a dashpot
   const Index<T>* material;
 };
 
@@ -66,18 +68,22 @@ struct Motion {
   const std::uint32_t* neighbour;
   const T* stiffness;
   const T* rest_length;
+  const T* damping;  ///< null if no spring has a dashpot
   const Index<T>* material;
   ColouredView<T> coloured;  ///< only if Integrator::coloured
 
-  const T* mass;             ///< kg
-  const T* inverse_mass;     ///< 1/kg; 0 for masses that never move
-  T *x, *y, *z;              ///< m
-  T* interleaved_positions;  ///< a copy of x, y, z that neighbours read: position_stride numbers per mass, m
-  T *vx, *vy, *vz;           ///< m/s
-  T *fx, *fy, *fz;           ///< N
-  T* floor_force;            ///< N
-  T* mass_scratch;           ///< Integrator::mass_arrays arrays, one number for each mass
-  T* slot_scratch;           ///< Integrator::slot_arrays arrays, one number for each slot
+  const T* mass;              ///< kg
+  const T* inverse_mass;      ///< 1/kg; 0 for masses that never move
+  T *x, *y, *z;               ///< m
+  T* interleaved_positions;   ///< a copy of x, y, z that neighbours read: position_stride numbers per mass, m
+  T *vx, *vy, *vz;            ///< m/s
+  T* interleaved_velocities;  ///< velocities at which dashpots act, like the positions, m/s; null without dashpots
+  T *fx, *fy, *fz;            ///< N
+  T* floor_force;             ///< normal force of an elastic floor, N
+  T* arrival;                 ///< of a rigid floor: rise of each mass at the beginning of a step, m/s
+  T* push;                    ///< velocity that a rigid floor has added in a step along its unit normal, m/s
+  T* mass_scratch;            ///< Integrator::mass_arrays arrays, one number for each mass
+  T* slot_scratch;            ///< Integrator::slot_arrays arrays, one number for each slot
   std::size_t slots;
 
   // [slots]; null if not enabled in Sums
@@ -86,7 +92,7 @@ struct Motion {
   T* peak;         ///< N
   T* tension_sum;  ///< N
 
-  T* contact_steps;  ///< [masses] number of steps after which each mass was below the ground; null if not counted
+  T* contact_steps;  ///< [masses] number of steps in which each mass touched the ground; null if not counted
 };
 
 /// The materials as arrays of `padded` entries, and tables of their relative lengths with one row for each time.

@@ -3,7 +3,7 @@
 // Each step of a method calls the following functions, in an order of its own:
 //   springs(..)              positions, relative lengths ─► spring forces (and records of the springs)
 //   add_gravity, add_floor.. positions, velocities ─► added to the forces
-//   advance_velocities, damp, apply_drag, apply_friction   forces ─► velocities
+//   advance_velocities, damp, apply_drag, touch_floor   forces ─► velocities
 //   advance_positions        velocities ─► positions
 #if defined(EVODEVO_CPU_STEPPER_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef EVODEVO_CPU_STEPPER_INL_HPP
@@ -18,34 +18,42 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
-/// Sets the motion's forces to the spring forces at the relative lengths in row `row` of the tables.
+/// Sets the motion's forces to the forces of springs and dashpots at the relative lengths in row `row` of the tables
+/// and at the interleaved velocities.
 template <class T>
 using SpringPass = void (*)(const cpu::Motion<T>&, const cpu::Actuation<T>&, std::size_t row);
 
-template <class Table, class Sums, class T>
+template <bool damped, class Table, class Sums, class T>
 void set_spring_forces(const cpu::Motion<T>& motion, const cpu::Actuation<T>& actuation, std::size_t row) {
   const Sums sums(motion);
   const T* relative_length = actuation.relative_length + row * actuation.padded;
   const Table lengths(relative_length);
   const Table rates(sums.power ? actuation.relative_rate + row * actuation.padded : relative_length);
-  for (std::size_t group = 0; group < motion.groups; ++group) set_spring_forces(motion, sums, group, lengths, rates);
+  for (std::size_t group = 0; group < motion.groups; ++group)
+    set_spring_forces<damped>(motion, sums, group, lengths, rates);
 }
 
-template <class Table, class T>
+template <bool damped, class Table, class T>
 SpringPass<T> spring_pass_with(cpu::Sums sums) {
-  if (sums.peak || sums.tension) return set_spring_forces<Table, AnySums, T>;
-  if (sums.force && sums.power) return set_spring_forces<Table, UsualSums<true, true>, T>;
-  if (sums.force) return set_spring_forces<Table, UsualSums<true, false>, T>;
-  if (sums.power) return set_spring_forces<Table, UsualSums<false, true>, T>;
-  return set_spring_forces<Table, UsualSums<false, false>, T>;
+  if (sums.peak || sums.tension) return set_spring_forces<damped, Table, AnySums, T>;
+  if (sums.force && sums.power) return set_spring_forces<damped, Table, UsualSums<true, true>, T>;
+  if (sums.force) return set_spring_forces<damped, Table, UsualSums<true, false>, T>;
+  if (sums.power) return set_spring_forces<damped, Table, UsualSums<false, true>, T>;
+  return set_spring_forces<damped, Table, UsualSums<false, false>, T>;
 }
 
 /// Returns the pass over the springs that adds to the given sums.
-template <class T>
+template <bool damped, class T>
 SpringPass<T> spring_pass(const cpu::Actuation<T>& actuation, cpu::Sums sums) {
   if constexpr (register_table_size<T>() > 0)
-    if (actuation.materials <= register_table_size<T>()) return spring_pass_with<TableInRegisters<T>, T>(sums);
-  return spring_pass_with<TableInMemory<T>, T>(sums);
+    if (actuation.materials <= register_table_size<T>()) return spring_pass_with<damped, TableInRegisters<T>, T>(sums);
+  return spring_pass_with<damped, TableInMemory<T>, T>(sums);
+}
+
+/// Returns the pass with dashpots if the body has any.
+template <class T>
+SpringPass<T> spring_pass(const cpu::Motion<T>& motion, const cpu::Actuation<T>& actuation, cpu::Sums sums) {
+  return motion.damping != nullptr ? spring_pass<true>(actuation, sums) : spring_pass<false>(actuation, sums);
 }
 
 /// The input of a method: a body in motion, the constants of the step and the passes over the springs.
@@ -58,6 +66,13 @@ struct Stepper {
   std::size_t masses;               ///< padded to whole groups
   SpringPass<T> springs;            ///< pass without recording
   SpringPass<T> recording_springs;  ///< pass that also adds to the enabled sums
+  SpringPass<T> undamped_springs;   ///< pass without recording and without dashpots
+
+  /// Computes the forces of springs and dashpots at the present velocities.
+  void compute(SpringPass<T> pass, std::size_t row) const {
+    if (motion.damping != nullptr) interleave_velocities(motion, masses);
+    pass(motion, actuation, row);
+  }
 
   /// Whether anything is recorded.
   bool is_recording() const { return sums.force || sums.power || sums.peak || sums.tension; }
@@ -65,6 +80,16 @@ struct Stepper {
   /// Array `index` of the method's scratch memory, one number for each mass.
   T* scratch(std::size_t index) const { return motion.mass_scratch + index * masses; }
 };
+
+/// Lets the floor act on velocities that all other forces have changed in a whole step: a rigid floor with its
+/// friction, or the friction of an elastic floor, whose normal forces have acted already.
+template <class T>
+void touch_floor(const Stepper<T>& s) {
+  if (s.constants.rigid)
+    land(s.motion, s.constants, s.masses);
+  else if (s.constants.friction)
+    apply_friction(s.motion, s.constants, s.constants.step.dt, s.motion.vx, s.motion.vy, s.masses);
+}
 
 /// The base of a method, with defaults that the method may override. The method adds `step(stepper, row)`, which
 /// computes one step; row `row` of the tables holds the relative lengths at the beginning of the step.
@@ -84,8 +109,9 @@ void advance(const cpu::Motion<T>& motion, const cpu::StepConstants<T>& constant
                            actuation,
                            sums,
                            motion.groups * hn::Lanes(hn::ScalableTag<T>()),
-                           spring_pass(actuation, {}),
-                           spring_pass(actuation, sums)};
+                           spring_pass(motion, actuation, {}),
+                           spring_pass(motion, actuation, sums),
+                           spring_pass<false>(actuation, cpu::Sums{})};
   M::begin(stepper);
   for (std::size_t step = 0; step < steps; ++step) {
     M::step(stepper, step * M::rows_per_step);

@@ -65,6 +65,12 @@ EVODEVO_HD T zero_unless_greater(T a, T threshold, T value) {
   return a > threshold ? value : T(0);
 }
 
+/// `above` where a > threshold, `otherwise` elsewhere.
+template <class T>
+EVODEVO_HD T choose(T a, T threshold, T above, T otherwise) {
+  return a > threshold ? above : otherwise;
+}
+
 /// The largest whole number that is not above a.
 template <class T>
 EVODEVO_HD T round_down(T a) {

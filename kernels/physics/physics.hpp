@@ -94,6 +94,22 @@ EVODEVO_HD T actuation_power(T tension, T rate) {
   return maximum(negative_multiply_add(tension, rate, constant<T>(0)), constant<T>(0));
 }
 
+/// The factor c (d.v)/|d|^2 (N/m) of a dashpot with the coefficient c (N s/m) whose end b moves with `velocity` (m/s)
+/// relative to its end a. The force on the end a is this factor times d: along the spring, positive if it gets longer.
+template <class T>
+EVODEVO_HD T dashpot_factor(const Separation<T>& s, T coefficient, const Triple<T>& velocity) {
+  const T along = multiply_add(s.d.z, velocity.z, multiply_add(s.d.y, velocity.y, s.d.x * velocity.x));
+  return coefficient * along / s.squared;
+}
+
+/// The same factor, without a division: from 1/|d|.
+template <class T>
+EVODEVO_HD T dashpot_factor_by_inverse(const Separation<T>& s, T inverse_distance, T coefficient,
+                                       const Triple<T>& velocity) {
+  const T along = multiply_add(s.d.z, velocity.z, multiply_add(s.d.y, velocity.y, s.d.x * velocity.x));
+  return coefficient * along * (inverse_distance * inverse_distance);
+}
+
 /// A spring's stiffness matrix transverse I + along along^T, N/m.
 template <class T>
 struct SpringStiffness {
@@ -141,6 +157,16 @@ EVODEVO_HD Triple<T> spring_force_rate(const Separation<T>& s, T stiffness, T fa
 template <class T>
 EVODEVO_HD T compliant_force(T stiffness, T violation, T dt_squared, T inverse_mass) {
   return stiffness * violation / multiply_add(stiffness * dt_squared, inverse_mass, constant<T>(1));
+}
+
+/// The same for a constraint beside a dashpot of the coefficient c (N s/m): (k violation + c rate)/(1 + (k dt + c)
+/// damped_dt w), with the `rate` (m/s) at which the length would change at the end of the step if the constraint did
+/// not act. This is Macklin's damped constraint (XPBD, 2016, equation 26) for the velocity at the end of the step.
+template <class T>
+EVODEVO_HD T damped_force(T stiffness, T coefficient, T violation, T rate, T dt, T damped_dt, T inverse_mass) {
+  const T resistance = multiply_add(stiffness, dt, coefficient) * damped_dt;
+  return multiply_add(coefficient, rate, stiffness * violation) /
+         multiply_add(resistance, inverse_mass, constant<T>(1));
 }
 
 /// A spring's elastic energy k (|d| - L)^2 / 2, J.
@@ -201,11 +227,11 @@ struct Ground {
 /// and curvature are zero at both corners, so the ground has no edges (Perlin, Improving noise, 2002).
 template <class T>
 struct Fade {
-  T value, rise;
+  T value, derivative;
 
   EVODEVO_HD explicit Fade(T p)
       : value(p * p * p * multiply_add(p, multiply_add(p, constant<T>(6), constant<T>(-15)), constant<T>(10))),
-        rise(constant<T>(30) * (p * (constant<T>(1) - p)) * (p * (constant<T>(1) - p))) {}
+        derivative(constant<T>(30) * (p * (constant<T>(1) - p)) * (p * (constant<T>(1) - p))) {}
 };
 
 /// The height and slope of rough ground at (x, y), m. The ground has no border and no period.
@@ -218,11 +244,12 @@ EVODEVO_HD Ground<T> ground_at(T x, T y, const Roughness<T>& shape) {
   const T near = multiply_add(p.value, right - here, here), far = multiply_add(p.value, across - behind, behind);
   const T along_x = multiply_add(q.value, (across - behind) - (right - here), right - here);
   const T steepness = shape.roughness * shape.cells;
-  return {shape.roughness * multiply_add(q.value, far - near, near), steepness * p.rise * along_x,
-          steepness * q.rise * (far - near)};
+  return {shape.roughness * multiply_add(q.value, far - near, near), steepness * p.derivative * along_x,
+          steepness * q.derivative * (far - near)};
 }
 
-/// The scalar product of a velocity (m/s) with the ground's normal (-slope_x, -slope_y, 1), which is not a unit vector.
+/// The scalar product of a velocity (m/s) with the ground's normal (-slope_x, -slope_y, 1), which is not a unit vector:
+/// the rate at which the clearance above the ground grows. The code of rigid floors calls it the rise.
 template <class T>
 EVODEVO_HD T along_normal(const Ground<T>& ground, const Triple<T>& v) {
   return negative_multiply_add(ground.slope_x, v.x, negative_multiply_add(ground.slope_y, v.y, v.z));
@@ -239,6 +266,37 @@ EVODEVO_HD T normal_squared(const Ground<T>& ground) {
 template <class T>
 EVODEVO_HD Triple<T> add_horizontal_part(const Ground<T>& ground, const Triple<T>& v, T up) {
   return {negative_multiply_add(ground.slope_x, up, v.x), negative_multiply_add(ground.slope_y, up, v.y), v.z};
+}
+
+/// Adds the vector up (-slope_x, -slope_y, 1), parallel to the ground's normal, to a force (N) or velocity (m/s).
+template <class T>
+EVODEVO_HD Triple<T> add_along_normal(const Ground<T>& ground, const Triple<T>& v, T up) {
+  const Triple<T> sum = add_horizontal_part(ground, v, up);
+  return {sum.x, sum.y, sum.z + up};
+}
+
+/// The lowest rise (along_normal(), m/s) that a rigid floor lets a mass have in a step of dt seconds. `clearance` is
+/// the height of the mass above the ground at the beginning of the step, m. A mass above the ground may come down to
+/// it, and not further. A mass below the ground comes out slowly, so that it is not thrown: in 0.1 s, but at most at 1
+/// m/s.
+template <class T>
+EVODEVO_HD T lowest_rise(T clearance, T dt) {
+  const T slowest_exit = maximum(clearance / constant<T>(0.1), constant<T>(-1));
+  return constant<T>(0) - maximum(clearance / dt, slowest_exit);
+}
+
+/// The rise (m/s) with which a mass bounces off a rigid floor if its rise before is `arrival`; 0 if it does not arrive.
+template <class T>
+EVODEVO_HD T bounce(T restitution, T arrival) {
+  return restitution * maximum(constant<T>(0) - arrival, constant<T>(0));
+}
+
+/// The rise (m/s) of a mass after its contact with a rigid floor: a mass that arrives bounces, and one that rests or
+/// does not bounce gets the lowest rise. The rise is never more than -arrival (except that of a mass that comes out of
+/// the ground), so that contact adds no energy; kernels/README.md says for which methods that is proved.
+template <class T>
+EVODEVO_HD T rise_after_contact(T lowest, T bounce) {
+  return choose(bounce, constant<T>(0), maximum(bounce, lowest), lowest);
 }
 
 /// Quadratic drag as a factor (kg/s) of the velocity: the force is -coefficient |v| v, with the coefficient in kg/m.
@@ -279,6 +337,30 @@ EVODEVO_HD T friction_factor(T vx, T vy, T loss) {
   const T speed = square_root(multiply_add(vy, vy, vx * vx));
   // exactly 1 without contact; the lower bound of the divisor avoids 0/0 at rest
   return maximum(speed - loss, constant<T>(0)) / maximum(speed, constant<T>(1e-30));
+}
+
+/// The fraction that static friction leaves of a tangential velocity (vx, vy; m/s), of which sliding would leave
+/// `kept`: a mass that is not faster than `held`, which is `loss` with the coefficient of static friction (m/s),
+/// sticks.
+template <class T>
+EVODEVO_HD T kept_unless_held(T vx, T vy, T held, T kept) {
+  return zero_unless_greater(square_root(multiply_add(vy, vy, vx * vx)), held, kept);
+}
+
+/// The velocity (m/s) of a mass after the friction of a rigid floor has acted on its part along the ground. `push` is
+/// the velocity that the floor has added along its unit normal, N dt/m (m/s).
+template <class T>
+EVODEVO_HD Triple<T> after_friction(const Ground<T>& ground, const Triple<T>& v, T push, T coefficient,
+                                    T static_coefficient) {
+  const T up = along_normal(ground, v) / normal_squared(ground);
+  const Triple<T> along = add_along_normal(ground, v, constant<T>(0) - up);
+  // the ground's slope may give the tangential velocity a third component
+  const T across = square_root(multiply_add(along.y, along.y, along.z * along.z));
+  const T sliding = friction_factor(along.x, across, coefficient * push);
+  const T lost = constant<T>(1) - kept_unless_held(along.x, across, static_coefficient * push, sliding);
+  // exactly v without contact
+  return {negative_multiply_add(lost, along.x, v.x), negative_multiply_add(lost, along.y, v.y),
+          negative_multiply_add(lost, along.z, v.z)};
 }
 
 /// The position x + dt v (m) after a time dt (s) at the velocity v (m/s).

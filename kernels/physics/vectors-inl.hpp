@@ -54,6 +54,12 @@ HWY_INLINE V zero_unless_greater(V a, V threshold, V value) {
   return hn::IfThenElseZero(hn::Gt(a, threshold), value);
 }
 
+/// `above` where a > threshold, `otherwise` elsewhere.
+template <class V>
+HWY_INLINE V choose(V a, V threshold, V above, V otherwise) {
+  return hn::IfThenElse(hn::Gt(a, threshold), above, otherwise);
+}
+
 template <class V>
 HWY_INLINE V round_down(V a) {
   return hn::Floor(a);

@@ -87,6 +87,7 @@ class Voxel final : public evodevo::LatticeEncoding {
       mean.amplitude += share * (material.amplitude - mean.amplitude);
       mean.frequency += share * (material.frequency - mean.frequency);
       mean.phase += share * (material.phase - mean.phase);
+      mean.damping += share * (material.damping - mean.damping);
     }
     return mean;
   }

@@ -42,6 +42,7 @@ class NoveltySearch final : public evodevo::Selection {
     for (const std::uint32_t row : order)
       if (context.rows[row].ok()) behaviours.push_back(behaviour_of(context.rows[row], context));
     Archive archive(context);
+    archive.forget_failed(context.rows);
     const auto found =
         evodevo::novelty(behaviours, archive.of_others(context.rows), static_cast<std::size_t>(neighbours_));
 
@@ -78,6 +79,20 @@ class NoveltySearch final : public evodevo::Selection {
       if (scores_.size() != ids_.size() || places_.size() != ids_.size() ||
           !std::all_of(places_.begin(), places_.end(), fits))
         reader.fail("does not have " + std::to_string(context.descriptors.size()) + " descriptors for each individual");
+    }
+
+    /// Forgets those in the table who have lost their fitness since they were archived.
+    void forget_failed(std::span<const evodevo::Candidate> rows) {
+      std::set<std::uint32_t> failed;
+      for (const evodevo::Candidate& row : rows)
+        if (!row.ok()) failed.insert(row.id);
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i < ids_.size(); ++i) {
+        if (failed.contains(ids_[i])) continue;
+        ids_[kept] = ids_[i], scores_[kept] = scores_[i], places_[kept] = places_[i];
+        ++kept;
+      }
+      ids_.resize(kept), scores_.resize(kept), places_.resize(kept);
     }
 
     /// Returns the behaviours of those who are not in the table.

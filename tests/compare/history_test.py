@@ -29,6 +29,8 @@ def shown(best, springs=10, evaluations=5, marks=None, scenarios=()):
                 "map": None,
                 "diverged": 1,
                 "invalid": 0,
+                "artefact": 1,
+                "passive": 2,
                 "spring_evaluations": springs,
                 "wall_time": 0.5,
             }
@@ -53,6 +55,7 @@ class Histories(unittest.TestCase):
         self.assertEqual(run.at("evaluations", 14, "best"), 3)
         self.assertEqual(run.at("spring_evaluations", 29, "evaluations"), 10)
         self.assertEqual(run.diverged[-1], 3)
+        self.assertEqual(run.refused[-1], 9)
 
     def test_less_may_be_better(self):
         self.assertEqual(history(shown([3, 1, 2]), CHEAP).best, [math.inf, 3, 1, 1])

@@ -32,6 +32,8 @@ def run(maps, axes=(HEIGHT, MASS), objective=FAR):
                     "map": {"coverage": coverage, "qd_score": qd_score} if axes else None,
                     "diverged": 1,
                     "invalid": 0,
+                    "artefact": 0,
+                    "passive": 0,
                     "spring_evaluations": 10,
                     "wall_time": 0.5,
                 }

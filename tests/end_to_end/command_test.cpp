@@ -86,6 +86,27 @@ TEST_F(Command, ShowAgreesWithTheArchive) {
   EXPECT_THAT(text.output, ::testing::Not(HasSubstr("nan")));
 }
 
+TEST_F(Command, ARunThatVerifiesItsFrontTellsWhomItRefuses) {
+  const Finished finished = evodevo({"run", file_, "--out", folder_, "--set", "experiment.verify_front=true"});
+  ASSERT_EQ(finished.exit_code, 0) << finished.output;
+  EXPECT_THAT(finished.output, ContainsRegex("artefact or passive [0-9.]+ %"));
+  EXPECT_THAT(finished.output, ContainsRegex("time: .*, verify [0-9]+ %"));
+  const auto json = nlohmann::json::parse(evodevo({"show", folder_, "--json"}).output);
+  const Finished text = evodevo({"show", folder_});
+  std::int64_t told = 0, refused = 0;
+  for (const char* status : {"artefact", "passive"}) {
+    const auto count = json.at("statuses").at(status).get<std::int64_t>();
+    refused += count;
+    for (const auto& generation : json.at("generations")) told += generation.at(status).get<std::int64_t>();
+    EXPECT_THAT(text.output, HasSubstr(std::to_string(count) + " " + status));
+  }
+  ASSERT_GT(refused, 0);
+  EXPECT_EQ(told, refused);
+  for (const auto& failure : json.at("failures"))
+    EXPECT_THAT(text.output,
+                HasSubstr(failure.at("status").get<std::string>() + ": " + failure.at("reason").get<std::string>()));
+}
+
 TEST_F(Command, FailedBodiesNeverReachAReportAsNumbers) {
   // gravity and drag too strong for this time step: every valid body diverges
   const Finished finished = evodevo({"run", file_, "--out", folder_, "--set", "scene.drag.coefficient=1e6", "--set",
@@ -400,8 +421,41 @@ TEST_F(Command, UsageErrors) {
   EXPECT_THAT(evodevo({"conform"}).output, testing::naming("LIBRARY", "missing", "usage: evodevo conform LIBRARY"));
   EXPECT_EQ(evodevo({"run", file_, "--sead", "3"}).exit_code, 2);
   EXPECT_THAT(evodevo({"run", file_, "--set", "seed"}).output, AllOf(HasSubstr("--set seed"), HasSubstr("key=value")));
-  EXPECT_EQ(evodevo({"check", file_}).output, file_ + ": ok\n");
+  EXPECT_THAT(evodevo({"check", file_}).output, ::testing::EndsWith(file_ + ": ok\n"));
   EXPECT_EQ(evodevo({"run", "--help"}).exit_code, 0);
+}
+
+TEST_F(Command, CheckTellsTheTopSpeed) {
+  const auto told = [&](std::vector<std::string> overrides) {
+    std::vector<std::string> command{"check", file_};
+    for (const std::string& one : overrides) command.insert(command.end(), {"--set", one});
+    const Finished finished = evodevo(command);
+    EXPECT_EQ(finished.exit_code, 0) << finished.output;
+    return finished.output;
+  };
+  // robots of one or two voxels of 0.5 m
+  EXPECT_THAT(told({"scene.damping.rate=8", "fitness.0.window=0.2"}),
+              testing::naming("top speed: ", "0.6131 m/s", "0.6131 to 1.226 body lengths",
+                              " 0.1226 to 0.2453 in the window of 0.2 s", " 0.5 to 1 m long"));
+  EXPECT_THAT(told({"scene.damping.rate=8", "scene.gravity.slope=-10"}),
+              testing::naming("top speed: ", "0.8167 m/s downhill", "0.3909 m/s uphill"));
+  EXPECT_THAT(told({"scene.gravity.slope=30"}), testing::naming("0.4554 m/s downhill", "nothing uphill"));
+  EXPECT_THAT(told({"scene.damping.rate=0"}), testing::naming("top speed: ", "no damping", "muscles"));
+  EXPECT_EQ(told({"scene.floor.roughness=0.001"}), file_ + ": ok\n");
+}
+
+TEST_F(Command, CheckTellsTheTopSpeedInEachScenario) {
+  const std::string file = scratch_.write("scenarios.toml", small_experiment + R"(
+[[scenario]]
+name = "icy"
+friction = { coefficient = 0 }
+[[scenario]]
+name = "rubber"
+friction = { coefficient = 0.9 }
+)");
+  const std::string told = evodevo({"check", file}).output;
+  EXPECT_THAT(told, testing::at_place("top speed in scenario rubber: ", "0.4392 m/s", file + ": ok\n"));
+  EXPECT_THAT(told, ::testing::Not(HasSubstr("icy")));
 }
 
 TEST_F(Command, FaultyBodiesAreRefusedByPlace) {

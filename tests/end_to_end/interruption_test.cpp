@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -55,6 +57,8 @@ void expect_same_runs(const Archive& a, const Archive& b) {
     EXPECT_EQ(generations_a[i].median, generations_b[i].median);
     EXPECT_EQ(generations_a[i].diverged, generations_b[i].diverged);
     EXPECT_EQ(generations_a[i].invalid, generations_b[i].invalid);
+    EXPECT_EQ(generations_a[i].artefact, generations_b[i].artefact);
+    EXPECT_EQ(generations_a[i].passive, generations_b[i].passive);
     EXPECT_EQ(generations_a[i].clones, generations_b[i].clones);
     EXPECT_EQ(generations_a[i].spring_evaluations, generations_b[i].spring_evaluations);
   }
@@ -104,6 +108,47 @@ TEST_P(InterruptedJournal, KilledAtEachLineAndResumedEndsTheSame) {
 
 INSTANTIATE_TEST_SUITE_P(Journals, InterruptedJournal, ::testing::Values("wal", "delete"),
                          [](const auto& instance) { return std::string(instance.param); });
+
+/// Returns how many individuals were refused in a later generation than that of their birth, at least.
+std::int64_t refused_elders(const Archive& archive) {
+  std::map<std::uint32_t, std::int64_t> newborns;  // who are refused, by the generation of their birth
+  for (std::uint32_t id = 0; archive.individual(id); ++id) {
+    const ArchivedIndividual one = *archive.individual(id);
+    newborns[one.born] += one.result.status == Status::artefact || one.result.status == Status::passive;
+  }
+  std::int64_t elders = 0;
+  for (const Summary& summary : archive.generations())
+    elders += std::max<std::int64_t>(0, summary.artefact + summary.passive - newborns[summary.generation]);
+  return elders;
+}
+
+/// With this selection all parents die, so that elders come to the front whom nobody has verified yet.
+TEST_F(Interruption, ARunThatVerifiesItsFrontIsTheSameAfterKillsAndWithAnyThreads) {
+  const auto verifying = [&](const std::string& folder, const std::string& threads) {
+    std::vector<std::string> command = run_command(folder);
+    command.insert(command.end(),
+                   {"--set", "selection.name=comma", "--set", "experiment.verify_front=true", "--threads", threads});
+    return command;
+  };
+  ASSERT_EQ(testing::run(verifying("straight", "1")).exit_code, 0);
+  ASSERT_EQ(testing::run(verifying("three threads", "3")).exit_code, 0);
+  std::vector<std::string> command = verifying("killed", "2");
+  for (int kill = 0; kill < 4; ++kill) {
+    Process process(command);
+    for (int line = 0; line < 3; ++line) process.read_line();
+    process.send(SIGKILL);
+    process.wait();
+    command = resume_command("killed");
+  }
+  EXPECT_LT(Archive::read(scratch_ / "killed").generations().size(), 13u) << "it was done before it could be killed";
+  const testing::Finished finished = testing::run(command);
+  ASSERT_EQ(finished.exit_code, 0) << finished.output;
+  const Archive straight = Archive::read(scratch_ / "straight");
+  EXPECT_GT(straight.statuses().at("artefact") + straight.statuses().at("passive"), 10);
+  EXPECT_GT(refused_elders(straight), 0);
+  expect_same_runs(straight, Archive::read(scratch_ / "three threads"));
+  expect_same_runs(straight, Archive::read(scratch_ / "killed"));
+}
 
 TEST_F(Interruption, ARunWhoseDevoOperatorRemembersIsTheSameAfterAKill) {
   const std::string library = (fs::path(EVODEVO_FAULTY_PLUGINS) / "special/plugin.evodevo.so").string();

@@ -95,6 +95,20 @@ class Run(Scratch):
         self.assertIn("distance (body lengths)", texts)
 
 
+    def test_an_experiment_that_says_nothing_of_settling_is_refused_in_a_line(self):
+        experiment = self.folder / "short.toml"
+        experiment.write_text('[[fitness]]\nname = "distance"\n')
+        with self.assertRaisesRegex(ValueError, "short.toml: fitness.0.settle"):
+            run.settling(experiment)
+
+    def test_frames_are_the_samples_nearest_to_their_times(self):
+        trajectory = self.folder / "trajectory.csv"
+        rows = [f"{7 + 4 + time},{mass},{time},{mass},0" for time in (0.0007, 2.4, 2.51, 5.2, 7.4, 9.99) for mass in (0, 1)]
+        trajectory.write_text("\n".join(["time,mass,x,y,z", *rows]))
+        frames = run.frames(trajectory, {"time": 7}, 4)
+        self.assertEqual({time: frame[1][0] for time, frame in frames.items()}, {0: 0.0007, 2.5: 2.51, 5: 5.2, 7.5: 7.4, 10: 9.99})
+
+
 class CommandLine(Scratch):
     def test_bad_words_are_refused(self):
         file = self.folder / "same.svg"

@@ -23,15 +23,14 @@ std::vector<std::vector<double>> contact_on(Simulator& simulator, const Experime
   return contact;
 }
 
-class ContactRecord : public ::testing::TestWithParam<Way> {};
-
-TEST_P(ContactRecord, AgreesWithTheCpu) {
-  EVODEVO_NEEDS_GPU();
+/// Compares the contact of masses on both devices.
+void compare_contact(const Way& way, const Floor& floor) {
   // a mass that rests on the stiff floor bounces microscopically; from about 0.05 s on, rounding decides in which steps
   // it touches the floor
   Experiment experiment = testing::with({Told({.contact = true}, [](const DevoContext&, Edits&) {})},
                                         {{"development.cycles", "2", ""}, {"development.cycle_time", "0.02", ""}});
-  experiment.stepping = stepping(GetParam());
+  experiment.stepping = stepping(way);
+  experiment.scene.floor = floor;
   const auto cpu = contact_on(*make_cpu_simulator(experiment.scene, experiment.stepping, 0), experiment);
   const auto gpu = contact_on(*make_cuda_simulator(experiment.scene, experiment.stepping), experiment);
   ASSERT_EQ(gpu.size(), cpu.size());
@@ -44,6 +43,21 @@ TEST_P(ContactRecord, AgreesWithTheCpu) {
     }
   }
   EXPECT_GT(most, 0.9) << "some masses rest on the ground";
+}
+
+class ContactRecord : public ::testing::TestWithParam<Way> {};
+
+TEST_P(ContactRecord, AgreesWithTheCpu) {
+  EVODEVO_NEEDS_GPU();
+  compare_contact(GetParam(), {});
+}
+
+TEST_P(ContactRecord, AgreesWithTheCpuOnRigidGround) {
+  EVODEVO_NEEDS_GPU();
+  if (std::get<Precision>(GetParam()) == Precision::float64) return;
+  for (const double restitution : {0.0, 0.5})
+    for (const double roughness : {0.0, 0.05})
+      compare_contact(GetParam(), {.roughness = roughness, .restitution = restitution});
 }
 
 INSTANTIATE_TEST_SUITE_P(Gpu, ContactRecord, all_ways(), [](const auto& test) { return name(test.param); });

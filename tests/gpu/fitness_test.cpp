@@ -10,7 +10,7 @@
 namespace evodevo::testing_gpu {
 namespace {
 
-/// The robots of the quickstart without development, scored by their distance in 5 s after 3 s of settling. Each takes
+/// Small robots without development, scored by their distance in 5 s after 3 s of settling. Each takes
 /// about 0.02 s on one core.
 constexpr const char* walkers = R"(
 [experiment]

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <set>
 #include <vector>
 
@@ -16,7 +17,7 @@ namespace evodevo::cuda {
 namespace {
 
 constexpr std::size_t shared_bytes = 227 << 10;  // shared memory of a block on an H200
-const Features features{.gravity = true, .floor = true, .friction = true, .damping = true};
+const Features features{.gravity = true, .floor = true, .elastic = true, .friction = true, .damping = true};
 
 /// A body of 1,000 masses, each joined to 25 neighbours, whose springs cycle through `materials` materials. If
 /// `materials` is 0, each spring has a material of its own.
@@ -37,6 +38,17 @@ Task task_of(const Body& body, State& state, const Scene& scene) {
   task.course = course_of(task, scene, Precision::float32);
   task.course->forces = force_range<T>(body, state, scene);
   return task;
+}
+
+TEST(Resident, ForcesHaveRoomForADashpotThatStopsAFall) {
+  // a tall, soft body on a short spring, whose own force is small
+  Body body;
+  body.materials = {{100, 0, 0, 0, 20}, {1, 0, 0, 0}};
+  body.masses = {{{0, 0, 0}, 0.2}, {{0, 0, 0.05}, 0.2}, {{0, 0, 2}, 0.2}};
+  body.springs = {{0, 1, 0.05, 0}, {1, 2, 1.95, 1}};
+  const Scene scene = testing_gpu::walking_scene();
+  const double largest = force_range<float>(body, state_at_birth(body, scene), scene).largest;
+  EXPECT_GT(largest, body.damping(body.springs[0]) * std::sqrt(2 * 9.81 * 2));
 }
 
 TEST(Resident, RecordsLeadToTheirMaterials) {
@@ -117,7 +129,7 @@ TEST(Resident, WhatIsRecordedOrSampledDoesNotDecideHowManyStepsATableHas) {
     task.steps = 1000;
     task.sampled_at = {{10, {.work = true, .positions = true, .contacts = true}}};
     const auto table_steps = [&](Recording recording, const Channels& channels) {
-      const Features all = features_of(scene, {}, recording, true, channels);
+      const Features all = features_of(scene, {}, recording, {.actuation = true}, channels);
       const auto resident = Resident<float>::arrange(task, all, shared_bytes);
       std::vector<std::byte> input(resident->sizes().input), motion(resident->sizes().state);
       const Regions regions{input.data(), motion.data(), nullptr};

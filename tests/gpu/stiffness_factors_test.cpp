@@ -1,7 +1,6 @@
 // Springs whose stiffness differs from that of their material by a factor move as if they had a material with this
 // stiffness, both in bodies that stay on the chip and in bodies that do not fit there.
-#include "analysis/stiffness_factors.hpp"
-
+#include "analysis/split_materials.hpp"
 #include "gpu.hpp"
 
 namespace evodevo::testing_gpu {
@@ -13,7 +12,7 @@ class StiffnessFactors : public testing::TestWithParam<Way> {
     Body body = random_body(masses, 12, 4);
     for (std::size_t i = 0; i < body.springs.size(); ++i)
       body.springs[i].stiffness_factor = 0.5 + static_cast<double>(i % 1021) / 1020;
-    const auto plain = without_factors(body);
+    const auto plain = split_materials(body);
     const Scene scene = walking_scene();
     const State start = moving_state(body, scene, 11);
     Robot with(body, start), without(*plain, start);

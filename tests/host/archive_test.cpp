@@ -95,6 +95,41 @@ TEST_F(ArchiveTest, GivesBackWhatWasCommitted) {
   EXPECT_EQ(archive.statuses().at("diverged"), 1);
 }
 
+TEST_F(ArchiveTest, TheRefusedLoseTheirScoresWhenTheirGenerationIsCommitted) {
+  Individual elder;
+  elder.made_by = "random";
+  elder.genome = {0.25f, 3};
+  elder.result.objectives = {0.4, 1};
+  Individual newborn = elder;
+  newborn.id = 1;
+  newborn.born = 1;
+  newborn.origin = 1;
+  newborn.result.objectives = {0.3, 2};
+  const Verification of_elder{0, 0.4, {{"again", Status::ok, "", 0.4}}};
+  {
+    Archive archive = Archive::create(folder_, experiment_, "a device");
+    archive.commit({elder}, {}, {}, {.generation = 0, .evaluations = 1});
+    Archive::annotate(folder_).add_verifications({of_elder});
+    EXPECT_TRUE(archive.verification(0).has_value());
+    const std::vector<Refusal> refusals{{1, Status::artefact, "quarter-step ends as diverged"},
+                                        {0, Status::passive, "no-muscles gives 0.39"}};
+    archive.commit({newborn}, {}, {}, {.generation = 1, .evaluations = 2, .artefact = 1, .passive = 1}, {}, refusals);
+    Archive::annotate(folder_).add_verifications({of_elder});  // of a process that chose it before
+  }
+  const Archive archive = Archive::read(folder_);
+  EXPECT_EQ(archive.individual(0)->result.status, Status::passive);
+  EXPECT_EQ(archive.individual(0)->result.reason, "no-muscles gives 0.39");
+  EXPECT_EQ(archive.individual(1)->result.status, Status::artefact);
+  EXPECT_EQ(archive.individual(1)->result.reason, "quarter-step ends as diverged");
+  EXPECT_TRUE(archive.best(9).empty());
+  EXPECT_FALSE(archive.verification(0).has_value());
+  EXPECT_EQ(archive.population().size(), 2u) << "selection alone drops";
+  EXPECT_EQ(archive.generations()[1].artefact, 1);
+  EXPECT_EQ(archive.generations()[1].passive, 1);
+  EXPECT_EQ(archive.statuses().at("artefact"), 1);
+  EXPECT_EQ(archive.statuses().at("passive"), 1);
+}
+
 TEST_F(ArchiveTest, TellsWhoMadeAGeneration) {
   const auto commit = [](Archive& archive, const Provenance& provenance, std::uint32_t generation) {
     archive.commit({}, {}, {}, {.generation = generation, .provenance = archive.add_provenance(provenance)});

@@ -1,10 +1,12 @@
 // Checks that every error message about an experiment contains the place, the value and the remedy.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <toml++/toml.h>
 
 #include <fstream>
 #include <tuple>
 
+#include "experiment/tables/reference.hpp"
 #include "experiment/toml_reader.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
@@ -46,6 +48,37 @@ TEST(Configuration, TheSmallExperimentIsRead) {
   ASSERT_EQ(experiment.objectives.size(), 2u);
   EXPECT_EQ(experiment.objectives[0].name, "distance");
   EXPECT_FALSE(experiment.objectives[1].maximise);
+}
+
+/// Returns the section of the reference under a heading.
+std::string reference_under(const std::string& heading) {
+  const std::string reference = experiment_reference(), whole = "### `" + heading + "`\n";
+  const std::size_t begin = reference.find(whole);
+  if (begin == std::string::npos) return "";
+  return reference.substr(begin, reference.find("\n### ", begin) - begin);
+}
+
+TEST(Configuration, TheReferenceHasEveryKeyThatARunRecords) {
+  const Experiment experiment =
+      testing::read(small_experiment + "[scene.drag]\n[scene.payload]\n[[scenario]]\nname = 'uphill'\n");
+  const toml::table recorded = toml::parse(experiment.resolved);
+  int keys = 0;
+  const auto expect_keys = [&](const toml::table& table, const std::string& heading, const std::string& prefix = "") {
+    for (const auto& [key, value] : table) {
+      if (value.is_table() || value.is_array_of_tables()) continue;
+      EXPECT_THAT(reference_under(heading), ::testing::HasSubstr("\n| `" + prefix + std::string(key.str()) + "` | `"));
+      ++keys;
+    }
+  };
+  for (const std::string name : {"experiment", "simulation", "development"})
+    expect_keys(*recorded[name].as_table(), "[" + name + "]");
+  for (const auto& [force, table] : *recorded["scene"].as_table())
+    expect_keys(*table.as_table(), "[scene]", std::string(force.str()) + ".");
+  expect_keys(*recorded["materials"]["bone"].as_table(), "[materials.NAME]");
+  toml::table scenario = *recorded["scenario"][0].as_table();
+  scenario.erase("name");
+  expect_keys(scenario, "[[scenario]]");
+  EXPECT_GE(keys, 8 + 9 + 6 + 11 + 5 + 5);
 }
 
 TEST(Configuration, DevelopmentHasSchedulesAndAControl) {
@@ -413,6 +446,8 @@ TEST(Configuration, ContradictoryParts) {
   EXPECT_THAT(
       complaint(with("[scene.floor]", "")),
       testing::at_place("test.toml:23:1: scene.friction = a table: ", "add [scene.floor]", "remove [scene.friction]"));
+  EXPECT_THAT(complaint(with("[scene.friction]", "[scene.friction]\nstatic = 0.4")),
+              testing::at_place("test.toml:24:10: scene.friction.static = 0.4: ", "at least", "0.5"));
   EXPECT_THAT(complaint(with("\"actuation-work\"", "\"distance\"")),
               testing::at_place("test.toml:43:8: fitness.1.name = \"distance\": ", "\"distance\"", "label"));
 }
@@ -421,6 +456,9 @@ TEST(Configuration, StepsThatTheSceneOrAMaterialCannotBear) {
   EXPECT_THAT(complaint(with("[simulation]", "[simulation]\ndt = 0.001")),
               testing::at_place("test.toml:27:6: simulation.dt = 0.001: ", "scene.floor.stiffness = 1000000 N/m",
                                 "masses of 0.2 kg", "at most 0.0005366563145999495 s"));
+  EXPECT_TRUE(testing::read(with("[simulation]", "[simulation]\ndt = 0.001"), {{"scene.floor.restitution", "0.2", ""}})
+                  .scene.floor->rigid())
+      << "contact with a rigid floor limits no step";
   EXPECT_THAT(complaint(with("[simulation]", "[materials.bone]\nstiffness = 1e7\n[simulation]\ndt = 0.0005")),
               testing::at_place("test.toml:29:6: simulation.dt = 0.0005: ", "materials.bone.stiffness = 10000000 N/m",
                                 "masses of 0.2 kg", "at most 0.0002 s"));
@@ -432,6 +470,20 @@ TEST(Configuration, StepsThatTheSceneOrAMaterialCannotBear) {
                                 "at most 0.0002501250625312656 s"));
   EXPECT_THAT(complaint(with("cycle_time = 0.05", "cycle_time = 0.0507")),
               testing::at_place("test.toml:31:14: development.cycle_time = 0.0507: ", "0.0005 s", "0.0505 s"));
+}
+
+TEST(Configuration, AFloorIsElasticOrRigidAndAScenarioMayChangeThat) {
+  EXPECT_THAT(complaint(with("[scene.floor]", "[scene.floor]\nstiffness = 1e4\nrestitution = 0.2")),
+              testing::at_place("test.toml:24:15: scene.floor.restitution = 0.2: ", "scene.floor.stiffness"));
+  const auto scenario_of = [](const std::string& floor, const std::string& scenario) {
+    const std::string other = "\n[[scenario]]\nname = \"other\"\n[scenario.floor]\n" + scenario;
+    return testing::read(with("[scene.floor]", "[scene.floor]\n" + floor) + other).scenarios.at(0).scene.floor.value();
+  };
+  EXPECT_EQ(scenario_of("restitution = 0.2", "roughness = 0.1").restitution, 0.2);
+  const Floor soft = scenario_of("restitution = 0.2", "stiffness = 1e4");
+  EXPECT_FALSE(soft.rigid());
+  EXPECT_EQ(soft.stiffness, 1e4);
+  EXPECT_EQ(scenario_of("stiffness = 1e4", "restitution = 0.3").restitution, 0.3);
 }
 
 TEST(Configuration, SyntaxAndFiles) {

@@ -535,5 +535,35 @@ TEST(Report, FilmsFollowWhatARunHasRecorded) {
   EXPECT_EQ(films(), before) << "though development draws other numbers now";
 }
 
+/// The filmed speed of the best robot is that which its distances along x and y make.
+TEST(Report, SaysHowNearTheBestCameToTheTopSpeed) {
+  const auto reported = [](const std::string& text) {
+    const testing::Scratch scratch;
+    const Experiment experiment = testing::read(text);
+    const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
+    Archive archive = Archive::create(scratch / "run", experiment, simulator->device());
+    const std::atomic<bool> stop = false;
+    evolve(experiment, *simulator, archive, stop, Observer{});
+    return reported_run(archive, experiment, *simulator, {}, page_budget);
+  };
+  std::string text = testing::small_experiment;
+  text.replace(text.find("\"actuation-work\""), 16, "\"distance\"\nlabel = \"sideways\"\ndirection = [0, 1, 0]");
+  const auto run = reported(text);
+  const auto& found = run["top_speed"];
+  const auto& best = run["robots"][0]["objectives"];
+  const double lengths = std::hypot(best["distance"].get<double>(), best["sideways"].get<double>());
+  EXPECT_GT(lengths, 1e-4);
+  EXPECT_NEAR(found["speed"].get<double>(), lengths * found["length"].get<double>() / 0.1, 1e-5);
+  EXPECT_DOUBLE_EQ(found["limit"].get<double>(), 0.5 * 9.81 / Damping().rate);
+  const auto without = [&](const std::string& table) {
+    std::string changed = text;
+    changed.erase(changed.find(table), table.size());
+    return reported(changed)["top_speed"];
+  };
+  EXPECT_TRUE(without("[scene.damping]")["limit"].is_null());
+  EXPECT_GT(without("[scene.damping]")["speed"], 0);
+  EXPECT_TRUE(without("[scene.friction]").is_null());
+}
+
 }  // namespace
 }  // namespace evodevo

@@ -260,10 +260,31 @@ TEST(Verify, ThresholdsAreAtHalf) {
   EXPECT_EQ(found(2, "settled", 1), Marks{});
   EXPECT_EQ(found(2, "settled", 0.99), Marks{"passive"});
   EXPECT_EQ(found(2, "settled", std::nullopt), Marks{});
+  EXPECT_EQ(found(-2, "quarter-step", -3), Marks{});
+  EXPECT_EQ(found(-2, "quarter-step", -3.1), Marks{"artefact"});
+  EXPECT_EQ(found(-1e-9, "quarter-step", 0), Marks{}) << "nothing is lost";
+  EXPECT_EQ(found(2, "quarter-step", 7), Marks{}) << "nothing is lost";
+  EXPECT_EQ(found(2, "quarter-step", 0, false), Marks{}) << "nothing is lost";
   EXPECT_EQ(found(-2, "no-muscles", -2), Marks{}) << "nothing to keep";
   EXPECT_EQ(found(2, "quarter-step", 3, false), Marks{});
   EXPECT_EQ(found(2, "quarter-step", 3.1, false), Marks{"artefact"});
   EXPECT_EQ(found(2, "no-muscles", 0, false), Marks{}) << "rest costs nothing";
+}
+
+TEST(Verify, TheFirstMarkNamesItsTrial) {
+  const auto trial = [](const char* name, double value) { return Trial{name, Status::ok, "", value}; };
+  Verification verification{0, 2, {trial("quarter-step", 2), trial("other-method", 0.1), trial("settled", 0.2)}};
+  const auto first = [&] { return first_mark(verification, true).value(); };
+  EXPECT_EQ(first().status, Status::artefact);
+  EXPECT_EQ(first().trial.name, "other-method");
+  verification.trials[0].value = 0.3;
+  EXPECT_EQ(first().trial.name, "quarter-step");
+  EXPECT_EQ(marks(verification, true), (Marks{"artefact", "passive"})) << "each once";
+  verification.trials[0].value = verification.trials[1].value = 2;
+  EXPECT_EQ(first().status, Status::passive);
+  EXPECT_EQ(first().trial.name, "settled");
+  verification.trials[2].value = 2;
+  EXPECT_FALSE(first_mark(verification, true).has_value());
 }
 
 }  // namespace

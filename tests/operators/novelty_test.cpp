@@ -67,6 +67,18 @@ TEST(NoveltySearch, ThoseInTheArchiveWhoAreAliveCountOnce) {
   }
 }
 
+TEST(NoveltySearch, ForgetsThoseInTheArchiveWhoLoseTheirFitness) {
+  const auto selection = make<Selection>("novelty", "neighbours = 1\narchived = 100");
+  Table table = at({1, 2, 4, 8});
+  table.memory = table.survive(*selection, 4).memory;
+  ASSERT_EQ(archived(table.memory).size(), 4u);
+  for (Individual& one : table.rows) one.is_newborn = false;
+  table.rows[1] = {.id = 1};
+  EXPECT_THAT(
+      archived(table.survive(*selection, 4).memory),
+      testing::ElementsAre(testing::DoubleNear(1, 1e-9), testing::DoubleNear(4, 1e-9), testing::DoubleNear(8, 1e-9)));
+}
+
 TEST(NoveltySearch, BearsTheGreatestDescriptors) {
   const auto selection = make<Selection>("novelty", "neighbours = 1\narchived = 1");
   Table table = at({1e300, -1e308, 1.7e308, 1, 2});

@@ -168,16 +168,29 @@ HardCase at_the_edge_of_sliding() {
   return c;
 }
 
-HardCase thrown(std::string name, double dt, double most_gain, Outcome outcome) {
+HardCase thrown(std::string name, const Scene& scene, double dt, double most_gain, Outcome outcome) {
   const Body body = block(2, {5000, 0, 0, 0});
-  State start = state_at_birth(body, walking_scene());
+  State start = state_at_birth(body, scene);
   for (std::size_t i = 0; i < start.position.size(); ++i) {
     start.position[i].z += 0.5;
     start.velocity[i] = {0, 0, -100};
   }
-  HardCase c = from(std::move(name), body, start, walking_scene(), dt, static_cast<std::uint64_t>(0.5 / dt), outcome);
+  HardCase c = from(std::move(name), body, start, scene, dt, static_cast<std::uint64_t>(0.5 / dt), outcome);
   c.most_gain = most_gain;
   return c;
+}
+
+Scene on_rigid_floor(double restitution) {
+  Scene scene = walking_scene();
+  scene.floor->restitution = restitution;
+  return scene;
+}
+
+/// A mass that bounces on a rigid floor without loss, at a step that is much longer than any elastic floor bears.
+HardCase bounces_in_long_steps() {
+  const Scene scene{Gravity{}, on_rigid_floor(1).floor, {}, {}, {}};
+  const Body body = single_mass(0.1, {0, 0, 0.1});
+  return from("rigid_floor_in_long_steps", body, resting(body, scene), scene, 0.009, 60000);
 }
 
 HardCase on_a_hard_floor(std::string name, double dt, std::uint64_t steps, Outcome outcome, double most_gain) {
@@ -317,8 +330,10 @@ std::vector<HardCase> hard_cases(Method method) {
       from_birth("collinear_body_upright", collinear_body({0, 0, 1}), walking, 0.0005, 4000),
       lonely_mass(),
       at_the_edge_of_sliding(),
-      thrown("thrown_at_100_m_per_s", 0.0005, 10, Outcome::right_or_flagged),
-      thrown("thrown_at_100_m_per_s_in_small_steps", 0.00005, 1.05, Outcome::right),
+      thrown("thrown_at_100_m_per_s", walking, 0.0005, 10, Outcome::right_or_flagged),
+      thrown("thrown_at_100_m_per_s_in_small_steps", walking, 0.00005, 1.05, Outcome::right),
+      thrown("thrown_at_100_m_per_s_on_a_rigid_floor", on_rigid_floor(0.8), 0.0005, 1.05, Outcome::right),
+      bounces_in_long_steps(),
       fast_muscles("muscles_of_1999_Hz", 1999),
       fast_muscles("muscles_of_700_Hz", 700),
       fast_muscles("muscles_of_1_MHz", 1e6 + 3),

@@ -19,6 +19,10 @@ const std::vector<std::uint64_t> uneven{1, 7, 100, 0, 137, 255};
 
 Scene rough_slope() { return {Gravity{9.81, 12}, Floor{1e5, 0.05}, Friction{}, Damping{}, Drag{0.05}}; }
 
+Scene rigid_slope() {
+  return {Gravity{9.81, 12}, Floor{.roughness = 0.05, .restitution = 0.4}, Friction{0.5, 0.7}, Damping{}, Drag{0.05}};
+}
+
 State late(const Body& body, const Scene& scene) {
   State state = state_at_birth(body, scene);
   state.time = birthday;
@@ -73,19 +77,19 @@ void expect_one_verdict_on(const Body& body, const State& start, double step, co
 }  // namespace
 
 void expect_pieces_to_be_the_whole(const SimulatorFactory& simulator_for, const std::vector<Body>& bodies) {
-  const Scene scene = rough_slope();
-  const auto simulator = simulator_for(scene);
-  for (const Body& body : bodies) {
-    SCOPED_TRACE(std::to_string(body.masses.size()) + " masses");
-    Run whole{&body, late(body, scene)}, pieces = whole, recorded = whole;
-    whole.make(*simulator, {500});
-    pieces.make(*simulator, uneven);
-    recorded.make(*simulator, {333, 167}, {true, true, true, true, true});
-    EXPECT_EQ(whole.task.status, Status::ok) << whole.task.reason;
-    EXPECT_EQ(whole.state.time, birthday + 500 * dt);
-    expect_same(whole, pieces);
-    expect_same(whole, recorded);
-  }
+  for (const Scene& scene : {rough_slope(), rigid_slope()})
+    for (const Body& body : bodies) {
+      SCOPED_TRACE(std::to_string(body.masses.size()) + " masses, " + (scene.floor->rigid() ? "rigid" : "elastic"));
+      const auto simulator = simulator_for(scene);
+      Run whole{&body, late(body, scene)}, pieces = whole, recorded = whole;
+      whole.make(*simulator, {500});
+      pieces.make(*simulator, uneven);
+      recorded.make(*simulator, {333, 167}, {true, true, true, true, true});
+      EXPECT_EQ(whole.task.status, Status::ok) << whole.task.reason;
+      EXPECT_EQ(whole.state.time, birthday + 500 * dt);
+      expect_same(whole, pieces);
+      expect_same(whole, recorded);
+    }
 }
 
 void expect_tallies_to_leave_the_motion_alone(const SimulatorFactory& simulator_for, const Body& body) {

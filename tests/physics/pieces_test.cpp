@@ -20,10 +20,14 @@ INSTANTIATE_TEST_SUITE_P(Ways, Pieces,
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(Pieces, EndInTheBitsOfTheWhole) {
-  expect_pieces_to_be_the_whole(factory(), {random_body(107, 9, 5, 6), random_body(41, 6, 23, 7), single_mass(0.2)});
+  expect_pieces_to_be_the_whole(factory(), {random_body(107, 9, 5, 6), random_body(41, 6, 23, 7), single_mass(0.2),
+                                            with_dashpots(random_body(43, 8, 5, 3))});
 }
 
-TEST_P(Pieces, BetweenTalliesToo) { expect_tallies_to_leave_the_motion_alone(factory(), random_body(41, 6, 5, 7)); }
+TEST_P(Pieces, BetweenTalliesToo) {
+  expect_tallies_to_leave_the_motion_alone(factory(), random_body(41, 6, 5, 7));
+  expect_tallies_to_leave_the_motion_alone(factory(), with_dashpots(random_body(41, 6, 5, 7)));
+}
 
 TEST_P(Pieces, AreNotCheckedWhereTheyMeet) { expect_no_check_between_pieces(factory()); }
 

@@ -94,7 +94,7 @@ TEST_P(Property, NoPlaceIsSpecial) {
     const std::vector<Answer> here = simulate(*simulator(scene), lives), there = simulate(*simulator(scene), elsewhere);
     // positions of a few m are rounded differently; stiff contact, and directions of springs of nearly zero length,
     // amplify this
-    const double error = precision() == Precision::float32 ? 1e-3 : 1e-10;
+    const double error = precision() == Precision::float32 ? 5e-3 : 1e-10;
     for (std::size_t i = 0; i < lives.size(); ++i) {
       State back = there[i].state;
       for (Vec3& x : back.position) x = x - shift;
@@ -276,7 +276,8 @@ TEST_P(ExactProperty, EnergyIsWhatMusclesAndLossesAccountFor) {
       }
     }
     const double most = most_gained(GetParam());
-    const bool only_what_is_accounted = is_explicit(GetParam()) && !(scene.friction && scene.floor);
+    const bool may_lose_more = scene.floor && (scene.friction || scene.floor->rigid());
+    const bool only_what_is_accounted = is_explicit(GetParam()) && !may_lose_more;
     for (std::size_t i = 0; i < lives.size(); ++i) {
       EXPECT_LT(balances[i].gained(), most) << trace(lives[i]);
       if (only_what_is_accounted) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "analysis/energy.hpp"
@@ -62,6 +63,18 @@ State random_start(const Body& body, const Scene& scene, Random& random) {
   return state;
 }
 
+/// The largest dt (s) at which the drag of a step does not reverse a mass that has all of the body's energy.
+/// paper-euler, which takes drag from the beginning of the step, needs it, and safe_dt() does not consider it.
+double largest_drag_dt(const Life& life, const Scene& scene) {
+  double longest = std::numeric_limits<double>::infinity();
+  if (!scene.drag) return longest;
+  for (const Mass& mass : life.body.masses) {
+    const double fastest = std::sqrt(2 * life.start.start_energy / mass.mass);
+    if (mass.mass > 0) longest = std::min(longest, mass.mass / (scene.drag->coefficient * fastest));
+  }
+  return longest;
+}
+
 }  // namespace
 
 Scene random_scene(std::uint64_t seed) {
@@ -73,6 +86,9 @@ Scene random_scene(std::uint64_t seed) {
   if (random.chance(0.4)) scene.damping = Damping{random.between(0, 50)};
   if (random.chance(0.4)) scene.drag = Drag{random.between(0, 2)};
   if (scene.gravity && random.chance(0.5)) scene.gravity->slope = random.between(-40, 40);
+  if (scene.floor && random.chance(0.4)) scene.floor->restitution = random.between(0, 1);
+  if (scene.friction && random.chance(0.4))
+    scene.friction->static_coefficient = scene.friction->coefficient + random.between(0, 0.5);
   return scene;
 }
 
@@ -84,8 +100,9 @@ std::vector<Life> random_lives(const Scene& scene, std::uint64_t seed, std::size
     Random random(life.seed);
     life.body = random_small_body(random);
     life.start = random_start(life.body, scene, random);
-    const double longest = std::min(safe_dt(life.body, life.start.position, scene, Method::paper_euler),
-                                    safe_dt(life.body, life.start.position, scene, Method::rk4));
+    const double longest =
+        std::min({safe_dt(life.body, life.start.position, scene, Method::paper_euler),
+                  safe_dt(life.body, life.start.position, scene, Method::rk4), largest_drag_dt(life, scene)});
     life.dt = random.between(0.02, 0.5) * longest;
   }
   return lives;

@@ -20,12 +20,16 @@ INSTANTIATE_TEST_SUITE_P(Ways, Samples,
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(Samples, ChangeNothing) {
-  expect_samples_to_change_nothing(factory(), {random_body(107, 9, 5, 6), random_body(41, 6, 23, 7), single_mass(0.2)});
+  expect_samples_to_change_nothing(factory(), {random_body(107, 9, 5, 6), random_body(41, 6, 23, 7), single_mass(0.2),
+                                               with_dashpots(random_body(43, 8, 5, 3))});
 }
 
 TEST_P(Samples, AreTrueAfterRemovals) { expect_samples_to_be_true_after_removals(factory(), 1e-12); }
 
-TEST_P(Samples, AreTrue) { expect_samples_to_be_true(factory(), random_body(61, 9, 5, 6), 1e-12); }
+TEST_P(Samples, AreTrue) {
+  expect_samples_to_be_true(factory(), random_body(61, 9, 5, 6), 1e-12);
+  expect_samples_to_be_true(factory(), with_dashpots(random_body(61, 9, 5, 6)), 1e-12);
+}
 
 TEST_P(Samples, AreTheSameInPieces) { expect_samples_in_pieces(factory(), random_body(61, 9, 5, 6)); }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "analysis/ground.hpp"
@@ -42,7 +43,7 @@ std::vector<Vec3> rest_positions(const Body& body) {
 
 /// Whether a step is stable for the body at its rest positions.
 bool is_stable_at_rest(const Body& body, const Steps& stepping) {
-  return is_stable(body, rest_positions(body), stepping.method, stepping.dt);
+  return is_stable(body, rest_positions(body), {}, stepping.method, stepping.dt);
 }
 
 TEST(Stability, TheLargestStepIsThatOfTheHighestFrequency) {
@@ -68,7 +69,7 @@ TEST(Stability, OnlyExplicitMethodsHaveALargestStep) {
     EXPECT_EQ(largest_dt(body, rest_positions(body), method), infinity);
     EXPECT_EQ(largest_spring_dt(material, 0.2, method), infinity);
     EXPECT_EQ(largest_contact_dt(walking_scene(), 0.2, method), infinity);
-    EXPECT_TRUE(is_stable(body, rest_positions(body), method, 0.1));
+    EXPECT_TRUE(is_stable(body, rest_positions(body), {}, method, 0.1));
   }
   EXPECT_EQ(largest_dt(single_mass(0.2), {{Vec3{}}}, Method::rk4), infinity);
   EXPECT_EQ(largest_dt({}, {}, Method::rk4), infinity);
@@ -160,6 +161,35 @@ TEST(Stability, RandomBodiesInMotionBearTheirSafeStep) {
             simulate(body, birth, scene, {method, Precision::float64, dt}, static_cast<std::uint64_t>(5 / dt));
         EXPECT_EQ(a.task.status, Status::ok) << name(method) << ", " << seed << ": " << a.task.reason;
       }
+}
+
+TEST(Stability, UniformDampingAndSpringsCountTogetherWhereBothAreForces) {
+  // how far a spring still swings after 400 steps of rk4, relative to the start; infinite if it has diverged
+  const auto swings = [](const Body& body, const Scene& scene, double dt) {
+    const Answer a = simulate(body, resting(body, scene), scene, {Method::rk4, Precision::float64, dt}, 400);
+    const double stretch = a.state.position[1].x - a.state.position[0].x - 1;
+    return a.task.status == Status::ok ? std::abs(stretch) / 0.001 : INFINITY;
+  };
+  const auto bears = [](const Body& body, const Scene& scene, double dt) {
+    return is_stable(body, rest_positions(body), scene, Method::rk4, dt);
+  };
+  const double k = 400, mass = 0.2, omega = std::sqrt(2 * k / mass);
+  for (const auto& [ratio, phase, rate] :
+       {std::tuple{0.0, 2.8, 1.4}, {0.0, 2.57, 2.5}, {0.0, 0.1, 2.57}, {0.1, 2.2, 0.0}, {0.1, 1.0, 1.9}}) {
+    const Body body = pair_of_masses(mass, {k, 0, 0, 0, ratio}, 1.001);
+    const double dt = phase / omega;
+    const Scene scene{{}, {}, {}, Damping{rate / dt}, {}};
+    EXPECT_TRUE(bears(body, scene, dt)) << ratio << ' ' << phase << ' ' << rate;
+    EXPECT_LT(swings(body, scene, dt), 0.5) << ratio << ' ' << phase << ' ' << rate;
+  }
+  for (const auto& [ratio, phase, rate] : {std::tuple{0.0, 2.75, 2.5}, {0.0, 0.1, 2.9}, {3.0, 0.4, 2.0}}) {
+    const Body body = pair_of_masses(mass, {k, 0, 0, 0, ratio}, 1.001);
+    const double dt = phase / omega;
+    const Scene scene{{}, {}, {}, Damping{rate / dt}, {}};
+    EXPECT_TRUE(bears(body, {}, dt)) << "without uniform damping";
+    EXPECT_FALSE(bears(body, scene, dt)) << ratio << ' ' << phase << ' ' << rate;
+    EXPECT_GT(swings(body, scene, dt), 2) << ratio << ' ' << phase << ' ' << rate;
+  }
 }
 
 TEST(Stability, DegenerateBodiesHaveAnAnswer) {

@@ -1,9 +1,8 @@
 // Springs whose stiffness differs from that of their material by a factor.
-#include "analysis/stiffness_factors.hpp"
-
 #include <gtest/gtest.h>
 
 #include "analysis/energy.hpp"
+#include "analysis/split_materials.hpp"
 #include "analysis/stability.hpp"
 #include "support.hpp"
 
@@ -34,7 +33,7 @@ Body with_a_material_for_each(Body body) {
 
 TEST(StiffnessFactors, BecomePartsOfMaterials) {
   const Body body = varied_body();
-  const auto plain = without_factors(body);
+  const auto plain = split_materials(body);
   ASSERT_NE(plain, nullptr);
   for (std::size_t i = 0; i < body.springs.size(); ++i) {
     EXPECT_EQ(plain->springs[i].stiffness_factor, 1);
@@ -45,7 +44,7 @@ TEST(StiffnessFactors, BecomePartsOfMaterials) {
     EXPECT_EQ(own.amplitude, shared.amplitude);
   }
   EXPECT_LE(plain->materials.size(), 21 * body.materials.size()) << "one for each pair of material and factor";
-  EXPECT_EQ(without_factors(*plain), nullptr);
+  EXPECT_EQ(split_materials(*plain), nullptr);
 }
 
 TEST(StiffnessFactors, CountInEnergyAndTimeStep) {

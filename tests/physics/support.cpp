@@ -56,6 +56,13 @@ Body random_body(std::uint32_t masses, std::uint32_t neighbours, std::uint32_t m
   return body;
 }
 
+Body with_dashpots(Body body) {
+  for (std::size_t i = 0; i < body.materials.size(); ++i)
+    body.materials[i].damping = 0.05 + 0.1 * static_cast<double>(i % 3);
+  for (Mass& mass : body.masses) mass.mass = 0.2;
+  return body;
+}
+
 Body block(std::uint32_t n, const Material& material) {
   const Lattice lattice = make_lattice({n, n, n}, 0.1);
   Body body;

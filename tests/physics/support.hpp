@@ -52,6 +52,9 @@ Body pair_of_masses(double mass, const Material& material, double distance = 1);
 /// material i modulo `materials`; the first five materials are the paper's and a mean of two of them.
 Body random_body(std::uint32_t masses, std::uint32_t neighbours, std::uint32_t materials, std::uint64_t seed);
 
+/// The same body with a dashpot beside each spring, with damping ratios from 0.05 to 0.25, and with masses of 0.2 kg.
+Body with_dashpots(Body body);
+
 /// A lattice of n x n x n voxels with edges of 0.1 m and masses of 0.2 kg.
 Body block(std::uint32_t n, const Material& material);
 

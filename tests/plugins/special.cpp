@@ -1,7 +1,7 @@
 // Operators that need more than generated inputs: an encoding with blocks of its own, a mutation that works on such
 // blocks, one that works on blocks that no encoding of the library has, one that requires a file, a devo operator that
-// asks for all records of masses and remembers numbers, and selections that choose either parents or survivors alone,
-// or need three objectives.
+// asks for all records of masses and remembers numbers, a fitness that is measured within the life, and selections that
+// choose either parents or survivors alone, or need three objectives.
 #include <algorithm>
 
 #include "evodevo/helpers/rows.hpp"
@@ -110,6 +110,15 @@ struct ByFile final : evodevo::Mutation {
   evodevo::InputFile file_;
 };
 
+/// Measures how far a body moves along x at the beginning of its life.
+struct EarlyWay final : evodevo::Fitness {
+  evodevo::Request observes() const override { return {.window = 0.05, .cycle = 0}; }
+  std::vector<evodevo::Objective> objectives() const override { return {{"early-way", "m", true}}; }
+  std::vector<double> score(const evodevo::Observation& seen) const override {
+    return {seen.centre_after.x - seen.centre_before.x};
+  }
+};
+
 /// Chooses parents alone, all with the same chance.
 struct Lottery : evodevo::Selection {
   evodevo::Traits traits() const override { return {.chooses_survivors = false}; }
@@ -143,6 +152,7 @@ EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<BendLeaf>("bend-leaf", "Gives each leaf another direction."),
                evodevo::operator_entry<Feeling>("feeling", "Replaces the mass that has felt least."),
                evodevo::operator_entry<ByFile>("by-file", "Sets a gene to what a file says."),
+               evodevo::operator_entry<EarlyWay>("early-way", "Measures the way along x while the body develops."),
                evodevo::operator_entry<Lottery>("lottery", "All have the same chance to breed."),
                evodevo::operator_entry<Best>("best", "The best survive."),
                evodevo::operator_entry<ThreeGoals>("three-goals", "Needs three objectives."))

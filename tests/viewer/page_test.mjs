@@ -120,6 +120,40 @@ test("it says where the time went", async () => {
   ]);
 });
 
+test("it says what limits the speed of robots, and how near the best came to it", async () => {
+  const { length, speed, limit } = await inPage(page, ({ data }) => data.runs[0].top_speed);
+  assert.ok(Math.abs(limit - (0.5 * 9.81) / 20.100671707002873) < 1e-9);
+  assert.ok(length > 0 && speed > 0);
+  const shown = await page.locator(".fact", { hasText: "Top speed" }).textContent();
+  assert.match(shown, /0\.244 m\/s/);
+  assert.ok(shown.endsWith(` ${Math.round((100 * speed) / limit)} %`), shown);
+});
+
+test("it shows whom verification before the front has refused", async () => {
+  const [run, file] = [scratch.path("verified"), scratch.path("verified.html")];
+  evodevo("run", scratch.file, "--out", run, "--set", "experiment.verify_front=true");
+  evodevo("report", run, "--best", "1", "--out", file);
+  const verified = await opened(browser, file);
+  const rows = archived(run, "SELECT artefact, passive FROM generations ORDER BY generation");
+  const counts = [0, 1].map((i) => sum(rows.map((row) => row[i])));
+  assert.ok(sum(counts) > 0);
+  const facts = await verified.locator(".fact", { hasText: "Ended well" }).textContent();
+  const { labels, top } = await inPage(verified, ({ charts }) => {
+    const { data, plot } = charts.byName.statuses;
+    return { labels: plot.series.slice(1).map(({ label }) => label), top: data.at(-1) };
+  });
+  ["artefact", "passive"].forEach((status, i) => {
+    assert.equal(facts.includes(`${counts[i]} ${status}`), counts[i] > 0, facts);
+    assert.equal(labels.includes(status), counts[i] > 0, labels.join());
+  });
+  const last = labels.at(-1) === "passive" ? 1 : 0;
+  const newborns = archived(run, "SELECT count(*) FROM individuals GROUP BY born ORDER BY born").map(([n]) => n);
+  assert.deepEqual(top, rows.map((row, i) => (100 * row[last]) / newborns[i]));
+  assert.equal(await verified.locator(".bar > span:first-child").last().textContent(), "verify");
+  assert.deepEqual(verified.complaints, []);
+  await verified.close();
+});
+
 test("a name with markup in it is shown as text", async () => {
   assert.equal(await page.locator("h1").textContent(), experimentName);
   assert.ok((await page.locator(".legend").textContent()).includes(materialName));
@@ -258,7 +292,9 @@ test("it fits a phone, where a finger turns the robot", async () => {
   });
   const width = await phone.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
   assert.ok(width[0] <= width[1], `${width[0]} wide`);
-  const box = await (await phone.$(".stage canvas")).boundingBox();
+  const stage = await phone.$(".stage canvas");
+  await stage.scrollIntoViewIfNeeded();
+  const box = await stage.boundingBox();
   const before = await inPage(phone, ({ viewer }) => viewer.camera.position.toArray());
   const finger = await phone.context().newCDPSession(phone);
   const touch = (type, x) =>

@@ -34,6 +34,7 @@ ProgressDisplay::ProgressDisplay(const Experiment& experiment, const std::vector
   evaluations_before_ = last_.evaluations;
   for (const Summary& summary : past) {
     diverged_ += summary.diverged;
+    refused_ += summary.artefact + summary.passive;
     spring_evaluations_before_ += static_cast<double>(summary.spring_evaluations);
   }
 }
@@ -58,12 +59,14 @@ double ProgressDisplay::seconds_left(double evaluations) const {
 
 std::string ProgressDisplay::line(double evaluations) const {
   const double rate = (evaluations - static_cast<double>(evaluations_before_)) / seconds();
-  const double diverged =
-      last_.evaluations > 0 ? 100.0 * static_cast<double>(diverged_) / static_cast<double>(last_.evaluations) : 0.0;
+  const auto percent = [&](std::int64_t count) {
+    return last_.evaluations > 0 ? 100.0 * static_cast<double>(count) / static_cast<double>(last_.evaluations) : 0.0;
+  };
   const std::string of = experiment_.objectives.size() > 1 ? " of " + experiment_.objectives.front().name : "";
   std::string text = fmt::format("generation {}  evaluations {:.0f}/{}  best {}  median {}{}  diverged {:.1f} %",
                                  last_.generation, evaluations, experiment_.evaluations, optional_text(last_.best),
-                                 optional_text(last_.median), of, diverged);
+                                 optional_text(last_.median), of, percent(diverged_));
+  if (experiment_.verify_front) text += fmt::format("  artefact or passive {:.1f} %", percent(refused_));
   if (rate > 0) text += fmt::format("  {:.3g} evaluations/s  {} left", rate, duration_text(seconds_left(evaluations)));
   if (stop_) text += "  (stopping after this generation; Ctrl-C again stops now)";
   return text;
@@ -74,6 +77,7 @@ void ProgressDisplay::show_live(double evaluations) { std::cout << "\r\x1b[K" <<
 void ProgressDisplay::generation_done(const Summary& summary) {
   last_ = summary;
   diverged_ += summary.diverged;
+  refused_ += summary.artefact + summary.passive;
   spring_evaluations_ += summary.spring_evaluations;
   const auto evaluations = static_cast<double>(summary.evaluations);
   if (live_)
@@ -118,6 +122,7 @@ void print_time_spent(const TimeSpent& time, const Simulator& simulator) {
   const auto share = [&](double seconds) { return fmt::format("{:.0f} %", 100 * seconds / time.whole); };
   remarks() << "time:  simulate " << share(time.evaluation.simulate) << ", develop " << share(time.evaluation.develop)
             << ", decode " << share(time.evaluation.decode) << ", archive " << share(time.archive);
+  if (time.verify > 0) remarks() << ", verify " << share(time.verify);
   if (const std::optional<DeviceUse> device = simulator.device_use()) {
     remarks() << "; device idle " << share(time.whole - device->busy);
     if (device->portions > 1)

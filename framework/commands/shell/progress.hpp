@@ -38,7 +38,7 @@ class ProgressDisplay {
   std::int64_t evaluations_before_ = 0;   ///< evaluations by earlier processes
   double spring_evaluations_before_ = 0;  ///< spring evaluations by earlier processes
   Summary last_;
-  std::int64_t diverged_ = 0;
+  std::int64_t diverged_ = 0, refused_ = 0;
   std::uint64_t spring_evaluations_ = 0;
 };
 

@@ -18,7 +18,8 @@ Topic experiment() {
       .definitions =
           {{"[experiment]",
             "How long the run takes: seed, evaluations, spring_evaluations; population, and children, the number of "
-            "newborns of a generation; verify, the number of best individuals that are verified at the end."},
+            "newborns of a generation; verify, the number of best individuals that are verified at the end; "
+            "verify_front, whether individuals are verified before they enter the front."},
            {"[encoding]",
             "The operator that builds a body from a genome: name, and the parameters of that operator. The "
             "neural encoding has points, neighbours and mass (kg), among others."},
@@ -26,8 +27,11 @@ Topic experiment() {
             "The operators that make children: name, probability, and parameters. Each "
             "is applied to a child with its probability, crossovers first."},
            {"[scene.gravity]", "acceleration (m/s^2, downwards) and slope (degrees)."},
-           {"[scene.floor]", "stiffness (N/m); roughness (m), wavelength (m) and seed of rough ground."},
-           {"[scene.friction]", "coefficient of Coulomb friction with the floor."},
+           {"[scene.floor]",
+            "stiffness (N/m), or restitution, which makes the floor rigid; roughness (m), wavelength (m) and seed of "
+            "rough ground."},
+           {"[scene.friction]",
+            "coefficient of Coulomb friction with the floor; static, the coefficient that holds masses at rest."},
            {"[scene.damping]", "rate (1/s) at which all velocities decay."},
            {"[scene.drag]", "coefficient (kg/m) of quadratic drag on each mass."},
            {"[scene.payload]",
@@ -49,7 +53,7 @@ Topic experiment() {
             "The operator that chooses survivors and parents: name, and parameters. [selection.survivors] and "
             "[selection.parents] name two operators instead."},
            {"[materials.NAME]",
-            "A material: stiffness (N/m), amplitude, frequency (Hz) and phase (rad). The names "
+            "A material: stiffness (N/m), amplitude, frequency (Hz), phase (rad) and damping (ratio). The names "
             "muscle, muscle2, tissue, bone and air exist already and can be changed."},
            {"[plugins]", "paths: folders with operators, relative to the file."}},
       .example = R"([experiment]
@@ -136,9 +140,12 @@ Topic verification() {
            "end, a run therefore simulates its best individuals again ([experiment] verify, 1 by default), and "
            "`evodevo verify` does so for more of them. The body develops as in the run; then its final evaluation "
            "is repeated in eight trials.",
-           "A trial has held if the first objective keeps at least half of its value. An individual is an artefact "
-           "if quarter-step or other-method did not hold. It is passive if it keeps more than half of its fitness "
-           "without muscles, or has lost more than half of it after ten more seconds. Otherwise it is verified."},
+           "A trial has held if the first objective is as good as in the run, better, or worse by at most half of its "
+           "absolute value. An individual is an artefact if quarter-step or other-method did not hold. It is passive "
+           "if it keeps more than half of its fitness "
+           "without muscles, or has lost more than half of it after ten more seconds. Otherwise it is verified.",
+           "With [experiment] verify_front = true, individuals are also verified before they enter the front of a "
+           "generation. Those that are artefacts or passive get that status and lose their fitness."},
       .definitions = {{"again", "The final evaluation as it was in the run."},
                       {"quarter-step", "A quarter of the time step, in double precision."},
                       {"other-method",

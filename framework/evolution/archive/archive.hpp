@@ -98,12 +98,14 @@ class Archive {
   /// Adds one generation in one transaction: its newborns with their results, the ids of the individuals that selection
   /// dropped, records of lives by id, its summary, and what the selection operator remembers and notes. An empty record
   /// is stored too; it means that the individual was on the front and that its body did not change. The memory replaces
-  /// that of the generation before; a note is added if it differs from the last one about the same individual.
+  /// that of the generation before; a note is added if it differs from the last one about the same individual. The
+  /// refused, who may be newborns or older, get the status and the reason of the refusal, and lose their scores.
   void commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,
               const std::map<std::uint32_t, LifeRecord>& lives, const Summary& summary,
-              const Remembered& remembered = {});
+              const Remembered& remembered = {}, const std::vector<Refusal>& refusals = {});
 
-  /// Adds verifications. They replace earlier verifications of the same individuals.
+  /// Adds verifications. They replace earlier verifications of the same individuals. Leaves out those of individuals
+  /// that have lost their fitness since they were chosen.
   void add_verifications(const std::vector<Verification>& verifications);
 
   const std::filesystem::path& folder() const;

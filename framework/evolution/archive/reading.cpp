@@ -1,5 +1,6 @@
 // The functions of Archive that read. They check every value.
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -15,11 +16,13 @@ namespace {
 constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t most_ids = std::int64_t{1} << 32;  ///< largest number of evaluations, each of which uses one id
 
+constexpr std::array statuses_known{Status::ok, Status::invalid, Status::diverged, Status::artefact, Status::passive};
+
 Status status_in(const Statement& row, int column) {
   const std::string text = row.text(column);
-  for (const Status status : {Status::ok, Status::invalid, Status::diverged})
+  for (const Status status : statuses_known)
     if (text == name(status)) return status;
-  row.refuse(column, "\"ok\", \"invalid\" or \"diverged\"");
+  row.refuse(column, "\"ok\", \"invalid\", \"diverged\", \"artefact\" or \"passive\"");
 }
 
 std::string line_or_empty(const Statement& row, int column) { return row.is_null(column) ? "" : row.line(column); }
@@ -252,8 +255,8 @@ std::vector<Summary> Archive::generations() const {
   const auto last_provenance = static_cast<std::uint32_t>(provenances().size() - 1);
   std::vector<Summary> summaries;
   Statement row(*run_, "generations",
-                "SELECT generation, evaluations, best, median, diverged, invalid, clones, spring_evaluations, "
-                "wall_time, provenance FROM generations ORDER BY generation");
+                "SELECT generation, evaluations, best, median, diverged, invalid, artefact, passive, clones, "
+                "spring_evaluations, wall_time, provenance FROM generations ORDER BY generation");
   while (row.step()) {
     const auto position = static_cast<std::int64_t>(summaries.size());
     Summary& summary = summaries.emplace_back();
@@ -263,17 +266,19 @@ std::vector<Summary> Archive::generations() const {
     summary.median = row.optional_number(3);
     summary.diverged = row.integer(4, 0, summary.evaluations);
     summary.invalid = row.integer(5, 0, summary.evaluations);
-    summary.clones = row.integer(6, 0, summary.evaluations);
-    summary.spring_evaluations = static_cast<std::uint64_t>(row.integer(7, 0, most));
-    summary.wall_time = row.number(8);
-    summary.provenance = row.index(9, last_provenance);
+    summary.artefact = row.integer(6, 0, summary.evaluations);
+    summary.passive = row.integer(7, 0, summary.evaluations);
+    summary.clones = row.integer(8, 0, summary.evaluations);
+    summary.spring_evaluations = static_cast<std::uint64_t>(row.integer(9, 0, most));
+    summary.wall_time = row.number(10);
+    summary.provenance = row.index(11, last_provenance);
   }
   return summaries;
 }
 
 std::map<std::string, std::int64_t> Archive::statuses() const {
   std::map<std::string, std::int64_t> counts;
-  for (const Status status : {Status::ok, Status::invalid, Status::diverged}) counts[name(status)] = 0;
+  for (const Status status : statuses_known) counts[name(status)] = 0;
   Statement row(*run_, "individuals", "SELECT status, count(*) FROM individuals GROUP BY status");
   while (row.step()) counts[name(status_in(row, 0))] = row.integer(1, 0, most);
   return counts;

@@ -64,7 +64,8 @@ CREATE TABLE memory(generation INTEGER PRIMARY KEY, bytes BLOB NOT NULL);
 CREATE TABLE lives(individual INTEGER PRIMARY KEY, record BLOB NOT NULL);
 CREATE TABLE generations(
   generation INTEGER PRIMARY KEY, evaluations INTEGER NOT NULL, best REAL, median REAL,
-  diverged INTEGER NOT NULL, invalid INTEGER NOT NULL, clones INTEGER NOT NULL,
+  diverged INTEGER NOT NULL, invalid INTEGER NOT NULL, artefact INTEGER NOT NULL, passive INTEGER NOT NULL,
+  clones INTEGER NOT NULL,
   spring_evaluations INTEGER NOT NULL, wall_time REAL NOT NULL,
   provenance INTEGER NOT NULL);
 CREATE TABLE verifications(

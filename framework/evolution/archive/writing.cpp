@@ -43,28 +43,41 @@ void insert_newborns(const RunDatabase& run, const std::vector<Individual>& newb
   }
 }
 
+/// Sets the status of individuals whose fitness does not hold, and removes what is only kept of those with a fitness.
+void write_refusals(const RunDatabase& run, const std::vector<Refusal>& refusals) {
+  Statement update(run, "individuals", "UPDATE individuals SET status = ?, reason = ? WHERE id = ?");
+  for (const Refusal& refusal : refusals) update.execute(name(refusal.status), refusal.reason, refusal.individual);
+  for (const std::string table : {"scores", "measured", "tests", "verifications"}) {
+    Statement remove(run, table, "DELETE FROM " + table + " WHERE individual = ?");
+    for (const Refusal& refusal : refusals) remove.execute(refusal.individual);
+  }
+}
+
 }  // namespace
 
 void Archive::commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,
                      const std::map<std::uint32_t, LifeRecord>& lives, const Summary& summary,
-                     const Remembered& remembered) {
+                     const Remembered& remembered, const std::vector<Refusal>& refusals) {
   WriteTransaction transaction(*run_);
   insert_newborns(*run_, newborns, layout());
+  write_refusals(*run_, refusals);
   Statement insert_life(*run_, "lives", "INSERT INTO lives VALUES(?, ?)");
   for (const auto& [id, life] : lives) insert_life.execute(id, std::string_view(life.bytes()));
   Statement drop(*run_, "individuals", "UPDATE individuals SET died = ? WHERE id = ?");
   for (const std::uint32_t id : dropped) drop.execute(summary.generation, id);
-  Statement(*run_, "generations", "INSERT INTO generations VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+  Statement(*run_, "generations", "INSERT INTO generations VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       .execute(summary.generation, summary.evaluations, summary.best, summary.median, summary.diverged, summary.invalid,
-               summary.clones, static_cast<std::int64_t>(summary.spring_evaluations), summary.wall_time,
-               summary.provenance);
+               summary.artefact, summary.passive, summary.clones, static_cast<std::int64_t>(summary.spring_evaluations),
+               summary.wall_time, summary.provenance);
   write_remembered(*run_, remembered, summary.generation);
   transaction.commit();
 }
 
 void Archive::add_verifications(const std::vector<Verification>& verifications) {
   WriteTransaction transaction(*run_);
-  Statement insert(*run_, "verifications", "INSERT OR REPLACE INTO verifications VALUES(?, ?, ?, ?, ?, ?)");
+  Statement insert(*run_, "verifications",
+                   "INSERT OR REPLACE INTO verifications SELECT ?1, ?2, ?3, ?4, ?5, ?6 "
+                   "WHERE EXISTS (SELECT 1 FROM scores WHERE individual = ?1)");
   for (const Verification& verification : verifications) {
     std::uint32_t position = 0;
     for (const Trial& trial : verification.trials)

@@ -1,5 +1,6 @@
 #include "experiment/tables/declarations.hpp"
 
+#include "base/text.hpp"
 #include "operators/host_keys.hpp"
 
 namespace evodevo {
@@ -34,6 +35,8 @@ void declare_run(SettingsVisitor& v, Settings& s) {
             "Number of random individuals among those that are born in each generation; by default 0 if the selection "
             "operator makes the children itself.");
   v.integer(s.verify, "verify", {0, 1000}, "Number of best individuals that are verified when the run ends.");
+  v.flag(s.verify_front, "verify_front",
+         "Whether individuals are verified before they enter the front; those that do not hold lose their fitness.");
   v.require(s.random_individuals <= s.newborns(), "random_individuals",
             std::string("expected at most the ") + (s.children > 0 ? "children" : "population") + ", " +
                 std::to_string(s.newborns()));
@@ -114,6 +117,9 @@ void declare(SettingsVisitor& v, Material& material) {
          "Amplitude of the actuation: largest change of length, relative to the rest length.");
   v.real(material.frequency, "frequency", {0, 1e6, "Hz"}, "Frequency of the actuation.");
   v.real(material.phase, "phase", {-100, 100, "rad"}, "Phase of the actuation.");
+  v.real(
+      material.damping, "damping", {0, 10, "1"},
+      "Damping ratio of the dashpot beside each spring: 1 is the critical damping of its two masses; 0: no dashpot.");
 }
 
 void declare(SettingsVisitor& v, Gravity& gravity) {
@@ -122,8 +128,12 @@ void declare(SettingsVisitor& v, Gravity& gravity) {
 }
 
 void declare(SettingsVisitor& v, Floor& floor) {
-  v.real(floor.stiffness, "stiffness", {0, 1e12, "N/m"},
-         "Upward force on a mass, per metre of its depth below the floor.");
+  v.optional_real(floor.restitution, "restitution", {0, 1},
+                  "Makes the floor rigid: the speed with which a mass bounces off, relative to the speed with which it "
+                  "arrives. Give this key or stiffness.");
+  if (!floor.restitution)
+    v.real(floor.stiffness, "stiffness", {0, 1e12, "N/m"},
+           "Upward force of an elastic floor on a mass, per metre of its depth below the floor.");
   v.real(floor.roughness, "roughness", {0, 100, "m"},
          "Largest height, and largest depth, of rough ground; 0: the ground is level.");
   v.real(floor.wavelength, "wavelength", {1e-3, 1e6, "m"}, "Distance from one hill of rough ground to the next.");
@@ -132,6 +142,10 @@ void declare(SettingsVisitor& v, Floor& floor) {
 
 void declare(SettingsVisitor& v, Friction& friction) {
   v.real(friction.coefficient, "coefficient", {0, 100}, "Coefficient of Coulomb friction.");
+  v.optional_real(friction.static_coefficient, "static", {0, 100},
+                  "Coefficient of static friction, which holds a mass at rest; by default the same as coefficient.");
+  v.require(friction.holding() >= friction.coefficient, "static",
+            "expected at least the coefficient, " + to_text(friction.coefficient));
 }
 
 void declare(SettingsVisitor& v, Damping& damping) {

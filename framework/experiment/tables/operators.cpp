@@ -62,9 +62,7 @@ class OperatorTables {
     read_array(top_, "fitness", record_, [&](TomlReader& t, TomlWriter& writer) { read_fitness(t, writer); });
     if (out_.fitness.empty()) top_.fail("fitness", "is missing; add a table [[fitness]]");
     const auto is_within_life = [&](const Scored& scored) { return scored.op->observes().cycle.has_value(); };
-    const auto develops = [](const Scenario& scenario) { return scenario.develops; };
-    if (!std::all_of(out_.scenarios.begin(), out_.scenarios.end(), develops) &&
-        std::all_of(out_.fitness.begin(), out_.fitness.end(), is_within_life))
+    if (!std::ranges::all_of(out_.scenarios, &Scenario::develops) && std::ranges::all_of(out_.fitness, is_within_life))
       top_.fail("scenario",
                 "no fitness operator measures robots after they have matured; set develops = true in every scenario, "
                 "or add such an operator");
@@ -276,10 +274,22 @@ class OperatorTables {
     for (Objective& objective : objectives) {
       if (!label.empty()) objective.name = objectives.size() == 1 ? label : label + "-" + objective.name;
       const bool is_objective = objective.role == Role::objective;
+      if (is_objective) check_front(t, objective, request);
       add_objective(t, std::move(objective));
       if (is_objective) add_cases(request.cycle.has_value());
     }
     out_.fitness.push_back(std::move(scored));
+  }
+
+  /// Throws ConfigError if the front cannot be verified: the first objective is measured within the life, or minimised.
+  void check_front(const TomlReader& t, const Objective& objective, const Request& request) const {
+    if (!out_.verify_front || !out_.objectives.empty() || (!request.cycle && objective.maximise)) return;
+    t.fail("name",
+           "the experiment has verify_front = true, and the first objective, \"" + printable(objective.name) +
+               (request.cycle ? "\", is measured within the life, which verification does not repeat; put an "
+                                "operator that measures after maturing"
+                              : "\", is minimised, so that half of it is no measure; put one that is maximised") +
+               " first, or remove verify_front from [experiment]");
   }
 
   /// Reads how the scores of a fitness operator in several tests become one.

@@ -31,13 +31,25 @@ std::string section_of(const std::string& name, const std::string& sentence) {
   });
 }
 
+/// The section of all forces of a scene. Each name is that of the force and that of the key, such as "gravity.slope".
 std::string section_of_scene() {
-  return section_of<Gravity>("`[scene.gravity]`", "Gravity. On a slope the floor stays level and gravity is tilted.") +
-         section_of<Floor>("`[scene.floor]`", "A floor at height 0 that pushes masses up: level or rough ground.") +
-         section_of<Friction>("`[scene.friction]`", "Friction between masses and the floor.") +
-         section_of<Damping>("`[scene.damping]`", "Damping that acts on all velocities alike.") +
-         section_of<Drag>("`[scene.drag]`", "The drag of a fluid on each mass.") +
-         section_of<Payload>("`[scene.payload]`", "A payload that every body carries from birth on.");
+  std::vector<ParameterDescription> keys;
+  Settings settings;
+  for_each_force(settings, [&](std::string_view name, auto& force) {
+    SettingsDescriber describer;
+    declare(describer, force.emplace());
+    for (ParameterDescription& key : describer.found) {
+      key.name = std::string(name) + "." + key.name;
+      keys.push_back(std::move(key));
+    }
+  });
+  return heading_text(3, "`[scene]`") +
+         "The forces on a robot besides those of its springs: gravity (on a slope, the floor stays level and gravity "
+         "is tilted), a floor at height 0 that pushes masses up (level or rough ground), friction between masses and "
+         "the floor, damping of all velocities alike, the drag of a fluid on each mass, and a payload that every body "
+         "carries from birth on. Each force is a table: `gravity.slope` is the key `slope` in `[scene.gravity]`. A "
+         "force without a table is not computed, and a key that its table leaves out has the default.\n\n" +
+         parameter_table(keys, "key");
 }
 
 }  // namespace

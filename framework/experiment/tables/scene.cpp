@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <type_traits>
 
 #include "base/text.hpp"
 #include "experiment/tables/declarations.hpp"
@@ -7,11 +8,26 @@
 namespace evodevo {
 namespace {
 
+/// A floor is elastic or rigid. In a scenario, either key replaces what the scene has.
+void choose_contact(const TomlReader& table, Floor& floor) {
+  const std::vector<std::string> keys = table.keys();
+  const auto has = [&](std::string_view name) { return std::ranges::find(keys, name) != keys.end(); };
+  if (!has("stiffness")) return;
+  if (has("restitution"))
+    table.fail("restitution",
+               "makes the floor rigid, without a stiffness; remove this key or " + table.full_name("stiffness"));
+  floor.restitution.reset();
+}
+
 /// Reads the forces of a scene. Keys that are left out keep their values.
 template <class AnySettings>
 void read_forces(TomlReader& table, AnySettings& settings) {
   for_each_force(settings, [&](std::string_view name, auto& force) {
-    read_table(table, name, false, [&](TomlReader& t) { declare(t, force ? *force : force.emplace()); });
+    read_table(table, name, false, [&](TomlReader& t) {
+      if (!force) force.emplace();
+      if constexpr (std::is_same_v<std::remove_cvref_t<decltype(*force)>, Floor>) choose_contact(t, *force);
+      declare(t, *force);
+    });
   });
   if (settings.scene.friction && !settings.scene.floor)
     table.fail("friction", "there is no floor for friction to act on; add [" + table.full_name("floor") +

@@ -24,7 +24,8 @@ void check_step(const TomlReader& t, const Settings& settings) {
   for (const auto& [name, material] : settings.materials) {
     const std::string key = "materials." + name;
     const double spring = largest_spring_dt(material, mass, method), muscle = largest_muscle_dt(material);
-    if (dt > spring) refuse(key + ".stiffness = " + to_text(material.stiffness) + on_masses, spring);
+    const std::string damped = material.damping > 0 ? " with damping = " + to_text(material.damping) : "";
+    if (dt > spring) refuse(key + ".stiffness = " + to_text(material.stiffness) + on_masses + damped, spring);
     if (dt > muscle) refuse(key + ".frequency = " + to_text(material.frequency) + " Hz", muscle);
   }
 }

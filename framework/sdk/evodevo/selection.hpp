@@ -33,7 +33,7 @@ struct Candidate {
   std::span<const double> descriptors = {};  ///< finite, one for each of SelectionContext::descriptors, in their units;
                                              ///< empty unless ok()
   std::uint32_t id = 0;                      ///< number of the individual in the run, in the order of birth
-  Status status = Status::ok;                ///< how its evaluation ended; `invalid` if it violates a constraint
+  Status status = Status::ok;                ///< `invalid` if it violates a constraint; see Status
   bool is_newborn = false;                   ///< whether it was born in this generation
   std::span<const std::uint32_t> parents = {};  ///< ids of its parent and mate, as far as it has them
   const Genome* genome = nullptr;               ///< of SelectionContext::layout

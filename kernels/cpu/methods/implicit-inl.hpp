@@ -6,7 +6,7 @@
 #define EVODEVO_CPU_METHODS_IMPLICIT_INL_HPP
 #endif
 
-#include "cpu/stepper-inl.hpp"
+#include "cpu/methods/implicit_floor-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
@@ -14,7 +14,7 @@ namespace evodevo::HWY_NAMESPACE {
 /// Let u = decay v be the damped velocity. The correction c, and with it the velocity v' = u + c at the end of a step,
 /// is the solution of (Baraff and Witkin, Large steps in cloth simulation, 1998)
 ///
-///   (M + damped_dt (dt K+ + R)) c = damped_dt (F - (dt K + R) u),   then x <- x + dt v'.
+///   (M + damped_dt (dt K+ + C + R)) c = damped_dt (F - (dt K + C + R) u),   then x <- x + dt v'.
 ///
 ///   M   the masses
 ///   F   the forces at the present positions, with the springs' lengths at the end of the step
@@ -22,19 +22,22 @@ namespace evodevo::HWY_NAMESPACE {
 ///       springs under tension would brake every rotation of a body
 ///   K+  the stiffness matrix without the negative part (spring_stiffness()), so that the matrix of the equation is
 ///       symmetric and positive definite at any dt
+///   C   the damping matrix of the dashpots: as if the springs were stiffer by c/dt along their direction
 ///   R   diagonal: drag (coefficient times |v|) and, for a mass that touches the floor at the end of the step
 ///       (z + dt v_z < 0), dt times the floor's stiffness along z, so that the floor's force is k (-z - dt v'_z). On
-///       rough ground the force is along the ground's normal; that part of R is not diagonal (rough_resistance()).
+///       rough ground the force is along the ground's normal; that part of R is not diagonal (rough_resistance()). A
+///       rigid floor holds the masses that it will push (hold()): their v' has the rise after the contact.
 ///
 /// A step: set_resistance, set_stiffness, set_residual ─► the equation; solve ─► c; add_correction ─► velocities;
-/// friction; advance_positions.
-struct Implicit : StepMethod {
+/// rigid floor; friction; advance_positions.
+struct Implicit : ImplicitFloor {
   static constexpr std::size_t mass_arrays = 21, slot_arrays = 4;
 
   template <class T>
   static void step(const Stepper<T>& s, std::size_t row) {
     const Memory<T> memory(s);
-    s.springs(s.motion, s.actuation, row + 1);
+    if (s.constants.rigid) note_arrivals(s.motion, s.constants, T(0), s.masses);
+    s.undamped_springs(s.motion, s.actuation, row + 1);
     if (s.constants.gravity) add_gravity(s.motion, s.constants, s.masses);
     set_resistance(s, memory);
     if (s.constants.damping) damp(s.motion, s.constants.step.decay, s.masses);
@@ -43,12 +46,14 @@ struct Implicit : StepMethod {
     set_residual(s, memory);
     solve(s, memory);
     add_correction(s, memory);
-    if (s.constants.friction) {
+    if (s.constants.rigid) {
+      land_held(s, memory);
+    } else if (s.constants.friction) {
       set_floor_force(s, memory);
       apply_friction(s.motion, s.constants, s.constants.step.dt, s.motion.vx, s.motion.vy, s.masses);
     }
     advance_positions(s.motion, s.constants.step.dt, s.masses);
-    if (s.is_recording()) s.recording_springs(s.motion, s.actuation, row + 1);
+    if (s.is_recording()) s.compute(s.recording_springs, row + 1);
   }
 
  private:
@@ -61,112 +66,12 @@ struct Implicit : StepMethod {
   /// adds no energy.
   static constexpr int most_iterations = 500;
 
-  /// The solver's memory. A vector has the x of all masses, then all y, then all z.
-  template <class T>
-  struct Memory {
-    explicit Memory(const Stepper<T>& s)
-        : residual(s.scratch(0)),
-          direction(s.scratch(3)),
-          correction(s.scratch(6)),
-          applied(s.scratch(9)),
-          inverse_diagonal(s.scratch(12)),
-          resistance(s.scratch(15)),
-          vertical_resistance(s.scratch(16)),
-          interleaved(s.scratch(17)),
-          transverse(s.motion.slot_scratch),
-          along{transverse + s.motion.slots, transverse + 2 * s.motion.slots, transverse + 3 * s.motion.slots} {}
-
-    T *residual, *direction, *correction;
-    T* applied;              ///< the matrix times the direction
-    T* inverse_diagonal;     ///< the preconditioner: inverses of the matrix's diagonal elements; 0 for fixed masses
-    T* resistance;           ///< R along x and y, kg/s
-    T* vertical_resistance;  ///< R along z, kg/s
-    T* interleaved;          ///< a copy of a vector that neighbours read: position_stride numbers for each mass
-    T* transverse;
-    T* along[3];  ///< with `transverse`: SpringStiffness of the springs, K+
-  };
-
-  /// Sets R, and adds the floor's forces at the present positions to F.
-  template <class T>
-  static void set_resistance(const Stepper<T>& s, const Memory<T>& memory) {
-    const hn::ScalableTag<T> d;
-    using V = hn::Vec<decltype(d)>;
-    const cpu::Motion<T>& m = s.motion;
-    const V coefficient = hn::Set(d, s.constants.drag_coefficient), zero = hn::Zero(d);
-    const V dt = hn::Set(d, s.constants.step.dt), floor = hn::Set(d, s.constants.floor_stiffness);
-    for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
-      const V vz = hn::Load(d, m.vz + i);
-      V across = zero, touching = zero;
-      if (s.constants.drag)
-        across = zero - drag_factor(coefficient, Triple<V>{hn::Load(d, m.vx + i), hn::Load(d, m.vy + i), vz});
-      if (s.constants.rough) {
-        touching = add_ground(s, i);
-      } else if (s.constants.floor) {
-        const V z = hn::Load(d, m.z + i);
-        touching = zero_unless_greater(zero - advanced_position(z, vz, dt), zero, floor);
-        hn::Store(negative_multiply_add(touching, z, hn::Load(d, m.fz + i)), d, m.fz + i);
-      }
-      hn::Store(across, d, memory.resistance + i);
-      hn::Store(multiply_add(dt, touching, across), d, memory.vertical_resistance + i);
-    }
-  }
-
-  /// Adds the force of rough ground to those masses of the vector at index i that touch it. Returns the stiffness of
-  /// the ground (N/m) for them and 0 for the others.
-  template <class T>
-  static HWY_INLINE hn::Vec<hn::ScalableTag<T>> add_ground(const Stepper<T>& s, std::size_t i) {
-    const hn::ScalableTag<T> d;
-    using V = hn::Vec<decltype(d)>;
-    const cpu::Motion<T>& m = s.motion;
-    const Ground<V> ground = ground_under(m, s.constants, i);
-    const V depth = ground.height - hn::Load(d, m.z + i);
-    const V end = negative_multiply_add(hn::Set(d, s.constants.step.dt),
-                                        along_normal(ground, load(m.vx + i, m.vy + i, m.vz + i)), depth);
-    const V touching = zero_unless_greater(end, hn::Zero(d), hn::Set(d, s.constants.floor_stiffness));
-    const Triple<V> force = add_along_normal(ground, load(m.fx + i, m.fy + i, m.fz + i), touching * depth);
-    hn::Store(force.x, d, m.fx + i);
-    hn::Store(force.y, d, m.fy + i);
-    hn::Store(force.z, d, m.fz + i);
-    return touching;
-  }
-
-  /// The part of R v that is not in the diagonal, for the vector of masses at index i: rough ground pushes along its
-  /// normal instead of along z.
-  template <class T, class V>
-  static HWY_INLINE Triple<V> rough_resistance(const Stepper<T>& s, const Memory<T>& memory, std::size_t i,
-                                               const Triple<V>& v) {
-    const hn::ScalableTag<T> d;
-    const V touching = hn::Load(d, memory.vertical_resistance + i) - hn::Load(d, memory.resistance + i);
-    const Ground<V> ground = ground_under(s.motion, s.constants, i);
-    const V zero = hn::Zero(d);
-    return add_along_normal(ground, Triple<V>{zero, zero, zero - touching * v.z}, touching * along_normal(ground, v));
-  }
-
-  /// Subtracts rough_resistance() of the velocities from the forces.
-  template <class T>
-  static void subtract_rough_resistance(const Stepper<T>& s, const Memory<T>& memory) {
-    const hn::ScalableTag<T> d;
-    const cpu::Motion<T>& m = s.motion;
-    for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
-      const auto resisted = rough_resistance(s, memory, i, load(m.vx + i, m.vy + i, m.vz + i));
-      hn::Store(hn::Load(d, m.fx + i) - resisted.x, d, m.fx + i);
-      hn::Store(hn::Load(d, m.fy + i) - resisted.y, d, m.fy + i);
-      hn::Store(hn::Load(d, m.fz + i) - resisted.z, d, m.fz + i);
-    }
-  }
-
   /// Copies the vector (x, y, z) to memory.interleaved, from which neighbours read it.
   template <class T>
   static void interleave(const Stepper<T>& s, const Memory<T>& memory, const T* x, const T* y, const T* z) {
     const hn::ScalableTag<T> d;
     for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d))
       store_positions(d, load(x + i, y + i, z + i), memory.interleaved + cpu::position_stride * i);
-  }
-
-  template <class T>
-  static HWY_INLINE Triple<hn::Vec<hn::ScalableTag<T>>> load(const T* x, const T* y, const T* z) {
-    const hn::ScalableTag<T> d;
-    return {hn::Load(d, x), hn::Load(d, y), hn::Load(d, z)};
   }
 
   /// Sets K+ and the preconditioner, and subtracts dt K u from the forces. Row `row` of the tables has the lengths.
@@ -187,13 +92,15 @@ struct Implicit : StepMethod {
     const std::size_t i = group * hn::Lanes(d), end = m.first_row[group + 1] * hn::Lanes(d);
     const Triple<V> x = load(m.x + i, m.y + i, m.z + i), v = load(m.vx + i, m.vy + i, m.vz + i);
     Triple<V> diagonal{hn::Zero(d), hn::Zero(d), hn::Zero(d)}, rate = diagonal;
+    const V inverse_dt = hn::Set(d, T(1) / s.constants.step.dt);
     for (std::size_t slot = m.first_row[group] * hn::Lanes(d); slot < end; slot += hn::Lanes(d)) {
       const Separation<V> between = separation(x, load_positions(d, m.interleaved_positions, m.neighbour + slot));
       const Triple<V> other = load_positions(d, memory.interleaved, m.neighbour + slot);
       const V distance = length(between), k = hn::Load(d, m.stiffness + slot);
       const V spring_length = hn::Load(d, m.rest_length + slot) * lengths.at(m.material + slot);
       const V factor = spring_factor(distance, k, spring_length);
-      const SpringStiffness<V> matrix = spring_stiffness(between, distance, k, factor);
+      const V damping = m.damping != nullptr ? hn::Load(d, m.damping + slot) * inverse_dt : hn::Zero(d);  // N/m
+      const SpringStiffness<V> matrix = spring_stiffness(between, distance, k + damping, factor);
       hn::Store(matrix.transverse, d, memory.transverse + slot);
       hn::Store(matrix.along.x, d, memory.along[0] + slot);
       hn::Store(matrix.along.y, d, memory.along[1] + slot);
@@ -201,9 +108,12 @@ struct Implicit : StepMethod {
       diagonal = {diagonal.x + multiply_add(matrix.along.x, matrix.along.x, matrix.transverse),
                   diagonal.y + multiply_add(matrix.along.y, matrix.along.y, matrix.transverse),
                   diagonal.z + multiply_add(matrix.along.z, matrix.along.z, matrix.transverse)};
-      const Triple<V> change =
-          spring_force_rate(between, k, factor, Triple<V>{other.x - v.x, other.y - v.y, other.z - v.z});
-      rate = {rate.x + change.x, rate.y + change.y, rate.z + change.z};
+      const Triple<V> velocity{other.x - v.x, other.y - v.y, other.z - v.z};
+      const Triple<V> change = spring_force_rate(between, k, factor, velocity);
+      const V resisted = dashpot_factor(between, damping, velocity);
+      rate = {rate.x + multiply_add(resisted, between.d.x, change.x),
+              rate.y + multiply_add(resisted, between.d.y, change.y),
+              rate.z + multiply_add(resisted, between.d.z, change.z)};
     }
     set_preconditioner(s, memory, i, diagonal);
     const V dt = hn::Set(d, s.constants.step.dt);
@@ -281,6 +191,7 @@ struct Implicit : StepMethod {
   template <class T>
   static void solve(const Stepper<T>& s, const Memory<T>& memory) {
     T left = start(s, memory);
+    if (s.constants.rigid) left = start_with_contacts(s, memory);
     const T enough = tolerance<T> * tolerance<T> * left;
     for (int i = 0; i < most_iterations && left > enough; ++i) {
       const T curvature = apply(s, memory);
@@ -303,6 +214,17 @@ struct Implicit : StepMethod {
       sum = multiply_add(direction, r, sum);
     }
     return hn::GetLane(hn::SumOfLanes(d, sum));
+  }
+
+  /// Sets the correction to the rises of the masses that a rigid floor holds. If the solver had to find these, the rest
+  /// of the body would be a small part of its residual, and inaccurate. Returns <r, P r>.
+  template <class T>
+  static T start_with_contacts(const Stepper<T>& s, const Memory<T>& memory) {
+    direct_to_rises(s, memory);
+    apply(s, memory);
+    const T left = advance_along(s, memory, T(1));
+    update_direction(s, memory, T(0));
+    return left;
   }
 
   /// Sets memory.applied to the matrix times the direction d. Returns <d, applied>.
@@ -363,24 +285,6 @@ struct Implicit : StepMethod {
       for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d))
         hn::Store(hn::Load(d, v + i) + hn::Load(d, correction + i), d, v + i);
       correction += s.masses;
-    }
-  }
-
-  /// Sets the floor's force at the end of the step, N; never negative, so the floor does not hold masses that leave it.
-  template <class T>
-  static void set_floor_force(const Stepper<T>& s, const Memory<T>& memory) {
-    const hn::ScalableTag<T> d;
-    const cpu::Motion<T>& m = s.motion;
-    const auto stiffness = hn::Set(d, s.constants.floor_stiffness), dt = hn::Set(d, s.constants.step.dt);
-    for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
-      auto z = advanced_position(hn::Load(d, m.z + i), hn::Load(d, m.vz + i), dt);
-      if (s.constants.rough) {
-        const auto ground = ground_under(m, s.constants, i);
-        const auto velocity = along_normal(ground, load(m.vx + i, m.vy + i, m.vz + i));
-        z = advanced_position(hn::Load(d, m.z + i), velocity, dt) - ground.height;
-      }
-      const auto touches = hn::Load(d, memory.vertical_resistance + i) - hn::Load(d, memory.resistance + i);
-      hn::Store(zero_unless_greater(touches, hn::Zero(d), floor_force(stiffness, z)), d, m.floor_force + i);
     }
   }
 };

@@ -11,20 +11,21 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
-/// A step: positions ─► forces F; v <- (decay v + damped_dt F/m)/(1 + damped_dt c |v|/m); friction; x <- x + dt v. c is
-/// the coefficient of drag. Damping and drag are exact if no force acts. Under a constant force, at any dt, the
-/// velocity tends to the one at which damping and drag balance that force.
+/// A step: positions ─► forces F; v <- (decay v + damped_dt F/m)/(1 + damped_dt c |v|/m); rigid floor; friction; x <- x
+/// + dt v. c is the coefficient of drag. Damping and drag are exact if no force acts. Under a constant force, at any
+/// dt, the velocity tends to the one at which damping and drag balance that force.
 struct SymplecticEuler : StepMethod {
   template <class T>
   static void step(const Stepper<T>& s, std::size_t row) {
     const cpu::TimeSpan<T>& time = s.constants.step;
-    s.recording_springs(s.motion, s.actuation, row);
+    s.compute(s.recording_springs, row);
+    if (s.constants.rigid) note_arrivals(s.motion, s.constants, T(0), s.masses);
     if (s.constants.gravity) add_gravity(s.motion, s.constants, s.masses);
     if (s.constants.floor) add_floor(s.motion, s.constants, s.masses);
     if (s.constants.drag) apply_drag<true>(s.motion, s.constants, time.damped_dt, s.masses);
     if (s.constants.damping) damp(s.motion, time.decay, s.masses);
     advance_velocities(s.motion, time.damped_dt, s.masses);
-    if (s.constants.friction) apply_friction(s.motion, s.constants, time.dt, s.motion.vx, s.motion.vy, s.masses);
+    touch_floor(s);
     advance_positions(s.motion, time.dt, s.masses);
   }
 };

@@ -14,25 +14,25 @@ namespace evodevo::HWY_NAMESPACE {
 /// A step: gravity, drag and damping ─► predicted velocities; one Gauss-Seidel pass over the springs, by colour ─►
 /// corrected velocities; floor; friction; x <- x + dt v.
 ///
-/// Each spring is a constraint |d| = L of compliance 1/k, and the floor is a constraint z >= 0 (Macklin et al., XPBD,
-/// 2016). One pass per step is made because, at equal cost, one pass with smaller steps is more accurate than several
-/// passes with larger ones (Macklin et al., Small steps in physics simulation, 2019). The unknowns are the velocities
-/// v, from which the positions at the end of the step follow as x + dt v. If the unknowns were the positions, float32
-/// velocities would be differences of almost equal positions, mostly rounding error.
+/// Each spring is a constraint |d| = L of compliance 1/k, and an elastic floor is a constraint z >= 0 (Macklin et al.,
+/// XPBD, 2016). One pass per step is made because, at equal cost, one pass with smaller steps is more accurate than
+/// several passes with larger ones (Macklin et al., Small steps in physics simulation, 2019). The unknowns are the
+/// velocities v, from which the positions at the end of the step follow as x + dt v. If the unknowns were the
+/// positions, float32 velocities would be differences of almost equal positions, mostly rounding error.
 struct Xpbd : StepMethod {
   static constexpr std::size_t mass_arrays = cpu::position_stride;
   static constexpr bool coloured = true;
 
   template <class T>
   static void step(const Stepper<T>& s, std::size_t row) {
+    if (s.constants.rigid) note_arrivals(s.motion, s.constants, T(0), s.masses);
     apply_gravity(s);
     interleave_velocities(s);
     for (std::size_t at = 0; at < s.motion.coloured.size; at += hn::Lanes(hn::ScalableTag<T>()))
       solve_springs(s, row + 1, at);
     deinterleave_velocities(s);
-    if (s.constants.floor) s.constants.rough ? solve_rough_floor(s) : solve_floor(s);
-    if (s.constants.friction)
-      apply_friction(s.motion, s.constants, s.constants.step.dt, s.motion.vx, s.motion.vy, s.masses);
+    if (s.constants.floor && !s.constants.rigid) s.constants.rough ? solve_rough_floor(s) : solve_floor(s);
+    touch_floor(s);
     advance_positions(s.motion, s.constants.step.dt, s.masses);
   }
 
@@ -96,10 +96,17 @@ struct Xpbd : StepMethod {
                    Triple<V>{multiply_add(dt, v.x, x.x), multiply_add(dt, v.y, x.y), multiply_add(dt, v.z, x.z)});
     const V distance = length(ends);
     const V stretch = distance - rest_length * lengths.at(springs.material + at);
-    const V factor = compliant_force(k, stretch, dt * damped_dt, wa + wb) / distance;
+    V force = compliant_force(k, stretch, dt * damped_dt, wa + wb), of_spring = force;
+    if (springs.damping != nullptr) {
+      const V rate = multiply_add(ends.d.z, v.z, multiply_add(ends.d.y, v.y, ends.d.x * v.x)) / distance;
+      force = damped_force(k, hn::Load(d, springs.damping + at), stretch, rate, dt, damped_dt, wa + wb);
+      of_spring = k * (stretch - force * dt * damped_dt * (wa + wb));
+    }
+    const V factor = force / distance;
     store_velocities(s, at, a, add_scaled(va, damped_dt * factor * wa, ends.d));
     store_velocities(s, at, b, add_scaled(vb, hn::Zero(d) - damped_dt * factor * wb, ends.d));
-    if (s.is_recording()) record(s, row, at, spring_tension(ends, distance, factor));
+    if (s.is_recording())
+      record(s, row, at, spring_tension(ends, distance, factor), spring_tension(ends, distance, of_spring / distance));
   }
 
   template <class V>
@@ -125,9 +132,10 @@ struct Xpbd : StepMethod {
     }
   }
 
-  /// Adds the springs' tensions (N) to the enabled sums.
+  /// Adds the springs' tensions (N) to the enabled sums. `pull` is the tension without that of the dashpot, with which
+  /// a muscle works.
   template <class T, class V>
-  static void record(const Stepper<T>& s, std::size_t row, std::size_t at, V tension) {
+  static void record(const Stepper<T>& s, std::size_t row, std::size_t at, V tension, V pull) {
     const hn::ScalableTag<T> d;
     const auto add = [](T sum, T value) { return sum + value; };
     if (s.sums.force) put_into_slots(s, at, hn::Abs(tension), s.motion.force_sum, add);
@@ -139,7 +147,7 @@ struct Xpbd : StepMethod {
       const cpu::ColouredView<T>& springs = s.motion.coloured;
       const TableInMemory<T> rates(s.actuation.relative_rate + row * s.actuation.padded);
       const V rate = hn::Load(d, springs.rest_length + at) * rates.at(springs.material + at);
-      put_into_slots(s, at, actuation_power(tension, rate), s.motion.power_sum, add);
+      put_into_slots(s, at, actuation_power(pull, rate), s.motion.power_sum, add);
     }
   }
 

@@ -13,9 +13,6 @@ __device__ __forceinline__ Point<Number>* points_on_chip(const Body& body, unsig
   return reinterpret_cast<Point<Number>*>(chip) + index * body.masses;
 }
 
-/// a - b
-__device__ __forceinline__ Vector difference(const Vector& a, const Vector& b) { return sum(a, Number(-1), b); }
-
 /// Calls function(mass) for each mass that belongs to this thread.
 template <class Function>
 __device__ __forceinline__ void for_each_mass(const Body& body, const Function& function) {
@@ -62,7 +59,7 @@ __device__ __forceinline__ void advance_span(const Body& stored, std::uint64_t i
 
 /// Counts the contact of a mass at the end of a step.
 __device__ __forceinline__ void count_contact(const Body& body, unsigned mass, const Moving& m) {
-  if constexpr (contacts && floor_on) body.sampling.contact_steps[mass] += touches(body.constants, m.position);
+  if constexpr (contacts && floor_on) body.sampling.contact_steps[mass] += touches(body.constants, m);
 }
 
 /// Takes the samples that are due at the end of a step. Row `row` of the tables holds the lengths then.
@@ -81,12 +78,13 @@ __device__ __forceinline__ void end_step(const Body& body, unsigned row, [[maybe
   }
 }
 
-/// Records a spring's tension (N): adds to the spring's sums at index `joint` and to the sum of power at index `mass`.
+/// Records a spring's tension (N) and the part of it without the dashpot, with which its muscle works: adds to the
+/// spring's sums at index `joint` and to the sum of power at index `mass`.
 __device__ __forceinline__ void record(const Body& body, unsigned row, unsigned joint, unsigned mass, unsigned entry,
-                                       Number rest_length, Number tension) {
+                                       Number rest_length, Number tension, Number pull) {
   if constexpr (stress) body.stress[joint] += fabs(tension);
   if constexpr (work) {
-    const Number watts = physics::actuation_power(tension, body.rates[row * body.entries + entry] * rest_length);
+    const Number watts = physics::actuation_power(pull, body.rates[row * body.entries + entry] * rest_length);
     body.power[mass] += watts;
     if constexpr (muscle_work) body.powers[joint] += watts;
   }

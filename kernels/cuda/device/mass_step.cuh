@@ -3,8 +3,9 @@
 //
 // A method's `move` gets a mass with the sum of its spring forces (Moving) and calls the following functions, in an
 // order of its own:
+//   note_arrival                                    velocity ─► how fast the mass arrives at a rigid floor
 //   add_gravity, add_floor, add_drag, add_damping   position, velocity ─► added to the force
-//   advance_velocity, damp, apply_drag, apply_friction   force ─► velocity
+//   advance_velocity, damp, apply_drag, apply_friction, land   force ─► velocity
 //   advance_position                                velocity ─► position
 #pragma once
 
@@ -15,11 +16,15 @@ namespace evodevo::cuda {
 
 using Number = EVODEVO_NUMBER;
 constexpr bool actuation = EVODEVO_ACTUATION;
+constexpr bool dashpots = EVODEVO_DASHPOTS;
 constexpr bool gravity = EVODEVO_GRAVITY;
 constexpr bool slope = EVODEVO_SLOPE;
 constexpr bool floor_on = EVODEVO_FLOOR;
+constexpr bool elastic_floor = EVODEVO_ELASTIC;
+constexpr bool rigid_floor = EVODEVO_RIGID;
 constexpr bool rough = EVODEVO_ROUGH;
 constexpr bool friction = EVODEVO_FRICTION;
+constexpr bool static_friction = EVODEVO_STATIC_FRICTION;
 constexpr bool damping = EVODEVO_DAMPING;
 constexpr bool drag = EVODEVO_DRAG;
 constexpr bool stress = EVODEVO_STRESS;
@@ -66,7 +71,9 @@ struct Moving {
   Vector force;             ///< N
   Number mass;              ///< kg
   Number inverse_mass;      ///< 1/kg; 0 for masses that never move
-  Number normal_force = 0;  ///< normal force of the floor, N
+  Number normal_force = 0;  ///< normal force of an elastic floor, N
+  Number arrival = 0;       ///< rise at the beginning of the step, m/s; of a rigid floor
+  Number push = 0;          ///< velocity that a rigid floor has added in the step along its unit normal, m/s
 };
 
 /// A pass over all springs, after which every mass is moved. Passes are numbered from one check to the next.
@@ -86,6 +93,12 @@ struct OnePass {
   static __device__ __forceinline__ bool is_recorded(unsigned) { return true; }
   /// Whether a pass brings masses to where they are at the end of a step.
   static __device__ __forceinline__ bool ends_motion(Pass) { return true; }
+  /// The velocity (m/s) at which dashpots act on a mass in the next pass. `m` is the mass after it has been moved;
+  /// `before` is that velocity of the pass that moved it.
+  static __device__ __forceinline__ Vector dashpot_velocity(const StepConstants<Number>&, Pass, const Moving& m,
+                                                            Vector /*before*/) {
+    return m.velocity;
+  }
 };
 
 /// a + factor b
@@ -93,6 +106,9 @@ __device__ __forceinline__ Vector sum(const Vector& a, Number factor, const Vect
   return {physics::multiply_add(factor, b.x, a.x), physics::multiply_add(factor, b.y, a.y),
           physics::multiply_add(factor, b.z, a.z)};
 }
+
+/// a - b
+__device__ __forceinline__ Vector difference(const Vector& a, const Vector& b) { return sum(a, Number(-1), b); }
 
 __device__ __forceinline__ Vector scaled(const Vector& a, Number factor) {
   return {a.x * factor, a.y * factor, a.z * factor};
@@ -117,9 +133,12 @@ __device__ __forceinline__ Number clearance(const StepConstants<Number>& constan
   return z;
 }
 
-/// 1 if a mass at a position touches the ground, otherwise 0.
-__device__ __forceinline__ unsigned touches(const StepConstants<Number>& constants, const Vector& position) {
-  return clearance(constants, position) < 0 ? 1 : 0;
+/// 1 if an elastic floor pushes a mass now, or if a rigid floor has pushed it in the step, otherwise 0.
+__device__ __forceinline__ unsigned touches(const StepConstants<Number>& constants, const Moving& m) {
+  bool is_pushed = false;
+  if constexpr (elastic_floor) is_pushed = clearance(constants, m.position) < 0;
+  if constexpr (rigid_floor) is_pushed = m.push > 0;
+  return is_pushed ? 1 : 0;
 }
 
 /// The scalar product of a velocity with the ground's normal (-slope_x, -slope_y, 1), m/s.
@@ -144,7 +163,7 @@ __device__ __forceinline__ void add_horizontal_part(const StepConstants<Number>&
 }
 
 __device__ __forceinline__ void add_floor(const StepConstants<Number>& constants, Moving& m) {
-  if constexpr (floor_on) {
+  if constexpr (elastic_floor) {
     m.normal_force = physics::floor_force(constants.floor_stiffness, clearance(constants, m.position));
     m.force.z += m.normal_force;
     add_horizontal_part(constants, m.position, m.normal_force, m.force);
@@ -184,15 +203,61 @@ __device__ __forceinline__ void damp(Number decay, Moving& m) {
   if constexpr (damping) m.velocity = scaled(m.velocity, decay);
 }
 
-/// Reduces a velocity by the floor's friction. `friction_time` is the coefficient of friction times the time, s.
-__device__ __forceinline__ void apply_friction(Number friction_time, const Moving& m, Vector& velocity) {
-  if constexpr (friction) {
+/// Reduces a velocity by the friction of an elastic floor, which acts for `part` of the step (1).
+__device__ __forceinline__ void apply_friction(const StepConstants<Number>& constants, Number part, const Moving& m,
+                                               Vector& velocity) {
+  if constexpr (elastic_floor && friction) {
     // most masses do not touch the floor, and keep their velocity
     if (m.normal_force > 0) {
-      const Number kept =
-          physics::friction_factor(velocity.x, velocity.y, friction_time * m.normal_force * m.inverse_mass);
+      Number kept = physics::friction_factor(velocity.x, velocity.y,
+                                             constants.friction_dt * part * m.normal_force * m.inverse_mass);
+      if constexpr (static_friction) {
+        const Number held = constants.static_coefficient * (constants.dt * part) * m.normal_force * m.inverse_mass;
+        kept = physics::kept_unless_held(velocity.x, velocity.y, held, kept);
+      }
       velocity.x *= kept;
       velocity.y *= kept;
+    }
+  }
+}
+
+/// The ground under a mass; level ground is at height 0.
+__device__ __forceinline__ auto ground_of(const StepConstants<Number>& constants, const Vector& position) {
+  physics::Ground<Number> ground{0, 0, 0};
+  if constexpr (rough) ground = ground_under(constants, position);
+  return ground;
+}
+
+/// Notes how fast a mass rises at the beginning of a step, when its velocity is `before`.
+__device__ __forceinline__ void note_arrival(const StepConstants<Number>& constants, const Vector& before, Moving& m) {
+  if constexpr (rigid_floor) m.arrival = normal_velocity(constants, m.position, before);
+}
+
+/// Adds `lift` (m/s) to the rise of a mass with the given velocity. Returns what this adds along the unit normal, m/s.
+__device__ __forceinline__ Number push_off(const physics::Ground<Number>& ground, Number lift, Vector& velocity) {
+  const Number squared = physics::normal_squared(ground);
+  velocity = physics::add_along_normal(ground, velocity, lift / squared);
+  return lift / physics::square_root(squared);
+}
+
+/// Reduces a velocity by the friction of a rigid floor that has added `push` (m/s) along its unit normal.
+__device__ __forceinline__ void rub(const StepConstants<Number>& constants, const physics::Ground<Number>& ground,
+                                    Number push, Vector& velocity) {
+  if constexpr (friction)
+    velocity =
+        physics::after_friction(ground, velocity, push, constants.friction_coefficient, constants.static_coefficient);
+}
+
+/// Lets a rigid floor and its friction act on the velocity that all other forces have given a mass in a step.
+__device__ __forceinline__ void land(const StepConstants<Number>& constants, Moving& m) {
+  if constexpr (rigid_floor) {
+    const auto ground = ground_of(constants, m.position);
+    const Number rise = physics::along_normal(ground, m.velocity);
+    const Number lowest = physics::lowest_rise(m.position.z - ground.height, constants.dt);
+    if (lowest > rise && m.inverse_mass > 0) {
+      const Number after = physics::rise_after_contact(lowest, physics::bounce(constants.restitution, m.arrival));
+      m.push = push_off(ground, after - rise, m.velocity);
+      rub(constants, ground, m.push, m.velocity);
     }
   }
 }

@@ -46,6 +46,12 @@ __device__ __forceinline__ void set_position(unsigned offset, Vector position) {
   on_chip<Number>(offset + 2 * plane) = position.z;
 }
 
+__device__ __forceinline__ void set_dashpot_velocity(unsigned offset, Vector velocity) {
+  on_chip<Number>(offset + 6 * plane) = velocity.x;
+  on_chip<Number>(offset + 7 * plane) = velocity.y;
+  on_chip<Number>(offset + 8 * plane) = velocity.z;
+}
+
 /// Returns the sum of the spring forces on a mass, N, and sets the sum to its start value for the next pass.
 __device__ __forceinline__ Vector take_force(unsigned offset, Integer start, Number resolution) {
   const auto newtons = [&](unsigned at) {
@@ -64,9 +70,11 @@ __device__ __forceinline__ void move_masses(const Body& body, const StepConstant
              __ldg(body.inverse_mass + index)};
     Method::move(constants, pass, movers.kept[i], m);
     set_position(offset, m.position);
+    if constexpr (dashpots)
+      set_dashpot_velocity(offset, Method::dashpot_velocity(constants, pass, m, velocity_at(offset)));
     movers.velocity[i] = m.velocity;
     if constexpr (contacts && floor_on)
-      if (Method::ends_motion(pass)) movers.contact_steps[i] += touches(constants, m.position);
+      if (Method::ends_motion(pass)) movers.contact_steps[i] += touches(constants, m);
   });
 }
 
@@ -76,6 +84,9 @@ __device__ __forceinline__ void load(const Body& body, Movers& movers) {
   for_each_mover(body, [&](unsigned i, unsigned index, unsigned offset) {
     set_position(offset, {m.x[index], m.y[index], m.z[index]});
     movers.velocity[i] = {m.vx[index], m.vy[index], m.vz[index]};
+    if constexpr (dashpots)
+      set_dashpot_velocity(
+          offset, {body.dashpot_velocity.x[index], body.dashpot_velocity.y[index], body.dashpot_velocity.z[index]});
     set_force(offset, body.start[index]);
     if constexpr (contacts) movers.contact_steps[i] = body.sampling.contact_steps[index];
   });
@@ -83,8 +94,10 @@ __device__ __forceinline__ void load(const Body& body, Movers& movers) {
   if (threadIdx.x < lanes) {
     const unsigned offset = offset_of_mass(body.groups * lanes + threadIdx.x);
     set_position(offset, {0, 0, 0});
+    if constexpr (dashpots) set_dashpot_velocity(offset, {0, 0, 0});
     set_force(offset, 0);
   }
+  if constexpr (dashpots) copy_to_chip(body.dashpots, body.dashpot_offset, body.entries);
   if constexpr (records_on_chip) {
     const unsigned count = body.warps * lanes * rows * (chunked ? body.chunks : 1);
     Records::load(body, count);
@@ -102,6 +115,12 @@ __device__ __forceinline__ void store(const Body& body, const Movers& movers) {
     m.vy[index] = movers.velocity[i].y;
     m.vz[index] = movers.velocity[i].z;
     if constexpr (contacts) body.sampling.contact_steps[index] = movers.contact_steps[i];
+    if constexpr (dashpots) {
+      const Vector velocity = velocity_at(offset);
+      body.dashpot_velocity.x[index] = velocity.x;
+      body.dashpot_velocity.y[index] = velocity.y;
+      body.dashpot_velocity.z[index] = velocity.z;
+    }
   });
 }
 

@@ -18,7 +18,8 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_CHECK_THREADS)
   NextSample next;
   next.seek(body.sampling, done - 1);
   const unsigned passes = at_end ? span.passes() : step * passes_per_step;
-  const Point<Number>* positions = body.positions + (passes_before(span, index) + passes) % 2 * body.masses;
+  const auto half = static_cast<unsigned>((passes_before(span, index) + passes) % 2);
+  const Point<Number>* positions = body.positions + half * body.masses;
   const bool merged = opening_passes > 0 && !at_end;  // the next pass would end this step
   take_samples(
       body, positions, at_end ? 0 : step * rows_per_step,
@@ -26,10 +27,10 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_CHECK_THREADS)
         MassAtEnd at{triple(positions[mass]), triple(body.velocities[mass])};
         if constexpr (work) at.power = body.power[mass];
         if (!merged) return at;
-        const SpringForces springs = spring_forces<false>(body, mass, positions, Method::row(passes), true);
+        const SpringForces springs = spring_forces<false>(body, mass, half, Method::row(passes), true);
         if constexpr (work) at.power += springs.power;
         Moving m{at.position, at.velocity, springs.sum, body.mass[mass], body.inverse_mass[mass]};
-        Method::Kept kept;
+        Method::Kept kept = reinterpret_cast<const Method::Kept*>(body.scratch)[mass];
         Method::move(body.constants, {passes, true}, kept, m);
         at.velocity = m.velocity;
         return at;

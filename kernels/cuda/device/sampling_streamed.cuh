@@ -12,7 +12,8 @@ struct MassAtEnd {
   double power = 0;  // of its springs since the last check, W
 };
 
-/// Writes the forces of the springs that a mass owns into a sample (N), in the order of the joints.
+/// Writes the forces of the springs that a mass owns into a sample (N), without those of their dashpots, in the order
+/// of the joints.
 __device__ __forceinline__ void write_forces(const Body& body, const Point<Number>* positions, unsigned row,
                                              unsigned mass, float* to) {
   const Vector own = triple(positions[mass]);

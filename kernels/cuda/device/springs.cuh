@@ -12,10 +12,16 @@ namespace evodevo::cuda {
 using Fixed = FixedPoint<Number>;
 using Integer = Fixed::Integer;
 constexpr unsigned plane = plane_bytes<Number>;
-constexpr unsigned group_size = group_bytes<Number>;
+constexpr unsigned group_size = group_bytes<Number, dashpots>;
 
 __device__ __forceinline__ Vector position_at(unsigned offset) {
   return {on_chip<Number>(offset), on_chip<Number>(offset + plane), on_chip<Number>(offset + 2 * plane)};
+}
+
+/// The velocity at which dashpots act on a mass.
+__device__ __forceinline__ Vector velocity_at(unsigned offset) {
+  return {on_chip<Number>(offset + 6 * plane), on_chip<Number>(offset + 7 * plane),
+          on_chip<Number>(offset + 8 * plane)};
 }
 
 __device__ __forceinline__ unsigned offset_of_mass(unsigned index) {
@@ -31,22 +37,32 @@ struct Spring {
   unsigned other;  // offset of the mass at the other end
   SpringMaterial material;
   Vector position;
+  Vector velocity;  // if there are dashpots
+  Number dashpot;   // its coefficient, likewise
 
   __device__ __forceinline__ Spring(const Records::Read& record, const Lengths& lengths)
       : rest_length(record.rest_length),
         other((static_cast<unsigned>(record.packed) & 0xffffu) << offset_shift),
         material(lengths(record)),
-        position(position_at(other)) {}
+        position(position_at(other)) {
+    if constexpr (dashpots) {
+      velocity = velocity_at(other);
+      dashpot = lengths.damping_of(material);
+    }
+  }
 };
 
 /// The mass whose springs a thread is computing, and the sum of their forces so far.
 struct Owner {
   unsigned offset;
   Vector position;
+  Vector velocity;  // if there are dashpots
   Integer fx, fy, fz;
 
   __device__ __forceinline__ explicit Owner(unsigned offset_)
-      : offset(offset_), position(position_at(offset_)), fx(0), fy(0), fz(0) {}
+      : offset(offset_), position(position_at(offset_)), fx(0), fy(0), fz(0) {
+    if constexpr (dashpots) velocity = velocity_at(offset_);
+  }
 
   __device__ __forceinline__ void flush() const {
     atomicAdd(&on_chip<Integer>(offset + 3 * plane), fx);
@@ -101,13 +117,18 @@ __device__ __forceinline__ Number add_force(const Body& body, unsigned slot, con
   const auto s = physics::separation(owner.position, spring.position);
   const Number inverse = physics::inverse_length(s);
   const Entry<Number>& entry = spring.material.entry;
-  const Number factor =
-      physics::spring_factor_by_inverse(inverse, entry.stiffness, entry.rest_force * spring.rest_length);
-  const Number tension = factor * physics::length_by_inverse(s, inverse);
+  Number factor = physics::spring_factor_by_inverse(inverse, entry.stiffness, entry.rest_force * spring.rest_length);
+  const Number pull = factor * physics::length_by_inverse(s, inverse);  // of the spring alone
+  Number tension = pull;
+  if constexpr (dashpots) {
+    const Vector velocity = difference(spring.velocity, owner.velocity);
+    factor += physics::dashpot_factor_by_inverse(s, inverse, spring.dashpot, velocity);
+    tension = factor * physics::length_by_inverse(s, inverse);
+  }
   sums.largest = fmax(sums.largest, fabs(tension));
   if constexpr (work) {
     const Number rate = pass.lengths.rate_of(spring.material) * spring.rest_length;
-    const Number watts = physics::actuation_power(tension, rate);
+    const Number watts = physics::actuation_power(pull, rate);
     if (pass.recorded) sums.power += watts;
     if constexpr (muscle_work)
       if (pass.recorded) atomicAdd(in_memory(body.powers) + slot, static_cast<double>(watts));
@@ -212,7 +233,7 @@ __device__ double elastic_energy(const Body& body, const Share& share) {
   return sum;
 }
 
-/// Writes the force of each spring into a sample (N), in the order of the slots.
+/// Writes the force of each spring into a sample (N), without that of its dashpot, in the order of the slots.
 __device__ __forceinline__ void write_forces(const Body& body, const Share& share, const Lengths& lengths, float* to) {
   unsigned offset = share.owner;
   for (unsigned chunk = 0; chunk < share.chunks; ++chunk) {

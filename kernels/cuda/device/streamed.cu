@@ -20,17 +20,21 @@ extern "C" __global__ void evodevo_pass_streamed(const Body* bodies, std::uint64
   const CheckSpan span(body.piece, index);
   if (mass >= body.masses || pass >= span.passes() || body.answer->diverged) return;
   const auto half = static_cast<unsigned>((passes_before(span, index) + pass) % 2);
-  const Point<Number>* from = body.positions + half * body.masses;
-  const Vector position = triple(from[mass]), velocity = triple(body.velocities[mass]);
-  const SpringForces springs = spring_forces<true>(body, mass, from, Method::row(pass), Method::is_recorded(pass));
+  const Vector position = triple(body.positions[half * body.masses + mass]), velocity = triple(body.velocities[mass]);
+  const SpringForces springs = spring_forces<true>(body, mass, half, Method::row(pass), Method::is_recorded(pass));
   if constexpr (work) body.power[mass] += springs.power;
   Moving m{position, velocity, springs.sum, body.mass[mass], body.inverse_mass[mass]};
   const Pass of_span{pass, pass + 1 == span.passes()};
   Method::move(body.constants, of_span, reinterpret_cast<Method::Kept*>(body.scratch)[mass], m);
   body.positions[(1 - half) * body.masses + mass] = point(m.position);
   body.velocities[mass] = point(m.velocity);
+  if constexpr (dashpots) {
+    const Vector before = triple(body.dashpot_velocities[half * body.masses + mass]);
+    body.dashpot_velocities[(1 - half) * body.masses + mass] =
+        point(Method::dashpot_velocity(body.constants, of_span, m, before));
+  }
   if constexpr (contacts && floor_on)
-    if (Method::ends_motion(of_span)) body.sampling.contact_steps[mass] += touches(body.constants, m.position);
+    if (Method::ends_motion(of_span)) body.sampling.contact_steps[mass] += touches(body.constants, m);
 }
 
 }  // namespace evodevo::cuda

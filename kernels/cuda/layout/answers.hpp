@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cmath>
+#include <vector>
 
 #include "analysis/guard.hpp"
+#include "analysis/split_materials.hpp"
 #include "core/simulator.hpp"
 #include "cuda/layout/formats.hpp"
 
@@ -19,6 +21,11 @@ inline RunPiece run_piece_of(const Task& task) {
           .since_check = static_cast<std::uint32_t>(course.steps % guard_interval),
           .is_last = task.later_steps == 0,
           .left_range = course.left_range};
+}
+
+/// The velocities [masses] at which dashpots act at the beginning of a task, m/s. The task's course must have begun.
+inline const std::vector<Vec3>& dashpot_velocities_of(const Task& task) {
+  return task.course->dashpot_velocity.empty() ? task.state->velocity : task.course->dashpot_velocity;
 }
 
 /// Fills in a task's status, reason, work, times and course from the device's answer.
@@ -48,6 +55,15 @@ inline Actuator actuator_of(const Material& material, double resolution) {
           std::remainder(material.phase, 2 * pi) / pi};
 }
 
+/// Writes the coefficients of the dashpots by entry of the table, in units of `resolution` s/m (N); 0 for entry 0,
+/// which belongs to no material.
+template <class T>
+void pack_dashpots(const Body& body, const std::vector<Material>& materials, double resolution, T* to) {
+  *to++ = 0;
+  for (const double coefficient : dashpot_coefficients(body, materials))
+    *to++ = static_cast<T>(coefficient / resolution);
+}
+
 /// The time (s) in which a constant acceleration adds as much to an undamped velocity as it adds to a damped one in
 /// `time` seconds: (1 - exp(-rate time))/rate.
 inline double damped_time(double damping_rate, double time) {
@@ -73,6 +89,9 @@ StepConstants<T> step_constants(const Scene& scene, double dt) {
           .roughness = as_t(scene.floor ? scene.floor->roughness : 0),
           .cells = as_t(scene.floor ? 2 / scene.floor->wavelength : 0),
           .seed = scene.floor ? scene.floor->first_line() : 0,
+          .restitution = as_t(scene.floor ? scene.floor->restitution.value_or(0) : 0),
+          .friction_coefficient = as_t(scene.friction ? scene.friction->coefficient : 0),
+          .static_coefficient = as_t(scene.friction ? scene.friction->holding() : 0),
           .exact_dt = dt};
 }
 

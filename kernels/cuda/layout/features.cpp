@@ -18,7 +18,8 @@ const MethodForm& form_of(Method method) {
        .rows_per_step = 1,
        .end_rows = 1,
        .opening_passes = 1,
-       .passes_per_step = 1},
+       .passes_per_step = 1,
+       .numbers_of_mass = 1},
       {.file = "cuda/device/methods/rk4.cuh",
        .rows_per_step = 2,
        .end_rows = 1,
@@ -33,12 +34,22 @@ const MethodForm& form_of(Method method) {
       {.file = "cuda/device/methods/xpbd.cu",
        .rows_per_step = 1,
        .end_rows = 1,
+       .numbers_of_mass = 1,
        .points_on_chip = 2,
        .coloured = true}};
   return forms[static_cast<std::size_t>(method)];
 }
 
-Features features_of(const Scene& scene, const Stepping& stepping, Recording recording, bool actuation,
+MaterialFeatures material_features(const Body& body) {
+  MaterialFeatures features;
+  for (const Material& material : body.materials) {
+    features.actuation = features.actuation || material.amplitude != 0;
+    features.dashpots = features.dashpots || material.damping != 0;
+  }
+  return features;
+}
+
+Features features_of(const Scene& scene, const Stepping& stepping, Recording recording, MaterialFeatures materials,
                      const Channels& channels) {
   return {.method = stepping.method,
           .float64 = stepping.precision == Precision::float64,
@@ -46,11 +57,15 @@ Features features_of(const Scene& scene, const Stepping& stepping, Recording rec
           .gravity = scene.gravity.has_value(),
           .slope = scene.gravity && scene.gravity->slope != 0,
           .floor = scene.floor.has_value(),
+          .elastic = scene.floor && !scene.floor->rigid(),
+          .rigid = scene.floor && scene.floor->rigid(),
           .rough = scene.floor && scene.floor->rough(),
           .friction = scene.friction && scene.floor,
+          .static_friction = scene.friction && scene.floor && scene.friction->holding() > scene.friction->coefficient,
           .damping = scene.damping.has_value(),
           .drag = scene.drag.has_value(),
-          .actuation = actuation,
+          .actuation = materials.actuation,
+          .dashpots = materials.dashpots,
           .stress = recording.stress,
           .work = recording.work || recording.muscle_work || channels.work,
           .peak_force = recording.peak_force,
@@ -76,11 +91,15 @@ std::vector<std::string> definitions(const Features& features) {
           number("MAX_THREADS", 32 * largest_block(features.float64)),
           number("CHECK_THREADS", check_threads),
           flag("ACTUATION", features.actuation),
+          flag("DASHPOTS", features.dashpots),
           flag("GRAVITY", features.gravity),
           flag("SLOPE", features.slope),
           flag("FLOOR", features.floor),
+          flag("ELASTIC", features.elastic),
+          flag("RIGID", features.rigid),
           flag("ROUGH", features.rough),
           flag("FRICTION", features.friction),
+          flag("STATIC_FRICTION", features.static_friction),
           flag("DAMPING", features.damping),
           flag("DRAG", features.drag),
           flag("STRESS", features.stress),

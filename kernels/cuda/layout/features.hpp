@@ -39,23 +39,38 @@ struct Features {
   Method method = Method::paper_euler;
   bool float64 = false;
   Materials materials = Materials::table;
-  bool gravity = false, slope = false, floor = false, rough = false, friction = false, damping = false, drag = false;
-  bool actuation = false, stress = false, work = false;
+  bool gravity = false, slope = false;
+  bool floor = false, elastic = false, rigid = false, rough = false;  ///< a floor is either elastic or rigid
+  bool friction = false, static_friction = false;  ///< static_friction: it is higher than that of sliding
+  bool damping = false, drag = false;
+  bool actuation = false, dashpots = false, stress = false, work = false;
   bool peak_force = false, muscle_work = false, tension = false;  ///< muscle_work implies work
   bool samples = false, contacts = false;                         ///< contacts implies samples
 
   friend auto operator<=>(const Features&, const Features&) = default;
 };
 
-/// The features for a scene and a run. `actuation` says whether a material of the body is that of a muscle; `channels`
-/// are those of any sample that the device takes.
-Features features_of(const Scene& scene, const Stepping& stepping, Recording recording, bool actuation,
+/// What a body's materials ask for.
+struct MaterialFeatures {
+  bool actuation = false;  ///< a material is that of a muscle
+  bool dashpots = false;   ///< a material has a damping ratio
+};
+
+MaterialFeatures material_features(const Body& body);
+
+/// The features for a scene, a body and a run. `channels` are those of any sample that the device takes.
+Features features_of(const Scene& scene, const Stepping& stepping, Recording recording, MaterialFeatures materials,
                      const Channels& channels = {});
 
-/// Whether springs on the chip carry codes of their materials. In double precision they do not: the rounded materials
-/// come from a table.
+/// Whether springs on the chip carry codes of their materials. In double precision, and beside dashpots, they do not:
+/// the rounded materials come from a table.
 inline bool has_codes(const Features& features) {
-  return features.materials == Materials::computed && !features.float64;
+  return features.materials == Materials::computed && !features.float64 && !features.dashpots;
+}
+
+/// Whether dashpots act at velocities that the method has predicted (Course::dashpot_velocity).
+inline bool predicts_dashpot_velocities(const Features& features) {
+  return features.dashpots && features.method == Method::velocity_verlet;
 }
 
 /// Features of a body's layout that are compiled into the kernel that keeps it on the chip.

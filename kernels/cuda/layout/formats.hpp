@@ -12,12 +12,12 @@ inline constexpr unsigned lanes = 32;            ///< threads of a warp, banks o
 inline constexpr unsigned guard_interval = 100;  ///< steps between two checks of a body
 
 /// Masses are in shared memory in groups of 32, one mass per bank. A group is six planes of 32 numbers: the positions
-/// x, y, z and the forces x, y, z. So the six numbers of a mass are at constant distances from each other for bodies of
-/// any size.
+/// x, y, z and the forces x, y, z; if the body has dashpots, three more planes have the velocities at which they act.
+/// So the numbers of a mass are at constant distances from each other for bodies of any size.
 template <class T>
 inline constexpr unsigned plane_bytes = lanes * sizeof(T);
-template <class T>
-inline constexpr unsigned group_bytes = 6 * plane_bytes<T>;
+template <class T, bool dashpots>
+inline constexpr unsigned group_bytes = (dashpots ? 9 : 6) * plane_bytes<T>;
 
 /// A spring in the format that the thread of its owner reads.
 template <class T>
@@ -57,7 +57,7 @@ struct CodeUnits {
 template <class T>
 struct StepConstants {
   T acceleration;      ///< acceleration of gravity along -z, m/s^2
-  T floor_stiffness;   ///< N/m
+  T floor_stiffness;   ///< of an elastic floor, N/m
   T friction_dt;       ///< friction coefficient times dt, s
   T drag_coefficient;  ///< kg/m
   T decay;             ///< exp(-damping rate dt): the fraction of a velocity that damping leaves
@@ -70,7 +70,9 @@ struct StepConstants {
   T roughness;         ///< m
   T cells;             ///< number of cells of rough ground per metre, 1/m
   std::uint32_t seed;  ///< Floor::first_line()
-  double exact_dt;     ///< s
+  T restitution;       ///< of a rigid floor
+  T friction_coefficient, static_coefficient;
+  double exact_dt;  ///< s
 };
 
 /// The piece of a run that a task simulates, and the whole run's Course so far.
@@ -127,6 +129,12 @@ struct Sampling {
   std::uint32_t count, masses;
 };
 
+/// The components of a vector for each mass.
+template <class T>
+struct Triplets {
+  T *x, *y, *z;
+};
+
 /// A body in motion: one entry for each mass, then padding that fills the last group. Padding has mass 0 and never
 /// moves.
 template <class T>
@@ -146,10 +154,12 @@ struct ResidentBody {
   const std::uint32_t* first_group;  ///< [block's warps] the group of each warp's first row
   const std::uint32_t* group_ends;   ///< [block's warps][chunks] bit r: the next group begins after row r
   const Actuator* actuators;         ///< [entries]; entry 0 is for empty slots
+  const T* dashpots;                 ///< [entries] coefficient of the dashpots, units of force s/m; if the body has any
   const T* mass;                     ///< [padded masses] kg
   const T* inverse_mass;             ///< [padded masses] 1/kg; 0 for masses that never move
   const Integer* start;              ///< [padded masses] start value of a force sum, by which its magic numbers cancel
   Motion<T> motion;                  ///< [padded masses]
+  Triplets<T> dashpot_velocity;      ///< [padded masses] at which dashpots act next, m/s; if the body has any
   double* stress;                    ///< [slots] sum of |force|, N
   T* recent_stress;                  ///< [slots] the part of the sum that is not yet in `stress`, units; if chunked
   // [slots] if recorded; written by atomic operations that return no result, so that no thread waits; each slot has one
@@ -165,6 +175,7 @@ struct ResidentBody {
   std::uint32_t table_steps;                     ///< steps for which the table in shared memory has rows
   std::uint32_t table_offset;                    ///< of the table, bytes from the beginning of shared memory
   std::uint32_t rate_offset;                     ///< of the rates, if work is recorded
+  std::uint32_t dashpot_offset;                  ///< of the coefficients of the dashpots
   std::uint32_t record_offset;                   ///< of the records
   std::uint32_t wave_offset;                     ///< of the waves
   Sampling sampling;
@@ -205,10 +216,12 @@ struct StreamedBody {
   const ColouredSpring<T>* coloured;     ///< by colour (spring_colours()); if the method asks for them
   const std::uint32_t* first_of_colour;  ///< [colours + 1] index of each colour's first spring
   const Actuator* actuators;             ///< [entries]; stiffness in N/m
+  const T* dashpots;                     ///< [entries] coefficient of the dashpots, N s/m; if the body has any
   const T* mass;                         ///< [masses] kg
   const T* inverse_mass;                 ///< [masses] 1/kg; 0 for masses that never move
   Point<T>* positions;                   ///< [2][masses] m; a pass reads one half and writes the other
   Point<T>* velocities;                  ///< [masses] m/s
+  Point<T>* dashpot_velocities;          ///< [2][masses] at which dashpots act, like the positions; explicit methods
   T* scratch;                            ///< scratch memory of the method, aligned to 16 bytes
   Entry<T>* table;                       ///< [rows][entries] for the steps from one check to the next
   T* rates;                              ///< [rows][entries] rate of L/L0, 1/s; if work is recorded

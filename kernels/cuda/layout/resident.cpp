@@ -15,13 +15,13 @@ constexpr std::size_t largest_offset = 0xffff;
 std::size_t aligned(std::size_t size) { return (size + 15) / 16 * 16; }
 
 template <class T>
-std::size_t offset_of_mass(std::uint32_t index) {
-  return index / lanes * group_bytes<T> + index % lanes * sizeof(T);
+std::size_t group_size(const Features& features) {
+  return features.dashpots ? group_bytes<T, true> : group_bytes<T, false>;
 }
 
 template <class T>
-std::size_t masses_bytes(std::size_t groups) {
-  return (groups + 1) * group_bytes<T>;  // one more group, to which empty slots refer
+std::size_t masses_bytes(std::size_t groups, const Features& features) {
+  return (groups + 1) * group_size<T>(features);  // one more group, to which empty slots refer
 }
 
 /// An upper bound (N) of the force of a spring that stops two moving masses: 2 v sqrt(k m/2), with the largest speed v,
@@ -32,6 +32,18 @@ double stopping_force(const Body& body, const State& state) {
   for (const Mass& m : body.masses) mass = std::max(mass, m.mass);
   for (const Spring& spring : body.springs) stiffness = std::max(stiffness, body.stiffness(spring));
   return 2 * speed * std::sqrt(stiffness * mass / 2);
+}
+
+/// The force (N) of the strongest dashpot when one of its ends is stopped: at the largest speed of the state, or at
+/// that of a fall by the body's own size. 0 without dashpots.
+double landing_force(const Body& body, const State& state, const Scene& scene) {
+  double coefficient = 0, speed = 0;
+  for (const Spring& spring : body.springs) coefficient = std::max(coefficient, body.damping(spring));
+  if (coefficient == 0) return 0;
+  for (const Vec3& v : state.velocity) speed = std::max(speed, norm(v));
+  if (scene.gravity && scene.floor)
+    speed += std::sqrt(2 * std::abs(scene.gravity->acceleration) * bounding_box(state.position).longest_side());
+  return coefficient * speed;
 }
 
 }  // namespace
@@ -55,7 +67,7 @@ ForceRange force_range(const Body& body, const State& state, const Scene& scene)
   double weight = 0;
   if (scene.gravity)
     for (const Mass& mass : body.masses) weight += mass.mass * std::abs(scene.gravity->acceleration);
-  double largest = std::max(weight, stopping_force(body, state)), doubled = 0;
+  double largest = std::max(weight, stopping_force(body, state)), doubled = 0, damping = 0;
   bool driven = false;
   std::vector<std::uint32_t> degree(body.masses.size());
   for (const Spring& spring : body.springs) {
@@ -65,9 +77,11 @@ ForceRange force_range(const Body& body, const State& state, const Scene& scene)
     doubled = std::max(doubled, std::abs(body.stiffness(spring)) * length);
     largest = std::max(largest, std::abs(body.stiffness(spring)) * 2 * std::abs(strain));
     driven = driven || material.amplitude * material.frequency != 0;
+    damping = std::max(damping, material.damping);
     ++degree[spring.a], ++degree[spring.b];
   }
   largest = std::max(largest, driven ? 2 * doubled : doubled);
+  largest = std::max(largest * (1 + 2 * damping), largest + landing_force(body, state, scene));
   ForceRange range;
   const std::uint32_t terms = degree.empty() ? 1 : std::max(1u, *std::max_element(degree.begin(), degree.end()));
   // a margin of one percent for rounding of the force itself
@@ -90,8 +104,8 @@ std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features
                                                 std::uint64_t spans_per_range) {
   // a quick test before the work of arranging: whether the masses and a table of one step fit
   const std::size_t entries = has_codes(features) ? 0 : task.body->materials.size() + 1;
-  const std::size_t least =
-      masses_bytes<T>((task.body->masses.size() + lanes - 1) / lanes) + entries * (sizeof(Entry<T>) + sizeof(T));
+  const std::size_t groups = (task.body->masses.size() + lanes - 1) / lanes;
+  const std::size_t least = masses_bytes<T>(groups, features) + entries * (sizeof(Entry<T>) + sizeof(T));
   if (least > largest_chip(shared_bytes) || entries * sizeof(Entry<T>) > largest_offset * sizeof(T))
     return std::nullopt;
   Resident resident(task, features);
@@ -119,7 +133,8 @@ void Resident<T>::divide_chip(bool with_rates, std::size_t shared_bytes) {
   // bytes of a row: the material's entries, or one reading of the clock
   const std::size_t lengths = codes ? sizeof(std::uint32_t) : entries * sizeof(Entry<T>);
   const std::size_t rates = with_rates && !codes ? entries * sizeof(T) : 0;
-  const std::size_t masses = masses_bytes<T>(arrangement().groups), slots = arrangement().shape.slots();
+  const std::size_t dashpots = aligned(features_.dashpots ? entries * sizeof(T) : 0);
+  const std::size_t masses = masses_bytes<T>(arrangement().groups, features_), slots = arrangement().shape.slots();
   const std::size_t records = slots * sizeof(Record<T>), waves = waves_in(slots) * sizeof(std::uint32_t);
   const MethodForm& method = form_of(features_.method);
   // whatever is recorded: sums in registers have as many terms as the table has steps, and the number of terms decides
@@ -127,11 +142,13 @@ void Resident<T>::divide_chip(bool with_rates, std::size_t shared_bytes) {
   const std::size_t steps = std::clamp<std::size_t>(table_bytes / lengths / method.rows_per_step, 1, longest_table);
   // the clock is read one row ahead
   const std::size_t rows = (features_.actuation ? method.rows(static_cast<unsigned>(steps)) : 1) + (codes ? 1 : 0);
-  records_on_chip_ = aligned(masses) + aligned(rows * (lengths + rates)) + 32 + records + waves <= shared_bytes;
+  records_on_chip_ =
+      aligned(masses) + aligned(rows * (lengths + rates)) + 32 + dashpots + records + waves <= shared_bytes;
   chip_.table_steps = static_cast<std::uint32_t>(steps);
   chip_.table_offset = aligned(masses);
   chip_.rate_offset = aligned(chip_.table_offset + rows * lengths);
-  chip_.record_offset = aligned(chip_.rate_offset + rows * rates);
+  chip_.dashpot_offset = aligned(chip_.rate_offset + rows * rates);
+  chip_.record_offset = chip_.dashpot_offset + dashpots;
   chip_.wave_offset = chip_.record_offset + records;
   chip_.size = chip_.record_offset + (records_on_chip_ ? records + waves : 0);
 }
@@ -150,10 +167,12 @@ void Resident<T>::reserve() {
   first_group_ = input.add<std::uint32_t>(arrangement().first_group.size());
   group_ends_ = input.add<std::uint32_t>(arrangement().group_ends.size());
   actuators_ = input.add<Actuator>(task_->body->materials.size() + 1);
+  dashpots_ = input.add<T>(features_.dashpots ? task_->body->materials.size() + 1 : 0);
   mass_ = input.add<T>(padded_masses());
   inverse_mass_ = input.add<T>(padded_masses());
   start_ = input.add<typename FixedPoint<T>::Integer>(padded_masses());
   for (Section<T>& plane : motion_) plane = state.add<T>(padded_masses());
+  for (Section<T>& plane : dashpot_velocity_) plane = state.add<T>(features_.dashpots ? padded_masses() : 0);
   answer_ = state.add<Answer>(1);
   stress_ = sums.add<double>(features_.stress ? arrangement().slots.size() : 0);
   recent_stress_ = sums.add<T>(features_.stress && form().chunked ? arrangement().slots.size() : 0);
@@ -172,7 +191,7 @@ ResidentForm Resident<T>::form() const {
       .masses_per_thread = shape.masses_per_thread,
       .chunked = shape.chunks > 1,
       .records_on_chip = records_on_chip_,
-      .wide_offsets = masses_bytes<T>(arrangement().groups) > largest_offset,
+      .wide_offsets = masses_bytes<T>(arrangement().groups, features_) > largest_offset,
       .wide_table = !has_codes(features_) && (task_->body->materials.size() + 1) * sizeof(Entry<T>) > largest_offset};
 }
 
@@ -191,7 +210,10 @@ template <class T>
 void Resident<T>::pack_records(Record<T>* to, const MaterialUnits& units) const {
   using Integer = typename FixedPoint<T>::Integer;
   const std::size_t unit = form().wide_offsets ? sizeof(T) : 1;
-  const auto offset_of = [&](std::uint32_t index) { return static_cast<Integer>(offset_of_mass<T>(index) / unit); };
+  const std::size_t group = group_size<T>(features_);
+  const auto offset_of = [&](std::uint32_t index) {
+    return static_cast<Integer>((index / lanes * group + index % lanes * sizeof(T)) / unit);
+  };
   const std::vector<Integer> materials = materials_in_records(units);
   const std::vector<Arrangement::Slot>& slots = arrangement().slots;
   for (std::size_t slot = 0; slot < slots.size(); ++slot)
@@ -217,6 +239,8 @@ void Resident<T>::pack_masses(const Regions& host) const {
   std::fill_n(mass_.in(host.input), padded_masses(), T(0));
   std::fill_n(inverse_mass_.in(host.input), padded_masses(), T(0));
   for (const Section<T>& plane : motion_) std::fill_n(plane.in(host.state), padded_masses(), T(0));
+  if (features_.dashpots)
+    for (const Section<T>& plane : dashpot_velocity_) std::fill_n(plane.in(host.state), padded_masses(), T(0));
   for (std::size_t i = 0; i < task_->body->masses.size(); ++i) {
     const std::uint32_t index = arrangement().index_of[i];
     const double mass = task_->body->masses[i].mass;
@@ -226,7 +250,20 @@ void Resident<T>::pack_masses(const Regions& host) const {
     const Vec3 x = task_->state->position[i], v = task_->state->velocity[i];
     const double numbers[] = {x.x, x.y, x.z, v.x, v.y, v.z};
     for (std::size_t c = 0; c < 6; ++c) motion_[c].in(host.state)[index] = static_cast<T>(numbers[c]);
+    if (!features_.dashpots) continue;
+    const Vec3 u = dashpot_velocities_of(*task_)[i];
+    const double of_dashpots[] = {u.x, u.y, u.z};
+    for (std::size_t c = 0; c < 3; ++c) dashpot_velocity_[c].in(host.state)[index] = static_cast<T>(of_dashpots[c]);
   }
+}
+
+template <class T>
+std::vector<Vec3> Resident<T>::dashpot_velocities(const Regions& host) const {
+  std::vector<Vec3> velocities;
+  for (const std::uint32_t index : arrangement().index_of)
+    velocities.push_back({dashpot_velocity_[0].in(host.state)[index], dashpot_velocity_[1].in(host.state)[index],
+                          dashpot_velocity_[2].in(host.state)[index]});
+  return velocities;
 }
 
 template <class T>
@@ -244,6 +281,7 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
   const std::vector<Material> materials = simulated_materials(*task_->body, features_.materials);
   std::transform(materials.begin(), materials.end(), actuators_.in(host.input) + 1,
                  [&](const Material& material) { return actuator_of(material, range().resolution); });
+  if (features_.dashpots) pack_dashpots(*task_->body, materials, range().resolution, dashpots_.in(host.input));
   *answer_.in(host.state) = {.fallen = task_->course->fallen};
   return {.constants = step_constants<T>(scene, task_->dt),
           .units = {.stiffness = static_cast<T>(units.stiffness / range().resolution),
@@ -255,11 +293,14 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
           .first_group = first_group_.in(device.input),
           .group_ends = group_ends_.in(device.input),
           .actuators = actuators_.in(device.input),
+          .dashpots = dashpots_.in(device.input),
           .mass = mass_.in(device.input),
           .inverse_mass = inverse_mass_.in(device.input),
           .start = start_.in(device.input),
           .motion = {motion_[0].in(device.state), motion_[1].in(device.state), motion_[2].in(device.state),
                      motion_[3].in(device.state), motion_[4].in(device.state), motion_[5].in(device.state)},
+          .dashpot_velocity = {dashpot_velocity_[0].in(device.state), dashpot_velocity_[1].in(device.state),
+                               dashpot_velocity_[2].in(device.state)},
           .stress = stress_.in(device.sums),
           .recent_stress = recent_stress_.in(device.sums),
           .peak = peak_.in(device.sums),
@@ -276,6 +317,7 @@ ResidentBody<T> Resident<T>::pack(const Regions& host, const Regions& device, co
           .table_steps = chip_.table_steps,
           .table_offset = static_cast<std::uint32_t>(chip_.table_offset),
           .rate_offset = static_cast<std::uint32_t>(chip_.rate_offset),
+          .dashpot_offset = static_cast<std::uint32_t>(chip_.dashpot_offset),
           .record_offset = static_cast<std::uint32_t>(chip_.record_offset),
           .wave_offset = static_cast<std::uint32_t>(chip_.wave_offset),
           .sampling = samples_.pack(arrangement().index_of, host, device)};
@@ -285,6 +327,7 @@ template <class T>
 void Resident<T>::unpack(const Regions& host, Recording recording, Task& task) const {
   if (!answer_.in(host.state)->diverged) unpack_springs(host, task);
   read_answer(*answer_.in(host.state), recording, task);
+  if (task.course && predicts_dashpot_velocities(features_)) task.course->dashpot_velocity = dashpot_velocities(host);
   task.preparation = arranged_;
   const auto at = [&](std::size_t plane, std::uint32_t index) -> double {
     return motion_[plane].in(host.state)[index];

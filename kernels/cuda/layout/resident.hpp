@@ -20,14 +20,17 @@ namespace evodevo::cuda {
 
 /// The division of a block's shared memory: offsets and size in bytes.
 struct ChipMemory {
-  std::size_t table_offset = 0, rate_offset = 0, record_offset = 0, wave_offset = 0, size = 0;
+  std::size_t table_offset = 0, rate_offset = 0, dashpot_offset = 0, record_offset = 0, wave_offset = 0, size = 0;
   std::uint32_t table_steps = 1;
 };
 
 /// The range of forces for a body. The largest force is the maximum of: the force of its strongest spring at twice its
 /// rest length, or at three times its rest length if muscles drive the body (in resonance, springs stretch by more than
 /// their rest length); twice the largest current force of a spring; the force that stops the masses' motion; and the
-/// body's weight. The last three can be the maximum if springs are soft or short.
+/// body's weight. The last three can be the maximum if springs are soft or short. Dashpots add to each the share 2
+/// zeta, with the largest damping ratio zeta: that is the largest force of a dashpot relative to that of its spring
+/// while both swing freely. If that is more, they add the force with which a dashpot stops a fall by the body's own
+/// size in a landing.
 template <class T>
 ForceRange force_range(const Body& body, const State& state, const Scene& scene);
 
@@ -88,6 +91,7 @@ class Resident {
   void pack_records(Record<T>* to, const MaterialUnits& units) const;
   void pack_waves(std::uint32_t* to, const MaterialUnits& units) const;
   void pack_masses(const Regions& host) const;
+  std::vector<Vec3> dashpot_velocities(const Regions& host) const;
   void unpack_springs(const Regions& host, Task& task) const;
 
   const Arrangement& arrangement() const { return arranged_->arrangement; }
@@ -105,9 +109,10 @@ class Resident {
   Section<std::uint32_t> waves_;
   Section<std::uint32_t> first_group_, group_ends_;
   Section<Actuator> actuators_;
+  Section<T> dashpots_;
   Section<T> mass_, inverse_mass_;
   Section<typename FixedPoint<T>::Integer> start_;
-  Section<T> motion_[6];
+  Section<T> motion_[6], dashpot_velocity_[3];
   Section<Answer> answer_;
   Section<double> stress_;
   Section<T> recent_stress_;

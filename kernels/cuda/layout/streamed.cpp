@@ -48,10 +48,12 @@ void Streamed<T>::reserve() {
   coloured_ = input.add<ColouredSpring<T>>(colour_.size());
   first_of_colour_ = input.add<std::uint32_t>(colours_ + 1);
   actuators_ = input.add<Actuator>(entries);
+  dashpots_ = input.add<T>(features_.dashpots ? entries : 0);
   mass_ = input.add<T>(masses());
   inverse_mass_ = input.add<T>(masses());
   positions_ = state.add<Point<T>>(2 * masses());
   velocities_ = state.add<Point<T>>(masses());
+  dashpot_velocities_ = state.add<Point<T>>(features_.dashpots && is_explicit(features_.method) ? 2 * masses() : 0);
   answer_ = state.add<Answer>(1);
   table_ = sums.add<Entry<T>>(table);
   rates_ = sums.add<T>(features_.work ? table : 0);
@@ -121,6 +123,7 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
   const std::vector<Material> materials = simulated_materials(body, features_.materials);
   std::transform(materials.begin(), materials.end(), actuators_.in(host.input) + 1,
                  [](const Material& material) { return actuator_of(material, 1); });
+  if (features_.dashpots) pack_dashpots(body, materials, 1, dashpots_.in(host.input));
   const auto point = [](Vec3 v) {
     return Point<T>{static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z), T(0)};
   };
@@ -132,6 +135,8 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
     inverse_mass_.in(host.input)[index] = static_cast<T>(mass > 0 ? 1 / mass : 0);
     positions_.in(host.state)[index] = point(task_->state->position[i]);
     velocities_.in(host.state)[index] = point(task_->state->velocity[i]);
+    if (features_.dashpots && is_explicit(features_.method))
+      dashpot_velocities_.in(host.state)[index] = point(dashpot_velocities_of(*task_)[i]);
   }
   *answer_.in(host.state) = {.fallen = task_->course->fallen};
   return {.constants = step_constants<T>(scene, task_->dt),
@@ -140,10 +145,12 @@ StreamedBody<T> Streamed<T>::pack(const Regions& host, const Regions& device, co
           .coloured = coloured_.in(device.input),
           .first_of_colour = first_of_colour_.in(device.input),
           .actuators = actuators_.in(device.input),
+          .dashpots = dashpots_.in(device.input),
           .mass = mass_.in(device.input),
           .inverse_mass = inverse_mass_.in(device.input),
           .positions = positions_.in(device.state),
           .velocities = velocities_.in(device.state),
+          .dashpot_velocities = dashpot_velocities_.in(device.state),
           .scratch = scratch_.in(device.scratch),
           .table = table_.in(device.sums),
           .rates = rates_.in(device.sums),
@@ -172,6 +179,12 @@ void Streamed<T>::unpack(const Regions& host, Recording recording, Task& task) c
     const Point<T>&x = positions[index_of_[i]], &v = velocities[index_of_[i]];
     task.state->position[i] = {x.x, x.y, x.z};
     task.state->velocity[i] = {v.x, v.y, v.z};
+  }
+  if (task.course && predicts_dashpot_velocities(features_)) {
+    const Point<T>* from = dashpot_velocities_.in(host.state) + half * masses();
+    task.course->dashpot_velocity.clear();
+    for (const std::uint32_t index : index_of_)
+      task.course->dashpot_velocity.push_back({from[index].x, from[index].y, from[index].z});
   }
   if (task.status == Status::ok) unpack_springs(host, task);
 }

@@ -69,8 +69,9 @@ class Streamed {
   Section<ColouredSpring<T>> coloured_;
   Section<std::uint32_t> first_of_colour_;
   Section<Actuator> actuators_;
+  Section<T> dashpots_;
   Section<T> mass_, inverse_mass_;
-  Section<Point<T>> positions_, velocities_;
+  Section<Point<T>> positions_, velocities_, dashpot_velocities_;
   Section<Answer> answer_;
   Section<Entry<T>> table_;
   Section<T> rates_;

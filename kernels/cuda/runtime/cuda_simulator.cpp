@@ -9,7 +9,7 @@
 #include <string>
 
 #include "analysis/guard.hpp"
-#include "analysis/stiffness_factors.hpp"
+#include "analysis/split_materials.hpp"
 #include "cuda/runtime/cuda_neighbours.hpp"
 #include "cuda/runtime/device.hpp"
 #include "cuda/runtime/portion.hpp"
@@ -81,7 +81,7 @@ class DeviceSimulator final : public CudaSimulator {
         neighbours_(make_cuda_neighbour_search()) {}
 
   void run(std::span<Task> tasks, Recording recording) override {
-    const WithoutFactors plain(tasks, workers_);  // on the device, materials alone give springs their stiffness
+    const SplitMaterials split(tasks, workers_);
     const std::vector<Task*> live = begin(tasks, recording);
     const cuda::Run run{scene_, stepping_, recording, device_.shared_bytes, cuda::spans_per_range(live)};
     std::vector<cuda::Plan<T>> plans = plan(live, run);

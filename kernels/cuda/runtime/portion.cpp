@@ -12,10 +12,6 @@ namespace {
 template <class T>
 constexpr std::size_t header_bytes = (std::max(sizeof(ResidentBody<T>), sizeof(StreamedBody<T>)) + 31) / 32 * 32;
 
-bool has_muscles(const Body& body) {
-  return std::any_of(body.materials.begin(), body.materials.end(), [](const Material& m) { return m.amplitude != 0; });
-}
-
 template <class T>
 Sizes sizes_of(std::span<const Plan<T>> plans) {
   Sizes sizes;
@@ -50,7 +46,7 @@ template <class T>
 Plan<T>::Plan(Task& task_, const Run& run)
     : task(&task_), body([&]() -> decltype(body) {
         const Features features = features_of(scene_of(task_, run.scene), run.stepping, run.recording,
-                                              has_muscles(*task_.body), channels_on_device(task_));
+                                              material_features(*task_.body), channels_on_device(task_));
         if (is_explicit(run.stepping.method))
           if (auto resident = Resident<T>::arrange(task_, features, run.shared_bytes, run.spans_per_range))
             return *std::move(resident);

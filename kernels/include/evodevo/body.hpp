@@ -33,12 +33,14 @@ struct Box {
 };
 
 /// The material of a spring. The actuated rest length is L(t) = L0 (1 + amplitude sin(2 pi frequency t + phase)), and
-/// the force is stiffness (|d| - L(t)). Paper, section IV-A and Table I.
+/// the force is stiffness (|d| - L(t)). Paper, section IV-A and Table I. A dashpot beside the spring resists changes of
+/// its length (Body::damping()).
 struct Material {
   double stiffness = 0;  ///< N/m; a spring of stiffness 0 is air and is never created
   double amplitude = 0;  ///< relative change of length, 1
   double frequency = 0;  ///< Hz
   double phase = 0;      ///< rad
+  double damping = 0;    ///< ratio of critical damping of the two masses that a spring joins, 1
 
   friend bool operator==(const Material&, const Material&) = default;
 
@@ -52,11 +54,11 @@ struct Material {
 /// Whether the material is air; no springs are made of air.
 inline bool is_air(const Material& material) { return !(material.stiffness > 0); }
 
-/// The material of a spring between a mass of `a` and a mass of `b`: the mean of all four parameters
+/// The material of a spring between a mass of `a` and a mass of `b`: the mean of all parameters
 /// ("interpolation", paper, section IV-A1).
 inline Material mean(const Material& a, const Material& b) {
   return {(a.stiffness + b.stiffness) / 2, (a.amplitude + b.amplitude) / 2, (a.frequency + b.frequency) / 2,
-          (a.phase + b.phase) / 2};
+          (a.phase + b.phase) / 2, (a.damping + b.damping) / 2};
 }
 
 /// The value of Mass::material for a mass without a material (in encodings that give materials to springs, not to
@@ -92,6 +94,14 @@ struct Body {
   /// The stiffness of a spring of this body, N/m.
   double stiffness(const Spring& spring) const {
     return spring.stiffness_factor * materials[spring.material].stiffness;
+  }
+
+  /// The coefficient c of a spring's dashpot, N s/m: 2 zeta sqrt(k m) with the damping ratio zeta of the material and
+  /// the reduced mass m of the two masses. A mass of 0 kg never moves; then m is the other mass.
+  double damping(const Spring& spring) const {
+    const double a = masses[spring.a].mass, b = masses[spring.b].mass;
+    const double reduced = a > 0 && b > 0 ? a * b / (a + b) : std::max(a, b);
+    return 2 * materials[spring.material].damping * std::sqrt(stiffness(spring) * reduced);
   }
 
   /// Returns the index of `material` in `materials`, and appends it if it is new. Searches linearly.
@@ -134,8 +144,9 @@ inline Vec3 centre_of_mass(const Body& body, std::span<const Vec3> positions) {
   return total > 0 ? (1 / total) * sum : Vec3{};
 }
 
-/// How an evaluation ended. Only an evaluation that ended with `ok` has a fitness.
-enum class Status : std::uint8_t { ok, invalid, diverged };
+/// How an evaluation ended, or what verification then found: `artefact` or `passive`. Only individuals with the status
+/// `ok` have a fitness.
+enum class Status : std::uint8_t { ok, invalid, diverged, artefact, passive };
 
 inline const char* name(Status status) {
   switch (status) {
@@ -145,6 +156,10 @@ inline const char* name(Status status) {
       return "invalid";
     case Status::diverged:
       return "diverged";
+    case Status::artefact:
+      return "artefact";
+    case Status::passive:
+      return "passive";
   }
   return "?";
 }

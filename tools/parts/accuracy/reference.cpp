@@ -39,8 +39,11 @@ class EquationOfMotion {
     const double d[] = {y[b] - y[a], y[b + 1] - y[a + 1], y[b + 2] - y[a + 2]};
     const double distance = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     const double length = spring.rest_length * (1 + m.amplitude * std::sin(full_turn * m.frequency * t + m.phase));
+    double lengthening = 0;  // m/s
+    for (std::size_t c = 0; c < 3; ++c) lengthening += (y[half + b + c] - y[half + a + c]) * d[c] / distance;
+    const double tension = body_.stiffness(spring) * (distance - length) + body_.damping(spring) * lengthening;
     for (std::size_t c = 0; c < 3; ++c) {
-      const double force = body_.stiffness(spring) * (distance - length) * d[c] / distance;
+      const double force = tension * d[c] / distance;
       rate[half + a + c] += force / body_.masses[spring.a].mass;
       rate[half + b + c] -= force / body_.masses[spring.b].mass;
     }

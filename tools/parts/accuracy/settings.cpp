@@ -33,7 +33,7 @@ boost::program_options::options_description options(Settings& s) {
   all.add_options()("study", po::value(&s.studies)->composing());
   all.add_options()("device", po::value(&s.device.name)->default_value("cpu"));
   all.add_options()("threads", po::value(&s.device.threads)->default_value(0));
-  all.add_options()("experiment", po::value(&s.experiment)->default_value("experiments/quickstart.toml"));
+  all.add_options()("experiment", po::value(&s.experiment)->default_value("experiments/study/accuracy/robots.toml"));
   all.add_options()("robots", po::value(&s.robots));
   return all;
 }

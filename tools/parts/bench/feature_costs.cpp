@@ -22,7 +22,7 @@ struct Feature {
 
 /// For each feature of the walking scene, the scene with and without it; for each feature that the scene lacks, the
 /// scene with it added and as it is.
-std::vector<Feature> features(const Body& body, const Body& still_body) {
+std::vector<Feature> features(const Body& body, const Body& still_body, const Body& damped_body) {
   const auto walking = [&](auto... changes) {
     Variant variant{&body, walking_scene(), {}};
     (changes(variant), ...);
@@ -30,6 +30,8 @@ std::vector<Feature> features(const Body& body, const Body& still_body) {
   };
   const auto no_friction = [](Variant& v) { v.scene.friction.reset(); };
   const auto no_floor = [](Variant& v) { v.scene.floor.reset(); };
+  const auto dashpots = [&](Variant& v) { v.body = &damped_body; };
+  const auto stress = [](Variant& v) { v.recording.stress = true; };
   return {
       {"gravity", walking(), walking([](Variant& v) { v.scene.gravity.reset(); })},
       // without a floor there is no friction, so both variants leave friction out
@@ -38,7 +40,9 @@ std::vector<Feature> features(const Body& body, const Body& still_body) {
       {"damping", walking(), walking([](Variant& v) { v.scene.damping.reset(); })},
       {"drag", walking([](Variant& v) { v.scene.drag = Drag{}; }), walking()},
       {"actuation", walking(), walking([&](Variant& v) { v.body = &still_body; })},
-      {"stress", walking([](Variant& v) { v.recording.stress = true; }), walking()},
+      {"dashpots", walking(dashpots), walking()},
+      {"dashpots, with stress", walking(dashpots, stress), walking(stress)},
+      {"stress", walking(stress), walking()},
       {"work", walking([](Variant& v) { v.recording.work = true; }), walking()},
   };
 }
@@ -81,9 +85,11 @@ class Comparison {
 Report feature_costs(const Settings& settings) {
   const NamedBody body = body_named(settings.body, settings.masses, settings.materials);
   const Body still_body = without_actuation(body.body);
+  Body damped_body = body.body;
+  for (Material& material : damped_body.materials) material.damping = 0.3;
   Report rows = Report::array();
   std::string device;
-  for (const Feature& feature : features(body.body, still_body)) {
+  for (const Feature& feature : features(body.body, still_body, damped_body)) {
     Comparison comparison(settings, feature);
     for (int run = 0; run < settings.runs; ++run) comparison.measure();
     rows.push_back(comparison.row());

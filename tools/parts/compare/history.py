@@ -47,6 +47,7 @@ class History:
     qd_score: list | None  # None if the run has no map, or less of the objective is better
     diverged: list
     invalid: list
+    refused: list  # by verification before the front
     seconds: list
     marks: list | None  # of the run's best robot, such as "artefact"; None if it was not verified
     scenarios: dict  # scores of the run's best robot by scenario
@@ -80,6 +81,7 @@ def history(shown, objective):
         qd_score=of_the_map("qd_score"),
         diverged=summed("diverged"),
         invalid=summed("invalid"),
+        refused=[a + b for a, b in zip(summed("artefact"), summed("passive"))],
         seconds=summed("wall_time"),
         marks=verification and verification["marks"],
         scenarios=by_scenario(shown["best"], objective),

@@ -16,7 +16,8 @@ development counts as cost.
 
 Intervals of medians over seeds are by the percentile bootstrap, from {inference.RESAMPLES:,} resamples of the runs.
 
-The best robot of a whole run, where it was verified (`[experiment] verify`), held, or is an artefact of the time step,
+Refused individuals lost their fitness in verification before the front (`[experiment] verify_front`), as artefacts or as
+passive. The best robot of a whole run, where it was verified (`[experiment] verify`), held, or is an artefact of the time step,
 passive, or both.
 """
 
@@ -116,12 +117,13 @@ def whole_runs(histories):
                 number(sum(history.spring_evaluations[-1] for history in runs)),
                 share(sum(history.diverged[-1] for history in runs), evaluations),
                 share(sum(history.invalid[-1] for history in runs), evaluations),
+                share(sum(history.refused[-1] for history in runs), evaluations),
                 f"{sum(history.seconds[-1] for history in runs) / 3600:.2f}",
                 *verified(runs),
             ]
         )
-    header = ["", "generations", "evaluations", "spring evaluations", "diverged", "invalid", "hours"]
-    header += ["best held", "artefact", "passive"]
+    header = ["", "generations", "evaluations", "spring evaluations", "diverged", "invalid", "refused", "hours"]
+    header += ["best held", "best is artefact", "best is passive"]
     return f"## All runs, each to its end\n\n{table(header, rows)}"
 
 

@@ -13,7 +13,7 @@ def write_csv(file, histories):
     individual has a fitness yet; `coverage` and `qd_score` are empty if the run has none."""
     with open(file, "w", newline="") as stream:
         writer = csv.writer(stream, lineterminator="\n")
-        columns = ["evaluations", "spring_evaluations", "best", "coverage", "qd_score", "diverged", "invalid"]
+        columns = ["evaluations", "spring_evaluations", "best", "coverage", "qd_score", "diverged", "invalid", "refused"]
         writer.writerow(["experiment", "seed", *columns, "seconds"])
         for variant, runs in histories.items():
             for seed, run in enumerate(runs, 1):

@@ -5,12 +5,12 @@ import json
 import pathlib
 import subprocess
 import tempfile
+import tomllib
 
 from common import charts
 
 from .bodies import BLUE, RED, show_ground, springs
 
-SETTLE = 10  # time for settling, s
 TIMES = [0, 2.5, 5, 7.5, 10]  # s after settling
 
 
@@ -29,16 +29,22 @@ def draw_fitness(axes, run):
     charts.label_ends(axes, labels)
 
 
-def frames(trajectory, body):
-    """Returns the positions of all masses of a matured body at each of TIMES."""
-    wanted = {time: [None] * len(body["masses"]) for time in TIMES}
-    settled = body["time"] + SETTLE
+def settling(experiment):
+    """Returns the time for which the first fitness operator lets bodies settle, s. Raises ValueError if there is none."""
+    operators = tomllib.loads(pathlib.Path(experiment).read_text(encoding="utf-8")).get("fitness", [{}])
+    if "settle" not in operators[0]:
+        raise ValueError(f"{experiment}: fitness.0.settle is missing; write it down, so that the picture can begin there")
+    return operators[0]["settle"]
+
+
+def frames(trajectory, body, settle):
+    """Returns the positions of all masses of a matured body at the samples nearest to each of TIMES."""
+    samples = {}
     with open(trajectory, newline="") as stream:
         for row in csv.DictReader(stream):
-            frame = wanted.get(round(float(row["time"]) - settled, 3))
-            if frame is not None:
-                frame[int(row["mass"])] = (float(row["x"]), float(row["y"]), float(row["z"]))
-    return wanted
+            place = float(row["x"]), float(row["y"]), float(row["z"])
+            samples.setdefault(float(row["time"]) - body["time"] - settle, []).append(place)
+    return {time: samples[min(samples, key=lambda sample: abs(sample - time))] for time in TIMES}
 
 
 def draw_motion(panels, body, wanted):
@@ -61,9 +67,10 @@ def figure(program, folder, experiment):
     with tempfile.TemporaryDirectory() as scratch:
         body_file, trajectory = pathlib.Path(scratch, "body.json"), pathlib.Path(scratch, "trajectory.csv")
         body_file.write_text(evodevo(program, "body", folder, "--matured"))
-        evodevo(program, "simulate", body_file, experiment, "--duration", SETTLE + TIMES[-1], "--trajectory", trajectory)
+        settle = settling(experiment)
+        evodevo(program, "simulate", body_file, experiment, "--duration", settle + TIMES[-1], "--trajectory", trajectory)
         body = json.loads(body_file.read_text())
-        wanted = frames(trajectory, body)
+        wanted = frames(trajectory, body, settle)
     page, (chart,) = charts.page(1, 1, (3, 4.2), right=6)
     draw_fitness(chart, run)
     x, y, height = 0.52, 0.04, 0.92 / len(TIMES)

@@ -74,6 +74,9 @@ struct Lengths {
     return rate;
   }
 
+  /// Bodies with dashpots have no codes (layout/features.hpp).
+  __device__ __forceinline__ Number damping_of(const SpringMaterial&) const { return 0; }
+
   __device__ __forceinline__ void advance_rows(const Body&, unsigned rows_on) {
     row += rows_on * sizeof(unsigned);
     clock = on_chip<unsigned>(row);

@@ -34,9 +34,11 @@ struct SpringMaterial {
 struct Lengths {
   unsigned table;
   unsigned rates = 0;
+  unsigned coefficients = 0;  // of the dashpots
 
   __device__ __forceinline__ explicit Lengths(const Body& body) : table(body.table_offset) {
     if constexpr (work) rates = body.rate_offset;
+    if constexpr (dashpots) coefficients = body.dashpot_offset;
   }
 
   __device__ __forceinline__ SpringMaterial operator()(const Records::Read& record) const {
@@ -47,6 +49,11 @@ struct Lengths {
   /// The rate of change of L/L0, 1/s.
   __device__ __forceinline__ Number rate_of(const SpringMaterial& material) const {
     return on_chip<Number>(rates + material.table_entry / 2);
+  }
+
+  /// The coefficient of the dashpots, units of force s/m.
+  __device__ __forceinline__ Number damping_of(const SpringMaterial& material) const {
+    return on_chip<Number>(coefficients + material.table_entry / 2);
   }
 
   __device__ __forceinline__ void advance_rows(const Body& body, unsigned rows_on) {

@@ -50,11 +50,11 @@ __device__ __forceinline__ Number dot(const Vector& a, const Vector& b) {
   return physics::multiply_add(a.z, b.z, physics::multiply_add(a.y, b.y, a.x * b.x));
 }
 
-/// Returns R (kg/s) and adds the floor's force at the present position to the force.
+/// Returns R (kg/s) and adds the force of an elastic floor at the present position to the force.
 __device__ __forceinline__ Vector resistance_of(const StepConstants<Number>& constants, Moving& m) {
   Number across = 0, touching = 0;
   if constexpr (drag) across = -physics::drag_factor(constants.drag_coefficient, m.velocity);
-  if constexpr (floor_on) {
+  if constexpr (elastic_floor) {
     touching = physics::zero_unless_greater(-next_clearance(constants, m), Number(0), constants.floor_stiffness);
     const Number above = clearance(constants, m.position);
     m.force.z = physics::negative_multiply_add(touching, above, m.force.z);
@@ -77,11 +77,12 @@ __device__ __forceinline__ Vector resisted(const StepConstants<Number>& constant
   return all;
 }
 
-/// Adds F - dt K u of the springs to the force, with u the damped velocity, and sets K+. Returns the diagonal of K+,
-/// N/m.
+/// Adds the springs' forces F to the force and their -K u, with u the damped velocity, to `rate` (N/s), and sets K+.
+/// Returns the diagonal of K+, N/m.
 __device__ __forceinline__ Vector add_springs(const StepConstants<Number>& constants, const Body& body,
-                                              const Memory& memory, unsigned row, unsigned mass, Moving& m) {
-  Vector diagonal{0, 0, 0}, rate{0, 0, 0};
+                                              const Memory& memory, unsigned row, unsigned mass, Moving& m,
+                                              Vector& rate) {
+  Vector diagonal{0, 0, 0};
   for_each_joint(body, mass, [&](unsigned i, const Joint<Number> joint) {
     const Entry<Number> entry = body.table[row * body.entries + joint.entry];
     Moving other = moving(body, joint.other);
@@ -90,7 +91,9 @@ __device__ __forceinline__ Vector add_springs(const StepConstants<Number>& const
     const Number distance = physics::length(s);
     const Number factor =
         physics::spring_factor_by_inverse(1 / distance, entry.stiffness, entry.rest_force * joint.rest_length);
-    const auto matrix = physics::spring_stiffness(s, distance, entry.stiffness, factor);
+    Number damping = 0;  // N/m: the dashpot acts as if the spring were stiffer along its direction
+    if constexpr (dashpots) damping = body.dashpots[joint.entry] / constants.dt;
+    const auto matrix = physics::spring_stiffness(s, distance, entry.stiffness + damping, factor);
     memory.stiffness[i] = {matrix};
     memory.other[i] = joint.other;
     diagonal = sum(diagonal, Number(1), product(matrix.along, matrix.along));
@@ -98,9 +101,41 @@ __device__ __forceinline__ Vector add_springs(const StepConstants<Number>& const
     m.force = sum(m.force, factor, s.d);
     const Vector velocity = difference(other.velocity, m.velocity);
     rate = sum(rate, Number(1), physics::spring_force_rate(s, entry.stiffness, factor, velocity));
+    if constexpr (dashpots) rate = sum(rate, physics::dashpot_factor(s, damping, velocity), s.d);
   });
-  m.force = sum(m.force, constants.dt, rate);
   return diagonal;
+}
+
+/// The rise of a mass after its contact with a rigid floor, m/s.
+__device__ __forceinline__ Number rise_after(const StepConstants<Number>& constants,
+                                             const physics::Ground<Number>& ground, const Moving& m) {
+  const Number lowest = physics::lowest_rise(m.position.z - ground.height, constants.dt);
+  return physics::rise_after_contact(lowest, physics::bounce(constants.restitution, m.arrival));
+}
+
+/// Adds the force with which a rigid floor holds a mass in this step, if it does, and returns the stiffness of that
+/// hold (N/m) or 0. kernels/cpu/methods/implicit_floor-inl.hpp says which masses are held.
+__device__ __forceinline__ Number hold(const StepConstants<Number>& constants, Moving& m) {
+  const auto ground = ground_of(constants, m.position);
+  const Number dt = constants.dt, clearance = m.position.z - ground.height;
+  const Number rise = physics::multiply_add(dt * m.inverse_mass, physics::along_normal(ground, m.force), m.arrival);
+  const Number lowest = physics::lowest_rise(clearance, dt);
+  const bool is_near = physics::multiply_add(dt, m.arrival, clearance) < Number(1e-3) * dt;
+  if (!(is_near && lowest > rise)) return 0;
+  const Number stiffness = Number(1e4) / (dt * dt) * m.mass;
+  m.force = physics::add_along_normal(ground, m.force, stiffness * dt * rise_after(constants, ground, m));
+  return stiffness;
+}
+
+/// The correction that gives a mass that a rigid floor holds the rise after its contact; zero for other masses.
+/// `resistance` is R.
+__device__ __forceinline__ Vector rise_correction(const StepConstants<Number>& constants, const Moving& m,
+                                                  const Vector& resistance) {
+  Vector correction{0, 0, 0};
+  if (!(resistance.z > resistance.x)) return correction;
+  const auto ground = ground_of(constants, m.position);
+  push_off(ground, rise_after(constants, ground, m) - physics::along_normal(ground, m.velocity), correction);
+  return correction;
 }
 
 /// 1/(mass + damped_dt resistance), 1/kg; 0 for a mass that never moves.
@@ -109,28 +144,33 @@ __device__ __forceinline__ Number inverse(const StepConstants<Number>& constants
                                       1 / physics::multiply_add(constants.damped_dt, resistance, m.mass));
 }
 
-/// Sets up the equation, the residual r for zero correction and the first direction. Returns <r, P r>, which measures
-/// the residual; P is the preconditioner.
+/// Sets up the equation, the residual r for zero correction and the first direction: P r with the preconditioner P, or,
+/// on a rigid floor, the correction of the masses that it holds. Returns <r, P r>, which measures the residual.
 __device__ __forceinline__ double begin(const StepConstants<Number>& constants, const Body& body, const Memory& memory,
                                         unsigned row) {
   double left = 0;
   for_each_mass(body, [&](unsigned mass) {
     Moving m = moving(body, mass);
-    const Vector resistance = resistance_of(constants, m);
+    note_arrival(constants, m.velocity, m);
+    Vector resistance = resistance_of(constants, m), rate{0, 0, 0};
     add_gravity(constants, m);
     damp(constants.decay, m);
-    const Vector all = sum(resistance, constants.dt, add_springs(constants, body, memory, row, mass, m));
+    const Vector stiffness = add_springs(constants, body, memory, row, mass, m, rate);
+    if constexpr (rigid_floor) resistance.z = physics::multiply_add(constants.dt, hold(constants, m), resistance.x);
+    m.force = sum(m.force, constants.dt, rate);
+    const Vector all = sum(resistance, constants.dt, stiffness);
     const Vector inverse_diagonal{inverse(constants, m, all.x), inverse(constants, m, all.y),
                                   inverse(constants, m, all.z)};
     const Vector residual =
         scaled(difference(m.force, resisted(constants, m.position, resistance, m.velocity)), constants.damped_dt);
-    const Vector direction = product(inverse_diagonal, residual);
+    Vector direction = product(inverse_diagonal, residual);
+    left += dot(direction, residual);
+    if constexpr (rigid_floor) direction = rise_correction(constants, m, resistance);
     memory.resistance[mass] = point(resistance);
     memory.inverse_diagonal[mass] = point(inverse_diagonal);
     memory.residual[mass] = point(residual);
     memory.direction[mass] = point(direction);
     memory.correction[mass] = {0, 0, 0, 0};
-    left += dot(direction, residual);
   });
   return sum_for_all(left);
 }
@@ -180,6 +220,12 @@ __device__ __forceinline__ void update_direction(const Body& body, const Memory&
 /// Solves the equation for the correction. `left` is <r, P r> at the start.
 __device__ __forceinline__ void solve(const StepConstants<Number>& constants, const Body& body, const Memory& memory,
                                       double left) {
+  if constexpr (rigid_floor) {
+    // begins with the rises of the masses that the floor holds
+    apply(constants, body, memory);
+    left = advance_along(body, memory, 1);
+    update_direction(body, memory, 0);
+  }
   const double enough = tolerance * tolerance * left;
   for (int i = 0; i < most_iterations && left > enough; ++i) {
     const double curvature = apply(constants, body, memory);
@@ -190,19 +236,35 @@ __device__ __forceinline__ void solve(const StepConstants<Number>& constants, co
   }
 }
 
+/// Lets a rigid floor and its friction act on the velocity at the end of the step. `hold` is the part of R with which
+/// the floor holds the mass (kg/s). The push of a held mass is what the hold has added to its rise.
+__device__ __forceinline__ void land_held(const StepConstants<Number>& constants, Number hold, Moving& m) {
+  if (!(hold > 0)) return land(constants, m);
+  const auto ground = ground_of(constants, m.position);
+  const Number squared = physics::normal_squared(ground);
+  const Number missing = rise_after(constants, ground, m) - physics::along_normal(ground, m.velocity);
+  if (!(missing > 0)) return;  // the hold has pulled
+  const Number held = constants.damped_dt * hold * m.inverse_mass * squared;
+  push_off(ground, missing, m.velocity);
+  m.push = physics::multiply_add(held, missing, missing) / physics::square_root(squared);
+  rub(constants, ground, m.push, m.velocity);
+}
+
 __device__ __forceinline__ void move(const StepConstants<Number>& constants, const Body& body, const Memory& memory) {
   for_each_mass(body, [&](unsigned mass) {
     Moving m = moving(body, mass);
+    note_arrival(constants, m.velocity, m);
     damp(constants.decay, m);
     m.velocity = sum(m.velocity, Number(1), triple(memory.correction[mass]));
-    if constexpr (friction) {
+    if constexpr (rigid_floor) land_held(constants, memory.resistance[mass].z - memory.resistance[mass].x, m);
+    if constexpr (elastic_floor && friction) {
       // the floor's force at the end of the step; never negative, so the floor does not hold masses that leave it
       const Number z = next_clearance(constants, m);
       const Number touches = memory.resistance[mass].z - memory.resistance[mass].x;
       m.normal_force =
           physics::zero_unless_greater(touches, Number(0), physics::floor_force(constants.floor_stiffness, z));
     }
-    apply_friction(constants.friction_dt, m, m.velocity);
+    apply_friction(constants, 1, m, m.velocity);
     advance_position(constants.dt, m);
     store(body, mass, m);
     count_contact(body, mass, m);
@@ -213,7 +275,7 @@ __device__ __forceinline__ void move(const StepConstants<Number>& constants, con
 /// Records the springs' tensions at the end of the step.
 __device__ __forceinline__ void record_tensions(const Body& body, unsigned row) {
   for_each_mass(body, [&](unsigned mass) {
-    const Vector own = triple(body.positions[mass]);
+    const Vector own = triple(body.positions[mass]), own_velocity = triple(body.velocities[mass]);
     for_each_joint(body, mass, [&](unsigned i, const Joint<Number> joint) {
       if (!joint.owned) return;
       const Entry<Number> entry = body.table[row * body.entries + joint.entry];
@@ -221,7 +283,14 @@ __device__ __forceinline__ void record_tensions(const Body& body, unsigned row) 
       const Number distance = physics::length(s);
       const Number factor =
           physics::spring_factor_by_inverse(1 / distance, entry.stiffness, entry.rest_force * joint.rest_length);
-      record(body, row, i, mass, joint.entry, joint.rest_length, physics::spring_tension(s, distance, factor));
+      const Number pull = physics::spring_tension(s, distance, factor);
+      Number tension = pull;
+      if constexpr (dashpots) {
+        const Vector velocity = difference(triple(body.velocities[joint.other]), own_velocity);
+        const Number damped = factor + physics::dashpot_factor(s, body.dashpots[joint.entry], velocity);
+        tension = physics::spring_tension(s, distance, damped);
+      }
+      record(body, row, i, mass, joint.entry, joint.rest_length, tension, pull);
     });
   });
 }

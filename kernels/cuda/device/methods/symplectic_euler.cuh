@@ -7,12 +7,14 @@ namespace evodevo::cuda {
 
 struct Method : OnePass {
   static __device__ __forceinline__ void move(const StepConstants<Number>& constants, Pass, Kept&, Moving& m) {
+    note_arrival(constants, m.velocity, m);
     add_gravity(constants, m);
     add_floor(constants, m);
     apply_drag<true>(constants, constants.damped_dt, m);
     damp(constants.decay, m);
     advance_velocity(constants.damped_dt, m);
-    apply_friction(constants.friction_dt, m, m.velocity);
+    land(constants, m);
+    apply_friction(constants, 1, m, m.velocity);
     advance_position(constants.dt, m);
   }
 };

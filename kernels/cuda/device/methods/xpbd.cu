@@ -12,6 +12,8 @@ namespace evodevo::cuda {
 __device__ __forceinline__ void apply_gravity(const StepConstants<Number>& constants, const Body& body) {
   for_each_mass(body, [&](unsigned mass) {
     Moving m = moving(body, mass);
+    note_arrival(constants, m.velocity, m);
+    if constexpr (rigid_floor) body.scratch[mass] = m.arrival;
     add_gravity(constants, m);
     apply_drag<true>(constants, constants.damped_dt, m);
     damp(constants.decay, m);
@@ -30,13 +32,22 @@ __device__ __forceinline__ void solve_spring(const StepConstants<Number>& consta
   const auto ends = physics::separation({0, 0, 0}, sum(apart, constants.dt, velocity));
   const Number distance = physics::length(ends);
   const Number stretch = distance - relative_length(entry) * spring.rest_length;
-  const Number force = physics::compliant_force(entry.stiffness, stretch, constants.dt * constants.damped_dt,
-                                                a.inverse_mass + b.inverse_mass);
+  const Number inverse_mass = a.inverse_mass + b.inverse_mass;
+  Number force = physics::compliant_force(entry.stiffness, stretch, constants.dt * constants.damped_dt, inverse_mass);
+  Number of_spring = force;
+  if constexpr (dashpots) {
+    const Number along =
+        physics::multiply_add(ends.d.z, velocity.z, physics::multiply_add(ends.d.y, velocity.y, ends.d.x * velocity.x));
+    force = physics::damped_force(entry.stiffness, body.dashpots[spring.entry], stretch, along / distance, constants.dt,
+                                  constants.damped_dt, inverse_mass);
+    of_spring = entry.stiffness * (stretch - force * constants.dt * constants.damped_dt * inverse_mass);
+  }
   const Number factor = force / distance;
   body.velocities[spring.a] = point(sum(a.velocity, constants.damped_dt * factor * a.inverse_mass, ends.d));
   body.velocities[spring.b] = point(sum(b.velocity, -constants.damped_dt * factor * b.inverse_mass, ends.d));
   record(body, row, spring.joint, spring.a, spring.entry, spring.rest_length,
-         physics::spring_tension(ends, distance, factor));
+         physics::spring_tension(ends, distance, factor),
+         physics::spring_tension(ends, distance, of_spring / distance));
 }
 
 __device__ __forceinline__ void solve_springs(const StepConstants<Number>& constants, const Body& body, unsigned row) {
@@ -48,9 +59,10 @@ __device__ __forceinline__ void solve_springs(const StepConstants<Number>& const
   }
 }
 
-/// Solves the floor: pushes up a mass that would end the step below it. The slope is that at the beginning of the step.
+/// Solves an elastic floor: pushes up a mass that would end the step below it. The slope is that at the beginning of
+/// the step.
 __device__ __forceinline__ void solve_floor(const StepConstants<Number>& constants, Moving& m) {
-  if constexpr (floor_on) {
+  if constexpr (elastic_floor) {
     const Number z = next_clearance(constants, m);
     Number inverse_mass = m.inverse_mass;
     if constexpr (rough) inverse_mass *= physics::normal_squared(ground_under(constants, m.position));
@@ -65,7 +77,9 @@ __device__ __forceinline__ void move(const StepConstants<Number>& constants, con
   for_each_mass(body, [&](unsigned mass) {
     Moving m = moving(body, mass);
     solve_floor(constants, m);
-    apply_friction(constants.friction_dt, m, m.velocity);
+    if constexpr (rigid_floor) m.arrival = body.scratch[mass];
+    land(constants, m);
+    apply_friction(constants, 1, m, m.velocity);
     advance_position(constants.dt, m);
     store(body, mass, m);
     count_contact(body, mass, m);

@@ -20,7 +20,7 @@ std::size_t shared_bytes_of(const PaperLayout& layout) { return 6 * sizeof(float
 }  // namespace
 
 std::vector<std::string> definitions(const PaperMethod& method, const Scene& scene) {
-  const cuda::Features features = cuda::features_of(scene, {.method = Method::paper_euler}, {}, true);
+  const cuda::Features features = cuda::features_of(scene, {.method = Method::paper_euler}, {}, {.actuation = true});
   std::vector<std::string> all = cuda::definitions(features);
   all.push_back("EVODEVO_THREADS=" + std::to_string(method.threads));
   all.push_back("EVODEVO_STRESS_METHOD=" + std::to_string(static_cast<int>(method.stress)));

@@ -289,11 +289,22 @@ function livingOf(run, x, y, colour, name) {
   return [individuals, [column(front), { ...line(`${name}front`, colour), paths: steps }]];
 }
 
+/** The statuses without a fitness, from the bottom of the chart to its top; the last two only if the run has any. */
+const lostStatuses = (run) =>
+  [
+    ["invalid", "--warn"],
+    ["diverged", "--bad"],
+    ["artefact", "--accent"],
+    ["passive", "--soft"],
+  ].filter(([name], i) => i < 2 || run.statuses[name] > 0);
+
 /** The status of the evaluations of each generation, as stacked shares. */
 function statuses(run, title) {
   return new Chart("statuses", title, () => {
     const of = run.generations;
     const count = of.map((g, i) => g.evaluations - (i > 0 ? of[i - 1].evaluations : 0));
+    const lost = lostStatuses(run);
+    const lostFrom = (first) => (g) => lost.slice(first).reduce((sum, [name]) => sum + g[name], 0);
     const share = (bad) => of.map((g, i) => (100 * bad(g)) / count[i]);
     const area = (label, name, number) => ({
       label,
@@ -307,13 +318,11 @@ function statuses(run, title) {
       data: [
         of.map((g) => g.generation),
         share(() => 0).map(() => 100),
-        share((g) => g.invalid + g.diverged),
-        share((g) => g.diverged),
+        ...lost.map((_, i) => share(lostFrom(i))),
       ],
       series: [
-        area("ok", "--good", (g, all) => all - g.invalid - g.diverged),
-        area("invalid", "--warn", (g) => g.invalid),
-        area("diverged", "--bad", (g) => g.diverged),
+        area("ok", "--good", (g, all) => Math.max(0, all - lostFrom(0)(g))), // the lost may be older individuals
+        ...lost.map(([name, colour]) => area(name, colour, (g) => g[name])),
       ],
       x: "generation",
       wholeX: true,
@@ -335,7 +344,9 @@ function timeSpent(run, title) {
       element("span", { textContent: `${short(seconds)} s · ${Math.round((100 * seconds) / whole)} %` }),
     );
   const phases = run.time
-    ? ["simulate", "develop", "decode", "archive"].map((phase) => row(phase, run.time[phase]))
+    ? ["simulate", "develop", "decode", "archive", "verify"]
+        .filter((phase) => phase !== "verify" || run.time[phase] > 0)
+        .map((phase) => row(phase, run.time[phase]))
     : [];
   return element(
     "figure",

@@ -53,6 +53,15 @@ function coverageFact({ map, generations }) {
   return fact("Coverage", filled, listed("cells", score === null ? "" : `QD score ${short(score)}`));
 }
 
+/** The top speed that friction allows against damping, and how near the best robot came to it. */
+function topSpeedFact({ length, speed, limit }) {
+  if (limit === null) return fact("Top speed", "no limit", `without damping; the best moved at ${short(speed)} m/s`);
+  if (limit <= 0) return fact("Top speed", "0 m/s", "friction does not hold the robots on this slope");
+  const lengths = length > 0 ? `, or ${short(limit / length)} lengths/s` : "";
+  const reached = `; the best reached ${Math.round((100 * speed) / limit)} %`;
+  return fact("Top speed", `${short(limit)} m/s`, `is all that friction allows${lengths}${reached}`);
+}
+
 function facts(run) {
   const all = Object.values(run.statuses).reduce((sum, n) => sum + n, 0);
   const springs = run.generations.reduce((sum, g) => sum + g.spring_evaluations, 0);
@@ -72,11 +81,15 @@ function facts(run) {
         : `of ${run.evaluations_asked.toLocaleString("en")}, not finished`,
     ),
     run.map ? coverageFact(run) : null,
+    run.top_speed ? topSpeedFact(run.top_speed) : null,
     fact("Springs simulated", short(springs), "spring evaluations"),
     fact(
       "Ended well",
       all > 0 ? `${share(run.statuses.ok, all)} %` : "–",
-      `${run.statuses.invalid} invalid, ${run.statuses.diverged} diverged`,
+      ["invalid", "diverged", "artefact", "passive"]
+        .filter((status, i) => i < 2 || run.statuses[status] > 0)
+        .map((status) => `${run.statuses[status]} ${status}`)
+        .join(", "),
     ),
     fact(
       "The best, verified",

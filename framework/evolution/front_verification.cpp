@@ -1,0 +1,88 @@
+#include "evolution/front_verification.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/text.hpp"
+#include "evolution/clones.hpp"
+#include "evolution/selection_table.hpp"
+
+namespace evodevo {
+namespace {
+
+void take_fitness(Individual& individual, const Refusal& refusal) {
+  Result& result = individual.result;
+  result.status = refusal.status;
+  result.reason = refusal.reason;
+  result.objectives.clear();
+  result.measures.clear();
+  result.tests.clear();
+}
+
+}  // namespace
+
+std::vector<Refusal> FrontVerification::refuse(std::vector<Individual>& everyone, std::uint32_t generation) {
+  std::vector<Refusal> refusals;
+  if (!experiment_.verify_front) return refusals;
+  const auto start = std::chrono::steady_clock::now();
+  for (bool all_hold = false; !all_hold;) {
+    const std::vector<Ranked> line = ranked(everyone, generation);
+    verify_front(line, generation);
+    all_hold = true;
+    for (const auto& [individual, layer] : line) {
+      if (layer > 0) break;
+      const std::optional<Refusal>& refusal = verified_.at(individual->id);
+      if (!refusal) continue;
+      take_fitness(*individual, *refusal);
+      refusals.push_back(*refusal);
+      all_hold = false;
+    }
+  }
+  seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return refusals;
+}
+
+/// Returns the individuals with a fitness, without copies, in the order of their layers.
+std::vector<FrontVerification::Ranked> FrontVerification::ranked(std::vector<Individual>& everyone,
+                                                                 std::uint32_t generation) const {
+  const std::vector<std::uint32_t> layer = layers(everyone, experiment_, generation), copies = copies_in(everyone);
+  std::vector<Ranked> line;
+  for (std::size_t i = 0; i < everyone.size(); ++i)
+    if (everyone[i].result.status == Status::ok && !std::ranges::binary_search(copies, everyone[i].id))
+      line.push_back({&everyone[i], layer[i]});
+  std::ranges::stable_sort(line, {}, &Ranked::layer);
+  return line;
+}
+
+/// Verifies the individuals on the front that have not been verified yet. Threads that these leave idle verify some of
+/// the next layers, which come to the front after refusals. What is found of them counts only if they do.
+void FrontVerification::verify_front(const std::vector<Ranked>& line, std::uint32_t generation) {
+  std::vector<Champion> champions;
+  for (const auto& [individual, layer] : line) {
+    if (layer > 0 && (champions.empty() || champions.size() >= simulator_.workers().count())) break;
+    if (verified_.contains(individual->id)) continue;
+    if (individual->born != generation && !are_same(archive_.provenance(individual->born), provenance_)) {
+      verified_[individual->id] = std::nullopt;
+      continue;
+    }
+    champions.push_back(
+        {{individual->id, individual->born, &individual->genome}, individual->result.objectives.front()});
+  }
+  if (champions.empty()) return;
+  if (!exact_.same_method) exact_ = exact_simulators(experiment_);
+  for (const Verification& verification : verify_marks(experiment_, simulator_, exact_, champions))
+    verified_[verification.individual] = refusal(verification);
+}
+
+std::optional<Refusal> FrontVerification::refusal(const Verification& verification) const {
+  const Objective& objective = experiment_.objectives.front();
+  const std::optional<Mark> mark = first_mark(verification, objective.maximise);
+  if (!mark) return std::nullopt;
+  const Trial& trial = mark->trial;
+  const std::string in_trial = trial.value ? " gives " + short_quantity(*trial.value, objective.unit)
+                                           : std::string(" ends as ") + name(trial.status) + " (" + trial.reason + ")";
+  return Refusal{verification.individual, mark->status,
+                 trial.name + in_trial + "; the run gave " + short_quantity(verification.fitness, objective.unit)};
+}
+
+}  // namespace evodevo

@@ -1,0 +1,55 @@
+// Verification of individuals before they enter the front, as `[experiment] verify_front` asks.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "evolution/archive/archive.hpp"
+#include "life/verification.hpp"
+
+namespace evodevo {
+
+/// Verifies individuals and remembers what it found until the process ends. A resumed run verifies the living again and
+/// finds the same. Everything that the constructor takes must outlive this object.
+class FrontVerification {
+ public:
+  /// `provenance` is that of this process.
+  FrontVerification(const Experiment& experiment, Simulator& simulator, const Archive& archive,
+                    const Provenance& provenance)
+      : experiment_(experiment), simulator_(simulator), archive_(archive), provenance_(provenance) {}
+
+  /// Verifies the individuals on the front of `everyone`. Those that do not hold get the status `artefact` or `passive`
+  /// and lose their scores, so that others come to the front, until all that are on it hold. Returns the refusals, in
+  /// the order in which they were made; none if the experiment does not ask for verification.
+  ///
+  /// Copies (copies_in()) are not verified, but they come to the front if the individual that they equal is refused.
+  /// Individuals with another provenance are not verified, because the new life might differ from the one that was
+  /// scored.
+  std::vector<Refusal> refuse(std::vector<Individual>& everyone, std::uint32_t generation);
+
+  /// Wall-clock time spent in refuse(), s.
+  double seconds() const { return seconds_; }
+
+ private:
+  /// An individual that may come to the front, and its Pareto layer.
+  struct Ranked {
+    Individual* individual = nullptr;
+    std::uint32_t layer = 0;
+  };
+
+  std::vector<Ranked> ranked(std::vector<Individual>& everyone, std::uint32_t generation) const;
+  void verify_front(const std::vector<Ranked>& line, std::uint32_t generation);
+  std::optional<Refusal> refusal(const Verification& verification) const;
+
+  const Experiment& experiment_;
+  Simulator& simulator_;
+  const Archive& archive_;
+  const Provenance& provenance_;
+  ExactSimulators exact_;                                     ///< made when the first individual is verified
+  std::map<std::uint32_t, std::optional<Refusal>> verified_;  ///< by id; nullopt: it holds
+  double seconds_ = 0;
+};
+
+}  // namespace evodevo
