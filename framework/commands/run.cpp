@@ -7,6 +7,8 @@
 #include <iostream>
 
 #include "base/text.hpp"
+#include "cluster/farm.hpp"
+#include "cluster/ranks.hpp"
 #include "commands/commands.hpp"
 #include "commands/shell/builds.hpp"
 #include "commands/shell/notices.hpp"
@@ -101,6 +103,37 @@ void remember_folders_of(const Experiment& experiment) {
                  "--plugin-path\n";
 }
 
+/// Returns a text that says with how many threads, devices and ranks a run works.
+std::string places_text(Simulator& simulator, const Farm* farm) {
+  const std::size_t threads = simulator.workers().count();
+  std::string text = std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+  if (const std::optional<DeviceUse> use = simulator.device_use(); use && use->devices > 1)
+    text = std::to_string(use->devices) + " devices, " + text;
+  if (farm) text += " on rank 0 of " + std::to_string(farm->shares().size());
+  return text;
+}
+
+/// Lets this rank work for rank 0, if it is another one. Returns whether that is so.
+bool served(const Ranks& ranks, const Given& given) {
+  if (ranks.leads()) return false;
+  // rank 0 decides when the run stops; a second signal ends this rank
+  struct sigaction action {};
+  action.sa_handler = [](int) {};
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  serve(*ranks.channel(), [&] { return RankOptions{given_plugin_path(given), given_gpus(given)}; });
+  return true;
+}
+
+/// Returns the farm of all ranks; nothing if there is only this process. `is_record` is that of ExperimentSource.
+std::unique_ptr<Farm> farm_of(const Ranks& ranks, const Experiment& experiment, Simulator& simulator, bool is_record) {
+  if (!ranks.channel()) return nullptr;
+  const message::Setup setup{experiment.resolved, experiment.name, experiment.files, is_record};
+  return timed("waiting for the other ranks",
+               [&] { return std::make_unique<Farm>(experiment, simulator, *ranks.channel(), setup); });
+}
+
 void print_warnings(const Experiment& experiment) {
   for (const std::string& warning : experiment.warnings)
     std::cerr << "warning: " << printable(warning, InputError::longest_message) << '\n';
@@ -108,14 +141,15 @@ void print_warnings(const Experiment& experiment) {
 
 }  // namespace
 
-int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive) {
-  remarks() << experiment.name << " on " << simulator.device() << ", " << simulator.workers().count()
-            << " threads; writing " << archive.folder().string() << std::endl;
+int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive, Farm* farm) {
+  remarks() << experiment.name << " on " << simulator.device() << ", " << places_text(simulator, farm) << "; writing "
+            << archive.folder().string() << std::endl;
   stop_on_interrupt();
-  ProgressDisplay progress(experiment, archive.generations(), stop_requested);
+  ProgressDisplay progress(experiment, archive.generations(), stop_requested, farm);
   TimeSpent time;
   try {
-    time = evolve(experiment, simulator, archive, stop_requested, progress.observer());
+    time = farm ? evolve(experiment, *farm, archive, stop_requested, progress.observer())
+                : evolve(experiment, simulator, archive, stop_requested, progress.observer());
   } catch (const std::exception& error) {
     progress.finish();
     throw std::runtime_error(error.what() + remedy_for(error) + state_of(archive));
@@ -124,6 +158,10 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
   record_time_spent(archive, time);
   print_outcome(experiment, archive, progress);
   print_time_spent(time, simulator);
+  if (farm) {
+    print_shares(farm->shares(), time.whole);
+    farm->finish();
+  }
   if (is_finished(experiment, archive.generations())) {
     const auto count = is_verifiable(experiment) ? static_cast<std::size_t>(experiment.verify) : 0;
     if (count < static_cast<std::size_t>(experiment.verify))
@@ -144,27 +182,35 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
 namespace {
 
 int run(const Given& given) {
-  const Experiment experiment = given_experiment(given["EXPERIMENT.toml"].as<std::string>(), given);
+  const Ranks ranks = Ranks::joined();
+  if (served(ranks, given)) return 0;
+  Experiment experiment = given_experiment(given["EXPERIMENT.toml"].as<std::string>(), given);
   const std::optional<Journal> journal = given_journal(given);
   print_warnings(experiment);
+  if (ranks.channel()) share_host(experiment, *ranks.channel());
   const auto simulator = opened_simulator(experiment);
   remember_folders_of(experiment);
+  const auto farm = farm_of(ranks, experiment, *simulator, false);
   const fs::path folder =
       given.contains("out") ? fs::path(given["out"].as<std::string>()) : new_run_folder(experiment.name);
   Archive archive = Archive::create(folder, experiment, simulator->device(), journal);
-  return evolve_and_report(experiment, *simulator, archive);
+  return evolve_and_report(experiment, *simulator, archive, farm.get());
 }
 
 int resume(const Given& given) {
+  const Ranks ranks = Ranks::joined();
+  if (served(ranks, given)) return 0;
   Archive archive = Archive::resume(given["DIR"].as<std::string>(), given_journal(given));
-  const Experiment experiment = timed("reading the record of the run and loading its operators",
-                                      [&] { return recorded_experiment(archive, given_plugin_path(given)); });
+  Experiment experiment = timed("reading the record of the run and loading its operators",
+                                [&] { return recorded_experiment(archive, given_plugin_path(given)); });
   timed("checking that the run can be continued", [&] { check_resumable(archive, experiment); });
   if (!given.contains("allow-other-versions")) refuse_other_versions(experiment, archive);
+  if (ranks.channel()) share_host(experiment, *ranks.channel());
   const auto simulator = opened_simulator(experiment);
   warn_of_another_device(*simulator, archive);
   warn_of_other_builds(experiment, *simulator, archive);
-  return evolve_and_report(experiment, *simulator, archive);
+  const auto farm = farm_of(ranks, experiment, *simulator, true);
+  return evolve_and_report(experiment, *simulator, archive, farm.get());
 }
 
 /// Prints how much memory samples by mass and by spring take, if a fitness operator asks for any.
@@ -268,11 +314,14 @@ Command run_command() {
       .name = "run",
       .arguments = {{"EXPERIMENT.toml"}},
       .summary = "Evolve robots",
-      .text = {"The run writes all individuals of all generations into its folder, and verifies its best individual "
-               "at the end. Ctrl-C ends it after the current generation, a second Ctrl-C ends it at once; `resume` "
-               "continues it. Results do not depend on the number of threads."},
+      .text =
+          {"The run writes all individuals of all generations into its folder, and verifies its best individual "
+           "at the end. Ctrl-C ends it after the current generation, a second Ctrl-C ends it at once; `resume` "
+           "continues it. Results do not depend on the numbers of threads, GPUs and processes. A run uses all equal "
+           "GPUs, and all processes that mpirun or srun starts."},
       .examples = {"run experiments/quickstart.toml",
-                   "run experiments/quickstart.toml --seed 2 --set selection.name=elitist --out runs/elitist"},
+                   "run experiments/quickstart.toml --seed 2 --set selection.name=elitist --out runs/elitist",
+                   "run experiments/evo-devo.toml --device cuda:0,2"},
       .options = options,
       .function = run};
 }

@@ -16,10 +16,10 @@
 namespace evodevo {
 namespace {
 
-void evaluate(std::vector<Individual>& newborns, const Evaluation& evaluation, const Observer& observer) {
+void evaluate(std::vector<Individual>& newborns, Evaluator& evaluator, const Observer& observer) {
   std::vector<Newborn> batch;
   for (const Individual& individual : newborns) batch.push_back({individual.id, individual.born, &individual.genome});
-  std::vector<Result> results = evaluation.evaluate(batch, observer.generation_progress);
+  std::vector<Result> results = evaluator.evaluate(batch, observer.generation_progress);
   for (std::size_t i = 0; i < newborns.size(); ++i) newborns[i].result = std::move(results[i]);
 }
 
@@ -73,17 +73,10 @@ std::vector<const Individual*> front(const std::vector<Individual>& everyone, co
 /// Decides which records of lives the archive keeps: those of all individuals that are ever on the front.
 class FrontLives {
  public:
-  FrontLives(const Experiment& experiment, const Evaluation& evaluation, const Archive& archive,
-             const Provenance& provenance)
-      : experiment_(experiment), evaluation_(evaluation), archive_(archive), provenance_(provenance) {
+  FrontLives(const Experiment& experiment, Evaluator& evaluator, const Archive& archive, const Provenance& provenance)
+      : experiment_(experiment), evaluator_(evaluator), archive_(archive), provenance_(provenance) {
     for (const Individual& individual : archive.population())
       if (archive.life(individual.id)) kept_.insert(individual.id);
-  }
-
-  /// Moves the records out of the newborns, because the records of a whole population would take too much memory.
-  void take(std::vector<Individual>& newborns) {
-    for (Individual& individual : newborns)
-      newborn_[individual.id] = std::exchange(individual.result.record, LifeRecord());
   }
 
   /// Keeps the records of the individuals on the front. A few older individuals reach the front only now, because
@@ -91,32 +84,29 @@ class FrontLives {
   /// again. Individuals with another provenance are not simulated again, because the new life might differ from the one
   /// that was scored.
   void keep_front(const std::vector<Individual>& everyone, std::uint32_t generation) {
-    std::vector<Newborn> elders;
+    std::vector<Newborn> arrivals;
     for (const Individual* individual : front(everyone, experiment_, generation)) {
       if (!kept_.insert(individual->id).second) continue;
-      if (const auto newborn = newborn_.extract(individual->id))
-        to_commit_[individual->id] = std::move(newborn.mapped());
-      else if (are_same(archive_.provenance(individual->born), provenance_))
-        elders.push_back({individual->id, individual->born, &individual->genome});
+      if (individual->born == generation || are_same(archive_.provenance(individual->born), provenance_))
+        arrivals.push_back({individual->id, individual->born, &individual->genome});
     }
-    if (elders.empty()) return;
-    std::vector<Life> lives = evaluation_.birth.of(elders);
-    evaluation_.development.run(lives, [](double) {});
-    for (Life& life : lives) to_commit_[life.newborn.id] = std::move(life.result.record);
+    if (arrivals.empty()) return;
+    std::vector<LifeRecord> records = evaluator_.records(arrivals);
+    for (std::size_t i = 0; i < arrivals.size(); ++i) to_commit_[arrivals[i].id] = std::move(records[i]);
   }
 
-  /// Returns the records that the current generation adds to the archive, and forgets them.
+  /// Returns the records that the current generation adds to the archive, and forgets all of its records.
   std::map<std::uint32_t, LifeRecord> committed() {
-    newborn_.clear();
+    evaluator_.forget_records();
     return std::exchange(to_commit_, {});
   }
 
  private:
   const Experiment& experiment_;
-  const Evaluation& evaluation_;
+  Evaluator& evaluator_;
   const Archive& archive_;
   const Provenance& provenance_;
-  std::map<std::uint32_t, LifeRecord> newborn_, to_commit_;
+  std::map<std::uint32_t, LifeRecord> to_commit_;
   std::set<std::uint32_t> kept_;
 };
 
@@ -203,6 +193,8 @@ namespace {
 template <class Time, class Use>
 void for_each_time(Time& time, const Use& use) {
   use("seconds", time.whole);
+  use("seconds_breed", time.breed);
+  use("seconds_select", time.select);
   use("seconds_archive", time.archive);
   use("seconds_decode", time.evaluation.decode);
   use("seconds_simulate", time.evaluation.simulate);
@@ -229,23 +221,28 @@ std::optional<TimeSpent> recorded_time_spent(const Archive& archive) {
 
 TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& archive, const std::atomic<bool>& stop,
                  const Observer& observer) {
+  LocalEvaluator evaluator(experiment, simulator);
+  return evolve(experiment, evaluator, archive, stop, observer);
+}
+
+TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& archive, const std::atomic<bool>& stop,
+                 const Observer& observer) {
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
   };
   const auto begin = Clock::now();
   TimeSpent time;
-  const Evaluation evaluation(experiment, simulator);
   std::vector<Summary> summaries = archive.generations();
   if (is_finished(experiment, summaries)) return {};  // no provenance is recorded, as this process makes nothing new
   auto generation = static_cast<std::uint32_t>(summaries.size());
   std::int64_t evaluations = summaries.empty() ? 0 : summaries.back().evaluations;
   std::vector<Individual> population = archive.population();
   Remembered remembered{archive.memory(), {}};
-  const Provenance provenance = this_provenance(experiment, simulator.device());
+  const Provenance provenance = this_provenance(experiment, evaluator.device());
   const std::uint32_t provenance_index = archive.add_provenance(provenance);
-  FrontLives lives(experiment, evaluation, archive, provenance);
-  FrontVerification verification(experiment, simulator, archive, provenance);
+  FrontLives lives(experiment, evaluator, archive, provenance);
+  FrontVerification verification(experiment, evaluator, archive, provenance);
 
   for (; !is_finished(experiment, summaries) && !stop; ++generation) {
     const auto start = Clock::now();
@@ -254,13 +251,14 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
     std::vector<Individual> newborns =
         breed(experiment, population, generation, static_cast<std::uint32_t>(evaluations),
               static_cast<std::size_t>(count), memory_of_breeder(experiment, remembered));
-    evaluate(newborns, evaluation, observer);
+    time.breed += seconds_since(start);
+    evaluate(newborns, evaluator, observer);
     evaluations += count;
     Summary summary = summarise(population, newborns, generation);
-    lives.take(newborns);
     population.insert(population.end(), newborns.begin(), newborns.end());
     const std::vector<Refusal> refusals = verification.refuse(population, generation);
     add_refusals(refusals, summary);
+    const auto selection = Clock::now();
     std::vector<std::uint32_t> dropped;
     if (!needs_all_children(experiment)) dropped = remove_copies(population);
     lives.keep_front(population, generation);
@@ -272,6 +270,7 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
     summary.evaluations = evaluations;
     summary.wall_time = seconds_since(start);
     summary.provenance = provenance_index;
+    time.select += seconds_since(selection);
     const auto commit = Clock::now();
     archive.commit(newborns, dropped, lives.committed(), summary, remembered, refusals);
     time.archive += seconds_since(commit);
@@ -279,7 +278,7 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
     summaries.push_back(summary);
   }
   time.whole = seconds_since(begin);
-  time.evaluation = evaluation.phase_times();
+  time.evaluation = evaluator.phase_times();
   time.verify = verification.seconds();
   return time;
 }

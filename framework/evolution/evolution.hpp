@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "evolution/archive/archive.hpp"
-#include "life/evaluation.hpp"
+#include "evolution/evaluator.hpp"
 
 namespace evodevo {
 
@@ -19,9 +19,12 @@ struct Observer {
 
 /// Wall-clock time that a run has spent, s. Phases overlap, so the sum of the phases may exceed the whole.
 struct TimeSpent {
-  double whole = 0, archive = 0;  ///< time in evolve(), and the part of it spent writing the archive
-  PhaseTimes evaluation;          ///< time in each phase of evaluation, without that of verification
-  double verify = 0;              ///< time spent verifying the front
+  double whole = 0;       ///< time in evolve()
+  double breed = 0;       ///< the parts of it that were spent making genomes,
+  double verify = 0;      ///< verifying the front,
+  double select = 0;      ///< ranking and selecting,
+  double archive = 0;     ///< and writing the archive
+  PhaseTimes evaluation;  ///< time in each phase of evaluation, without that of verification
 };
 
 /// Adds the time that this process has spent to the times in the run's record. The time of a process that is killed is
@@ -40,6 +43,9 @@ bool is_finished(const Settings& settings, const std::vector<Summary>& generatio
 /// Continues the run in the archive until the run is finished. If `stop` is set in the meantime, finishes and commits
 /// the current generation, then returns. A run that was interrupted and continued gives the same results as one that
 /// was not interrupted.
+TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& archive, const std::atomic<bool>& stop,
+                 const Observer& observer);
+/// Does the same in this process alone.
 TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& archive, const std::atomic<bool>& stop,
                  const Observer& observer);
 

@@ -59,7 +59,7 @@ std::vector<FrontVerification::Ranked> FrontVerification::ranked(std::vector<Ind
 void FrontVerification::verify_front(const std::vector<Ranked>& line, std::uint32_t generation) {
   std::vector<Champion> champions;
   for (const auto& [individual, layer] : line) {
-    if (layer > 0 && (champions.empty() || champions.size() >= simulator_.workers().count())) break;
+    if (layer > 0 && (champions.empty() || champions.size() >= evaluator_.verified_at_once())) break;
     if (verified_.contains(individual->id)) continue;
     if (individual->born != generation && !are_same(archive_.provenance(individual->born), provenance_)) {
       verified_[individual->id] = std::nullopt;
@@ -69,8 +69,7 @@ void FrontVerification::verify_front(const std::vector<Ranked>& line, std::uint3
         {{individual->id, individual->born, &individual->genome}, individual->result.objectives.front()});
   }
   if (champions.empty()) return;
-  if (!exact_.same_method) exact_ = exact_simulators(experiment_);
-  for (const Verification& verification : verify_marks(experiment_, simulator_, exact_, champions))
+  for (const Verification& verification : evaluator_.verify(champions))
     verified_[verification.individual] = refusal(verification);
 }
 

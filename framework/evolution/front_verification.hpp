@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "evolution/archive/archive.hpp"
-#include "life/verification.hpp"
+#include "evolution/evaluator.hpp"
 
 namespace evodevo {
 
@@ -16,9 +16,9 @@ namespace evodevo {
 class FrontVerification {
  public:
   /// `provenance` is that of this process.
-  FrontVerification(const Experiment& experiment, Simulator& simulator, const Archive& archive,
+  FrontVerification(const Experiment& experiment, Evaluator& evaluator, const Archive& archive,
                     const Provenance& provenance)
-      : experiment_(experiment), simulator_(simulator), archive_(archive), provenance_(provenance) {}
+      : experiment_(experiment), evaluator_(evaluator), archive_(archive), provenance_(provenance) {}
 
   /// Verifies the individuals on the front of `everyone`. Those that do not hold get the status `artefact` or `passive`
   /// and lose their scores, so that others come to the front, until all that are on it hold. Returns the refusals, in
@@ -44,10 +44,9 @@ class FrontVerification {
   std::optional<Refusal> refusal(const Verification& verification) const;
 
   const Experiment& experiment_;
-  Simulator& simulator_;
+  Evaluator& evaluator_;
   const Archive& archive_;
   const Provenance& provenance_;
-  ExactSimulators exact_;                                     ///< made when the first individual is verified
   std::map<std::uint32_t, std::optional<Refusal>> verified_;  ///< by id; nullopt: it holds
   double seconds_ = 0;
 };

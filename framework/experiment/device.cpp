@@ -15,8 +15,9 @@ std::unique_ptr<Simulator> make_simulator(const Experiment& experiment) {
 std::unique_ptr<Simulator> make_simulator(const Experiment& experiment, const Stepping& stepping) {
   if (experiment.device != Device::cpu) {
 #ifdef EVODEVO_CUDA
-    const std::string obstacle = why_cuda_is_unusable();
-    if (obstacle.empty()) return make_cuda_simulator(experiment.scene, stepping, static_cast<int>(experiment.threads));
+    const std::string obstacle = why_cuda_is_unusable(experiment.gpus);
+    if (obstacle.empty())
+      return make_cuda_group(experiment.scene, stepping, static_cast<int>(experiment.threads), experiment.gpus);
 #else
     const std::string obstacle = "this evodevo was built without CUDA; build it where the CUDA toolkit is installed";
 #endif
@@ -25,6 +26,14 @@ std::unique_ptr<Simulator> make_simulator(const Experiment& experiment, const St
                         ", or set simulation.device to \"cpu\"");
   }
   return make_cpu_simulator(experiment.scene, stepping, static_cast<int>(experiment.threads));
+}
+
+std::vector<int> usable_gpus() {
+#ifdef EVODEVO_CUDA
+  return equal_gpus();
+#else
+  return {};
+#endif
 }
 
 std::string remedy_for(const std::exception& failure) {

@@ -50,6 +50,7 @@ Experiment compose(toml::table root, const ExperimentSource& source) {
       read_settings(top, source.grows_bodies ? Bodies::grown : Bodies::given, experiment.warnings);
   experiment.name = printable(fs::path(source.file).stem().string());
   experiment.device_location = top.location("simulation");
+  experiment.gpus = source.gpus;
   experiment.context = encoding_context(experiment);
 
   toml::table record = to_toml(experiment);

@@ -75,6 +75,8 @@ struct Experiment : Settings {
   std::vector<std::filesystem::path> plugin_folders;  ///< search path of operators, except the program's own folder
   std::vector<std::string> warnings;                  ///< warnings for the user
   std::string device_location;                        ///< place of [simulation] in the file, for messages
+  std::vector<int>
+      gpus;              ///< numbers of the GPUs to use; empty: all. Results do not depend on it, and no run records it
   std::string resolved;  ///< TOML that reads back as the same experiment, with every default written out
 
   /// Describes a call of the operator with this index (from 0) among those of its kind.
@@ -113,6 +115,7 @@ struct ExperimentSource {
   /// Whether the experiment's own encoding makes the bodies. If so, a dt that is too long for the experiment's masses
   /// and materials is an error. Otherwise the dt is only checked for the body that is given.
   bool grows_bodies = true;
+  std::vector<int> gpus = {};  ///< Experiment::gpus
   /// Contents of the files that parameters name, from the record of a run; if not given, the files are read.
   std::optional<FileContents> files = std::nullopt;
 

@@ -33,10 +33,11 @@ std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, cons
   std::vector<Result> results(newborns.size());
   std::mutex progress_mutex;
   std::vector<double> done(cohorts, 0.0);
+  const int first = Priority::of_this_thread();
   on_own_threads(cohorts, [&](std::size_t i) {
     // Earlier cohorts have priority throughout. Thus the first one reaches its long final evaluation while the others
     // are still developing.
-    const Priority priority(static_cast<int>(i));
+    const Priority priority(first + static_cast<int>(i));
     const std::size_t begin = i * newborns.size() / cohorts, end = (i + 1) * newborns.size() / cohorts;
     std::vector<Result> of_cohort = evaluate_cohort(newborns.subspan(begin, end - begin), [&](double part) {
       const std::lock_guard lock(progress_mutex);

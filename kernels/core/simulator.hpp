@@ -118,9 +118,10 @@ class DeviceOutOfMemory : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The use of a device such as a GPU since its simulator was created.
+/// The use of one or several devices such as GPUs since their simulator was created.
 struct DeviceUse {
-  double busy = 0;           ///< time during which the device was working, s
+  std::size_t devices = 1;
+  double busy = 0;           ///< time during which a device was working, s; the sum over all devices
   std::size_t portions = 1;  ///< largest number of portions into which a batch was divided to fit the device's memory
 };
 
@@ -146,7 +147,7 @@ class Simulator {
   /// prepared.
   virtual int concurrency() const { return 1; }
 
-  /// The use of the device; nothing if the device is the host's own processor.
+  /// The use of the devices; nothing if the device is the host's own processor.
   virtual std::optional<DeviceUse> device_use() const { return std::nullopt; }
 
   /// The device and its instruction set, for example "cpu, AVX-512". Equal devices give equal results; results of

@@ -51,7 +51,8 @@ TEST_F(Command, RunSaysWhereOnWhatAndHowFast) {
   EXPECT_THAT(finished.output, HasSubstr("generation 3  evaluations 24/24"));
   EXPECT_THAT(finished.output, HasSubstr("best: individual"));
   EXPECT_THAT(finished.output, HasSubstr("spring evaluations/s"));
-  EXPECT_THAT(finished.output, ContainsRegex("time:  simulate [0-9]+ %, develop [0-9]+ %, decode [0-9]+ %, archive"));
+  for (const char* part : {"time:  simulate", "develop", "decode", "breed", "select", "archive"})
+    EXPECT_THAT(finished.output, ContainsRegex(part + std::string(" [0-9]+ %")));
 }
 
 TEST_F(Command, ShowAgreesWithTheArchive) {
@@ -398,6 +399,12 @@ TEST_F(Command, BadInputEndsWithTwoAndLeavesNothing) {
   EXPECT_FALSE(fs::exists(folder_));
   EXPECT_THAT(evodevo({"run", file_, "--device", "gpu"}).output,
               AllOf(HasSubstr("--device gpu: simulation.device = \"gpu\": "), HasSubstr("auto, cpu, cuda")));
+  for (const char* device : {"cuda:", "cuda:0,", "cuda:0,0", "cuda:-1", "cuda:x", "cuda:1 ", "cuda:99999999999"}) {
+    const Finished refused = evodevo({"check", file_, "--device", device});
+    EXPECT_EQ(refused.exit_code, 2) << device;
+    EXPECT_THAT(refused.output, AllOf(HasSubstr("--device cuda:"), HasSubstr("numbers"), HasSubstr("cuda:0,2")));
+  }
+  EXPECT_EQ(evodevo({"check", file_, "--device", "cuda:0,2"}).exit_code, 0) << "check needs no GPU";
 }
 
 TEST_F(Command, TextsOfARecordDisturbNoTerminal) {

@@ -1,4 +1,6 @@
 // Every experiment of the project runs, and the robots of the quickstart walk.
+#include "support/experiments.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,14 +26,7 @@ TEST(Experiments, EachRunsForTwoGenerationsWhenShrunk) {
     SCOPED_TRACE(entry.path());
     const std::string folder = (scratch / std::to_string(count++)).string();
     std::vector<std::string> command = {EVODEVO_PROGRAM, "run", entry.path(), "--out", folder};
-    std::vector<std::string> shrunk = {"experiment.population=8", "experiment.children=8", "experiment.evaluations=16",
-                                       "fitness.0.settle=0.1", "fitness.0.window=0.1"};
-    const Experiment experiment = read_experiment({entry.path(), {}});
-    if (experiment.resolved.find("\npoints = ") != std::string::npos) shrunk.push_back("encoding.points=60");
-    if (experiment.random_individuals > 8) shrunk.push_back("experiment.random_individuals=8");
-    if (experiment.development.cycles > 0)
-      shrunk.insert(shrunk.end(), {"development.cycles=2", "development.cycle_time=0.1"});
-    for (const std::string& set : shrunk) command.insert(command.end(), {"--set", set});
+    for (const std::string& set : testing::shrinking(entry.path())) command.insert(command.end(), {"--set", set});
     const testing::Finished finished = testing::run(command);
     ASSERT_EQ(finished.exit_code, 0) << finished.output;
     const Archive archive = Archive::read(folder);

@@ -12,6 +12,7 @@
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 #include "support/process.hpp"
+#include "support/runs.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo {
@@ -46,42 +47,6 @@ class Interruption : public ::testing::Test {
   }
 };
 
-/// Expects that the individuals of both runs have the same genes, ancestry, results and recorded lives, and that the
-/// generations have the same statistics, except for the wall time.
-void expect_same_runs(const Archive& a, const Archive& b) {
-  const auto generations_a = a.generations(), generations_b = b.generations();
-  ASSERT_EQ(generations_a.size(), generations_b.size());
-  for (std::size_t i = 0; i < generations_a.size(); ++i) {
-    EXPECT_EQ(generations_a[i].evaluations, generations_b[i].evaluations);
-    EXPECT_EQ(generations_a[i].best, generations_b[i].best);
-    EXPECT_EQ(generations_a[i].median, generations_b[i].median);
-    EXPECT_EQ(generations_a[i].diverged, generations_b[i].diverged);
-    EXPECT_EQ(generations_a[i].invalid, generations_b[i].invalid);
-    EXPECT_EQ(generations_a[i].artefact, generations_b[i].artefact);
-    EXPECT_EQ(generations_a[i].passive, generations_b[i].passive);
-    EXPECT_EQ(generations_a[i].clones, generations_b[i].clones);
-    EXPECT_EQ(generations_a[i].spring_evaluations, generations_b[i].spring_evaluations);
-  }
-  std::uint32_t id = 0;
-  for (; a.individual(id); ++id) {
-    const ArchivedIndividual one = *a.individual(id);
-    ASSERT_TRUE(b.individual(id).has_value());
-    const ArchivedIndividual other = *b.individual(id);
-    EXPECT_EQ(one.genome, other.genome);
-    EXPECT_EQ(one.born, other.born);
-    EXPECT_EQ(one.died, other.died);
-    EXPECT_EQ(one.origin, other.origin);
-    EXPECT_EQ(one.parents, other.parents);
-    EXPECT_EQ(one.made_by, other.made_by);
-    EXPECT_EQ(one.result.status, other.result.status);
-    EXPECT_EQ(one.result.reason, other.result.reason);
-    EXPECT_EQ(one.result.objectives, other.result.objectives);
-    EXPECT_EQ(a.life(id), b.life(id)) << id;
-  }
-  EXPECT_FALSE(b.individual(id).has_value());
-  EXPECT_EQ(id, 75u);
-}
-
 class InterruptedJournal : public Interruption, public ::testing::WithParamInterface<const char*> {};
 
 TEST_P(InterruptedJournal, KilledAtEachLineAndResumedEndsTheSame) {
@@ -103,7 +68,7 @@ TEST_P(InterruptedJournal, KilledAtEachLineAndResumedEndsTheSame) {
   EXPECT_GT(complete.size(), 1u) << "it was done before it could be killed";
   const testing::Finished finished = testing::run(command);
   ASSERT_EQ(finished.exit_code, 0) << finished.output;
-  expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(scratch_ / "killed"));
+  testing::expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(scratch_ / "killed"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Journals, InterruptedJournal, ::testing::Values("wal", "delete"),
@@ -146,8 +111,8 @@ TEST_F(Interruption, ARunThatVerifiesItsFrontIsTheSameAfterKillsAndWithAnyThread
   const Archive straight = Archive::read(scratch_ / "straight");
   EXPECT_GT(straight.statuses().at("artefact") + straight.statuses().at("passive"), 10);
   EXPECT_GT(refused_elders(straight), 0);
-  expect_same_runs(straight, Archive::read(scratch_ / "three threads"));
-  expect_same_runs(straight, Archive::read(scratch_ / "killed"));
+  testing::expect_same_runs(straight, Archive::read(scratch_ / "three threads"));
+  testing::expect_same_runs(straight, Archive::read(scratch_ / "killed"));
 }
 
 TEST_F(Interruption, ARunWhoseDevoOperatorRemembersIsTheSameAfterAKill) {
@@ -172,7 +137,7 @@ TEST_F(Interruption, ARunWhoseDevoOperatorRemembersIsTheSameAfterAKill) {
   EXPECT_LT(Archive::read(scratch_ / "killed").generations().size(), 13u) << "it was done before it could be killed";
   const testing::Finished resumed = testing::run(with_memory(resume_command("killed")));
   ASSERT_EQ(resumed.exit_code, 0) << resumed.output;
-  expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(scratch_ / "killed"));
+  testing::expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(scratch_ / "killed"));
 }
 
 TEST_F(Interruption, AJournalThatThereIsNotIsRefused) {
@@ -228,7 +193,7 @@ TEST_F(Interruption, AYokedRunGoesOnTheSame) {
   process.wait();
   const testing::Finished finished = testing::run(resume_command("killed"));
   ASSERT_EQ(finished.exit_code, 0) << finished.output;
-  expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(scratch_ / "killed"));
+  testing::expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(scratch_ / "killed"));
 }
 
 TEST_F(Interruption, CtrlCCommitsAndSaysHowToGoOn) {
@@ -249,7 +214,7 @@ TEST_F(Interruption, CtrlCCommitsAndSaysHowToGoOn) {
   EXPECT_LT(done, 13u);
   EXPECT_EQ(testing::run(resume_command("stopped")).exit_code, 0);
   EXPECT_EQ(finished(), true);
-  expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(folder));
+  testing::expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(folder));
 }
 
 TEST_F(Interruption, ASecondProcessOnOneFolderIsRefused) {
@@ -287,7 +252,7 @@ TEST_F(Interruption, ReportsOfARunThatGoesOnDisturbItNotAtAll) {
   EXPECT_EQ(process.wait(), 0) << process.output();
   EXPECT_GT(seen.size(), 1u) << "nothing was seen of it going on";
   EXPECT_LT(*seen.begin(), 75);
-  expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(folder));
+  testing::expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(folder));
 }
 
 TEST_F(Interruption, AFinishedRunHasNothingToResume) {
@@ -322,7 +287,7 @@ TEST_F(Interruption, ThreadsDoNotChangeARun) {
   std::vector<std::string> one_thread = run_command("one");
   one_thread.insert(one_thread.end(), {"--threads", "1"});
   ASSERT_EQ(testing::run(one_thread).exit_code, 0);
-  expect_same_runs(Archive::read(scratch_ / "two"), Archive::read(scratch_ / "one"));
+  testing::expect_same_runs(Archive::read(scratch_ / "two"), Archive::read(scratch_ / "one"));
 }
 
 TEST_F(Interruption, TwoRunsAtOnceTakeFoldersOfTheirOwn) {

@@ -71,6 +71,31 @@ TEST(Driver, ThatIsMissingOrTooOldIsNamed) {
             "CUDA: the NVIDIA driver is too old: it knows CUDA 12.8, this program needs 13.0; install a newer driver");
 }
 
+/// Returns the numbers of the chosen GPUs, or the message that refuses them.
+std::string chosen(const std::vector<std::string>& names, const std::vector<int>& numbers) {
+  std::vector<Device> visible;
+  for (const std::string& name : names) visible.push_back({static_cast<int>(visible.size()), name, "sm_90", 227 << 10});
+  std::string text;
+  try {
+    for (const Device& device : equal_devices(visible, numbers)) text += std::to_string(device.number) + " ";
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return text;
+}
+
+TEST(EqualDevices, AreThoseOfTheFirstTypeUnlessNumbersAreGiven) {
+  EXPECT_EQ(chosen({"H200", "H200"}, {}), "0 1 ");
+  EXPECT_EQ(chosen({"H200", "A100", "H200"}, {}), "0 2 ");
+  EXPECT_EQ(chosen({"H200", "A100", "A100"}, {2, 1}), "2 1 ");
+  EXPECT_EQ(chosen({"H200", "A100"}, {1}), "1 ");
+}
+
+TEST(EqualDevices, ThatAreMissingOrDifferAreRefused) {
+  EXPECT_THAT(chosen({"H200"}, {1}), testing::AllOf(HasSubstr("no GPU 1"), HasSubstr("sees 1")));
+  EXPECT_THAT(chosen({"H200", "A100"}, {0, 1}), testing::AllOf(HasSubstr("GPU 0 (H200"), HasSubstr("GPU 1 (A100")));
+}
+
 /// Under CTest, this test runs in a separate process: CUDA reads the visible devices only at its first call.
 TEST(Device, ThatIsHiddenIsMissed) {
   ::setenv("CUDA_VISIBLE_DEVICES", "-1", 1);

@@ -103,7 +103,8 @@ class Pairs : public ::testing::Test {
   std::unique_ptr<Simulator> simulator_ = make_cpu_simulator(experiment_.scene, experiment_.stepping, 2);
   Archive archive_ = Archive::create(scratch_ / "run", experiment_, "test");
   Provenance provenance_ = this_provenance(experiment_, "test");
-  FrontVerification verification_{experiment_, *simulator_, archive_, provenance_};
+  LocalEvaluator evaluator_{experiment_, *simulator_};
+  FrontVerification verification_{experiment_, evaluator_, archive_, provenance_};
   std::vector<Individual> everyone_;
 };
 
@@ -169,7 +170,7 @@ TEST_F(Pairs, WhoComesFromAnotherDeviceIsNotVerified) {
   archive_.commit(everyone_, {}, {}, {.generation = 0, .evaluations = 1});
   Provenance elsewhere = provenance_;
   elsewhere.device = "another";
-  FrontVerification there(experiment_, *simulator_, archive_, elsewhere);
+  FrontVerification there(experiment_, evaluator_, archive_, elsewhere);
   EXPECT_TRUE(there.refuse(everyone_, 1).empty());
   EXPECT_EQ(verification_.refuse(everyone_, 1).size(), 1u) << "older individuals are verified, too";
 }

@@ -33,6 +33,7 @@ const Floors floors{{"kernels/include"},
                     {"framework/experiment"},
                     {"framework/life"},
                     {"framework/evolution"},
+                    {"framework/cluster"},
                     {"framework/environments", "framework/report", "framework/conformance"},
                     {"framework/commands"},
                     {"framework/main.cpp", "framework/help.inc"}};

@@ -16,6 +16,8 @@ from pages import PROGRAM, ROOT, SHRINK, PageTest, all_pages, blocks, evodevo, m
 # programs of other projects, whose options are not checked
 OTHERS = {"apt-get", "cd", "clang-format", "cmake", "cp", "ctest", "echo", "export", "g++", "gdb", "git", "man",
           "mkdir", "ninja", "python3", "sed", "source", "sqlite3", "sudo"}
+# programs that start several processes of evodevo
+LAUNCHERS = {"mpirun", "srun"}
 # programs whose options go to another program, or that have none
 WITHOUT_HELP = {"tools/test": "hands its options to CTest", "tools/setup": "is read by the other tools"}
 
@@ -67,6 +69,8 @@ def commands_in(line):
             output = tokens.pop(0)
         elif words or not re.fullmatch(r"[A-Z_]+=.*", token):
             words.append(token)
+            if words[0] in LAUNCHERS and (token == "evodevo" or token.endswith("/evodevo")):
+                words = [token]
     return found
 
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "cpu/simulator.hpp"
 #include "experiment/experiment.hpp"
@@ -61,6 +62,18 @@ name = "age-fitness-pareto"
 
 inline Experiment read(const std::string& text, std::vector<Override> overrides = {}) {
   return read_experiment(text, {"test.toml", std::move(overrides)});
+}
+
+/// Returns the values, as --set takes them, that make two small and short generations of an experiment.
+inline std::vector<std::string> shrinking(const std::string& file) {
+  std::vector<std::string> values = {"experiment.population=8", "experiment.children=8", "experiment.evaluations=16",
+                                     "fitness.0.settle=0.1", "fitness.0.window=0.1"};
+  const Experiment experiment = read_experiment({file, {}});
+  if (experiment.resolved.find("\npoints = ") != std::string::npos) values.push_back("encoding.points=60");
+  if (experiment.random_individuals > 8) values.push_back("experiment.random_individuals=8");
+  if (experiment.development.cycles > 0)
+    values.insert(values.end(), {"development.cycles=2", "development.cycle_time=0.1"});
+  return values;
 }
 
 }  // namespace evodevo::testing

@@ -22,6 +22,7 @@ class Process {
   /// Waits for the next line and returns it without its newline. Returns nothing if the output has ended.
   std::optional<std::string> read_line();
   void send(int signal);
+  pid_t id() const { return child_; }
   /// Reads the output to its end and waits for the process. Returns the exit code, or 128 + the number of the signal
   /// that ended the process.
   int wait();

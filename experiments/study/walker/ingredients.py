@@ -85,7 +85,9 @@ def draw(rows, file):
             axes.text(1.01, y, f"{len(held)} of {len(of_place)}", transform=axes.get_yaxis_transform(), va="center", fontsize=8)
     axes.set_yticks(range(len(places)), [f"{ingredient}  {value}" for ingredient, value in places])
     axes.invert_yaxis()
-    axes.axvline(statistics.median(row["distance"] for row in rows if row["ingredient"] == "as it is"), color="grey", linewidth=0.5)
+    held_as_it_is = [row["distance"] for row in rows if row["ingredient"] == "as it is" and row["champion"] == "verified"]
+    if held_as_it_is:
+        axes.axvline(statistics.median(held_as_it_is), color="grey", linewidth=0.5)
     axes.set_xlabel("distance of verified champions in 10 s, body lengths (| median)")
     axes.grid(axis="x", linewidth=0.3)
     figure.savefig(file)

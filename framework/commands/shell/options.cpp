@@ -1,6 +1,10 @@
 #include "commands/shell/options.hpp"
 
+#include <algorithm>
+#include <charconv>
 #include <limits>
+#include <memory>
+#include <string_view>
 
 #include "base/text.hpp"
 #include "commands/shell/notices.hpp"
@@ -42,7 +46,6 @@ struct Shorthand {
 
 constexpr Shorthand shorthands[] = {
     {"seed", "experiment.seed", "N", "seed of all random numbers"},
-    {"device", "simulation.device", "auto|cpu|cuda", "where to simulate; auto: on a GPU if there is one"},
     {"threads", "simulation.threads", "N", "number of threads on the CPU; 0: one for each core"},
 };
 
@@ -103,9 +106,42 @@ void add_experiment_options(Options& options) {
   add_plugin_option(options);
   for (const Shorthand& shorthand : shorthands)
     options.add_options()(shorthand.option, value<std::string>(shorthand.value), shorthand.text);
+  options.add_options()(
+      "device", value<std::string>("auto|cpu|cuda"),
+      "where to simulate; auto: on GPUs if there are any; cuda:0,2 uses only these of the visible GPUs, "
+      "which are counted from 0");
   options.add_options()("set", values<std::string>("KEY=VALUE"),
                         "set any key of the file, as in experiment.population=20 or fitness.0.window=5; may be "
                         "repeated");
+}
+
+namespace {
+
+constexpr std::string_view device_with_numbers = "cuda:";
+
+/// The value of --device without numbers of GPUs.
+std::string device_alone(const std::string& device) {
+  return device.starts_with(device_with_numbers) ? "cuda" : device;
+}
+
+}  // namespace
+
+std::vector<int> given_gpus(const Given& given) {
+  if (!given.contains("device")) return {};
+  const auto device = given["device"].as<std::string>();
+  if (!device.starts_with(device_with_numbers)) return {};
+  std::vector<int> gpus;
+  for (auto text = device.begin() + device_with_numbers.size();;) {
+    const auto end = std::find(text, device.end(), ',');
+    int gpu = -1;
+    const auto [last, error] = std::from_chars(std::to_address(text), std::to_address(end), gpu);
+    if (error != std::errc() || last != std::to_address(end) || gpu < 0 || std::ranges::find(gpus, gpu) != gpus.end())
+      throw UsageError(option_text("device", device) +
+                       ": expected different numbers of GPUs, counted from 0, as in --device cuda:0,2");
+    gpus.push_back(gpu);
+    if (end == device.end()) return gpus;
+    text = end + 1;
+  }
 }
 
 ExperimentSource experiment_source(const std::string& file, const Given& given) {
@@ -122,6 +158,11 @@ ExperimentSource experiment_source(const std::string& file, const Given& given) 
     if (!given.contains(shorthand.option)) continue;
     const auto value = given[shorthand.option].as<std::string>();
     source.overrides.push_back({shorthand.key, value, option_text(shorthand.option, value)});
+  }
+  if (given.contains("device")) {
+    const auto value = given["device"].as<std::string>();
+    source.overrides.push_back({"simulation.device", device_alone(value), option_text("device", value)});
+    source.gpus = given_gpus(given);
   }
   return source;
 }

@@ -21,13 +21,32 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
 }
 
+/// The part of a time of `whole` seconds in which a rank had nothing to do, percent.
+double idle_percent(const Share& share, double whole) {
+  return whole > 0 ? 100 * std::max(0.0, 1 - share.busy / whole) : 0;
+}
+
+/// Returns a text such as "  16 ranks idle 3 to 8 %".
+std::string ranks_text(const std::vector<Share>& shares, double whole) {
+  double least = 100, most = 0;
+  std::size_t present = 0;
+  for (const Share& share : shares) {
+    if (share.lost) continue;
+    ++present;
+    least = std::min(least, idle_percent(share, whole));
+    most = std::max(most, idle_percent(share, whole));
+  }
+  return fmt::format("  {} ranks idle {:.0f} to {:.0f} %", present, least, most);
+}
+
 }  // namespace
 
 ProgressDisplay::ProgressDisplay(const Experiment& experiment, const std::vector<Summary>& past,
-                                 const std::atomic<bool>& stop)
+                                 const std::atomic<bool>& stop, const Farm* farm)
     : experiment_(experiment),
       stop_(stop),
-      live_(isatty(STDOUT_FILENO) == 1 && verbosity() != Verbosity::quiet),
+      farm_(farm),
+      live_(!farm && isatty(STDOUT_FILENO) == 1 && verbosity() != Verbosity::quiet),
       start_(std::chrono::steady_clock::now()) {
   if (past.empty()) return;
   last_ = past.back();
@@ -67,6 +86,7 @@ std::string ProgressDisplay::line(double evaluations) const {
                                  last_.generation, evaluations, experiment_.evaluations, optional_text(last_.best),
                                  optional_text(last_.median), of, percent(diverged_));
   if (experiment_.verify_front) text += fmt::format("  artefact or passive {:.1f} %", percent(refused_));
+  if (farm_) text += ranks_text(farm_->shares(), seconds());
   if (rate > 0) text += fmt::format("  {:.3g} evaluations/s  {} left", rate, duration_text(seconds_left(evaluations)));
   if (stop_) text += "  (stopping after this generation; Ctrl-C again stops now)";
   return text;
@@ -117,14 +137,28 @@ void print_outcome(const Experiment& experiment, const Archive& archive, const P
             << short_number(springs) << " in " << duration_text(progress.seconds()) << ")" << std::endl;
 }
 
+void print_shares(const std::vector<Share>& shares, double whole) {
+  double lives = 0;
+  for (const Share& share : shares) lives += static_cast<double>(share.lives);
+  for (const Share& share : shares) {
+    remarks() << fmt::format("rank {} on {}: {} lives ({:.0f} %)", share.rank, share.host, share.lives,
+                             100 * static_cast<double>(share.lives) / std::max(lives, 1.0));
+    remarks() << fmt::format(", idle {:.0f} %", idle_percent(share, whole))
+              << (share.lost ? "; lost on the way\n" : "\n");
+  }
+}
+
 void print_time_spent(const TimeSpent& time, const Simulator& simulator) {
   if (!(time.whole > 0)) return;
   const auto share = [&](double seconds) { return fmt::format("{:.0f} %", 100 * seconds / time.whole); };
   remarks() << "time:  simulate " << share(time.evaluation.simulate) << ", develop " << share(time.evaluation.develop)
-            << ", decode " << share(time.evaluation.decode) << ", archive " << share(time.archive);
+            << ", decode " << share(time.evaluation.decode) << ", breed " << share(time.breed) << ", select "
+            << share(time.select) << ", archive " << share(time.archive);
   if (time.verify > 0) remarks() << ", verify " << share(time.verify);
   if (const std::optional<DeviceUse> device = simulator.device_use()) {
-    remarks() << "; device idle " << share(time.whole - device->busy);
+    const auto devices = static_cast<double>(device->devices);
+    remarks() << "; device" << (device->devices > 1 ? "s" : "") << " idle "
+              << share(time.whole - device->busy / devices);
     if (device->portions > 1)
       remarks() << ", each batch split into up to " << device->portions << " portions to fit into device memory";
   }

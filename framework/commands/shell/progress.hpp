@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 
+#include "cluster/farm.hpp"
 #include "evolution/evolution.hpp"
 
 namespace evodevo {
@@ -12,8 +13,10 @@ namespace evodevo {
 class ProgressDisplay {
  public:
   /// `past` has the summaries of the generations that earlier processes made. If `stop` is set, the display says that
-  /// the run will stop after the current generation.
-  ProgressDisplay(const Experiment& experiment, const std::vector<Summary>& past, const std::atomic<bool>& stop);
+  /// the run will stop after the current generation. With a farm, which may be null, it tells how idle the ranks are,
+  /// and writes a line for each generation, since a launcher lets each output look like a terminal.
+  ProgressDisplay(const Experiment& experiment, const std::vector<Summary>& past, const std::atomic<bool>& stop,
+                  const Farm* farm = nullptr);
 
   Observer observer();
   /// Ends the line on the terminal.
@@ -33,6 +36,7 @@ class ProgressDisplay {
 
   const Experiment& experiment_;
   const std::atomic<bool>& stop_;
+  const Farm* const farm_;
   const bool live_;
   const std::chrono::steady_clock::time_point start_;
   std::int64_t evaluations_before_ = 0;   ///< evaluations by earlier processes
@@ -44,6 +48,9 @@ class ProgressDisplay {
 
 /// Prints the best robot, the folder of the run, and the speed.
 void print_outcome(const Experiment& experiment, const Archive& archive, const ProgressDisplay& progress);
+
+/// Prints what each rank has contributed to a run that took `whole` seconds.
+void print_shares(const std::vector<Share>& shares, double whole);
 
 /// Prints how this process has spent its time.
 void print_time_spent(const TimeSpent& time, const Simulator& simulator);

@@ -194,10 +194,11 @@ class Portion {
 
 class CudaNeighbourSearch final : public NeighbourSearch {
  public:
-  explicit CudaNeighbourSearch(std::size_t memory)
-      : largest_portion_(memory), store_(cuda::current_device().architecture), kernels_(store_) {}
+  CudaNeighbourSearch(const cuda::Device& device, std::size_t memory)
+      : device_(device), largest_portion_(memory), store_(device.architecture), kernels_(store_) {}
 
   void find(std::span<const PointCloud> clouds, Workers& workers, const Use& use) override {
+    cuda::work_on(device_);
     std::vector<Job> jobs;
     std::vector<std::size_t> without_pairs;
     for (std::size_t i = 0; i < clouds.size(); ++i) {
@@ -227,16 +228,22 @@ class CudaNeighbourSearch final : public NeighbourSearch {
     return jobs.size();
   }
 
+  cuda::Device device_;
   std::size_t largest_portion_;  // bytes
   cuda::KernelStore store_;
   Kernels kernels_;
-  std::shared_ptr<cuda::MemoryStore> memory_ = cuda::MemoryStore::of_process();
+  std::shared_ptr<cuda::MemoryStore> memory_ = cuda::MemoryStore::of_device(device_);
 };
 
 }  // namespace
 
 std::unique_ptr<NeighbourSearch> make_cuda_neighbour_search(std::size_t memory) {
-  return std::make_unique<CudaNeighbourSearch>(memory);
+  return make_cuda_neighbour_search(cuda::current_device(), memory);
+}
+
+std::unique_ptr<NeighbourSearch> make_cuda_neighbour_search(const cuda::Device& device, std::size_t memory) {
+  cuda::work_on(device);
+  return std::make_unique<CudaNeighbourSearch>(device, memory);
 }
 
 }  // namespace evodevo

@@ -10,6 +10,7 @@
 
 #include "analysis/guard.hpp"
 #include "analysis/split_materials.hpp"
+#include "core/simulator_group.hpp"
 #include "cuda/runtime/cuda_neighbours.hpp"
 #include "cuda/runtime/device.hpp"
 #include "cuda/runtime/portion.hpp"
@@ -68,22 +69,34 @@ class BatchResourcePool {
   std::vector<std::unique_ptr<BatchResources>> free_;
 };
 
+/// What the simulators on several equal GPUs have in common. A kernel of a step is compiled
+/// once for all of them.
+struct Common {
+  Common(const cuda::Device& device, int threads)
+      : kernels(std::make_shared<cuda::KernelStore>(device.architecture)),
+        workers(std::make_shared<Workers>(threads)) {}
+
+  std::shared_ptr<cuda::KernelStore> kernels;
+  std::shared_ptr<Workers> workers;
+};
+
 template <class T>
 class DeviceSimulator final : public CudaSimulator {
  public:
-  DeviceSimulator(const Scene& scene, const Stepping& stepping, int threads, std::size_t memory)
+  DeviceSimulator(const Scene& scene, const Stepping& stepping, const cuda::Device& device, Common common,
+                  std::size_t memory)
       : scene_(scene),
         stepping_(stepping),
         largest_portion_(memory),
-        device_(cuda::current_device()),
-        kernels_(device_.architecture),
-        workers_(threads),
-        neighbours_(make_cuda_neighbour_search()) {}
+        device_(device),
+        common_(std::move(common)),
+        neighbours_(make_cuda_neighbour_search(device)) {}
 
   void run(std::span<Task> tasks, Recording recording) override {
-    const SplitMaterials split(tasks, workers_);
+    cuda::work_on(device_);
+    const SplitMaterials split(tasks, workers());
     const std::vector<Task*> live = begin(tasks, recording);
-    const cuda::Run run{scene_, stepping_, recording, device_.shared_bytes, cuda::spans_per_range(live)};
+    const cuda::Run run{scene_, stepping_, recording, device_, cuda::spans_per_range(live)};
     std::vector<cuda::Plan<T>> plans = plan(live, run);
     double seconds = 0;
     std::size_t portions = 0;
@@ -96,7 +109,7 @@ class DeviceSimulator final : public CudaSimulator {
 
   NeighbourSearch& neighbours() override { return *neighbours_; }
 
-  Workers& workers() override { return workers_; }
+  Workers& workers() override { return *common_.workers; }
 
   int concurrency() const override { return batches_at_once; }
 
@@ -104,7 +117,7 @@ class DeviceSimulator final : public CudaSimulator {
 
   std::optional<DeviceUse> device_use() const override {
     const std::lock_guard lock(mutex_);
-    return DeviceUse{busy_.seconds(), most_portions_};
+    return DeviceUse{.busy = busy_.seconds(), .portions = most_portions_};
   }
 
   double device_seconds() const override {
@@ -145,7 +158,7 @@ class DeviceSimulator final : public CudaSimulator {
 
   std::vector<cuda::Plan<T>> plan(const std::vector<Task*>& tasks, const cuda::Run& run) {
     std::vector<std::optional<cuda::Plan<T>>> planned(tasks.size());
-    workers_.for_each(tasks.size(), [&](std::size_t i) {
+    workers().for_each(tasks.size(), [&](std::size_t i) {
       tasks[i]->course = begun(*tasks[i]);
       cuda::take_first_samples(*tasks[i], stepping_.materials);
       planned[i].emplace(*tasks[i], run);
@@ -162,7 +175,8 @@ class DeviceSimulator final : public CudaSimulator {
       const BatchResourcePool::Loan resources(batch_resources_);
       // runs that record springs have priority: after them, the host has work to do, while other runs use the device
       const std::vector<cuda::Stream>& streams = run.recording.of_springs() ? resources->urgent : resources->patient;
-      seconds += cuda::Portion<T>(plans.first(count), run, *memory_).simulate(kernels_, streams, workers_, busy_);
+      seconds +=
+          cuda::Portion<T>(plans.first(count), run, *memory_).simulate(*common_.kernels, streams, workers(), busy_);
     };
     try {
       return memory_->with_fewer(plans_that_fit(plans), attempt);
@@ -196,9 +210,8 @@ class DeviceSimulator final : public CudaSimulator {
   Stepping stepping_;
   std::size_t largest_portion_;  // bytes
   cuda::Device device_;
-  cuda::KernelStore kernels_;
-  Workers workers_;
-  std::shared_ptr<cuda::MemoryStore> memory_ = cuda::MemoryStore::of_process();
+  Common common_;
+  std::shared_ptr<cuda::MemoryStore> memory_ = cuda::MemoryStore::of_device(device_);
   std::unique_ptr<NeighbourSearch> neighbours_;
   BatchResourcePool batch_resources_;
   BusyClock busy_;
@@ -207,13 +220,30 @@ class DeviceSimulator final : public CudaSimulator {
   std::size_t most_portions_ = 1;
 };
 
+std::unique_ptr<CudaSimulator> make_on(const cuda::Device& device, const Scene& scene, const Stepping& stepping,
+                                       const Common& common, std::size_t memory) {
+  cuda::work_on(device);
+  if (stepping.precision == Precision::float64)
+    return std::make_unique<DeviceSimulator<double>>(scene, stepping, device, common, memory);
+  return std::make_unique<DeviceSimulator<float>>(scene, stepping, device, common, memory);
+}
+
 }  // namespace
 
 std::unique_ptr<CudaSimulator> make_cuda_simulator(const Scene& scene, const Stepping& stepping, int threads,
                                                    std::size_t memory) {
-  if (stepping.precision == Precision::float64)
-    return std::make_unique<DeviceSimulator<double>>(scene, stepping, threads, memory);
-  return std::make_unique<DeviceSimulator<float>>(scene, stepping, threads, memory);
+  const cuda::Device device = cuda::current_device();
+  return make_on(device, scene, stepping, Common(device, threads), memory);
+}
+
+std::unique_ptr<Simulator> make_cuda_group(const Scene& scene, const Stepping& stepping, int threads,
+                                           std::span<const int> numbers) {
+  const std::vector<cuda::Device> devices = cuda::usable_devices(numbers);
+  const Common common(devices.front(), threads);
+  std::vector<std::unique_ptr<Simulator>> members;
+  for (const cuda::Device& device : devices)
+    members.push_back(make_on(device, scene, stepping, common, default_portion));
+  return members.size() == 1 ? std::move(members.front()) : make_simulator_group(std::move(members));
 }
 
 }  // namespace evodevo

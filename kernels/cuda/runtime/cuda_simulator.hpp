@@ -1,9 +1,11 @@
-// The simulator on an NVIDIA GPU. Exists only with the build option EVODEVO_CUDA.
+// The simulator on NVIDIA GPUs. Exists only with the build option EVODEVO_CUDA.
 #pragma once
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "core/scene.hpp"
 #include "core/simulator.hpp"
@@ -17,6 +19,9 @@ class CudaSimulator : public Simulator {
   virtual double device_seconds() const = 0;
 };
 
+/// The default limit of a portion's memory on the device, bytes.
+constexpr std::size_t default_portion = std::size_t{4} << 30;
+
 /// A simulator on the current CUDA device. It prepares bodies on `threads` threads (0: one per core). Throws
 /// std::runtime_error, with a message that names the cause and a remedy, if there is no usable device; run() throws one
 /// if the device fails, and DeviceOutOfMemory if a single body does not fit the device's free memory.
@@ -25,9 +30,19 @@ class CudaSimulator : public Simulator {
 /// The smallest portion is one body; if necessary, it gets the memory of all simulators of this process. A portion's
 /// copy on the host cannot be swapped out, which is why `memory` is limited.
 std::unique_ptr<CudaSimulator> make_cuda_simulator(const Scene& scene, const Stepping& stepping, int threads = 0,
-                                                   std::size_t memory = std::size_t{4} << 30);
+                                                   std::size_t memory = default_portion);
 
-/// Returns the reason why make_cuda_simulator() would find no usable device; empty if it would find one.
-std::string why_cuda_is_unusable();
+/// A simulator on the GPUs with the given numbers, as CUDA counts those that this process sees. If no number is given,
+/// it uses all GPUs that equal the first one, and leaves out unusable ones with a warning. Batches are dealt out to the
+/// GPUs. All GPUs must be of one type, so that results do not depend on which of them simulates a body. Throws like
+/// make_cuda_simulator(), and also if a number is not that of a GPU or if the types differ.
+std::unique_ptr<Simulator> make_cuda_group(const Scene& scene, const Stepping& stepping, int threads = 0,
+                                           std::span<const int> numbers = {});
+
+/// Returns the numbers of the GPUs that make_cuda_group() uses if no number is given; none if CUDA cannot be used.
+std::vector<int> equal_gpus();
+
+/// Returns the reason why make_cuda_group() cannot use these GPUs; empty if it can.
+std::string why_cuda_is_unusable(std::span<const int> numbers = {});
 
 }  // namespace evodevo

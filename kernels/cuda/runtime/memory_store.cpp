@@ -1,15 +1,15 @@
 #include "cuda/runtime/memory_store.hpp"
 
 #include <algorithm>
-
-#include "cuda/runtime/device.hpp"
+#include <map>
 
 namespace evodevo::cuda {
 
-std::shared_ptr<MemoryStore> MemoryStore::of_process() {
+std::shared_ptr<MemoryStore> MemoryStore::of_device(const Device& device) {
   static std::mutex mutex;
-  static std::weak_ptr<MemoryStore> current;
+  static std::map<int, std::weak_ptr<MemoryStore>> stores;
   const std::lock_guard lock(mutex);
+  std::weak_ptr<MemoryStore>& current = stores[device.number];
   std::shared_ptr<MemoryStore> store = current.lock();
   if (!store) current = store = std::make_shared<MemoryStore>();
   return store;

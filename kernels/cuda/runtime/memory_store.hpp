@@ -7,6 +7,7 @@
 #include <shared_mutex>
 #include <vector>
 
+#include "cuda/runtime/device.hpp"
 #include "cuda/runtime/memory.hpp"
 
 namespace evodevo::cuda {
@@ -15,9 +16,9 @@ namespace evodevo::cuda {
 /// may use a store.
 class MemoryStore {
  public:
-  /// The store of all simulators and searches of this process, so that memory kept from one is available to the others.
-  /// It exists as long as one of them holds it.
-  static std::shared_ptr<MemoryStore> of_process();
+  /// The store of all simulators and searches of this process on a GPU, so that memory kept from one is available to
+  /// the others. It exists as long as one of them holds it. Threads that use it must work on this GPU.
+  static std::shared_ptr<MemoryStore> of_device(const Device& device);
 
   /// Holds memory until it is destroyed.
   class Loan {

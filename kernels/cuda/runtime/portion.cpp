@@ -48,9 +48,9 @@ Plan<T>::Plan(Task& task_, const Run& run)
         const Features features = features_of(scene_of(task_, run.scene), run.stepping, run.recording,
                                               material_features(*task_.body), channels_on_device(task_));
         if (is_explicit(run.stepping.method))
-          if (auto resident = Resident<T>::arrange(task_, features, run.shared_bytes, run.spans_per_range))
+          if (auto resident = Resident<T>::arrange(task_, features, run.device.shared_bytes, run.spans_per_range))
             return *std::move(resident);
-        return Streamed<T>(task_, features, Resident<T>::largest_chip(run.shared_bytes), run.spans_per_range);
+        return Streamed<T>(task_, features, Resident<T>::largest_chip(run.device.shared_bytes), run.spans_per_range);
       }()) {}
 
 template <class T>
@@ -156,6 +156,7 @@ std::vector<typename Portion<T>::ReadyLaunch> Portion<T>::ready_launches(KernelS
   }
   // kernels that are not yet compiled are compiled on all cores
   workers.for_each(launches.size(), [&](std::size_t i) {
+    work_on(run_.device);
     const Launch& launch = launches[i].launch;
     launches[i].kernel =
         kernels.get("cuda/device/resident.cu", "evodevo_run_resident", definitions(launch.features, launch.form));
@@ -172,7 +173,7 @@ std::vector<typename Portion<T>::ReadyLaunch> Portion<T>::ready_launches(KernelS
 template <class T>
 void Portion<T>::allow_largest_chip(cudaKernel_t kernel) const {
   check(cudaFuncSetAttribute(reinterpret_cast<const void*>(kernel), cudaFuncAttributeMaxDynamicSharedMemorySize,
-                             static_cast<int>(Resident<T>::largest_chip(run_.shared_bytes))),
+                             static_cast<int>(Resident<T>::largest_chip(run_.device.shared_bytes))),
         "asking for shared memory");
 }
 

@@ -33,7 +33,7 @@ struct Run {
   Scene scene;
   Stepping stepping;
   Recording recording;
-  std::size_t shared_bytes;       ///< shared memory that one block can have, bytes
+  Device device;
   std::uint64_t spans_per_range;  ///< check spans in a range of samples
 };
 

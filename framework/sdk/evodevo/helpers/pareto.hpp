@@ -39,7 +39,8 @@ inline std::vector<Point> scores_and_youth(std::span<const Candidate> rows) {
 /// Returns every point's Pareto layer: 0 for the front, 1 for the front of the remaining points, and so on (paper,
 /// section IV-F). Failed points share the last layer. The algorithm is the efficient non-dominated sort (Zhang et al.
 /// 2015): it takes the points in descending lexicographic order, in which only earlier points can dominate a point, and
-/// puts each into the first layer that has no point dominating it.
+/// puts each into the first layer that has no point dominating it. A binary search finds this layer, because a point
+/// that is dominated in one layer is dominated in all layers before it.
 inline std::vector<std::uint32_t> pareto_layers(const std::vector<Point>& points) {
   std::vector<std::uint32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -47,10 +48,10 @@ inline std::vector<std::uint32_t> pareto_layers(const std::vector<Point>& points
   std::vector<std::uint32_t> layer(points.size());
   std::vector<std::vector<std::uint32_t>> layers;
   for (const std::uint32_t i : order) {
-    const auto admits = [&](const std::vector<std::uint32_t>& members) {
-      return std::none_of(members.rbegin(), members.rend(), [&](auto j) { return dominates(points[j], points[i]); });
+    const auto has_dominating = [&](const std::vector<std::uint32_t>& members) {
+      return std::any_of(members.rbegin(), members.rend(), [&](auto j) { return dominates(points[j], points[i]); });
     };
-    const auto first = std::find_if(layers.begin(), layers.end(), admits);
+    const auto first = std::partition_point(layers.begin(), layers.end(), has_dominating);
     layer[i] = static_cast<std::uint32_t>(first - layers.begin());
     if (first == layers.end()) layers.emplace_back();
     layers[layer[i]].push_back(i);
@@ -146,13 +147,14 @@ inline std::vector<std::uint32_t> least_crowded(const std::vector<Point>& points
 inline std::vector<std::uint32_t> best_layers(const std::vector<Point>& points, const std::vector<std::uint32_t>& order,
                                               std::size_t count) {
   const auto layer = pareto_layers(points);
+  std::vector<std::vector<std::uint32_t>> layers;
+  for (const std::uint32_t i : order) {
+    layers.resize(std::max<std::size_t>(layers.size(), layer[i] + 1));
+    layers[layer[i]].push_back(i);
+  }
   std::vector<std::uint32_t> chosen;
-  for (std::uint32_t depth = 0; chosen.size() < count; ++depth) {
-    std::vector<std::uint32_t> members;
-    for (const std::uint32_t i : order)
-      if (layer[i] == depth) members.push_back(i);
-    if (members.empty()) break;
-    const auto stay = least_crowded(points, members, count - chosen.size());
+  for (std::size_t depth = 0; depth < layers.size() && chosen.size() < count; ++depth) {
+    const auto stay = least_crowded(points, layers[depth], count - chosen.size());
     chosen.insert(chosen.end(), stay.begin(), stay.end());
   }
   return chosen;

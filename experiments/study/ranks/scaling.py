@@ -1,0 +1,120 @@
+#!/usr/bin/env python3
+"""Simulates how fast a run gets with more and more GPUs, one rank for each, and draws the rate over the number of GPUs.
+
+  python3 experiments/study/ranks/scaling.py runs/ranks
+
+No such machine was measured. The simulation deals out jobs as framework/cluster/farm.cpp does, and takes its times from
+measurements of one GPU and of one core:
+
+- ROBOT_SECONDS: the life of a robot on an idle multiprocessor of an NVIDIA H200: 1.3e4 springs, 60,000 steps in the life
+  of experiments/evo-devo.toml, 220,000 in that of experiments/paper.toml, and 3.3e11 spring evaluations per second of
+  132 multiprocessors. Lives differ by SPREAD.
+- What rank 0 does alone for each robot (one core of an AMD EPYC; evo-devo.toml with 1,000 to 16,000 robots and lives
+  of almost no length; seconds_breed, seconds_select and seconds_archive in the record of the run).
+- Messages of 100 robots: packing and unpacking, measured by themselves, and a latency as between hosts.
+"""
+
+import argparse
+import csv
+import heapq
+import pathlib
+import random
+
+MULTIPROCESSORS = 132
+SPRING_EVALUATIONS = {"evo-devo.toml": 1.33e4 * 60_000, "paper.toml": 1.33e4 * 220_000}
+RATE = 3.3e11
+SPREAD = 0.25
+BREED = 14e-6  # s for each robot
+ARCHIVE = 42e-6
+SELECT = 9.5e-6
+PACK = 5e-6  # s for each robot of a message, both directions together
+MESSAGE = 20e-6  # s for each message, for rank 0
+LATENCY = 50e-6  # s, of each message
+JOBS, FAST = 16, 100  # jobs that a rank with a GPU has at once, and robots in each: worker.cpp
+GENERATION = 1024  # robots for each GPU, if the population grows with the GPUs
+
+
+def job_size(left, jobs):
+    """job_size() in farm.cpp."""
+    return min(left, max(FAST // 4, min(FAST, left // (2 * jobs))))
+
+
+def evaluation_seconds(gpus, robots, robot_seconds, rng):
+    """Returns the time from the first job to the last answer."""
+    free_at = [[0.0] * MULTIPROCESSORS for _ in range(gpus)]  # each a heap
+    requests = [(0.0, gpu) for _ in range(JOBS) for gpu in range(gpus)]  # when a rank can have a job, and which
+    leader_free, last, left = 0.0, 0.0, robots
+    while left:
+        at, gpu = heapq.heappop(requests)
+        count = job_size(left, JOBS * gpus)
+        left -= count
+        leader_free = max(leader_free, at) + MESSAGE + count * PACK
+        begin, end = leader_free + LATENCY, 0.0
+        for _ in range(count):
+            free = heapq.heappop(free_at[gpu])
+            done = max(free, begin) + robot_seconds * rng.lognormvariate(-SPREAD**2 / 2, SPREAD)
+            heapq.heappush(free_at[gpu], done)
+            end = max(end, done)
+        heapq.heappush(requests, (end + LATENCY, gpu))
+        last = max(last, end + LATENCY)
+    return max(last, leader_free)
+
+
+def rows_of(name, gpu_counts, robots_for):
+    robot_seconds = SPRING_EVALUATIONS[name.split(",")[0]] / RATE * MULTIPROCESSORS
+    for gpus in gpu_counts:
+        robots = robots_for(gpus)
+        alone = robots * (BREED + SELECT + ARCHIVE)
+        seconds = alone + evaluation_seconds(gpus, robots, robot_seconds, random.Random(gpus))
+        ideal = robots * robot_seconds / MULTIPROCESSORS / gpus
+        yield {"case": name, "gpus": gpus, "robots": robots, "seconds": f"{seconds:.4g}",
+               "robots_per_second": f"{robots / seconds:.4g}", "of_ideal": f"{ideal / seconds:.3f}"}
+
+
+def draw(rows, file):
+    import matplotlib
+
+    matplotlib.use("svg")
+    import matplotlib.pyplot as plt
+
+    figure, (rates, parts) = plt.subplots(1, 2, figsize=(10, 4), layout="constrained")
+    for case in dict.fromkeys(row["case"] for row in rows):
+        of_case = [row for row in rows if row["case"] == case]
+        gpus = [row["gpus"] for row in of_case]
+        rates.loglog(gpus, [float(row["robots_per_second"]) for row in of_case], "o-", markersize=3, label=case)
+        parts.semilogx(gpus, [float(row["of_ideal"]) for row in of_case], "o-", markersize=3, label=case)
+    rates.set_ylabel("robots per second")
+    parts.set_ylabel("part of the rate of so many GPUs (1)")
+    parts.set_ylim(0, 1)
+    rates.legend(fontsize=7)
+    for axes in (rates, parts):
+        axes.set_xlabel("GPUs")
+        axes.grid(linewidth=0.3)
+    figure.savefig(file)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("out", type=pathlib.Path, help="folder for scaling.csv and scaling.svg")
+    parser.add_argument("--most", type=int, default=10_000, help="largest number of GPUs")
+    given = parser.parse_args()
+    counts = [n for n in (1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 10_000) if n <= given.most]
+
+    def growing(gpus):
+        return GENERATION * gpus
+
+    rows = [
+        *rows_of("evo-devo.toml, 1,024 robots for each GPU", counts, growing),
+        *rows_of("paper.toml, 1,024 robots for each GPU", counts, growing),
+        *rows_of("evo-devo.toml, 16,384 robots", counts, lambda gpus: 16_384),
+    ]
+    given.out.mkdir(parents=True, exist_ok=True)
+    with open(given.out / "scaling.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    draw(rows, given.out / "scaling.svg")
+
+
+if __name__ == "__main__":
+    main()

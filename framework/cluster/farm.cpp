@@ -1,0 +1,315 @@
+#include "cluster/farm.hpp"
+
+#include <algorithm>
+#include <iostream>
+#include <numeric>
+#include <utility>
+
+#include "base/input_error.hpp"
+#include "cluster/wire.hpp"
+
+namespace evodevo {
+namespace {
+
+constexpr std::chrono::microseconds between_looks{500};  // at the channel
+constexpr std::chrono::seconds between_beats{1};
+constexpr int setup_patience = 4;  // ranks may load operators from a slow file system
+
+std::vector<message::JobItem> items_of(std::span<const Newborn> newborns) {
+  std::vector<message::JobItem> items;
+  for (const Newborn& newborn : newborns) items.push_back({newborn.id, newborn.generation, 0, *newborn.genome});
+  return items;
+}
+
+const std::string same_for_all = "; results would depend on which rank simulates a robot; give all ranks the same ";
+
+/// The text by which messages name a rank.
+std::string title(int rank, const std::string& host) { return "rank " + std::to_string(rank) + " on " + host; }
+
+void tell_all(Channel& channel, const std::string& bytes) {
+  for (int rank = 1; rank < channel.size(); ++rank) channel.send(rank, bytes);
+}
+
+std::string name_of(const OperatorUse& use) { return use.kind + " operator \"" + use.name + "\""; }
+
+}  // namespace
+
+std::size_t job_size(std::size_t left, std::size_t jobs, std::size_t fast) {
+  const std::size_t least = std::max<std::size_t>(1, fast / 4);
+  return std::min(left, std::clamp(left / (2 * std::max<std::size_t>(1, jobs)), least, std::max(least, fast)));
+}
+
+void end_run(Channel& channel) { tell_all(channel, message::packed(message::End{channel.given_up()})); }
+
+Farm::Farm(const Experiment& experiment, Simulator& simulator, Channel& channel, const message::Setup& setup,
+           std::chrono::seconds patience)
+    : channel_(channel),
+      patience_(patience),
+      worker_(experiment, simulator),
+      ranks_(static_cast<std::size_t>(channel.size())) {
+  ranks_.front().hello = worker_.hello();
+  ranks_.front().ready = true;
+  tell_all(channel_, message::packed(setup));
+  wait_for_hellos();
+}
+
+void Farm::wait_for_hellos() {
+  const Clock::time_point end = Clock::now() + setup_patience * patience_;
+  for (std::size_t missing = ranks_.size() - 1; missing > 0;) {
+    const std::optional<Received> received = channel_.receive();
+    if (!received) {
+      if (Clock::now() > end) throw std::runtime_error(who_is_missing());
+      worker_.wait(between_looks);
+      continue;
+    }
+    Rank& rank = ranks_[static_cast<std::size_t>(received->from)];
+    rank.heard = Clock::now();
+    if (message::kind_of(received->bytes) == message::Kind::failure)
+      fail(received->from, message::unpacked<message::Failure>(received->bytes));
+    if (message::kind_of(received->bytes) != message::Kind::hello) continue;  // a beat
+    check_program(received->from, message::sender_of(received->bytes));
+    rank.hello = message::unpacked<message::Hello>(received->bytes);
+    check(received->from, rank.hello);
+    rank.ready = true;
+    --missing;
+  }
+}
+
+std::string Farm::who_is_missing() const {
+  std::string missing;
+  for (std::size_t i = 0; i < ranks_.size(); ++i)
+    if (!ranks_[i].ready) missing += (missing.empty() ? "" : ", ") + std::to_string(i);
+  return "of " + std::to_string(ranks_.size()) + " ranks, these have not become ready in " +
+         std::to_string((setup_patience * patience_).count()) + " s: " + missing +
+         "; look whether their hosts and disks work, or start fewer ranks";
+}
+
+/// Throws if a rank has another program than this one.
+void Farm::check_program(int rank, const message::Hello& sender) const {
+  const message::Hello& here = worker_.hello();
+  if (sender.program != here.program)
+    throw InputError(title(rank, sender.host) + " runs another build of evodevo (" + sender.program +
+                     ") than rank 0 on " + here.host + " (" + here.program + ")" + same_for_all + "program");
+}
+
+/// Throws if a rank could give other results than this one.
+void Farm::check(int rank, const message::Hello& hello) const {
+  const Provenance& here = worker_.hello().provenance;
+  const Provenance& there = hello.provenance;
+  const std::string who = title(rank, hello.host);
+  for (std::size_t i = 0; i < here.operators.size(); ++i)
+    if (there.operators.at(i).hash != here.operators[i].hash)
+      throw InputError(who + " has another build of the " + name_of(here.operators[i]) + " (" +
+                       there.operators[i].hash + ") than rank 0 on " + worker_.hello().host + " (" +
+                       here.operators[i].hash + ")" + same_for_all + "libraries");
+  if (there.device != here.device)
+    throw InputError(who + " simulates on " + there.device + ", and rank 0 on " + worker_.hello().host +
+                     " simulates on " + here.device + same_for_all + "type of device, or choose one with --device");
+}
+
+std::vector<Result> Farm::evaluate(std::span<const Newborn> newborns, const Progress& progress) {
+  std::vector<Result> results;
+  for (message::Outcome& outcome : work(message::Work::evaluate, items_of(newborns), progress))
+    results.push_back(std::move(outcome.result));
+  return results;
+}
+
+std::vector<LifeRecord> Farm::records(std::span<const Newborn> newborns) {
+  std::vector<LifeRecord> records;
+  for (message::Outcome& outcome : work(message::Work::records, items_of(newborns), [](double) {}))
+    records.emplace_back(std::move(outcome.record));
+  return records;
+}
+
+void Farm::forget_records() {
+  worker_.forget_records();
+  tell_all(channel_, message::packed(message::Kind::forget));
+  keepers_.clear();
+}
+
+std::vector<Verification> Farm::verify(std::span<const Champion> champions) {
+  std::vector<message::JobItem> items;
+  for (const Champion& champion : champions)
+    items.push_back({champion.newborn.id, champion.newborn.generation, champion.fitness, *champion.newborn.genome});
+  std::vector<Verification> verifications;
+  for (message::Outcome& outcome : work(message::Work::verify, std::move(items), [](double) {}))
+    verifications.push_back(std::move(outcome.verification));
+  return verifications;
+}
+
+std::size_t Farm::verified_at_once() const {
+  std::size_t threads = 0;
+  for (const Rank& rank : ranks_)
+    if (!rank.lost) threads += rank.hello.threads;
+  return threads;
+}
+
+std::vector<message::Outcome> Farm::work(message::Work work, std::vector<message::JobItem> items,
+                                         const Progress& progress) {
+  Batch batch{work, std::move(items), {}, {}, 0};
+  batch.outcomes.resize(batch.items.size());
+  batch.left.resize(batch.items.size());
+  std::iota(batch.left.begin(), batch.left.end(), std::size_t{0});
+  if (work == message::Work::records) deal_to_keepers(batch);
+  for (; batch.done < batch.items.size(); worker_.wait(between_looks)) {
+    bool news = false;
+    do {
+      deal(batch);
+    } while (take_messages(batch) && (news = true));
+    news |= beat();
+    give_up_silent(batch);
+    if (news) progress(lives_done(batch) / static_cast<double>(batch.items.size()));
+  }
+  return std::move(batch.outcomes);
+}
+
+/// Gives jobs to ranks until none is free or nothing is left.
+void Farm::deal(Batch& batch) {
+  std::size_t all = 0;
+  for (const Rank& rank : ranks_)
+    if (!rank.lost) all += rank.hello.jobs;
+  while (!batch.left.empty()) {
+    const std::optional<int> rank = free_rank();
+    if (!rank) return;
+    const auto count = static_cast<std::ptrdiff_t>(
+        job_size(batch.left.size(), all, ranks_[static_cast<std::size_t>(*rank)].hello.lives));
+    std::vector<std::size_t> items(batch.left.begin(), batch.left.begin() + count);
+    batch.left.erase(batch.left.begin(), batch.left.begin() + count);
+    assign(*rank, std::move(items), batch);
+  }
+}
+
+/// Returns the rank that has the smallest part of the jobs that it does at once; nullopt if all have enough.
+std::optional<int> Farm::free_rank() const {
+  std::optional<int> best;
+  double least = 1;
+  for (std::size_t i = 0; i < ranks_.size(); ++i) {
+    const double part = static_cast<double>(ranks_[i].jobs) / static_cast<double>(ranks_[i].hello.jobs);
+    if (ranks_[i].lost || part >= least) continue;
+    least = part;
+    best = static_cast<int>(i);
+  }
+  return best;
+}
+
+/// Asks the ranks that keep records for them. Records that nobody keeps are left.
+void Farm::deal_to_keepers(Batch& batch) {
+  std::map<int, std::vector<std::size_t>> kept;
+  std::erase_if(batch.left, [&](std::size_t item) {
+    const auto keeper = keepers_.find(batch.items[item].id);
+    if (keeper == keepers_.end()) return false;
+    kept[keeper->second].push_back(item);
+    return true;
+  });
+  constexpr std::ptrdiff_t most = 100;  // records in a message
+  for (const auto& [rank, items] : kept)
+    for (auto begin = items.begin(); begin != items.end();) {
+      const auto end = begin + std::min(most, items.end() - begin);
+      assign(rank, {begin, end}, batch);
+      begin = end;
+    }
+}
+
+void Farm::assign(int rank, std::vector<std::size_t> items, const Batch& batch) {
+  message::Job job{next_job_++, batch.work, {}};
+  for (const std::size_t item : items) job.items.push_back(batch.items[item]);
+  ++ranks_[static_cast<std::size_t>(rank)].jobs;
+  jobs_[job.number] = {rank, std::move(items)};
+  if (rank == 0)
+    worker_.start(std::move(job));
+  else
+    channel_.send(rank, message::packed(job));
+}
+
+/// Takes all answers and messages that are there. Returns whether there was an answer.
+bool Farm::take_messages(Batch& batch) {
+  bool answered = false;
+  while (std::optional<message::Answer> answer = worker_.answer()) {
+    take(0, *std::move(answer), batch);
+    answered = true;
+  }
+  while (const std::optional<Received> received = channel_.receive()) {
+    Rank& rank = ranks_[static_cast<std::size_t>(received->from)];
+    if (rank.lost) continue;
+    rank.heard = Clock::now();
+    const message::Kind kind = message::kind_of(received->bytes);
+    if (kind == message::Kind::failure) fail(received->from, message::unpacked<message::Failure>(received->bytes));
+    if (kind == message::Kind::beat) rank.beat = message::unpacked<message::Beat>(received->bytes);
+    if (kind != message::Kind::answer) continue;
+    take(received->from, message::unpacked<message::Answer>(received->bytes), batch);
+    answered = true;
+  }
+  return answered;
+}
+
+void Farm::take(int rank, message::Answer answer, Batch& batch) {
+  const auto job = jobs_.extract(answer.job);
+  if (job.empty() || answer.outcomes.size() != job.mapped().items.size())
+    throw WireError("rank " + std::to_string(rank) + " answers a question that was not asked");
+  const std::vector<std::size_t>& items = job.mapped().items;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    batch.outcomes[items[i]] = std::move(answer.outcomes[i]);
+    if (batch.work == message::Work::evaluate) keepers_[batch.items[items[i]].id] = rank;
+  }
+  batch.done += items.size();
+  Rank& from = ranks_[static_cast<std::size_t>(rank)];
+  from.beat.busy = answer.busy;
+  --from.jobs;
+  if (batch.work == message::Work::evaluate) from.lives += items.size();
+}
+
+/// Tells the others every second that this rank is alive. Returns whether it was time.
+bool Farm::beat() {
+  if (Clock::now() < next_beat_) return false;
+  ranks_.front().beat = worker_.beat();
+  tell_all(channel_, message::packed(ranks_.front().beat));
+  next_beat_ = Clock::now() + between_beats;
+  return true;
+}
+
+/// Takes the jobs of ranks that have fallen silent back. Time in which this rank has not listened does not count.
+void Farm::give_up_silent(Batch& batch) {
+  const bool has_listened = Clock::now() - listened_ < between_beats;
+  listened_ = Clock::now();
+  if (!has_listened)
+    for (Rank& rank : ranks_) rank.heard = listened_;
+  for (std::size_t i = 1; i < ranks_.size(); ++i) {
+    Rank& rank = ranks_[i];
+    if (rank.lost || Clock::now() - rank.heard <= patience_) continue;
+    std::cerr << "warning: " + title(static_cast<int>(i), rank.hello.host) + " has said nothing for " +
+                     std::to_string(patience_.count()) + " s and is given up; the other ranks do its work\n";
+    rank.lost = true;
+    channel_.give_up(static_cast<int>(i));
+    std::erase_if(keepers_, [&](const auto& keeper) { return keeper.second == static_cast<int>(i); });
+    std::erase_if(jobs_, [&](const auto& job) {
+      if (job.second.rank != static_cast<int>(i)) return false;
+      batch.left.insert(batch.left.begin(), job.second.items.begin(), job.second.items.end());
+      return true;
+    });
+  }
+}
+
+double Farm::lives_done(const Batch& batch) const {
+  auto done = static_cast<double>(batch.done);
+  for (const Rank& rank : ranks_)
+    if (!rank.lost && rank.jobs > 0) done += rank.beat.done;
+  // a beat may count lives whose answers have come since
+  return std::min(done, static_cast<double>(batch.items.size()));
+}
+
+std::vector<Share> Farm::shares() const {
+  std::vector<Share> shares;
+  for (std::size_t i = 0; i < ranks_.size(); ++i) {
+    const Rank& rank = ranks_[i];
+    shares.push_back({static_cast<int>(i), rank.hello.host, rank.lives, rank.beat.busy, rank.lost});
+  }
+  return shares;
+}
+
+void Farm::fail(int rank, const message::Failure& failure) const {
+  const std::string text = title(rank, failure.host) + ": " + failure.reason;
+  if (failure.of_input) throw InputError(text);
+  throw std::runtime_error(text);
+}
+
+}  // namespace evodevo

@@ -1,0 +1,143 @@
+#include "cluster/messages.hpp"
+
+#include "cluster/wire.hpp"
+
+namespace evodevo {
+
+template <class Wire>
+void for_each_part(Wire& wire, Block& block) {
+  wire(block.type, block.first, block.count, block.id);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, Genome& genome) {
+  wire(genome.genes, genome.blocks);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, TestScore& score) {
+  wire(score.scenario, score.repeat, score.objective, score.value);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, Result& result) {
+  wire(result.status, result.reason, result.ended_at, result.objectives, result.spring_evaluations, result.measures,
+       result.tests);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, Trial& trial) {
+  wire(trial.name, trial.status, trial.reason, trial.value);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, Verification& verification) {
+  wire(verification.individual, verification.fitness, verification.trials);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, OperatorUse& use) {
+  wire(use.kind, use.name, use.version, use.hash, use.label);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, Provenance& provenance) {
+  wire(provenance.device, provenance.version, provenance.program, provenance.operators);
+}
+
+namespace message {
+
+template <class Wire>
+void for_each_part(Wire& wire, Setup& setup) {
+  wire(setup.text, setup.name, setup.files, setup.is_record);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, Hello& hello) {
+  wire(hello.program, hello.host, hello.provenance, hello.threads, hello.jobs, hello.lives);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, JobItem& item) {
+  wire(item.id, item.generation, item.fitness, item.genome);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, Job& job) {
+  wire(job.number, job.work, job.items);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, Outcome& outcome) {
+  wire(outcome.result, outcome.record, outcome.verification);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, Answer& answer) {
+  wire(answer.job, answer.outcomes, answer.busy);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, Beat& beat) {
+  wire(beat.done, beat.busy);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, End& end) {
+  wire(end.lost);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, Failure& failure) {
+  wire(failure.host, failure.reason, failure.of_input);
+}
+
+template <class Message>
+std::string packed(const Message& message) {
+  WireWriter writer;
+  writer(Message::kind, message);
+  return std::move(writer).bytes();
+}
+
+std::string packed(Kind kind) {
+  WireWriter writer;
+  writer(kind);
+  return std::move(writer).bytes();
+}
+
+Kind kind_of(const std::string& bytes) { return WireReader(bytes).next<Kind>(); }
+
+Hello sender_of(const std::string& hello) {
+  WireReader reader(hello);
+  Hello sender;
+  Kind kind{};
+  reader(kind, sender.program, sender.host);
+  return sender;
+}
+
+template <class Message>
+Message unpacked(const std::string& bytes) {
+  WireReader reader(bytes);
+  if (reader.next<Kind>() != Message::kind) throw WireError("a message between ranks is of another kind");
+  Message message = reader.next<Message>();
+  reader.expect_end();
+  return message;
+}
+
+template std::string packed(const Setup&);
+template std::string packed(const Hello&);
+template std::string packed(const Job&);
+template std::string packed(const Answer&);
+template std::string packed(const Beat&);
+template std::string packed(const End&);
+template std::string packed(const Failure&);
+template Setup unpacked(const std::string&);
+template Hello unpacked(const std::string&);
+template Job unpacked(const std::string&);
+template Answer unpacked(const std::string&);
+template Beat unpacked(const std::string&);
+template End unpacked(const std::string&);
+template Failure unpacked(const std::string&);
+
+}  // namespace message
+}  // namespace evodevo

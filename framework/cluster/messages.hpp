@@ -1,0 +1,123 @@
+// What the ranks of a run tell each other.
+//
+//   rank 0 ─► others   Setup once; then Job, forget; end
+//   others ─► rank 0   Hello once; then Answer, Beat; Failure
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "evolution/evaluator.hpp"
+#include "evolution/provenance.hpp"
+
+namespace evodevo::message {
+
+enum class Kind : std::uint8_t { setup, hello, job, answer, beat, forget, failure, end };
+
+/// The experiment of the run, from which each rank makes its own operators.
+struct Setup {
+  std::string text;  ///< Experiment::resolved
+  std::string name;
+  FileContents files;
+  bool is_record = false;  ///< ExperimentSource::is_record
+
+  static constexpr auto kind = Kind::setup;
+};
+
+/// What a rank is, and how much work it wants to have.
+struct Hello {
+  std::string program;  ///< hash of the program's file; ranks with another program cannot read the rest
+  std::string host;
+  Provenance provenance;
+  std::uint64_t threads = 1;
+  std::uint64_t jobs = 1;   ///< number of jobs that it does at the same time
+  std::uint64_t lives = 1;  ///< number of lives in a job with which it is fast
+
+  static constexpr auto kind = Kind::hello;
+};
+
+enum class Work : std::uint8_t { evaluate, records, verify };
+
+/// An individual to evaluate or verify, or whose record is wanted.
+struct JobItem {
+  std::uint32_t id = 0, generation = 0;
+  double fitness = 0;  ///< Champion::fitness
+  Genome genome;
+};
+
+struct Job {
+  std::uint64_t number = 0;  ///< jobs with lower numbers have priority
+  Work work = Work::evaluate;
+  std::vector<JobItem> items;
+
+  static constexpr auto kind = Kind::job;
+};
+
+/// The outcome of one item, of which only the part that the job asks for is there.
+struct Outcome {
+  Result result = {};  ///< without its record
+  std::string record = {};
+  Verification verification = {};
+};
+
+struct Answer {
+  std::uint64_t job = 0;
+  std::vector<Outcome> outcomes;  ///< in the order of the job's items
+  double busy = 0;                ///< Beat::busy
+
+  static constexpr auto kind = Kind::answer;
+};
+
+/// Sent every second, so that rank 0 knows that the rank is alive.
+struct Beat {
+  double done = 0;  ///< how many lives of unfinished jobs have been simulated; parts of lives count
+  double busy = 0;  ///< time during which the rank had at least one job, s
+
+  static constexpr auto kind = Kind::beat;
+};
+
+/// The run has ended. A rank that gets it leaves the channel.
+struct End {
+  std::vector<int> lost;  ///< ranks that have been given up, for which nobody waits
+
+  static constexpr auto kind = Kind::end;
+};
+
+/// Why a rank cannot go on.
+struct Failure {
+  std::string host, reason;
+  bool of_input = false;  ///< whether the reason is bad input, such as a missing operator
+
+  static constexpr auto kind = Kind::failure;
+};
+
+/// Returns a message as bytes.
+template <class Message>
+std::string packed(const Message& message);
+std::string packed(Kind kind);  ///< of a message without content: forget
+
+/// Returns the kind of a message. Throws WireError if there is none.
+Kind kind_of(const std::string& bytes);
+/// Returns the program and the host of a Hello, which can be read even if it comes from another program.
+Hello sender_of(const std::string& hello);
+/// Returns the content of a message of the kind Message::kind. Throws WireError if the bytes are not such a message.
+template <class Message>
+Message unpacked(const std::string& bytes);
+
+extern template std::string packed(const Setup&);
+extern template std::string packed(const Hello&);
+extern template std::string packed(const Job&);
+extern template std::string packed(const Answer&);
+extern template std::string packed(const Beat&);
+extern template std::string packed(const End&);
+extern template std::string packed(const Failure&);
+extern template Setup unpacked(const std::string&);
+extern template Hello unpacked(const std::string&);
+extern template Job unpacked(const std::string&);
+extern template Answer unpacked(const std::string&);
+extern template Beat unpacked(const std::string&);
+extern template End unpacked(const std::string&);
+extern template Failure unpacked(const std::string&);
+
+}  // namespace evodevo::message

@@ -1,0 +1,51 @@
+#include "evolution/evaluator.hpp"
+
+#include <utility>
+
+namespace evodevo {
+
+std::vector<Result> LocalEvaluator::evaluate(std::span<const Newborn> newborns, const Progress& progress) {
+  std::vector<Result> results = evaluation_.evaluate(newborns, progress);
+  const std::lock_guard lock(mutex_);
+  for (std::size_t i = 0; i < newborns.size(); ++i)
+    kept_[newborns[i].id] = std::exchange(results[i].record, LifeRecord());
+  return results;
+}
+
+std::vector<LifeRecord> LocalEvaluator::records(std::span<const Newborn> newborns) {
+  std::vector<LifeRecord> records(newborns.size());
+  std::vector<Newborn> lost;
+  std::vector<std::size_t> places;  // of the lost, in `records`
+  {
+    const std::lock_guard lock(mutex_);
+    for (std::size_t i = 0; i < newborns.size(); ++i) {
+      if (const auto kept = kept_.find(newborns[i].id); kept != kept_.end()) {
+        records[i] = kept->second;
+      } else {
+        lost.push_back(newborns[i]);
+        places.push_back(i);
+      }
+    }
+  }
+  std::vector<Life> lives = evaluation_.birth.of(lost);
+  evaluation_.development.run(lives, [](double) {});
+  for (std::size_t i = 0; i < lives.size(); ++i) records[places[i]] = std::move(lives[i].result.record);
+  return records;
+}
+
+void LocalEvaluator::forget_records() {
+  const std::lock_guard lock(mutex_);
+  kept_.clear();
+}
+
+std::vector<Verification> LocalEvaluator::verify(std::span<const Champion> champions) {
+  return verify_marks(experiment_, simulator_, exact(), champions);
+}
+
+const ExactSimulators& LocalEvaluator::exact() {
+  const std::lock_guard lock(mutex_);
+  if (!exact_.same_method) exact_ = exact_simulators(experiment_);
+  return exact_;
+}
+
+}  // namespace evodevo

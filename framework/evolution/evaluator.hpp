@@ -1,0 +1,66 @@
+// What the generation loop needs to know of individuals, and how one process finds it.
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "life/evaluation.hpp"
+#include "life/verification.hpp"
+
+namespace evodevo {
+
+/// Evaluates and verifies individuals. Implementations are LocalEvaluator, for one process, and Farm
+/// (cluster/farm.hpp), for many. Results do not depend on the implementation, nor on what else is evaluated.
+class Evaluator {
+ public:
+  virtual ~Evaluator() = default;
+
+  /// Returns the results in the order of the newborns, without the records of their lives. These are kept where the
+  /// lives were simulated, because the records of a whole population would take too much memory. Calls `progress` with
+  /// the fraction that is done, 0 to 1.
+  virtual std::vector<Result> evaluate(std::span<const Newborn> newborns, const Progress& progress) = 0;
+  /// Returns the records of lives, in the order of the newborns. Lives whose records are not kept are simulated again.
+  virtual std::vector<LifeRecord> records(std::span<const Newborn> newborns) = 0;
+  /// Forgets all records that are kept.
+  virtual void forget_records() = 0;
+
+  /// Verifies champions as verify_marks() does, and returns what it found in their order.
+  virtual std::vector<Verification> verify(std::span<const Champion> champions) = 0;
+  /// The number of champions that can be verified in the time that one takes.
+  virtual std::size_t verified_at_once() const = 0;
+
+  /// The device, as Simulator::device() names it; all processes have equal ones.
+  virtual std::string device() const = 0;
+  /// Of this process.
+  virtual PhaseTimes phase_times() const = 0;
+};
+
+/// Evaluates and verifies in this process. Several threads may use it. Experiment and simulator must outlive it.
+class LocalEvaluator final : public Evaluator {
+ public:
+  LocalEvaluator(const Experiment& experiment, Simulator& simulator)
+      : experiment_(experiment), simulator_(simulator), evaluation_(experiment, simulator) {}
+
+  std::vector<Result> evaluate(std::span<const Newborn> newborns, const Progress& progress) override;
+  std::vector<LifeRecord> records(std::span<const Newborn> newborns) override;
+  void forget_records() override;
+  std::vector<Verification> verify(std::span<const Champion> champions) override;
+  std::size_t verified_at_once() const override { return simulator_.workers().count(); }
+  std::string device() const override { return simulator_.device(); }
+  PhaseTimes phase_times() const override { return evaluation_.phase_times(); }
+
+ private:
+  const ExactSimulators& exact();
+
+  const Experiment& experiment_;
+  Simulator& simulator_;
+  Evaluation evaluation_;
+  std::mutex mutex_;
+  std::map<std::uint32_t, LifeRecord> kept_;  ///< by id
+  ExactSimulators exact_;                     ///< made when the first individual is verified
+};
+
+}  // namespace evodevo
