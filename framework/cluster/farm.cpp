@@ -138,10 +138,10 @@ std::vector<Verification> Farm::verify(std::span<const Champion> champions) {
 }
 
 std::size_t Farm::verified_at_once() const {
-  std::size_t threads = 0;
+  std::size_t champions = 0;
   for (const Rank& rank : ranks_)
-    if (!rank.lost) threads += rank.hello.threads;
-  return threads;
+    if (!rank.lost) champions += rank.hello.verified_at_once;
+  return champions;
 }
 
 std::vector<message::Outcome> Farm::work(message::Work work, std::vector<message::JobItem> items,

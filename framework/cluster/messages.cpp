@@ -54,7 +54,7 @@ void for_each_part(Wire& wire, Setup& setup) {
 
 template <class Wire>
 void for_each_part(Wire& wire, Hello& hello) {
-  wire(hello.program, hello.host, hello.provenance, hello.threads, hello.jobs, hello.lives);
+  wire(hello.program, hello.host, hello.provenance, hello.jobs, hello.lives, hello.verified_at_once);
 }
 
 template <class Wire>

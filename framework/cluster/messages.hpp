@@ -30,9 +30,9 @@ struct Hello {
   std::string program;  ///< hash of the program's file; ranks with another program cannot read the rest
   std::string host;
   Provenance provenance;
-  std::uint64_t threads = 1;
-  std::uint64_t jobs = 1;   ///< number of jobs that it does at the same time
-  std::uint64_t lives = 1;  ///< number of lives in a job with which it is fast
+  std::uint64_t jobs = 1;              ///< number of jobs that it does at the same time
+  std::uint64_t lives = 1;             ///< number of lives in a job with which it is fast
+  std::uint64_t verified_at_once = 1;  ///< Evaluator::verified_at_once()
 
   static constexpr auto kind = Kind::hello;
 };

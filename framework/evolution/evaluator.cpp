@@ -4,6 +4,12 @@
 
 namespace evodevo {
 
+std::size_t lives_at_once(Simulator& simulator) {
+  constexpr std::size_t of_a_gpu = 100;  // GPUs for computing have this many multiprocessors or a few more
+  const std::optional<DeviceUse> gpus = simulator.device_use();
+  return gpus ? of_a_gpu * gpus->devices : simulator.workers().count();
+}
+
 std::vector<Result> LocalEvaluator::evaluate(std::span<const Newborn> newborns, const Progress& progress) {
   std::vector<Result> results = evaluation_.evaluate(newborns, progress);
   const std::lock_guard lock(mutex_);

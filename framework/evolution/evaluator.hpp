@@ -29,7 +29,7 @@ class Evaluator {
 
   /// Verifies champions as verify_marks() does, and returns what it found in their order.
   virtual std::vector<Verification> verify(std::span<const Champion> champions) = 0;
-  /// The number of champions that can be verified in the time that one takes.
+  /// About the number of champions that can be verified in the time that one takes.
   virtual std::size_t verified_at_once() const = 0;
 
   /// The device, as Simulator::device() names it; all processes have equal ones.
@@ -37,6 +37,10 @@ class Evaluator {
   /// Of this process.
   virtual PhaseTimes phase_times() const = 0;
 };
+
+/// About the number of lives that a simulator simulates in the time that one takes: its threads on a CPU, its
+/// multiprocessors on a GPU.
+std::size_t lives_at_once(Simulator& simulator);
 
 /// Evaluates and verifies in this process. Several threads may use it. Experiment and simulator must outlive it.
 class LocalEvaluator final : public Evaluator {
@@ -48,7 +52,7 @@ class LocalEvaluator final : public Evaluator {
   std::vector<LifeRecord> records(std::span<const Newborn> newborns) override;
   void forget_records() override;
   std::vector<Verification> verify(std::span<const Champion> champions) override;
-  std::size_t verified_at_once() const override { return simulator_.workers().count(); }
+  std::size_t verified_at_once() const override { return lives_at_once(simulator_); }
   std::string device() const override { return simulator_.device(); }
   PhaseTimes phase_times() const override { return evaluation_.phase_times(); }
 

@@ -54,8 +54,9 @@ std::vector<FrontVerification::Ranked> FrontVerification::ranked(std::vector<Ind
   return line;
 }
 
-/// Verifies the individuals on the front that have not been verified yet. Threads that these leave idle verify some of
-/// the next layers, which come to the front after refusals. What is found of them counts only if they do.
+/// Verifies the individuals on the front that have not been verified yet. Where these leave threads or GPUs idle, some
+/// of the next layers, which come to the front after refusals, are verified too. What is found of them counts only if
+/// they do.
 void FrontVerification::verify_front(const std::vector<Ranked>& line, std::uint32_t generation) {
   std::vector<Champion> champions;
   for (const auto& [individual, layer] : line) {

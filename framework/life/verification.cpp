@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 
 #include "cpu/simulator.hpp"
+#include "experiment/device.hpp"
 #include "life/birth.hpp"
 
 namespace evodevo {
@@ -30,66 +32,88 @@ void still_muscles(Life& life) {
   for (Material& material : life.living.body.materials) material.amplitude = 0;
 }
 
-/// Runs the trials of matured champions and collects the results.
-class Trials {
+/// Repeats final evaluations of matured champions, each time with one thing changed. Several threads may use it.
+class Repetition {
  public:
-  Trials(const Experiment& experiment, std::span<const Champion> champions, Matured matured)
-      : experiment_(experiment), matured_(std::move(matured)) {
-    for (const Champion& champion : champions) verifications_.push_back({champion.newborn.id, champion.fitness, {}});
-  }
+  Repetition(const Experiment& experiment, Matured matured) : experiment_(experiment), matured_(std::move(matured)) {}
 
-  /// Applies `change` to a copy of every matured life and repeats its final evaluation.
+  /// Applies `change` to a copy of every matured life and repeats its final evaluation. Returns a trial for each
+  /// champion.
   template <class Change>
-  void add(const std::string& name, Simulator& simulator, const Conditions& conditions, const Change& change) {
+  std::vector<Trial> with(const std::string& name, Simulator& simulator, const Conditions& conditions,
+                          const Change& change) const {
     const Evaluation evaluation(experiment_, simulator, conditions);
     const auto change_all = [&](std::vector<Life>& lives) {
-      for (Life& life : lives) {
-        if (!life.alive()) continue;
-        change(life);
-        evaluation.simulation.choose_step(life);
-      }
+      simulator.workers().for_each(lives.size(), [&](std::size_t i) {
+        if (!lives[i].alive()) return;
+        change(lives[i]);
+        evaluation.simulation.choose_step(lives[i]);
+      });
     };
     Matured matured = matured_;
     change_all(matured.lives);
     for (auto& [scenario, lives] : matured.in_scenarios) change_all(lives);
     evaluation.measurement.run(matured, unwatched);
-    for (std::size_t i = 0; i < matured.lives.size(); ++i) {
-      const Result& result = matured.lives[i].result;
-      Trial trial{name, result.status, result.reason, std::nullopt};
-      if (result.status == Status::ok) trial.value = result.objectives.front();
-      verifications_[i].trials.push_back(std::move(trial));
+    std::vector<Trial> trials;
+    for (const Life& life : matured.lives) {
+      trials.push_back({name, life.result.status, life.result.reason, std::nullopt});
+      if (life.result.status == Status::ok) trials.back().value = life.result.objectives.front();
     }
+    return trials;
   }
 
-  /// Adds the trials that find artefacts of the step and the method.
-  void add_other_steps(const ExactSimulators& exact) {
-    const auto unprepare = [](Life& life) { life.living.preparation = nullptr; };  // it belongs to the run's simulator
-    const Conditions as_in_the_run(experiment_);
-    Conditions quarter = as_in_the_run;
+  /// The trials that find artefacts of the step and the method.
+  std::vector<Trial> quarter_step(Simulator& same_method) const {
+    Conditions quarter = as_in_the_run_;
     quarter.step.refine *= step_parts;
-    add("quarter-step", *exact.same_method, quarter, unprepare);
-    Conditions other = as_in_the_run;
-    other.method = other_method(as_in_the_run.method);
+    return with("quarter-step", same_method, quarter, unprepare);
+  }
+  std::vector<Trial> other_step(Simulator& another_method) const {
+    Conditions other = as_in_the_run_;
+    other.method = other_method(as_in_the_run_.method);
     other.step = {.dt = std::nullopt, .refine = step_parts};
-    add("other-method", *exact.other_method, other, unprepare);
+    return with("other-method", another_method, other, unprepare);
   }
 
-  /// Adds the trials that find individuals which do not move by themselves.
-  void add_passive(Simulator& simulator) {
-    const Conditions as_in_the_run(experiment_);
-    add("no-muscles", simulator, as_in_the_run, still_muscles);
-    Conditions later = as_in_the_run;
+  /// The trials that find individuals which do not move by themselves.
+  std::vector<Trial> no_muscles(Simulator& simulator) const {
+    return with("no-muscles", simulator, as_in_the_run_, still_muscles);
+  }
+  std::vector<Trial> settled(Simulator& simulator) const {
+    Conditions later = as_in_the_run_;
     later.later = more_settling;
-    add("settled", simulator, later, [](Life&) {});
+    return with("settled", simulator, later, [](Life&) {});
   }
 
-  std::vector<Verification> take() { return std::move(verifications_); }
+  const Conditions& as_in_the_run() const { return as_in_the_run_; }
 
  private:
+  static void unprepare(Life& life) { life.living.preparation = nullptr; }  // it belongs to the run's simulator
+
   const Experiment& experiment_;
-  Matured matured_;
-  std::vector<Verification> verifications_;
+  const Matured matured_;
+  const Conditions as_in_the_run_{experiment_};
 };
+
+/// Returns a verification for each champion; each element of `trials` has one trial for each champion.
+std::vector<Verification> verifications(std::span<const Champion> champions, std::vector<std::vector<Trial>> trials) {
+  std::vector<Verification> verifications;
+  for (std::size_t i = 0; i < champions.size(); ++i) {
+    verifications.push_back({champions[i].newborn.id, champions[i].fitness, {}});
+    for (std::vector<Trial>& of_all : trials) verifications.back().trials.push_back(std::move(of_all[i]));
+  }
+  return verifications;
+}
+
+/// Makes simulators in double precision with `make`, which takes a Stepping.
+template <class Make>
+ExactSimulators exact_simulators_by(const Experiment& experiment, const Make& make) {
+  const auto simulator = [&](Method method) {
+    return make(Stepping{method, Precision::float64, experiment.stepping.materials});
+  };
+  const Method method = experiment.stepping.method;
+  return {simulator(method), simulator(other_method(method))};
+}
 
 const Trial* find(const Verification& verification, const std::string& name) {
   const auto found = std::find_if(verification.trials.begin(), verification.trials.end(),
@@ -106,34 +130,38 @@ bool is_verifiable(const Experiment& experiment) {
 
 std::vector<Verification> verify(const Experiment& experiment, Simulator& simulator,
                                  std::span<const Champion> champions) {
-  const Conditions as_in_the_run(experiment);
+  const ExactSimulators exact = exact_simulators_by(experiment, [&](const Stepping& stepping) {
+    return make_cpu_simulator(experiment.scene, stepping, static_cast<int>(experiment.threads));
+  });
   const Evaluation run(experiment, simulator);
-  Trials trials(experiment, champions, matured(run, champions));
-  trials.add("again", simulator, as_in_the_run, [](Life&) {});
-  trials.add_other_steps(exact_simulators(experiment));
+  const Repetition repetition(experiment, matured(run, champions));
+  std::vector<std::vector<Trial>> trials;
+  trials.push_back(repetition.with("again", simulator, repetition.as_in_the_run(), [](Life&) {}));
+  trials.push_back(repetition.quarter_step(*exact.same_method));
+  trials.push_back(repetition.other_step(*exact.other_method));
   for (std::uint32_t i = 0; i < perturbed_starts; ++i)
-    trials.add("perturbed-" + std::to_string(i + 1), simulator, as_in_the_run,
-               [&](Life& life) { perturb(life, experiment, i); });
-  trials.add_passive(simulator);
-  return trials.take();
+    trials.push_back(repetition.with("perturbed-" + std::to_string(i + 1), simulator, repetition.as_in_the_run(),
+                                     [&](Life& life) { perturb(life, experiment, i); }));
+  trials.push_back(repetition.no_muscles(simulator));
+  trials.push_back(repetition.settled(simulator));
+  return verifications(champions, std::move(trials));
 }
 
 ExactSimulators exact_simulators(const Experiment& experiment) {
-  const auto simulator = [&](Method method) {
-    const Stepping stepping{method, Precision::float64, experiment.stepping.materials};
-    return make_cpu_simulator(experiment.scene, stepping, static_cast<int>(experiment.threads));
-  };
-  const Method method = experiment.stepping.method;
-  return {simulator(method), simulator(other_method(method))};
+  return exact_simulators_by(experiment,
+                             [&](const Stepping& stepping) { return make_simulator(experiment, stepping); });
 }
 
 std::vector<Verification> verify_marks(const Experiment& experiment, Simulator& simulator, const ExactSimulators& exact,
                                        std::span<const Champion> champions) {
   const Evaluation run(experiment, simulator);
-  Trials trials(experiment, champions, matured(run, champions));
-  trials.add_other_steps(exact);
-  trials.add_passive(simulator);
-  return trials.take();
+  const Repetition repetition(experiment, matured(run, champions));
+  const auto beside = [](auto trial) { return std::async(std::launch::async | std::launch::deferred, trial); };
+  auto quarter_step = beside([&] { return repetition.quarter_step(*exact.same_method); });
+  auto other_step = beside([&] { return repetition.other_step(*exact.other_method); });
+  auto settled = beside([&] { return repetition.settled(simulator); });
+  std::vector<Trial> no_muscles = repetition.no_muscles(simulator);
+  return verifications(champions, {quarter_step.get(), other_step.get(), std::move(no_muscles), settled.get()});
 }
 
 bool held(const Verification& verification, const Trial& trial, bool maximise) {

@@ -38,11 +38,12 @@ struct Verification {
 /// say nothing of an objective that is measured within the life.
 bool is_verifiable(const Experiment& experiment);
 
-/// Simulators on the CPU and in double precision, for the trials quarter-step and other-method.
+/// Simulators in double precision, for the trials quarter-step and other-method.
 struct ExactSimulators {
   std::unique_ptr<Simulator> same_method, other_method;
 };
 
+/// Makes the simulators for verify_marks(), on the experiment's device. Throws ConfigError as make_simulator() does.
 ExactSimulators exact_simulators(const Experiment& experiment);
 
 /// Simulates the development of champions as in the run, on `simulator`. Then repeats the final evaluation in the
@@ -60,7 +61,9 @@ std::vector<Verification> verify(const Experiment& experiment, Simulator& simula
                                  std::span<const Champion> champions);
 
 /// Like verify(), but only with the trials on which marks() depends: quarter-step, other-method, no-muscles and
-/// settled. The first two run on `exact`.
+/// settled. The first two run on `exact`, so that a GPU can do them for the whole front in the time of one: their steps
+/// are so many that CPUs would take far longer than the evaluations of a generation take on a GPU. The trials run at
+/// the same time.
 std::vector<Verification> verify_marks(const Experiment& experiment, Simulator& simulator, const ExactSimulators& exact,
                                        std::span<const Champion> champions);
 

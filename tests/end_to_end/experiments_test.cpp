@@ -33,7 +33,7 @@ TEST(Experiments, EachRunsForTwoGenerationsWhenShrunk) {
     EXPECT_EQ(archive.generations().size(), 2u);
     EXPECT_GT(archive.statuses().at("ok"), 0);
   }
-  EXPECT_EQ(count, 41);
+  EXPECT_EQ(count, 42);
 }
 
 TEST(Experiments, TheEnvironmentsDifferInTheirSceneAlone) {

@@ -4,8 +4,8 @@
   tools/evodevo run experiments/quickstart.toml   # builds evodevo
   EVODEVO_PROGRAM=build/cpu/bin/evodevo experiments/study/walker/ingredients.py runs/walker-study
 
-The walkers are those of experiments/walker.toml with fewer points and smaller populations. Every run has the same number
-of evaluations, and verifies whoever would enter the front. A champion that does not hold at the end counts for nothing.
+The walkers are those of neural.toml. Every run has the same number of evaluations, and verifies whoever would enter the
+front. A champion that does not hold at the end counts for nothing.
 The same command continues a study that was stopped.
 """
 
@@ -19,9 +19,7 @@ import statistics
 import subprocess
 
 HERE = pathlib.Path(__file__).resolve().parent
-WALKER = HERE.parents[1] / "walker.toml"
-EVERYWHERE = {"experiment.evaluations": 400, "experiment.random_individuals": 1}
-AS_IT_IS = {"encoding.points": 64, "experiment.population": 30}
+WALKER = HERE / "neural.toml"
 MUSCLES = ("muscle", "muscle2")
 MATERIALS = (*MUSCLES, "tissue", "bone")
 
@@ -30,7 +28,7 @@ def of(materials, key, value):
     return {f"materials.{material}.{key}": value for material in materials}
 
 
-# ingredient and its value in AS_IT_IS or walker.toml -> another value, as the figure shows it -> settings or a file
+# ingredient and its value in neural.toml -> another value, as the figure shows it -> settings or a file
 INGREDIENTS = {
     "as it is": {"": {}},
     "damping in space, 1/s (5)": {str(rate): {"scene.damping.rate": rate} for rate in (0.5, 2, 20)},
@@ -49,8 +47,8 @@ INGREDIENTS = {
 
 def command(change):
     """Returns the arguments of `evodevo run` for a change: settings, or an experiment of its own."""
-    file, settings = (WALKER, AS_IT_IS | change) if isinstance(change, dict) else (change, {})
-    return [str(file), *(word for key, value in (EVERYWHERE | settings).items() for word in ("--set", f"{key}={value}"))]
+    file, settings = (WALKER, change) if isinstance(change, dict) else (change, {})
+    return [str(file), *(word for key, value in settings.items() for word in ("--set", f"{key}={value}"))]
 
 
 def run(program, out, ingredient, value, change, seed):
