@@ -15,15 +15,15 @@ class Front(unittest.TestCase):
         self.assertEqual(draw.front(points), [(1, 9), (2, 5), (4, 1)])
 
 
-RANKING = "body,kind,method,precision,dt (s),cost (s per simulated s),rank correlation (1),low (1),high (1)," \
+RANKING = "floor,body,kind,method,precision,dt (s),cost (s per simulated s),rank correlation (1),low (1),high (1)," \
     "best of 20 in reference's best 3 (1),diverged (1),robots\n"
 DATA = {
     "work_precision": "scene,reference,method,precision,dt (s),error (1),cost (s per simulated s),noise ceiling (1)\n"
     "a <b>,Odeint,paper-euler,float,0.0005,0.01,0.001,0\na <b>,Odeint,paper-euler,float,0.001,,0.0005,0\n"
     "a <b>,Odeint,rk4,double,0.0005,1e-6,0.01,0\n",
-    "ranking": RANKING + "as it is,reference moved by 1e-9 m,rk4,double,3e-5,0.05,0.99,0.98,1,1,0,500\n"
-    "as it is,setting,paper-euler,float,0.0005,0.001,0.9,0.8,1,0.9,0,500\n"
-    "32 masses,coarser body,paper-euler,float,0.0005,0.0005,0.2,0.1,0.3,0.4,0,500\n",
+    "ranking": RANKING + "elastic,as it is,reference moved by 1e-9 m,rk4,double,3e-5,0.05,0.99,0.98,1,1,0,500\n"
+    "elastic,as it is,setting,paper-euler,float,0.0005,0.001,0.9,0.8,1,0.9,0,500\n"
+    "elastic,32 masses,coarser body,paper-euler,float,0.0005,0.0005,0.2,0.1,0.3,0.4,0,500\n",
     "convergence": "scene,contact,method,dt (s),error (1)\nspring,no,rk4,0.004,1e-8\nspring,no,rk4,0.002,6e-10\n",
     "orders": "scene,contact,method,order in theory,observed order\nspring,no,rk4,4,3.99\n",
     "beam": "length (voxels),deflection (m),Euler-Bernoulli deflection (m),first frequency (Hz),"
@@ -35,11 +35,12 @@ DATA = {
     "stability_boundary": "method,damping rate * dt (1),lowest angular frequency * dt (1),"
     "highest angular frequency * dt (1)\nrk4,0,0,2.8\nrk4,1,0,2.9\n",
     "contact_gain": "method,dt * sqrt(floor stiffness / mass) (1),largest gain of a bounce (1),"
-    "bound of the Euler methods (1)\nrk4,0.5,1,1.1\nrk4,1,1.2,1.4\n",
+    "bound of the Euler methods (1),the same on a rigid floor (1)\nrk4,0.5,1,1.1,1\nrk4,1,1.2,1.4,1\n",
     "contact_map": "mass (kg),floor stiffness (N/m),largest gain of a bounce (1)\n"
     "0.1,1e5,1\n0.1,1e6,2\n0.2,1e5,1\n0.2,1e6,1.5\n",
-    "divergence": "mass (kg),dt (s),floor stiffness (N/m),dt * sqrt(floor stiffness / mass) (1),bodies,diverged (1),"
-    "kept by the best ten at dt / 4 (1)\n0.1,0.0005,1e6,1.6,300,0.077,0.98\n0.2,0.0005,1e6,1.1,300,0,1.03\n",
+    "divergence": "floor,mass (kg),dt (s),floor stiffness (N/m),dt * sqrt(floor stiffness / mass) (1),bodies,diverged (1),"
+    "kept by the best ten at dt / 4 (1)\nelastic,0.1,0.0005,1e6,1.6,300,0.077,0.98\n"
+    "elastic,0.2,0.0005,1e6,1.1,300,0,1.03\nrigid,0.1,0.0005,,,300,0,0.99\nrigid,0.2,0.0005,,,300,0,1.01\n",
 }
 
 
@@ -79,6 +80,22 @@ class Charts(unittest.TestCase):
         points = [line.get_xydata().tolist() for line in axes.lines if line.get_marker() == "o" and not line.get_gid()]
         self.assertEqual(points, [[[0.001, 0.01]], [[0.01, 1e-6]]])
         self.assertEqual(axes.get_title("left"), "a <b>")
+
+    def test_a_rigid_floor_is_drawn_beside_the_elastic_one(self):
+        self.write(*DATA)
+        *_, gain, _, divergence = [axes for axes in draw.stability(self.folder, "").axes if axes.get_title("left")]
+        for axes, points in ((gain, [[0.5, 1], [1, 1]]), (divergence, [[0.1, 0], [0.2, 0]])):
+            lines = [line.get_xydata().tolist() for line in axes.lines if line.get_gid() == "rigid"]
+            self.assertEqual(lines, [points])
+        texts = "\n".join(text.get_text() for text in divergence.texts)
+        self.assertIn("99.0 to 101.0 %", texts)
+
+    def test_ranking_has_a_row_for_each_floor(self):
+        self.write("ranking")
+        rows = (self.folder / "ranking.csv").read_text()
+        (self.folder / "ranking.csv").write_text(rows + rows.split("\n", 1)[1].replace("elastic,", "rigid,"))
+        titles = [axes.get_title("left") for axes in draw.ranking(self.folder, "").axes]
+        self.assertEqual([title.rsplit(", ")[-1] for title in titles], 2 * ["elastic floor"] + 2 * ["rigid floor"])
 
     def test_divergence_is_told_in_percent(self):
         self.write(*DATA)

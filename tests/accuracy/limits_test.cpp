@@ -91,6 +91,14 @@ TEST(ContactGain, OfTheEulerMethodsReachesItsBoundAndNoMore) {
   }
 }
 
+TEST(ContactGain, OfARigidFloorIsItsRestitutionSquaredAtAnyStep) {
+  for (const Method method : all_methods())
+    for (const double restitution : {0.0, 0.5, 1.0})
+      for (const double dt : {1.3e-4, 0.7e-3, 1.1e-2})
+        EXPECT_NEAR(rigid_contact_gain(method, restitution, dt), restitution * restitution, 1e-12)
+            << name(method) << ", dt " << dt;
+}
+
 TEST(ContactGain, IsALossForMethodsThatDamp) {
   for (const Method method : {Method::implicit, Method::xpbd})
     for (const double phase : {0.1, 1.0, 5.0}) EXPECT_LT(contact_gain(method, phase), 1) << phase;

@@ -28,6 +28,19 @@ TEST(Orders, WithoutContactAreThoseOfTheory) {
   EXPECT_EQ(smooth, 12);
 }
 
+TEST(Orders, OnARigidFloorAreKeptUpToTheSecond) {
+  const Table found = orders(quick()).at(1);
+  int checked = 0;
+  for (std::size_t row = 0; row < found.rows().size(); ++row) {
+    const double theory = found.number(row, "order in theory");
+    if (found.text(row, "scene") != "lattice dropped, rigid floor" || theory > 2) continue;
+    if (!is_explicit(method_of(found.text(row, "method")))) continue;
+    ++checked;
+    EXPECT_NEAR(found.number(row, "observed order"), theory, 0.2) << found.text(row, "method");
+  }
+  EXPECT_EQ(checked, 3);
+}
+
 TEST(Beam, BendsAndSwingsAsEulerAndBernoulliSay) {
   const Table table = beam(quick()).front();
   double last_sum = 1;
@@ -51,7 +64,8 @@ TEST(Trials, HaveATruthThatTheSimulatorFinds) {
   };
   for (const auto& [trial, error] :
        {Expected{spring_trial(), 1e-4}, Expected{beam_trial(), 1e-5}, Expected{lattice_trial(), 1e-3},
-        Expected{swimmer_trial(), 1e-2}, Expected{drop_trial(), 1e-2}, Expected{slide_trial(), 1e-6}}) {
+        Expected{swimmer_trial(), 1e-2}, Expected{drop_trial(), 1e-2}, Expected{slide_trial(), 1e-6},
+        Expected{rigid_drop_trial(1e-5), 1e-3}, Expected{rigid_slide_trial(), 1e-6}}) {
     const Setting setting{Method::velocity_verlet, Precision::float64, 0.0005};
     const Traveller end = simulate(trial.body, trial.start, trial.scene, setting, trial.duration);
     ASSERT_TRUE(end.alive()) << trial.name;

@@ -132,8 +132,9 @@ def ranking(folder, origin):
     if rows is None:
         return None
     steps = sorted({row["dt (s)"] for row in rows if row["kind"] == "setting"})
+    floors = groups(rows, "floor")
     figure, panels = charts.page(
-        2,
+        2 * len(floors),
         2,
         (4.4, 3.8),
         title="What evolution sees: the fitness of random robots under each setting against the reference",
@@ -141,10 +142,11 @@ def ranking(folder, origin):
         f"{steps[0] * 1e3:g} ms (right) · bars: 95 % intervals · grey: coarser bodies with the defaults",
         footer=origin,
     )
-    title = "Rank correlation of fitness with the reference"
-    draw_ranking(panels[0], rows, "rank correlation (1)", title, "rank correlation with the reference", True)
-    title = "How often the best of 20 is among the reference's best 3"
-    draw_ranking(panels[1], rows, "best of 20 in reference's best 3 (1)", title, "share", False)
+    for i, ((floor,), on_floor) in enumerate(floors.items()):
+        title = f"Rank correlation of fitness with the reference, {floor} floor"
+        draw_ranking(panels[2 * i], on_floor, "rank correlation (1)", title, "rank correlation with the reference", True)
+        title = f"How often the best of 20 is among the reference's best 3, {floor} floor"
+        draw_ranking(panels[2 * i + 1], on_floor, "best of 20 in reference's best 3 (1)", title, "share", False)
     return figure
 
 
@@ -173,7 +175,7 @@ def orders(folder, origin):
         len(scenes),
         2,
         (4, 2.8),
-        title="Error over dt in double: the slope is the order of convergence, and contact takes it away",
+        title="Error over dt in double: the slope is the order of convergence, which contact with an elastic floor takes away",
         legend="order: by least squares over the four smallest dt whose errors stand above rounding",
         footer=origin,
         right=1.7,
@@ -240,6 +242,9 @@ def draw_gain(axes, rows):
     line = [(row[phase], row[bound]) for row in rows if row["method"] == "rk4" and row[bound] < 20]
     axes.plot(*zip(*line), color=INK, linewidth=1, linestyle=":")
     note(axes, (0.2, 2.6), "1/(1 − κ/4), κ = k dt²/m", (0, 0))
+    rigid = "the same on a rigid floor (1)"
+    axes.plot(column(rows, phase), column(rows, rigid), ".", color=INK, markersize=2, gid="rigid")
+    note(axes, (0.05, 0.75), "dots: rigid floor, restitution 1", (0, 0))
     charts.label_ends(axes, labels)
 
 
@@ -268,24 +273,32 @@ def draw_gain_map(axes, rows):
 def draw_divergence(axes, rows):
     m, k, dt, share = "mass (kg)", "floor stiffness (N/m)", "dt (s)", "diverged (1)"
     kept = "kept by the best ten at dt / 4 (1)"
-    of_paper = sorted((row for row in rows if row[dt] == 0.0005 and row[k] == 1e6), key=lambda row: row[m])
+    floors = {
+        floor: sorted((row for row in rows if row["floor"] == floor and row[dt] == 0.0005 and row[k] in (1e6, None)), key=lambda row: row[m])
+        for floor in ("elastic", "rigid")
+    }
+    of_paper, on_rigid = floors["elastic"], floors["rigid"]
     axes.set(title=f"Of {of_paper[0]['bodies']:.0f} random bodies, diverged", xlabel=m, xscale="log")
-    axes.set(ylabel="share, at 0.5 ms and 10⁶ N/m", ylim=(0, max(0.1, 1.15 * max(column(rows, share)))))
+    axes.set(ylabel="share, at 0.5 ms and 10⁶ N/m", ylim=(-0.02, max(0.1, 1.15 * max(column(rows, share)))))
     ticks = [0.05, 0.1, 0.2, 0.3]
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.set_xticks([], minor=True)
     axes.axvline(0.5e-3**2 * 1e6 / 1.2**2, color=SOFT, linestyle="--", linewidth=0.8)
     axes.plot(column(of_paper, m), column(of_paper, share), color=COLOUR["paper-euler"], marker="o")
+    axes.plot(column(on_rigid, m), column(on_rigid, share), color=INK, marker="o", markersize=3, gid="rigid")
     said = [
-        f"{row[m]:g} kg, {row[dt] * 1e3:g} ms, {row[k] / 1e6:g}·10⁶ N/m: {100 * row[share]:.1f} %"
+        f"{row[m]:g} kg, {row[dt] * 1e3:g} ms, {'rigid' if row[k] is None else f'{row[k] / 1e6:g}·10⁶ N/m'}: {100 * row[share]:.1f} %"
         for row in rows
-        if row not in of_paper
+        if row not in of_paper and row not in on_rigid
     ]
     for row in of_paper:
         if row[m] in (0.1, 0.2):
             note(axes, (row[m], row[share]), f"{100 * row[share]:.1f} %", (5, 9))
             if row[kept] is not None:
                 said.append(f"{row[m]:g} kg: the best ten keep {100 * row[kept]:.0f} % of their fitness at dt / 4")
+    if on_rigid:
+        low, high = min(column(on_rigid, kept)), max(column(on_rigid, kept))
+        said += ["black: rigid floor; the best ten keep", f"{100 * low:.1f} to {100 * high:.1f} % of their fitness at dt / 4"]
     note(axes, (0.5e-3**2 * 1e6 / 1.2**2, axes.get_ylim()[1] * 0.95), "limit 1.2", (4, 0), color=SOFT)
     axes.text(1.04, 1, "\n".join(said), transform=axes.transAxes, va="top", color=SOFT, fontsize=7)
 

@@ -12,6 +12,7 @@ namespace evodevo::tools::accuracy {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double bounced_mass = 0.2;  // kg
 
 /// The factor by which one step of rk4, with dt = 1, changes the magnitude of a solution exp(z t).
 double rk4_amplification(std::complex<double> z) {
@@ -63,6 +64,27 @@ State with_headroom(const Body& body, State state, const Scene& scene) {
 
 bool stays_bounded(const Body& body, const State& start, const Scene& scene, Method method, double dt, int steps) {
   return simulate(body, start, scene, {method, Precision::float64, dt}, steps * dt).alive();
+}
+
+/// The largest gain of a mass of `bounced_mass` that bounces on a floor, without any other force; the contact takes at
+/// most `steps` steps.
+double largest_gain(const Floor& floor, Method method, double dt, double steps) {
+  constexpr int phases = 64;
+  constexpr double speed = 1;  // m/s
+  const Scene scene{{}, floor, {}, {}, {}};
+  Body body;
+  body.masses = {{{}, bounced_mass}};
+  std::vector<Traveller> masses;
+  for (int i = 0; i < phases; ++i) {
+    State start = resting(body, scene);
+    start.position[0].z = (i + 0.5) / phases * speed * dt;
+    start.velocity[0].z = -speed;
+    masses.push_back({&body, with_headroom(body, std::move(start), scene)});
+  }
+  Simulation(scene, {method, Precision::float64, dt}, {"cpu", 1}).advance(masses, steps * dt);
+  double largest = 0;
+  for (const Traveller& m : masses) largest = std::max(largest, std::pow(m.state.velocity[0].z / speed, 2));
+  return largest;
 }
 
 }  // namespace
@@ -122,25 +144,14 @@ double measured_limit(const Body& body, Method method, double low, double high) 
 }
 
 double contact_gain(Method method, double contact_phase) {
-  constexpr int phases = 64;
-  constexpr double mass = 0.2, speed = 1;  // kg, m/s
-  const Scene scene{{}, Floor{}, {}, {}, {}};
-  const double dt = contact_phase * std::sqrt(mass / scene.floor->stiffness);
-  Body body;
-  body.masses = {{{}, mass}};
-  std::vector<Traveller> masses;
-  for (int i = 0; i < phases; ++i) {
-    State start = resting(body, scene);
-    start.position[0].z = (i + 0.5) / phases * speed * dt;
-    start.velocity[0].z = -speed;
-    masses.push_back({&body, with_headroom(body, std::move(start), scene)});
-  }
+  const Floor elastic;
   // the contact lasts half a period of the mass on the floor's spring; that is several steps if the floor is soft
-  Simulation(scene, {method, Precision::float64, dt}, {"cpu", 1})
-      .advance(masses, std::ceil(10 + 20 / contact_phase) * dt);
-  double largest = 0;
-  for (const Traveller& m : masses) largest = std::max(largest, std::pow(m.state.velocity[0].z / speed, 2));
-  return largest;
+  return largest_gain(elastic, method, contact_phase * std::sqrt(bounced_mass / elastic.stiffness),
+                      std::ceil(10 + 20 / contact_phase));
+}
+
+double rigid_contact_gain(Method method, double restitution, double dt) {
+  return largest_gain({.restitution = restitution}, method, dt, 10);
 }
 
 }  // namespace evodevo::tools::accuracy

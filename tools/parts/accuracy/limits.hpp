@@ -37,9 +37,11 @@ double measured_limit(const Oscillator& oscillator, Method method);
 /// search covers the range from `low` to `high` (s).
 double measured_limit(const Body& body, Method method, double low, double high);
 
-/// The ratio of a mass's energy after a bounce on the floor to its energy before the bounce; the largest ratio for
-/// impacts at 64 different instants within a time step. The time step follows from dt sqrt(floor stiffness / mass) =
-/// `contact_phase`.
+/// The ratio of a mass's energy after a bounce on an elastic floor to its energy before the bounce; the largest ratio
+/// for impacts at 64 different instants within a time step. The time step follows from dt sqrt(floor stiffness / mass)
+/// = `contact_phase`.
 double contact_gain(Method method, double contact_phase);
+/// The same for a rigid floor with a restitution, with steps of `dt` s.
+double rigid_contact_gain(Method method, double restitution, double dt);
 
 }  // namespace evodevo::tools::accuracy

@@ -17,6 +17,9 @@ constexpr std::size_t smallest = 4;
 
 bool contact_bears(double dt) { return dt <= 0.0005; }
 
+/// The longest step with which a trial of `duration` s is simulated, s.
+double longest_dt(double duration) { return duration / 100; }
+
 int theoretical_order(Method method) {
   if (method == Method::rk4) return 4;
   return method == Method::velocity_verlet ? 2 : 1;
@@ -49,7 +52,7 @@ struct Sweep {
 void run(Sweep& sweep, int halvings) {
   const Trial& trial = *sweep.trial;
   for (int i = 0; i <= halvings; ++i) {
-    const double dt = trial.duration / (100 << i);
+    const double dt = longest_dt(trial.duration) / (1 << i);
     const Traveller t =
         simulate(trial.body, trial.start, trial.scene, {sweep.method, Precision::float64, dt}, trial.duration);
     sweep.dt.push_back(dt);
@@ -62,13 +65,17 @@ void run(Sweep& sweep, int halvings) {
 
 std::vector<Table> orders(const Settings& settings) {
   Workers workers(settings.device.threads);
-  const std::vector<std::function<Trial()>> scenes = {spring_trial, lattice_trial, drop_trial, slide_trial};
+  const int halvings = settings.quick ? 8 : 10;
+  const double finest = longest_dt(0.4) / (1 << halvings) / 16;
+  const std::vector<std::function<Trial()>> scenes = {
+      spring_trial,     lattice_trial, drop_trial, slide_trial, [&] { return rigid_drop_trial(finest); },
+      rigid_slide_trial};
   std::vector<Trial> trials(scenes.size());
   workers.for_each(scenes.size(), [&](std::size_t i) { trials[i] = scenes[i](); });
   std::vector<Sweep> sweeps;
   for (const Trial& trial : trials)
     for (const Method method : all_methods()) sweeps.push_back({&trial, method, {}, {}});
-  workers.for_each(sweeps.size(), [&](std::size_t i) { run(sweeps[i], settings.quick ? 8 : 10); });
+  workers.for_each(sweeps.size(), [&](std::size_t i) { run(sweeps[i], halvings); });
 
   Table errors("convergence", {"scene", "contact", "method", "dt (s)", "error (1)"});
   Table found("orders", {"scene", "contact", "method", "order in theory", "observed order"});

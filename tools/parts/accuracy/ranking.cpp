@@ -4,6 +4,7 @@
 
 #include "common/robots.hpp"
 #include "fitnesses.hpp"
+#include "scenes.hpp"
 #include "statistics.hpp"
 #include "studies.hpp"
 
@@ -63,36 +64,37 @@ Fitnesses measure_coarser(const Experiment& experiment, const std::vector<Genome
 /// A table whose rows compare measured fitnesses with those of the reference.
 class Comparison {
  public:
-  explicit Comparison(std::vector<double> truth) : truth_(std::move(truth)) {}
+  /// Adds rows for robots on a floor, whose true fitnesses are `truth`, to `table`.
+  Comparison(Table& table, std::string floor, std::vector<double> truth)
+      : table_(table), floor_(std::move(floor)), truth_(std::move(truth)) {}
 
   void add(const std::string& body, const std::string& kind, const Setting& setting, const Fitnesses& measured) {
     const Interval interval = bootstrap_interval(truth_, measured.values, 500);
-    table_.add({body, kind, std::string(name(setting.method)), name(setting.precision), setting.dt, measured.cost,
-                rank_correlation(truth_, measured.values), interval.low, interval.high,
+    table_.add({floor_, body, kind, std::string(name(setting.method)), name(setting.precision), setting.dt,
+                measured.cost, rank_correlation(truth_, measured.values), interval.low, interval.high,
                 best_found(truth_, measured.values, 20, 3, 2000), measured.diverged,
                 static_cast<double>(truth_.size())});
   }
 
-  const Table& table() const { return table_; }
-
  private:
+  Table& table_;
+  std::string floor_;
   std::vector<double> truth_;
-  Table table_{"ranking",
-               {"body", "kind", "method", "precision", "dt (s)", "cost (s per simulated s)", "rank correlation (1)",
-                "low (1)", "high (1)", "best of 20 in reference's best 3 (1)", "diverged (1)", "robots"}};
 };
 
-}  // namespace
-
-std::vector<Table> ranking(const Settings& settings) {
-  const Experiment experiment = experiment_of(settings);
+void compare(Table& table, const Settings& settings, bool on_rigid_floor) {
+  const auto on_floor = [&](Experiment experiment) {
+    if (on_rigid_floor) experiment.scene.floor = rigid_floor;
+    return experiment;
+  };
+  const Experiment experiment = on_floor(experiment_of(settings));
   const std::vector<Genome> genomes = random_genomes(experiment, settings.robots, 1);
   std::vector<Body> bodies;
   for (const Genome& genome : genomes) bodies.push_back(*robot_of(experiment, genome));
 
   const Device host{"cpu", settings.device.threads};
   const Fitnesses truth = measure(experiment, bodies, reference, host);
-  Comparison comparison(truth.values);
+  Comparison comparison(table, on_rigid_floor ? "rigid" : "elastic", truth.values);
   comparison.add("as it is", "reference moved by 1e-9 m", reference,
                  measure(experiment, bodies, reference, host, 1e-9));
   for (const Method method : all_methods())
@@ -103,8 +105,17 @@ std::vector<Table> ranking(const Settings& settings) {
       }
   for (const Coarser& coarser : coarser_bodies())
     comparison.add(coarser.name, "coarser body", usual,
-                   measure_coarser(experiment_of(settings, coarser.overrides), genomes, settings.device));
-  return {comparison.table()};
+                   measure_coarser(on_floor(experiment_of(settings, coarser.overrides)), genomes, settings.device));
+}
+
+}  // namespace
+
+std::vector<Table> ranking(const Settings& settings) {
+  Table table("ranking", {"floor", "body", "kind", "method", "precision", "dt (s)", "cost (s per simulated s)",
+                          "rank correlation (1)", "low (1)", "high (1)", "best of 20 in reference's best 3 (1)",
+                          "diverged (1)", "robots"});
+  for (const bool on_rigid_floor : {false, true}) compare(table, settings, on_rigid_floor);
+  return {table};
 }
 
 }  // namespace evodevo::tools::accuracy

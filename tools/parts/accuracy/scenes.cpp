@@ -53,10 +53,50 @@ State turning(const Body& body, State state, const Scene& scene) {
   return with_energy(body, std::move(state), scene);
 }
 
+/// Solves a trial by simulation with steps of `dt` s, and measures how far a start moved by 1e-9 m leads from this
+/// solution.
+Trial simulated(Trial trial, double dt) {
+  const Setting finest{Method::velocity_verlet, Precision::float64, dt};
+  trial.truth = simulate(trial.body, trial.start, trial.scene, finest, trial.duration).state;
+  trial.truth_by = "double, dt / 16";
+  const State moved = perturbed(trial.start, 1e-9);
+  trial.ceiling = trial.error(simulate(trial.body, moved, trial.scene, finest, trial.duration).state);
+  return trial;
+}
+
 Trial integrated(Trial trial) {
   trial.truth = solution(trial.body, trial.start, trial.scene, trial.duration);
   trial.truth_by = "Odeint";
   return trial;
+}
+
+/// A lattice above the floor.
+Trial drop(const std::string& name, const Floor& floor) {
+  const Body body = block(2, {5000, 0, 0, 0});
+  const Scene scene{Gravity{}, floor, {}, Damping{}, {}};
+  State start = state_at_birth(body, scene);
+  for (Vec3& position : start.position) position.z += 0.05;
+  return {name, {}, false, body, scene, with_energy(body, start, scene), 0.4, {}};
+}
+
+/// A slab that slides at `depth` m below the ground, where the floor bears its weight.
+Trial slide(const std::string& name, const Floor& floor, double depth) {
+  const Scene scene{Gravity{}, floor, Friction{}, {}, {}};
+  const double g = scene.gravity->acceleration, speed = 1.5;
+  const Body body = slab(4, -depth, {5000, 0, 0, 0});
+  State start = resting(body, scene);
+  for (Vec3& v : start.velocity) v = {speed, 0, 0};
+  start = with_energy(body, std::move(start), scene);
+  State truth = resting(body, scene);
+  for (Vec3& position : truth.position) position.x += speed * speed / (2 * scene.friction->coefficient * g);
+  return {name, "closed form", false, body, scene, start, 0.4, truth};
+}
+
+Trial walker(const std::string& name, const Floor& floor) {
+  const Body body = random_ball(40);
+  Scene scene = walking_scene();
+  scene.floor = floor;
+  return {name, {}, false, body, scene, state_at_birth(body, scene), 1, {}};
 }
 
 }  // namespace
@@ -96,35 +136,18 @@ Trial swimmer_trial() {
   return integrated({"swimmer", {}, true, body, scene, resting(body, scene), 0.4, {}});
 }
 
-Trial drop_trial() {
-  const Body body = block(2, {5000, 0, 0, 0});
-  const Scene scene{Gravity{}, Floor{}, {}, Damping{}, {}};
-  State start = state_at_birth(body, scene);
-  for (Vec3& position : start.position) position.z += 0.05;
-  return integrated({"lattice dropped on the floor", {}, false, body, scene, with_energy(body, start, scene), 0.4, {}});
-}
+Trial drop_trial() { return integrated(drop("lattice dropped on the floor", {})); }
 
 Trial slide_trial() {
-  const Scene scene{Gravity{}, Floor{}, Friction{}, {}, {}};
-  const double g = scene.gravity->acceleration, speed = 1.5;
-  const Body body = slab(4, -mass_of_each * g / scene.floor->stiffness, {5000, 0, 0, 0});
-  State start = resting(body, scene);
-  for (Vec3& v : start.velocity) v = {speed, 0, 0};
-  start = with_energy(body, std::move(start), scene);
-  State truth = resting(body, scene);
-  for (Vec3& position : truth.position) position.x += speed * speed / (2 * scene.friction->coefficient * g);
-  return {"slab sliding to rest", "closed form", false, body, scene, start, 0.4, truth};
+  const Floor floor;
+  return slide("slab sliding to rest", floor, mass_of_each * Gravity{}.acceleration / floor.stiffness);
 }
 
-Trial walker_trial(double dt) {
-  const Body body = random_ball(40);
-  const Scene scene = walking_scene();
-  const Setting finest{Method::velocity_verlet, Precision::float64, dt};
-  Trial trial{"walker", "double, dt / 16", false, body, scene, state_at_birth(body, scene), 1, {}};
-  trial.truth = simulate(body, trial.start, scene, finest, trial.duration).state;
-  trial.ceiling = trial.error(simulate(body, perturbed(trial.start, 1e-9), scene, finest, trial.duration).state);
-  return trial;
-}
+Trial walker_trial(double dt) { return simulated(walker("walker", {}), dt); }
+
+Trial rigid_drop_trial(double dt) { return simulated(drop("lattice dropped, rigid floor", rigid_floor), dt); }
+Trial rigid_slide_trial() { return slide("slab sliding, rigid floor", rigid_floor, 0); }
+Trial rigid_walker_trial(double dt) { return simulated(walker("walker, rigid floor", rigid_floor), dt); }
 
 Body cantilever(std::uint32_t voxels, double edge, double mass, double stiffness) {
   const Lattice lattice = make_lattice({voxels, 1, 1}, edge);

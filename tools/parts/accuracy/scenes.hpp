@@ -41,6 +41,14 @@ Trial slide_trial();
 /// A random body with muscles on the floor; its reference solution is simulated with steps of `dt` s.
 Trial walker_trial(double dt);
 
+/// A floor on which nothing bounces.
+inline const Floor rigid_floor{.restitution = 0};
+/// The scenes with contact again, on a rigid floor. Reference solutions that are not in closed form are simulated with
+/// steps of `dt` s.
+Trial rigid_drop_trial(double dt);
+Trial rigid_slide_trial();
+Trial rigid_walker_trial(double dt);
+
 /// A beam of `voxels` x 1 x 1 voxels along x with edges of `edge` m. Its masses at x = 0 are held in place. The masses
 /// at its free end have half the mass of the others, so that the beam's mass is uniform over its length.
 Body cantilever(std::uint32_t voxels, double edge, double mass, double stiffness);

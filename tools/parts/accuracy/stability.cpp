@@ -9,6 +9,7 @@
 #include "common/robots.hpp"
 #include "fitnesses.hpp"
 #include "limits.hpp"
+#include "scenes.hpp"
 #include "studies.hpp"
 #include "threads/parallel.hpp"
 
@@ -102,6 +103,7 @@ std::vector<Table> spring_map(Workers& workers, bool quick) {
   return {map, boundary};
 }
 
+/// The largest gains of a bounce on both floors, with the same steps; a rigid floor has restitution 1.
 Table contact_gains(Workers& workers) {
   struct Item {
     Method method;
@@ -111,10 +113,11 @@ Table contact_gains(Workers& workers) {
   for (const Method method : all_methods())
     for (double phase = 0.1; phase < 2; phase += 0.05) items.push_back({method, phase});
   Table table("contact_gain", {"method", "dt * sqrt(floor stiffness / mass) (1)", "largest gain of a bounce (1)",
-                               "bound of the Euler methods (1)"});
+                               "bound of the Euler methods (1)", "the same on a rigid floor (1)"});
   add_rows(table, workers, items, [](const Item& item) -> std::vector<Cell> {
+    const double dt = item.phase * std::sqrt(0.2 / Floor{}.stiffness);
     return {std::string(name(item.method)), item.phase, contact_gain(item.method, item.phase),
-            1 / (1 - item.phase * item.phase / 4)};
+            1 / (1 - item.phase * item.phase / 4), rigid_contact_gain(item.method, 1, dt)};
   });
   return table;
 }
@@ -142,8 +145,8 @@ Table contact_map(Workers& workers, bool quick) {
   return table;
 }
 
-/// Simulates random bodies in the scene of the experiment with given masses, dt and floor stiffness. Tabulates the
-/// share that diverges, and how much of their fitness the best ten of the others keep at a quarter of dt.
+/// Simulates random bodies in the scene of the experiment with given masses, dt and floor. Tabulates the share that
+/// diverges, and how much of their fitness the best ten of the others keep at a quarter of dt.
 class RandomBodies {
  public:
   RandomBodies(const Settings& settings)
@@ -151,14 +154,16 @@ class RandomBodies {
         experiment_(read_experiment({settings.experiment, overrides(settings.quick)})),
         bodies_(random_robots(experiment_, settings.quick ? 40 : 300, 1)) {}
 
-  void add(double mass, double dt, double floor_stiffness) {
+  void add(double mass, double dt, const Floor& floor) {
     for (Body& body : bodies_)
       for (Mass& m : body.masses) m.mass = mass;
-    experiment_.scene.floor = Floor{floor_stiffness};
+    experiment_.scene.floor = floor;
     const Fitnesses measured =
         measure(experiment_, bodies_, {Method::paper_euler, Precision::float32, dt}, settings_.device);
-    table_.add({mass, dt, floor_stiffness, dt * std::sqrt(floor_stiffness / mass), static_cast<double>(bodies_.size()),
-                measured.diverged, kept_by_champions(measured.values, dt)});
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const double stiffness = floor.rigid() ? nan : floor.stiffness;
+    table_.add({std::string(floor.rigid() ? "rigid" : "elastic"), mass, dt, stiffness, dt * std::sqrt(stiffness / mass),
+                static_cast<double>(bodies_.size()), measured.diverged, kept_by_champions(measured.values, dt)});
   }
 
   const Table& table() const { return table_; }
@@ -195,15 +200,17 @@ class RandomBodies {
   Experiment experiment_;
   std::vector<Body> bodies_;
   Table table_{"divergence",
-               {"mass (kg)", "dt (s)", "floor stiffness (N/m)", "dt * sqrt(floor stiffness / mass) (1)", "bodies",
-                "diverged (1)", "kept by the best ten at dt / 4 (1)"}};
+               {"floor", "mass (kg)", "dt (s)", "floor stiffness (N/m)", "dt * sqrt(floor stiffness / mass) (1)",
+                "bodies", "diverged (1)", "kept by the best ten at dt / 4 (1)"}};
 };
 
 Table divergence(const Settings& settings) {
   RandomBodies bodies(settings);
-  for (const double mass : {0.05, 0.07, 0.1, 0.12, 0.14, 0.17, 0.2, 0.3}) bodies.add(mass, paper_dt, paper_floor);
-  bodies.add(0.1, 0.0004, paper_floor);
-  bodies.add(0.1, paper_dt, 1e5);
+  for (const Floor& floor : {Floor{paper_floor}, rigid_floor})
+    for (const double mass : {0.05, 0.07, 0.1, 0.12, 0.14, 0.17, 0.2, 0.3}) bodies.add(mass, paper_dt, floor);
+  bodies.add(0.1, 0.0004, Floor{paper_floor});
+  bodies.add(0.1, paper_dt, Floor{1e5});
+  bodies.add(0.1, 2 * paper_dt, rigid_floor);
   return bodies.table();
 }
 

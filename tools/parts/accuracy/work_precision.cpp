@@ -16,8 +16,15 @@ std::vector<double> time_steps(bool quick) {
 
 std::vector<Trial> trials(bool quick, Workers& workers) {
   const double finest = time_steps(quick).back() / 16;
-  const std::vector<std::function<Trial()>> scenes = {
-      spring_trial, beam_trial, drop_trial, slide_trial, [&] { return walker_trial(finest); }, swimmer_trial};
+  const std::vector<std::function<Trial()>> scenes = {spring_trial,
+                                                      beam_trial,
+                                                      swimmer_trial,
+                                                      drop_trial,
+                                                      slide_trial,
+                                                      [&] { return walker_trial(finest); },
+                                                      [&] { return rigid_drop_trial(finest); },
+                                                      rigid_slide_trial,
+                                                      [&] { return rigid_walker_trial(finest); }};
   std::vector<Trial> made(scenes.size());
   workers.for_each(scenes.size(), [&](std::size_t i) { made[i] = scenes[i](); });
   return made;
