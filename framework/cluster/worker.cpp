@@ -24,11 +24,11 @@ message::Hello hello_of(const Experiment& experiment, Simulator& simulator) {
   hello.provenance = this_provenance(experiment, simulator.device());
   hello.program = hello.provenance.program;
   hello.host = host_name();
-  hello.verified_at_once = lives_at_once(simulator);
+  hello.verified_at_once = verified_at_once(simulator);
   const std::optional<DeviceUse> gpus = simulator.device_use();
   // a second job of a processor fills the time in which few lives of the first are left
   hello.jobs = gpus ? static_cast<std::uint64_t>(simulator.concurrency()) : 2;
-  hello.lives = gpus ? hello.verified_at_once / gpus->devices : 4 * hello.verified_at_once;
+  hello.lives = gpus ? lives_at_once(simulator) / gpus->devices : 4 * lives_at_once(simulator);
   return hello;
 }
 

@@ -1,14 +1,17 @@
 #include "evolution/evaluator.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace evodevo {
 
 std::size_t lives_at_once(Simulator& simulator) {
-  constexpr std::size_t of_a_gpu = 100;  // GPUs for computing have this many multiprocessors or a few more
+  constexpr std::size_t of_a_gpu = 100;
   const std::optional<DeviceUse> gpus = simulator.device_use();
   return gpus ? of_a_gpu * gpus->devices : simulator.workers().count();
 }
+
+std::size_t verified_at_once(Simulator& simulator) { return std::max<std::size_t>(1, lives_at_once(simulator) / 2); }
 
 std::vector<Result> LocalEvaluator::evaluate(std::span<const Newborn> newborns, const Progress& progress) {
   std::vector<Result> results = evaluation_.evaluate(newborns, progress);
@@ -50,7 +53,7 @@ std::vector<Verification> LocalEvaluator::verify(std::span<const Champion> champ
 
 const ExactSimulators& LocalEvaluator::exact() {
   const std::lock_guard lock(mutex_);
-  if (!exact_.same_method) exact_ = exact_simulators(experiment_);
+  if (!exact_.same_method) exact_ = exact_simulators(experiment_, simulator_);
   return exact_;
 }
 

@@ -38,9 +38,11 @@ class Evaluator {
   virtual PhaseTimes phase_times() const = 0;
 };
 
-/// About the number of lives that a simulator simulates in the time that one takes: its threads on a CPU, its
-/// multiprocessors on a GPU.
+/// About the number of lives that keep a simulator busy: one for each thread of a CPU, a hundred for a GPU.
 std::size_t lives_at_once(Simulator& simulator);
+/// About the number of champions that one process verifies in the time that one takes. Two of the four trials take
+/// nearly all of the time.
+std::size_t verified_at_once(Simulator& simulator);
 
 /// Evaluates and verifies in this process. Several threads may use it. Experiment and simulator must outlive it.
 class LocalEvaluator final : public Evaluator {
@@ -52,7 +54,7 @@ class LocalEvaluator final : public Evaluator {
   std::vector<LifeRecord> records(std::span<const Newborn> newborns) override;
   void forget_records() override;
   std::vector<Verification> verify(std::span<const Champion> champions) override;
-  std::size_t verified_at_once() const override { return lives_at_once(simulator_); }
+  std::size_t verified_at_once() const override { return evodevo::verified_at_once(simulator_); }
   std::string device() const override { return simulator_.device(); }
   PhaseTimes phase_times() const override { return evaluation_.phase_times(); }
 

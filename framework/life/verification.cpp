@@ -1,12 +1,15 @@
 #include "life/verification.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <future>
+#include <functional>
+#include <stdexcept>
 
 #include "cpu/simulator.hpp"
 #include "experiment/device.hpp"
 #include "life/birth.hpp"
+#include "threads/parallel.hpp"
 
 namespace evodevo {
 namespace {
@@ -105,11 +108,12 @@ std::vector<Verification> verifications(std::span<const Champion> champions, std
   return verifications;
 }
 
-/// Makes simulators in double precision with `make`, which takes a Stepping.
-template <class Make>
-ExactSimulators exact_simulators_by(const Experiment& experiment, const Make& make) {
+/// Makes simulators in double precision: on the CPU, or on the experiment's device.
+ExactSimulators exact_simulators_on(bool cpu, const Experiment& experiment) {
   const auto simulator = [&](Method method) {
-    return make(Stepping{method, Precision::float64, experiment.stepping.materials});
+    const Stepping stepping{method, Precision::float64, experiment.stepping.materials};
+    return cpu ? make_cpu_simulator(experiment.scene, stepping, static_cast<int>(experiment.threads))
+               : make_simulator(experiment, stepping);
   };
   const Method method = experiment.stepping.method;
   return {simulator(method), simulator(other_method(method))};
@@ -130,9 +134,7 @@ bool is_verifiable(const Experiment& experiment) {
 
 std::vector<Verification> verify(const Experiment& experiment, Simulator& simulator,
                                  std::span<const Champion> champions) {
-  const ExactSimulators exact = exact_simulators_by(experiment, [&](const Stepping& stepping) {
-    return make_cpu_simulator(experiment.scene, stepping, static_cast<int>(experiment.threads));
-  });
+  const ExactSimulators exact = exact_simulators_on(true, experiment);
   const Evaluation run(experiment, simulator);
   const Repetition repetition(experiment, matured(run, champions));
   std::vector<std::vector<Trial>> trials;
@@ -147,21 +149,32 @@ std::vector<Verification> verify(const Experiment& experiment, Simulator& simula
   return verifications(champions, std::move(trials));
 }
 
-ExactSimulators exact_simulators(const Experiment& experiment) {
-  return exact_simulators_by(experiment,
-                             [&](const Stepping& stepping) { return make_simulator(experiment, stepping); });
+ExactSimulators exact_simulators(const Experiment& experiment, const Simulator& simulator) {
+  const bool on_cpu = !simulator.device_use();
+  ExactSimulators exact = exact_simulators_on(on_cpu, experiment);
+  // without a GPU, `auto` would go on with the CPU, and individuals would be verified in another way than before
+  if (!on_cpu && exact.same_method->device() != simulator.device())
+    throw std::runtime_error("the device " + simulator.device() + " can no longer be used");
+  return exact;
 }
 
 std::vector<Verification> verify_marks(const Experiment& experiment, Simulator& simulator, const ExactSimulators& exact,
                                        std::span<const Champion> champions) {
   const Evaluation run(experiment, simulator);
   const Repetition repetition(experiment, matured(run, champions));
-  const auto beside = [](auto trial) { return std::async(std::launch::async | std::launch::deferred, trial); };
-  auto quarter_step = beside([&] { return repetition.quarter_step(*exact.same_method); });
-  auto other_step = beside([&] { return repetition.other_step(*exact.other_method); });
-  auto settled = beside([&] { return repetition.settled(simulator); });
-  std::vector<Trial> no_muscles = repetition.no_muscles(simulator);
-  return verifications(champions, {quarter_step.get(), other_step.get(), std::move(no_muscles), settled.get()});
+  const std::array<std::function<std::vector<Trial>()>, 4> repeat = {
+      [&] { return repetition.quarter_step(*exact.same_method); },
+      [&] { return repetition.other_step(*exact.other_method); },
+      [&] { return repetition.no_muscles(simulator); },
+      [&] { return repetition.settled(simulator); },
+  };
+  std::vector<std::vector<Trial>> trials(repeat.size());
+  const int priority_of_caller = Priority::of_this_thread();
+  on_own_threads(repeat.size(), [&](std::size_t i) {
+    const Priority priority(priority_of_caller);
+    trials[i] = repeat[i]();
+  });
+  return verifications(champions, std::move(trials));
 }
 
 bool held(const Verification& verification, const Trial& trial, bool maximise) {

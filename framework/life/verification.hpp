@@ -43,8 +43,9 @@ struct ExactSimulators {
   std::unique_ptr<Simulator> same_method, other_method;
 };
 
-/// Makes the simulators for verify_marks(), on the experiment's device. Throws ConfigError as make_simulator() does.
-ExactSimulators exact_simulators(const Experiment& experiment);
+/// Makes the simulators for verify_marks() on the device of `simulator`, with threads of their own. Throws
+/// std::runtime_error if the device can no longer be used.
+ExactSimulators exact_simulators(const Experiment& experiment, const Simulator& simulator);
 
 /// Simulates the development of champions as in the run, on `simulator`. Then repeats the final evaluation in the
 /// following trials:
@@ -61,9 +62,8 @@ std::vector<Verification> verify(const Experiment& experiment, Simulator& simula
                                  std::span<const Champion> champions);
 
 /// Like verify(), but only with the trials on which marks() depends: quarter-step, other-method, no-muscles and
-/// settled. The first two run on `exact`, so that a GPU can do them for the whole front in the time of one: their steps
-/// are so many that CPUs would take far longer than the evaluations of a generation take on a GPU. The trials run at
-/// the same time.
+/// settled. The first two run on `exact`. They have many short steps; on a CPU, they would take far longer than a GPU
+/// needs for all evaluations of a generation. The four trials run at the same time.
 std::vector<Verification> verify_marks(const Experiment& experiment, Simulator& simulator, const ExactSimulators& exact,
                                        std::span<const Champion> champions);
 

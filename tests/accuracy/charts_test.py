@@ -35,7 +35,7 @@ DATA = {
     "stability_boundary": "method,damping rate * dt (1),lowest angular frequency * dt (1),"
     "highest angular frequency * dt (1)\nrk4,0,0,2.8\nrk4,1,0,2.9\n",
     "contact_gain": "method,dt * sqrt(floor stiffness / mass) (1),largest gain of a bounce (1),"
-    "bound of the Euler methods (1),the same on a rigid floor (1)\nrk4,0.5,1,1.1,1\nrk4,1,1.2,1.4,1\n",
+    "bound of the Euler methods (1),largest gain on a rigid floor (1)\nrk4,0.5,1,1.1,1\nrk4,1,1.2,1.4,1\n",
     "contact_map": "mass (kg),floor stiffness (N/m),largest gain of a bounce (1)\n"
     "0.1,1e5,1\n0.1,1e6,2\n0.2,1e5,1\n0.2,1e6,1.5\n",
     "divergence": "floor,mass (kg),dt (s),floor stiffness (N/m),dt * sqrt(floor stiffness / mass) (1),bodies,diverged (1),"

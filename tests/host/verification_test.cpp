@@ -92,6 +92,30 @@ TEST(Verify, AWalkerIsOne) {
   EXPECT_EQ(marks(walker, true), Marks{});
 }
 
+TEST(Verify, BeforeTheFrontMakesTheSameTrials) {
+  const Experiment experiment = testing::read(walkers);
+  const auto simulator = simulator_for(experiment);
+  std::vector<Champion> champions;
+  const std::vector<Individual> individuals = evaluated(experiment, *simulator, breed(experiment, {}, 0, 0, 6));
+  for (const Individual& individual : individuals)
+    if (individual.result.status == Status::ok)
+      champions.push_back({{individual.id, individual.born, &individual.genome}, individual.result.objectives.front()});
+  ASSERT_GT(champions.size(), 1u);
+  const auto all = verify(experiment, *simulator, champions);
+  const auto before = verify_marks(experiment, *simulator, exact_simulators(experiment, *simulator), champions);
+  ASSERT_EQ(before.size(), champions.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_EQ(before[i].individual, all[i].individual);
+    ASSERT_EQ(before[i].trials.size(), 4u);
+    for (const Trial& trial : before[i].trials) {
+      const auto same = std::ranges::find(all[i].trials, trial.name, &Trial::name);
+      ASSERT_NE(same, all[i].trials.end()) << trial.name;
+      EXPECT_EQ(trial.value, same->value) << trial.name << ": the same bits";
+      EXPECT_EQ(trial.status, same->status) << trial.name;
+    }
+  }
+}
+
 TEST(Verify, WhatFallsIsPassive) {
   const Experiment experiment = testing::read(walkers, {{"encoding.materials", "[\"tissue\", \"bone\"]", ""},
                                                         {"fitness.0.settle", "0", ""},

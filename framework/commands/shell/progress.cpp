@@ -155,7 +155,8 @@ void print_time_spent(const TimeSpent& time, const Simulator& simulator) {
             << ", decode " << share(time.evaluation.decode) << ", breed " << share(time.breed) << ", select "
             << share(time.select) << ", archive " << share(time.archive);
   if (time.verify > 0) remarks() << ", verify " << share(time.verify);
-  if (const std::optional<DeviceUse> device = simulator.device_use()) {
+  // verification also uses the device through simulators of its own, whose use is not counted
+  if (const std::optional<DeviceUse> device = simulator.device_use(); device && !(time.verify > 0)) {
     const auto devices = static_cast<double>(device->devices);
     remarks() << "; device" << (device->devices > 1 ? "s" : "") << " idle "
               << share(time.whole - device->busy / devices);

@@ -145,7 +145,9 @@ Topic verification() {
            "if it keeps more than half of its fitness "
            "without muscles, or has lost more than half of it after ten more seconds. Otherwise it is verified.",
            "With [experiment] verify_front = true, individuals are also verified before they enter the front of a "
-           "generation. Those that are artefacts or passive get that status and lose their fitness."},
+           "generation, in four of the trials: quarter-step, other-method, no-muscles and settled. Those that are "
+           "artefacts or passive get that status and lose their fitness. All four trials run on the device of the run, "
+           "while quarter-step and other-method at the end of a run always use the CPU."},
       .definitions = {{"again", "The final evaluation as it was in the run."},
                       {"quarter-step", "A quarter of the time step, in double precision."},
                       {"other-method",

@@ -159,8 +159,7 @@ def draw_convergence(axes, scene, in_contact, rows, order):
     labels = []
     for (method,), line in groups(kept, "method").items():
         axes.plot(column(line, dt), column(line, error), color=COLOUR[method], marker="o", markersize=2.5)
-        # with contact, errors scatter too much for a meaningful slope
-        name = method if in_contact else f"{method}: order {order[scene, method]:.2f}"
+        name = f"{method}: order {order[scene, method]:.2f}"
         labels.append((name, (line[0][dt], line[0][error]), COLOUR[method]))
     charts.label_ends(axes, labels)
 
@@ -175,8 +174,8 @@ def orders(folder, origin):
         len(scenes),
         2,
         (4, 2.8),
-        title="Error over dt in double: the slope is the order of convergence, which contact with an elastic floor takes away",
-        legend="order: by least squares over the four smallest dt whose errors stand above rounding",
+        title="Error over dt in double: the slope is the order of convergence",
+        legend="order: by least squares over the four smallest dt whose errors stand above rounding; with contact, over all dt up to 0.5 ms",
         footer=origin,
         right=1.7,
     )
@@ -242,7 +241,7 @@ def draw_gain(axes, rows):
     line = [(row[phase], row[bound]) for row in rows if row["method"] == "rk4" and row[bound] < 20]
     axes.plot(*zip(*line), color=INK, linewidth=1, linestyle=":")
     note(axes, (0.2, 2.6), "1/(1 − κ/4), κ = k dt²/m", (0, 0))
-    rigid = "the same on a rigid floor (1)"
+    rigid = "largest gain on a rigid floor (1)"
     axes.plot(column(rows, phase), column(rows, rigid), ".", color=INK, markersize=2, gid="rigid")
     note(axes, (0.05, 0.75), "dots: rigid floor, restitution 1", (0, 0))
     charts.label_ends(axes, labels)
@@ -279,7 +278,7 @@ def draw_divergence(axes, rows):
     }
     of_paper, on_rigid = floors["elastic"], floors["rigid"]
     axes.set(title=f"Of {of_paper[0]['bodies']:.0f} random bodies, diverged", xlabel=m, xscale="log")
-    axes.set(ylabel="share, at 0.5 ms and 10⁶ N/m", ylim=(-0.02, max(0.1, 1.15 * max(column(rows, share)))))
+    axes.set(ylabel="share, at 0.5 ms; blue: 10⁶ N/m", ylim=(-0.02, max(0.1, 1.15 * max(column(rows, share)))))
     ticks = [0.05, 0.1, 0.2, 0.3]
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.set_xticks([], minor=True)
@@ -297,7 +296,8 @@ def draw_divergence(axes, rows):
             if row[kept] is not None:
                 said.append(f"{row[m]:g} kg: the best ten keep {100 * row[kept]:.0f} % of their fitness at dt / 4")
     if on_rigid:
-        low, high = min(column(on_rigid, kept)), max(column(on_rigid, kept))
+        shares = [row[kept] for row in on_rigid if row[kept] is not None]
+        low, high = min(shares), max(shares)
         said += ["black: rigid floor; the best ten keep", f"{100 * low:.1f} to {100 * high:.1f} % of their fitness at dt / 4"]
     note(axes, (0.5e-3**2 * 1e6 / 1.2**2, axes.get_ylim()[1] * 0.95), "limit 1.2", (4, 0), color=SOFT)
     axes.text(1.04, 1, "\n".join(said), transform=axes.transAxes, va="top", color=SOFT, fontsize=7)

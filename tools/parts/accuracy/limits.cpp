@@ -83,7 +83,10 @@ double largest_gain(const Floor& floor, Method method, double dt, double steps) 
   }
   Simulation(scene, {method, Precision::float64, dt}, {"cpu", 1}).advance(masses, steps * dt);
   double largest = 0;
-  for (const Traveller& m : masses) largest = std::max(largest, std::pow(m.state.velocity[0].z / speed, 2));
+  for (const Traveller& m : masses) {
+    const double rise = m.state.velocity[0].z / speed;
+    largest = std::max(largest, rise < 0 ? infinity : rise * rise);  // a mass that still falls has not met the floor
+  }
   return largest;
 }
 

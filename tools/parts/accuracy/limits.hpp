@@ -41,7 +41,7 @@ double measured_limit(const Body& body, Method method, double low, double high);
 /// for impacts at 64 different instants within a time step. The time step follows from dt sqrt(floor stiffness / mass)
 /// = `contact_phase`.
 double contact_gain(Method method, double contact_phase);
-/// The same for a rigid floor with a restitution, with steps of `dt` s.
+/// The same for a rigid floor with a restitution, with steps of `dt` s. Infinity if a mass does not meet the floor.
 double rigid_contact_gain(Method method, double restitution, double dt);
 
 }  // namespace evodevo::tools::accuracy

@@ -113,9 +113,10 @@ Table contact_gains(Workers& workers) {
   for (const Method method : all_methods())
     for (double phase = 0.1; phase < 2; phase += 0.05) items.push_back({method, phase});
   Table table("contact_gain", {"method", "dt * sqrt(floor stiffness / mass) (1)", "largest gain of a bounce (1)",
-                               "bound of the Euler methods (1)", "the same on a rigid floor (1)"});
+                               "bound of the Euler methods (1)", "largest gain on a rigid floor (1)"});
   add_rows(table, workers, items, [](const Item& item) -> std::vector<Cell> {
-    const double dt = item.phase * std::sqrt(0.2 / Floor{}.stiffness);
+    constexpr double mass = 0.2;  // kg, that of contact_gain()
+    const double dt = item.phase * std::sqrt(mass / Floor{}.stiffness);
     return {std::string(name(item.method)), item.phase, contact_gain(item.method, item.phase),
             1 / (1 - item.phase * item.phase / 4), rigid_contact_gain(item.method, 1, dt)};
   });
