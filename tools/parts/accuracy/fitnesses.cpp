@@ -17,6 +17,8 @@ Fitnesses measure(const Experiment& experiment, std::span<const Body> bodies, co
   for (const Body& body : bodies)
     robots.push_back({&body, perturbed(state_at_birth(body, experiment.scene), perturbation)});
   Simulation simulation(experiment.scene, setting, device);
+  std::vector<Traveller> first = robots;
+  simulation.advance(first, setting.dt);  // a GPU compiles its kernel in it, which is no cost of the setting
   double seconds = request.settle > 0 ? simulation.advance(robots, request.settle) : 0;
   std::vector<Observation> observations;
   for (const Traveller& robot : robots)
