@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <iostream>
-#include <numeric>
+#include <ranges>
 #include <utility>
 
 #include "base/input_error.hpp"
@@ -22,6 +22,9 @@ std::vector<message::JobItem> items_of(std::span<const Newborn> newborns) {
 }
 
 const std::string same_for_all = "; results would depend on which rank simulates a robot; give all ranks the same ";
+constexpr const char* or_mixed = ", or allow this with --mixed, so that the run records what evaluated each robot";
+
+const Progress silent = [](double) {};
 
 /// The text by which messages name a rank.
 std::string title(int rank, const std::string& host) { return "rank " + std::to_string(rank) + " on " + host; }
@@ -42,10 +45,11 @@ std::size_t job_size(std::size_t left, std::size_t jobs, std::size_t fast) {
 void end_run(Channel& channel) { tell_all(channel, message::packed(message::End{channel.given_up()})); }
 
 Farm::Farm(const Experiment& experiment, Simulator& simulator, Channel& channel, const message::Setup& setup,
-           std::chrono::seconds patience)
+           const FarmOptions& options)
     : channel_(channel),
-      patience_(patience),
+      options_(options),
       worker_(experiment, simulator),
+      provenances_{worker_.hello().provenance},
       ranks_(static_cast<std::size_t>(channel.size())) {
   ranks_.front().hello = worker_.hello();
   ranks_.front().ready = true;
@@ -54,7 +58,7 @@ Farm::Farm(const Experiment& experiment, Simulator& simulator, Channel& channel,
 }
 
 void Farm::wait_for_hellos() {
-  const Clock::time_point end = Clock::now() + setup_patience * patience_;
+  const Clock::time_point end = Clock::now() + setup_patience * options_.patience;
   for (std::size_t missing = ranks_.size() - 1; missing > 0;) {
     const std::optional<Received> received = channel_.receive();
     if (!received) {
@@ -67,9 +71,10 @@ void Farm::wait_for_hellos() {
     if (message::kind_of(received->bytes) == message::Kind::failure)
       fail(received->from, message::unpacked<message::Failure>(received->bytes));
     if (message::kind_of(received->bytes) != message::Kind::hello) continue;  // a beat
-    check_program(received->from, message::sender_of(received->bytes));
     rank.hello = message::unpacked<message::Hello>(received->bytes);
-    check(received->from, rank.hello);
+    check_questions(received->from, rank.hello);
+    if (!options_.mixed) check_equal(received->from, rank.hello);
+    rank.provenance = known_provenance(rank.hello.provenance);
     rank.ready = true;
     --missing;
   }
@@ -80,44 +85,60 @@ std::string Farm::who_is_missing() const {
   for (std::size_t i = 0; i < ranks_.size(); ++i)
     if (!ranks_[i].ready) missing += (missing.empty() ? "" : ", ") + std::to_string(i);
   return "of " + std::to_string(ranks_.size()) + " ranks, these have not become ready in " +
-         std::to_string((setup_patience * patience_).count()) + " s: " + missing +
+         std::to_string((setup_patience * options_.patience).count()) + " s: " + missing +
          "; look whether their hosts and disks work, or start fewer ranks";
 }
 
-/// Throws if a rank has another program than this one.
-void Farm::check_program(int rank, const message::Hello& sender) const {
+/// Throws if the operators of a rank read other genomes than those of this one, or score something else.
+void Farm::check_questions(int rank, const message::Hello& hello) const {
   const message::Hello& here = worker_.hello();
-  if (sender.program != here.program)
-    throw InputError(title(rank, sender.host) + " runs another build of evodevo (" + sender.program +
-                     ") than rank 0 on " + here.host + " (" + here.program + ")" + same_for_all + "program");
+  const char* const what = hello.layout != here.layout   ? "have genomes with another layout"
+                           : hello.scores != here.scores ? "score something else"
+                                                         : nullptr;
+  if (what)
+    throw InputError("the operators of " + title(rank, hello.host) + " " + what + " than those of rank 0 on " +
+                     here.host + "; give all ranks operators of the same version");
+}
+
+/// Returns the index of a provenance, which is new if no rank has had it.
+std::uint32_t Farm::known_provenance(const Provenance& provenance) {
+  const auto known =
+      std::ranges::find_if(provenances_, [&](const Provenance& one) { return are_same(one, provenance); });
+  const auto index = static_cast<std::uint32_t>(known - provenances_.begin());
+  if (known == provenances_.end()) provenances_.push_back(provenance);
+  return index;
 }
 
 /// Throws if a rank could give other results than this one.
-void Farm::check(int rank, const message::Hello& hello) const {
+void Farm::check_equal(int rank, const message::Hello& hello) const {
   const Provenance& here = worker_.hello().provenance;
   const Provenance& there = hello.provenance;
   const std::string who = title(rank, hello.host);
+  if (there.program != here.program)
+    throw InputError(who + " runs another build of evodevo (" + there.program + ") than rank 0 on " +
+                     worker_.hello().host + " (" + here.program + ")" + same_for_all + "program" + or_mixed);
   for (std::size_t i = 0; i < here.operators.size(); ++i)
     if (there.operators.at(i).hash != here.operators[i].hash)
       throw InputError(who + " has another build of the " + name_of(here.operators[i]) + " (" +
                        there.operators[i].hash + ") than rank 0 on " + worker_.hello().host + " (" +
-                       here.operators[i].hash + ")" + same_for_all + "libraries");
+                       here.operators[i].hash + ")" + same_for_all + "libraries" + or_mixed);
   if (there.device != here.device)
     throw InputError(who + " simulates on " + there.device + ", and rank 0 on " + worker_.hello().host +
-                     " simulates on " + here.device + same_for_all + "type of device, or choose one with --device");
+                     " simulates on " + here.device + same_for_all + "type of device (--device)" + or_mixed);
 }
 
-std::vector<Result> Farm::evaluate(std::span<const Newborn> newborns, const Progress& progress) {
-  std::vector<Result> results;
-  for (message::Outcome& outcome : work(message::Work::evaluate, items_of(newborns), progress))
-    results.push_back(std::move(outcome.result));
-  return results;
+std::vector<Evaluated> Farm::evaluate(std::span<const Newborn> newborns, const Progress& progress) {
+  Batch batch = work({message::Work::evaluate, items_of(newborns)}, progress);
+  std::vector<Evaluated> evaluated;
+  for (std::size_t i = 0; i < newborns.size(); ++i)
+    evaluated.push_back({std::move(batch.outcomes[i].result), batch.found_by[i]});
+  return evaluated;
 }
 
-std::vector<LifeRecord> Farm::records(std::span<const Newborn> newborns) {
+std::vector<LifeRecord> Farm::records(std::span<const Newborn> newborns, std::span<const std::uint32_t> provenances) {
+  Batch batch = work({message::Work::records, items_of(newborns), {provenances.begin(), provenances.end()}}, silent);
   std::vector<LifeRecord> records;
-  for (message::Outcome& outcome : work(message::Work::records, items_of(newborns), [](double) {}))
-    records.emplace_back(std::move(outcome.record));
+  for (message::Outcome& outcome : batch.outcomes) records.emplace_back(std::move(outcome.record));
   return records;
 }
 
@@ -127,13 +148,14 @@ void Farm::forget_records() {
   keepers_.clear();
 }
 
-std::vector<Verification> Farm::verify(std::span<const Champion> champions) {
+std::vector<Verification> Farm::verify(std::span<const Champion> champions,
+                                       std::span<const std::uint32_t> provenances) {
   std::vector<message::JobItem> items;
   for (const Champion& champion : champions)
     items.push_back({champion.newborn.id, champion.newborn.generation, champion.fitness, *champion.newborn.genome});
+  Batch batch = work({message::Work::verify, std::move(items), {provenances.begin(), provenances.end()}}, silent);
   std::vector<Verification> verifications;
-  for (message::Outcome& outcome : work(message::Work::verify, std::move(items), [](double) {}))
-    verifications.push_back(std::move(outcome.verification));
+  for (message::Outcome& outcome : batch.outcomes) verifications.push_back(std::move(outcome.verification));
   return verifications;
 }
 
@@ -144,13 +166,12 @@ std::size_t Farm::verified_at_once() const {
   return champions;
 }
 
-std::vector<message::Outcome> Farm::work(message::Work work, std::vector<message::JobItem> items,
-                                         const Progress& progress) {
-  Batch batch{work, std::move(items), {}, {}, 0};
+Farm::Batch Farm::work(Batch batch, const Progress& progress) {
   batch.outcomes.resize(batch.items.size());
-  batch.left.resize(batch.items.size());
-  std::iota(batch.left.begin(), batch.left.end(), std::size_t{0});
-  if (work == message::Work::records) deal_to_keepers(batch);
+  batch.found_by.resize(batch.items.size());
+  batch.left.resize(batch.needed.empty() ? 1 : provenances_.size());
+  for (std::size_t item = batch.items.size(); item-- > 0;) batch.put_back(item);
+  if (batch.work == message::Work::records) deal_to_keepers(batch);
   for (; batch.done < batch.items.size(); worker_.wait(between_looks)) {
     bool news = false;
     do {
@@ -158,34 +179,50 @@ std::vector<message::Outcome> Farm::work(message::Work work, std::vector<message
     } while (take_messages(batch) && (news = true));
     news |= beat();
     give_up_silent(batch);
+    check_served(batch);
     if (news) progress(lives_done(batch) / static_cast<double>(batch.items.size()));
   }
-  return std::move(batch.outcomes);
+  return batch;
 }
 
 /// Gives jobs to ranks until none is free or nothing is left.
 void Farm::deal(Batch& batch) {
-  std::size_t all = 0;
-  for (const Rank& rank : ranks_)
-    if (!rank.lost) all += rank.hello.jobs;
-  while (!batch.left.empty()) {
-    const std::optional<int> rank = free_rank();
-    if (!rank) return;
-    const auto count = static_cast<std::ptrdiff_t>(
-        job_size(batch.left.size(), all, ranks_[static_cast<std::size_t>(*rank)].hello.lives));
-    std::vector<std::size_t> items(batch.left.begin(), batch.left.begin() + count);
-    batch.left.erase(batch.left.begin(), batch.left.begin() + count);
-    assign(*rank, std::move(items), batch);
+  while (const std::optional<int> free = free_rank(batch)) {
+    const Rank& rank = ranks_[static_cast<std::size_t>(*free)];
+    std::deque<std::size_t>& left = batch.left[batch.line(rank.provenance)];
+    const auto count =
+        static_cast<std::ptrdiff_t>(job_size(left.size(), jobs_at_once(batch, rank.provenance), rank.hello.lives));
+    std::vector<std::size_t> items(left.begin(), left.begin() + count);
+    left.erase(left.begin(), left.begin() + count);
+    assign(*free, std::move(items), batch);
   }
 }
 
-/// Returns the rank that has the smallest part of the jobs that it does at once; nullopt if all have enough.
-std::optional<int> Farm::free_rank() const {
+/// Returns the number of jobs that the ranks that may do the same items as one with this provenance do at once.
+std::size_t Farm::jobs_at_once(const Batch& batch, std::uint32_t provenance) const {
+  std::size_t jobs = 0;
+  for (const Rank& rank : ranks_)
+    if (!rank.lost && batch.line(rank.provenance) == batch.line(provenance)) jobs += rank.hello.jobs;
+  return jobs;
+}
+
+/// Throws if there are items that no rank may do, because those that might are lost.
+void Farm::check_served(const Batch& batch) const {
+  for (std::uint32_t provenance = 0; provenance < batch.left.size(); ++provenance)
+    if (!batch.left[provenance].empty() && jobs_at_once(batch, provenance) == 0)
+      throw std::runtime_error("no rank is left with the device (" + provenances_[provenance].device +
+                               ") and the builds that evaluated these robots; resume the run: it keeps their results, "
+                               "but does not record or verify their lives");
+}
+
+/// Returns, of the ranks for which there are items, the one that has the smallest part of the jobs that it does at
+/// once; nullopt if all have enough.
+std::optional<int> Farm::free_rank(const Batch& batch) const {
   std::optional<int> best;
   double least = 1;
   for (std::size_t i = 0; i < ranks_.size(); ++i) {
     const double part = static_cast<double>(ranks_[i].jobs) / static_cast<double>(ranks_[i].hello.jobs);
-    if (ranks_[i].lost || part >= least) continue;
+    if (ranks_[i].lost || part >= least || batch.left[batch.line(ranks_[i].provenance)].empty()) continue;
     least = part;
     best = static_cast<int>(i);
   }
@@ -195,12 +232,13 @@ std::optional<int> Farm::free_rank() const {
 /// Asks the ranks that keep records for them. Records that nobody keeps are left.
 void Farm::deal_to_keepers(Batch& batch) {
   std::map<int, std::vector<std::size_t>> kept;
-  std::erase_if(batch.left, [&](std::size_t item) {
-    const auto keeper = keepers_.find(batch.items[item].id);
-    if (keeper == keepers_.end()) return false;
-    kept[keeper->second].push_back(item);
-    return true;
-  });
+  for (std::deque<std::size_t>& line : batch.left)
+    std::erase_if(line, [&](std::size_t item) {
+      const auto keeper = keepers_.find(batch.items[item].id);
+      if (keeper == keepers_.end()) return false;
+      kept[keeper->second].push_back(item);
+      return true;
+    });
   constexpr std::ptrdiff_t most = 100;  // records in a message
   for (const auto& [rank, items] : kept)
     for (auto begin = items.begin(); begin != items.end();) {
@@ -247,12 +285,13 @@ void Farm::take(int rank, message::Answer answer, Batch& batch) {
   if (job.empty() || answer.outcomes.size() != job.mapped().items.size())
     throw WireError("rank " + std::to_string(rank) + " answers a question that was not asked");
   const std::vector<std::size_t>& items = job.mapped().items;
+  Rank& from = ranks_[static_cast<std::size_t>(rank)];
   for (std::size_t i = 0; i < items.size(); ++i) {
     batch.outcomes[items[i]] = std::move(answer.outcomes[i]);
+    batch.found_by[items[i]] = from.provenance;
     if (batch.work == message::Work::evaluate) keepers_[batch.items[items[i]].id] = rank;
   }
   batch.done += items.size();
-  Rank& from = ranks_[static_cast<std::size_t>(rank)];
   from.beat.busy = answer.busy;
   --from.jobs;
   if (batch.work == message::Work::evaluate) from.lives += items.size();
@@ -275,15 +314,15 @@ void Farm::give_up_silent(Batch& batch) {
     for (Rank& rank : ranks_) rank.heard = listened_;
   for (std::size_t i = 1; i < ranks_.size(); ++i) {
     Rank& rank = ranks_[i];
-    if (rank.lost || Clock::now() - rank.heard <= patience_) continue;
+    if (rank.lost || Clock::now() - rank.heard <= options_.patience) continue;
     std::cerr << "warning: " + title(static_cast<int>(i), rank.hello.host) + " has said nothing for " +
-                     std::to_string(patience_.count()) + " s and is given up; the other ranks do its work\n";
+                     std::to_string(options_.patience.count()) + " s and is given up; the other ranks do its work\n";
     rank.lost = true;
     channel_.give_up(static_cast<int>(i));
     std::erase_if(keepers_, [&](const auto& keeper) { return keeper.second == static_cast<int>(i); });
     std::erase_if(jobs_, [&](const auto& job) {
       if (job.second.rank != static_cast<int>(i)) return false;
-      batch.left.insert(batch.left.begin(), job.second.items.begin(), job.second.items.end());
+      for (const std::size_t item : job.second.items | std::views::reverse) batch.put_back(item);
       return true;
     });
   }

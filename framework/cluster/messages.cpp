@@ -1,6 +1,7 @@
 #include "cluster/messages.hpp"
 
 #include "cluster/wire.hpp"
+#include "evolution/archive/schema.hpp"
 
 namespace evodevo {
 
@@ -36,8 +37,15 @@ void for_each_part(Wire& wire, Verification& verification) {
 }
 
 template <class Wire>
+void for_each_part(Wire& wire, std::filesystem::path& path) {
+  std::string text = path.string();
+  wire(text);
+  if constexpr (std::is_same_v<Wire, WireReader>) path = text;
+}
+
+template <class Wire>
 void for_each_part(Wire& wire, OperatorUse& use) {
-  wire(use.kind, use.name, use.version, use.hash, use.label);
+  wire(use.kind, use.name, use.version, use.file, use.hash, use.label);
 }
 
 template <class Wire>
@@ -45,16 +53,31 @@ void for_each_part(Wire& wire, Provenance& provenance) {
   wire(provenance.device, provenance.version, provenance.program, provenance.operators);
 }
 
+template <class Wire>
+void for_each_part(Wire& wire, GeneSpec& gene) {
+  wire(gene.low, gene.high, gene.choices, gene.refers_to);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, BlockType& type) {
+  wire(type.name, type.genes, type.least, type.most, type.gene_names, type.section);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, Layout& layout) {
+  wire(layout.types, layout.first_blocks, layout.sections, layout.own);
+}
+
 namespace message {
 
 template <class Wire>
 void for_each_part(Wire& wire, Setup& setup) {
-  wire(setup.text, setup.name, setup.files, setup.is_record);
+  wire(setup.protocol, setup.text, setup.name, setup.files, setup.is_record);
 }
 
 template <class Wire>
 void for_each_part(Wire& wire, Hello& hello) {
-  wire(hello.program, hello.host, hello.provenance, hello.jobs, hello.lives, hello.verified_at_once);
+  wire(hello.host, hello.provenance, hello.layout, hello.scores, hello.jobs, hello.lives, hello.verified_at_once);
 }
 
 template <class Wire>
@@ -107,12 +130,12 @@ std::string packed(Kind kind) {
 
 Kind kind_of(const std::string& bytes) { return WireReader(bytes).next<Kind>(); }
 
-Hello sender_of(const std::string& hello) {
-  WireReader reader(hello);
-  Hello sender;
-  Kind kind{};
-  reader(kind, sender.program, sender.host);
-  return sender;
+std::string protocol() { return std::string("1.") + archive_format; }
+
+std::string protocol_of(const std::string& setup) {
+  WireReader reader(setup);
+  reader.next<Kind>();
+  return reader.next<std::string>();
 }
 
 template <class Message>

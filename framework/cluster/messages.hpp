@@ -13,10 +13,18 @@
 
 namespace evodevo::message {
 
+/// Names the form of messages and of the records in them. Different builds of the program can read each other's
+/// messages if it is the same. The number before the point grows with every change of a message; the one after it is
+/// that of the archive's format.
+std::string protocol();
+
+/// A rank with another protocol reads nothing but the beginning of Setup, and answers with Failure. So the numbers of
+/// the kinds, Failure and End never change.
 enum class Kind : std::uint8_t { setup, hello, job, answer, beat, forget, failure, end };
 
 /// The experiment of the run, from which each rank makes its own operators.
 struct Setup {
+  std::string protocol = message::protocol();
   std::string text;  ///< Experiment::resolved
   std::string name;
   FileContents files;
@@ -27,9 +35,10 @@ struct Setup {
 
 /// What a rank is, and how much work it wants to have.
 struct Hello {
-  std::string program;  ///< hash of the program's file; ranks with another program cannot read the rest
   std::string host;
   Provenance provenance;
+  Layout layout;                       ///< of the genomes that its operators read
+  std::vector<std::string> scores;     ///< what its operators score
   std::uint64_t jobs = 1;              ///< number of jobs that it does at the same time
   std::uint64_t lives = 1;             ///< number of lives in a job with which it is fast
   std::uint64_t verified_at_once = 1;  ///< Evaluator::verified_at_once()
@@ -99,8 +108,8 @@ std::string packed(Kind kind);  ///< of a message without content: forget
 
 /// Returns the kind of a message. Throws WireError if there is none.
 Kind kind_of(const std::string& bytes);
-/// Returns the program and the host of a Hello, which can be read even if it comes from another program.
-Hello sender_of(const std::string& hello);
+/// Returns the protocol of a Setup.
+std::string protocol_of(const std::string& setup);
 /// Returns the content of a message of the kind Message::kind. Throws WireError if the bytes are not such a message.
 template <class Message>
 Message unpacked(const std::string& bytes);

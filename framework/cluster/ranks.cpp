@@ -88,13 +88,13 @@ std::vector<int> share_of(int count, int sharer, int sharers) {
   return share;
 }
 
-void share_host(Experiment& experiment, const Channel& channel) {
+void share_host(Experiment& experiment, const Channel& channel, bool mixed) {
   const int rank = channel.rank_on_host(), ranks = channel.ranks_on_host();
   if (experiment.threads == 0) {
     const auto [cores, all] = usable_cores();
     experiment.threads = all ? std::max(1, cores / ranks) : cores;  // a launcher may have divided the cores already
   }
-  if (experiment.device == Device::cpu) return;
+  if (experiment.device == Device::cpu || (mixed && !experiment.gpus.empty())) return;
   std::vector<int> numbers;
   const std::vector<int> all = experiment.gpus.empty() ? usable_gpus() : experiment.gpus;
   for (const int place : share_of(static_cast<int>(all.size()), rank, ranks))

@@ -37,8 +37,9 @@ class Ranks {
 /// process; 1 without a launcher.
 int started_processes();
 
-/// Gives this rank its share of its host: its threads, unless the experiment says how many, and its GPUs.
-void share_host(Experiment& experiment, const Channel& channel);
+/// Gives this rank its share of its host: its threads, unless the experiment says how many, and its GPUs. Mixed ranks
+/// do not share the GPUs that the experiment names, because others may have other devices.
+void share_host(Experiment& experiment, const Channel& channel, bool mixed);
 
 /// Returns those of the numbers 0 to count-1 that belong to one of several sharers. Sharers get equally many; if there
 /// are fewer numbers than sharers, each gets one, which several share.

@@ -1,4 +1,5 @@
-// Turns messages into bytes and back. Both ends run the same build of the program, so that numbers need no conversion.
+// Turns messages into bytes and back. Numbers are not converted: all ranks run on machines with the same
+// sizes and byte order of numbers.
 #pragma once
 
 #include <cstddef>

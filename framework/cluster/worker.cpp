@@ -22,8 +22,12 @@ std::string host_name() {
 message::Hello hello_of(const Experiment& experiment, Simulator& simulator) {
   message::Hello hello;
   hello.provenance = this_provenance(experiment, simulator.device());
-  hello.program = hello.provenance.program;
   hello.host = host_name();
+  hello.layout = experiment.layout;
+  for (const auto* scores : {&experiment.objectives, &experiment.measures})
+    for (const Objective& score : *scores)
+      hello.scores.push_back(std::string(score.maximise ? "more " : "less ") + score.name + " in " + score.unit +
+                             " as " + name(score.role));
   hello.verified_at_once = verified_at_once(simulator);
   const std::optional<DeviceUse> gpus = simulator.device_use();
   // a second job of a processor fills the time in which few lives of the first are left
@@ -65,19 +69,21 @@ std::vector<message::Outcome> Worker::outcomes(const message::Job& job) {
   for (const message::JobItem& item : job.items) newborns.push_back({item.id, item.generation, &item.genome});
   std::vector<message::Outcome> outcomes;
   if (job.work == message::Work::evaluate) {
-    for (Result& result : evaluated(newborns, job.number)) outcomes.push_back({.result = std::move(result)});
+    for (Evaluated& one : evaluated(newborns, job.number)) outcomes.push_back({.result = std::move(one.result)});
   } else if (job.work == message::Work::records) {
-    for (const LifeRecord& record : evaluator_.records(newborns)) outcomes.push_back({.record = record.bytes()});
+    const std::vector<std::uint32_t> own(newborns.size());
+    for (const LifeRecord& record : evaluator_.records(newborns, own)) outcomes.push_back({.record = record.bytes()});
   } else {
     std::vector<Champion> champions;
     for (std::size_t i = 0; i < newborns.size(); ++i) champions.push_back({newborns[i], job.items[i].fitness});
-    for (Verification& verification : evaluator_.verify(champions))
+    const std::vector<std::uint32_t> own(newborns.size());
+    for (Verification& verification : evaluator_.verify(champions, own))
       outcomes.push_back({.verification = std::move(verification)});
   }
   return outcomes;
 }
 
-std::vector<Result> Worker::evaluated(std::span<const Newborn> newborns, std::uint64_t job) {
+std::vector<Evaluated> Worker::evaluated(std::span<const Newborn> newborns, std::uint64_t job) {
   return evaluator_.evaluate(newborns, [&](double part) {
     const std::lock_guard lock(mutex_);
     progress_[job] = part * static_cast<double>(newborns.size());
@@ -201,16 +207,19 @@ void serve(Channel& channel, const std::function<RankOptions()>& options) {
   std::unique_ptr<Simulator> simulator;
   std::unique_ptr<Worker> worker;
   try {
+    if (const std::string protocol = message::protocol_of(*bytes); protocol != message::protocol())
+      throw InputError("speaks protocol " + message::protocol() + ", but rank 0 speaks protocol " + protocol +
+                       "; give all ranks evodevo programs of the same version");
     const message::Setup setup = message::unpacked<message::Setup>(*bytes);
     RankOptions given = options();
     experiment = read_experiment(setup.text, {.file = setup.name,
-                                              .overrides = {},
+                                              .overrides = std::move(given.overrides),
                                               .plugin_path = std::move(given.plugin_path),
                                               .is_record = setup.is_record,
                                               .gpus = std::move(given.gpus),
                                               .files = setup.files});
     experiment.name = setup.name;
-    share_host(experiment, channel);
+    share_host(experiment, channel, given.mixed);
     simulator = make_simulator(experiment);
     worker = std::make_unique<Worker>(experiment, *simulator);
   } catch (const std::exception& error) {

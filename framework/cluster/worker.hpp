@@ -50,7 +50,7 @@ class Worker {
 
   void work(const message::Job& job);
   std::vector<message::Outcome> outcomes(const message::Job& job);
-  std::vector<Result> evaluated(std::span<const Newborn> newborns, std::uint64_t job);
+  std::vector<Evaluated> evaluated(std::span<const Newborn> newborns, std::uint64_t job);
 
   message::Hello hello_;
   LocalEvaluator evaluator_;
@@ -73,6 +73,8 @@ void do_jobs(Channel& channel, Worker& worker, std::chrono::seconds patience = p
 struct RankOptions {
   std::vector<std::filesystem::path> plugin_path;  ///< is searched for operators
   std::vector<int> gpus;                           ///< Experiment::gpus
+  std::vector<Override> overrides;                 ///< of the experiment that rank 0 sends: its device and threads
+  bool mixed = false;                              ///< see share_host()
 };
 
 /// Does the whole work of a rank other than 0: makes the experiment that rank 0 sends, introduces itself and does jobs.

@@ -122,16 +122,27 @@ bool served(const Ranks& ranks, const Given& given) {
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  serve(*ranks.channel(), [&] { return RankOptions{given_plugin_path(given), given_gpus(given)}; });
+  serve(*ranks.channel(), [&] {
+    return RankOptions{given_plugin_path(given), given_gpus(given), given_machine(given), given.contains("mixed")};
+  });
   return true;
 }
 
+void add_mixed_option(Options& options) {
+  options.add_options()(
+      "mixed",
+      "let ranks have different devices and builds; the run records with which of them each individual was evaluated");
+}
+
 /// Returns the farm of all ranks; nothing if there is only this process. `is_record` is that of ExperimentSource.
-std::unique_ptr<Farm> farm_of(const Ranks& ranks, const Experiment& experiment, Simulator& simulator, bool is_record) {
+std::unique_ptr<Farm> farm_of(const Ranks& ranks, const Experiment& experiment, Simulator& simulator, bool is_record,
+                              const Given& given) {
   if (!ranks.channel()) return nullptr;
-  const message::Setup setup{experiment.resolved, experiment.name, experiment.files, is_record};
+  const message::Setup setup{
+      .text = experiment.resolved, .name = experiment.name, .files = experiment.files, .is_record = is_record};
+  const FarmOptions options{.mixed = given.contains("mixed")};
   return timed("waiting for the other ranks",
-               [&] { return std::make_unique<Farm>(experiment, simulator, *ranks.channel(), setup); });
+               [&] { return std::make_unique<Farm>(experiment, simulator, *ranks.channel(), setup, options); });
 }
 
 void print_warnings(const Experiment& experiment) {
@@ -187,10 +198,10 @@ int run(const Given& given) {
   Experiment experiment = given_experiment(given["EXPERIMENT.toml"].as<std::string>(), given);
   const std::optional<Journal> journal = given_journal(given);
   print_warnings(experiment);
-  if (ranks.channel()) share_host(experiment, *ranks.channel());
+  if (ranks.channel()) share_host(experiment, *ranks.channel(), given.contains("mixed"));
   const auto simulator = opened_simulator(experiment);
   remember_folders_of(experiment);
-  const auto farm = farm_of(ranks, experiment, *simulator, false);
+  const auto farm = farm_of(ranks, experiment, *simulator, false, given);
   const fs::path folder =
       given.contains("out") ? fs::path(given["out"].as<std::string>()) : new_run_folder(experiment.name);
   Archive archive = Archive::create(folder, experiment, simulator->device(), journal);
@@ -201,15 +212,17 @@ int resume(const Given& given) {
   const Ranks ranks = Ranks::joined();
   if (served(ranks, given)) return 0;
   Archive archive = Archive::resume(given["DIR"].as<std::string>(), given_journal(given));
-  Experiment experiment = timed("reading the record of the run and loading its operators",
-                                [&] { return recorded_experiment(archive, given_plugin_path(given)); });
+  Experiment experiment = timed("reading the record of the run and loading its operators", [&] {
+    return recorded_experiment(archive, given_plugin_path(given), given_machine(given));
+  });
+  experiment.gpus = given_gpus(given);
   timed("checking that the run can be continued", [&] { check_resumable(archive, experiment); });
   if (!given.contains("allow-other-versions")) refuse_other_versions(experiment, archive);
-  if (ranks.channel()) share_host(experiment, *ranks.channel());
+  if (ranks.channel()) share_host(experiment, *ranks.channel(), given.contains("mixed"));
   const auto simulator = opened_simulator(experiment);
   warn_of_another_device(*simulator, archive);
   warn_of_other_builds(experiment, *simulator, archive);
-  const auto farm = farm_of(ranks, experiment, *simulator, true);
+  const auto farm = farm_of(ranks, experiment, *simulator, true, given);
   return evolve_and_report(experiment, *simulator, archive, farm.get());
 }
 
@@ -309,16 +322,17 @@ Command run_command() {
   Options options;
   options.add_options()("out", value<std::string>("DIR"), "folder of the run; default: a new one in runs/");
   add_journal_option(options);
+  add_mixed_option(options);
   add_experiment_options(options);
   return {
       .name = "run",
       .arguments = {{"EXPERIMENT.toml"}},
       .summary = "Evolve robots",
-      .text =
-          {"The run writes all individuals of all generations into its folder, and verifies its best individual "
-           "at the end. Ctrl-C ends it after the current generation, a second Ctrl-C ends it at once; `resume` "
-           "continues it. Results do not depend on the numbers of threads, GPUs and processes. A run uses all equal "
-           "GPUs, and all processes that mpirun or srun starts."},
+      .text = {"The run writes all individuals of all generations into its folder, and verifies its best individual "
+               "at the end. Ctrl-C ends it after the current generation, a second Ctrl-C ends it at once; `resume` "
+               "continues it. Results do not depend on the numbers of threads, GPUs and processes, except with "
+               "--mixed. A run "
+               "uses all equal GPUs, and all processes that mpirun or srun starts."},
       .examples = {"run experiments/quickstart.toml",
                    "run experiments/quickstart.toml --seed 2 --set selection.name=elitist --out runs/elitist",
                    "run experiments/evo-devo.toml --device cuda:0,2"},
@@ -331,15 +345,18 @@ Command resume_command() {
   options.add_options()("allow-other-versions",
                         "continue even if an operator has another version than when the run began");
   add_journal_option(options);
+  add_mixed_option(options);
+  add_machine_options(options);
   add_plugin_option(options);
-  return {.name = "resume",
-          .arguments = {{"DIR"}},
-          .summary = "Continue an interrupted run",
-          .text = {"The run ends as if it had never been interrupted. It warns if the device, or the build of "
-                   "evodevo or of an operator, differs from the one that the run began with."},
-          .examples = {"resume runs/quickstart-1"},
-          .options = options,
-          .function = resume};
+  return {
+      .name = "resume",
+      .arguments = {{"DIR"}},
+      .summary = "Continue an interrupted run",
+      .text = {"The run ends as if it had never been interrupted, unless it was or is --mixed. It warns if the device, "
+               "or the build of evodevo or of an operator, is none of those that took part in the run before."},
+      .examples = {"resume runs/quickstart-1"},
+      .options = options,
+      .function = resume};
 }
 
 Command check_command() {

@@ -100,13 +100,25 @@ class Report {
 
   std::int64_t done() const { return generations_.empty() ? 0 : generations_.back().evaluations; }
 
-  /// Returns the devices of the run, in the order in which they were first used.
+  /// Returns the devices that have evaluated individuals, in the order in which they came to the run. If there are
+  /// several, each comes with its number of evaluations.
   std::string devices() const {
-    std::vector<std::string> devices;
-    for (const Provenance& provenance : archive_.provenances())
-      if (std::find(devices.begin(), devices.end(), provenance.device) == devices.end())
-        devices.push_back(provenance.device);
-    return joined(devices, ", then ");
+    const std::vector<Provenance> provenances = archive_.provenances();
+    const std::vector<std::int64_t> evaluated = archive_.evaluated_by_provenance();
+    std::vector<std::pair<std::string, std::int64_t>> devices;
+    for (std::size_t i = 0; i < provenances.size(); ++i) {
+      if (evaluated[i] == 0) continue;
+      const std::string& device = provenances[i].device;
+      auto known = std::ranges::find(devices, device, &std::pair<std::string, std::int64_t>::first);
+      if (known == devices.end()) known = devices.insert(known, {device, 0});
+      known->second += evaluated[i];
+    }
+    if (devices.empty()) return provenances.front().device;
+    if (devices.size() == 1) return devices.front().first;
+    std::vector<std::string> texts;
+    for (const auto& [device, count] : devices)
+      texts.push_back(device + " (evaluations: " + std::to_string(count) + ")");
+    return joined(texts);
   }
 
   void print_generations() const {

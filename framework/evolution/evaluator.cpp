@@ -13,15 +13,16 @@ std::size_t lives_at_once(Simulator& simulator) {
 
 std::size_t verified_at_once(Simulator& simulator) { return std::max<std::size_t>(1, lives_at_once(simulator) / 2); }
 
-std::vector<Result> LocalEvaluator::evaluate(std::span<const Newborn> newborns, const Progress& progress) {
-  std::vector<Result> results = evaluation_.evaluate(newborns, progress);
+std::vector<Evaluated> LocalEvaluator::evaluate(std::span<const Newborn> newborns, const Progress& progress) {
+  std::vector<Evaluated> evaluated;
+  for (Result& result : evaluation_.evaluate(newborns, progress)) evaluated.push_back({std::move(result)});
   const std::lock_guard lock(mutex_);
   for (std::size_t i = 0; i < newborns.size(); ++i)
-    kept_[newborns[i].id] = std::exchange(results[i].record, LifeRecord());
-  return results;
+    kept_[newborns[i].id] = std::exchange(evaluated[i].result.record, LifeRecord());
+  return evaluated;
 }
 
-std::vector<LifeRecord> LocalEvaluator::records(std::span<const Newborn> newborns) {
+std::vector<LifeRecord> LocalEvaluator::records(std::span<const Newborn> newborns, std::span<const std::uint32_t>) {
   std::vector<LifeRecord> records(newborns.size());
   std::vector<Newborn> lost;
   std::vector<std::size_t> places;  // of the lost, in `records`
@@ -47,7 +48,7 @@ void LocalEvaluator::forget_records() {
   kept_.clear();
 }
 
-std::vector<Verification> LocalEvaluator::verify(std::span<const Champion> champions) {
+std::vector<Verification> LocalEvaluator::verify(std::span<const Champion> champions, std::span<const std::uint32_t>) {
   return verify_marks(experiment_, simulator_, exact(), champions);
 }
 

@@ -7,33 +7,46 @@
 #include <string>
 #include <vector>
 
+#include "evolution/provenance.hpp"
 #include "life/evaluation.hpp"
 #include "life/verification.hpp"
 
 namespace evodevo {
 
+/// What an evaluator finds of a newborn.
+struct Evaluated {
+  Result result;                 ///< without its record
+  std::uint32_t provenance = 0;  ///< index into Evaluator::provenances()
+};
+
 /// Evaluates and verifies individuals. Implementations are LocalEvaluator, for one process, and Farm
-/// (cluster/farm.hpp), for many. Results do not depend on the implementation, nor on what else is evaluated.
+/// (cluster/farm.hpp), for many. Results do not depend on the implementation, nor on what else is evaluated, unless the
+/// evaluator has several provenances.
 class Evaluator {
  public:
   virtual ~Evaluator() = default;
 
+  /// Returns the provenances that results may have, each once. The first one is that of this process.
+  virtual std::vector<Provenance> provenances() const = 0;
+
   /// Returns the results in the order of the newborns, without the records of their lives. These are kept where the
   /// lives were simulated, because the records of a whole population would take too much memory. Calls `progress` with
   /// the fraction that is done, 0 to 1.
-  virtual std::vector<Result> evaluate(std::span<const Newborn> newborns, const Progress& progress) = 0;
-  /// Returns the records of lives, in the order of the newborns. Lives whose records are not kept are simulated again.
-  virtual std::vector<LifeRecord> records(std::span<const Newborn> newborns) = 0;
+  virtual std::vector<Evaluated> evaluate(std::span<const Newborn> newborns, const Progress& progress) = 0;
+  /// Returns the records of lives, in the order of the newborns. Lives whose records are not kept are simulated again,
+  /// by processes that have the provenance of the newborn's result.
+  virtual std::vector<LifeRecord> records(std::span<const Newborn> newborns,
+                                          std::span<const std::uint32_t> provenances) = 0;
   /// Forgets all records that are kept.
   virtual void forget_records() = 0;
 
-  /// Verifies champions as verify_marks() does, and returns what it found in their order.
-  virtual std::vector<Verification> verify(std::span<const Champion> champions) = 0;
+  /// Verifies champions as verify_marks() does, by processes that have the provenance of the champion's result. Returns
+  /// what it found in their order.
+  virtual std::vector<Verification> verify(std::span<const Champion> champions,
+                                           std::span<const std::uint32_t> provenances) = 0;
   /// About the number of champions that can be verified in the time that one takes.
   virtual std::size_t verified_at_once() const = 0;
 
-  /// The device, as Simulator::device() names it; all processes have equal ones.
-  virtual std::string device() const = 0;
   /// Of this process.
   virtual PhaseTimes phase_times() const = 0;
 };
@@ -50,12 +63,14 @@ class LocalEvaluator final : public Evaluator {
   LocalEvaluator(const Experiment& experiment, Simulator& simulator)
       : experiment_(experiment), simulator_(simulator), evaluation_(experiment, simulator) {}
 
-  std::vector<Result> evaluate(std::span<const Newborn> newborns, const Progress& progress) override;
-  std::vector<LifeRecord> records(std::span<const Newborn> newborns) override;
+  std::vector<Provenance> provenances() const override { return {this_provenance(experiment_, simulator_.device())}; }
+  std::vector<Evaluated> evaluate(std::span<const Newborn> newborns, const Progress& progress) override;
+  std::vector<LifeRecord> records(std::span<const Newborn> newborns,
+                                  std::span<const std::uint32_t> provenances) override;
   void forget_records() override;
-  std::vector<Verification> verify(std::span<const Champion> champions) override;
+  std::vector<Verification> verify(std::span<const Champion> champions,
+                                   std::span<const std::uint32_t> provenances) override;
   std::size_t verified_at_once() const override { return evodevo::verified_at_once(simulator_); }
-  std::string device() const override { return simulator_.device(); }
   PhaseTimes phase_times() const override { return evaluation_.phase_times(); }
 
  private:

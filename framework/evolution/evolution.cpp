@@ -16,11 +16,22 @@
 namespace evodevo {
 namespace {
 
-void evaluate(std::vector<Individual>& newborns, Evaluator& evaluator, const Observer& observer) {
+void evaluate(std::vector<Individual>& newborns, Evaluator& evaluator, const RecordedProvenances& provenances,
+              const Observer& observer) {
   std::vector<Newborn> batch;
   for (const Individual& individual : newborns) batch.push_back({individual.id, individual.born, &individual.genome});
-  std::vector<Result> results = evaluator.evaluate(batch, observer.generation_progress);
-  for (std::size_t i = 0; i < newborns.size(); ++i) newborns[i].result = std::move(results[i]);
+  std::vector<Evaluated> evaluated = evaluator.evaluate(batch, observer.generation_progress);
+  for (std::size_t i = 0; i < newborns.size(); ++i) {
+    newborns[i].result = std::move(evaluated[i].result);
+    newborns[i].provenance = provenances.recorded(evaluated[i].provenance);
+  }
+}
+
+/// Adds the provenances of the evaluator to those of the run.
+RecordedProvenances recorded_provenances(const Evaluator& evaluator, Archive& archive) {
+  std::vector<std::uint32_t> recorded;
+  for (const Provenance& provenance : evaluator.provenances()) recorded.push_back(archive.add_provenance(provenance));
+  return RecordedProvenances(std::move(recorded));
 }
 
 constexpr std::size_t most_memory = std::size_t{128} << 20;  ///< of a selection operator, bytes; half of a row's limit
@@ -73,25 +84,29 @@ std::vector<const Individual*> front(const std::vector<Individual>& everyone, co
 /// Decides which records of lives the archive keeps: those of all individuals that are ever on the front.
 class FrontLives {
  public:
-  FrontLives(const Experiment& experiment, Evaluator& evaluator, const Archive& archive, const Provenance& provenance)
-      : experiment_(experiment), evaluator_(evaluator), archive_(archive), provenance_(provenance) {
+  FrontLives(const Experiment& experiment, Evaluator& evaluator, const RecordedProvenances& provenances,
+             const Archive& archive)
+      : experiment_(experiment), evaluator_(evaluator), provenances_(provenances) {
     for (const Individual& individual : archive.population())
       if (archive.life(individual.id)) kept_.insert(individual.id);
   }
 
   /// Keeps the records of the individuals on the front. A few older individuals reach the front only now, because
   /// selection has removed the individuals that dominated them. Their records no longer exist, so they are simulated
-  /// again. Individuals with another provenance are not simulated again, because the new life might differ from the one
-  /// that was scored.
+  /// again. Individuals whose provenance the evaluator does not have are not simulated again, because the new life
+  /// might differ from the one that was scored.
   void keep_front(const std::vector<Individual>& everyone, std::uint32_t generation) {
     std::vector<Newborn> arrivals;
+    std::vector<std::uint32_t> provenances;
     for (const Individual* individual : front(everyone, experiment_, generation)) {
       if (!kept_.insert(individual->id).second) continue;
-      if (individual->born == generation || are_same(archive_.provenance(individual->born), provenance_))
-        arrivals.push_back({individual->id, individual->born, &individual->genome});
+      const std::optional<std::uint32_t> provenance = provenances_.own(individual->provenance);
+      if (!provenance) continue;
+      arrivals.push_back({individual->id, individual->born, &individual->genome});
+      provenances.push_back(*provenance);
     }
     if (arrivals.empty()) return;
-    std::vector<LifeRecord> records = evaluator_.records(arrivals);
+    std::vector<LifeRecord> records = evaluator_.records(arrivals, provenances);
     for (std::size_t i = 0; i < arrivals.size(); ++i) to_commit_[arrivals[i].id] = std::move(records[i]);
   }
 
@@ -104,8 +119,7 @@ class FrontLives {
  private:
   const Experiment& experiment_;
   Evaluator& evaluator_;
-  const Archive& archive_;
-  const Provenance& provenance_;
+  const RecordedProvenances& provenances_;
   std::map<std::uint32_t, LifeRecord> to_commit_;
   std::set<std::uint32_t> kept_;
 };
@@ -239,10 +253,9 @@ TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& ar
   std::int64_t evaluations = summaries.empty() ? 0 : summaries.back().evaluations;
   std::vector<Individual> population = archive.population();
   Remembered remembered{archive.memory(), {}};
-  const Provenance provenance = this_provenance(experiment, evaluator.device());
-  const std::uint32_t provenance_index = archive.add_provenance(provenance);
-  FrontLives lives(experiment, evaluator, archive, provenance);
-  FrontVerification verification(experiment, evaluator, archive, provenance);
+  const RecordedProvenances provenances = recorded_provenances(evaluator, archive);
+  FrontLives lives(experiment, evaluator, provenances, archive);
+  FrontVerification verification(experiment, evaluator, provenances);
 
   for (; !is_finished(experiment, summaries) && !stop; ++generation) {
     const auto start = Clock::now();
@@ -252,7 +265,7 @@ TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& ar
         breed(experiment, population, generation, static_cast<std::uint32_t>(evaluations),
               static_cast<std::size_t>(count), memory_of_breeder(experiment, remembered));
     time.breed += seconds_since(start);
-    evaluate(newborns, evaluator, observer);
+    evaluate(newborns, evaluator, provenances, observer);
     evaluations += count;
     Summary summary = summarise(population, newborns, generation);
     population.insert(population.end(), newborns.begin(), newborns.end());
@@ -269,7 +282,6 @@ TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& ar
     summary.median = median;
     summary.evaluations = evaluations;
     summary.wall_time = seconds_since(start);
-    summary.provenance = provenance_index;
     time.select += seconds_since(selection);
     const auto commit = Clock::now();
     archive.commit(newborns, dropped, lives.committed(), summary, remembered, refusals);

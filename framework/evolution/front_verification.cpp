@@ -27,7 +27,7 @@ std::vector<Refusal> FrontVerification::refuse(std::vector<Individual>& everyone
   const auto start = std::chrono::steady_clock::now();
   for (bool all_hold = false; !all_hold;) {
     const std::vector<Ranked> line = ranked(everyone, generation);
-    verify_front(line, generation);
+    verify_front(line);
     all_hold = true;
     for (const auto& [individual, layer] : line) {
       if (layer > 0) break;
@@ -57,20 +57,23 @@ std::vector<FrontVerification::Ranked> FrontVerification::ranked(std::vector<Ind
 /// Verifies the individuals on the front that have not been verified yet. Where these leave threads or GPUs idle, some
 /// of the next layers, which come to the front after refusals, are verified too. What is found of them counts only if
 /// they do.
-void FrontVerification::verify_front(const std::vector<Ranked>& line, std::uint32_t generation) {
+void FrontVerification::verify_front(const std::vector<Ranked>& line) {
   std::vector<Champion> champions;
+  std::vector<std::uint32_t> provenances;
   for (const auto& [individual, layer] : line) {
     if (layer > 0 && (champions.empty() || champions.size() >= evaluator_.verified_at_once())) break;
     if (verified_.contains(individual->id)) continue;
-    if (individual->born != generation && !are_same(archive_.provenance(individual->born), provenance_)) {
+    const std::optional<std::uint32_t> provenance = provenances_.own(individual->provenance);
+    if (!provenance) {
       verified_[individual->id] = std::nullopt;
       continue;
     }
     champions.push_back(
         {{individual->id, individual->born, &individual->genome}, individual->result.objectives.front()});
+    provenances.push_back(*provenance);
   }
   if (champions.empty()) return;
-  for (const Verification& verification : evaluator_.verify(champions))
+  for (const Verification& verification : evaluator_.verify(champions, provenances))
     verified_[verification.individual] = refusal(verification);
 }
 

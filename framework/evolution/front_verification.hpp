@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "evolution/archive/archive.hpp"
 #include "evolution/evaluator.hpp"
+#include "evolution/population.hpp"
 
 namespace evodevo {
 
@@ -15,18 +15,16 @@ namespace evodevo {
 /// finds the same. Everything that the constructor takes must outlive this object.
 class FrontVerification {
  public:
-  /// `provenance` is that of this process.
-  FrontVerification(const Experiment& experiment, Evaluator& evaluator, const Archive& archive,
-                    const Provenance& provenance)
-      : experiment_(experiment), evaluator_(evaluator), archive_(archive), provenance_(provenance) {}
+  FrontVerification(const Experiment& experiment, Evaluator& evaluator, const RecordedProvenances& provenances)
+      : experiment_(experiment), evaluator_(evaluator), provenances_(provenances) {}
 
   /// Verifies the individuals on the front of `everyone`. Those that do not hold get the status `artefact` or `passive`
   /// and lose their scores, so that others come to the front, until all that are on it hold. Returns the refusals, in
   /// the order in which they were made; none if the experiment does not ask for verification.
   ///
   /// Copies (copies_in()) are not verified, but they come to the front if the individual that they equal is refused.
-  /// Individuals with another provenance are not verified, because the new life might differ from the one that was
-  /// scored.
+  /// Individuals whose provenance the evaluator does not have are not verified, because the new life might differ from
+  /// the one that was scored.
   std::vector<Refusal> refuse(std::vector<Individual>& everyone, std::uint32_t generation);
 
   /// Wall-clock time spent in refuse(), s.
@@ -40,13 +38,12 @@ class FrontVerification {
   };
 
   std::vector<Ranked> ranked(std::vector<Individual>& everyone, std::uint32_t generation) const;
-  void verify_front(const std::vector<Ranked>& line, std::uint32_t generation);
+  void verify_front(const std::vector<Ranked>& line);
   std::optional<Refusal> refusal(const Verification& verification) const;
 
   const Experiment& experiment_;
   Evaluator& evaluator_;
-  const Archive& archive_;
-  const Provenance& provenance_;
+  const RecordedProvenances& provenances_;
   std::map<std::uint32_t, std::optional<Refusal>> verified_;  ///< by id; nullopt: it holds
   double seconds_ = 0;
 };

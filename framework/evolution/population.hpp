@@ -19,6 +19,7 @@ struct Individual {
                         ///< operator that made it, or "random"
   Genome genome;
   Result result;
+  std::uint32_t provenance = 0;  ///< of the result: index into Archive::provenances()
 
   std::uint32_t age(std::uint32_t generation) const { return generation - origin; }
 };
@@ -38,7 +39,6 @@ struct Summary {
   std::int64_t clones = 0;  ///< newborns genetically equal to a member of the population or to an earlier newborn
   std::uint64_t spring_evaluations = 0;  ///< spring evaluations of this generation
   double wall_time = 0;                  ///< wall-clock time of this generation, s
-  std::uint32_t provenance = 0;          ///< index of this generation's provenance in Archive::provenances()
 };
 
 /// What verification found of an individual whose fitness does not hold.

@@ -22,4 +22,10 @@ bool are_same_builds(const Provenance& a, const Provenance& b) {
 
 bool are_same(const Provenance& a, const Provenance& b) { return a.device == b.device && are_same_builds(a, b); }
 
+std::optional<std::uint32_t> RecordedProvenances::own(std::uint32_t recorded) const {
+  const auto found = std::ranges::find(recorded_, recorded);
+  if (found == recorded_.end()) return std::nullopt;
+  return static_cast<std::uint32_t>(found - recorded_.begin());
+}
+
 }  // namespace evodevo

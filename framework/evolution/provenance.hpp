@@ -1,7 +1,10 @@
-// Provenance: the device, the build of this program and the builds of the operators that made a generation of a run.
+// Provenance: the device, the build of the program and the builds of the operators that evaluated an individual.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "experiment/experiment.hpp"
@@ -23,5 +26,21 @@ bool are_same_builds(const Provenance& a, const Provenance& b);
 
 /// Returns whether both have the same device and the same builds, so that their results are equal to the last bit.
 bool are_same(const Provenance& a, const Provenance& b);
+
+/// The provenances of an evaluator, as the archive numbers them.
+class RecordedProvenances {
+ public:
+  /// `recorded` has an index into Archive::provenances() for each of Evaluator::provenances().
+  explicit RecordedProvenances(std::vector<std::uint32_t> recorded) : recorded_(std::move(recorded)) {}
+
+  /// Returns the index in the archive of a provenance of the evaluator.
+  std::uint32_t recorded(std::uint32_t own) const { return recorded_.at(own); }
+  /// Returns the index in the evaluator of a provenance of the archive; nullopt if the evaluator does not have it now.
+  /// It may then find another life than the one that was scored.
+  std::optional<std::uint32_t> own(std::uint32_t recorded) const;
+
+ private:
+  std::vector<std::uint32_t> recorded_;
+};
 
 }  // namespace evodevo

@@ -98,7 +98,6 @@ void check_resumable(const Archive& archive, const Experiment& experiment) {
     check_genes(archive, experiment, individual);
     check_scores(archive, experiment, individual);
     archive.life(individual.id);
-    archive.provenance(individual.born);
   }
   check_notes(archive, experiment);
   archive.memory();

@@ -36,6 +36,7 @@ Experiment experiment_for_resimulation(const Archive& archive, std::vector<std::
 std::vector<Newborn> for_resimulation(const Archive& archive, const Experiment& experiment,
                                       const std::vector<const Individual*>& individuals, const std::string& device) {
   const Provenance now = this_provenance(experiment, device);
+  const std::vector<Provenance> provenances = archive.provenances();
   std::vector<Newborn> newborns;
   std::map<std::string, std::vector<std::string>> elsewhere;  // ids by what differs
   for (const Individual* individual : individuals) {
@@ -44,7 +45,7 @@ std::vector<Newborn> for_resimulation(const Archive& archive, const Experiment& 
         Newborn{individual->id, individual->born, &individual->genome, archive.life(individual->id),
                 archive.folder().string() + ": individual " + std::to_string(individual->id)});
     if (newborn.record) check_life(archive, experiment, individual->id, *newborn.record);
-    const Provenance then = archive.provenance(individual->born);
+    const Provenance& then = provenances.at(individual->provenance);
     if (experiment.development.cycles > 0 && !newborn.record && !are_same(then, now))
       elsewhere[difference(then, now)].push_back(std::to_string(newborn.id));
   }

@@ -45,13 +45,15 @@ Json operators_json(const std::vector<OperatorUse>& uses) {
   return list;
 }
 
-Json provenances_json(const std::vector<Provenance>& provenances) {
+Json provenances_json(const Archive& archive) {
+  const std::vector<std::int64_t> evaluated = archive.evaluated_by_provenance();
   Json list = Json::array();
-  for (const Provenance& provenance : provenances)
+  for (const Provenance& provenance : archive.provenances())
     list.push_back({{"device", provenance.device},
                     {"evodevo", provenance.version},
                     {"program", provenance.program},
-                    {"operators", operators_json(provenance.operators)}});
+                    {"operators", operators_json(provenance.operators)},
+                    {"evaluations", evaluated.at(list.size())}});
   return list;
 }
 
@@ -87,8 +89,7 @@ Json generations_json(const Archive& archive, const std::vector<Summary>& genera
                     {"passive", s.passive},
                     {"clones", s.clones},
                     {"spring_evaluations", s.spring_evaluations},
-                    {"wall_time", s.wall_time},
-                    {"provenance", s.provenance}});
+                    {"wall_time", s.wall_time}});
   }
   return list;
 }
@@ -180,6 +181,7 @@ Json individual_json(const Archive& archive, const ArchivedIndividual& individua
           {"scenarios", tests_json(archive.tests(individual.id))},
           {"parents", individual.parents},
           {"made_by", individual.made_by},
+          {"provenance", individual.provenance},
           {"ancestry", std::move(ancestors)},
           {"block_changes", line_changes_json(line, archive.layout())},
           {"verification", verification ? verification_json(*verification, objectives.front()) : Json(nullptr)}};
@@ -218,7 +220,7 @@ Json run_json(const Archive& archive, const Settings& settings) {
                {"measures", measures_json(archive.measures())},
                {"map", map_json(map)},
                {"notes", note_titles_json(notes)},
-               {"provenances", provenances_json(archive.provenances())},
+               {"provenances", provenances_json(archive)},
                {"generations", generations_json(archive, generations, map, notes)}};
   const auto best = archive.best(1);
   root["best"] = best.empty() ? Json(nullptr) : individual_json(archive, archive.known_individual(best.front()));

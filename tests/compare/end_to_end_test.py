@@ -230,7 +230,7 @@ class Comparison(unittest.TestCase):
         with contextlib.closing(sqlite3.connect(self.folder / "out/runs/plain/seed-1/run.sqlite")) as run, run:
             run.execute("INSERT INTO provenances SELECT 1, device, evodevo, 'another' FROM provenances")
             run.execute("INSERT INTO operators SELECT 1, kind, name, version, file, hash FROM operators")
-            run.execute("UPDATE generations SET provenance = 1 WHERE generation = 0")
+            run.execute("UPDATE individuals SET provenance = 1 WHERE born = 0")
         done = self.compare()
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("**Not all runs were made by the same builds", done.stdout)

@@ -182,9 +182,10 @@ class Reports(unittest.TestCase):
             return {"device": device, "evodevo": "0.1.0", "program": program, "operators": [operator]}
 
         def made(*provenances, by=None):
-            """Returns the output of `show --json` for a run whose generations were made by these provenances."""
-            places = range(len(provenances)) if by is None else by
-            return {"provenances": list(provenances), "generations": [{"provenance": place} for place in places]}
+            """Returns the output of `show --json` for a run whose provenances have evaluated so many individuals, by
+            default one each."""
+            counts = [1] * len(provenances) if by is None else by
+            return {"provenances": [{**one, "evaluations": count} for one, count in zip(provenances, counts)]}
 
         evo, devo = Variant(pathlib.Path("evo")), Variant(pathlib.Path("devo"))
         runs = [Run(variant, seed, pathlib.Path()) for seed in (1, 2) for variant in (evo, devo)]
@@ -202,12 +203,12 @@ class Reports(unittest.TestCase):
         self.assertIn("- device:\n  - cpu: 1 of `evo`, 2 of `devo`\n  - cuda: 1 of `evo`\n", text)
         self.assertIn("- evodevo:\n  - 0.1.0 (p): 2 of `evo`, 1 of `devo`\n  - 0.1.0 (q): 1 of `devo`\n", text)
         self.assertNotIn("distance", text)
-        # all runs were resumed on another device: first a case with generations by both devices, then one with no
-        # generation by the second device
+        # all runs were resumed on another device: first a case with individuals by both devices, then one with no
+        # individual by the second device
         resumed = made(a, provenance("aa", device="cuda"))
         text = differences(*[resumed] * 4)
         self.assertIn("- device:\n  - cpu: 2 of `evo`, 2 of `devo`\n  - cuda: 2 of `evo`, 2 of `devo`\n", text)
-        self.assertEqual(differences(*[made(a, provenance("aa", device="cuda"), by=[0, 0])] * 4), "")
+        self.assertEqual(differences(*[made(a, provenance("aa", device="cuda"), by=[2, 0])] * 4), "")
 
     def test_costs_differ_between_the_axes(self):
         # a generation of the second variant costs three times as much, so at equal cost this variant has a third of the

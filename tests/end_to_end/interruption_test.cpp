@@ -269,9 +269,23 @@ TEST_F(Interruption, GoingOnElsewhereOrByAnotherBuildWarns) {
   const testing::Finished resumed = testing::run(resume_command("run"));
   EXPECT_EQ(resumed.exit_code, 0);
   EXPECT_THAT(resumed.output, testing::naming("warning: ", "cpu, an older one", " on cpu, "));
-  const Provenance now = Archive::read(scratch_ / "run").provenance(0);
+  const Archive archive = Archive::read(scratch_ / "run");
+  EXPECT_THAT(archive.evaluated_by_provenance(), ::testing::ElementsAre(0, 24));
+  const Provenance now = archive.provenances().back();
   EXPECT_NE(now.device, "cpu, an older one");
   EXPECT_THAT(resumed.output, testing::naming("warning: ", "evodevo " EVODEVO_VERSION " (" + begun_by, now.program));
+}
+
+TEST_F(Interruption, GoesOnWithTheGivenDeviceAndThreads) {
+  {
+    Archive::create(scratch_ / "run", testing::read(testing::small_experiment, {{"simulation.device", "cuda", ""}}),
+                    "");
+  }
+  std::vector<std::string> command = resume_command("run");
+  command.insert(command.end(), {"--device", "cpu", "--threads", "1"});
+  const testing::Finished resumed = testing::run(command);
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.output;
+  EXPECT_THAT(resumed.output, testing::naming(" on cpu, ", ", 1 thread;"));
 }
 
 TEST_F(Interruption, GoingOnTheSameWayWarnsOfNothing) {

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "evolution/archive/archive.hpp"
+#include "operators/loader.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 #include "support/process.hpp"
@@ -156,8 +157,9 @@ class TwoHosts : public Ranks {
     if (testing::run({"unshare", "-m", "mount", "--bind", other_.string(), folder_.string()}).exit_code != 0)
       GTEST_SKIP() << "mounting needs root";
   }
-  Finished run() const {
-    const Words here = with_operators(run_command("run"));
+  Finished run(const Words& more = {}) const {
+    Words here = with_operators(run_command("run"));
+    here.insert(here.end(), more.begin(), more.end());
     Words command{EVODEVO_MPIRUN, "--oversubscribe", "--bind-to", "none", "-n", "1"};
     command.insert(command.end(), here.begin(), here.end());
     const std::string mount = "mount --bind '" + other_.string() + "' '" + folder_.string() + "' && exec \"$@\"";
@@ -200,6 +202,50 @@ TEST_F(TwoHosts, OfWhichOneHasAnotherBuildOfAnOperatorAreRefused) {
   EXPECT_NE(finished.exit_code, 0);
   EXPECT_THAT(finished.output, testing::naming("rank 1 on ", "fitness operator \"distance\"", "the same libraries"));
   EXPECT_FALSE(fs::exists(scratch_ / "run"));
+  const Finished mixed = run({"--mixed"});
+  EXPECT_EQ(mixed.exit_code, 0) << mixed.output;
+  const Archive archive = Archive::read(scratch_ / "run");
+  ASSERT_EQ(archive.provenances().size(), 2u);
+  EXPECT_FALSE(are_same_builds(archive.provenances()[0], archive.provenances()[1]));
+  for (const std::int64_t evaluations : archive.evaluated_by_provenance()) EXPECT_GT(evaluations, 0);
+}
+
+TEST_F(Ranks, OfWhichOneIsAnotherBuildAreRefusedUnlessTheyAreMixed) {
+  const fs::path program(EVODEVO_PROGRAM), other = scratch_ / "bin" / "evodevo";
+  fs::create_directories(other.parent_path());
+  fs::copy_file(program, other);
+  fs::create_directory_symlink(program.parent_path().parent_path() / "lib", scratch_ / "lib");
+  std::ofstream(other, std::ios::app) << "more";
+  const auto run = [&](const Words& more) {
+    Words here = run_command("run"), command = started(1, {});
+    here.insert(here.end(), more.begin(), more.end());
+    command.insert(command.end(), here.begin(), here.end());
+    here.front() = other.string();
+    command.insert(command.end(), {":", "-n", "1"});
+    command.insert(command.end(), here.begin(), here.end());
+    return testing::run(command);
+  };
+  EXPECT_THAT(run({}).output, testing::naming("rank 1 on ", file_hash(other), "the same program", "--mixed"));
+  EXPECT_FALSE(fs::exists(scratch_ / "run"));
+  const Finished mixed = run({"--mixed"});
+  EXPECT_EQ(mixed.exit_code, 0) << mixed.output;
+  expect_success(run_command("alone"));
+  expect_equal("alone", "run");  // both builds compute the same
+  const std::vector<Provenance> provenances = Archive::read(scratch_ / "run").provenances();
+  ASSERT_EQ(provenances.size(), 2u);
+  EXPECT_EQ(provenances[0].program, file_hash(program));
+  EXPECT_EQ(provenances[1].program, file_hash(other));
+}
+
+TEST_F(Ranks, HaveThreadsOfTheirOwn) {
+  Words command = started(1, run_command("run"));
+  command.insert(command.end(), {":", "-n", "1"});
+  const Words other = run_command("run");
+  command.insert(command.end(), other.begin(), other.end());
+  command.insert(command.end(), {"--threads", "-3"});
+  const Finished finished = testing::run(command);
+  EXPECT_NE(finished.exit_code, 0);
+  EXPECT_THAT(finished.output, testing::naming("rank 1 on ", "--threads -3"));
 }
 
 TEST_F(Ranks, ThatDoNotKnowOfEachOtherAreRefused) {

@@ -273,7 +273,7 @@ TEST_F(ArchiveStorage, WhatStandsInTheTablesPlaceIsNotRun) {
   const std::string endless = "CREATE VIEW individuals AS WITH RECURSIVE n(i) AS (SELECT 0 UNION ALL SELECT i FROM n) ";
   for (const std::string& change : {"DROP TABLE individuals; " + endless + "SELECT i AS id FROM n",
                                     std::string("ALTER TABLE scores ADD COLUMN more GENERATED ALWAYS AS (value)"),
-                                    std::string("ALTER TABLE generations RENAME COLUMN provenance TO other")}) {
+                                    std::string("ALTER TABLE generations RENAME COLUMN wall_time TO other")}) {
     { created(); }
     SQLite::Database(file_.string(), SQLite::OPEN_READWRITE).exec("DROP VIEW members; " + change);
     EXPECT_THAT(refusal<ArchiveError>([&] { Archive::read(folder_); }),

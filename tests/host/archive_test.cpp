@@ -130,9 +130,14 @@ TEST_F(ArchiveTest, TheRefusedLoseTheirScoresWhenTheirGenerationIsCommitted) {
   EXPECT_EQ(archive.statuses().at("passive"), 1);
 }
 
-TEST_F(ArchiveTest, TellsWhoMadeAGeneration) {
-  const auto commit = [](Archive& archive, const Provenance& provenance, std::uint32_t generation) {
-    archive.commit({}, {}, {}, {.generation = generation, .provenance = archive.add_provenance(provenance)});
+TEST_F(ArchiveTest, TellsWhatEvaluatedAnIndividual) {
+  const auto commit = [](Archive& archive, const Provenance& provenance, std::uint32_t id) {
+    Individual individual;
+    individual.id = individual.born = individual.origin = id;
+    individual.genome = {0.5F};
+    individual.result.objectives = {1, 1};
+    individual.provenance = archive.add_provenance(provenance);
+    archive.commit({individual}, {}, {}, {.generation = id, .evaluations = id + 1});
   };
   const Provenance first = this_provenance(experiment_, "a device");
   Provenance elsewhere = first, rebuilt = first, other_operator = first, moved = first;
@@ -155,13 +160,13 @@ TEST_F(ArchiveTest, TellsWhoMadeAGeneration) {
   const Archive archive = Archive::read(folder_);
   ASSERT_EQ(archive.provenances().size(), 4u) << "who comes again, and operators from another place, are nobody new";
   const std::vector<Provenance> expected{first, elsewhere, rebuilt, other_operator, first, elsewhere};
-  for (std::uint32_t generation = 0; generation < 6; ++generation) {
-    const Provenance provenance = archive.provenance(generation);
-    EXPECT_TRUE(are_same(provenance, expected[generation])) << generation;
-    ASSERT_EQ(provenance.operators.size(), experiment_.uses.size()) << generation;
+  for (std::uint32_t id = 0; id < 6; ++id) {
+    const Provenance provenance = archive.provenances().at(archive.individual(id).value().provenance);
+    EXPECT_TRUE(are_same(provenance, expected[id])) << id;
+    ASSERT_EQ(provenance.operators.size(), experiment_.uses.size()) << id;
     EXPECT_EQ(provenance.operators.back().version, experiment_.uses.back().version);
   }
-  EXPECT_THAT(refusal([&] { archive.provenance(6); }), testing::at_place(folder_.string() + ": ", "generation 6"));
+  EXPECT_THAT(archive.evaluated_by_provenance(), ::testing::ElementsAre(2, 2, 1, 1));
 }
 
 TEST_F(ArchiveTest, TakesVerificationsWhileAnotherWrites) {

@@ -6,10 +6,14 @@
 
 #include <deque>
 #include <functional>
+#include <map>
+#include <set>
 #include <thread>
 
 #include "cluster/ranks.hpp"
+#include "evolution/breeding.hpp"
 #include "evolution/evolution.hpp"
+#include "operators/loader.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 #include "support/runs.hpp"
@@ -59,11 +63,13 @@ class LocalChannel final : public Channel {
   std::vector<int> given_up_;
 };
 
-/// A simulator that does something else before it simulates.
+/// A simulator that does something else before it simulates, and may have another name.
 class Hindered final : public Simulator {
  public:
-  Hindered(const Experiment& experiment, std::function<void()> hindrance)
-      : simulator_(make_cpu_simulator(experiment.scene, experiment.stepping, 1)), hindrance_(std::move(hindrance)) {}
+  Hindered(const Experiment& experiment, std::function<void()> hindrance, std::string name = "")
+      : simulator_(make_cpu_simulator(experiment.scene, experiment.stepping, 1)),
+        hindrance_(std::move(hindrance)),
+        name_(name.empty() ? simulator_->device() : std::move(name)) {}
 
   void run(std::span<Task> tasks, Recording recording) override {
     hindrance_();
@@ -71,11 +77,12 @@ class Hindered final : public Simulator {
   }
   NeighbourSearch& neighbours() override { return simulator_->neighbours(); }
   Workers& workers() override { return simulator_->workers(); }
-  std::string device() const override { return simulator_->device(); }
+  std::string device() const override { return name_; }
 
  private:
   std::unique_ptr<Simulator> simulator_;
   std::function<void()> hindrance_;
+  std::string name_;
 };
 
 /// The ranks of a run, each of which has an experiment and a simulator of its own, as processes have.
@@ -87,18 +94,21 @@ class LocalRanks {
     std::function<void(LocalChannel&)> act = [](LocalChannel&) {};
   };
 
-  LocalRanks(int count, const std::vector<Override>& overrides, Hindrance hindrance) {
+  /// The ranks in `strange` have another device, and stronger gravity: nobody can mistake their results for others.
+  LocalRanks(int count, const std::vector<Override>& overrides, Hindrance hindrance, std::set<int> strange = {}) {
     auto boxes = std::make_shared<LocalChannel::Boxes>();
     boxes->of.resize(static_cast<std::size_t>(count));
     for (int rank = 0; rank < count; ++rank) {
-      experiments_.push_back(testing::read(testing::small_experiment, overrides));
+      std::vector<Override> own = overrides;
+      if (strange.contains(rank)) own.push_back({"scene.gravity.acceleration", "11", ""});
+      experiments_.push_back(testing::read(testing::small_experiment, own));
       channels_.push_back(std::make_unique<LocalChannel>(boxes, rank));
     }
     for (int rank = 0; rank < count; ++rank) {
       const auto at = static_cast<std::size_t>(rank);
       std::function<void()> act = [] {};
       if (rank == hindrance.rank) act = [hindrance, this, at] { hindrance.act(*channels_[at]); };
-      simulators_.push_back(std::make_unique<Hindered>(experiments_[at], act));
+      simulators_.push_back(std::make_unique<Hindered>(experiments_[at], act, strange.contains(rank) ? "strange" : ""));
     }
     for (std::size_t rank = 1; rank < channels_.size(); ++rank)
       threads_.emplace_back([this, rank] {
@@ -109,9 +119,9 @@ class LocalRanks {
   }
   ~LocalRanks() { end_run(channel()); }
 
-  const Experiment& experiment() const { return experiments_.front(); }
-  Simulator& simulator() { return *simulators_.front(); }
-  LocalChannel& channel() { return *channels_.front(); }
+  const Experiment& experiment(std::size_t rank = 0) const { return experiments_[rank]; }
+  Simulator& simulator(std::size_t rank = 0) { return *simulators_[rank]; }
+  LocalChannel& channel(std::size_t rank = 0) { return *channels_[rank]; }
 
  private:
   std::vector<Experiment> experiments_;
@@ -131,7 +141,7 @@ class FarmRuns : public ::testing::Test {
   Archive run(const std::string& name, int count, const std::vector<Override>& overrides, Hindrance hindrance = {}) {
     LocalRanks ranks(count, overrides, hindrance);
     Archive archive = Archive::create(scratch_ / name, ranks.experiment(), ranks.simulator().device());
-    Farm farm(ranks.experiment(), ranks.simulator(), ranks.channel(), {}, patience);
+    Farm farm(ranks.experiment(), ranks.simulator(), ranks.channel(), {}, {.patience = patience});
     evolve(ranks.experiment(), farm, archive, stop_, Observer{});
     shares_ = farm.shares();
     given_up_ = ranks.channel().given_up();
@@ -156,7 +166,7 @@ const std::vector<Override> many{{"experiment.evaluations", "60", ""}, {"experim
 
 TEST_F(FarmRuns, GiveTheSameForAnyNumberOfRanks) {
   const Archive alone = run_alone(many);
-  for (const int count : {1, 2, 5}) {
+  for (const int count : {1, 2, 5, 64}) {
     testing::expect_same_runs(alone, run(std::to_string(count), count, many));
     std::uint64_t lives = 0;
     for (const Share& share : shares_) lives += share.lives;
@@ -170,16 +180,20 @@ TEST_F(FarmRuns, OfMoreRanksThanRobotsGiveTheSame) {
   testing::expect_same_runs(run_alone(few), run("many", 16, few));
 }
 
+/// Settings with which some individuals come to the front whose fitness does not hold.
+std::vector<Override> verified(std::vector<Override> overrides) {
+  overrides.push_back({"experiment.verify_front", "true", ""});
+  overrides.push_back({"materials.bone.stiffness", "3e5", ""});
+  overrides.push_back({"simulation.unstable", "run", ""});
+  return overrides;
+}
+
 TEST_F(FarmRuns, VerifyTheFrontAlike) {
-  std::vector<Override> verified = many;
-  verified.push_back({"experiment.verify_front", "true", ""});
-  verified.push_back({"materials.bone.stiffness", "3e5", ""});
-  verified.push_back({"simulation.unstable", "run", ""});
-  const Archive alone = run_alone(verified);
+  const Archive alone = run_alone(verified(many));
   std::int64_t refused = 0;
   for (const Summary& summary : alone.generations()) refused += summary.artefact + summary.passive;
   EXPECT_GT(refused, 0);
-  testing::expect_same_runs(alone, run("three", 3, verified));
+  testing::expect_same_runs(alone, run("three", 3, verified(many)));
 }
 
 TEST_F(FarmRuns, WithASlowRankGiveTheSame) {
@@ -213,7 +227,7 @@ TEST_F(FarmRuns, EndWithTheNameOfARankWhoseJobFails) {
 TEST_F(FarmRuns, ForgiveSilenceInWhichTheLeaderDoesNotListen) {
   LocalRanks ranks(2, many, {});
   Archive archive = Archive::create(scratch_ / "run", ranks.experiment(), ranks.simulator().device());
-  Farm farm(ranks.experiment(), ranks.simulator(), ranks.channel(), {}, std::chrono::seconds(3));
+  Farm farm(ranks.experiment(), ranks.simulator(), ranks.channel(), {}, {.patience = std::chrono::seconds(3)});
   int generations = 0;
   const auto pause = [&](const Summary&) {
     std::this_thread::sleep_for(std::chrono::seconds(4));
@@ -224,16 +238,98 @@ TEST_F(FarmRuns, ForgiveSilenceInWhichTheLeaderDoesNotListen) {
   EXPECT_THAT(ranks.channel().given_up(), ::testing::IsEmpty());
 }
 
+TEST_F(FarmRuns, OfMixedRanksKeepWhatEachOfThemFinds) {
+  LocalRanks ranks(3, verified(many), {}, {1, 2});
+  Archive archive = Archive::create(scratch_ / "run", ranks.experiment(), ranks.simulator().device());
+  {
+    Farm farm(ranks.experiment(), ranks.simulator(), ranks.channel(), {}, {.mixed = true, .patience = patience});
+    evolve(ranks.experiment(), farm, archive, stop_, Observer{});
+  }
+  ASSERT_EQ(archive.provenances().size(), 2u);
+  EXPECT_EQ(archive.provenances()[1].device, "strange");
+  int recorded = 0, refused = 0;
+  std::map<std::uint32_t, int> scored;
+  for (std::uint32_t id = 0; id < 60; ++id) {
+    const ArchivedIndividual one = archive.individual(id).value();
+    const std::size_t rank = one.provenance;  // 1 and 2 are alike
+    LocalEvaluator again(ranks.experiment(rank), ranks.simulator(rank));
+    const Newborn newborn{one.id, one.born, &one.genome};
+    const Result result = again.evaluate({&newborn, 1}, [](double) {}).front().result;
+    if (const std::optional<LifeRecord> life = archive.life(id)) {
+      EXPECT_EQ(*life, again.records({&newborn, 1}, std::vector{0u}).front()) << id;
+      ++recorded;
+    }
+    if (one.result.status == Status::ok) {
+      EXPECT_EQ(one.result.objectives, result.objectives) << id << ", by rank " << rank;
+      ++scored[one.provenance];
+    }
+    if (one.result.status != Status::artefact && one.result.status != Status::passive) continue;
+    const Champion champion{newborn, result.objectives.at(0)};
+    const Verification verification = again.verify({&champion, 1}, std::vector{0u}).front();
+    const std::optional<Mark> mark = first_mark(verification, true);
+    ASSERT_TRUE(mark) << id << ", by rank " << rank << ": " << one.result.reason;
+    EXPECT_THAT(one.result.reason, testing::at_place(mark->trial.name)) << id;
+    ++refused;
+  }
+  EXPECT_GT(scored[0], 0);
+  EXPECT_GT(scored[1], 0);
+  EXPECT_GT(recorded, 0);
+  EXPECT_GT(refused, 0);
+}
+
+TEST_F(FarmRuns, OfMixedRanksEndWhenNoneIsLeftThatCanRepeatALife) {
+  LocalRanks ranks(2, many, {}, {1});
+  Farm farm(ranks.experiment(), ranks.simulator(), ranks.channel(), {}, {.mixed = true, .patience = patience});
+  const Individual individual = breed(ranks.experiment(), {}, 0, 0, 1).front();
+  const Newborn newborn{individual.id, individual.born, &individual.genome};
+  const Champion champion{newborn, 1};
+  ranks.channel(1).is_cut = true;
+  const auto expect_end = [](auto ask) {
+    try {
+      ask();
+      FAIL() << "another rank has done it";
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), testing::naming("strange", "resume"));
+    }
+  };
+  expect_end([&] { farm.records({&newborn, 1}, std::vector{1u}); });
+  expect_end([&] { farm.verify({&champion, 1}, std::vector{1u}); });
+}
+
+TEST_F(FarmRuns, OfMixedRanksAskThoseThatCanRepeatALife) {
+  LocalRanks ranks(3, many, {}, {1});
+  Farm farm(ranks.experiment(), ranks.simulator(), ranks.channel(), {}, {.mixed = true, .patience = patience});
+  const std::vector<Individual> individuals = breed(ranks.experiment(), {}, 0, 0, 6);
+  std::vector<Champion> champions;
+  std::vector<std::uint32_t> provenances;
+  for (const Individual& one : individuals) {
+    champions.push_back({{one.id, one.born, &one.genome}, 1});
+    provenances.push_back(one.id % 2);
+  }
+  const std::vector<Verification> found = farm.verify(champions, provenances);
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < champions.size(); ++i) {
+    const auto value = [&](std::size_t rank) {
+      LocalEvaluator alone(ranks.experiment(rank), ranks.simulator(rank));
+      return alone.verify({&champions[i], 1}, std::vector{0u}).front().trials.front().value;
+    };
+    EXPECT_EQ(found[i].trials.front().value, value(provenances[i])) << i;
+    differ += value(0) != value(1);
+  }
+  EXPECT_GT(differ, 3u) << "nobody could tell who has verified them";
+}
+
 TEST_F(FarmRuns, EndWithTheNameOfARankThatDoesNotFit) {
   const Experiment experiment = testing::read(testing::small_experiment);
   const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
   const auto boxes = std::make_shared<LocalChannel::Boxes>();
   boxes->of.resize(2);
   LocalChannel leader(boxes, 0), other(boxes, 1);
+  bool mixed = false;
   const auto refusal = [&](const std::string& bytes) {
     other.send(0, bytes);
     try {
-      const Farm farm(experiment, *simulator, leader, {}, patience);
+      const Farm farm(experiment, *simulator, leader, {}, {.mixed = mixed, .patience = patience});
     } catch (const std::runtime_error& error) {
       return std::string(error.what());
     }
@@ -248,12 +344,69 @@ TEST_F(FarmRuns, EndWithTheNameOfARankThatDoesNotFit) {
     change(changed);
     return refusal(message::packed(changed));
   };
-  EXPECT_THAT(altered([](message::Hello& h) { h.program = "abc"; }),
-              testing::at_place("rank 1 on node8", "abc", "give all ranks the same program"));
-  EXPECT_THAT(altered([](message::Hello& h) { h.provenance.device = "cuda, X"; }),
-              testing::at_place("rank 1 on node8", "cuda, X", "--device"));
-  EXPECT_THAT(altered([](message::Hello& h) { h.provenance.operators.back().hash = "def"; }),
-              testing::at_place("rank 1 on node8", "def", "give all ranks the same libraries"));
+  const auto other_program = [](message::Hello& h) { h.provenance.program = "abc"; };
+  const auto other_device = [](message::Hello& h) { h.provenance.device = "cuda, X"; };
+  const auto other_library = [](message::Hello& h) { h.provenance.operators.back().hash = "def"; };
+  EXPECT_THAT(altered(other_program), testing::at_place("rank 1 on node8", "abc", "the same program", "--mixed"));
+  EXPECT_THAT(altered(other_device), testing::at_place("rank 1 on node8", "cuda, X", "--device", "--mixed"));
+  EXPECT_THAT(altered(other_library), testing::at_place("rank 1 on node8", "def", "the same libraries", "--mixed"));
+  mixed = true;
+  for (const auto& change : {std::function<void(message::Hello&)>(other_program), {other_device}, {other_library}})
+    EXPECT_EQ(altered(change), "no message");
+  EXPECT_THAT(altered([](message::Hello& h) { h.layout.types.front().genes.front().high += 1; }),
+              testing::naming("rank 1 on node8", "layout", "same version"));
+  EXPECT_THAT(altered([](message::Hello& h) { h.scores.front() += " or so"; }),
+              testing::naming("rank 1 on node8", "score", "same version"));
+}
+
+TEST(Serve, RefusesAnotherProtocol) {
+  const auto boxes = std::make_shared<LocalChannel::Boxes>();
+  boxes->of.resize(2);
+  LocalChannel leader(boxes, 0), other(boxes, 1);
+  leader.send(1, message::packed(message::Setup{.protocol = "2.99"}));
+  end_run(leader);
+  serve(other, [] { return RankOptions(); });
+  const std::optional<Received> received = leader.receive();
+  ASSERT_TRUE(received);
+  EXPECT_THAT(message::unpacked<message::Failure>(received->bytes).reason,
+              testing::naming("protocol " + message::protocol(), "protocol 2.99", "same version"));
+}
+
+/// Other builds of the program read messages as long as the protocol is the same.
+TEST(Messages, AreThoseOfTheirProtocol) {
+  Genome genome{0.5F, -1};
+  genome.blocks = {{1, 2, 3, 4}};
+  Layout layout;
+  layout.types = {{"cell", {{-1, 1, 2, 3}}, 4, 5, {"fate"}, 6}};
+  layout.first_blocks = genome.blocks;
+  layout.own = 7;
+  const message::Outcome outcome{.result = {.status = Status::diverged,
+                                            .reason = "why",
+                                            .ended_at = 1,
+                                            .objectives = {2},
+                                            .spring_evaluations = 5,
+                                            .measures = {3},
+                                            .tests = {{17, 18, 19, 4}}},
+                                 .record = "record",
+                                 .verification = {8, 0.25, {{"again", Status::ok, "so", 0.125}}}};
+  const std::string bytes =
+      message::packed(message::Setup{"protocol", "text", "name", {{"path", "content"}}, true}) +
+      message::packed(
+          message::Hello{"host",
+                         {"device", "version", "program", {{"fitness", "way", "1", "file", "hash", nullptr, "label"}}},
+                         layout,
+                         {"more way in m"},
+                         9,
+                         10,
+                         11}) +
+      message::packed(message::Job{12, message::Work::verify, {{13, 14, 0.5, genome}}}) +
+      message::packed(message::Answer{15, {outcome}, 0.75}) + message::packed(message::Beat{0.1, 0.2}) +
+      message::packed(message::End{{16}}) + message::packed(message::Failure{"host", "reason", true}) +
+      message::packed(message::Kind::forget);
+  const testing::Scratch scratch;
+  EXPECT_EQ(message::protocol() + ": " + file_hash(scratch.write("messages", bytes)), "1.12: 7d33b421e79d2997")
+      << "a message has changed: increase message::protocol() unless the archive's format has grown, and put what this "
+         "test says here";
 }
 
 TEST(JobSize, ShrinksTowardsTheEndAndIsNeverNothing) {

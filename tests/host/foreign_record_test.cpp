@@ -166,13 +166,15 @@ TEST_F(ForeignRecord, WhatDoesNotFitTogetherIsNamed) {
       {"DELETE FROM objectives", "objectives"},
       {"UPDATE objectives SET maximise = 1 - maximise", "objective 0"},
       {"UPDATE generations SET evaluations = 3 WHERE generation = 1", "generations.evaluations"},
-      {"UPDATE generations SET provenance = 7", "generations.provenance"},
+      {"UPDATE individuals SET provenance = 7", "individuals.provenance"},
       {"UPDATE individuals SET origin = born + 1", "individuals.origin"},
       {"INSERT INTO memory VALUES(0, x'00')", "memory.generation"},
       {"INSERT INTO note_titles VALUES(0, 'novelty', 'm', 0)", "novelty in m"},
       {"INSERT INTO notes VALUES(999, 0, 0, 1)", "notes.individual"},
       {"INSERT INTO measured SELECT id, 0, 1 FROM individuals WHERE died IS NULL", "1 measures"},
   };
+  ASSERT_TRUE(change("DELETE FROM provenances; DELETE FROM verifications"));
+  EXPECT_THAT(refusal([&] { call(command_named("show"), {folder_.string(), "--json"}); }), HasSubstr("provenances"));
   for (const auto& [sql, named] : cases) {
     ASSERT_TRUE(change(sql)) << sql;
     const std::string said = refusal([&] { call(command_named("resume"), {folder_.string()}); });

@@ -8,81 +8,23 @@
 #include <atomic>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "evolution/evolution.hpp"
 #include "evolution/selection_table.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
+#include "support/pairs.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo {
 namespace {
 
-constexpr double dt = 0.001, mass = 0.2, strain = 0.1, pi = 3.14159265358979323846;
-constexpr int measured_step = 100;
-
-/// Returns the position of an oscillator after `measured_step` steps of symplectic Euler from rest at -1. `h` is its
-/// angular frequency times the step. The exact amplitude is 1.
-double position(double h) {
-  double x = -1, v = 0;
-  for (int step = 0; step < measured_step; ++step) {
-    v -= h * h * x;
-    x += v;
-  }
-  return x;
-}
-
-/// Returns an h below the limit of stability, 2, at which the position is at least `least`.
-double exaggerated(double least) {
-  for (double h = 1.8; h < 1.97; h += 1e-4)
-    if (position(h) >= least) return h;
-  throw std::logic_error("no step makes it that large");
-}
-
-/// Two masses 1 m apart, joined by a spring that is 1 + `strain` m long without force. The first gene is the angular
-/// frequency of the pair times the time step. If the second gene is 0, a muscle makes the spring that long; otherwise
-/// the spring is made so.
-class Pair final : public Encoding {
- public:
-  Layout layout(const EncodingContext&) const override { return {}; }
-  Blueprint decode(const Genome& genome, const Layout&, const EncodingContext& context) const override {
-    const double h = genome[0], stiffness = h * h * mass / (2 * dt * dt);
-    const bool is_muscle = genome[1] == 0;
-    Blueprint blueprint;
-    blueprint.body.materials = context.materials;
-    const std::uint32_t own = blueprint.body.material_index({stiffness, is_muscle ? strain : 0, 0, pi / 2});
-    blueprint.body.masses = {{{0, 0, 0}, mass}, {{1, 0, 0}, mass}};
-    blueprint.body.springs = {{0, 1, is_muscle ? 1 : 1 + strain, own}};
-    return blueprint;
-  }
-};
-
-/// By how much the spring is longer than without force after `measured_step` steps, m.
-class Stretch final : public Fitness {
- public:
-  Request observes() const override { return {.settle = measured_step * dt, .window = 0.1}; }
-  std::vector<Objective> objectives() const override { return {{"stretch", "m", true}}; }
-  std::vector<double> score(const Observation& seen) const override { return {seen.box.longest_side() - (1 + strain)}; }
-};
+using testing::exaggerated, testing::measured_step, testing::strain;
 
 /// Pairs that oscillate in empty space, and their verification.
 class Pairs : public ::testing::Test {
  protected:
-  static Experiment pairs() {
-    Experiment experiment = testing::read(testing::small_experiment);
-    experiment.verify_front = true;
-    experiment.scene = {};
-    experiment.development.cycles = 0;
-    experiment.stepping.precision = Precision::float64;
-    experiment.step = {.dt = dt, .run_unstable = true};
-    experiment.encoding = std::make_unique<Pair>();
-    experiment.fitness.clear();
-    experiment.fitness.push_back({std::make_unique<Stretch>()});
-    experiment.objectives = experiment.fitness[0].op->objectives();
-    experiment.cases = {{}};
-    return experiment;
-  }
-
   /// Adds a newborn, and returns its fitness.
   double add(double h, bool is_passive = false) {
     Individual& one = everyone_.emplace_back();
@@ -93,18 +35,17 @@ class Pairs : public ::testing::Test {
     return one.result.objectives.at(0);
   }
   /// Adds a pair that swings back and forth an odd number of times until it is measured, at its full elongation.
-  double add_honest() { return add(pi / measured_step); }
+  double add_honest() { return add(std::numbers::pi / measured_step); }
 
   Status status(std::size_t i) const { return everyone_[i].result.status; }
   const std::string& reason(std::size_t i) const { return everyone_[i].result.reason; }
 
   testing::Scratch scratch_;
-  Experiment experiment_ = pairs();
+  Experiment experiment_ = testing::pairs();
   std::unique_ptr<Simulator> simulator_ = make_cpu_simulator(experiment_.scene, experiment_.stepping, 2);
-  Archive archive_ = Archive::create(scratch_ / "run", experiment_, "test");
-  Provenance provenance_ = this_provenance(experiment_, "test");
   LocalEvaluator evaluator_{experiment_, *simulator_};
-  FrontVerification verification_{experiment_, evaluator_, archive_, provenance_};
+  RecordedProvenances provenances_{{0}};
+  FrontVerification verification_{experiment_, evaluator_, provenances_};
   std::vector<Individual> everyone_;
 };
 
@@ -133,7 +74,7 @@ TEST_F(Pairs, TheNextInLineAreVerifiedWhenTheFirstFall) {
 }
 
 TEST_F(Pairs, WhoNeedsNoMusclesIsPassive) {
-  add(pi / measured_step, true);
+  add(std::numbers::pi / measured_step, true);
   const std::vector<Refusal> refusals = verification_.refuse(everyone_, 0);
   ASSERT_EQ(refusals.size(), 1u);
   EXPECT_EQ(status(0), Status::passive);
@@ -152,7 +93,7 @@ TEST_F(Pairs, CopiesOfTheRefusedAreRefusedToo) {
 
 TEST_F(Pairs, WhoIsBehindTheFrontIsNotVerified) {
   add_honest();
-  add(2 * pi / 3 / measured_step, true);  // half of the elongation
+  add(2 * std::numbers::pi / 3 / measured_step, true);  // half of the elongation
   EXPECT_TRUE(verification_.refuse(everyone_, 0).empty());
   EXPECT_EQ(status(1), Status::ok);
 }
@@ -167,10 +108,8 @@ TEST_F(Pairs, WithoutTheKeyNobodyIsVerified) {
 
 TEST_F(Pairs, WhoComesFromAnotherDeviceIsNotVerified) {
   add(exaggerated(2.6));
-  archive_.commit(everyone_, {}, {}, {.generation = 0, .evaluations = 1});
-  Provenance elsewhere = provenance_;
-  elsewhere.device = "another";
-  FrontVerification there(experiment_, evaluator_, archive_, elsewhere);
+  const RecordedProvenances elsewhere({1});
+  FrontVerification there(experiment_, evaluator_, elsewhere);
   EXPECT_TRUE(there.refuse(everyone_, 1).empty());
   EXPECT_EQ(verification_.refuse(everyone_, 1).size(), 1u) << "older individuals are verified, too";
 }

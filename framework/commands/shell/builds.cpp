@@ -1,5 +1,6 @@
 #include "commands/shell/builds.hpp"
 
+#include <algorithm>
 #include <iostream>
 
 #include "evolution/provenance.hpp"
@@ -22,6 +23,12 @@ void for_each_changed_operator(const Experiment& experiment, const Provenance& f
     if (past[i].hash != experiment.uses[i].hash) report(past[i], experiment.uses[i]);
 }
 
+/// Whether something with the same builds, or the same device, has taken part in the run.
+template <class Same>
+bool has_taken_part(const Archive& archive, const Same& same) {
+  return std::ranges::any_of(archive.provenances(), same);
+}
+
 }  // namespace
 
 void warn_of_other_builds(const Experiment& experiment, const Simulator& simulator, const Archive& archive) {
@@ -31,13 +38,15 @@ void warn_of_other_builds(const Experiment& experiment, const Simulator& simulat
               << which << "; results may differ\n";
   };
   const Provenance first = archive.provenances().front(), here = this_provenance(experiment, simulator.device());
+  if (has_taken_part(archive, [&](const Provenance& one) { return are_same_builds(one, here); })) return;
   if (first.program != here.program) warn(first, here, here.program);
   for_each_changed_operator(
       experiment, first, [&](const OperatorUse& then, const OperatorUse& now) { warn(then, now, now.file.string()); });
 }
 
 void warn_of_another_device(const Simulator& simulator, const Archive& archive) {
-  if (const std::string before = archive.provenances().front().device; before != simulator.device())
+  const auto is_this = [&](const Provenance& one) { return one.device == simulator.device(); };
+  if (const std::string before = archive.provenances().front().device; !has_taken_part(archive, is_this))
     std::cerr << "warning: the run began on " << before << " and continues on " << simulator.device()
               << "; results may differ, at first in the last bit\n";
 }

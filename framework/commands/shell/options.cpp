@@ -42,12 +42,18 @@ struct Shorthand {
   const char* key;
   const char* value;  ///< placeholder of the value
   const char* text;
+
+  void add_to(Options& options) const { options.add_options()(option, evodevo::value<std::string>(value), text); }
+  /// Appends the value that is given, if there is one.
+  void add_to(std::vector<Override>& overrides, const Given& given) const {
+    if (!given.contains(option)) return;
+    const auto text_of_value = given[option].as<std::string>();
+    overrides.push_back({key, text_of_value, option_text(option, text_of_value)});
+  }
 };
 
-constexpr Shorthand shorthands[] = {
-    {"seed", "experiment.seed", "N", "seed of all random numbers"},
-    {"threads", "simulation.threads", "N", "number of threads on the CPU; 0: one for each core"},
-};
+constexpr Shorthand seed{"seed", "experiment.seed", "N", "seed of all random numbers"},
+    threads{"threads", "simulation.threads", "N", "number of threads on the CPU; 0: one for each core"};
 
 }  // namespace
 
@@ -102,14 +108,18 @@ const Scenario* given_developing_scenario(const Experiment& experiment, const Gi
                    ": robots do not develop in it, because its key develops is false; leave the option out");
 }
 
-void add_experiment_options(Options& options) {
-  add_plugin_option(options);
-  for (const Shorthand& shorthand : shorthands)
-    options.add_options()(shorthand.option, value<std::string>(shorthand.value), shorthand.text);
+void add_machine_options(Options& options) {
+  threads.add_to(options);
   options.add_options()(
       "device", value<std::string>("auto|cpu|cuda"),
       "where to simulate; auto: on GPUs if there are any; cuda:0,2 uses only these of the visible GPUs, "
       "which are counted from 0");
+}
+
+void add_experiment_options(Options& options) {
+  add_plugin_option(options);
+  seed.add_to(options);
+  add_machine_options(options);
   options.add_options()("set", values<std::string>("KEY=VALUE"),
                         "set any key of the file, as in experiment.population=20 or fitness.0.window=5; may be "
                         "repeated");
@@ -154,17 +164,21 @@ ExperimentSource experiment_source(const std::string& file, const Given& given) 
       source.overrides.push_back({text.substr(0, equals), text.substr(equals + 1), option_text("set", text)});
     }
   }
-  for (const Shorthand& shorthand : shorthands) {
-    if (!given.contains(shorthand.option)) continue;
-    const auto value = given[shorthand.option].as<std::string>();
-    source.overrides.push_back({shorthand.key, value, option_text(shorthand.option, value)});
-  }
+  seed.add_to(source.overrides, given);
+  const std::vector<Override> machine = given_machine(given);
+  source.overrides.insert(source.overrides.end(), machine.begin(), machine.end());
+  source.gpus = given_gpus(given);
+  return source;
+}
+
+std::vector<Override> given_machine(const Given& given) {
+  std::vector<Override> overrides;
+  threads.add_to(overrides, given);
   if (given.contains("device")) {
     const auto value = given["device"].as<std::string>();
-    source.overrides.push_back({"simulation.device", device_alone(value), option_text("device", value)});
-    source.gpus = given_gpus(given);
+    overrides.push_back({"simulation.device", device_alone(value), option_text("device", value)});
   }
-  return source;
+  return overrides;
 }
 
 Experiment given_experiment(const std::string& file, const Given& given) {

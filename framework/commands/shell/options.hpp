@@ -36,10 +36,14 @@ std::optional<std::size_t> given_scenario(const Experiment& experiment, const Gi
 /// UsageError if robots do not develop in it.
 const Scenario* given_developing_scenario(const Experiment& experiment, const Given& given);
 
+/// Adds --device and --threads.
+void add_machine_options(Options& options);
 /// Returns the numbers of GPUs that --device gives, as in cuda:0,2; none if it gives none. Throws UsageError.
 std::vector<int> given_gpus(const Given& given);
+/// Returns the values of --device and --threads as overrides.
+std::vector<Override> given_machine(const Given& given);
 
-/// Adds --set, --plugin-path, --device, and the options that are shorthands for single keys.
+/// Adds --set, --seed, --plugin-path, --device and --threads.
 void add_experiment_options(Options& options);
 /// Returns the source of an experiment: `file`, and the values of the options that add_experiment_options() adds.
 ExperimentSource experiment_source(const std::string& file, const Given& given);

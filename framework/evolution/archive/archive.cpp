@@ -168,10 +168,11 @@ Settings recorded_settings(const Archive& archive) {
   return settings;
 }
 
-Experiment recorded_experiment(const Archive& archive, std::vector<fs::path> plugin_path) {
+Experiment recorded_experiment(const Archive& archive, std::vector<fs::path> plugin_path,
+                               std::vector<Override> overrides) {
   Experiment experiment =
       read_experiment(archive.record("experiment"), {.file = (archive.folder() / "record of the run").string(),
-                                                     .overrides = {},
+                                                     .overrides = std::move(overrides),
                                                      .plugin_path = std::move(plugin_path),
                                                      .is_record = true,
                                                      .files = archive.files()});

@@ -125,11 +125,11 @@ class Archive {
   void set_records(const std::map<std::string, std::string>& entries);
   /// Adds a provenance to those of the run, unless the run has it already, and returns its index.
   std::uint32_t add_provenance(const Provenance& provenance);
-  /// Returns the provenances of all processes that began or resumed the run, in the order in which they were added.
-  /// They include the provenances of processes that ended before they made a generation.
+  /// Returns the provenances of all processes that took part in the run, in the order in which they were added. They
+  /// include the provenances of processes that ended before a generation was complete.
   std::vector<Provenance> provenances() const;
-  /// Returns the provenance of a generation.
-  Provenance provenance(std::uint32_t generation) const;
+  /// Returns the number of individuals with each of provenances().
+  std::vector<std::int64_t> evaluated_by_provenance() const;
   std::vector<Objective> objectives() const;
   /// Returns the contents of the files that parameters of operators name.
   FileContents files() const;
@@ -191,6 +191,7 @@ Settings recorded_settings(const Archive& archive);
 
 /// Returns the experiment of a run from its record, and loads its operators, for which it also searches the folders in
 /// `plugin_path`.
-Experiment recorded_experiment(const Archive& archive, std::vector<std::filesystem::path> plugin_path = {});
+Experiment recorded_experiment(const Archive& archive, std::vector<std::filesystem::path> plugin_path = {},
+                               std::vector<Override> overrides = {});
 
 }  // namespace evodevo

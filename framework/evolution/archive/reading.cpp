@@ -42,8 +42,8 @@ std::int64_t count_of(const RunDatabase& run, const std::string& table) {
 }
 
 constexpr const char* individual_columns =
-    "SELECT id, born, origin, parent, mate, made_by, genes, status, reason, ended_at, spring_evaluations, died, blocks "
-    "FROM individuals ";
+    "SELECT id, born, origin, parent, mate, made_by, genes, status, reason, ended_at, spring_evaluations, died, "
+    "blocks, provenance FROM individuals ";
 
 /// Reads individuals and checks them against the run's generations and objectives.
 class Individuals {
@@ -54,12 +54,14 @@ class Individuals {
         objectives_(count_of(run, "objectives")),
         row_(run, "individuals", individual_columns + which),
         measures_(count_of(run, "measures")),
+        provenances_(count_of(run, "provenances")),
         scenarios_(count_of(run, "scenarios")),
         scores_(run, "scores", "SELECT objective, value FROM scores WHERE individual = ? ORDER BY objective"),
         measured_(run, "measured", "SELECT measure, value FROM measured WHERE individual = ? ORDER BY measure"),
         tests_(run, "tests",
                "SELECT scenario, repeat, objective, value FROM tests WHERE individual = ? "
                "ORDER BY scenario, repeat, objective") {
+    if (provenances_ == 0) run.refuse("the table provenances is empty");
     Statement last(run, "generations",
                    "SELECT generation, evaluations FROM generations ORDER BY generation DESC LIMIT 1");
     if (!last.step()) return;
@@ -78,6 +80,7 @@ class Individuals {
     individual.origin = row_.index(2, individual.born);
     read_parents(individual);
     individual.made_by = row_.line(5);
+    individual.provenance = static_cast<std::uint32_t>(row_.integer(13, 0, provenances_ - 1));
     individual.genome = read_genome(row_, 6, 12, layout_);
     read_result(individual.result);
     if (!row_.is_null(11))
@@ -160,7 +163,7 @@ class Individuals {
   const Layout& layout_;
   std::int64_t objectives_;
   Statement row_;
-  std::int64_t measures_, scenarios_;
+  std::int64_t measures_, provenances_, scenarios_;
   Statement scores_, measured_, tests_;
   std::optional<std::uint32_t> last_generation_;
 };
@@ -220,12 +223,11 @@ std::vector<Provenance> Archive::provenances() const {
   return provenances;
 }
 
-Provenance Archive::provenance(std::uint32_t generation) const {
-  const std::vector<Provenance> all = provenances();
-  Statement row(*run_, "generations", "SELECT provenance FROM generations WHERE generation = ?");
-  row.bind(generation);
-  if (!row.step()) refuse("there is no row of generation " + std::to_string(generation));
-  return all[row.index(0, static_cast<std::uint32_t>(all.size() - 1))];
+std::vector<std::int64_t> Archive::evaluated_by_provenance() const {
+  std::vector<std::int64_t> counts(provenances().size());
+  Statement row(*run_, "individuals", "SELECT provenance, count(*) FROM individuals GROUP BY provenance");
+  while (row.step()) counts[row.index(0, static_cast<std::uint32_t>(counts.size() - 1))] = row.integer(1, 0, most);
+  return counts;
 }
 
 std::vector<Objective> Archive::objectives() const {
@@ -252,11 +254,10 @@ const Layout& Archive::layout() const {
 }
 
 std::vector<Summary> Archive::generations() const {
-  const auto last_provenance = static_cast<std::uint32_t>(provenances().size() - 1);
   std::vector<Summary> summaries;
   Statement row(*run_, "generations",
                 "SELECT generation, evaluations, best, median, diverged, invalid, artefact, passive, clones, "
-                "spring_evaluations, wall_time, provenance FROM generations ORDER BY generation");
+                "spring_evaluations, wall_time FROM generations ORDER BY generation");
   while (row.step()) {
     const auto position = static_cast<std::int64_t>(summaries.size());
     Summary& summary = summaries.emplace_back();
@@ -271,7 +272,6 @@ std::vector<Summary> Archive::generations() const {
     summary.clones = row.integer(8, 0, summary.evaluations);
     summary.spring_evaluations = static_cast<std::uint64_t>(row.integer(9, 0, most));
     summary.wall_time = row.number(10);
-    summary.provenance = row.index(11, last_provenance);
   }
   return summaries;
 }

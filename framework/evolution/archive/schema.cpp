@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* schema = R"sql(
 CREATE TABLE record(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
--- whom a run was begun and resumed by; numbered from 0
+-- what evaluates the individuals of the run; numbered from 0
 CREATE TABLE provenances(provenance INTEGER PRIMARY KEY, device TEXT NOT NULL, evodevo TEXT NOT NULL, program TEXT NOT NULL);
 CREATE TABLE operators(provenance INTEGER NOT NULL, kind TEXT NOT NULL, name TEXT NOT NULL, version TEXT NOT NULL,
   file TEXT NOT NULL, hash TEXT NOT NULL);
@@ -38,6 +38,7 @@ CREATE TABLE individuals(
   origin INTEGER NOT NULL,              -- generation of its oldest genes
   parent INTEGER, mate INTEGER,         -- ids
   made_by TEXT NOT NULL,
+  provenance INTEGER NOT NULL,          -- of its result
   genes BLOB NOT NULL,                  -- float32, little-endian
   blocks BLOB,                          -- of sections whose blocks come and go
   status TEXT NOT NULL, reason TEXT, ended_at REAL,
@@ -66,8 +67,7 @@ CREATE TABLE generations(
   generation INTEGER PRIMARY KEY, evaluations INTEGER NOT NULL, best REAL, median REAL,
   diverged INTEGER NOT NULL, invalid INTEGER NOT NULL, artefact INTEGER NOT NULL, passive INTEGER NOT NULL,
   clones INTEGER NOT NULL,
-  spring_evaluations INTEGER NOT NULL, wall_time REAL NOT NULL,
-  provenance INTEGER NOT NULL);
+  spring_evaluations INTEGER NOT NULL, wall_time REAL NOT NULL);
 CREATE TABLE verifications(
   individual INTEGER NOT NULL, trial TEXT NOT NULL, position INTEGER NOT NULL,
   status TEXT NOT NULL, reason TEXT, value REAL,  -- of the first objective

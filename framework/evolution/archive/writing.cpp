@@ -14,9 +14,10 @@ std::string_view gene_bytes(const Genome& genome) {
 }
 
 void insert_newborns(const RunDatabase& run, const std::vector<Individual>& newborns, const Layout& layout) {
-  Statement insert(run, "individuals",
-                   "INSERT INTO individuals(id, born, origin, parent, mate, made_by, genes, blocks, status, reason, "
-                   "ended_at, spring_evaluations, died) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL)");
+  Statement insert(
+      run, "individuals",
+      "INSERT INTO individuals(id, born, origin, parent, mate, made_by, provenance, genes, blocks, status, "
+      "reason, ended_at, spring_evaluations, died) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, NULL)");
   Statement insert_score(run, "scores", "INSERT INTO scores VALUES(?, ?, ?)");
   Statement insert_measure(run, "measured", "INSERT INTO measured VALUES(?, ?, ?)");
   Statement insert_test(run, "tests", "INSERT INTO tests VALUES(?, ?, ?, ?, ?)");
@@ -27,11 +28,12 @@ void insert_newborns(const RunDatabase& run, const std::vector<Individual>& newb
     };
     const bool failed = result.status != Status::ok, diverged = result.status == Status::diverged;
     const std::string blocks = block_bytes(individual.genome, layout);
-    insert.execute(
-        individual.id, individual.born, individual.origin, parent(0), parent(1), individual.made_by,
-        gene_bytes(individual.genome), layout.is_fixed() ? std::nullopt : std::optional<std::string_view>(blocks),
-        name(result.status), failed ? std::optional(result.reason) : std::nullopt,
-        diverged ? std::optional(result.ended_at) : std::nullopt, static_cast<std::int64_t>(result.spring_evaluations));
+    insert.execute(individual.id, individual.born, individual.origin, parent(0), parent(1), individual.made_by,
+                   individual.provenance, gene_bytes(individual.genome),
+                   layout.is_fixed() ? std::nullopt : std::optional<std::string_view>(blocks), name(result.status),
+                   failed ? std::optional(result.reason) : std::nullopt,
+                   diverged ? std::optional(result.ended_at) : std::nullopt,
+                   static_cast<std::int64_t>(result.spring_evaluations));
     for (std::size_t i = 0; i < result.objectives.size(); ++i)
       insert_score.execute(individual.id, static_cast<std::uint32_t>(i), result.objectives[i]);
     for (std::size_t i = 0; i < result.measures.size(); ++i)
@@ -65,10 +67,10 @@ void Archive::commit(const std::vector<Individual>& newborns, const std::vector<
   for (const auto& [id, life] : lives) insert_life.execute(id, std::string_view(life.bytes()));
   Statement drop(*run_, "individuals", "UPDATE individuals SET died = ? WHERE id = ?");
   for (const std::uint32_t id : dropped) drop.execute(summary.generation, id);
-  Statement(*run_, "generations", "INSERT INTO generations VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+  Statement(*run_, "generations", "INSERT INTO generations VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       .execute(summary.generation, summary.evaluations, summary.best, summary.median, summary.diverged, summary.invalid,
                summary.artefact, summary.passive, summary.clones, static_cast<std::int64_t>(summary.spring_evaluations),
-               summary.wall_time, summary.provenance);
+               summary.wall_time);
   write_remembered(*run_, remembered, summary.generation);
   transaction.commit();
 }

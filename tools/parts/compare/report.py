@@ -56,7 +56,8 @@ class Setting:
 
 def builds(shown):
     """Counts the runs of each variant by the device and the builds that made them. `shown` is the output of `evodevo
-    show --json` for each run. A run that was resumed may have been made by several builds; it counts for each."""
+    show --json` for each run. A run may have been made by several builds, one after the other or at the same time; it
+    counts for each."""
     made = collections.defaultdict(lambda: collections.defaultdict(collections.Counter))
     for run, said in shown.items():
         for what, build in dict.fromkeys(by for provenance in provenances_of(said) for by in parts_of(provenance)):
@@ -65,8 +66,8 @@ def builds(shown):
 
 
 def provenances_of(said):
-    """Returns the provenances of all generations of a run, each once."""
-    return [said["provenances"][place] for place in sorted({generation["provenance"] for generation in said["generations"]})]
+    """Returns the provenances that have evaluated individuals of a run."""
+    return [provenance for provenance in said["provenances"] if provenance["evaluations"] > 0]
 
 
 def parts_of(provenance):

@@ -102,7 +102,7 @@ function facts(run) {
 function header() {
   const run = runs[0];
   const title = runs.length > 1 ? `${runs.length} runs` : run.experiment;
-  const devices = (r) => [...new Set(r.provenances.map((m) => m.device))].join(", then ");
+  const devices = (r) => [...new Set(r.provenances.filter((p) => p.evaluations > 0).map((p) => p.device))].join(", ");
   const subtitle = isGallery
     ? `${robots.length} random robots of its encoding, seed ${run.seed}`
     : runs.length > 1
