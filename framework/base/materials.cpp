@@ -1,7 +1,9 @@
 #include "base/materials.hpp"
 
+#include <algorithm>
 #include <boost/container_hash/hash.hpp>
 #include <functional>
+#include <ranges>
 
 namespace evodevo {
 
@@ -39,11 +41,12 @@ void drop_unused_materials(Body& body) {
     const bool is_base = i < body.base_materials;
     new_index.push_back(is_base || !used[i] ? i : list.index(body.materials[i]));
   }
+  body.materials = std::move(kept);
+  if (std::ranges::equal(new_index, std::views::iota(0u, static_cast<std::uint32_t>(new_index.size())))) return;
   for (Spring& spring : body.springs) spring.material = new_index[spring.material];
   for (Mass& mass : body.masses)
     if (mass.material != no_material)
       mass.material = static_cast<std::int32_t>(new_index[static_cast<std::size_t>(mass.material)]);
-  body.materials = std::move(kept);
 }
 
 }  // namespace evodevo

@@ -43,19 +43,45 @@ std::vector<IndexPair> joined_pairs(const std::vector<Spring>& springs) {
   return pairs;
 }
 
+/// The materials of springs between masses: the means of the masses' materials. They are appended to a list.
+class MeanMaterials {
+ public:
+  explicit MeanMaterials(std::vector<Material>& materials)
+      : list_(materials), materials_(materials), count_(materials.size()), known_(is_small() ? count_ * count_ : 0) {}
+
+  /// Returns the index of the mean of two materials that were in the list at first.
+  std::uint32_t index_between(std::int32_t a, std::int32_t b) {
+    const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+    if (!is_small()) return index_of_mean(i, j);
+    std::optional<std::uint32_t>& known = known_.at(i * count_ + j);
+    if (!known) known = index_of_mean(i, j);
+    return *known;
+  }
+
+ private:
+  bool is_small() const { return count_ <= 64; }
+  std::uint32_t index_of_mean(std::size_t i, std::size_t j) {
+    const Material of_a = materials_.at(i), of_b = materials_.at(j);  // copies, because the list may grow
+    return list_.index(mean(of_a, of_b));
+  }
+
+  MaterialList list_;
+  const std::vector<Material>& materials_;
+  std::size_t count_;
+  std::vector<std::optional<std::uint32_t>> known_;  ///< by pair; a look-up by the material takes longer
+};
+
 void join(Blueprint& blueprint, std::span<const IndexPair> pairs) {
   Body& body = blueprint.body;
   const std::vector<Size>& sizes = blueprint.sizes;
   const std::vector<IndexPair> joined_already = joined_pairs(body.springs);
   body.springs.reserve(body.springs.size() + pairs.size());
-  MaterialList materials(body.materials);
+  MeanMaterials materials(body.materials);
   for (const auto& [a, b] : pairs) {
     if (std::binary_search(joined_already.begin(), joined_already.end(), IndexPair(std::minmax(a, b)))) continue;
     const Mass &mass_a = body.masses[a], &mass_b = body.masses[b];
-    // copies, because the list of materials may grow below
-    const Material of_a = body.materials.at(static_cast<std::size_t>(mass_a.material));
-    const Material of_b = body.materials.at(static_cast<std::size_t>(mass_b.material));
-    body.springs.push_back({a, b, norm(mass_a.rest - mass_b.rest), materials.index(mean(of_a, of_b))});
+    body.springs.push_back(
+        {a, b, norm(mass_a.rest - mass_b.rest), materials.index_between(mass_a.material, mass_b.material)});
     if (!sizes.empty()) set_size(body.springs.back(), sizes[a], sizes[b]);
   }
 }
@@ -69,9 +95,12 @@ std::vector<std::uint32_t> pieces(const Body& body) {
     while (leader[i] != i) i = leader[i] = leader[leader[i]];
     return i;
   };
+  std::size_t count = leader.size();
   for (const Spring& spring : body.springs) {
     const auto [low, high] = std::minmax({find(spring.a), find(spring.b)});
+    if (low == high) continue;
     leader[high] = low;
+    if (--count == 1) break;  // the other springs join what is one piece already
   }
   for (std::uint32_t i = 0; i < leader.size(); ++i) leader[i] = find(i);
   return leader;

@@ -156,6 +156,7 @@ class Editor {
   }
 
   void change_springs() {
+    if (edits_.changed_springs.empty()) return;
     Body& body = body_;
     std::vector<std::uint8_t> changed(body.springs.size(), 0);
     for (const ChangedSpring& change : edits_.changed_springs) {
@@ -267,13 +268,15 @@ class Editor {
 
   void move_springs() {
     std::vector<Spring>& springs = body_.springs;
+    const bool masses_go = !edits_.removed_masses.empty();
     std::vector<std::uint32_t> staying;
     staying.reserve(springs.size());
     for (std::uint32_t i = 0; i < springs.size(); ++i)
-      if (!spring_gone_[i] && !goes(springs[i])) staying.push_back(i);
+      if (!spring_gone_[i] && !(masses_go && goes(springs[i]))) staying.push_back(i);
     if (living_ != nullptr) move_numbers_of_springs(*living_, staying);
     for (std::size_t i = 0; i < staying.size(); ++i) {
       springs[i] = springs[staying[i]];
+      if (!masses_go) continue;  // all masses keep their indices
       springs[i].a = new_index_[springs[i].a];
       springs[i].b = new_index_[springs[i].b];
     }
@@ -303,6 +306,7 @@ class Editor {
   /// new ones are sorted, and each of the others is looked up among them.
   void refuse_joined_pairs() const {
     const std::vector<NewSpring>& arrivals = edits_.new_springs;
+    if (arrivals.empty()) return;
     std::vector<std::uint64_t> keys;
     for (const NewSpring& spring : arrivals) keys.push_back(new_key(spring));
     std::sort(keys.begin(), keys.end());

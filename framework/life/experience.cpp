@@ -53,6 +53,7 @@ void remember(const Edits& edits, const MemoryNames& names, const Body& body, Op
 
 void follow(std::vector<double>& values, std::size_t width, std::size_t items,
             const std::vector<std::uint32_t>& staying, std::size_t added) {
+  if (width == 0) return;  // most operators remember nothing
   values.resize((items + added) * width, 0.0);
   std::vector<double> kept;
   kept.reserve((staying.size() + added) * width);

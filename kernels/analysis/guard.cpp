@@ -25,38 +25,31 @@ double extent(const State& state) {
   return largest;
 }
 
-/// EnergyBound::drive: P/sqrt(2) of guard.hpp, J^(1/2)/s.
-double drive_of(const Body& body) {
-  double sum = 0;
+/// Sums over the springs of a body for its EnergyBound.
+struct SpringSums {
+  double drive = 0;     ///< EnergyBound::drive: P/sqrt(2) of guard.hpp, J^(1/2)/s
+  double strain = 0;    ///< strain energy of a change of all muscles from full extension to full contraction, J
+  double rounding = 0;  ///< strain energy if rounding strains each spring by `rounding` of sums_of(), J
+};
+
+/// `rounding`: 16,384 times the machine epsilon; it strains each spring by its product with the sum of the rest length
+/// and the largest coordinate. One pass computes all sums, because each of them waits for its own additions.
+SpringSums sums_of(const Body& body, const State& state, double rounding) {
+  const double positions = extent(state);
+  double drive = 0;
+  SpringSums sums;
   for (const Spring& spring : body.springs) {
     const Material& material = body.materials[spring.material];
+    const double stiffness = body.stiffness(spring);
     const double rate = 2 * 3.14159265358979323846 * material.frequency * material.amplitude * spring.rest_length;
-    sum += body.stiffness(spring) * rate * rate;
-  }
-  return std::sqrt(sum / 2);
-}
-
-/// The sum over muscles of the strain energy that a change from full extension to full contraction causes, J.
-double strain_allowance(const Body& body) {
-  double sum = 0;
-  for (const Spring& spring : body.springs) {
-    const Material& material = body.materials[spring.material];
     const double stroke = 2 * material.amplitude * spring.rest_length;
-    sum += 0.5 * body.stiffness(spring) * stroke * stroke;
-  }
-  return sum;
-}
-
-/// The energy (J) of all springs if rounding strains each of them by 16,384 times the machine epsilon times the sum of
-/// its rest length and the largest coordinate.
-double rounding_allowance(const Body& body, const State& state, Precision precision) {
-  const double rounding = 16384 * epsilon(precision), positions = extent(state);
-  double sum = 0;
-  for (const Spring& spring : body.springs) {
     const double noise = rounding * (spring.rest_length + positions);
-    sum += 0.5 * body.stiffness(spring) * noise * noise;
+    drive += stiffness * rate * rate;
+    sums.strain += 0.5 * stiffness * stroke * stroke;
+    sums.rounding += 0.5 * stiffness * noise * noise;
   }
-  return sum;
+  sums.drive = std::sqrt(drive / 2);
+  return sums;
 }
 
 /// The gravitational energy that masses lose by sinking into the floor, J: m g (m g/k + g dt^2) for each mass, without
@@ -104,10 +97,10 @@ Course course_of(const Task& task, const Scene& scene, Precision precision) {
   if (task.course) return *task.course;
   const Body& body = *task.body;
   const State& state = *task.state;
+  const SpringSums sums = sums_of(body, state, 16384 * epsilon(precision));
   const EnergyBound bound{.start = state.start_energy,
-                          .drive = drive_of(body),
-                          .allowance = strain_allowance(body) + rounding_allowance(body, state, precision) +
-                                       sag_allowance(body, scene, task.dt) +
+                          .drive = sums.drive,
+                          .allowance = sums.strain + sums.rounding + sag_allowance(body, scene, task.dt) +
                                        exit_allowance(body, state, scene, task.dt)};
   return {.origin = state.time, .bound = bound, .fallen = fallen_energy(scene, height_moment_of(body, state, scene))};
 }

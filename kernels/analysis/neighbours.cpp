@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <nanoflann.hpp>
+#include <numeric>
 
 #include "threads/parallel.hpp"
 
@@ -63,6 +64,33 @@ class NearestOthers {
 using Tree =
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Points>, Points, 3, std::uint32_t>;
 
+/// Returns the pairs of each point and its neighbours, sorted and unique. `neighbours` has `k` for each point. Groups
+/// the pairs by their lower index; sorting all of them would take several times as long.
+std::vector<IndexPair> unique_pairs(const std::vector<std::uint32_t>& neighbours, std::size_t k) {
+  const std::size_t points = neighbours.size() / k;
+  const auto for_each_pair = [&](const auto& use) {
+    for (std::size_t i = 0; i < neighbours.size(); ++i) {
+      const auto point = static_cast<std::uint32_t>(i / k);
+      use(std::min(point, neighbours[i]), std::max(point, neighbours[i]));
+    }
+  };
+  std::vector<std::size_t> end(points + 1, 0);  // of the pairs with a lower index, in `uppers`
+  for_each_pair([&](std::uint32_t lower, std::uint32_t) { ++end[lower + 1]; });
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<std::uint32_t> uppers(neighbours.size());
+  for_each_pair([&](std::uint32_t lower, std::uint32_t upper) { uppers[end[lower]++] = upper; });
+  std::vector<IndexPair> pairs;
+  pairs.reserve(neighbours.size());
+  auto begin = uppers.begin();
+  for (std::uint32_t lower = 0; lower < points; ++lower) {
+    const auto behind = uppers.begin() + static_cast<std::ptrdiff_t>(end[lower]);
+    std::sort(begin, behind);
+    std::for_each(begin, std::unique(begin, behind), [&](std::uint32_t upper) { pairs.emplace_back(lower, upper); });
+    begin = behind;
+  }
+  return pairs;
+}
+
 class CpuNeighbourSearch final : public NeighbourSearch {
  public:
   void find(std::span<const PointCloud> clouds, Workers& workers, const Use& use) override {
@@ -73,18 +101,18 @@ class CpuNeighbourSearch final : public NeighbourSearch {
 }  // namespace
 
 std::vector<IndexPair> nearest_pairs(std::span<const Vec3> positions, std::uint32_t k) {
-  std::vector<IndexPair> pairs;
-  if (positions.size() < 2 || k == 0) return pairs;
+  if (positions.size() < 2 || k == 0) return {};
+  const std::size_t count = std::min<std::size_t>(k, positions.size() - 1);
+  std::vector<std::uint32_t> neighbours;
+  neighbours.reserve(count * positions.size());
   const Points points{positions};
   const Tree tree(3, points);
   for (std::uint32_t i = 0; i < positions.size(); ++i) {
-    NearestOthers nearest(i, std::min<std::size_t>(k, positions.size() - 1));
+    NearestOthers nearest(i, count);
     tree.findNeighbors(nearest, &positions[i].x, nanoflann::SearchParams());
-    for (const auto& [squared, j] : nearest.found()) pairs.push_back(std::minmax(i, j));
+    for (const auto& [squared, j] : nearest.found()) neighbours.push_back(j);
   }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  return pairs;
+  return unique_pairs(neighbours, count);
 }
 
 std::unique_ptr<NeighbourSearch> make_cpu_neighbour_search() { return std::make_unique<CpuNeighbourSearch>(); }

@@ -185,7 +185,10 @@ double fastest_muscle(const Body& body) {
 }
 
 bool is_damped(const Body& body) {
-  return std::any_of(body.springs.begin(), body.springs.end(),
+  // a look at the few materials saves one at the many springs
+  const auto damps = [](const Material& material) { return material.damping != 0; };
+  return std::ranges::any_of(body.materials, damps) &&
+         std::any_of(body.springs.begin(), body.springs.end(),
                      [&](const Spring& spring) { return body.materials[spring.material].damping != 0; });
 }
 
@@ -200,10 +203,11 @@ double uniform_damping(const Scene& scene, Method method) {
 /// = z rate/oscillation.
 struct Limit {
   double oscillation, rate, damped = 0;
+  bool has_dashpots;
 
   /// `uniform` is the product of dt and uniform_damping(), 1.
-  Limit(Method method, bool has_dashpots, double uniform = 0)
-      : oscillation(oscillation_limit(method)), rate(oscillation) {
+  Limit(Method method, bool has_dashpots_, double uniform = 0)
+      : oscillation(oscillation_limit(method)), rate(oscillation), has_dashpots(has_dashpots_) {
     // dashpots act at predicted velocities
     if (method == Method::velocity_verlet) rate = 2 * oscillation;
     // The largest half disc in rk4's region of stability has the radius 2.58. Uniform damping alone leaves the limit of
@@ -215,7 +219,7 @@ struct Limit {
 
   /// The largest eigenvalue lambda at a step dt, 1/s^2.
   double eigenvalue(double dt) const { return oscillation * (oscillation - damped) / (dt * dt); }
-  Resistance at(double dt) const { return {1, rate / dt}; }
+  Resistance at(double dt) const { return {1, has_dashpots ? rate / dt : 0}; }
 
   /// The largest dt for bounds of the eigenvalues of K and of C.
   double dt(double stiffness, double damping) const {

@@ -25,18 +25,18 @@ std::size_t masses_bytes(std::size_t groups, const Features& features) {
 }
 
 /// An upper bound (N) of the force of a spring that stops two moving masses: 2 v sqrt(k m/2), with the largest speed v,
-/// stiffness k and mass m of the body.
-double stopping_force(const Body& body, const State& state) {
-  double speed = 0, mass = 0, stiffness = 0;
+/// mass m and `stiffness` k (N/m) of the body.
+double stopping_force(const Body& body, const State& state, double stiffness) {
+  double speed = 0, mass = 0;
   for (const Vec3& v : state.velocity) speed = std::max(speed, norm(v));
   for (const Mass& m : body.masses) mass = std::max(mass, m.mass);
-  for (const Spring& spring : body.springs) stiffness = std::max(stiffness, body.stiffness(spring));
   return 2 * speed * std::sqrt(stiffness * mass / 2);
 }
 
 /// The force (N) of the strongest dashpot when one of its ends is stopped: at the largest speed of the state, or at
 /// that of a fall by the body's own size. 0 without dashpots.
 double landing_force(const Body& body, const State& state, const Scene& scene) {
+  if (std::ranges::all_of(body.materials, [](const Material& material) { return material.damping == 0; })) return 0;
   double coefficient = 0, speed = 0;
   for (const Spring& spring : body.springs) coefficient = std::max(coefficient, body.damping(spring));
   if (coefficient == 0) return 0;
@@ -67,20 +67,22 @@ ForceRange force_range(const Body& body, const State& state, const Scene& scene)
   double weight = 0;
   if (scene.gravity)
     for (const Mass& mass : body.masses) weight += mass.mass * std::abs(scene.gravity->acceleration);
-  double largest = std::max(weight, stopping_force(body, state)), doubled = 0, damping = 0;
+  double largest = weight, doubled = 0, damping = 0, strongest = 0;
   bool driven = false;
   std::vector<std::uint32_t> degree(body.masses.size());
   for (const Spring& spring : body.springs) {
     const Material& material = body.materials[spring.material];
+    const double stiffness = body.stiffness(spring);
     const double length = spring.rest_length * (1 + std::abs(material.amplitude));
     const double strain = norm(state.position[spring.b] - state.position[spring.a]) - spring.rest_length;
-    doubled = std::max(doubled, std::abs(body.stiffness(spring)) * length);
-    largest = std::max(largest, std::abs(body.stiffness(spring)) * 2 * std::abs(strain));
+    strongest = std::max(strongest, stiffness);
+    doubled = std::max(doubled, std::abs(stiffness) * length);
+    largest = std::max(largest, std::abs(stiffness) * 2 * std::abs(strain));
     driven = driven || material.amplitude * material.frequency != 0;
     damping = std::max(damping, material.damping);
     ++degree[spring.a], ++degree[spring.b];
   }
-  largest = std::max(largest, driven ? 2 * doubled : doubled);
+  largest = std::max({largest, stopping_force(body, state, strongest), driven ? 2 * doubled : doubled});
   largest = std::max(largest * (1 + 2 * damping), largest + landing_force(body, state, scene));
   ForceRange range;
   const std::uint32_t terms = degree.empty() ? 1 : std::max(1u, *std::max_element(degree.begin(), degree.end()));

@@ -17,7 +17,7 @@ class Colouring {
  public:
   Colouring(std::span<Link> links, std::size_t rows) : links_(links) {
     free_.fill(rows == most_rows ? ~0ull : (1ull << rows) - 1);
-    for (auto& of_vertex : edge_) of_vertex.fill(-1);
+    for (auto& of_vertex : edge_) std::fill_n(of_vertex.begin(), rows, -1);
   }
 
   /// Leaves link `i` in its row; false if its lane or its bank already has a spring in that row.
@@ -95,7 +95,7 @@ class Colouring {
 
   std::span<Link> links_;
   std::array<std::uint64_t, 64> free_;                           // free rows as bits, by lane and 32 + bank
-  std::array<std::array<std::int32_t, most_rows>, 64> edge_;     // index of the link, by vertex and row
+  std::array<std::array<std::int32_t, most_rows>, 64> edge_;     // index of the link, by vertex and row; -1: none
   std::array<std::array<std::uint8_t, 32>, most_rows> extra_{};  // springs squeezed in, by row and bank
   std::vector<int> path_;
 };
