@@ -32,12 +32,15 @@ TEST(Settings, RefuseWhatCannotBeMeasured) {
   EXPECT_THAT(complaint({"--method", "rk5"}), AllOf(HasSubstr("\"rk5\""), HasSubstr("paper-euler, ")));
   EXPECT_THAT(complaint({"--study", "materials"}), HasSubstr("add --device cuda"));
 #ifdef EVODEVO_CUDA
+  EXPECT_THAT(complaint({"--study", "host"}), HasSubstr("--robots"));
+  EXPECT_EQ(complaint({"--study", "host", "--robots", "some.toml"}), "");
   EXPECT_THAT(complaint({"--study", "stress", "--device", "cuda", "--method", "rk4"}), HasSubstr("leave --method out"));
   EXPECT_THAT(complaint({"--study", "materials", "--device", "cuda", "--method", "xpbd"}),
               HasSubstr("another --method"));
   EXPECT_EQ(complaint({"--study", "materials", "--device", "cuda", "--method", "rk4"}), "");
 #else
   EXPECT_THAT(complaint({"--study", "stress", "--device", "cuda"}), HasSubstr("-DEVODEVO_CUDA=ON"));
+  EXPECT_THAT(complaint({"--study", "host", "--robots", "some.toml"}), HasSubstr("-DEVODEVO_CUDA=ON"));
 #endif
   EXPECT_EQ(complaint({"--study", "features"}), "");
   EXPECT_EQ(complaint({"--study", "samples", "--method", "rk4"}), "");

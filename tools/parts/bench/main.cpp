@@ -26,7 +26,7 @@ Report measure(const Settings& settings) {
       {"speed", speed},           {"features", feature_costs},   {"samples", sample_costs},
 #ifdef EVODEVO_CUDA
       {"baselines", baselines},   {"stress", stress_costs},      {"tallies", tally_agreement},
-      {"neighbours", neighbours}, {"materials", material_costs},
+      {"neighbours", neighbours}, {"materials", material_costs}, {"host", host_work},
 #endif
   };
   return studies.at(settings.study)(settings);

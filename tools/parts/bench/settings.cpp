@@ -10,7 +10,7 @@ constexpr std::uint32_t most_bodies = 65535;  // CUDA's limit for the second dim
 
 void check(const Settings& s) {
   check_choice("study", s.study,
-               {"speed", "features", "samples", "baselines", "stress", "tallies", "neighbours", "materials"});
+               {"speed", "features", "samples", "host", "baselines", "stress", "tallies", "neighbours", "materials"});
   check_device(s.device);
   check_choice("method", s.method, {method_names.begin(), method_names.end()});
   check_choice("precision", s.precision, {"float32", "float64"});
@@ -19,8 +19,12 @@ void check(const Settings& s) {
     throw std::invalid_argument(
         "--study materials measures a GPU in single precision with explicit methods; add --device cuda, leave "
         "--precision out, and choose another --method");
-  const bool beside_cuda =
-      s.study != "speed" && s.study != "features" && s.study != "samples" && s.study != "materials";
+#ifndef EVODEVO_CUDA
+  if (s.study == "host")
+    throw std::invalid_argument("--study host needs evodevo to be built with CUDA; configure with -DEVODEVO_CUDA=ON");
+#endif
+  const bool beside_cuda = s.study != "speed" && s.study != "features" && s.study != "samples" && s.study != "host" &&
+                           s.study != "materials";
   if (beside_cuda && s.device != "cuda")
     throw std::invalid_argument("--study " + s.study + " compares methods on a GPU; add --device cuda");
   if (beside_cuda && s.method != name(Method::paper_euler))
@@ -28,10 +32,11 @@ void check(const Settings& s) {
                                 " always uses the paper's time-stepping method; leave --method out");
   if (beside_cuda && s.precision != "float32")
     throw std::invalid_argument("--study " + s.study + " always uses single precision; leave --precision out");
-  if (s.study == "tallies" && s.robots.empty())
-    throw std::invalid_argument("--study tallies needs random robots; give their experiment with --robots");
-  if (s.study != "tallies" && s.study != "speed" && !s.robots.empty())
-    throw std::invalid_argument("--robots can be given only with --study speed and --study tallies");
+  const bool needs_robots = s.study == "tallies" || s.study == "host";
+  if (needs_robots && s.robots.empty())
+    throw std::invalid_argument("--study " + s.study + " needs random robots; give their experiment with --robots");
+  if (!needs_robots && s.study != "speed" && !s.robots.empty())
+    throw std::invalid_argument("--robots can be given only with --study speed, tallies and host");
   if (s.bodies < 1 || s.bodies > most_bodies || s.steps < 1 || s.runs < 1 || s.masses < 2)
     throw std::invalid_argument("steps and runs must be at least 1, masses at least 2, bodies from 1 to " +
                                 std::to_string(most_bodies));

@@ -32,6 +32,9 @@ Report stress_costs(const Settings& settings);
 /// recording finds (paper, Figure 3).
 Report tally_agreement(const Settings& settings);
 
+/// Measures, without a GPU, how long the host takes for each stage of the lives of random robots that a GPU simulates.
+Report host_work(const Settings& settings);
+
 /// Measures how long the search for nearest neighbours in a population of random balls takes on CPU and GPU. Throws
 /// std::runtime_error if their results differ.
 Report neighbours(const Settings& settings);
