@@ -15,11 +15,11 @@ class Distribution {
   Distribution(std::uint32_t groups, std::size_t masses, std::size_t springs)
       : lane_(32 * groups), bank_(32 * groups), even_share_(static_cast<int>(springs / masses) + 1) {}
 
-  /// The cost of one more spring from `owner` to `other`, which shares the owner's lane and the bank of `other` with
-  /// other springs.
-  int cost_of_adding(std::uint32_t owner, std::uint32_t other) const {
-    const int lane = lane_[owner];
-    return lane + penalty * std::max(0, lane + 1 - even_share_) + bank_[cell(owner, other)];
+  /// Whether a spring from `owner` to `other` would cost less with its ends swapped. `counted`: 1 if it has been added,
+  /// otherwise 0.
+  bool cheaper_swapped(std::uint32_t owner, std::uint32_t other, int counted) const {
+    const int as_it_is = cost_of_adding(lane_[owner] - counted, bank_[cell(owner, other)] - counted);
+    return cost_of_adding(lane_[other], bank_[cell(other, owner)]) < as_it_is;
   }
   void add(std::uint32_t owner, std::uint32_t other, int count) {
     lane_[owner] += count;
@@ -27,6 +27,9 @@ class Distribution {
   }
 
  private:
+  /// The cost of one more spring that shares its owner's lane with `lane` springs, and the bank of its other end with
+  /// `bank` springs of the owner's group.
+  int cost_of_adding(int lane, int bank) const { return lane + penalty * std::max(0, lane + 1 - even_share_) + bank; }
   static std::uint32_t cell(std::uint32_t owner, std::uint32_t other) { return owner / 32 * 32 + other % 32; }
   std::vector<int> lane_, bank_;
   int even_share_;
@@ -38,12 +41,6 @@ void choose_owners(const Body& body, std::span<const std::uint32_t> index_of, st
                    std::span<std::uint32_t> owner) {
   Distribution distribution(groups, body.masses.size(), body.springs.size());
   std::vector<std::uint32_t> other(owner.size());
-  const auto swap_ends_where_cheaper = [&](std::size_t i) {
-    const bool cheaper =
-        distribution.cost_of_adding(other[i], owner[i]) < distribution.cost_of_adding(owner[i], other[i]);
-    if (cheaper) std::swap(owner[i], other[i]);
-    return cheaper;
-  };
   std::vector<std::size_t> undecided;
   for (std::size_t i = 0; i < owner.size(); ++i) {
     const std::uint32_t a = index_of[body.springs[i].a], b = index_of[body.springs[i].b];
@@ -56,7 +53,7 @@ void choose_owners(const Body& body, std::span<const std::uint32_t> index_of, st
     other[i] = a + b - owner[i];
   }
   for (const std::size_t i : undecided) {
-    swap_ends_where_cheaper(i);
+    if (distribution.cheaper_swapped(owner[i], other[i], 0)) std::swap(owner[i], other[i]);
     distribution.add(owner[i], other[i], 1);
   }
   // a spring changes its owner if that is cheaper
@@ -65,9 +62,11 @@ void choose_owners(const Body& body, std::span<const std::uint32_t> index_of, st
   for (int sweep = 0; sweep < last_sweep && changed; ++sweep) {
     changed = false;
     for (std::size_t i = 0; i < owner.size(); ++i) {
+      if (!distribution.cheaper_swapped(owner[i], other[i], 1)) continue;
       distribution.add(owner[i], other[i], -1);
-      changed |= swap_ends_where_cheaper(i);
+      std::swap(owner[i], other[i]);
       distribution.add(owner[i], other[i], 1);
+      changed = true;
     }
   }
 }
