@@ -143,7 +143,7 @@ Report host_work(const Settings& settings) {
   add({"making a body from a genome", newborns.size(), times.decode - host.search().seconds});
   add({host.search().name, newborns.size(), host.search().seconds});
   for (const Stage* stage : {&host.begin, &host.arrange, &host.rearrange, &host.pack, &host.unpack}) add(*stage);
-  add({"developing a body", host.rearrange.times, times.develop});
+  add({"developing a body", host.pack.times, times.develop});
   add({whole.name, newborns.size(), whole.seconds});
   return {{"study", "What the host does for robots on a GPU"},
           {"command", settings.command},
