@@ -1,5 +1,5 @@
-// Turns messages into bytes and back. Numbers are not converted: all ranks run on machines with the same
-// sizes and byte order of numbers.
+// Turns messages into bytes and back. Numbers are not converted: all ranks run on machines whose numbers have the same
+// sizes and the same order of bytes.
 #pragma once
 
 #include <cstddef>

@@ -331,8 +331,7 @@ Command run_command() {
       .text = {"The run writes all individuals of all generations into its folder, and verifies its best individual "
                "at the end. Ctrl-C ends it after the current generation, a second Ctrl-C ends it at once; `resume` "
                "continues it. Results do not depend on the numbers of threads, GPUs and processes, except with "
-               "--mixed. A run "
-               "uses all equal GPUs, and all processes that mpirun or srun starts."},
+               "--mixed. A run uses all equal GPUs, and all processes that mpirun or srun starts."},
       .examples = {"run experiments/quickstart.toml",
                    "run experiments/quickstart.toml --seed 2 --set selection.name=elitist --out runs/elitist",
                    "run experiments/evo-devo.toml --device cuda:0,2"},
