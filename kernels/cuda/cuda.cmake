@@ -1,8 +1,8 @@
 # The CUDA part of the simulation core. Kernels are compiled at run time; their sources become part of the program.
 set(embedded
-  cuda/device/block.cuh
   cuda/device/check.cuh
-  cuda/device/gather.cuh
+  cuda/device/cluster.cuh
+  cuda/device/full_block.cu
   cuda/device/mass_step.cuh
   cuda/device/materials/computed.cuh
   cuda/device/materials/table.cuh
@@ -15,12 +15,14 @@ set(embedded
   cuda/device/neighbours.cu
   cuda/device/resident.cu
   cuda/device/resident.cuh
-  cuda/device/sample_streamed.cu
   cuda/device/sampling.cuh
-  cuda/device/sampling_streamed.cuh
   cuda/device/springs.cuh
-  cuda/device/streamed.cu
-  cuda/device/streamed.cuh
+  cuda/device/streamed/block.cuh
+  cuda/device/streamed/gather.cuh
+  cuda/device/streamed/sample_streamed.cu
+  cuda/device/streamed/sampling_streamed.cuh
+  cuda/device/streamed/streamed.cu
+  cuda/device/streamed/streamed.cuh
   cuda/layout/fixed_point.hpp
   cuda/layout/formats.hpp
   cuda/layout/point_clouds.hpp
@@ -47,14 +49,20 @@ endfunction()
 evodevo_embed(${embedded_sources} cuda/runtime/compiler.hpp evodevo::cuda::embedded_sources ${embedded})
 
 target_sources(evodevo_kernels PRIVATE
-  cuda/layout/arrangement.cpp
+  cuda/layout/arrangement/arranged_body.cpp
+  cuda/layout/arrangement/arrangement.cpp
+  cuda/layout/arrangement/outline.cpp
+  cuda/layout/arrangement/ownership.cpp
+  cuda/layout/arrangement/partition.cpp
+  cuda/layout/arrangement/row_order.cpp
   cuda/layout/features.cpp
-  cuda/layout/ownership.cpp
+  cuda/layout/force_range.cpp
   cuda/layout/resident.cpp
-  cuda/layout/row_order.cpp
+  cuda/layout/resident_packing.cpp
   cuda/layout/sampling.cpp
   cuda/layout/streamed.cpp
   cuda/runtime/cache.cpp
+  cuda/runtime/clusters.cpp
   cuda/runtime/compiler.cpp
   cuda/runtime/cuda_neighbours.cpp
   cuda/runtime/cuda_simulator.cpp

@@ -25,7 +25,7 @@ TEST(Settings, NameTheMethod) {
 }
 
 TEST(Settings, RefuseWhatCannotBeMeasured) {
-  EXPECT_THAT(complaint({"--study", "speeed"}), AllOf(HasSubstr("\"speeed\""), HasSubstr("speed, features")));
+  EXPECT_THAT(complaint({"--study", "speeed"}), AllOf(HasSubstr("\"speeed\""), HasSubstr("speed, sizes, numbers, ")));
   EXPECT_THAT(complaint({"--study", "baselines"}), HasSubstr("--device cuda"));
   EXPECT_THAT(complaint({"--study", "features", "--robots", "some.toml"}), HasSubstr("--robots"));
   EXPECT_THAT(complaint({"--bodies", "0"}), HasSubstr("bodies from 1 to 65535"));
@@ -42,6 +42,7 @@ TEST(Settings, RefuseWhatCannotBeMeasured) {
   EXPECT_THAT(complaint({"--study", "stress", "--device", "cuda"}), HasSubstr("-DEVODEVO_CUDA=ON"));
   EXPECT_THAT(complaint({"--study", "host", "--robots", "some.toml"}), HasSubstr("-DEVODEVO_CUDA=ON"));
 #endif
+  EXPECT_THAT(complaint({"--study", "sizes", "--body", "cube10"}), HasSubstr("leave --body out"));
   EXPECT_EQ(complaint({"--study", "features"}), "");
   EXPECT_EQ(complaint({"--study", "samples", "--method", "rk4"}), "");
   EXPECT_THAT(complaint({"--study", "samples", "--robots", "some.toml"}), HasSubstr("--robots"));

@@ -1,5 +1,5 @@
 // The arrangement of bodies on the chip.
-#include "cuda/layout/arrangement.hpp"
+#include "cuda/layout/arrangement/arrangement.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,8 @@
 #include <set>
 
 #include "bodies.hpp"
-#include "cuda/layout/row_order.hpp"
+#include "cuda/layout/arrangement/partition.hpp"
+#include "cuda/layout/arrangement/row_order.hpp"
 
 namespace evodevo::cuda {
 namespace {
@@ -16,41 +17,54 @@ using testing_gpu::random_body;
 
 /// Checks that every spring is in exactly one slot, which is in the lane of one of its ends and refers to the other
 /// end, and that the rows of each warp belong to the groups listed for it.
-void expect_sound(const Arrangement& a, const Body& body, unsigned largest_block) {
+void expect_sound(const Arrangement& a, const Outline& outline, unsigned largest_block) {
+  const std::size_t inside = outline.ends.size(), springs = inside + outline.cut.size();
   ASSERT_LE(a.shape.block, largest_block);
-  ASSERT_LE(a.shape.warps, a.shape.block);
+  ASSERT_LE(a.shape.warps + a.shape.cut_warps, a.shape.block);
   ASSERT_EQ(a.slots.size(), a.shape.slots());
-  ASSERT_GE(32 * a.shape.block * a.shape.masses_per_thread, body.masses.size());
-  std::vector<int> seen(body.springs.size()), terms(32 * a.groups);
-  const std::size_t rows_of_warp = a.shape.chunks * a.shape.rows;
+  ASSERT_GE(32 * a.shape.block * a.shape.masses_per_thread, outline.rest.size());
+  std::vector<int> seen(springs), terms(32 * a.groups);
   std::uint32_t group = 0;
   for (std::size_t row = 0; row < a.slots.size() / 32; ++row) {
-    if (row % rows_of_warp == 0) group = a.first_group[row / rows_of_warp];
-    EXPECT_GE(row, a.first_row[group]);
-    EXPECT_LT(row, a.first_row[group + 1]);
+    const bool cut = row >= a.shape.rows_inside();
+    const std::size_t rows = cut ? a.shape.cut_rows : a.shape.rows, of_kind = row - (cut ? a.shape.rows_inside() : 0);
+    const std::size_t rows_of_warp = a.shape.chunks * rows, first_warp = cut ? a.shape.warps : 0;
+    if (of_kind % rows_of_warp == 0) group = a.first_group[first_warp + of_kind / rows_of_warp];
+    ASSERT_LT(group, a.groups);
     for (std::uint32_t lane = 0; lane < 32; ++lane) {
       const Arrangement::Slot& slot = a.slots[32 * row + lane];
       const std::uint32_t owner = 32 * group + lane;
       ++terms[owner];
       if (slot.spring == Arrangement::none) {
-        EXPECT_EQ(slot.other / 32, a.groups);
+        EXPECT_EQ(slot.other / 32, cut ? a.first_of_halo() / 32 : a.groups);
         continue;
       }
+      ASSERT_LT(slot.spring, springs);
       ++seen[slot.spring];
-      --terms[slot.other];
       EXPECT_EQ(a.slot_of[slot.spring], 32 * row + lane);
-      const Spring& spring = body.springs[slot.spring];
-      const std::set<std::uint32_t> ends{a.index_of[spring.a], a.index_of[spring.b]};
-      EXPECT_EQ(ends, (std::set<std::uint32_t>{owner, slot.other}));
+      EXPECT_EQ(cut, slot.spring >= inside);
+      if (cut) {
+        const auto& [mass, other] = outline.cut[slot.spring - inside];
+        EXPECT_EQ(a.index_of[mass], owner);
+        EXPECT_EQ(a.index_of[outline.rest.size() + other], slot.other);
+        EXPECT_GE(slot.other, a.first_of_halo());
+        EXPECT_LT(slot.other, a.first_of_halo() + 32 * a.halo_groups);
+      } else {
+        --terms[slot.other];
+        const auto& [first, second] = outline.ends[slot.spring];
+        const std::set<std::uint32_t> ends{a.index_of[first], a.index_of[second]};
+        EXPECT_EQ(ends, (std::set<std::uint32_t>{owner, slot.other}));
+      }
     }
-    if (a.group_ends[row / a.shape.rows] >> row % a.shape.rows & 1) ++group;
+    if (a.group_ends[first_warp * a.shape.chunks + of_kind / rows] >> of_kind % rows & 1) ++group;
   }
-  EXPECT_EQ(seen, std::vector<int>(body.springs.size(), 1));
+  EXPECT_EQ(seen, std::vector<int>(springs, 1));
   for (std::size_t place = 0; place < terms.size(); ++place) EXPECT_EQ(terms[place], a.magic_numbers[place]) << place;
+  EXPECT_EQ(std::set(a.index_of.begin(), a.index_of.end()).size(), outline.rest.size() + outline.halo);
 }
 
 void expect_sound(const Body& body, unsigned largest_block) {
-  expect_sound(Arrangement(body, largest_block), body, largest_block);
+  expect_sound(Arrangement(Outline(body), largest_block), Outline(body), largest_block);
 }
 
 /// Removes `masses` random masses and `springs` random springs, and appends the same numbers of new ones, like the host
@@ -79,22 +93,22 @@ void turn_over(Body& body, std::uint32_t masses, std::uint32_t springs, std::mt1
 TEST(Rearrangement, StaysSoundAndKeepsBanksApartThroughALife) {
   Body body = random_body(1000, 25, 5);
   std::mt19937 random(1);
-  Arrangement arrangement(body, 32);
+  Arrangement arrangement(Outline(body), 32);
   for (int cycle = 0; cycle < 10; ++cycle) {
     const Outline before(body);
     turn_over(body, 5, 125, random);
-    arrangement = Arrangement(body, 32, arrangement, before);
-    expect_sound(arrangement, body, 32);
+    arrangement = Arrangement(Outline(body), 32, arrangement, before);
+    expect_sound(arrangement, Outline(body), 32);
   }
   EXPECT_LT(arrangement.wavefronts_per_row(), 1.25);
 }
 
 TEST(Rearrangement, KeepsWhatStays) {
   Body body = random_body(1000, 25, 5);
-  const Arrangement before(body, 32);
   const Outline outline(body);
+  const Arrangement before(outline, 32);
   body.springs.erase(body.springs.begin() + 100);
-  const Arrangement after(body, 32, before, outline);
+  const Arrangement after(Outline(body), 32, before, outline);
   EXPECT_EQ(after.index_of, before.index_of);
   std::size_t moved = 0;
   for (std::uint32_t i = 0; i < body.springs.size(); ++i) moved += after.slot_of[i] != before.slot_of[i + (i >= 100)];
@@ -103,17 +117,17 @@ TEST(Rearrangement, KeepsWhatStays) {
 
 TEST(Rearrangement, HoldsBodiesThatHaveLittleInCommonWithBefore) {
   const Body body = random_body(1000, 25, 5);
-  const Arrangement before(body, 32);
   const Outline outline(body);
+  const Arrangement before(outline, 32);
   for (const Body& other : {random_body(1000, 25, 6), random_body(100, 25, 7), random_body(2000, 25, 8)})
-    expect_sound(Arrangement(other, 32, before, outline), other, 32);
+    expect_sound(Arrangement(Outline(other), 32, before, outline), Outline(other), 32);
   Body larger = body;
   for (int i = 0; i < 100; ++i) larger.masses.push_back({{9, 9, 9.0 + i}, 0.2});
-  expect_sound(Arrangement(larger, 32, before, outline), larger, 32);
+  expect_sound(Arrangement(Outline(larger), 32, before, outline), Outline(larger), 32);
   Body smaller = body;
   smaller.masses.resize(500);
   std::erase_if(smaller.springs, [](const Spring& s) { return s.a >= 500 || s.b >= 500; });
-  expect_sound(Arrangement(smaller, 32, before, outline), smaller, 32);
+  expect_sound(Arrangement(Outline(smaller), 32, before, outline), Outline(smaller), 32);
 }
 
 TEST(Arrangement, HoldsEverySpringOnce) {
@@ -135,9 +149,33 @@ TEST(Arrangement, HoldsLargeAndUnevenBodies) {
   expect_sound(loose, 32);
 }
 
+TEST(Arrangement, HoldsTheCutSpringsOfParts) {
+  for (const std::uint32_t masses : {100u, 1000u, 9000u}) {
+    const std::vector<Part> parts = partition(Outline(random_body(masses, 25, 2)), masses < 1000 ? 2 : 4);
+    std::vector<const Outline*> outlines;
+    for (const Part& part : parts) outlines.push_back(&part.outline);
+    const std::vector<Arrangement> arrangements = Arrangement::of_parts(outlines, 32);
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      EXPECT_EQ(arrangements[p].shape, arrangements[0].shape) << "one kernel simulates all parts";
+      expect_sound(arrangements[p], parts[p].outline, 32);
+    }
+  }
+}
+
+TEST(Arrangement, SkipsGroupsWithoutSprings) {
+  // the masses of the middle group lose their springs, but keep their indices
+  Body body = random_body(96, 10, 2);
+  const Outline before(body);
+  const Arrangement earlier(before, 32);
+  std::erase_if(body.springs, [&](const Spring& spring) {
+    return earlier.index_of[spring.a] / 32 == 1 || earlier.index_of[spring.b] / 32 == 1;
+  });
+  expect_sound(Arrangement(Outline(body), 32, earlier, before), Outline(body), 32);
+}
+
 TEST(Arrangement, KeepsBanksApart) {
-  EXPECT_LT(Arrangement(random_body(1000, 25, 1), 32).wavefronts_per_row(), 1.05);
-  EXPECT_LT(Arrangement(random_body(500, 25, 1), 32).wavefronts_per_row(), 1.2);
+  EXPECT_LT(Arrangement(Outline(random_body(1000, 25, 1)), 32).wavefronts_per_row(), 1.05);
+  EXPECT_LT(Arrangement(Outline(random_body(500, 25, 1)), 32).wavefronts_per_row(), 1.2);
 }
 
 TEST(RowOrder, ColoursWhatCanBeColoured) {

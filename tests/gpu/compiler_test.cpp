@@ -58,7 +58,8 @@ const Features every_feature{.gravity = true,
 
 /// Whether the kernels that simulate bodies of any size compile with the given features and method.
 bool compiles_streamed(const Features& features) {
-  const char* source = is_explicit(features.method) ? "cuda/device/streamed.cu" : form_of(features.method).file;
+  const char* source =
+      is_explicit(features.method) ? "cuda/device/streamed/streamed.cu" : form_of(features.method).file;
   return !compile(source, definitions(features), "sm_90").empty();
 }
 
@@ -107,12 +108,12 @@ TEST_F(Compiler, CompilesThePapersMethods) {
 }
 
 TEST_F(Compiler, ReadsTheCache) {
-  const auto compiled = compile("cuda/device/streamed.cu", definitions(every_feature), "sm_90");
+  const auto compiled = compile("cuda/device/streamed/streamed.cu", definitions(every_feature), "sm_90");
   ASSERT_EQ(files().size(), 1u);
   const auto written = fs::last_write_time(files().front());
-  EXPECT_EQ(compile("cuda/device/streamed.cu", definitions(every_feature), "sm_90"), compiled);
+  EXPECT_EQ(compile("cuda/device/streamed/streamed.cu", definitions(every_feature), "sm_90"), compiled);
   EXPECT_EQ(fs::last_write_time(files().front()), written);
-  compile("cuda/device/streamed.cu", definitions(Features{}), "sm_90");
+  compile("cuda/device/streamed/streamed.cu", definitions(Features{}), "sm_90");
   EXPECT_EQ(files().size(), 2u);
 }
 
@@ -147,12 +148,12 @@ TEST_F(Compiler, KeepsNothingWhereNoVariableNamesAFolder) {
 
 TEST_F(Compiler, WorksWithoutACache) {
   ::setenv("XDG_CACHE_HOME", "/proc/none", 1);
-  EXPECT_FALSE(compile("cuda/device/streamed.cu", definitions(Features{}), "sm_90").empty());
+  EXPECT_FALSE(compile("cuda/device/streamed/streamed.cu", definitions(Features{}), "sm_90").empty());
 }
 
 TEST_F(Compiler, NamesAnArchitectureThatIsTooOld) {
   try {
-    compile("cuda/device/streamed.cu", definitions(Features{}), "sm_30");
+    compile("cuda/device/streamed/streamed.cu", definitions(Features{}), "sm_30");
     FAIL();
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("sm_30"), std::string::npos) << error.what();

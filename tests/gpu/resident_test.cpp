@@ -51,20 +51,71 @@ TEST(Resident, ForcesHaveRoomForADashpotThatStopsAFall) {
   EXPECT_GT(largest, body.damping(body.springs[0]) * std::sqrt(2 * 9.81 * 2));
 }
 
+TEST(Resident, TheRangeOfALargeBodyIsNotThatOfItsWholeWeight) {
+  const Scene scene = testing_gpu::walking_scene();
+  const auto largest = [&](const Body& body) {
+    return force_range<float>(body, state_at_birth(body, scene), scene).largest;
+  };
+  // a chain of soft springs, which its weight would tear; from 1,000 masses on, it is cut off
+  const auto chain = [](std::uint32_t masses) {
+    Body body;
+    body.materials = {{1, 0, 0, 0}};
+    for (std::uint32_t i = 0; i < masses; ++i) {
+      body.masses.push_back({{0.01 * i, 0, 0}, 0.2});
+      if (i > 0) body.springs.push_back({i - 1, i, 0.01, 0});
+    }
+    return body;
+  };
+  const double of_thousand = 1000 * 0.2 * 9.81;
+  EXPECT_GT(largest(chain(1000)), of_thousand);
+  EXPECT_GT(largest(chain(8000)), of_thousand);
+  EXPECT_LT(largest(chain(8000)), 2 * of_thousand);
+  Body hanging = chain(8000);
+  hanging.masses.back().mass = 0;
+  EXPECT_GT(largest(hanging), 7.9 * of_thousand);
+  Body pieces = chain(8000);
+  std::erase_if(pieces.springs, [](const Spring& spring) { return spring.b % 100 == 0; });
+  EXPECT_GT(largest(pieces), of_thousand / 10);
+  EXPECT_LT(largest(pieces), of_thousand / 2);
+}
+
+TEST(Resident, LargeBodiesGetASmallClusterThatHoldsTheirSprings) {
+  const Scene scene = testing_gpu::walking_scene();
+  const auto blocks = [&](std::uint32_t masses, unsigned largest_cluster, unsigned wanted, bool work = false) {
+    const Body body = testing_gpu::random_body(masses, 25, 1);
+    State state = state_at_birth(body, scene);
+    Task task = task_of<float>(body, state, scene);
+    task.steps = 20000;
+    Features recording = features;
+    recording.work = work;
+    const auto resident = Resident<float>::arrange(task, recording, {shared_bytes, largest_cluster, wanted});
+    return resident ? resident->blocks() : 0;
+  };
+  EXPECT_EQ(blocks(1000, 16, 1), 1u);
+  EXPECT_EQ(blocks(3000, 16, 1), 3u);
+  EXPECT_EQ(blocks(3000, 1, 1), 1u) << "on a GPU without clusters, springs are in the device's memory";
+  EXPECT_EQ(blocks(20000, 16, 1), 16u);
+  EXPECT_EQ(blocks(20000, 1, 1), 0u);
+  EXPECT_EQ(blocks(1000, 16, 7), 5u) << "clusters of seven would waste multiprocessors";
+  EXPECT_EQ(blocks(1000, 16, 7, true), 1u) << "the rounding of work would depend on the number";
+  EXPECT_EQ(blocks(100, 16, 16), 2u) << "a block needs enough masses";
+}
+
 TEST(Resident, RecordsLeadToTheirMaterials) {
   for (const std::size_t materials : {15, 200, 5000, 9000, 0}) {
     const Body body = body_of(materials);
     const Scene scene = testing_gpu::walking_scene();
     State state = state_at_birth(body, scene);
     const Task task = task_of<float>(body, state, scene);
-    const auto resident = Resident<float>::arrange(task, features, shared_bytes);
+    const auto resident = Resident<float>::arrange(task, features, {shared_bytes});
     ASSERT_TRUE(resident) << materials;
     const bool wide = body.materials.size() > 8190;  // 16-bit offsets reach 8,191 entries; one is for empty slots
     EXPECT_EQ(resident->form().wide_table, wide) << materials;
 
     std::vector<std::byte> input(resident->sizes().input), motion(resident->sizes().state);
     const Regions regions{input.data(), motion.data(), nullptr};
-    const auto packed = resident->pack(regions, regions, scene);
+    ResidentBody<float> packed;
+    resident->pack(regions, regions, scene, &packed);
     std::size_t springs = 0;
     for (std::size_t i = 0; i < resident->slots(); ++i) {
       const std::size_t entry = (packed.records[i].packed >> 16) * (wide ? sizeof(float) : 1) / sizeof(Entry<float>);
@@ -86,14 +137,15 @@ TEST(Resident, SpringsCarryTheCodesOfTheirMaterials) {
     Features computed = features;
     computed.materials = Materials::computed;
     computed.actuation = true;
-    const auto resident = Resident<float>::arrange(task, computed, shared_bytes);
+    const auto resident = Resident<float>::arrange(task, computed, {shared_bytes});
     ASSERT_TRUE(resident) << materials;
     EXPECT_TRUE(resident->form().records_on_chip) << "whatever the materials";
     EXPECT_FALSE(resident->form().wide_table);
 
     std::vector<std::byte> input(resident->sizes().input), motion(resident->sizes().state);
     const Regions regions{input.data(), motion.data(), nullptr};
-    const auto packed = resident->pack(regions, regions, scene);
+    ResidentBody<float> packed;
+    resident->pack(regions, regions, scene, &packed);
     const MaterialUnits units = material_units(body);
     EXPECT_FLOAT_EQ(packed.units.stiffness * static_cast<float>(packed.resolution),
                     static_cast<float>(units.stiffness));
@@ -116,8 +168,8 @@ TEST(Resident, LeavesToTheDevicesMemoryWhatTheChipCannotHold) {
   const Body body = body_of(0);  // in float64, its table alone is as large as the chip's memory
   State state = state_at_birth(body, testing_gpu::walking_scene());
   const Task task = task_of<double>(body, state, testing_gpu::walking_scene());
-  EXPECT_FALSE(Resident<double>::arrange(task, features, shared_bytes));
-  EXPECT_FALSE(Resident<float>::arrange(task, features, shared_bytes / 2));
+  EXPECT_FALSE(Resident<double>::arrange(task, features, {shared_bytes}));
+  EXPECT_FALSE(Resident<float>::arrange(task, features, {shared_bytes / 2}));
 }
 
 TEST(Resident, WhatIsRecordedOrSampledDoesNotDecideHowManyStepsATableHas) {
@@ -130,10 +182,12 @@ TEST(Resident, WhatIsRecordedOrSampledDoesNotDecideHowManyStepsATableHas) {
     task.sampled_at = {{10, {.work = true, .positions = true, .contacts = true}}};
     const auto table_steps = [&](Recording recording, const Channels& channels) {
       const Features all = features_of(scene, {}, recording, {.actuation = true}, channels);
-      const auto resident = Resident<float>::arrange(task, all, shared_bytes);
+      const auto resident = Resident<float>::arrange(task, all, {shared_bytes});
       std::vector<std::byte> input(resident->sizes().input), motion(resident->sizes().state);
       const Regions regions{input.data(), motion.data(), nullptr};
-      return resident->pack(regions, regions, scene).table_steps;
+      ResidentBody<float> packed;
+      resident->pack(regions, regions, scene, &packed);
+      return packed.table_steps;
     };
     const std::uint32_t plain = table_steps({}, {});
     EXPECT_EQ(plain, table_steps({true, true, true, true, true}, {})) << materials;
@@ -150,8 +204,8 @@ TEST(Resident, WhatIsRecordedDoesNotDecideWhereABodyLies) {
     body.materials.resize(materials, {4000, 0, 0, 0});
     State state = state_at_birth(body, testing_gpu::walking_scene());
     const Task task = task_of<float>(body, state, testing_gpu::walking_scene());
-    const bool plain = Resident<float>::arrange(task, features, shared_bytes).has_value();
-    EXPECT_EQ(plain, Resident<float>::arrange(task, recording, shared_bytes).has_value()) << materials;
+    const bool plain = Resident<float>::arrange(task, features, {shared_bytes}).has_value();
+    EXPECT_EQ(plain, Resident<float>::arrange(task, recording, {shared_bytes}).has_value()) << materials;
     on_chip += plain;
   }
   EXPECT_GT(on_chip, 0);

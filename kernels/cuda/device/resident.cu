@@ -1,4 +1,5 @@
-// Simulates a body in one thread block. The body's state is on the chip from the first step to the last.
+// Simulates a body in one thread block, or in a cluster of thread blocks, each of which simulates a part of it. The
+// body's state is on the chip from the first step to the last.
 //
 //   load                body in the device's memory ─► shared memory, registers
 //   repeat until the end or a divergence:
@@ -6,6 +7,7 @@
 //     advance, for each pass over the springs:
 //       add_spring_forces   positions, lengths ─► force sums (integers) in shared memory; records of the springs
 //       move_masses         force sums ─► velocities, positions
+//       Halo::send          positions ─► the blocks of other parts, which get them while they compute springs inside
 //     collect           sums of these steps ─► records in the device's memory
 //     has_diverged      energies ─► answer, whether to stop
 //   store               registers, shared memory ─► body in the device's memory
@@ -13,8 +15,8 @@
 // The host compiles this file at run time for each combination of features that a scene and a body ask for; a feature
 // that is off leaves no instruction.
 #include EVODEVO_METHOD
+#include "cuda/device/cluster.cuh"
 #include "cuda/device/sampling.cuh"
-#include "cuda/device/springs.cuh"
 
 namespace evodevo::cuda {
 
@@ -99,7 +101,8 @@ __device__ __forceinline__ void load(const Body& body, Movers& movers) {
   }
   if constexpr (dashpots) copy_to_chip(body.dashpots, body.dashpot_offset, body.entries);
   if constexpr (records_on_chip) {
-    const unsigned count = body.warps * lanes * rows * (chunked ? body.chunks : 1);
+    const unsigned rows_of_chunks = body.warps * rows + (clustered ? body.cut_warps * cut_rows : 0);
+    const unsigned count = lanes * rows_of_chunks * (chunked ? body.chunks : 1);
     Records::load(body, count);
   }
 }
@@ -147,23 +150,43 @@ __device__ __forceinline__ Check check_of(const Body& body, const Movers& movers
 }
 
 /// Writes the body's energies after `steps` steps of its piece into its answer. Returns to all threads whether the body
-/// has diverged; that is decided only if a check is due.
-__device__ __noinline__ bool has_diverged(const Body& body, Check check, std::uint64_t steps) {
-  const bool finite = !__syncthreads_or(check.not_finite != 0);
-  const bool out_of_range =
-      __syncthreads_or(!(check.totals.largest <= body.largest_force)) || body.piece.left_range != 0;
-  const double kinetic = block_sum(check.kinetic, of_warps[0]);
-  const double elastic = body.resolution * block_sum(elastic_energy(body, share_of(body)), of_warps[1]);
+/// has diverged; that is decided only if a check is due. The blocks of a cluster all decide the same.
+__device__ __noinline__ bool has_diverged(const Body& body, Check check, std::uint64_t steps, Halo halo) {
+  const Share share = share_of(body);
+  if (clustered && share.kind == Kind::cut) halo.wait();
+  bool finite = !__syncthreads_or(check.not_finite != 0);
+  bool out_of_range = __syncthreads_or(!(check.totals.largest <= body.largest_force)) || body.piece.left_range != 0;
+  double kinetic = block_sum(check.kinetic, of_warps[0]);
+  double elastic = body.resolution * block_sum(elastic_energy(body, share, halo.set()), of_warps[1]);
+  double height_moment = 0;
+  double power = 0;
+  if constexpr (gravity) height_moment = block_sum(check.height_moment, of_warps[2]);
+  if constexpr (work) power = block_sum(check.totals.power, of_warps[3]);
+  if constexpr (clustered) {
+    double* const mine = cluster::of_block;
+    if (threadIdx.x == 0) {
+      mine[0] = finite ? 0 : 1;
+      mine[1] = out_of_range ? 1 : 0;
+      mine[2] = kinetic;
+      mine[3] = elastic;
+      if constexpr (gravity) mine[4] = height_moment;
+      if constexpr (work) mine[5] = power;
+    }
+    cluster::join_blocks(6, Add());
+    const double* const all = cluster::of_cluster;
+    finite = all[0] == 0;
+    out_of_range = all[1] > 0;
+    kinetic = all[2];
+    elastic = all[3];
+    if constexpr (gravity) height_moment = all[4];
+    if constexpr (work) power = all[5];
+  }
   const bool checked = is_checked(body.piece, steps);
   Answer& answer = *body.answer;
-  if constexpr (gravity) {
-    const double height_moment = block_sum(check.height_moment, of_warps[2]);
+  if constexpr (gravity)
     if (threadIdx.x == 0 && checked && finite) record_fall(height_moment, body.constants, answer);
-  }
-  if constexpr (work) {
-    const double power = block_sum(check.totals.power, of_warps[3]);
+  if constexpr (work)
     if (threadIdx.x == 0) answer.work += body.constants.exact_dt * body.resolution * power;
-  }
   bool diverged = false;
   if (threadIdx.x == 0) {
     answer.steps = steps;
@@ -177,27 +200,51 @@ __device__ __noinline__ bool has_diverged(const Body& body, Check check, std::ui
   return __syncthreads_or(diverged);
 }
 
+/// Writes the sums and extremes of a whole body into the sample. Nothing else may use of_warps until the block is
+/// synchronised again.
+__device__ __forceinline__ void write_reduced(const SampleMark& mark, Reduction& reduction) {
+  if constexpr (!clustered) {
+    reduction.write(mark);
+  } else {
+    auto* to = reinterpret_cast<ReducedSample*>(mark.to);
+    const bool writes = cluster::rank() == 0 && threadIdx.x < 8;
+    if (Reduction::has_sums(mark)) {
+      reduction.write_sums(cluster::of_block);
+      cluster::join_blocks(8, Add());
+      if (writes) to->centre[threadIdx.x] = cluster::of_cluster[threadIdx.x];
+    }
+    if (Reduction::has_extremes(mark)) {
+      reduction.write_extremes(cluster::of_block);
+      cluster::join_blocks(8, Larger());
+      if (writes) to->low[threadIdx.x] = cluster::of_cluster[threadIdx.x];
+    }
+  }
+}
+
 /// Takes the samples that are due after `done` steps. `lengths` are the present ones; `totals` are those of all steps
 /// since the last check. Nothing else may use of_warps until the block is synchronised again.
 __device__ __forceinline__ void take_samples(const Body& body, const Share& share, const Lengths& lengths,
-                                             const Movers& movers, const Totals& totals, std::uint64_t done,
-                                             NextSample& next) {
+                                             const Halo& halo, const Movers& movers, const Totals& totals,
+                                             std::uint64_t done, NextSample& next) {
   const Sampling& sampling = body.sampling;
+  if (clustered && share.kind == Kind::cut) halo.wait();
   while (true) {
     const SampleMark mark = next.take(sampling);
     const SampleLists lists(mark, sampling.masses);
     Reduction reduction;
     for_each_mover(body, [&](unsigned i, unsigned index, unsigned offset) {
       if (sampling.mass_share[index] < 0) return;  // padding
-      sample_mass(sampling, mark, lists, index, position_at(offset), movers.velocity[i], reduction);
-      if constexpr (contacts) sample_contact(mark, lists, index, movers.contact_steps[i], reduction);
+      const unsigned of_body = index + (clustered ? sampling.first_mass : 0);
+      sample_mass(sampling, mark, lists, index, of_body, position_at(offset), movers.velocity[i], reduction);
+      if constexpr (contacts) sample_contact(mark, lists, of_body, movers.contact_steps[i], reduction);
     });
     if constexpr (work) {
       reduction.add_work(body.constants.exact_dt * body.resolution * totals.power);
-      if (threadIdx.x == 0) reduction.add_work(body.answer->work);
+      if (threadIdx.x == 0 && (!clustered || cluster::rank() == 0)) reduction.add_work(body.answer->work);
     }
-    reduction.write(mark);
-    if (mark.channels & forces_bit) write_forces(body, share, lengths, lists.forces);
+    write_reduced(mark, reduction);
+    if (mark.channels & forces_bit)
+      write_forces(body, share, lengths, halo.set(), lists.forces + (clustered ? sampling.first_slot : 0));
     if (next.step != done) return;
     __syncthreads();
   }
@@ -206,9 +253,10 @@ __device__ __forceinline__ void take_samples(const Body& body, const Share& shar
 /// Computes `count` steps after the first `done`; the table holds their lengths. The sums exist only in this function,
 /// which calls only inlined functions, so they stay in registers. A warp without springs only moves masses. Takes the
 /// samples that are due before the last of these steps; after each, passes are numbered anew.
-template <bool has_springs>
+/// In a cluster, warps with cut springs wait in each pass for positions from other blocks, while the others compute.
+template <Kind kind>
 __device__ __forceinline__ void advance(const Body& body, const StepConstants<Number>& constants, const Share& share,
-                                        unsigned group_ends, unsigned count, Movers& movers, Totals& totals,
+                                        unsigned group_ends, unsigned count, Movers& movers, Halo& halo, Totals& totals,
                                         [[maybe_unused]] std::uint64_t done, [[maybe_unused]] NextSample& next) {
   const Number resolution = static_cast<Number>(body.resolution);
   SpringPass springs{Lengths(body)};
@@ -222,10 +270,16 @@ __device__ __forceinline__ void advance(const Body& body, const StepConstants<Nu
   }
   for (unsigned pass = 0; pass < passes; ++pass) {
     springs.recorded = Method::is_recorded(pass);
-    if constexpr (has_springs) add_spring_forces(body, share, group_ends, springs, sums);
+    if constexpr (kind == Kind::inside) add_spring_forces<false>(body, share, group_ends, springs, sums);
+    if constexpr (kind == Kind::cut) {
+      halo.wait();
+      springs.halo_set = halo.set();
+      add_spring_forces<true>(body, share, group_ends, springs, sums);
+    }
     __syncthreads();
     move_masses(body, constants, resolution, {pass, pass + 1 == passes}, movers);
     __syncthreads();
+    if constexpr (clustered) halo.template send<kind>(body);
     unsigned rows_on = Method::row(pass + 1) - Method::row(pass);
     if constexpr (sampled)
       if (pass + 1 == passes) rows_on -= opening_passes;  // an opening pass reads the row of the last pass again
@@ -235,14 +289,14 @@ __device__ __forceinline__ void advance(const Body& body, const StepConstants<Nu
       Totals so_far = totals;
       if constexpr (work) so_far.power += sums.power;
       const std::uint64_t at = done + (count - left);
-      take_samples(body, share, springs.lengths, movers, so_far, at, next);
+      take_samples(body, share, springs.lengths, halo, movers, so_far, at, next);
       const unsigned now = next.steps_from(at, left);
       left -= now;
       passes = opening_passes + now * passes_per_step;
       pass = 0u - 1;
     }
   }
-  if constexpr (has_springs) collect(body, share, sums, totals);
+  if constexpr (kind != Kind::none) collect<kind == Kind::cut>(body, share, sums, totals);
 }
 
 extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)
@@ -252,6 +306,7 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)
   const unsigned group_ends = chunked ? 0 : *share.group_ends;
   std::uint64_t begin = 0, steps = body.piece.steps;
   Movers movers;
+  Halo halo;
   Totals totals;
   NextSample next;
   if constexpr (sampled) {
@@ -263,6 +318,7 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)
   load(body, movers);
   fill_lengths(body, 0, 1);
   __syncthreads();
+  if constexpr (clustered) halo.begin(body, share);
   for (std::uint64_t done = begin; done < steps;) {
     const unsigned since_check = static_cast<unsigned>((body.piece.since_check + done) % guard_interval);
     const unsigned until_check =
@@ -273,10 +329,13 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)
       fill_lengths(body, done, now * rows_per_step + end_rows);
       __syncthreads();
     }
-    if (share.chunks > 0)
-      advance<true>(body, body.constants, share, group_ends, now, movers, totals, done, next);
+    if (share.kind == Kind::inside)
+      advance<Kind::inside>(body, body.constants, share, group_ends, now, movers, halo, totals, done, next);
+    else if (clustered && share.kind == Kind::cut)
+      advance<clustered ? Kind::cut : Kind::none>(body, body.constants, share, group_ends, now, movers, halo, totals,
+                                                  done, next);
     else
-      advance<false>(body, body.constants, share, group_ends, now, movers, totals, done, next);
+      advance<Kind::none>(body, body.constants, share, group_ends, now, movers, halo, totals, done, next);
     done += now;
     bool is_due = false;
     if constexpr (sampled) is_due = next.step == done;
@@ -287,14 +346,15 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)
     }
     if constexpr (sampled) {
       if (is_due) {
-        take_samples(body, share, Lengths(body), movers, totals, done, next);
+        take_samples(body, share, Lengths(body), halo, movers, totals, done, next);
         __syncthreads();
       }
       if (now < until_check) continue;
     }
-    if (has_diverged(body, check_of(body, movers, totals), done)) break;
+    if (has_diverged(body, check_of(body, movers, totals), done, halo)) break;
     totals = Totals();
   }
+  if constexpr (clustered) cluster::synchronise();  // a block must not end while others send to it
   store(body, movers);
 }
 

@@ -96,6 +96,14 @@ __device__ __forceinline__ void write_joined(T (&values)[8], Join join, T nothin
   if (lane % 4 == 0) to[lane / 4] = result;
 }
 
+/// A term of a sum, in single precision rounded to a multiple of 2^-36, which is far below the rounding of positions.
+/// Sums of such terms up to 2^17 are exact, so they depend neither on the order of the terms nor on the number of
+/// blocks.
+__device__ __forceinline__ double exact_term(double term) {
+  constexpr double magic = 0x1.8p16;  // its last bit is worth 2^-36
+  return sizeof(Number) == sizeof(float) ? (term + magic) - magic : term;
+}
+
 /// A thread's contribution to the reduced quantities of a sample.
 struct Reduction {
   static constexpr Number lowest = sizeof(Number) == sizeof(float) ? -3.402823466e38 : -1.7976931348623157e308;
@@ -107,7 +115,8 @@ struct Reduction {
     const Number x[3] = {position.x, position.y, position.z}, v[3] = {velocity.x, velocity.y, velocity.z};
 #pragma unroll
     for (unsigned i = 0; i < 3; ++i) {
-      if (mark.channels & centre_bit) sums[i] += mass_share * x[i], sums[4 + i] += mass_share * v[i];
+      if (mark.channels & centre_bit)
+        sums[i] += exact_term(mass_share * x[i]), sums[4 + i] += exact_term(mass_share * v[i]);
       if (mark.channels & box_bit)
         extremes[i] = fmax(extremes[i], -x[i]), extremes[4 + i] = fmax(extremes[4 + i], x[i]);
     }
@@ -116,14 +125,22 @@ struct Reduction {
   __device__ __forceinline__ void add_work(double joules) { sums[3] += joules; }
   __device__ __forceinline__ void add_contact(std::uint32_t steps) { sums[7] += steps; }
 
-  /// Writes the sums and extremes of all threads of the block into the sample. Nothing else may use of_warps until the
-  /// block is synchronised again.
+  static __device__ __forceinline__ bool has_sums(const SampleMark& mark) {
+    return mark.channels & (centre_bit | contact_bit | work_bit);
+  }
+  static __device__ __forceinline__ bool has_extremes(const SampleMark& mark) { return mark.channels & box_bit; }
+
+  /// Writes the sums, or extremes, of all threads of the block. Nothing else may use of_warps until the block is
+  /// synchronised again.
+  __device__ __forceinline__ void write_sums(double* to) { write_joined(sums, Add(), 0.0, 0, to); }
+  __device__ __forceinline__ void write_extremes(double* to) { write_joined(extremes, Larger(), lowest, 1, to); }
+
+  /// Writes the sums and extremes of all threads of the block into the sample, likewise.
   __device__ __forceinline__ void write(const SampleMark& mark) {
     auto* to = reinterpret_cast<ReducedSample*>(mark.to);
-    const bool summed = mark.channels & (centre_bit | contact_bit | work_bit), boxed = mark.channels & box_bit;
-    if (summed) write_joined(sums, Add(), 0.0, 0, to->centre);
-    if (summed && boxed) __syncthreads();
-    if (boxed) write_joined(extremes, Larger(), lowest, 1, to->low);
+    if (has_sums(mark)) write_sums(to->centre);
+    if (has_sums(mark) && has_extremes(mark)) __syncthreads();
+    if (has_extremes(mark)) write_extremes(to->low);
   }
 };
 
@@ -146,13 +163,14 @@ struct SampleLists {
   }
 };
 
-/// Adds a mass to the reduced quantities of a sample, and writes its position and velocity into the lists.
+/// Adds a mass to the reduced quantities of a sample, and writes its position and velocity into the lists. `mass` is
+/// its index in the part of the body that a block simulates, `of_body` that in the lists.
 __device__ __forceinline__ void sample_mass(const Sampling& sampling, const SampleMark& mark, const SampleLists& lists,
-                                            unsigned mass, const Vector& position, const Vector& velocity,
-                                            Reduction& reduction) {
+                                            unsigned mass, unsigned of_body, const Vector& position,
+                                            const Vector& velocity, Reduction& reduction) {
   reduction.add(mark, sampling.mass_share[mass], position, velocity);
-  if (mark.channels & positions_bit) SampleLists::set(lists.positions, sampling.masses, mass, position);
-  if (mark.channels & velocities_bit) SampleLists::set(lists.velocities, sampling.masses, mass, velocity);
+  if (mark.channels & positions_bit) SampleLists::set(lists.positions, sampling.masses, of_body, position);
+  if (mark.channels & velocities_bit) SampleLists::set(lists.velocities, sampling.masses, of_body, velocity);
 }
 
 /// The same for the number of steps after which the mass touched the ground.

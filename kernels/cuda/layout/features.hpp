@@ -80,6 +80,8 @@ struct ResidentForm {
   bool records_on_chip = false;  ///< springs in shared memory; otherwise streamed from the device's memory
   bool wide_offsets = false;  ///< offsets of masses count numbers, because in bytes they would need more than 16 bits
   bool wide_table = false;    ///< likewise for offsets of the table's entries
+  bool clustered = false;     ///< a cluster of blocks simulates the body
+  unsigned cut_rows = 0;      ///< as `rows`, of springs between blocks
 
   friend auto operator<=>(const ResidentForm&, const ResidentForm&) = default;
 };

@@ -19,6 +19,15 @@ inline constexpr unsigned plane_bytes = lanes * sizeof(T);
 template <class T, bool dashpots>
 inline constexpr unsigned group_bytes = (dashpots ? 9 : 6) * plane_bytes<T>;
 
+/// In a cluster, each block simulates a part of the body. A spring between two parts is computed in both, so a block
+/// needs the positions of some masses of other parts: its halo. A group of 32 of these masses has two sets of planes,
+/// because a pass reads one set while the blocks of these masses already write the other. A set is the positions x, y,
+/// z and, with dashpots, the velocities at which they act.
+template <class T, bool dashpots>
+inline constexpr unsigned halo_set_bytes = (dashpots ? 6 : 3) * plane_bytes<T>;
+template <class T, bool dashpots>
+inline constexpr unsigned halo_group_bytes = 2 * halo_set_bytes<T, dashpots>;
+
 /// A spring in the format that the thread of its owner reads.
 template <class T>
 struct alignas(2 * sizeof(T)) Record {
@@ -27,6 +36,13 @@ struct alignas(2 * sizeof(T)) Record {
       packed;  ///< low 16 bits: offset of the other mass; next 16 bits: offset of the table's entry, or
                ///< MaterialCode::stiffness; offsets count bytes or numbers (ResidentForm)
 };
+
+/// A mass of a block that is in the halo of another block.
+struct HaloCopy {
+  std::uint32_t from;  ///< offset of the mass in the shared memory of its own block, bytes
+  std::uint32_t to;    ///< low 24 bits: offset of the copy's first set, bytes; above: rank of its block in the cluster
+};
+inline constexpr std::uint32_t halo_rank_shift = 24;
 
 /// A material at one time; stiffness and force are in units of the body's force resolution.
 template <class T>
@@ -122,11 +138,13 @@ struct ReducedSample {
 /// What the device needs to sample a body. It writes samples directly to the host's memory, whose room for a range of
 /// check spans is used again for the next range but one.
 struct Sampling {
-  const SampleMark* marks;       ///< [count + 1] in ascending order of their steps; that of the last is never reached
-  const double* mass_share;      ///< [masses] share of a mass in the body's mass; below 0: padding, not a mass
-  std::uint32_t* contact_steps;  ///< [masses] number of steps after which each mass touched the ground, if counted
+  const SampleMark* marks;   ///< [count + 1] in ascending order of their steps; that of the last is never reached
+  const double* mass_share;  ///< [masses of the part] share of a mass in the body's mass; below 0: padding, not a mass
+  std::uint32_t*
+      contact_steps;  ///< [masses of the part] number of steps after which each mass touched the ground, if counted
   std::uint64_t spans_per_range;
   std::uint32_t count, masses;
+  std::uint32_t first_mass, first_slot;  ///< of a part, in the lists of the body
 };
 
 /// The components of a vector for each mass.
@@ -143,7 +161,8 @@ struct Motion {
   T *vx, *vy, *vz;  ///< m/s
 };
 
-/// A body whose state stays on the chip: resident.cu.
+/// A body whose state stays on the chip, or the part of it that one block of a cluster simulates: resident.cu. Arrays
+/// are those of the part.
 template <class T>
 struct ResidentBody {
   using Integer = typename FixedPoint<T>::Integer;
@@ -169,15 +188,21 @@ struct ResidentBody {
   double* tensions;  ///< sum of force, units
   Answer* answer;
   RunPiece piece;
-  double resolution;                             ///< N, a power of two
-  T largest_force;                               ///< units; a larger force leaves the range
-  std::uint32_t groups, warps, chunks, entries;  ///< numbers of each; warps counts only those that have springs
-  std::uint32_t table_steps;                     ///< steps for which the table in shared memory has rows
-  std::uint32_t table_offset;                    ///< of the table, bytes from the beginning of shared memory
-  std::uint32_t rate_offset;                     ///< of the rates, if work is recorded
-  std::uint32_t dashpot_offset;                  ///< of the coefficients of the dashpots
-  std::uint32_t record_offset;                   ///< of the records
-  std::uint32_t wave_offset;                     ///< of the waves
+  double resolution;                       ///< N, a power of two
+  T largest_force;                         ///< units; a larger force leaves the range
+  std::uint32_t groups, chunks, entries;   ///< numbers of each
+  std::uint32_t warps;                     ///< warps with springs inside the part
+  std::uint32_t cut_warps;                 ///< the warps after them: with springs between this part and others
+  std::uint32_t table_steps;               ///< steps for which the table in shared memory has rows
+  std::uint32_t table_offset;              ///< of the table, bytes from the beginning of shared memory
+  std::uint32_t rate_offset;               ///< of the rates, if work is recorded
+  std::uint32_t dashpot_offset;            ///< of the coefficients of the dashpots
+  std::uint32_t record_offset;             ///< of the records
+  std::uint32_t wave_offset;               ///< of the waves
+  std::uint32_t halo_offset;               ///< of the halo
+  std::uint32_t halo_groups, halo_masses;  ///< numbers of each in the halo
+  std::uint32_t copies;                    ///< number of `halo_copies`
+  const HaloCopy* halo_copies;             ///< [copies]
   Sampling sampling;
 };
 

@@ -29,13 +29,15 @@ class Extent {
   std::size_t size_ = 0;
 };
 
-/// The sizes (bytes) of a body's five memory regions: `input` is copied to the device; `state` is copied there and
+/// The sizes (bytes) of what the kernel reads first, the descriptions of a body's blocks, and of a body's five memory
+/// regions: `input` is copied to the device; `state` is copied there and
 /// back; `sums` is initially zero on the device and is copied back; `scratch` exists only on the device; `samples`
 /// exists only on the host, where the device writes to it.
 struct Sizes {
-  std::size_t input = 0, state = 0, sums = 0, scratch = 0, samples = 0;
+  std::size_t descriptions = 0, input = 0, state = 0, sums = 0, scratch = 0, samples = 0;
 
   Sizes& operator+=(const Sizes& other) {
+    descriptions += other.descriptions;
     input += other.input;
     state += other.state;
     sums += other.sums;
@@ -43,10 +45,16 @@ struct Sizes {
     samples += other.samples;
     return *this;
   }
-  std::size_t mirrored() const { return input + state + sums; }
+  std::size_t mirrored() const { return descriptions + input + state + sums; }
   std::size_t on_device() const { return mirrored() + scratch; }
   std::size_t on_host() const { return mirrored() + samples; }
 };
+
+/// The room for `count` descriptions, bytes; what follows them is aligned.
+template <class Description>
+constexpr std::size_t descriptions_bytes(std::size_t count) {
+  return (count * sizeof(Description) + 31) / 32 * 32;
+}
 
 /// The beginnings of a body's regions, on the host or on the device.
 struct Regions {

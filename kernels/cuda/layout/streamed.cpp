@@ -6,7 +6,7 @@
 
 #include "analysis/colouring.hpp"
 #include "analysis/computed_materials.hpp"
-#include "cuda/layout/arrangement.hpp"
+#include "cuda/layout/arrangement/arrangement.hpp"
 
 namespace evodevo::cuda {
 
@@ -16,7 +16,7 @@ Streamed<T>::Streamed(const Task& task, const Features& features, std::size_t la
     : task_(&task),
       features_(features),
       chip_bytes_(form_of(features.method).points_on_chip * sizeof(Point<T>) * task.body->masses.size()),
-      index_of_(indices_by_degree(*task.body)),
+      index_of_(indices_by_degree(Outline(*task.body))),
       first_row_(1),
       owned_joint_(task.body->springs.size()) {
   if (chip_bytes_ > largest_chip) chip_bytes_ = 0;
@@ -64,7 +64,12 @@ void Streamed<T>::reserve() {
   tensions_ = sums.add<double>(features_.tension ? joints() : 0);
   scratch_ = scratch.add<T>(method.numbers_of_mass * masses() + method.numbers_of_joint * joints());
   samples_.reserve(input, sums);
-  sizes_ = {input.size(), state.size(), sums.size(), scratch.size(), samples_.bytes()};
+  sizes_ = {descriptions_bytes<StreamedBody<T>>(1),
+            input.size(),
+            state.size(),
+            sums.size(),
+            scratch.size(),
+            samples_.bytes()};
 }
 
 template <class T>

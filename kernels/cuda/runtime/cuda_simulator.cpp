@@ -11,6 +11,7 @@
 #include "analysis/guard.hpp"
 #include "analysis/split_materials.hpp"
 #include "core/simulator_group.hpp"
+#include "cuda/runtime/clusters.hpp"
 #include "cuda/runtime/cuda_neighbours.hpp"
 #include "cuda/runtime/device.hpp"
 #include "cuda/runtime/portion.hpp"
@@ -96,7 +97,13 @@ class DeviceSimulator final : public CudaSimulator {
     cuda::work_on(device_);
     const SplitMaterials split(tasks, workers());
     const std::vector<Task*> live = begin(tasks, recording);
-    const cuda::Run run{scene_, stepping_, recording, device_, cuda::spans_per_range(live)};
+    const typename Crowd::Presence presence(crowd_, live.size());
+    const cuda::Run run{scene_,
+                        stepping_,
+                        recording,
+                        device_,
+                        cuda::spans_per_range(live),
+                        clusters_.blocks_for(crowd_.most(), *common_.kernels)};
     std::vector<cuda::Plan<T>> plans = plan(live, run);
     double seconds = 0;
     std::size_t portions = 0;
@@ -148,6 +155,42 @@ class DeviceSimulator final : public CudaSimulator {
     return live;
   }
 
+  /// The number of bodies that are on the device, or on their way there, in all batches.
+  class Crowd {
+   public:
+    /// Adds bodies to the crowd as long as it exists.
+    class Presence {
+     public:
+      Presence(Crowd& crowd, std::size_t bodies) : crowd_(crowd), bodies_(bodies) {
+        const std::lock_guard lock(crowd_.mutex_);
+        crowd_.bodies_ += bodies_;
+        crowd_.most_ = std::max(crowd_.most_, crowd_.bodies_);
+      }
+      Presence(const Presence&) = delete;
+      Presence& operator=(const Presence&) = delete;
+      ~Presence() {
+        const std::lock_guard lock(crowd_.mutex_);
+        crowd_.bodies_ -= bodies_;
+        if (crowd_.bodies_ == 0) crowd_.most_ = 0;
+      }
+
+     private:
+      Crowd& crowd_;
+      std::size_t bodies_;
+    };
+
+    /// The largest number since there were none. Fewer now does not mean that the others do not come back: they may be
+    /// developing.
+    std::size_t most() const {
+      const std::lock_guard lock(mutex_);
+      return most_;
+    }
+
+   private:
+    mutable std::mutex mutex_;
+    std::size_t bodies_ = 0, most_ = 0;
+  };
+
   /// Returns the course that a task continues, or a new course.
   Course begun(const Task& task) const {
     const Scene& scene = scene_of(task, scene_);
@@ -193,8 +236,7 @@ class DeviceSimulator final : public CudaSimulator {
     std::size_t count = 0;
     for (; count < plans.size(); ++count) {
       sizes += plans[count].sizes();
-      if (cuda::Portion<T>::bytes_for(sizes, count + 1) > budget) break;
-      if (cuda::Portion<T>::host_bytes_for(sizes, count + 1) > largest_portion_) break;
+      if (sizes.on_device() > budget || sizes.on_host() > largest_portion_) break;
     }
     return std::max<std::size_t>(count, 1);
   }
@@ -202,7 +244,7 @@ class DeviceSimulator final : public CudaSimulator {
   std::string why_not_even_one(const cuda::Plan<T>& plan, const cuda::OutOfMemory& error) const {
     return "CUDA: a body of " + std::to_string(plan.task->body->masses.size()) + " masses and " +
            std::to_string(plan.task->body->springs.size()) + " springs needs " +
-           cuda::in_mebibytes(cuda::Portion<T>::bytes_for(plan.sizes(), 1)) + " of the GPU's memory, and " +
+           cuda::in_mebibytes(plan.sizes().on_device()) + " of the GPU's memory, and " +
            cuda::in_mebibytes(memory_->available()) + " are free: " + error.what();
   }
 
@@ -214,7 +256,9 @@ class DeviceSimulator final : public CudaSimulator {
   std::shared_ptr<cuda::MemoryStore> memory_ = cuda::MemoryStore::of_device(device_);
   std::unique_ptr<NeighbourSearch> neighbours_;
   BatchResourcePool batch_resources_;
+  cuda::Clusters clusters_{device_};
   BusyClock busy_;
+  Crowd crowd_;
   mutable std::mutex mutex_;
   double device_seconds_ = 0;
   std::size_t most_portions_ = 1;

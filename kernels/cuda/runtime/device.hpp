@@ -13,7 +13,12 @@ struct Device {
   std::string name;          ///< such as "NVIDIA H200"
   std::string architecture;  ///< such as "sm_90"
   std::size_t shared_bytes;  ///< shared memory that one block can have
+  unsigned multiprocessors;
+  unsigned largest_cluster;  ///< blocks that can work together; 1 if the GPU knows no clusters
 };
+
+/// The number of blocks in a cluster of which every GPU that knows clusters is capable.
+inline constexpr unsigned portable_cluster = 8;
 
 /// Returns the reason why a driver for the CUDA version `driver` cannot run a program that was built with the version
 /// `runtime`; empty if it can. A version is 1000 times the major plus 10 times the minor number; a driver version of 0

@@ -8,10 +8,6 @@
 namespace evodevo::cuda {
 namespace {
 
-/// Room for the description of one body, resident or streamed, in bytes.
-template <class T>
-constexpr std::size_t header_bytes = (std::max(sizeof(ResidentBody<T>), sizeof(StreamedBody<T>)) + 31) / 32 * 32;
-
 template <class T>
 Sizes sizes_of(std::span<const Plan<T>> plans) {
   Sizes sizes;
@@ -48,7 +44,9 @@ Plan<T>::Plan(Task& task_, const Run& run)
         const Features features = features_of(scene_of(task_, run.scene), run.stepping, run.recording,
                                               material_features(*task_.body), channels_on_device(task_));
         if (is_explicit(run.stepping.method))
-          if (auto resident = Resident<T>::arrange(task_, features, run.device.shared_bytes, run.spans_per_range))
+          if (auto resident = Resident<T>::arrange(
+                  task_, features, {run.device.shared_bytes, run.device.largest_cluster, run.wanted_blocks},
+                  run.spans_per_range))
             return *std::move(resident);
         return Streamed<T>(task_, features, Resident<T>::largest_chip(run.device.shared_bytes), run.spans_per_range);
       }()) {}
@@ -69,28 +67,14 @@ std::uint64_t Plan<T>::ranges() const {
 }
 
 template <class T>
-std::size_t Portion<T>::bytes_for(const Sizes& sizes, std::size_t bodies) {
-  return sizes.on_device() + bodies * header_bytes<T>;
-}
-
-template <class T>
-std::size_t Portion<T>::host_bytes_for(const Sizes& sizes, std::size_t bodies) {
-  return sizes.on_host() + bodies * header_bytes<T>;
-}
-
-template <class T>
 Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store)
-    : Portion(plans, run, store, sizes_of<T>(plans)) {}
-
-template <class T>
-Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store, const Sizes& sizes)
     : plans_(plans),
       run_(run),
-      sizes_(sizes),
-      memory_(store, plans.size() * header_bytes<T> + sizes.mirrored(), sizes.scratch, sizes.samples) {
+      sizes_(sizes_of<T>(plans)),
+      memory_(store, sizes_.mirrored(), sizes_.scratch, sizes_.samples) {
   for (std::size_t i = 0; i < plans.size(); ++i) {
     if (const auto* resident = std::get_if<Resident<T>>(&plans[i].body)) {
-      resident_[{resident->features(), resident->form(), resident->threads()}].push_back(i);
+      resident_[{resident->features(), resident->form(), resident->threads(), resident->blocks()}].push_back(i);
     } else {
       const auto& streamed = std::get<Streamed<T>>(plans[i].body);
       streamed_[{streamed.features(), streamed.threads()}].push_back(i);
@@ -100,15 +84,14 @@ Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store
     std::stable_sort(members.begin(), members.end(), [&](std::size_t a, std::size_t b) {
       return std::get<Resident<T>>(plans[a].body).slots() > std::get<Resident<T>>(plans[b].body).slots();
     });
-  const std::size_t headers = plans.size() * header_bytes<T>;
   // the order in memory: descriptions, inputs, states, sums, scratch
   const auto regions = [&](std::byte* base) {
-    std::byte* input = base + headers;
+    std::byte* input = base + sizes_.descriptions;
     return Regions{input, input + sizes_.input, input + sizes_.input + sizes_.state};
   };
   Regions host = regions(memory_->host()), device = regions(memory_->device());
-  device.scratch = memory_->device() + headers + sizes_.mirrored();
-  host.samples = device.samples = memory_->host() + headers + sizes_.mirrored();
+  device.scratch = memory_->device() + sizes_.mirrored();
+  host.samples = device.samples = memory_->host() + sizes_.mirrored();
   for (const Plan<T>& plan : plans) {
     host_.push_back(host);
     device_.push_back(device);
@@ -120,27 +103,38 @@ Portion<T>::Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store
 template <class T>
 void Portion<T>::pack(Workers& workers) {
   // the order of descriptions: resident bodies by launch, then streamed bodies by launch
-  std::vector<std::size_t> order;
-  for (const auto& [launch, bodies] : resident_) order.insert(order.end(), bodies.begin(), bodies.end());
-  const std::size_t first_streamed = order.size();
-  for (const auto& [launch, bodies] : streamed_) order.insert(order.end(), bodies.begin(), bodies.end());
-  auto* resident = reinterpret_cast<ResidentBody<T>*>(memory_->host());
-  auto* streamed = reinterpret_cast<StreamedBody<T>*>(memory_->host() + first_streamed * header_bytes<T>);
-  workers.for_each(order.size(), [&](std::size_t i) {
-    const std::size_t at = order[i];
-    const Plan<T>& plan = plans_[at];
-    if (const auto* body = std::get_if<Resident<T>>(&plan.body))
-      resident[i] = body->pack(host_[at], device_[at], scene_of(*plan.task, run_.scene));
-    else
-      streamed[i - first_streamed] =
-          std::get<Streamed<T>>(plan.body).pack(host_[at], device_[at], scene_of(*plan.task, run_.scene));
+  std::vector<std::pair<std::size_t, ResidentBody<T>*>> resident;  // plans and their descriptions
+  std::vector<std::pair<std::size_t, StreamedBody<T>*>> streamed;
+  auto* to_resident = reinterpret_cast<ResidentBody<T>*>(memory_->host());
+  for (const auto& [launch, members] : resident_)
+    for (const std::size_t i : members) {
+      resident.emplace_back(i, to_resident);
+      to_resident += launch.blocks;
+    }
+  auto* to_streamed = const_cast<StreamedBody<T>*>(streamed_bodies(memory_->host()));
+  for (const auto& [launch, members] : streamed_)
+    for (const std::size_t i : members) streamed.emplace_back(i, to_streamed++);
+  workers.for_each(resident.size(), [&](std::size_t k) {
+    const auto& [i, to] = resident[k];
+    std::get<Resident<T>>(plans_[i].body).pack(host_[i], device_[i], scene_of(*plans_[i].task, run_.scene), to);
   });
+  workers.for_each(streamed.size(), [&](std::size_t k) {
+    const auto& [i, to] = streamed[k];
+    *to = std::get<Streamed<T>>(plans_[i].body).pack(host_[i], device_[i], scene_of(*plans_[i].task, run_.scene));
+  });
+}
+
+/// The descriptions of streamed bodies, which follow those of all blocks of resident bodies.
+template <class T>
+const StreamedBody<T>* Portion<T>::streamed_bodies(const std::byte* descriptions) const {
+  std::size_t blocks = 0;
+  for (const auto& [launch, members] : resident_) blocks += launch.blocks * members.size();
+  return reinterpret_cast<const StreamedBody<T>*>(descriptions + blocks * sizeof(ResidentBody<T>));
 }
 
 template <class T>
 void Portion<T>::upload(cudaStream_t stream) {
-  const std::size_t headers = plans_.size() * header_bytes<T>;
-  check(cudaMemcpyAsync(memory_->device(), memory_->host(), headers + sizes_.input + sizes_.state,
+  check(cudaMemcpyAsync(memory_->device(), memory_->host(), sizes_.descriptions + sizes_.input + sizes_.state,
                         cudaMemcpyHostToDevice, stream),
         "copying bodies to the GPU");
   check(cudaMemsetAsync(device_.front().sums, 0, sizes_.sums, stream), "clearing the GPU's memory");
@@ -152,7 +146,7 @@ std::vector<typename Portion<T>::ReadyLaunch> Portion<T>::ready_launches(KernelS
   std::vector<ReadyLaunch> launches;
   for (const auto& [launch, members] : resident_) {
     launches.push_back({launch, nullptr, members, bodies});
-    bodies += members.size();
+    bodies += launch.blocks * members.size();
   }
   // kernels that are not yet compiled are compiled on all cores
   workers.for_each(launches.size(), [&](std::size_t i) {
@@ -166,15 +160,6 @@ std::vector<typename Portion<T>::ReadyLaunch> Portion<T>::ready_launches(KernelS
     return a.launch.threads * a.launch.form.rows > b.launch.threads * b.launch.form.rows;
   });
   return launches;
-}
-
-/// Allows a kernel to use as much shared memory as any body can need. The amount is always the same, because other
-/// threads may be launching the same kernel.
-template <class T>
-void Portion<T>::allow_largest_chip(cudaKernel_t kernel) const {
-  check(cudaFuncSetAttribute(reinterpret_cast<const void*>(kernel), cudaFuncAttributeMaxDynamicSharedMemorySize,
-                             static_cast<int>(Resident<T>::largest_chip(run_.device.shared_bytes))),
-        "asking for shared memory");
 }
 
 template <class T>
@@ -203,6 +188,7 @@ void Portion<T>::launch_resident(std::span<const ReadyLaunch> launches, std::spa
                                  std::uint64_t range) {
   const Event ready;
   check(cudaEventRecord(ready, streams[0]), "recording an event");
+  const std::size_t largest_chip = Resident<T>::largest_chip(run_.device.shared_bytes);
   std::size_t next = 0;
   for (const ReadyLaunch& one : launches) {
     const cudaStream_t stream = streams[next++ % streams.size()];  // that of the earlier ranges
@@ -210,10 +196,11 @@ void Portion<T>::launch_resident(std::span<const ReadyLaunch> launches, std::spa
     std::size_t shared_bytes = 0;
     for (const std::size_t i : one.members)
       shared_bytes = std::max(shared_bytes, std::get<Resident<T>>(plans_[i].body).chip_bytes());
-    allow_largest_chip(one.kernel);
+    allow(one.kernel, largest_chip, run_.device.largest_cluster);
     if (range == 0) check(cudaStreamWaitEvent(stream, ready), "waiting for an event");
-    launch(one.kernel, dim3(static_cast<unsigned>(one.members.size())), one.launch.threads, shared_bytes, stream,
-           one.bodies, range);
+    const unsigned blocks = one.launch.blocks;
+    launch_clusters(one.kernel, blocks, blocks * static_cast<unsigned>(one.members.size()), one.launch.threads,
+                    shared_bytes, stream, one.bodies, range);
   }
 }
 
@@ -221,10 +208,7 @@ template <class T>
 void Portion<T>::launch_streamed(KernelStore& kernels, std::span<const Stream> streams, std::uint64_t range) {
   const Event ready;
   check(cudaEventRecord(ready, streams[0]), "recording an event");
-  std::size_t count = 0;
-  for (const auto& [launch, members] : streamed_) count += members.size();
-  const auto* bodies =
-      reinterpret_cast<const StreamedBody<T>*>(memory_->device() + (plans_.size() - count) * header_bytes<T>);
+  const StreamedBody<T>* bodies = streamed_bodies(memory_->device());
   std::size_t next = 0;
   for (const auto& [launch, members] : streamed_) {
     const cudaStream_t stream = streams[next++ % streams.size()];
@@ -254,14 +238,16 @@ void Portion<T>::launch_streamed(KernelStore& kernels, cudaStream_t stream, std:
   const auto& first = std::get<Streamed<T>>(plans_[members.front()].body);
   const unsigned threads = first.threads();
   const auto kernel = [&](const char* name) {
-    return kernels.get(by_block ? method.file : "cuda/device/streamed.cu", name, definitions(first.features()));
+    return kernels.get(by_block ? method.file : "cuda/device/streamed/streamed.cu", name,
+                       definitions(first.features()));
   };
   const cudaKernel_t fill = kernel("evodevo_fill_tables"), check_bodies = kernel("evodevo_check_streamed"),
                      move = kernel(by_block ? "evodevo_advance_streamed" : "evodevo_pass_streamed");
-  if (by_block) allow_largest_chip(move);
+  if (by_block) allow(move, Resident<T>::largest_chip(run_.device.shared_bytes), 1);
   cudaKernel_t sample = nullptr;
   if (!samples.empty())
-    sample = kernels.get("cuda/device/sample_streamed.cu", "evodevo_sample_streamed", definitions(first.features()));
+    sample = kernels.get("cuda/device/streamed/sample_streamed.cu", "evodevo_sample_streamed",
+                         definitions(first.features()));
   const auto count = static_cast<unsigned>(members.size());
   const dim3 over_masses((masses + threads - 1) / threads, count);
   const auto sample_after = [&](std::uint64_t span, unsigned step) {

@@ -35,6 +35,7 @@ struct Run {
   Recording recording;
   Device device;
   std::uint64_t spans_per_range;  ///< check spans in a range of samples
+  unsigned wanted_blocks;         ///< Room::wanted_blocks
 };
 
 /// A task, whose course has begun, and the layout in which its body is simulated.
@@ -58,11 +59,6 @@ class Portion {
   /// Throws OutOfMemory. simulate() may throw it as well.
   Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store);
 
-  /// The memory of the device (bytes) that `bodies` bodies with these total sizes need.
-  static std::size_t bytes_for(const Sizes& sizes, std::size_t bodies);
-  /// The same for the memory of the host.
-  static std::size_t host_bytes_for(const Sizes& sizes, std::size_t bodies);
-
   /// Simulates all steps, fills in the results and returns the time of the kernels, s. `busy` runs while the device
   /// works. If this function throws, no result is filled in and the streams are idle.
   double simulate(KernelStore& kernels, std::span<const Stream> streams, Workers& workers, BusyClock& busy);
@@ -72,7 +68,7 @@ class Portion {
   struct Launch {
     Features features;
     ResidentForm form;
-    unsigned threads;
+    unsigned threads, blocks;  // blocks: of each body
     auto operator<=>(const Launch&) const = default;
   };
   /// A launch with its kernel and its bodies.
@@ -90,11 +86,10 @@ class Portion {
     auto operator<=>(const StreamedLaunch&) const = default;
   };
 
-  Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store, const Sizes& sizes);
   void pack(Workers& workers);
   void upload(cudaStream_t stream);
   std::vector<ReadyLaunch> ready_launches(KernelStore& kernels, Workers& workers) const;
-  void allow_largest_chip(cudaKernel_t kernel) const;
+  const StreamedBody<T>* streamed_bodies(const std::byte* descriptions) const;
   std::uint64_t ranges() const;
   bool has_range(std::span<const std::size_t> members, std::uint64_t range) const;
   void launch_range(KernelStore& kernels, std::span<const ReadyLaunch> resident, std::span<const Stream> streams,

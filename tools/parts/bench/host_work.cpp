@@ -95,13 +95,14 @@ class HostSide final : public Simulator {
           task,
           cuda::features_of(scene, stepping_, recording, cuda::material_features(*task.body),
                             cuda::channels_on_device(task)),
-          shared_bytes);
+          {shared_bytes});
     });
     if (!plan) throw std::runtime_error("a robot does not fit on a multiprocessor; give smaller ones");
     const cuda::Sizes sizes = plan->sizes();
     memory_.resize(std::max(memory_.size(), sizes.mirrored()));
     const cuda::Regions host{memory_.data(), memory_.data() + sizes.input, memory_.data() + sizes.input + sizes.state};
-    pack.measured([&] { plan->pack(host, host, scene); });
+    cuda::ResidentBody<float> description;
+    pack.measured([&] { plan->pack(host, host, scene, &description); });
     auto* const sums = reinterpret_cast<double*>(host.sums);
     for (std::size_t i = 0; i < sizes.sums / sizeof(double); ++i) sums[i] = random_.uniform(0, 1);
     unpack.measured([&] { plan->unpack(host, recording, task); });

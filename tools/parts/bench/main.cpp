@@ -23,10 +23,18 @@ void limit_instructions(const std::string& name) {
 Report measure(const Settings& settings) {
   limit_instructions(settings.instructions);
   const std::map<std::string, std::function<Report(const Settings&)>> studies{
-      {"speed", speed},           {"features", feature_costs},   {"samples", sample_costs},
+      {"speed", speed},
+      {"sizes", sizes},
+      {"numbers", numbers},
+      {"features", feature_costs},
+      {"samples", sample_costs},
 #ifdef EVODEVO_CUDA
-      {"baselines", baselines},   {"stress", stress_costs},      {"tallies", tally_agreement},
-      {"neighbours", neighbours}, {"materials", material_costs}, {"host", host_work},
+      {"baselines", baselines},
+      {"stress", stress_costs},
+      {"tallies", tally_agreement},
+      {"neighbours", neighbours},
+      {"materials", material_costs},
+      {"host", host_work},
 #endif
   };
   return studies.at(settings.study)(settings);

@@ -10,7 +10,8 @@ constexpr std::uint32_t most_bodies = 65535;  // CUDA's limit for the second dim
 
 void check(const Settings& s) {
   check_choice("study", s.study,
-               {"speed", "features", "samples", "host", "baselines", "stress", "tallies", "neighbours", "materials"});
+               {"speed", "sizes", "numbers", "features", "samples", "host", "baselines", "stress", "tallies",
+                "neighbours", "materials"});
   check_device(s.device);
   check_choice("method", s.method, {method_names.begin(), method_names.end()});
   check_choice("precision", s.precision, {"float32", "float64"});
@@ -23,8 +24,8 @@ void check(const Settings& s) {
   if (s.study == "host")
     throw std::invalid_argument("--study host needs evodevo to be built with CUDA; configure with -DEVODEVO_CUDA=ON");
 #endif
-  const bool beside_cuda = s.study != "speed" && s.study != "features" && s.study != "samples" && s.study != "host" &&
-                           s.study != "materials";
+  const bool beside_cuda =
+      s.study == "baselines" || s.study == "stress" || s.study == "tallies" || s.study == "neighbours";
   if (beside_cuda && s.device != "cuda")
     throw std::invalid_argument("--study " + s.study + " compares methods on a GPU; add --device cuda");
   if (beside_cuda && s.method != name(Method::paper_euler))
@@ -35,6 +36,8 @@ void check(const Settings& s) {
   const bool needs_robots = s.study == "tallies" || s.study == "host";
   if (needs_robots && s.robots.empty())
     throw std::invalid_argument("--study " + s.study + " needs random robots; give their experiment with --robots");
+  if (s.study == "sizes" && s.body != "knn1000")
+    throw std::invalid_argument("--study sizes measures bodies of knn1000's kind; leave --body out");
   if (!needs_robots && s.study != "speed" && !s.robots.empty())
     throw std::invalid_argument("--robots can be given only with --study speed, tallies and host");
   if (s.bodies < 1 || s.bodies > most_bodies || s.steps < 1 || s.runs < 1 || s.masses < 2)

@@ -31,6 +31,24 @@ double mean_springs(const std::vector<Body>& bodies) {
   return static_cast<double>(sum) / static_cast<double>(bodies.size());
 }
 
+constexpr std::size_t least_bodies = 32;  // of the study of sizes
+
+/// The median rates of the steps without records and with stress. The first run compiles the kernels of a GPU.
+struct Rates {
+  double plain, stress;
+};
+
+Rates rates(Batch& batch, int runs) {
+  batch.rate();
+  batch.rate({.stress = true});
+  std::vector<double> plain, stress;
+  for (int run = 0; run < runs; ++run) {
+    plain.push_back(batch.rate().device);
+    stress.push_back(batch.rate({.stress = true}).device);
+  }
+  return {median(plain), median(stress)};
+}
+
 }  // namespace
 
 Report speed(const Settings& settings) {
@@ -63,6 +81,44 @@ Report speed(const Settings& settings) {
   row["rate_with_stress"] = median(stress);
   row["rate_with_work"] = median(work);
   report["rows"] = Report::array({row});
+  return report;
+}
+
+Report sizes(const Settings& settings) {
+  Report report, rows = Report::array();
+  for (const std::uint32_t masses : {64, 128, 250, 500, 1000, 1200, 1500, 2000, 3000, 5000, 10000, 20000, 50000}) {
+    Settings of_size = settings;
+    of_size.bodies = std::max<std::size_t>(settings.bodies * settings.masses / masses, least_bodies);
+    const NamedBody body = body_named(settings.body, masses, settings.materials);
+    const std::vector<Body> bodies{body.body};
+    Batch batch(of_size, bodies, walking_scene());
+    if (report.empty()) report = conditions(settings, "Speed for bodies of different sizes", batch.device(), body);
+    const auto [rate, stress] = rates(batch, settings.runs);
+    rows.push_back({{"masses", masses},
+                    {"springs", body.body.springs.size()},
+                    {"bodies", of_size.bodies},
+                    {"spring_evaluations_per_second", rate},
+                    {"with_stress", stress}});
+  }
+  for (const char* differs : {"body", "masses", "springs", "bodies"}) report.erase(differs);
+  report["rows"] = std::move(rows);
+  return report;
+}
+
+Report numbers(const Settings& settings) {
+  const NamedBody body = body_named(settings.body, settings.masses, settings.materials);
+  const std::vector<Body> bodies{body.body};
+  Report report, rows = Report::array();
+  for (std::size_t number = 1; number <= settings.bodies; number *= 2) {
+    Settings of_number = settings;
+    of_number.bodies = number;
+    Batch batch(of_number, bodies, walking_scene());
+    if (report.empty()) report = conditions(settings, "Speed for different numbers of bodies", batch.device(), body);
+    const auto [rate, stress] = rates(batch, settings.runs);
+    rows.push_back({{"bodies", number}, {"spring_evaluations_per_second", rate}, {"with_stress", stress}});
+  }
+  report.erase("bodies");
+  report["rows"] = std::move(rows);
   return report;
 }
 

@@ -9,6 +9,14 @@ namespace evodevo::tools::bench {
 /// Measures our simulator's rate and, relative to it, the rates while recording stress or work.
 Report speed(const Settings& settings);
 
+/// Measures the rate, and that while recording stress, for bodies of 64 to 50,000 masses. Each batch has about
+/// settings.bodies times settings.masses masses in all.
+Report sizes(const Settings& settings);
+
+/// Measures the rate for 1 to settings.bodies bodies, each number twice the one before. On a GPU, few bodies get
+/// several multiprocessors each.
+Report numbers(const Settings& settings);
+
 /// Measures the cost of each force, of actuation and of each recording: the ratio of the rates with and without it, all
 /// else equal.
 Report feature_costs(const Settings& settings);

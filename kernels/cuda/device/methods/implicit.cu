@@ -6,7 +6,7 @@
 //   move    correction ─► velocities, positions
 //
 // Every mass gathers from its springs in a fixed order, and scalar products are summed in a fixed order.
-#include "cuda/device/block.cuh"
+#include "cuda/device/streamed/block.cuh"
 
 namespace evodevo::cuda {
 

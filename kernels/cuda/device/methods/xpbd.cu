@@ -4,7 +4,7 @@
 //   apply_gravity   velocities ─► predicted velocities
 //   solve_springs   colour by colour: velocities ─► corrected velocities; records of the springs
 //   move            floor, friction ─► velocities, positions
-#include "cuda/device/block.cuh"
+#include "cuda/device/streamed/block.cuh"
 
 namespace evodevo::cuda {
 

@@ -5,7 +5,7 @@
 //
 // A mass gathers the forces of its springs in a fixed order, so each spring is computed twice.
 #include EVODEVO_METHOD
-#include "cuda/device/gather.cuh"
+#include "cuda/device/streamed/gather.cuh"
 
 namespace evodevo::cuda {
 

@@ -1,4 +1,4 @@
-#include "cuda/layout/ownership.hpp"
+#include "cuda/layout/arrangement/ownership.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -37,13 +37,13 @@ class Distribution {
 
 }  // namespace
 
-void choose_owners(const Body& body, std::span<const std::uint32_t> index_of, std::uint32_t groups,
+void choose_owners(const Outline& outline, std::span<const std::uint32_t> index_of, std::uint32_t groups,
                    std::span<std::uint32_t> owner) {
-  Distribution distribution(groups, body.masses.size(), body.springs.size());
+  Distribution distribution(groups, outline.rest.size(), outline.ends.size());
   std::vector<std::uint32_t> other(owner.size());
   std::vector<std::size_t> undecided;
   for (std::size_t i = 0; i < owner.size(); ++i) {
-    const std::uint32_t a = index_of[body.springs[i].a], b = index_of[body.springs[i].b];
+    const std::uint32_t a = index_of[outline.ends[i].first], b = index_of[outline.ends[i].second];
     if (owner[i] == open) {
       undecided.push_back(i);
       owner[i] = a;

@@ -2,7 +2,7 @@
 // are on the chip if there is room.
 #pragma once
 
-#include "cuda/device/sampling_streamed.cuh"
+#include "cuda/device/streamed/sampling_streamed.cuh"
 
 namespace evodevo::cuda {
 

@@ -2,7 +2,7 @@
 // order, so each spring is computed twice.
 #pragma once
 
-#include "cuda/device/streamed.cuh"
+#include "cuda/device/streamed/streamed.cuh"
 
 namespace evodevo::cuda {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "cuda/layout/ownership.hpp"
+#include "cuda/layout/arrangement/ownership.hpp"
 
 namespace evodevo::cuda {
 

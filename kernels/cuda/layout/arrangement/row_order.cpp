@@ -1,4 +1,4 @@
-#include "cuda/layout/row_order.hpp"
+#include "cuda/layout/arrangement/row_order.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cuda/device/sampling.cuh"
-#include "cuda/device/streamed.cuh"
+#include "cuda/device/streamed/streamed.cuh"
 
 namespace evodevo::cuda {
 
@@ -40,7 +40,7 @@ __device__ __forceinline__ void take_samples(const Body& body, const Point<Numbe
     Reduction reduction;
     for (unsigned mass = threadIdx.x; mass < body.masses; mass += blockDim.x) {
       const MassAtEnd at = at_end(mass);
-      sample_mass(sampling, mark, lists, mass, at.position, at.velocity, reduction);
+      sample_mass(sampling, mark, lists, mass, mass, at.position, at.velocity, reduction);
       if constexpr (contacts) sample_contact(mark, lists, mass, sampling.contact_steps[mass], reduction);
       if constexpr (work) reduction.add_work(body.constants.exact_dt * at.power);
       if (mark.channels & forces_bit) write_forces(body, positions, row, mass, lists.forces);

@@ -1,7 +1,7 @@
 // Samples of bodies that streamed.cu simulates. They are taken between the passes over the springs.
 #include EVODEVO_METHOD
-#include "cuda/device/gather.cuh"
-#include "cuda/device/sampling_streamed.cuh"
+#include "cuda/device/streamed/gather.cuh"
+#include "cuda/device/streamed/sampling_streamed.cuh"
 
 namespace evodevo::cuda {
 

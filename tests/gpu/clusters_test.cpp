@@ -1,0 +1,74 @@
+// A body gets the same bits whether a block or a cluster of blocks simulates it. A body alone gets a large cluster;
+// many bodies share the device.
+#include "gpu.hpp"
+
+namespace evodevo::testing_gpu {
+namespace {
+
+const Recording order_free{.stress = true, .work = false, .peak_force = true, .muscle_work = false, .tension = true};
+
+/// Compares a body that is alone with several that are simulated together, for each of the given numbers of bodies.
+void expect_same_bits(const Scene& scene, const Stepping& stepping, const Body& body,
+                      std::vector<std::size_t> numbers) {
+  const State start = moving_state(body, scene, 7);
+  const auto simulator = make_cuda_simulator(scene, stepping);
+  Robot alone(body, start);
+  constexpr std::uint64_t steps = 10050;  // long enough to be worth a cluster
+  simulate(*simulator, {&alone}, steps, order_free);
+  EXPECT_EQ(alone.answer.status, Status::ok) << alone.answer.reason;
+  for (const std::size_t number : numbers) {
+    std::vector<Robot> robots(number, Robot(body, start));
+    std::vector<Robot*> all;
+    for (Robot& robot : robots) all.push_back(&robot);
+    simulate(*simulator, all, steps, order_free);
+    for (const Robot& robot : {robots.front(), robots.back()}) {
+      EXPECT_EQ(robot.state.position, alone.state.position) << number;
+      EXPECT_EQ(robot.state.velocity, alone.state.velocity) << number;
+      for (const auto list : SpringRecords::lists) EXPECT_EQ(robot.answer.*list, alone.answer.*list) << number;
+    }
+  }
+}
+
+class Clusters : public testing::TestWithParam<Way> {};
+
+TEST_P(Clusters, AnyNumberOfBlocksGivesTheSameBits) {
+  EVODEVO_NEEDS_GPU();
+  // on an H200 in single precision, clusters of 8, 5, 4, 3, 2 and 1 blocks
+  expect_same_bits(walking_scene(), stepping(GetParam()), random_body(1000, 20, 5), {12, 20, 28, 36, 60, 150});
+}
+
+TEST_P(Clusters, AlsoWithDashpots) {
+  EVODEVO_NEEDS_GPU();
+  Body body = random_body(500, 20, 6);
+  for (Material& material : body.materials) material.damping = 0.05;
+  expect_same_bits(walking_scene(), stepping(GetParam()), body, {28, 150});
+}
+
+TEST_P(Clusters, ALargeBodyIsSampledAndRecordedWithoutAChange) {
+  EVODEVO_NEEDS_GPU();
+  const Scene scene = walking_scene();
+  const Body body = random_body(3000, 20, 8);
+  const State start = moving_state(body, scene, 3);
+  const auto simulator = make_cuda_simulator(scene, stepping(GetParam()));
+  Robot plain(body, start), recorded(body, start);
+  simulate(*simulator, {&plain}, 250, order_free);
+  simulate(*simulator, {&recorded}, 250,
+           {.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true});
+  EXPECT_EQ(plain.state.position, recorded.state.position);
+  EXPECT_EQ(plain.answer.stress, recorded.answer.stress);
+  double work = 0;
+  for (const double of_muscle : recorded.answer.muscle_work) work += of_muscle;
+  EXPECT_NEAR(work, recorded.answer.work, 1e-4 * std::abs(work)) << "each spring counts once, whether it is cut or not";
+}
+
+INSTANTIATE_TEST_SUITE_P(Gpu, Clusters, explicit_ways(), [](const auto& test) { return name(test.param); });
+
+TEST(Clusters, ComputedMaterials) {
+  EVODEVO_NEEDS_GPU();
+  Stepping computed;
+  computed.materials = Materials::computed;
+  expect_same_bits(walking_scene(), computed, random_body(1000, 20, 5), {28, 150});
+}
+
+}  // namespace
+}  // namespace evodevo::testing_gpu
