@@ -37,6 +37,7 @@ void expect_sound(const Arrangement& a, const Outline& outline, unsigned largest
       ++terms[owner];
       if (slot.spring == Arrangement::none) {
         EXPECT_EQ(slot.other / 32, cut ? a.first_of_halo() / 32 : a.groups);
+        EXPECT_TRUE(!cut || a.halo_groups > 0) << "it is read";
         continue;
       }
       ASSERT_LT(slot.spring, springs);
@@ -160,6 +161,19 @@ TEST(Arrangement, HoldsTheCutSpringsOfParts) {
       expect_sound(arrangements[p], parts[p].outline, 32);
     }
   }
+}
+
+TEST(Arrangement, HoldsPartsWithoutCutSpringsBesideOthers) {
+  const std::vector<Part> parts = partition(Outline(testing_gpu::body_in_pieces(random_body(200, 10, 3))), 3);
+  std::vector<const Outline*> outlines;
+  std::size_t without = 0;
+  for (const Part& part : parts) {
+    outlines.push_back(&part.outline);
+    without += part.outline.cut.empty();
+  }
+  ASSERT_EQ(without, 1u);
+  const std::vector<Arrangement> arrangements = Arrangement::of_parts(outlines, 32);
+  for (std::size_t p = 0; p < parts.size(); ++p) expect_sound(arrangements[p], parts[p].outline, 32);
 }
 
 TEST(Arrangement, SkipsGroupsWithoutSprings) {

@@ -52,6 +52,22 @@ inline Body random_body(std::uint32_t masses, std::uint32_t neighbours, std::uin
   return body;
 }
 
+/// Two copies of a body that a few springs join, and beside them a third copy that nothing joins.
+inline Body body_in_pieces(const Body& piece) {
+  Body body = piece;
+  const auto masses = static_cast<std::uint32_t>(piece.masses.size());
+  for (const std::uint32_t copy : {1u, 2u}) {
+    for (const Mass& mass : piece.masses) body.masses.push_back({mass.rest + Vec3{5.0 * copy, 0, 0}, mass.mass});
+    for (Spring spring : piece.springs) {
+      spring.a += copy * masses;
+      spring.b += copy * masses;
+      body.springs.push_back(spring);
+    }
+  }
+  for (const std::uint32_t i : {0u, 1u, 2u}) body.springs.push_back({i, i + masses, 5, 0});
+  return body;
+}
+
 /// A body at birth with random velocities of up to 0.5 m/s along each axis.
 inline State moving_state(const Body& body, const Scene& scene, std::uint64_t seed) {
   Random random(seed);

@@ -63,10 +63,21 @@ bool compiles_streamed(const Features& features) {
   return !compile(source, definitions(features), "sm_90").empty();
 }
 
+TEST_F(Compiler, CompilesForGpusWithoutClustersAndForLaterOnes) {
+  const ResidentForm alone{.rows = 8, .masses_per_thread = 1, .records_on_chip = true};
+  ResidentForm clustered = alone;
+  clustered.clustered = true;
+  clustered.cut_rows = 4;
+  EXPECT_FALSE(compile("cuda/device/resident.cu", definitions(every_feature, alone), "sm_80").empty());
+  EXPECT_FALSE(compile("cuda/device/resident.cu", definitions(every_feature, clustered), "sm_120").empty());
+}
+
 TEST_F(Compiler, CompilesEveryFormForHopper) {
   const ResidentForm forms[] = {
       {.rows = 15, .masses_per_thread = 1, .chunked = false, .records_on_chip = true},
-      {.rows = 8, .masses_per_thread = 5, .chunked = true, .wide_offsets = true, .wide_table = true}};
+      {.rows = 8, .masses_per_thread = 5, .chunked = true, .wide_offsets = true, .wide_table = true},
+      {.rows = 8, .masses_per_thread = 2, .records_on_chip = true, .clustered = true, .cut_rows = 4},
+      {.rows = 8, .masses_per_thread = 5, .chunked = true, .wide_offsets = true, .clustered = true, .cut_rows = 8}};
   for (const bool float64 : {false, true}) {
     for (Features features : {Features{}, every_feature}) {
       features.float64 = float64;

@@ -8,13 +8,13 @@ namespace {
 class Forms : public testing::TestWithParam<Way> {
  protected:
   /// Simulates a body for 0.05 s on both devices, and compares positions and all recorded quantities.
-  void compare(const Body& body, const State& start) {
+  void compare(const Body& body, const State& start, unsigned largest_cluster = default_cluster) {
     const Scene scene = walking_scene();
     const Recording all{.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};
     const bool single = std::get<Precision>(GetParam()) == Precision::float32;
     Robot cpu(body, start), gpu(body, start);
     simulate(*make_cpu_simulator(scene, stepping(GetParam()), 0), {&cpu}, 110, all);
-    simulate(*make_cuda_simulator(scene, stepping(GetParam())), {&gpu}, 110, all);
+    simulate(*make_cuda_simulator(scene, stepping(GetParam()), 0, default_portion, largest_cluster), {&gpu}, 110, all);
     EXPECT_EQ(cpu.answer.status, gpu.answer.status) << cpu.answer.reason << " / " << gpu.answer.reason;
     EXPECT_EQ(cpu.state.time, gpu.state.time);
     EXPECT_EQ(cpu.answer.spring_evaluations, gpu.answer.spring_evaluations);
@@ -29,7 +29,9 @@ class Forms : public testing::TestWithParam<Way> {
     }
     EXPECT_NEAR(cpu.answer.work, gpu.answer.work, (single ? 1e-3 : 1e-9) * (1e-3 + cpu.answer.work));
   }
-  void compare(const Body& body) { compare(body, moving_state(body, walking_scene(), 11)); }
+  void compare(const Body& body, unsigned largest_cluster = default_cluster) {
+    compare(body, moving_state(body, walking_scene(), 11), largest_cluster);
+  }
 };
 
 TEST_P(Forms, NoMasses) {
@@ -135,19 +137,39 @@ TEST_P(Sizes, Masses1000) {
   compare(random_body(1000, 25, 5));
 }
 
-TEST_P(Sizes, Masses2000SpringsStreamed) {
+TEST_P(Sizes, Masses2000) {
   EVODEVO_NEEDS_GPU();
   compare(random_body(2000, 25, 5));
 }
 
+TEST_P(Sizes, Masses2000SpringsStreamed) {
+  EVODEVO_NEEDS_GPU();
+  compare(random_body(2000, 25, 5), 1);
+}
+
 TEST_P(Sizes, Masses4000OffsetsBeyond16Bits) {
   EVODEVO_NEEDS_GPU();
-  compare(random_body(4000, 12, 5));
+  compare(random_body(4000, 12, 5), 1);
+}
+
+TEST_P(Sizes, Masses8000SpringsStreamedInAClusterOfTwo) {
+  EVODEVO_NEEDS_GPU();
+  compare(random_body(8000, 12, 5), 2);
+}
+
+TEST_P(Sizes, Masses20000) {
+  EVODEVO_NEEDS_GPU();
+  compare(random_body(20000, 12, 5));
 }
 
 TEST_P(Sizes, Masses20000BeyondTheChip) {
   EVODEVO_NEEDS_GPU();
-  compare(random_body(20000, 12, 5));
+  compare(random_body(20000, 12, 5), 1);
+}
+
+TEST_P(Sizes, PartsWithoutCutSprings) {
+  EVODEVO_NEEDS_GPU();
+  compare(body_in_pieces(random_body(1000, 25, 6)));  // each piece is a part
 }
 
 // one method for each kind of kernel

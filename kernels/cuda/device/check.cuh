@@ -40,12 +40,14 @@ __device__ __forceinline__ Number not_finite(const Vector& position, const Vecto
   return Number(0) * ((position.x + position.y + position.z) + (velocity.x + velocity.y + velocity.z));
 }
 
-/// A mass's contribution to the sum of mass times height, kg m.
+/// A mass's contribution to the sum of mass times height, kg m. In single precision it is rounded to a multiple of
+/// 2^-26, so that sums up to 2^27 do not depend on the order of their terms.
 __device__ __forceinline__ double height_moment_of(Number mass, const Vector& position,
                                                    const StepConstants<Number>& constants) {
   double height = position.z;
   if constexpr (slope) height = physics::height<double>(position.x, position.z, constants.grade);
-  return mass * height;
+  constexpr double magic = 0x1.8p26;  // its last bit is worth 2^-26
+  return sizeof(Number) == sizeof(float) ? (mass * height + magic) - magic : mass * height;
 }
 
 /// Whether a body is checked after `steps` steps of its piece.

@@ -83,7 +83,9 @@ __device__ __forceinline__ void expect(unsigned counter, unsigned bytes) {
   asm volatile("mbarrier.arrive.expect_tx.shared::cta.b64 _, [%0], %1;" ::"r"(counter), "r"(bytes) : "memory");
 }
 
-/// Waits until the present phase, whose number is even or odd, has ended.
+/// Waits until the present phase, whose number is even or odd, has ended. What has arrived is in shared memory, for
+/// which acquiring at the scope of the block suffices; at that of the cluster, the cache of the device's memory would
+/// be emptied as well.
 __device__ __forceinline__ void wait(unsigned counter, unsigned odd) {
   unsigned ended;
   do {

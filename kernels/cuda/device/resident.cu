@@ -354,7 +354,9 @@ extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)
     if (has_diverged(body, check_of(body, movers, totals), done, halo)) break;
     totals = Totals();
   }
-  if constexpr (clustered) cluster::synchronise();  // a block must not end while others send to it
+  // a block must not end while others send to it, and they do until it has waited for what they have sent
+  if (clustered && share.kind == Kind::cut) halo.wait();
+  if constexpr (clustered) cluster::synchronise();
   store(body, movers);
 }
 

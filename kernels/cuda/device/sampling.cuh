@@ -97,8 +97,8 @@ __device__ __forceinline__ void write_joined(T (&values)[8], Join join, T nothin
 }
 
 /// A term of a sum, in single precision rounded to a multiple of 2^-36, which is far below the rounding of positions.
-/// Sums of such terms up to 2^17 are exact, so they depend neither on the order of the terms nor on the number of
-/// blocks.
+/// Sums of such terms of up to 2^15 are exact up to 2^17, so they depend neither on the order of the terms nor on the
+/// number of blocks.
 __device__ __forceinline__ double exact_term(double term) {
   constexpr double magic = 0x1.8p16;  // its last bit is worth 2^-36
   return sizeof(Number) == sizeof(float) ? (term + magic) - magic : term;

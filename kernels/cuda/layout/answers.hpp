@@ -28,6 +28,13 @@ inline const std::vector<Vec3>& dashpot_velocities_of(const Task& task) {
   return task.course->dashpot_velocity.empty() ? task.state->velocity : task.course->dashpot_velocity;
 }
 
+inline bool is_finite(const State& state) {
+  double sum = 0;
+  for (const std::vector<Vec3>* list : {&state.position, &state.velocity})
+    for (const Vec3& v : *list) sum += 0 * v.x + 0 * v.y + 0 * v.z;
+  return sum == 0;
+}
+
 /// Fills in a task's status, reason, work, times and course from the device's answer.
 inline void read_answer(const Answer& answer, Recording recording, Task& task) {
   Course course = *task.course;
@@ -42,7 +49,9 @@ inline void read_answer(const Answer& answer, Recording recording, Task& task) {
     task.work = 0;
     task.clear({}, 0);
     task.samples.clear();
-    task.reason = divergence_reason(course, task.dt, answer.kinetic, answer.elastic, answer.finite != 0);
+    // after a force has left the range, the motion is wrong, and so are the energies
+    if (answer.out_of_range == 0 || !is_finite(*task.state))
+      task.reason = divergence_reason(course, task.dt, answer.kinetic, answer.elastic, answer.finite != 0);
     if (task.reason.empty()) task.reason = force_range_reason(course);
   }
   apply_course(task, course);

@@ -14,8 +14,8 @@ namespace evodevo::cuda {
 /// zeta, with the largest damping ratio zeta: that is the largest force of a dashpot relative to that of its spring
 /// while both swing freely. If that is more, they add the force with which a dashpot stops a fall by the body's own
 /// size in a landing. The body's weight is that of all masses, if they are at most 1,000. Otherwise it is the largest
-/// weight of a piece whose masses are joined to each other, but at most that of 1,000 of its heaviest masses unless the
-/// piece hangs from a mass of 0 kg. A larger range would make the unit of forces too coarse.
+/// weight of a piece whose masses are joined to each other, but at most 1,000 times that of its heaviest mass unless
+/// the piece hangs from a mass of 0 kg. A larger range would make the unit of forces too coarse.
 template <class T>
 ForceRange force_range(const Body& body, const State& state, const Scene& scene);
 

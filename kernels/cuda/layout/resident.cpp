@@ -5,9 +5,10 @@
 namespace evodevo::cuda {
 namespace {
 
-constexpr std::size_t longest_table = 50;       // steps; each refill costs a little
-constexpr std::size_t table_bytes = 8 << 10;    // intended largest size of a table
-constexpr std::size_t reserved_bytes = 5 << 8;  // of shared memory, for the kernel and the system
+constexpr std::size_t longest_table = 50;        // steps; each refill costs a little
+constexpr std::size_t table_bytes = 8 << 10;     // intended largest size of a table
+constexpr std::size_t reserved_bytes = 1 << 10;  // of shared memory, for the kernel and the system
+constexpr std::size_t reserved_in_a_cluster = 5 << 8;
 
 std::size_t aligned(std::size_t size) { return (size + 15) / 16 * 16; }
 
@@ -19,25 +20,29 @@ constexpr std::uint64_t steps_worth_a_cluster = 10000;
 }  // namespace
 
 template <class T>
-std::size_t Resident<T>::largest_chip(std::size_t shared_bytes) {
-  return shared_bytes - reserved_bytes;
+std::size_t Resident<T>::largest_chip(std::size_t shared_bytes, bool in_a_cluster) {
+  return shared_bytes - (in_a_cluster ? reserved_in_a_cluster : reserved_bytes);
 }
 
 template <class T>
 std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features& features, const Room& room,
                                                 std::uint64_t spans_per_range) {
-  const std::size_t chip = largest_chip(room.shared_bytes);
-  const unsigned least = least_blocks(task, features, room);
+  const auto earlier = std::dynamic_pointer_cast<const ArrangedBody>(task.preparation);
+  const unsigned wanted = wanted_blocks(task, features, room);
+  // on what, apart from the body, the number of blocks depends that it needs; 0 if it may get more
+  const std::size_t needs = wanted > 1 ? 0 : needs_of(features, room);
+  unsigned first = wanted;
+  if (needs > 0 && earlier && earlier->needs() == needs && earlier->is_of(*task.body))
+    first = static_cast<unsigned>(earlier->blocks().size());
   for (const unsigned blocks : cluster_sizes) {
     if (blocks > room.largest_cluster) break;
-    if (blocks < least) continue;
+    if (blocks < first) continue;
+    const std::size_t chip = largest_chip(room.shared_bytes, blocks > 1);
     const bool is_last = blocks == room.largest_cluster;
     if (!may_suffice(task, features, blocks, is_last, chip)) continue;
-    Resident resident(task, features, blocks);
+    Resident resident(task, features, blocks, needs);
     resident.divide_chip(true, chip);
-    // in double precision, reading springs from the device's memory costs less than a cluster
-    const bool needs_more = !features.float64 && !resident.has_springs_on_chip();
-    if (resident.chip_.size > chip || (!is_last && needs_more)) continue;
+    if (resident.chip_.size > chip || !(is_last || resident.is_fast(chip))) continue;
     resident.divide_chip(features.work, chip);
     if (features.samples)
       resident.samples_ = SampleLayout(task, spans_per_range, resident.padded_masses(), resident.slots());
@@ -47,41 +52,57 @@ std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features
   return std::nullopt;
 }
 
-/// The number of blocks for a body that needs only one.
+/// The number of blocks that a body should get, even if it needs fewer.
 template <class T>
-unsigned Resident<T>::least_blocks(const Task& task, const Features& features, const Room& room) {
+unsigned Resident<T>::wanted_blocks(const Task& task, const Features& features, const Room& room) {
   const bool free = !features.work && !features.float64;  // otherwise, rounding would depend on the number
-  if (!free || task.steps + task.later_steps < steps_worth_a_cluster) return 1;
+  const std::uint64_t steps = task.course->steps + task.steps + task.later_steps;
+  if (!free || steps < steps_worth_a_cluster) return 1;
   const auto most = static_cast<unsigned>(task.body->masses.size() / least_masses);
   const unsigned wanted = std::min({room.wanted_blocks, room.largest_cluster, most});
-  // keeping an arrangement for a similar number saves more than the right number would gain
-  if (const auto earlier = std::dynamic_pointer_cast<const ArrangedBody>(task.preparation)) {
-    const auto before = static_cast<unsigned>(earlier->blocks().size());
-    if (before <= 2 * wanted && wanted <= 2 * before) return before;
-  }
   const auto larger = std::upper_bound(std::begin(cluster_sizes), std::end(cluster_sizes), std::max(wanted, 1u));
   return *std::prev(larger);
 }
 
+/// A number other than 0 that is different if a body may need a different number of blocks.
+template <class T>
+std::size_t Resident<T>::needs_of(const Features& features, const Room& room) {
+  std::size_t needs = room.shared_bytes * 32 + room.largest_cluster;
+  for (const bool feature : {features.float64, features.dashpots, has_codes(features), features.actuation})
+    needs = 2 * needs + feature;
+  return 8 * needs + static_cast<std::size_t>(features.method);
+}
+
+/// Whether more blocks would not be faster: the springs are on the chip and sums in registers; or the table, of which
+/// each block needs a copy, is so large that more blocks have hardly more room; or the body is in double precision,
+/// where reading springs from the device's memory costs less than a cluster.
+template <class T>
+bool Resident<T>::is_fast(std::size_t chip) const {
+  const std::size_t table = chip_.dashpot_offset - chip_.table_offset;
+  return features_.float64 || table > chip / 4 || (records_on_chip_ && shape().chunks == 1);
+}
+
 /// A quick test before the work of arranging: whether a block's even share of the masses, a table of one step and, if
-/// they must be on the chip, of the springs may fit.
+/// is_fast() will ask for it, of the springs may fit.
 template <class T>
 bool Resident<T>::may_suffice(const Task& task, const Features& features, unsigned blocks, bool is_last,
                               std::size_t chip) {
   const std::size_t entries = has_codes(features) ? 0 : task.body->materials.size() + 1;
   if (entries * sizeof(Entry<T>) > largest_offset * sizeof(T)) return false;
   const std::size_t groups = (task.body->masses.size() + lanes * blocks - 1) / (lanes * blocks);
-  std::size_t least = bytes_of_groups<T>(groups, features) + entries * (sizeof(Entry<T>) + sizeof(T));
-  if (!is_last && !features.float64) least += task.body->springs.size() / blocks * sizeof(Record<T>);
+  const std::size_t table = entries * (sizeof(Entry<T>) + sizeof(T));
+  std::size_t least = bytes_of_groups<T>(groups, features) + table;
+  if (!is_last && !features.float64 && 2 * table < chip / 4)
+    least += task.body->springs.size() / blocks * sizeof(Record<T>);
   return least <= chip;
 }
 
 template <class T>
-Resident<T>::Resident(const Task& task, const Features& features, unsigned blocks)
+Resident<T>::Resident(const Task& task, const Features& features, unsigned blocks, std::size_t needs)
     : task_(&task),
       features_(features),
       arranged_(ArrangedBody::of(*task.body, blocks, largest_block(features.float64), task.preparation,
-                                 features.work ? ArrangedBody::Keep::nothing : ArrangedBody::Keep::all)) {}
+                                 features.work ? ArrangedBody::Keep::nothing : ArrangedBody::Keep::all, needs)) {}
 
 /// The memory of the masses and the halo of the block that needs most, bytes.
 template <class T>

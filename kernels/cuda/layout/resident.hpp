@@ -44,8 +44,8 @@ class Resident {
   static std::optional<Resident> arrange(const Task& task, const Features& features, const Room& room,
                                          std::uint64_t spans_per_range = 1);
 
-  /// The part of `shared_bytes` that is available to a body; the kernel and the system need the rest.
-  static std::size_t largest_chip(std::size_t shared_bytes);
+  /// The part of a block's `shared_bytes` that is available to a body; the kernel and the system need the rest.
+  static std::size_t largest_chip(std::size_t shared_bytes, bool in_a_cluster = false);
 
   ResidentForm form() const;
   const Features& features() const { return features_; }
@@ -68,15 +68,15 @@ class Resident {
   void unpack_samples(std::uint64_t range, const Regions& host, Task& task) const;
 
  private:
-  Resident(const Task& task, const Features& features, unsigned blocks);
+  Resident(const Task& task, const Features& features, unsigned blocks, std::size_t needs);
   void divide_chip(bool with_rates, std::size_t shared_bytes);
   std::size_t waves_in(std::size_t slots) const;
   void reserve();
   std::vector<typename FixedPoint<T>::Integer> materials_in_records(const MaterialUnits& units) const;
-  static unsigned least_blocks(const Task& task, const Features& features, const Room& room);
+  static unsigned wanted_blocks(const Task& task, const Features& features, const Room& room);
+  static std::size_t needs_of(const Features& features, const Room& room);
   static bool may_suffice(const Task& task, const Features& features, unsigned blocks, bool is_last, std::size_t chip);
-  /// Whether all springs are on the chip, and the sums of each thread in registers.
-  bool has_springs_on_chip() const { return records_on_chip_ && shape().chunks == 1; }
+  bool is_fast(std::size_t chip) const;
   std::size_t masses_bytes() const;
   void pack_records(Record<T>* to, const MaterialUnits& units) const;
   void pack_waves(std::uint32_t* to, const MaterialUnits& units) const;

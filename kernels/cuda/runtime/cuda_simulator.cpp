@@ -85,12 +85,13 @@ template <class T>
 class DeviceSimulator final : public CudaSimulator {
  public:
   DeviceSimulator(const Scene& scene, const Stepping& stepping, const cuda::Device& device, Common common,
-                  std::size_t memory)
+                  std::size_t memory, unsigned largest_cluster)
       : scene_(scene),
         stepping_(stepping),
         largest_portion_(memory),
         device_(device),
         common_(std::move(common)),
+        clusters_(device, largest_cluster),
         neighbours_(make_cuda_neighbour_search(device)) {}
 
   void run(std::span<Task> tasks, Recording recording) override {
@@ -103,6 +104,7 @@ class DeviceSimulator final : public CudaSimulator {
                         recording,
                         device_,
                         cuda::spans_per_range(live),
+                        clusters_.largest(*common_.kernels),
                         clusters_.blocks_for(crowd_.most(), *common_.kernels)};
     std::vector<cuda::Plan<T>> plans = plan(live, run);
     double seconds = 0;
@@ -253,10 +255,10 @@ class DeviceSimulator final : public CudaSimulator {
   std::size_t largest_portion_;  // bytes
   cuda::Device device_;
   Common common_;
+  cuda::Clusters clusters_;
   std::shared_ptr<cuda::MemoryStore> memory_ = cuda::MemoryStore::of_device(device_);
   std::unique_ptr<NeighbourSearch> neighbours_;
   BatchResourcePool batch_resources_;
-  cuda::Clusters clusters_{device_};
   BusyClock busy_;
   Crowd crowd_;
   mutable std::mutex mutex_;
@@ -265,19 +267,20 @@ class DeviceSimulator final : public CudaSimulator {
 };
 
 std::unique_ptr<CudaSimulator> make_on(const cuda::Device& device, const Scene& scene, const Stepping& stepping,
-                                       const Common& common, std::size_t memory) {
+                                       const Common& common, std::size_t memory,
+                                       unsigned largest_cluster = default_cluster) {
   cuda::work_on(device);
   if (stepping.precision == Precision::float64)
-    return std::make_unique<DeviceSimulator<double>>(scene, stepping, device, common, memory);
-  return std::make_unique<DeviceSimulator<float>>(scene, stepping, device, common, memory);
+    return std::make_unique<DeviceSimulator<double>>(scene, stepping, device, common, memory, largest_cluster);
+  return std::make_unique<DeviceSimulator<float>>(scene, stepping, device, common, memory, largest_cluster);
 }
 
 }  // namespace
 
 std::unique_ptr<CudaSimulator> make_cuda_simulator(const Scene& scene, const Stepping& stepping, int threads,
-                                                   std::size_t memory) {
+                                                   std::size_t memory, unsigned largest_cluster) {
   const cuda::Device device = cuda::current_device();
-  return make_on(device, scene, stepping, Common(device, threads), memory);
+  return make_on(device, scene, stepping, Common(device, threads), memory, largest_cluster);
 }
 
 std::unique_ptr<Simulator> make_cuda_group(const Scene& scene, const Stepping& stepping, int threads,

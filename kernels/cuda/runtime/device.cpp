@@ -15,12 +15,6 @@ namespace {
 
 std::string version(int number) { return std::to_string(number / 1000) + "." + std::to_string(number % 1000 / 10); }
 
-/// Blocks that can work together. GPUs of compute capability 9.0 are capable of more than others guarantee.
-unsigned largest_cluster_of(const cudaDeviceProp& properties) {
-  if (!properties.clusterLaunch) return 1;
-  return properties.major == 9 ? 2 * portable_cluster : portable_cluster;
-}
-
 /// Throws if the driver is missing or too old. The runtime would notice only at the first real call, with a less clear
 /// error.
 void check_driver() {
@@ -53,7 +47,7 @@ std::vector<Device> visible_devices() {
     devices.push_back({number, properties.name,
                        "sm_" + std::to_string(properties.major) + std::to_string(properties.minor),
                        properties.sharedMemPerBlockOptin, static_cast<unsigned>(properties.multiProcessorCount),
-                       largest_cluster_of(properties)});
+                       properties.clusterLaunch != 0});
   }
   return devices;
 }

@@ -14,11 +14,8 @@ struct Device {
   std::string architecture;  ///< such as "sm_90"
   std::size_t shared_bytes;  ///< shared memory that one block can have
   unsigned multiprocessors;
-  unsigned largest_cluster;  ///< blocks that can work together; 1 if the GPU knows no clusters
+  bool has_clusters;  ///< whether blocks can work together
 };
-
-/// The number of blocks in a cluster of which every GPU that knows clusters is capable.
-inline constexpr unsigned portable_cluster = 8;
 
 /// Returns the reason why a driver for the CUDA version `driver` cannot run a program that was built with the version
 /// `runtime`; empty if it can. A version is 1000 times the major plus 10 times the minor number; a driver version of 0

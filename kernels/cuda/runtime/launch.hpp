@@ -5,7 +5,6 @@
 
 #include <cstddef>
 
-#include "cuda/runtime/device.hpp"
 #include "cuda/runtime/error.hpp"
 
 namespace evodevo::cuda {
@@ -48,13 +47,14 @@ void launch_clusters(cudaKernel_t kernel, unsigned cluster, unsigned blocks, uns
   check(cudaLaunchKernelExC(&form.config, reinterpret_cast<const void*>(kernel), pointers), "starting a kernel");
 }
 
-/// Allows a kernel to have blocks with up to `shared_bytes` of shared memory, in clusters of up to `largest_cluster`
-/// blocks. The same kernel must always be given the same numbers, because other threads may be launching it.
-inline void allow(cudaKernel_t kernel, std::size_t shared_bytes, unsigned largest_cluster) {
+/// Allows a kernel to have blocks with up to `shared_bytes` of shared memory and, if `in_clusters`, clusters of more
+/// blocks than every GPU is capable of. The same kernel must always be given the same values, because other threads may
+/// be launching it.
+inline void allow(cudaKernel_t kernel, std::size_t shared_bytes, bool in_clusters) {
   const void* const function = reinterpret_cast<const void*>(kernel);
   check(cudaFuncSetAttribute(function, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(shared_bytes)),
         "asking for shared memory");
-  if (largest_cluster > portable_cluster)
+  if (in_clusters)
     check(cudaFuncSetAttribute(function, cudaFuncAttributeNonPortableClusterSizeAllowed, 1), "asking for clusters");
 }
 

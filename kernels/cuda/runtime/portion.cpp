@@ -44,9 +44,9 @@ Plan<T>::Plan(Task& task_, const Run& run)
         const Features features = features_of(scene_of(task_, run.scene), run.stepping, run.recording,
                                               material_features(*task_.body), channels_on_device(task_));
         if (is_explicit(run.stepping.method))
-          if (auto resident = Resident<T>::arrange(
-                  task_, features, {run.device.shared_bytes, run.device.largest_cluster, run.wanted_blocks},
-                  run.spans_per_range))
+          if (auto resident = Resident<T>::arrange(task_, features,
+                                                   {run.device.shared_bytes, run.largest_cluster, run.wanted_blocks},
+                                                   run.spans_per_range))
             return *std::move(resident);
         return Streamed<T>(task_, features, Resident<T>::largest_chip(run.device.shared_bytes), run.spans_per_range);
       }()) {}
@@ -188,7 +188,6 @@ void Portion<T>::launch_resident(std::span<const ReadyLaunch> launches, std::spa
                                  std::uint64_t range) {
   const Event ready;
   check(cudaEventRecord(ready, streams[0]), "recording an event");
-  const std::size_t largest_chip = Resident<T>::largest_chip(run_.device.shared_bytes);
   std::size_t next = 0;
   for (const ReadyLaunch& one : launches) {
     const cudaStream_t stream = streams[next++ % streams.size()];  // that of the earlier ranges
@@ -196,7 +195,8 @@ void Portion<T>::launch_resident(std::span<const ReadyLaunch> launches, std::spa
     std::size_t shared_bytes = 0;
     for (const std::size_t i : one.members)
       shared_bytes = std::max(shared_bytes, std::get<Resident<T>>(plans_[i].body).chip_bytes());
-    allow(one.kernel, largest_chip, run_.device.largest_cluster);
+    const bool in_clusters = one.launch.form.clustered;
+    allow(one.kernel, Resident<T>::largest_chip(run_.device.shared_bytes, in_clusters), in_clusters);
     if (range == 0) check(cudaStreamWaitEvent(stream, ready), "waiting for an event");
     const unsigned blocks = one.launch.blocks;
     launch_clusters(one.kernel, blocks, blocks * static_cast<unsigned>(one.members.size()), one.launch.threads,
@@ -243,7 +243,7 @@ void Portion<T>::launch_streamed(KernelStore& kernels, cudaStream_t stream, std:
   };
   const cudaKernel_t fill = kernel("evodevo_fill_tables"), check_bodies = kernel("evodevo_check_streamed"),
                      move = kernel(by_block ? "evodevo_advance_streamed" : "evodevo_pass_streamed");
-  if (by_block) allow(move, Resident<T>::largest_chip(run_.device.shared_bytes), 1);
+  if (by_block) allow(move, Resident<T>::largest_chip(run_.device.shared_bytes), false);
   cudaKernel_t sample = nullptr;
   if (!samples.empty())
     sample = kernels.get("cuda/device/streamed/sample_streamed.cu", "evodevo_sample_streamed",

@@ -34,8 +34,8 @@ struct Run {
   Stepping stepping;
   Recording recording;
   Device device;
-  std::uint64_t spans_per_range;  ///< check spans in a range of samples
-  unsigned wanted_blocks;         ///< Room::wanted_blocks
+  std::uint64_t spans_per_range;            ///< check spans in a range of samples
+  unsigned largest_cluster, wanted_blocks;  ///< as in Room
 };
 
 /// A task, whose course has begun, and the layout in which its body is simulated.

@@ -8,12 +8,14 @@
 namespace evodevo::cuda {
 
 std::shared_ptr<const ArrangedBody> ArrangedBody::of(const Body& body, unsigned blocks, unsigned largest_block,
-                                                     const std::shared_ptr<const Preparation>& earlier, Keep keep) {
+                                                     const std::shared_ptr<const Preparation>& earlier, Keep keep,
+                                                     std::size_t needs) {
   const auto before = std::dynamic_pointer_cast<const ArrangedBody>(earlier);
   const bool similar = before && before->largest_block_ == largest_block && before->blocks_.size() == blocks &&
                        (keep == Keep::all || !before->patched_);
-  if (similar && before->outline_.fits(body)) return before;
+  if (similar && before->is_of(body)) return before;
   std::shared_ptr<ArrangedBody> arranged(new ArrangedBody(Outline(body), largest_block));
+  arranged->needs_ = needs;
   arranged->patched_ = similar && keep == Keep::all && blocks == 1;
   if (arranged->patched_)
     arranged->add(Arrangement(arranged->outline_, largest_block, before->blocks_.front().arrangement, before->outline_),
@@ -21,6 +23,12 @@ std::shared_ptr<const ArrangedBody> ArrangedBody::of(const Body& body, unsigned 
   else
     arranged->arrange(blocks);
   return arranged;
+}
+
+bool ArrangedBody::is_of(const Body& body) const {
+  // the parts of a body depend on where its masses are
+  const auto is_there = [](const Vec3& rest, const Mass& mass) { return rest == mass.rest; };
+  return outline_.fits(body) && (blocks_.size() == 1 || std::ranges::equal(outline_.rest, body.masses, is_there));
 }
 
 void ArrangedBody::arrange(unsigned blocks) {

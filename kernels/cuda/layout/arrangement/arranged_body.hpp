@@ -38,9 +38,15 @@ class ArrangedBody final : public Preparation {
   };
 
   /// The arrangement of `body` for `blocks` blocks of at most `largest_block` warps: `earlier` if it fits, otherwise a
-  /// new one. Several blocks are always arranged anew.
+  /// new one. Several blocks are always arranged anew. A new arrangement gets `needs`.
   static std::shared_ptr<const ArrangedBody> of(const Body& body, unsigned blocks, unsigned largest_block,
-                                                const std::shared_ptr<const Preparation>& earlier, Keep keep);
+                                                const std::shared_ptr<const Preparation>& earlier, Keep keep,
+                                                std::size_t needs = 0);
+
+  /// Whether this is an arrangement of `body`.
+  bool is_of(const Body& body) const;
+  /// A number that the caller has given to remember why the body has so many blocks.
+  std::size_t needs() const { return needs_; }
 
   const std::vector<Block>& blocks() const { return blocks_; }
   std::span<const std::uint32_t> index_of() const;  ///< [masses]
@@ -58,6 +64,7 @@ class ArrangedBody final : public Preparation {
   Outline outline_;
   unsigned largest_block_;
   bool patched_ = false;  ///< whether it keeps anything of an earlier one
+  std::size_t needs_ = 0;
   std::vector<Block> blocks_;
   std::vector<std::uint32_t> index_of_, slot_of_;  ///< of several blocks
   std::size_t padded_masses_ = 0, slots_ = 0;

@@ -12,7 +12,7 @@ namespace {
 
 // few values, because each pair of them needs a separate launch, and bodies of similar size should share a launch
 constexpr unsigned unrolled_rows[] = {4, 8, 12, 15, 16, 20, 24};
-constexpr unsigned rows_in_a_cluster[] = {2, 4, 8, 12, 16, 20, 24};
+constexpr unsigned rows_inside_a_cluster[] = {4, 8, 16, 20, 24}, cut_rows_in_a_cluster[] = {2, 4, 8, 20, 24};
 constexpr unsigned blocks[] = {1, 2, 4, 8, 16, 32};
 constexpr unsigned rows_of_a_chunk = 8;
 constexpr unsigned resident_warps = 32;  // warps that fit on a multiprocessor, at 64 registers per thread
@@ -49,8 +49,8 @@ Shape shape_for_cluster(const Needs& needs, unsigned largest_block) {
   constexpr std::size_t row_time = 60, waiting = 700;  // cycles from a warp's row to its next, and until it may begin
   Shape best;
   std::size_t best_cost = ~std::size_t{0};
-  for (const unsigned rows : rows_in_a_cluster)
-    for (const unsigned cut_rows : rows_in_a_cluster) {
+  for (const unsigned rows : rows_inside_a_cluster)
+    for (const unsigned cut_rows : cut_rows_in_a_cluster) {
       const unsigned warps = std::max(1u, divided(needs.rows, rows)), cut_warps = divided(needs.cut_rows, cut_rows);
       if (warps + cut_warps > largest_block) continue;
       const unsigned least = std::max(warps + cut_warps, std::min(divided(needs.groups, 2), largest_block));
@@ -197,6 +197,8 @@ Arrangement::Draft Arrangement::draft(const Outline& outline, const Settled& set
 
 void Arrangement::fit(Draft draft, const Shape& into) {
   shape = into;
+  // empty slots of cut springs read from the halo, also where no spring is cut
+  if (shape.cut_warps > 0) halo_groups = std::max(halo_groups, 1u);
   auto& [inside, cut, needs] = draft;
   inside.fill_up(shape.rows_inside());
   cut.fill_up(shape.rows_of_cut());

@@ -46,7 +46,8 @@ struct Shape {
 /// spring is in a row of the group of the mass that owns it, in the lane of that mass; the lanes of a row add forces to
 /// different banks as far as possible. The rows of all groups, one group after the other, are divided evenly among the
 /// warps. Cut springs have rows and warps of their own, after all others; their owner is their mass in this part. The
-/// arrangement influences only the order in which energies and work are summed, and nothing else.
+/// arrangement influences the order in which energies and work are summed, and nothing else before a force has left its
+/// range.
 struct Arrangement {
   static constexpr std::uint32_t none = 0xffffffff;
 
