@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <set>
+#include <span>
 #include <vector>
 
 #include "analysis/computed_materials.hpp"
@@ -99,6 +100,109 @@ TEST(Resident, LargeBodiesGetASmallClusterThatHoldsTheirSprings) {
   EXPECT_EQ(blocks(1000, 16, 7), 5u) << "clusters of seven would waste multiprocessors";
   EXPECT_EQ(blocks(1000, 16, 7, true), 1u) << "the rounding of work would depend on the number";
   EXPECT_EQ(blocks(100, 16, 16), 2u) << "a block needs enough masses";
+}
+
+/// The shared memory of the blocks that simulate a body, with its positions; the halos are filled as the kernel does
+/// it.
+class Chips {
+ public:
+  explicit Chips(const std::vector<ResidentBody<float>>& blocks) : blocks_(blocks), chips_(blocks.size()) {
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      chips_[b].resize(shared_bytes / sizeof(float));
+      const Motion<float>& motion = blocks[b].motion;
+      for (std::uint32_t i = 0; i < lanes * blocks[b].groups; ++i)
+        set(b, offset_of(i), {motion.x[i], motion.y[i], motion.z[i]});
+    }
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+      for (const HaloCopy& copy : std::span(blocks[b].halo_copies, blocks[b].copies))
+        set(copy.to >> halo_rank_shift, copy.to & ((1u << halo_rank_shift) - 1), at(b, copy.from));
+  }
+
+  static std::uint32_t offset_of(std::uint32_t index) {
+    return index / lanes * group_bytes<float, false> + index % lanes * sizeof(float);
+  }
+
+  Vec3 at(std::size_t block, std::uint32_t offset) const {
+    const float* const x = &chips_[block].at(offset / sizeof(float));
+    return {x[0], x[lanes], x[2 * lanes]};
+  }
+
+  /// Calls function(block, row, lane, index of the owner, is cut) for all slots, in the order of the kernel.
+  template <class Function>
+  void for_each_slot(const Shape& shape, const Function& function) const {
+    for (std::size_t b = 0; b < blocks_.size(); ++b)
+      for (std::uint32_t warp = 0, row = 0; warp < shape.warps + shape.cut_warps; ++warp) {
+        std::uint32_t group = blocks_[b].first_group[warp];
+        const bool cut = warp >= shape.warps;
+        for (unsigned r = 0; r < (cut ? shape.cut_rows : shape.rows); ++r, ++row) {
+          for (std::uint32_t lane = 0; lane < lanes; ++lane) function(b, row, lane, lanes * group + lane, cut);
+          group += blocks_[b].group_ends[warp] >> r & 1;
+        }
+      }
+  }
+
+ private:
+  void set(std::size_t block, std::uint32_t offset, const Vec3& position) {
+    const double numbers[] = {position.x, position.y, position.z};
+    for (std::size_t c = 0; c < 3; ++c)
+      chips_[block].at(offset / sizeof(float) + c * lanes) = static_cast<float>(numbers[c]);
+  }
+
+  const std::vector<ResidentBody<float>>& blocks_;
+  std::vector<std::vector<float>> chips_;
+};
+
+TEST(Resident, TheBlocksOfABodyComputeTheForcesOfAllItsSprings) {
+  const Body body = testing_gpu::random_body(900, 20, 1);
+  const Scene scene = testing_gpu::walking_scene();
+  State state = state_at_birth(body, scene);
+  for (Vec3& place : state.position) place.x *= 1.1;  // strains the springs
+  Task task = task_of<float>(body, state, scene);
+  task.steps = 20000;
+  const auto resident = Resident<float>::arrange(task, features, {shared_bytes, 16, 5});
+  ASSERT_TRUE(resident);
+  ASSERT_EQ(resident->blocks(), 5u);
+  std::vector<std::byte> input(resident->sizes().input), motion(resident->sizes().state), sums(64);
+  const Regions regions{input.data(), motion.data(), sums.data()};
+  std::vector<ResidentBody<float>> blocks(resident->blocks());
+  resident->pack(regions, regions, scene, blocks.data());
+  const Chips chips(blocks);
+  const Shape& shape = resident->arranged()->blocks().front().arrangement.shape;
+
+  std::vector<std::vector<Vec3>> force;
+  for (const auto& block : blocks) force.emplace_back(lanes * (block.groups + 1));
+  std::size_t counted = 0, copies = 0;
+  chips.for_each_slot(shape, [&](std::size_t b, std::uint32_t row, std::uint32_t lane, std::uint32_t owner, bool cut) {
+    const Record<float>& record = blocks[b].records[lanes * row + lane];
+    const std::size_t entry = (record.packed >> 16) / sizeof(Entry<float>);
+    if (entry == 0) return;
+    (record.rest_length > 0 ? counted : copies) += 1;
+    EXPECT_TRUE(cut || record.rest_length > 0);
+    const std::uint32_t other = record.packed & 0xffff;
+    const Vec3 d = chips.at(b, other) - chips.at(b, Chips::offset_of(owner));
+    const double stiffness = blocks[b].actuators[entry].stiffness * blocks[b].resolution;
+    const Vec3 pull = (stiffness * (1 - std::abs(record.rest_length) / norm(d))) * d;
+    force[b][owner] = force[b][owner] + pull;
+    if (cut) return;
+    std::vector<Vec3>& forces = force[b];
+    const std::uint32_t index = other / group_bytes<float, false> * lanes + other % plane_bytes<float> / sizeof(float);
+    forces[index] = forces[index] - pull;
+  });
+  EXPECT_EQ(counted, body.springs.size());
+  EXPECT_GT(copies, 0u);
+
+  std::vector<Vec3> expected(body.masses.size());
+  for (const Spring& spring : body.springs) {
+    const Vec3 d = state.position[spring.b] - state.position[spring.a];
+    const Vec3 pull = (body.stiffness(spring) * (1 - spring.rest_length / norm(d))) * d;
+    expected[spring.a] = expected[spring.a] + pull;
+    expected[spring.b] = expected[spring.b] - pull;
+  }
+  std::vector<Vec3> found;
+  for (const auto& of_block : force) found.insert(found.end(), of_block.begin(), of_block.end() - lanes);
+  const auto index_of = resident->arranged()->index_of();
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    EXPECT_LT(norm(found[index_of[i]] - expected[i]), 1e-3 * (1 + norm(expected[i]))) << i;
 }
 
 TEST(Resident, RecordsLeadToTheirMaterials) {

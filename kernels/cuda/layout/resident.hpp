@@ -49,6 +49,7 @@ class Resident {
 
   ResidentForm form() const;
   const Features& features() const { return features_; }
+  const std::shared_ptr<const ArrangedBody>& arranged() const { return arranged_; }
   unsigned blocks() const { return static_cast<unsigned>(arranged_->blocks().size()); }
   unsigned threads() const { return 32 * shape().block; }
   std::size_t slots() const { return arranged_->slots(); }
