@@ -104,7 +104,7 @@ class DeviceSimulator final : public CudaSimulator {
                         recording,
                         device_,
                         cuda::spans_per_range(live),
-                        clusters_.largest(*common_.kernels),
+                        largest_cluster(),
                         clusters_.blocks_for(crowd_.most(), *common_.kernels)};
     std::vector<cuda::Plan<T>> plans = plan(live, run);
     double seconds = 0;
@@ -155,6 +155,13 @@ class DeviceSimulator final : public CudaSimulator {
       apply_course(task, course);
     }
     return live;
+  }
+
+  /// The blocks of the largest cluster. The first call loads a kernel, for which it frees memory if need be.
+  unsigned largest_cluster() {
+    unsigned largest = 1;
+    memory_->with_fewer(1, [&](std::size_t) { largest = clusters_.largest(*common_.kernels); });
+    return largest;
   }
 
   /// The number of bodies that are on the device, or on their way there, in all batches.
