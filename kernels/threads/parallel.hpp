@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <exception>
@@ -41,9 +42,12 @@ class Workers {
     std::size_t count;
     int priority;
     std::size_t next = 0, under_way = 0;
+    std::atomic<bool> has_failed = false;
     std::exception_ptr failure;
 
     bool done() const { return next == count && under_way == 0; }
+    /// Calls body(i) for `items` values of i from `first` on; stops if a call of any thread has failed.
+    std::exception_ptr call(std::size_t first, std::size_t items);
   };
 
   /// Starts threads until there are `wanted` or the system refuses.
@@ -53,6 +57,8 @@ class Workers {
   void work();
   /// The loop of lowest priority number among those with items left; null if there is none.
   Loop* next_loop();
+  /// The number of items of a loop that a thread takes at once: the fewer are left, the fewer.
+  std::size_t share_of(const Loop& loop) const;
 
   std::mutex mutex_;
   std::condition_variable work_comes_, loop_done_;

@@ -166,7 +166,7 @@ class Portion {
     launch(kernels_.count_pairs, layout_.points);
     launch(kernels_.find_first_pairs, jobs_.size());
     copy_clouds(cudaMemcpyDeviceToHost);
-    cuda::check(cudaStreamSynchronize(stream_), "finding neighbours on the GPU");
+    cuda::wait_for(stream_, "finding neighbours on the GPU");
   }
 
   /// Writes all pairs, one cloud after the other, and copies them to the host.
@@ -181,7 +181,7 @@ class Portion {
     cuda::check(
         cudaMemcpyAsync(pairs_->host(), pairs_->device(), pairs * sizeof(DevicePair), cudaMemcpyDeviceToHost, stream_),
         "copying pairs from the GPU");
-    cuda::check(cudaStreamSynchronize(stream_), "finding neighbours on the GPU");
+    cuda::wait_for(stream_, "finding neighbours on the GPU");
   }
 
   std::span<const Job> jobs_;

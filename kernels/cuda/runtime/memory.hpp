@@ -130,4 +130,12 @@ class Event {
   cudaEvent_t event_ = nullptr;
 };
 
+/// Waits until the device has executed all operations of a stream so far. The thread sleeps, because others need the
+/// core.
+inline void wait_for(cudaStream_t stream, const std::string& what) {
+  const Event done(true);
+  check(cudaEventRecord(done, stream), "recording an event");
+  check(cudaEventSynchronize(done), what);
+}
+
 }  // namespace evodevo::cuda
