@@ -53,6 +53,7 @@ class Farm final : public Evaluator {
   std::vector<Verification> verify(std::span<const Champion> champions,
                                    std::span<const std::uint32_t> provenances) override;
   std::size_t verified_at_once() const override;
+  Workers& workers() override { return worker_.workers(); }
   PhaseTimes phase_times() const override { return worker_.phase_times(); }
 
   /// Ends the run for the other ranks, so that they do not wait for work while this one goes on alone.

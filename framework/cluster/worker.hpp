@@ -40,6 +40,7 @@ class Worker {
 
   void forget_records() { evaluator_.forget_records(); }
   message::Beat beat() const;
+  Workers& workers() { return evaluator_.workers(); }
   PhaseTimes phase_times() const { return evaluator_.phase_times(); }
 
  private:

@@ -10,6 +10,7 @@
 #include "evodevo/helpers/pareto.hpp"
 #include "evolution/clones.hpp"
 #include "evolution/selection_table.hpp"
+#include "threads/parallel.hpp"
 
 namespace evodevo {
 namespace {
@@ -126,12 +127,14 @@ struct Brood {
   std::uint32_t generation;
   std::uint32_t first_id;
   std::span<const std::byte> memory;
+  Workers* workers;
 };
 
 /// The newborns of a generation and the genomes that are known: theirs, and those of the population.
 class Nursery {
  public:
-  Nursery(const Brood& brood, std::size_t count) : next_id_(brood.first_id), known_(brood.population) {
+  Nursery(const Brood& brood, std::size_t count)
+      : workers_(brood.workers), next_id_(brood.first_id), known_(brood.population) {
     newborns_.reserve(count);  // because `known_` refers to their genomes
   }
 
@@ -142,20 +145,28 @@ class Nursery {
     known_.add(newborns_.back().genome);
     ++next_id_;
   }
-  /// Adds a newborn made by `make(repeat)`, with a genome that is not known yet if possible. As long as the genome is
-  /// known, the newborn is made again with other random numbers, but at most `most_repeats` times, because there may be
-  /// no other genomes.
+  /// Adds `count` newborns, number i made by `make(i, id, repeat)`, with genomes that are not known yet if possible.
+  /// All are made on all threads at first. Then, one after the other, those whose genomes are known are made again with
+  /// other random numbers, but at most `most_repeats` times, because there may be no other genomes.
   template <class Make>
-  void add_distinct(const Make& make) {
-    Individual newborn = make(0);
-    for (std::uint32_t repeat = 1; repeat <= most_repeats && known_.contains(newborn.genome); ++repeat)
-      newborn = make(repeat);
-    add(std::move(newborn));
+  void add_distinct(std::size_t count, const Make& make) {
+    std::vector<Individual> made(count);
+    const auto make_first = [&](std::size_t i) { made[i] = make(i, next_id_ + static_cast<std::uint32_t>(i), 0); };
+    if (workers_ != nullptr)
+      workers_->for_each(count, make_first);
+    else
+      for (std::size_t i = 0; i < count; ++i) make_first(i);
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::uint32_t repeat = 1; repeat <= most_repeats && known_.contains(made[i].genome); ++repeat)
+        made[i] = make(i, next_id_, repeat);
+      add(std::move(made[i]));
+    }
   }
 
   std::vector<Individual> take() { return std::move(newborns_); }
 
  private:
+  Workers* workers_;
   std::uint32_t next_id_;
   std::vector<Individual> newborns_;
   GenomeSet known_;
@@ -183,17 +194,17 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> chosen_parents(const Experi
 
 /// Adds `count` children that the experiment's variation makes.
 void add_varied(const Brood& brood, std::uint32_t count, Nursery& nursery) {
-  const auto& [experiment, population, generation, first_id, memory] = brood;
+  const auto& [experiment, population, generation, first_id, memory, workers] = brood;
   const SelectionTable table(population, experiment, generation, memory);
   Rng rng = stream(experiment, generation, 0, rng_stream::parents);
   const auto pairs = call_operator(experiment.call_of(Selection::kind, experiment.breeder_index()),
                                    [&] { return chosen_parents(experiment, table.context(), count, rng); });
-  for (const auto& pair : pairs) {
-    const Couple couple{population.at(pair.first), population.at(pair.second),
-                        dominates(scores_of(table.rows()[pair.second]), scores_of(table.rows()[pair.first]))};
-    const std::uint32_t id = nursery.next_id();
-    nursery.add_distinct([&](std::uint32_t repeat) { return child(experiment, couple, brood.generation, id, repeat); });
-  }
+  nursery.add_distinct(count, [&](std::size_t i, std::uint32_t id, std::uint32_t repeat) {
+    const auto& [parent, mate] = pairs[i];
+    const Couple couple{brood.population.at(parent), brood.population.at(mate),
+                        dominates(scores_of(table.rows()[mate]), scores_of(table.rows()[parent]))};
+    return child(brood.experiment, couple, brood.generation, id, repeat);
+  });
 }
 
 std::vector<Child> made_children(const Experiment& experiment, const SelectionContext& context, std::uint32_t count,
@@ -256,18 +267,17 @@ Genome first_genome(const Experiment& experiment, const std::function<Rng(std::u
 
 std::vector<Individual> breed(const Experiment& experiment, const std::vector<Individual>& population,
                               std::uint32_t generation, std::uint32_t first_id, std::size_t count,
-                              std::span<const std::byte> memory) {
+                              std::span<const std::byte> memory, Workers* workers) {
   const bool all_are_random = population.empty() && !experiment.makes_children();
   const std::size_t random_individuals =
       all_are_random ? count : std::min(count, static_cast<std::size_t>(experiment.random_individuals));
-  const Brood brood{experiment, population, generation, first_id, memory};
+  const Brood brood{experiment, population, generation, first_id, memory, workers};
   Nursery nursery(brood, count);
   if (const auto children = static_cast<std::uint32_t>(count - random_individuals); children > 0)
     experiment.makes_children() ? add_made(brood, children, nursery) : add_varied(brood, children, nursery);
-  for (std::size_t i = 0; i < random_individuals; ++i) {
-    const std::uint32_t id = nursery.next_id();
-    nursery.add_distinct([&](std::uint32_t repeat) { return random_individual(experiment, generation, id, repeat); });
-  }
+  nursery.add_distinct(random_individuals, [&](std::size_t, std::uint32_t id, std::uint32_t repeat) {
+    return random_individual(experiment, generation, id, repeat);
+  });
   return nursery.take();
 }
 

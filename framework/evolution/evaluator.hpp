@@ -47,6 +47,8 @@ class Evaluator {
   /// About the number of champions that can be verified in the time that one takes.
   virtual std::size_t verified_at_once() const = 0;
 
+  /// The threads of this process. They may be used while nothing is evaluated, too.
+  virtual Workers& workers() = 0;
   /// Of this process.
   virtual PhaseTimes phase_times() const = 0;
 };
@@ -71,6 +73,7 @@ class LocalEvaluator final : public Evaluator {
   std::vector<Verification> verify(std::span<const Champion> champions,
                                    std::span<const std::uint32_t> provenances) override;
   std::size_t verified_at_once() const override { return evodevo::verified_at_once(simulator_); }
+  Workers& workers() override { return simulator_.workers(); }
   PhaseTimes phase_times() const override { return evaluation_.phase_times(); }
 
  private:

@@ -8,6 +8,7 @@
 
 #include "base/philox.hpp"
 #include "base/text.hpp"
+#include "evolution/archive/archive_writer.hpp"
 #include "evolution/breeding.hpp"
 #include "evolution/clones.hpp"
 #include "evolution/front_verification.hpp"
@@ -256,6 +257,7 @@ TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& ar
   const RecordedProvenances provenances = recorded_provenances(evaluator, archive);
   FrontLives lives(experiment, evaluator, provenances, archive);
   FrontVerification verification(experiment, evaluator, provenances);
+  ArchiveWriter writer(archive);
 
   for (; !is_finished(experiment, summaries) && !stop; ++generation) {
     const auto start = Clock::now();
@@ -263,7 +265,7 @@ TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& ar
     // each evaluation uses one id, so the next id is the number of evaluations so far
     std::vector<Individual> newborns =
         breed(experiment, population, generation, static_cast<std::uint32_t>(evaluations),
-              static_cast<std::size_t>(count), memory_of_breeder(experiment, remembered));
+              static_cast<std::size_t>(count), memory_of_breeder(experiment, remembered), &evaluator.workers());
     time.breed += seconds_since(start);
     evaluate(newborns, evaluator, provenances, observer);
     evaluations += count;
@@ -283,12 +285,12 @@ TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& ar
     summary.evaluations = evaluations;
     summary.wall_time = seconds_since(start);
     time.select += seconds_since(selection);
-    const auto commit = Clock::now();
-    archive.commit(newborns, dropped, lives.committed(), summary, remembered, refusals);
-    time.archive += seconds_since(commit);
+    writer.begin({std::move(newborns), std::move(dropped), lives.committed(), summary, remembered, refusals});
     observer.generation_done(summary);
     summaries.push_back(summary);
   }
+  writer.wait();
+  time.archive = writer.seconds();
   time.whole = seconds_since(begin);
   time.evaluation = evaluator.phase_times();
   time.verify = verification.seconds();

@@ -11,7 +11,7 @@ namespace evodevo {
 
 /// Functions that evolve() calls to report its progress.
 struct Observer {
-  /// Called after each generation.
+  /// Called after each generation, which may still be being written into the archive (ArchiveWriter).
   std::function<void(const Summary&)> generation_done = [](const Summary&) {};
   /// Called with the fraction of the current generation that has been simulated, 0 to 1.
   std::function<void(double)> generation_progress = [](double) {};
@@ -22,8 +22,8 @@ struct TimeSpent {
   double whole = 0;       ///< time in evolve()
   double breed = 0;       ///< the parts of it that were spent making genomes,
   double verify = 0;      ///< verifying the front,
-  double select = 0;      ///< ranking and selecting,
-  double archive = 0;     ///< and writing the archive
+  double select = 0;      ///< and ranking and selecting
+  double archive = 0;     ///< writing the archive, perhaps while the next generation is evaluated
   PhaseTimes evaluation;  ///< time in each phase of evaluation, without that of verification
 };
 

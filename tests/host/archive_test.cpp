@@ -1,12 +1,11 @@
 // The archive: data that is written can be read again, and no process overwrites the data of another.
-#include "evolution/archive/archive.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <functional>
 
+#include "evolution/archive/archive_writer.hpp"
 #include "evolution/archive/schema.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
@@ -128,6 +127,49 @@ TEST_F(ArchiveTest, TheRefusedLoseTheirScoresWhenTheirGenerationIsCommitted) {
   EXPECT_EQ(archive.generations()[1].passive, 1);
   EXPECT_EQ(archive.statuses().at("artefact"), 1);
   EXPECT_EQ(archive.statuses().at("passive"), 1);
+}
+
+/// A generation of so many individuals that writing it takes a while.
+FinishedGeneration large_generation(std::uint32_t generation) {
+  constexpr std::uint32_t size = 20'000;
+  FinishedGeneration large;
+  for (std::uint32_t i = 0; i < size; ++i) {
+    Individual& one = large.newborns.emplace_back();
+    one.id = generation * size + i;
+    one.born = one.origin = generation;
+    one.genome = {static_cast<float>(i), 1};
+    one.result.objectives = {static_cast<double>(one.id), 1};
+  }
+  large.summary = {.generation = generation, .evaluations = (generation + 1) * size, .wall_time = 0.01};
+  return large;
+}
+
+TEST_F(ArchiveTest, AWriterHasWrittenAllAfterItsWait) {
+  Archive archive = Archive::create(folder_, experiment_, "a device");
+  {
+    ArchiveWriter writer(archive);
+    writer.begin(large_generation(0));
+    EXPECT_EQ(Archive::read(folder_).generations().size(), 1u) << "it cannot know yet how long writing takes";
+    for (const std::uint32_t generation : {1, 2}) writer.begin(large_generation(generation));
+    writer.wait();
+    EXPECT_GT(writer.seconds(), 0);
+    EXPECT_EQ(archive.generations().size(), 3u);
+    EXPECT_EQ(archive.individual(59'999)->result.objectives.front(), 59'999);
+    writer.begin(large_generation(3));
+  }
+  EXPECT_EQ(Archive::read(folder_).generations().size(), 4u) << "the destructor waits";
+}
+
+TEST_F(ArchiveTest, AWriterThrowsWhatGoesWrong) {
+  Archive archive = Archive::create(folder_, experiment_, "a device");
+  ArchiveWriter writer(archive);
+  writer.begin(large_generation(0));
+  const auto again = [&] {
+    writer.begin(large_generation(0));
+    writer.wait();
+  };
+  EXPECT_THROW(again(), ArchiveError);
+  EXPECT_EQ(archive.generations().size(), 1u);
 }
 
 TEST_F(ArchiveTest, TellsWhatEvaluatedAnIndividual) {

@@ -5,8 +5,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <functional>
-
 #include "commands/run.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
@@ -15,14 +13,15 @@
 namespace evodevo {
 namespace {
 
-/// A simulator whose device is lost when `lost` returns true.
+/// A simulator whose device is lost when the lives of generation `lost` begin, counted from 0.
 class Breaking final : public Simulator {
  public:
-  Breaking(const Experiment& experiment, std::function<bool()> lost)
-      : simulator_(make_cpu_simulator(experiment.scene, experiment.stepping, 1)), lost_(std::move(lost)) {}
+  Breaking(const Experiment& experiment, std::size_t lost)
+      : simulator_(make_cpu_simulator(experiment.scene, experiment.stepping, 1)), lost_(lost) {}
 
   void run(std::span<Task> tasks, Recording recording) override {
-    if (lost_()) throw std::runtime_error("CUDA: simulating on the GPU failed");
+    const bool is_birth = !tasks.empty() && tasks.front().state->time == 0;
+    if (is_birth && generations_++ == lost_) throw std::runtime_error("CUDA: simulating on the GPU failed");
     simulator_->run(tasks, recording);
   }
   NeighbourSearch& neighbours() override { return simulator_->neighbours(); }
@@ -31,7 +30,7 @@ class Breaking final : public Simulator {
 
  private:
   std::unique_ptr<Simulator> simulator_;
-  std::function<bool()> lost_;
+  std::size_t lost_, generations_ = 0;
 };
 
 class LostDevice : public ::testing::Test {
@@ -39,7 +38,7 @@ class LostDevice : public ::testing::Test {
   /// Returns the error message of a run in the folder `name` whose device is lost after `generations`.
   std::string failure(const std::string& name, std::size_t generations) {
     Archive archive = Archive::create(scratch_ / name, experiment_, "test");
-    Breaking simulator(experiment_, [&] { return archive.generations().size() == generations; });
+    Breaking simulator(experiment_, generations);
     try {
       evolve_and_report(experiment_, simulator, archive);
     } catch (const std::runtime_error& error) {
@@ -50,8 +49,8 @@ class LostDevice : public ::testing::Test {
   }
 
   int finish(Archive archive) {
-    Breaking simulator(experiment_, [] { return false; });
-    return evolve_and_report(experiment_, simulator, archive);
+    const auto simulator = make_cpu_simulator(experiment_.scene, experiment_.stepping, 1);
+    return evolve_and_report(experiment_, *simulator, archive);
   }
 
   testing::Scratch scratch_;

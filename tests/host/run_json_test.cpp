@@ -42,9 +42,12 @@ repeat = 2
 )";
 
   void SetUp() override {
-    const std::atomic<bool> stop = false;
-    evolve(experiment_, *simulator_, archive_, stop,
-           Observer{.generation_done = [&](const Summary&) { population_.push_back(archive_.population()); }});
+    std::atomic<bool> stop = false;
+    const Observer observer{.generation_done = [&](const Summary&) { stop = true; }};
+    for (; !is_finished(experiment_, archive_.generations()); stop = false) {
+      evolve(experiment_, *simulator_, archive_, stop, observer);
+      population_.push_back(archive_.population());
+    }
   }
 
   /// The scores in an objective of the individuals alive after a generation.

@@ -1,0 +1,43 @@
+// Writes generations into an archive. If that takes long, the next one is bred and evaluated meanwhile.
+#pragma once
+
+#include <future>
+#include <map>
+#include <vector>
+
+#include "evolution/archive/archive.hpp"
+
+namespace evodevo {
+
+/// What a generation adds to the archive: the arguments of Archive::commit().
+struct FinishedGeneration {
+  std::vector<Individual> newborns;
+  std::vector<std::uint32_t> dropped;
+  std::map<std::uint32_t, LifeRecord> lives;
+  Summary summary;
+  Remembered remembered;
+  std::vector<Refusal> refusals;
+};
+
+/// Writes one generation at a time. If the one before took more than 0.1 s and more than a tenth of the time of a
+/// generation, it does so on a thread of its own. Until that ends, a crash or `kill -9` loses the generation, which has
+/// cost less than ten times the time of writing; so no long generation is ever at risk. Between begin() and wait(),
+/// nobody else may use the archive, which must outlive this object. The destructor waits as well, but does not throw.
+class ArchiveWriter {
+ public:
+  explicit ArchiveWriter(Archive& archive) : archive_(archive) {}
+
+  /// Waits for the generation before, then writes this one or begins to. Throws what wait() throws.
+  void begin(FinishedGeneration generation);
+  /// Waits until everything has been committed. Throws what Archive::commit() has thrown.
+  void wait();
+  /// The time that commits have taken until the last wait, s.
+  double seconds() const { return seconds_; }
+
+ private:
+  Archive& archive_;
+  std::future<double> under_way_;  ///< the time that the commit takes, s
+  double last_ = 0, seconds_ = 0;
+};
+
+}  // namespace evodevo
