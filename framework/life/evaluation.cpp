@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <memory>
 #include <mutex>
 #include <numeric>
 
@@ -10,8 +11,9 @@
 namespace evodevo {
 namespace {
 
-// smallest number of bodies in a cohort if there are several; smaller cohorts would use a device inefficiently
-constexpr std::size_t smallest_cohort = 64;
+// smallest number of bodies in a cohort if there are several: fewer would not repay the overhead of a batch. Cohorts of
+// a small population leave a device partly idle anyway, and while some are simulated, others develop.
+constexpr std::size_t smallest_cohort = 12;
 
 }  // namespace
 
@@ -30,7 +32,11 @@ Evaluation::Evaluation(const Experiment& experiment, Simulator& simulator, const
 std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, const Progress& progress) const {
   const std::size_t cohorts = std::clamp<std::size_t>(newborns.size() / smallest_cohort, 1,
                                                       static_cast<std::size_t>(simulation.simulator().concurrency()));
+  const auto begin = [&](std::size_t cohort) { return cohort * newborns.size() / cohorts; };
   std::vector<Result> results(newborns.size());
+  std::vector<std::shared_ptr<const void>> announced;  // of each cohort until it has ended
+  for (std::size_t i = 0; i < cohorts; ++i)
+    announced.push_back(simulation.simulator().announce(begin(i + 1) - begin(i)));
   std::mutex progress_mutex;
   std::vector<double> done(cohorts, 0.0);
   const int first = Priority::of_this_thread();
@@ -38,13 +44,14 @@ std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, cons
     // Earlier cohorts have priority throughout. Thus the first one reaches its long final evaluation while the others
     // are still developing.
     const Priority priority(first + static_cast<int>(i));
-    const std::size_t begin = i * newborns.size() / cohorts, end = (i + 1) * newborns.size() / cohorts;
-    std::vector<Result> of_cohort = evaluate_cohort(newborns.subspan(begin, end - begin), [&](double part) {
-      const std::lock_guard lock(progress_mutex);
-      done[i] = part;
-      progress(std::accumulate(done.begin(), done.end(), 0.0) / static_cast<double>(cohorts));
-    });
-    std::move(of_cohort.begin(), of_cohort.end(), results.begin() + static_cast<std::ptrdiff_t>(begin));
+    std::vector<Result> of_cohort =
+        evaluate_cohort(newborns.subspan(begin(i), begin(i + 1) - begin(i)), [&](double part) {
+          const std::lock_guard lock(progress_mutex);
+          done[i] = part;
+          progress(std::accumulate(done.begin(), done.end(), 0.0) / static_cast<double>(cohorts));
+        });
+    announced[i].reset();
+    std::move(of_cohort.begin(), of_cohort.end(), results.begin() + static_cast<std::ptrdiff_t>(begin(i)));
   });
   return results;
 }

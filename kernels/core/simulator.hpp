@@ -147,6 +147,11 @@ class Simulator {
   /// prepared.
   virtual int concurrency() const { return 1; }
 
+  /// Tells that `bodies` bodies will be simulated, in any number of runs, as long as the returned object exists. Then
+  /// the simulator can divide a device among them, which changes the speed but no result. Announcements add up. The
+  /// object must not outlive the simulator.
+  virtual std::shared_ptr<const void> announce(std::size_t /*bodies*/) { return nullptr; }
+
   /// The use of the devices; nothing if the device is the host's own processor.
   virtual std::optional<DeviceUse> device_use() const { return std::nullopt; }
 

@@ -52,6 +52,13 @@ class SimulatorGroup final : public Simulator {
     return batches;
   }
 
+  std::shared_ptr<const void> announce(std::size_t bodies) override {
+    auto announced = std::make_shared<std::vector<std::shared_ptr<const void>>>();
+    for (const auto& member : members_)
+      announced->push_back(member->announce((bodies + members_.size() - 1) / members_.size()));
+    return announced;
+  }
+
   std::optional<DeviceUse> device_use() const override {
     std::optional<DeviceUse> whole;
     for (const auto& member : members_) {

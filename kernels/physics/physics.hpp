@@ -336,7 +336,7 @@ template <class T>
 EVODEVO_HD T friction_factor(T vx, T vy, T loss) {
   const T speed = square_root(multiply_add(vy, vy, vx * vx));
   // exactly 1 without contact; the lower bound of the divisor avoids 0/0 at rest
-  return maximum(speed - loss, constant<T>(0)) / maximum(speed, constant<T>(1e-30));
+  return quotient_if_positive(speed - loss, maximum(speed, constant<T>(1e-30)));
 }
 
 /// The fraction that static friction leaves of a tangential velocity (vx, vy; m/s), of which sliding would leave

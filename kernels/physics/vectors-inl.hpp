@@ -50,6 +50,11 @@ HWY_INLINE V square_root(V a) {
 
 /// value where a > threshold, 0 elsewhere.
 template <class V>
+HWY_INLINE V quotient_if_positive(V a, V b) {
+  return maximum(a, constant<V>(0)) / b;
+}
+
+template <class V>
 HWY_INLINE V zero_unless_greater(V a, V threshold, V value) {
   return hn::IfThenElseZero(hn::Gt(a, threshold), value);
 }

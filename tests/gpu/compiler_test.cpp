@@ -64,20 +64,19 @@ bool compiles_streamed(const Features& features) {
 }
 
 TEST_F(Compiler, CompilesForGpusWithoutClustersAndForLaterOnes) {
-  const ResidentForm alone{.rows = 8, .masses_per_thread = 1, .records_on_chip = true};
+  const ResidentForm alone{.rows = most_rows, .masses_per_thread = 1, .records_on_chip = true};
   ResidentForm clustered = alone;
   clustered.clustered = true;
-  clustered.cut_rows = 4;
   EXPECT_FALSE(compile("cuda/device/resident.cu", definitions(every_feature, alone), "sm_80").empty());
   EXPECT_FALSE(compile("cuda/device/resident.cu", definitions(every_feature, clustered), "sm_120").empty());
 }
 
 TEST_F(Compiler, CompilesEveryFormForHopper) {
   const ResidentForm forms[] = {
-      {.rows = 15, .masses_per_thread = 1, .chunked = false, .records_on_chip = true},
-      {.rows = 8, .masses_per_thread = 5, .chunked = true, .wide_offsets = true, .wide_table = true},
-      {.rows = 8, .masses_per_thread = 2, .records_on_chip = true, .clustered = true, .cut_rows = 4},
-      {.rows = 8, .masses_per_thread = 5, .chunked = true, .wide_offsets = true, .clustered = true, .cut_rows = 8}};
+      {.rows = most_rows, .masses_per_thread = 1, .chunked = false, .records_on_chip = true},
+      {.rows = rows_of_a_chunk, .masses_per_thread = 5, .chunked = true, .wide_offsets = true, .wide_table = true},
+      {.rows = most_rows, .masses_per_thread = 2, .records_on_chip = true, .clustered = true},
+      {.rows = rows_of_a_chunk, .masses_per_thread = 5, .chunked = true, .wide_offsets = true, .clustered = true}};
   for (const bool float64 : {false, true}) {
     for (Features features : {Features{}, every_feature}) {
       features.float64 = float64;
@@ -89,7 +88,7 @@ TEST_F(Compiler, CompilesEveryFormForHopper) {
 }
 
 TEST_F(Compiler, CompilesEveryMethodForHopper) {
-  const ResidentForm form{.rows = 4, .masses_per_thread = 1, .records_on_chip = true};
+  const ResidentForm form{.rows = most_rows, .masses_per_thread = 1, .records_on_chip = true};
   for (std::size_t i = 1; i < method_names.size(); ++i) {
     Features features = every_feature;
     features.method = static_cast<Method>(i);

@@ -245,21 +245,21 @@ struct Form {
 };
 
 const std::vector<Form> forms{
-    {"resident", "cuda/device/resident.cu", {.rows = 15, .masses_per_thread = 1, .records_on_chip = true}},
+    {"resident", "cuda/device/resident.cu", {.rows = most_rows, .masses_per_thread = 1, .records_on_chip = true}},
     {"resident, springs streamed",
      "cuda/device/resident.cu",
-     {.rows = 8, .masses_per_thread = 5, .chunked = true, .wide_offsets = true}},
+     {.rows = rows_of_a_chunk, .masses_per_thread = 5, .chunked = true, .wide_offsets = true}},
     {"resident, in a cluster",
      "cuda/device/resident.cu",
-     {.rows = 15, .masses_per_thread = 1, .records_on_chip = true, .clustered = true, .cut_rows = 4}},
+     {.rows = most_rows, .masses_per_thread = 1, .records_on_chip = true, .clustered = true}},
     {"streamed", "cuda/device/streamed/streamed.cu", {}},
     {"resident, float64",
      "cuda/device/resident.cu",
-     {.rows = 15, .masses_per_thread = 2, .records_on_chip = true},
+     {.rows = most_rows, .masses_per_thread = 2, .records_on_chip = true},
      true},
     {"resident, computed materials",
      "cuda/device/resident.cu",
-     {.rows = 15, .masses_per_thread = 1, .records_on_chip = true},
+     {.rows = most_rows, .masses_per_thread = 1, .records_on_chip = true},
      false,
      Materials::computed},
 };

@@ -32,6 +32,12 @@ class Forms : public testing::TestWithParam<Way> {
   void compare(const Body& body, unsigned largest_cluster = default_cluster) {
     compare(body, moving_state(body, walking_scene(), 11), largest_cluster);
   }
+  /// Does so for a body that does not land meanwhile: landing magnifies rounding errors.
+  void compare_in_the_air(const Body& body, unsigned largest_cluster = default_cluster) {
+    State start = moving_state(body, walking_scene(), 11);
+    for (Vec3& position : start.position) position.z += 0.5;
+    compare(body, start, largest_cluster);
+  }
 };
 
 TEST_P(Forms, NoMasses) {
@@ -154,7 +160,7 @@ TEST_P(Sizes, Masses4000OffsetsBeyond16Bits) {
 
 TEST_P(Sizes, Masses8000SpringsStreamedInAClusterOfTwo) {
   EVODEVO_NEEDS_GPU();
-  compare(random_body(8000, 12, 5), 2);
+  compare_in_the_air(random_body(8000, 12, 5), 2);
 }
 
 TEST_P(Sizes, Masses20000) {
@@ -169,7 +175,7 @@ TEST_P(Sizes, Masses20000BeyondTheChip) {
 
 TEST_P(Sizes, PartsWithoutCutSprings) {
   EVODEVO_NEEDS_GPU();
-  compare(body_in_pieces(random_body(1000, 25, 6)));  // each piece is a part
+  compare_in_the_air(body_in_pieces(random_body(1000, 25, 6)));  // each piece is a part
 }
 
 // one method for each kind of kernel

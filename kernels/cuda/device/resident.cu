@@ -101,9 +101,9 @@ __device__ __forceinline__ void load(const Body& body, Movers& movers) {
   }
   if constexpr (dashpots) copy_to_chip(body.dashpots, body.dashpot_offset, body.entries);
   if constexpr (records_on_chip) {
-    const unsigned rows_of_chunks = body.warps * rows + (clustered ? body.cut_warps * cut_rows : 0);
-    const unsigned count = lanes * rows_of_chunks * (chunked ? body.chunks : 1);
-    Records::load(body, count);
+    const unsigned rows_of_chunks = body.warps * body.rows + (clustered ? body.cut_warps * body.cut_rows : 0);
+    const unsigned rows = rows_of_chunks * (chunked ? body.chunks : 1);
+    Records::load(body, lanes * (rows + rows_read_ahead));
   }
 }
 
@@ -296,7 +296,7 @@ __device__ __forceinline__ void advance(const Body& body, const StepConstants<Nu
       pass = 0u - 1;
     }
   }
-  if constexpr (kind != Kind::none) collect<kind == Kind::cut>(body, share, sums, totals);
+  if constexpr (kind != Kind::none) collect(body, share, sums, totals);
 }
 
 extern "C" __global__ void __launch_bounds__(EVODEVO_MAX_THREADS, 1)

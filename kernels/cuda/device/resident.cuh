@@ -6,13 +6,12 @@
 
 namespace evodevo::cuda {
 
-constexpr unsigned rows = EVODEVO_ROWS;                    // rows in a chunk: springs of a thread in an unrolled loop
-constexpr unsigned cut_rows = EVODEVO_CUT_ROWS;            // the same for springs between blocks
 constexpr unsigned masses_per_thread = EVODEVO_MASSES;     // masses that a thread moves
 constexpr bool chunked = EVODEVO_CHUNKED;                  // whether warps have more rows than one chunk
 constexpr bool records_on_chip = EVODEVO_RECORDS_ON_CHIP;  // otherwise springs are streamed from the device's memory
 constexpr bool clustered = EVODEVO_CLUSTERED;              // whether a cluster of blocks simulates a body
 constexpr unsigned offset_shift = EVODEVO_OFFSET_SHIFT;    // left shift that turns offsets of masses into bytes
+constexpr unsigned unrolled_rows = EVODEVO_ROWS;           // springs of a thread in an unrolled loop
 using Body = ResidentBody<Number>;
 
 extern __shared__ __align__(16) unsigned char chip[];

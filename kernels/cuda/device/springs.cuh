@@ -80,10 +80,9 @@ struct Owner {
 
 /// Sums of a thread over its springs and some steps.
 struct Sums {
-  Number largest = 0;  // |force|, units
-  Number row_stress[rows > cut_rows ? rows : cut_rows] =
-      {};            // sum of |force| of the spring in each row, if there is one chunk, units
-  Number power = 0;  // sum over the springs, units m/s
+  Number largest = 0;                     // |force|, units
+  Number row_stress[unrolled_rows] = {};  // sum of |force| of the spring in each row, if there is one chunk, units
+  Number power = 0;                       // sum over the springs, units m/s
 };
 
 /// Sums of a thread between two checks.
@@ -91,10 +90,6 @@ struct Totals {
   double power = 0;    // units m/s
   Number largest = 0;  // |force|, units
 };
-
-/// The rows in a chunk.
-template <bool cut>
-constexpr unsigned rows_of = cut ? cut_rows : rows;
 
 /// Springs inside the part of a body that a block simulates, and springs between parts.
 enum class Kind { none, inside, cut };
@@ -106,12 +101,10 @@ struct Share {
   unsigned first_slot;
   Kind kind;                        // that of all springs of the warp
   unsigned chunks;                  // 0 if the warp has no springs
-  const std::uint32_t* group_ends;  // for the warp's chunks: bit r is set if a group ends with row r
+  unsigned rows;                    // in each chunk
+  const std::uint32_t* group_ends;  // for the warp's chunks: bit r is set if a group or the warp's work ends with row r
 
-  template <bool cut>
-  __device__ __forceinline__ unsigned slot(unsigned chunk) const {
-    return first_slot + chunk * rows_of<cut> * lanes;
-  }
+  __device__ __forceinline__ unsigned slot(unsigned chunk) const { return first_slot + chunk * rows * lanes; }
 };
 
 __device__ __forceinline__ Share share_of(const Body& body) {
@@ -121,9 +114,14 @@ __device__ __forceinline__ Share share_of(const Body& body) {
   if constexpr (clustered)
     if (warp >= body.warps && warp < body.warps + body.cut_warps) share.kind = Kind::cut;
   share.chunks = share.kind == Kind::none ? 0 : chunks;
-  share.first_slot = warp * chunks * rows * lanes + threadIdx.x % lanes;
+  share.rows = chunked ? unrolled_rows : body.rows;
+  unsigned rows_before = warp * chunks * share.rows;
   if constexpr (clustered)
-    if (share.kind == Kind::cut) share.first_slot -= (warp - body.warps) * chunks * (rows - cut_rows) * lanes;
+    if (share.kind == Kind::cut) {
+      if constexpr (!chunked) share.rows = body.cut_rows;
+      rows_before = chunks * (body.warps * body.rows + (warp - body.warps) * body.cut_rows);
+    }
+  share.first_slot = rows_before * lanes + threadIdx.x % lanes;
   share.group_ends = body.group_ends + warp * chunks;
   share.owner = offset_of_mass(body.first_group[warp] * lanes + threadIdx.x % lanes);
   return share;
@@ -177,20 +175,20 @@ __device__ __forceinline__ Number add_force(const Body& body, unsigned slot, con
   return fabs(tension);
 }
 
-/// Adds the forces of `rows` rows, beginning at `slot`. The reads of the next row are issued before the atomics of this
-/// row, because the compiler must not move them across atomics.
+/// Adds the forces of a chunk of rows, beginning at `slot`. The reads of the next row are issued before the atomics of
+/// this row, because the compiler must not move them across atomics; so the last row reads ahead, too. The loop ends
+/// where the warp's work ends, which is always the end of a group, so that most rows need no test for it.
 template <bool cut>
 __device__ __forceinline__ void add_forces(const Body& body, const Share& share, unsigned slot, unsigned group_ends,
                                            const SpringPass& pass, Owner& owner, Sums& sums) {
-  constexpr unsigned rows = rows_of<cut>;
   const Records records = share.records.from(slot);
-  Records::Read record = records[rows > 1 ? lanes : 0];
+  Records::Read record = records[lanes];
   Spring<cut> next(records[0], pass.lengths, pass.halo_set);
 #pragma unroll
-  for (unsigned row = 0; row < rows; ++row) {
+  for (unsigned row = 0; row < unrolled_rows; ++row) {
     const Spring<cut> spring = next;
-    if (row + 1 < rows) next = Spring<cut>(record, pass.lengths, pass.halo_set);
-    if (row + 2 < rows) record = records[(row + 2) * lanes];
+    if (row + 1 < unrolled_rows) next = Spring<cut>(record, pass.lengths, pass.halo_set);
+    if (row + 2 < unrolled_rows) record = records[(row + 2) * lanes];
     const Number force = add_force(body, slot + row * lanes, spring, owner, pass, sums);
     if constexpr (stress) {
       // no thread waits for this addition to memory; the sum has one writer, so its order is fixed
@@ -202,6 +200,7 @@ __device__ __forceinline__ void add_forces(const Body& body, const Share& share,
     }
     if (group_ends >> row & 1) {
       owner.flush();
+      if (!chunked && group_ends >> row == 1) break;  // the warp's work ends
       owner = Owner(owner.offset + group_size);
     }
   }
@@ -213,34 +212,34 @@ __device__ __forceinline__ void add_spring_forces(const Body& body, const Share&
   Owner owner(share.owner);
   if constexpr (chunked) {
     for (unsigned chunk = 0; chunk < share.chunks; ++chunk)
-      add_forces<cut>(body, share, share.slot<cut>(chunk), share.group_ends[chunk], pass, owner, sums);
+      add_forces<cut>(body, share, share.slot(chunk), share.group_ends[chunk], pass, owner, sums);
   } else {
     add_forces<cut>(body, share, share.first_slot, group_ends, pass, owner, sums);
   }
-  owner.flush();
 }
 
 /// Adds the sums of some steps to the body's records and to the totals.
-template <bool cut>
 __device__ __forceinline__ void collect(const Body& body, const Share& share, const Sums& sums, Totals& totals) {
-  constexpr unsigned rows = rows_of<cut>;
   totals.largest = fmax(totals.largest, sums.largest);
   if constexpr (work) totals.power += sums.power;
   if constexpr (stress) {
     for (unsigned chunk = 0; chunk < (chunked ? share.chunks : 1); ++chunk) {
-      double* to = body.stress + share.slot<cut>(chunk);
-      Number* recent = body.recent_stress + share.slot<cut>(chunk);
-      double before[rows];  // all read before the first write, because a read after a write would wait for it
-      Number forces[rows];
+      double* const to = body.stress + share.slot(chunk);
+      Number* const recent = body.recent_stress + share.slot(chunk);
+      constexpr unsigned at_once = 8;  // read before the first write, because a read after a write would wait for it
 #pragma unroll
-      for (unsigned row = 0; row < rows; ++row) {
-        before[row] = to[row * lanes];
-        forces[row] = chunked ? __ldcg(recent + row * lanes) : sums.row_stress[row];
-      }
+      for (unsigned first = 0; first < unrolled_rows; first += at_once) {
+        double before[at_once];
 #pragma unroll
-      for (unsigned row = 0; row < rows; ++row) {
-        to[row * lanes] = before[row] + body.resolution * forces[row];
-        if constexpr (chunked) recent[row * lanes] = 0;
+        for (unsigned i = 0; i < at_once; ++i) before[i] = to[min(first + i, share.rows - 1) * lanes];
+#pragma unroll
+        for (unsigned i = 0; i < at_once; ++i) {
+          const unsigned row = first + i;
+          const Number forces = chunked ? __ldcg(recent + row * lanes) : sums.row_stress[row];
+          const double sum = before[i] + body.resolution * forces;
+          if (row < share.rows) to[row * lanes] = sum;
+          if constexpr (chunked) recent[row * lanes] = 0;
+        }
       }
     }
   }
@@ -262,8 +261,8 @@ __device__ __forceinline__ void for_each_spring(const Share& share, const Length
   unsigned offset = share.owner;
   for (unsigned chunk = 0; chunk < share.chunks; ++chunk) {
     const unsigned group_ends = share.group_ends[chunk];
-    for (unsigned row = 0; row < rows_of<cut>; ++row) {
-      const unsigned slot = share.slot<cut>(chunk) + row * lanes;
+    for (unsigned row = 0; row < share.rows; ++row) {
+      const unsigned slot = share.slot(chunk) + row * lanes;
       const Spring<cut> spring(share.records[slot], lengths, halo_set);
       function(Stretched{slot, spring.counted, spring.rest_length, spring.material.entry,
                          physics::separation(position_at(offset), spring.position)});

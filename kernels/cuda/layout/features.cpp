@@ -122,7 +122,6 @@ std::vector<std::string> definitions(const Features& features, const ResidentFor
   all.push_back(number("CHUNKED", form.chunked));
   all.push_back(number("RECORDS_ON_CHIP", form.records_on_chip));
   all.push_back(number("CLUSTERED", form.clustered));
-  all.push_back(number("CUT_ROWS", std::max(1u, form.cut_rows)));
   const unsigned shift = features.float64 ? 3 : 2;  // from numbers to bytes
   all.push_back(number("OFFSET_SHIFT", form.wide_offsets ? shift : 0));
   all.push_back(number("ENTRY_SHIFT", form.wide_table ? shift : 0));

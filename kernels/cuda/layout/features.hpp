@@ -75,13 +75,13 @@ inline bool predicts_dashpot_velocities(const Features& features) {
 
 /// Features of a body's layout that are compiled into the kernel that keeps it on the chip.
 struct ResidentForm {
-  unsigned rows = 0, masses_per_thread = 0;
+  unsigned rows = 0;  ///< rows that are unrolled: springs of a thread
+  unsigned masses_per_thread = 0;
   bool chunked = false;          ///< warps have more than one chunk of rows
   bool records_on_chip = false;  ///< springs in shared memory; otherwise streamed from the device's memory
   bool wide_offsets = false;  ///< offsets of masses count numbers, because in bytes they would need more than 16 bits
   bool wide_table = false;    ///< likewise for offsets of the table's entries
   bool clustered = false;     ///< a cluster of blocks simulates the body
-  unsigned cut_rows = 0;      ///< as `rows`, of springs between blocks
 
   friend auto operator<=>(const ResidentForm&, const ResidentForm&) = default;
 };

@@ -11,6 +11,14 @@ namespace evodevo::cuda {
 inline constexpr unsigned lanes = 32;            ///< threads of a warp, banks of shared memory
 inline constexpr unsigned guard_interval = 100;  ///< steps between two checks of a body
 
+// Kernels unroll a loop over the rows of a warp. It ends after the body's number of rows, so that one kernel is for
+// bodies of many sizes. If a warp has several chunks of rows, all of them are full.
+inline constexpr unsigned most_rows = 24;  ///< unrolled, if a warp has one chunk
+/// Likewise, if stress is recorded and this is enough, because each unrolled row has a sum of its own in a register.
+inline constexpr unsigned rows_with_fast_stress = 16;
+inline constexpr unsigned rows_of_a_chunk = 8;  ///< unrolled, if it has several
+inline constexpr unsigned rows_read_ahead = 2;  ///< a warp reads the records of this many rows after its last
+
 /// Masses are in shared memory in groups of 32, one mass per bank. A group is six planes of 32 numbers: the positions
 /// x, y, z and the forces x, y, z; if the body has dashpots, three more planes have the velocities at which they act.
 /// So the numbers of a mass are at constant distances from each other for bodies of any size.
@@ -168,10 +176,10 @@ struct ResidentBody {
   using Integer = typename FixedPoint<T>::Integer;
   StepConstants<T> constants;
   CodeUnits<T> units;                ///< if materials are computed
-  const Record<T>* records;          ///< [warps][chunks][rows][lanes]
+  const Record<T>* records;          ///< [warps][chunks][rows][lanes], then rows_read_ahead empty rows
   const std::uint32_t* waves;        ///< likewise, MaterialCode::wave; if materials are computed
   const std::uint32_t* first_group;  ///< [block's warps] the group of each warp's first row
-  const std::uint32_t* group_ends;   ///< [block's warps][chunks] bit r: the next group begins after row r
+  const std::uint32_t* group_ends;   ///< [block's warps][chunks] bit r: a group or the warp's work ends with row r
   const Actuator* actuators;         ///< [entries]; entry 0 is for empty slots
   const T* dashpots;                 ///< [entries] coefficient of the dashpots, units of force s/m; if the body has any
   const T* mass;                     ///< [padded masses] kg
@@ -193,6 +201,7 @@ struct ResidentBody {
   std::uint32_t groups, chunks, entries;   ///< numbers of each
   std::uint32_t warps;                     ///< warps with springs inside the part
   std::uint32_t cut_warps;                 ///< the warps after them: with springs between this part and others
+  std::uint32_t rows, cut_rows;            ///< in each chunk of these warps
   std::uint32_t table_steps;               ///< steps for which the table in shared memory has rows
   std::uint32_t table_offset;              ///< of the table, bytes from the beginning of shared memory
   std::uint32_t rate_offset;               ///< of the rates, if work is recorded

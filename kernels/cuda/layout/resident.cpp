@@ -123,7 +123,7 @@ void Resident<T>::divide_chip(bool with_rates, std::size_t shared_bytes) {
   const std::size_t lengths = codes ? sizeof(std::uint32_t) : entries * sizeof(Entry<T>);
   const std::size_t rates = with_rates && !codes ? entries * sizeof(T) : 0;
   const std::size_t dashpots = aligned(features_.dashpots ? entries * sizeof(T) : 0);
-  const std::size_t masses = masses_bytes(), slots = shape().slots();
+  const std::size_t masses = masses_bytes(), slots = shape().slots() + slots_read_ahead;
   const std::size_t records = slots * sizeof(Record<T>), waves = waves_in(slots) * sizeof(std::uint32_t);
   const MethodForm& method = form_of(features_.method);
   // whatever is recorded: sums in registers have as many terms as the table has steps, and the number of terms decides
@@ -153,8 +153,8 @@ void Resident<T>::reserve() {
   Extent input, state, sums;
   std::size_t copies = 0;
   for (const auto& block : arranged_->blocks()) copies += block.copies.size();
-  records_ = input.add<Record<T>>(slots());
-  waves_ = input.add<std::uint32_t>(waves_in(slots()));
+  records_ = input.add<Record<T>>(slots() + slots_read_ahead);
+  waves_ = input.add<std::uint32_t>(waves_in(slots() + slots_read_ahead));
   first_group_ = input.add<std::uint32_t>(blocks() * shape().block);
   group_ends_ = input.add<std::uint32_t>(blocks() * shape().block * shape().chunks);
   copies_ = input.add<HaloCopy>(copies);
@@ -181,15 +181,17 @@ void Resident<T>::reserve() {
 
 template <class T>
 ResidentForm Resident<T>::form() const {
+  const unsigned unrolled = features_.stress && std::max(shape().rows, shape().cut_rows) <= rows_with_fast_stress
+                                ? rows_with_fast_stress
+                                : most_rows;
   return {
-      .rows = shape().rows,
+      .rows = shape().chunks > 1 ? rows_of_a_chunk : unrolled,
       .masses_per_thread = shape().masses_per_thread,
       .chunked = shape().chunks > 1,
       .records_on_chip = records_on_chip_,
       .wide_offsets = masses_bytes() > largest_offset,
       .wide_table = !has_codes(features_) && (task_->body->materials.size() + 1) * sizeof(Entry<T>) > largest_offset,
-      .clustered = blocks() > 1,
-      .cut_rows = blocks() > 1 ? shape().cut_rows : 0};
+      .clustered = blocks() > 1};
 }
 
 template class Resident<float>;

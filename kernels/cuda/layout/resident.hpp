@@ -20,6 +20,8 @@
 
 namespace evodevo::cuda {
 
+inline constexpr std::size_t slots_read_ahead = lanes * rows_read_ahead;
+
 /// The numbers of blocks that simulate a body, in ascending order. Others would leave multiprocessors idle: those of a
 /// cluster are neighbours, in groups of 16 or 18.
 inline constexpr unsigned cluster_sizes[] = {1, 2, 3, 4, 5, 8, 16};

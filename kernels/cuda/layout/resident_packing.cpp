@@ -40,13 +40,14 @@ void Resident<T>::pack_records(Record<T>* to, const MaterialUnits& units) const 
                                place_of(arrangement.slots[slot]) | materials[spring.material] << 16};
     }
   }
+  std::fill_n(to + slots(), slots_read_ahead, Record<T>{});
 }
 
 template <class T>
 void Resident<T>::pack_waves(std::uint32_t* to, const MaterialUnits& units) const {
   std::vector<std::uint32_t> waves;
   for (const Material& material : task_->body->materials) waves.push_back(code_of(material, units).wave);
-  std::fill_n(to, slots(), 0u);
+  std::fill_n(to, slots() + slots_read_ahead, 0u);
   for (const auto& [arrangement, springs, copies, first_mass, first_slot] : arranged_->blocks())
     for (std::size_t i = 0; i < arrangement.slot_of.size(); ++i)
       to[first_slot + arrangement.slot_of[i]] = waves[task_->body->springs[springs.empty() ? i : springs[i]].material];
@@ -186,6 +187,8 @@ void Resident<T>::pack(const Regions& host, const Regions& device, const Scene& 
       .entries = static_cast<std::uint32_t>(task_->body->materials.size() + 1),
       .warps = shape().warps,
       .cut_warps = shape().cut_warps,
+      .rows = shape().rows,
+      .cut_rows = shape().cut_rows,
       .table_steps = chip_.table_steps,
       .table_offset = static_cast<std::uint32_t>(chip_.table_offset),
       .rate_offset = static_cast<std::uint32_t>(chip_.rate_offset),

@@ -4,6 +4,7 @@
 #include "cuda/runtime/cuda_simulator.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -70,6 +71,20 @@ class BatchResourcePool {
   std::vector<std::unique_ptr<BatchResources>> free_;
 };
 
+/// A number that several threads add to.
+class Count {
+ public:
+  /// Adds `number` as long as the returned object exists.
+  std::shared_ptr<const void> add(std::size_t number) {
+    number_ += number;
+    return {this, [number](Count* count) { count->number_ -= number; }};
+  }
+  std::size_t number() const { return number_; }
+
+ private:
+  std::atomic<std::size_t> number_ = 0;
+};
+
 /// What the simulators on several equal GPUs have in common. A kernel of a step is compiled
 /// once for all of them.
 struct Common {
@@ -98,14 +113,14 @@ class DeviceSimulator final : public CudaSimulator {
     cuda::work_on(device_);
     const SplitMaterials split(tasks, workers());
     const std::vector<Task*> live = begin(tasks, recording);
-    const typename Crowd::Presence presence(crowd_, live.size());
+    const auto presence = present_.add(live.size());
     const cuda::Run run{scene_,
                         stepping_,
                         recording,
                         device_,
                         cuda::spans_per_range(live),
                         largest_cluster(),
-                        clusters_.blocks_for(crowd_.most(), *common_.kernels)};
+                        clusters_.blocks_for(std::max(announced_.number(), present_.number()), *common_.kernels)};
     std::vector<cuda::Plan<T>> plans = plan(live, run);
     double seconds = 0;
     std::size_t portions = 0;
@@ -121,6 +136,8 @@ class DeviceSimulator final : public CudaSimulator {
   Workers& workers() override { return *common_.workers; }
 
   int concurrency() const override { return batches_at_once; }
+
+  std::shared_ptr<const void> announce(std::size_t bodies) override { return announced_.add(bodies); }
 
   std::string device() const override { return "cuda, " + device_.name + ", " + device_.architecture; }
 
@@ -163,42 +180,6 @@ class DeviceSimulator final : public CudaSimulator {
     memory_->with_fewer(1, [&](std::size_t) { largest = clusters_.largest(*common_.kernels); });
     return largest;
   }
-
-  /// The number of bodies that are on the device, or on their way there, in all batches.
-  class Crowd {
-   public:
-    /// Adds bodies to the crowd as long as it exists.
-    class Presence {
-     public:
-      Presence(Crowd& crowd, std::size_t bodies) : crowd_(crowd), bodies_(bodies) {
-        const std::lock_guard lock(crowd_.mutex_);
-        crowd_.bodies_ += bodies_;
-        crowd_.most_ = std::max(crowd_.most_, crowd_.bodies_);
-      }
-      Presence(const Presence&) = delete;
-      Presence& operator=(const Presence&) = delete;
-      ~Presence() {
-        const std::lock_guard lock(crowd_.mutex_);
-        crowd_.bodies_ -= bodies_;
-        if (crowd_.bodies_ == 0) crowd_.most_ = 0;
-      }
-
-     private:
-      Crowd& crowd_;
-      std::size_t bodies_;
-    };
-
-    /// The largest number since there were none. Fewer now does not mean that the others do not come back: they may be
-    /// developing.
-    std::size_t most() const {
-      const std::lock_guard lock(mutex_);
-      return most_;
-    }
-
-   private:
-    mutable std::mutex mutex_;
-    std::size_t bodies_ = 0, most_ = 0;
-  };
 
   /// Returns the course that a task continues, or a new course.
   Course begun(const Task& task) const {
@@ -267,7 +248,7 @@ class DeviceSimulator final : public CudaSimulator {
   std::unique_ptr<NeighbourSearch> neighbours_;
   BatchResourcePool batch_resources_;
   BusyClock busy_;
-  Crowd crowd_;
+  Count present_, announced_;  // bodies: in all batches under way, and of whoever has announced them
   mutable std::mutex mutex_;
   double device_seconds_ = 0;
   std::size_t most_portions_ = 1;

@@ -1,6 +1,7 @@
 #include "cuda/runtime/portion.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include "cuda/runtime/launch.hpp"
@@ -156,9 +157,10 @@ std::vector<typename Portion<T>::ReadyLaunch> Portion<T>::ready_launches(KernelS
         kernels.get("cuda/device/resident.cu", "evodevo_run_resident", definitions(launch.features, launch.form));
   });
   // the largest blocks first, so that small ones fill the gaps at the end
-  std::sort(launches.begin(), launches.end(), [](const ReadyLaunch& a, const ReadyLaunch& b) {
-    return a.launch.threads * a.launch.form.rows > b.launch.threads * b.launch.form.rows;
-  });
+  const auto largest = [&](const ReadyLaunch& one) {
+    return std::get<Resident<T>>(plans_[one.members.front()].body).slots() / one.launch.blocks;
+  };
+  std::ranges::sort(launches, std::greater(), largest);
   return launches;
 }
 
@@ -286,9 +288,7 @@ void Portion<T>::download(cudaStream_t stream) {
   check(cudaMemcpyAsync(host_.front().state, device_.front().state, sizes_.state + sizes_.sums, cudaMemcpyDeviceToHost,
                         stream),
         "copying bodies from the GPU");
-  const Event done(true);
-  check(cudaEventRecord(done, stream), "recording an event");
-  check(cudaEventSynchronize(done), "copying bodies from the GPU");
+  wait_for(stream, "copying bodies from the GPU");
 }
 
 template <class T>

@@ -6,36 +6,54 @@
 #include <numeric>
 
 #include "cuda/layout/arrangement/ownership.hpp"
+#include "cuda/layout/formats.hpp"
 
 namespace evodevo::cuda {
 namespace {
 
-// few values, because each pair of them needs a separate launch, and bodies of similar size should share a launch
-constexpr unsigned unrolled_rows[] = {4, 8, 12, 15, 16, 20, 24};
-constexpr unsigned rows_inside_a_cluster[] = {4, 8, 16, 20, 24}, cut_rows_in_a_cluster[] = {2, 4, 8, 20, 24};
-constexpr unsigned blocks[] = {1, 2, 4, 8, 16, 32};
-constexpr unsigned rows_of_a_chunk = 8;
-constexpr unsigned resident_warps = 32;  // warps that fit on a multiprocessor, at 64 registers per thread
+constexpr unsigned blocks[] = {1, 2, 4, 8, 16, 32};  // few values, because each needs a launch of its own
+constexpr unsigned resident_warps = 32;              // warps that fit on a multiprocessor, at 64 registers per thread
+
+// cycles in which shared memory is busy with a row, with a row of cut springs, and with the position and the force of
+// an owner; shared memory limits the speed
+constexpr std::size_t access = 11, cut_access = 8, owner_access = 6;
 
 unsigned divided(std::size_t a, std::size_t b) { return static_cast<unsigned>((a + b - 1) / b); }
 
-/// The shape that wastes the least. The choice weighs empty rows against warps for which a multiprocessor has no room,
-/// because warps hide each other's waiting times.
+/// The number of warps in a block of which `warps` have springs: at most two masses per thread, if it may be so large.
+unsigned block_for(unsigned warps, std::uint32_t groups, unsigned largest_block) {
+  return *std::lower_bound(std::begin(blocks), std::end(blocks),
+                           std::max(warps, std::min(divided(groups, 2), largest_block)));
+}
+
+/// The number of blocks that a multiprocessor simulates at once, as far as registers and shared memory go.
+std::size_t blocks_at_once(unsigned block, std::size_t rows, std::uint32_t groups) {
+  constexpr std::size_t chip = 227 << 10, others = 3 << 10;  // bytes; others: table, kernel and system
+  const std::size_t bytes = rows * lanes * sizeof(Record<float>) + (groups + 1) * group_bytes<float, false> + others;
+  return std::max<std::size_t>(1, std::min<std::size_t>(resident_warps / block, chip / bytes));
+}
+
+/// The shape with which a multiprocessor takes the shortest time for a step of a body. While one block moves its masses
+/// and waits for its warps, others that are on the multiprocessor compute springs. The numbers of cycles were fitted to
+/// measurements of bodies of 64 to 1,000 masses in blocks of different shapes on an H200.
 Shape shape_for_block(const Needs& needs, unsigned largest_block) {
-  const std::size_t rows = needs.rows;
-  const std::uint32_t groups = needs.groups;
+  constexpr std::size_t moving = 1000;   // cycles in which a block does not access shared memory for springs
+  constexpr std::size_t row_time = 100;  // cycles from a warp's row to its next, if no other block is there
+  // cycles of a row in which one of the four schedulers has a warp less than others; a block's warps take turns in them
+  constexpr std::size_t uneven = 4;
   Shape best;
   std::size_t best_cost = ~std::size_t{0};
-  for (const unsigned unrolled : unrolled_rows) {
-    const unsigned warps = std::max(1u, divided(rows, unrolled));
-    if (warps > largest_block) continue;
-    // at most two masses per thread if the block may be that large
-    const unsigned block = *std::lower_bound(std::begin(blocks), std::end(blocks),
-                                             std::max(warps, std::min(divided(groups, 2), largest_block)));
-    const unsigned resident = resident_warps / block * warps;
-    const std::size_t cost = std::size_t{unrolled} * warps * (3 * resident_warps - resident);
+  for (unsigned warps = largest_block; warps > 0; --warps) {
+    const unsigned rows = std::max(1u, divided(needs.rows, warps));
+    if (rows > most_rows) break;
+    const unsigned block = block_for(warps, needs.groups, largest_block);
+    const std::size_t all = std::size_t{rows} * warps, missing = block < 4 ? 0 : 4 * divided(warps, 4) - warps;
+    const std::size_t busy = access * all + owner_access * warps + uneven * missing * rows;
+    const std::size_t alone = std::max(busy, row_time * rows) + moving;
+    std::size_t cost = busy + (alone - busy) / blocks_at_once(block, all, needs.groups);
+    if (rows > rows_with_fast_stress) cost += cost / 32;
     if (cost >= best_cost) continue;
-    best = {block, warps, 0, unrolled, unrolled, 1, 0};
+    best = {block, warps, 0, rows, 0, 1, 0};
     best_cost = cost;
   }
   return best;
@@ -45,24 +63,26 @@ Shape shape_for_block(const Needs& needs, unsigned largest_block) {
 /// Either shared memory is busy all the time, or the time is that of the warps with the most rows. Those with cut
 /// springs begin late, because they wait for other blocks.
 Shape shape_for_cluster(const Needs& needs, unsigned largest_block) {
-  constexpr std::size_t access = 11, cut_access = 8;   // cycles in which a row accesses shared memory
   constexpr std::size_t row_time = 60, waiting = 700;  // cycles from a warp's row to its next, and until it may begin
   Shape best;
   std::size_t best_cost = ~std::size_t{0};
-  for (const unsigned rows : rows_inside_a_cluster)
-    for (const unsigned cut_rows : cut_rows_in_a_cluster) {
-      const unsigned warps = std::max(1u, divided(needs.rows, rows)), cut_warps = divided(needs.cut_rows, cut_rows);
-      if (warps + cut_warps > largest_block) continue;
-      const unsigned least = std::max(warps + cut_warps, std::min(divided(needs.groups, 2), largest_block));
-      const Shape shape{
-          *std::lower_bound(std::begin(blocks), std::end(blocks), least), warps, cut_warps, rows, cut_rows, 1, 0};
-      const std::size_t busy = access * shape.rows_inside() + cut_access * shape.rows_of_cut();
+  for (unsigned warps = largest_block - 1; warps > 0; --warps) {
+    const unsigned rows = std::max(1u, divided(needs.rows, warps));
+    if (rows > most_rows) break;
+    for (unsigned cut_warps = largest_block - warps; cut_warps > 0; --cut_warps) {
+      const unsigned cut_rows = divided(needs.cut_rows, cut_warps);
+      if (cut_rows > most_rows) break;
+      const unsigned block = block_for(warps + cut_warps, needs.groups, largest_block);
+      const Shape shape{block, warps, cut_warps, rows, cut_rows, 1, 0};
+      const std::size_t busy =
+          access * shape.rows_inside() + cut_access * shape.rows_of_cut() + owner_access * (warps + cut_warps);
       const std::size_t longest = std::max(row_time * rows, waiting + row_time * cut_rows);
       const std::size_t cost = 4 * std::max(busy, longest) + busy + longest;
       if (cost >= best_cost) continue;
       best = shape;
       best_cost = cost;
     }
+  }
   return best;
 }
 
@@ -207,7 +227,7 @@ void Arrangement::fit(Draft draft, const Shape& into) {
   group_ends.assign(std::size_t{shape.block} * shape.chunks, 0);
   first_group.assign(shape.block, 0);
   first_row = assign_slots(inside, 0, 0, shape.rows);
-  assign_slots(cut, shape.rows_inside(), shape.warps, shape.cut_rows);
+  if (shape.cut_warps > 0) assign_slots(cut, shape.rows_inside(), shape.warps, shape.cut_rows);
   fill_empty_slots();
 }
 
@@ -302,11 +322,15 @@ Arrangement::Members Arrangement::members_of_groups(std::span<const std::uint32_
 }
 
 /// Gives every spring its slot and every row its group, from row `first_row_of_all` and warp `first_warp` on, and marks
-/// where groups end. A chunk has `rows` rows. Returns [groups + 1] the first row of each group.
+/// where groups and the work of warps end. A chunk has `rows` rows. Returns [groups + 1] the first row of each group.
 std::vector<std::uint32_t> Arrangement::assign_slots(Members& members, std::size_t first_row_of_all,
                                                      unsigned first_warp, unsigned rows) {
   const std::size_t rows_of_warp = std::size_t{shape.chunks} * rows;
   std::uint32_t* const ends = group_ends.data() + std::size_t{first_warp} * shape.chunks;
+  const auto mark_end = [&](std::size_t row) {
+    const std::size_t of_kind = row - first_row_of_all;
+    ends[of_kind / rows] |= 1u << of_kind % rows;
+  };
   std::vector<std::uint32_t> first_rows;
   std::size_t row = first_row_of_all;
   for (std::uint32_t g = 0; g < groups; ++g) {
@@ -325,10 +349,9 @@ std::vector<std::uint32_t> Arrangement::assign_slots(Members& members, std::size
     for (; row < end; ++row)
       if ((row - first_row_of_all) % rows_of_warp == 0)
         first_group[first_warp + (row - first_row_of_all) / rows_of_warp] = g;
-    // a warp's last row is never marked, because no row of the warp follows it
-    const std::size_t last = end - 1 - first_row_of_all;
-    if ((last + 1) % rows_of_warp != 0) ends[last / rows] |= 1u << last % rows;
+    mark_end(end - 1);
   }
+  for (std::size_t end = first_row_of_all + rows_of_warp; end <= row; end += rows_of_warp) mark_end(end - 1);
   first_rows.push_back(static_cast<std::uint32_t>(row));
   return first_rows;
 }

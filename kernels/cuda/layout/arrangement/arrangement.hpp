@@ -24,12 +24,12 @@ struct Needs {
 /// springs, so that masses in neighbouring lanes have similar numbers of springs.
 std::vector<std::uint32_t> indices_by_degree(const Outline& outline);
 
-/// The sizes of a block for which a kernel is compiled and a body is arranged.
+/// The sizes of a block for which a body is arranged.
 struct Shape {
   unsigned block = 0;      ///< warps in the block
   unsigned warps = 0;      ///< warps with springs inside
   unsigned cut_warps = 0;  ///< the warps after them, with cut springs
-  unsigned rows = 0;       ///< rows in a chunk: springs of one thread in an unrolled loop
+  unsigned rows = 0;       ///< rows in a chunk of warps with springs inside
   unsigned cut_rows = 0;   ///< likewise, of warps with cut springs
   unsigned chunks = 0;     ///< chunks of rows for each warp
   unsigned masses_per_thread = 0;
@@ -79,7 +79,7 @@ struct Arrangement {
   std::vector<std::uint32_t> slot_of;    ///< [springs inside, cut springs] index into `slots`
   std::vector<std::uint32_t> first_row;  ///< [groups + 1] the rows of group g are first_row[g] .. first_row[g + 1] - 1
   std::vector<std::uint32_t> first_group;  ///< [block] the group that each warp begins with
-  std::vector<std::uint32_t> group_ends;   ///< [block][chunks] bit r: the next group begins after row r
+  std::vector<std::uint32_t> group_ends;   ///< [block][chunks] bit r: a group or the warp's work ends with row r
   std::vector<std::int32_t>
       magic_numbers;  ///< [padded masses] number of magic numbers with which a mass's force sum begins
 
