@@ -16,6 +16,7 @@ namespace evodevo {
 namespace {
 
 constexpr std::uint32_t most_repeats = 16;  ///< largest number of times that a newborn is made again if it is a clone
+constexpr std::size_t worth_threads = 256;  ///< newborns; one thread makes fewer of them as fast
 
 Rng stream(const Experiment& experiment, std::uint32_t generation, std::uint32_t individual, std::uint32_t where) {
   return Rng(philox, {static_cast<std::uint64_t>(experiment.seed), generation, individual, where});
@@ -146,13 +147,13 @@ class Nursery {
     ++next_id_;
   }
   /// Adds `count` newborns, number i made by `make(i, id, repeat)`, with genomes that are not known yet if possible.
-  /// All are made on all threads at first. Then, one after the other, those whose genomes are known are made again with
-  /// other random numbers, but at most `most_repeats` times, because there may be no other genomes.
+  /// At first all are made, on all threads if they are many. Then, one after the other, those whose genomes are known
+  /// are made again with other random numbers, but at most `most_repeats` times, because there may be no other genomes.
   template <class Make>
   void add_distinct(std::size_t count, const Make& make) {
     std::vector<Individual> made(count);
     const auto make_first = [&](std::size_t i) { made[i] = make(i, next_id_ + static_cast<std::uint32_t>(i), 0); };
-    if (workers_ != nullptr)
+    if (workers_ != nullptr && count >= worth_threads)
       workers_->for_each(count, make_first);
     else
       for (std::size_t i = 0; i < count; ++i) make_first(i);

@@ -8,6 +8,7 @@
 
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
+#include "threads/parallel.hpp"
 
 namespace evodevo {
 namespace {
@@ -59,6 +60,25 @@ TEST(Breeding, DependsOnSeedGenerationAndIdAlone) {
   const Experiment other =
       testing::read(testing::small_experiment, {{"encoding.size", "[4, 4, 4]", ""}, {"experiment.seed", "8", ""}});
   EXPECT_NE(breed(experiment, {}, 2, 7, 1)[0].genome, breed(other, {}, 2, 7, 1)[0].genome);
+}
+
+/// Robots of few voxels have few genomes, so that many newborns are made again.
+TEST(Breeding, OnThreadsMakesTheSameNewborns) {
+  const Experiment experiment = testing::read(testing::small_experiment);
+  Workers workers(4);
+  std::vector<Individual> population = breed(experiment, {}, 0, 0, 300);
+  for (Individual& individual : population) individual.result.objectives = {1.0 + individual.id, 1};
+  const auto expect_same = [](const std::vector<Individual>& a, const std::vector<Individual>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_EQ(a[i].id, b[i].id);
+      EXPECT_EQ(a[i].genome, b[i].genome) << i;
+      EXPECT_EQ(a[i].parents, b[i].parents) << i;
+      EXPECT_EQ(a[i].made_by, b[i].made_by) << i;
+    }
+  };
+  expect_same(population, breed(experiment, {}, 0, 0, 300, {}, &workers));
+  expect_same(breed(experiment, population, 1, 300, 600), breed(experiment, population, 1, 300, 600, {}, &workers));
 }
 
 TEST(Breeding, WithSmallProbabilitiesAChildStillGoesThroughOneOperator) {
