@@ -1,4 +1,6 @@
 // The command `evodevo`.
+#include <unistd.h>
+
 #include <csignal>
 #include <iostream>
 #include <memory>
@@ -8,7 +10,9 @@
 #include "base/standard_streams.hpp"
 #include "base/text.hpp"
 #include "commands/commands.hpp"
+#include "commands/shell/excerpt.hpp"
 #include "commands/shell/help.hpp"
+#include "commands/shell/terminal.hpp"
 #include "experiment/device.hpp"
 #include "operators/call_watch.hpp"
 #include "operators/crash.hpp"
@@ -34,7 +38,8 @@ int dispatch(const Arguments& arguments) {
   return call(command, {arguments.begin() + 1, arguments.end()});
 }
 
-/// Prints an error message, which may have several lines, and returns `exit_code`.
+/// Prints an error message, which may have several lines, and returns `exit_code`. On a terminal, it also shows the
+/// line of the file at which the message points; other programs get the message alone.
 int complain(const std::exception& error, int exit_code) {
   std::istringstream lines(error.what() + remedy_for(error));
   std::string line;
@@ -42,8 +47,9 @@ int complain(const std::exception& error, int exit_code) {
     std::cerr << before << printable(line, InputError::longest_message) << '\n';
   };
   std::getline(lines, line);
-  say("evodevo: ");
+  say(shows_colours(STDERR_FILENO) ? "\x1b[1;31mevodevo:\x1b[0m " : "evodevo: ");
   while (std::getline(lines, line)) say("");
+  if (isatty(STDERR_FILENO) == 1) std::cerr << excerpt_for(error.what());
   return exit_code;
 }
 

@@ -30,21 +30,27 @@ void print(const std::optional<SceneEffect>& effect) {
     fmt::print(std::cout, "  {:6.4f}/{:6.4f} {:6.4f}", effect->between, *effect->within, *effect->p);
 }
 
-void print(const SceneStudy& study, std::size_t measure, std::size_t cycles) {
+/// The cycles, counted from 0, whose distances are printed.
+struct Cycles {
+  std::size_t first, end;
+};
+
+void print(const SceneStudy& study, std::size_t measure, const Cycles& cycles) {
   std::size_t width = 15;
   for (const Environment& environment : study.environments) width = std::max(width, environment.name.size());
   fmt::print(std::cout, "\n{}\n{:<{}}", body_distances[measure].title, "", 2 * width + 2);
-  for (std::size_t cycle = 1; cycle <= cycles; ++cycle) fmt::print(std::cout, "        after cycle {:2}", cycle);
+  for (std::size_t cycle = cycles.first; cycle < cycles.end; ++cycle)
+    fmt::print(std::cout, "        after cycle {:2}", cycle + 1);
   std::cout << '\n';
   for (const ScenePair& pair : study.pairs) {
     fmt::print(std::cout, "{:<{}} {:<{}}", study.environments[pair.a].name, width, study.environments[pair.b].name,
                width + 1);
-    for (const auto& effect : pair.effects[measure]) print(effect);
+    for (std::size_t cycle = cycles.first; cycle < cycles.end; ++cycle) print(pair.effects[measure].at(cycle));
     std::cout << '\n';
   }
 }
 
-void print(const std::vector<SceneStudy>& studies, std::size_t cycles) {
+void print(const std::vector<SceneStudy>& studies, const Cycles& cycles) {
   std::cout << "mean distance between two scenes / mean distance by start noise within a scene, and p of a permutation "
                "test\n";
   for (const SceneStudy& study : studies) {
@@ -189,7 +195,7 @@ int environments(const Given& given) {
                           static_cast<std::uint32_t>(starts), cycles);
     }));
   if (!given.contains("json")) {
-    print(studies, cycles);
+    print(studies, {given.contains("all") ? 0 : cycles - 1, cycles});
     return 0;
   }
   Json written = Json::array();
@@ -209,7 +215,8 @@ Command environments_command() {
       "be repeated")("starts", value<std::int64_t>("N")->default_value(6),
                      "number of starts in each scene: one with the body as it is born, the others with its masses "
                      "moved at random by up "
-                     "to 1e-4 of its size")("json", "print JSON, with all bodies");
+                     "to 1e-4 of its size")("all", "print the distances after every cycle instead of the last")(
+      "json", "print JSON, with all cycles and all bodies");
   add_experiment_options(options);
   return {
       .name = "environments",
@@ -217,8 +224,10 @@ Command environments_command() {
       .summary = "Compare the bodies that one genome grows in several scenes",
       .text = {"The genome develops in the scene of each experiment, several times with start noise. An experiment "
                "with scenarios adds the scene of each scenario that differs from the scenes so far. For each pair of "
-               "scenes and each cycle, the table gives the mean distance between bodies of the two scenes, the mean "
-               "distance by start noise between bodies of the same scene, and p of a permutation test. All experiments "
+               "scenes, a table gives the mean distance between bodies of the two scenes, the mean "
+               "distance by start noise between bodies of the same scene, and p of a permutation test, after the last "
+               "cycle or, "
+               "with --all, after each. All experiments "
                "need the same [encoding] and [materials]."},
       .examples = {"environments experiments/environments/*.toml --individual 1 --individual 2",
                    "environments experiments/environments/*.toml --run runs/quickstart-1 --json > environments.json"},

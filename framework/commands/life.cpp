@@ -1,9 +1,11 @@
-// evodevo life: lists all edits that development made to a robot.
+// evodevo life: tells how development changed a robot, cycle by cycle or edit by edit.
 #include <fmt/ostream.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "base/json_text.hpp"
 #include "base/text.hpp"
@@ -63,14 +65,24 @@ void print(const Cause& cause, const Measure& measure) {
   if (has_unit) std::cout << ' ' << measure.unit;
 }
 
+/// Returns the beginning of a line, such as "cycle 3  spring-turnover: ".
+std::string title_of(const Event& event, const std::vector<Narrated>& operators) {
+  std::string title = by_none;
+  if (event.op) title = operators.at(*event.op).name;
+  if (event.op && !operators.at(*event.op).is_unique) title += fmt::format(" (operator {})", *event.op);
+  return fmt::format("cycle {}  {}: ", event.cycle, title);
+}
+
+std::string growth_text(const Growth& growth) {
+  return fmt::format("springs grow from {:.4g} to {:.4g} of their full growth", growth.from / growth.whole,
+                     growth.to / growth.whole);
+}
+
 void print(const Event& event, const std::vector<Narrated>& operators) {
   const Narrated* op = event.op ? &operators.at(*event.op) : nullptr;
-  const std::string title =
-      op == nullptr ? by_none : op->name + (op->is_unique ? "" : " (operator " + std::to_string(*event.op) + ")");
-  fmt::print(std::cout, "cycle {}  {}: ", event.cycle, title);
-  if (const auto& growth = event.growth)
-    fmt::print(std::cout, "springs grow from {:.4g} to {:.4g} of their full growth", growth->from / growth->whole,
-               growth->to / growth->whole);
+  std::cout << title_of(event, operators);
+  if (event.growth)
+    std::cout << growth_text(*event.growth);
   else
     fmt::print(std::cout, "{} {}", who(event), event.what);
   if (event.cause) print(*event.cause, op->measure(event.cause->list));
@@ -83,6 +95,60 @@ void print(const Event& event, const std::vector<Narrated>& operators) {
   }
   if (event.stiffness) fmt::print(std::cout, ", stiffness {:.4g} N/m", *event.stiffness);
   std::cout << '\n';
+}
+
+/// Edits of one kind that an operator made after one cycle.
+class Group {
+ public:
+  explicit Group(const Event& first) : first_(first) {}
+
+  bool takes(const Event& event) const {
+    return event.cycle == first_.cycle && event.op == first_.op && event.is_spring() == first_.is_spring() &&
+           event.growth.has_value() == first_.growth.has_value() && std::string_view(event.what) == first_.what;
+  }
+  void add(const Event& event) {
+    ++count_;
+    if (event.cause && std::isfinite(event.cause->number)) causes_.push_back(event.cause->number);
+  }
+  const Event& first() const { return first_; }
+
+  /// Returns a text such as "125 springs gone (stress 0.01 to 0.3 N)".
+  std::string text(const std::vector<Narrated>& operators) const {
+    if (first_.growth) return growth_text(*first_.growth);
+    std::string text = fmt::format("{} {}{} {}", count_, first_.is_spring() ? "spring" : "mass",
+                                   count_ == 1 ? "" : (first_.is_spring() ? "s" : "es"), first_.what);
+    if (causes_.empty()) return text;
+    const Measure measure = operators.at(*first_.op).measure(first_.cause->list);
+    const auto [least, most] = std::minmax_element(causes_.begin(), causes_.end());
+    text += " (" + measure.name + ' ' + short_number(*least);
+    if (*most > *least) text += " to " + short_number(*most);
+    return text + (measure.unit == "1" ? ")" : ' ' + measure.unit + ')');
+  }
+
+ private:
+  Event first_;
+  std::size_t count_ = 0;
+  std::vector<double> causes_;
+};
+
+/// Prints a line for each operator and cycle.
+void print_by_cycle(const std::vector<Event>& events, const std::vector<Narrated>& operators) {
+  std::vector<Group> groups;
+  const auto same_line = [](const Event& a, const Event& b) { return a.cycle == b.cycle && a.op == b.op; };
+  const auto print_line = [&] {
+    if (groups.empty()) return;
+    std::vector<std::string> texts;
+    for (const Group& group : groups) texts.push_back(group.text(operators));
+    std::cout << title_of(groups.front().first(), operators) << joined(texts, ", ") << '\n';
+    groups.clear();
+  };
+  for (const Event& event : events) {
+    if (!groups.empty() && !same_line(groups.front().first(), event)) print_line();
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& one) { return one.takes(event); });
+    if (group == groups.end()) group = groups.emplace(groups.end(), event);
+    group->add(event);
+  }
+  print_line();
 }
 
 /// The report on the life of an individual of a run. The constructor simulates the development again.
@@ -104,8 +170,11 @@ class LifeReport {
     events_ = std::move(told.events);
   }
 
-  void print() const {
-    for (const Event& event : events_) evodevo::print(event, operators_);
+  void print(bool every_edit) const {
+    if (every_edit)
+      for (const Event& event : events_) evodevo::print(event, operators_);
+    else
+      print_by_cycle(events_, operators_);
     const Result& result = individual_.result;
     fmt::print(std::cout, "individual {}: born with {} masses and {} springs, matured with {} and {}; {}{}\n",
                individual_.id, born_.masses.size(), born_.springs.size(), matured_.masses.size(),
@@ -157,7 +226,7 @@ int life(const Given& given) {
   if (given.contains("json"))
     std::cout << json_text(report.json()) << '\n';
   else
-    report.print();
+    report.print(given.contains("all"));
   return 0;
 }
 
@@ -166,7 +235,8 @@ int life(const Given& given) {
 Command life_command() {
   Options options;
   add_individual_option(options);
-  options.add_options()("json", "print JSON");
+  options.add_options()("all", "print every edit instead of a summary of each cycle");
+  options.add_options()("json", "print every edit as JSON");
   add_scenario_option(options, "tell the life in this scenario, in which robots develop");
   add_plugin_option(options);
   return {
@@ -174,10 +244,11 @@ Command life_command() {
       .arguments = {{"DIR"}},
       .summary = "Tell how the body of a robot developed",
       .text =
-          {"It simulates the development again and prints every mass and spring that was added, changed or removed: "
-           "after which cycle, by which operator, and because of which measured value. Masses keep their numbers; a "
-           "spring is named by the two masses that it joins."},
-      .examples = {"life runs/quickstart-1", "life runs/quickstart-1 --individual 531 --json"},
+          {"It simulates the development again and prints how many masses and springs each operator added, changed or "
+           "removed after each cycle, and because of which measured values. With --all it prints every single edit. "
+           "Masses keep their numbers; a spring is named by the two masses that it joins."},
+      .examples = {"life runs/quickstart-1", "life runs/quickstart-1 --all",
+                   "life runs/quickstart-1 --individual 531 --json"},
       .options = options,
       .function = life};
 }

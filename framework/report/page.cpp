@@ -27,11 +27,17 @@ std::string escaped(const std::string& json) {
   return text;
 }
 
+/// The folder that holds bin/evodevo.
+fs::path program_prefix() { return fs::path(boost::dll::program_location().string()).parent_path().parent_path(); }
+
+/// The folder of the viewer, if it has been built.
+fs::path built_viewer() { return program_prefix() / EVODEVO_VIEWER_DIR; }
+
 }  // namespace
 
 fs::path viewer_folder() {
-  const fs::path prefix = fs::path(boost::dll::program_location().string()).parent_path().parent_path();
-  fs::path folder = prefix / EVODEVO_VIEWER_DIR;
+  const fs::path prefix = program_prefix();
+  fs::path folder = built_viewer();
   const bool is_build = fs::exists(prefix / "CMakeCache.txt");
   if (!fs::exists(folder / page_name))
     throw std::runtime_error(folder.string() +
@@ -42,6 +48,8 @@ fs::path viewer_folder() {
                              ", or use tools/evodevo, which does both");
   return folder;
 }
+
+bool has_viewer() { return fs::exists(built_viewer() / page_name); }
 
 std::string page_template() {
   std::ifstream stream(viewer_folder() / page_name);

@@ -11,6 +11,9 @@ namespace evodevo {
 /// it.
 std::filesystem::path viewer_folder();
 
+/// Whether the viewer has been built.
+bool has_viewer();
+
 /// Returns the built page without data. Throws like viewer_folder().
 std::string page_template();
 

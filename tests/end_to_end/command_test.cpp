@@ -193,18 +193,22 @@ TEST_F(Command, LifeTellsEveryEditFromBirthToTheMaturedBody) {
   EXPECT_EQ(pairs, pairs_of(matured));
 
   const std::string id = life.at("individual").dump();
-  const Finished text = evodevo({"life", folder_, "--individual", id});
+  const Finished text = evodevo({"life", folder_, "--all", "--individual", id});
   EXPECT_EQ(text.exit_code, 0);
   EXPECT_THAT(text.output, ContainsRegex("cycle 2  spring-turnover: spring [0-9]+-[0-9]+ gone, mean-force [^ ]+ N\n"));
   EXPECT_THAT(text.output, HasSubstr("individual " + id + ": born with 12 masses"));
   EXPECT_THAT(text.output, ::testing::Not(HasSubstr("warning"))) << "lived again to the same bits";
+  const std::string summary = evodevo({"life", folder_, "--individual", id}).output;
+  EXPECT_THAT(summary, ContainsRegex("cycle 2  spring-turnover: 2 springs gone \\(mean-force [^ ]+ to [^ ]+ N\\), "
+                                     "2 springs come\n"));
+  EXPECT_THAT(summary, ::testing::Not(HasSubstr("spring-turnover: spring ")));
 }
 
 TEST_F(Command, AYokedLifeIsLivedAgainToTheSameBits) {
   const Finished run =
       evodevo({"run", file_, "--out", folder_, "--set", "development.control=random-places", "--threads", "1"});
   ASSERT_EQ(run.exit_code, 0) << run.output;
-  const Finished life = evodevo({"life", folder_});
+  const Finished life = evodevo({"life", folder_, "--all"});
   EXPECT_EQ(life.exit_code, 0);
   EXPECT_THAT(life.output, HasSubstr("cycle 2  spring-turnover: spring "));
   EXPECT_THAT(life.output, ::testing::Not(HasSubstr("warning")));
@@ -222,7 +226,7 @@ TEST_F(Command, LifeTellsOperatorsOfOneNameApartAndTalliesFromForces) {
       evodevo({"run", file, "--out", folder_, "--set", "development.probe=skip-shift", "--set", "development.skip=10"})
           .exit_code,
       0);
-  const Finished text = evodevo({"life", folder_});
+  const Finished text = evodevo({"life", folder_, "--all"});
   for (const char* op : {"spring-turnover \\(operator 0\\)", "spring-turnover \\(operator 1\\)"})
     EXPECT_THAT(text.output,
                 ContainsRegex(std::string(op) + ": spring [0-9]+-[0-9]+ gone, skip-shift -?[0-9]+ points"));
@@ -238,11 +242,15 @@ TEST_F(Command, LifeTellsWhyMassesGoAndHowFarSpringsGrow) {
       evodevo({"run", scratch_.write("growing.toml", text), "--out", folder_, "--set", "encoding.size_range=0.25",
                "--set", "development.probe=skip-shift", "--set", "development.skip=10"});
   ASSERT_EQ(run.exit_code, 0) << run.output;
-  const std::string life = evodevo({"life", folder_}).output;
+  const std::string life = evodevo({"life", folder_, "--all"}).output;
   EXPECT_THAT(life, ContainsRegex("cycle 1  mass-turnover: mass [0-9]+ gone, degree [0-9]+ springs\n"));
   EXPECT_THAT(life, ContainsRegex("cycle 1  mass-turnover: mass 12 come, skip-shift -?[0-9]+ points at "));
   EXPECT_THAT(life, ContainsRegex("cycle 1  ballistic-growth: springs .*from 0 to 0.5 "));
   EXPECT_THAT(life, ContainsRegex("cycle 2  ballistic-growth: springs .*from 0.5 to 1 "));
+  const std::string summary = evodevo({"life", folder_}).output;
+  EXPECT_THAT(summary,
+              ContainsRegex("cycle 1  mass-turnover: 1 mass gone \\(degree [0-9]+ springs\\), .*1 mass come "));
+  EXPECT_THAT(summary, ContainsRegex("cycle 2  ballistic-growth: springs .*from 0.5 to 1 "));
   int masses_gone = 0, growth = 0;
   const auto json = nlohmann::json::parse(evodevo({"life", folder_, "--json"}).output);
   for (const auto& edit : json.at("edits")) {

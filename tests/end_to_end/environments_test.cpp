@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
@@ -136,6 +137,14 @@ TEST_F(Environments, TheTableNamesScenesAndCycles) {
   for (const char* part :
        {"individual 4", "flat", "weak", "after cycle  6", "springs that only one", "body lengths at birth"})
     EXPECT_THAT(finished.output, HasSubstr(part));
+  EXPECT_THAT(finished.output, ::testing::Not(HasSubstr("after cycle  5")));
+  std::istringstream lines(finished.output);
+  for (std::string line; std::getline(lines, line);)
+    if (line.find("weak") != std::string::npos) {
+      EXPECT_LE(line.size(), 80u) << "a row fits a page";
+    }
+  const std::string all = environments({flat_, weak, "--starts", "2", "--all"}).output;
+  EXPECT_THAT(all, testing::naming("after cycle  1", "after cycle  5", "after cycle  6"));
 }
 
 TEST_F(Environments, BodiesAtRandomPlacesAreTheOnesThatHaveGrown) {

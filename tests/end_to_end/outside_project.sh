@@ -78,7 +78,7 @@ genes() { for ((id = 0; id < count; ++id)); do evodevo genes "$1" --individual "
 genes straight >straight.json
 genes elsewhere/moved >moved.json
 cmp straight.json moved.json || fail "the resumed run has other genes"
-diff <(evodevo life straight) <(evodevo life elsewhere/moved) || fail "the best robot of the resumed run lived otherwise"
+diff <(evodevo life straight --all) <(evodevo life elsewhere/moved --all) || fail "the best robot of the resumed run lived otherwise"
 
 # branches have come and gone, and the rate of the mutation has evolved
 sizes=$(awk '/"individual":/ { if (n) print n; n = 0 } /"type": "branch"/ { ++n } END { print n }' straight.json | sort -n)
@@ -86,11 +86,11 @@ sizes=$(awk '/"individual":/ { if (n) print n; n = 0 } /"type": "branch"/ { ++n 
 (($(grep -o '"ln(rate)": [-0-9.e]*' straight.json | sort -u | wc -l) > 10)) || fail "the rate does not evolve"
 
 # the plan has been carried out, and what is recorded can be simulated again
-removed=$(evodevo life elsewhere/moved | grep -c 'outside.plan: spring ') || fail "the plan has removed nothing"
+removed=$(evodevo life elsewhere/moved --all | grep -c 'outside.plan: spring ') || fail "the plan has removed nothing"
 ((removed <= 5)) || fail "the plan has removed $removed springs"
 
 # springs have become harder by a rule that has evolved, and what it remembers has let masses come
-evodevo life elsewhere/moved >life.txt
+evodevo life elsewhere/moved --all >life.txt
 grep -q 'outside.callus: spring .* changed, wear .*, stiffness ' life.txt || fail "the callus has hardened nothing"
 (($(grep -o '"hardening": [-0-9.e]*' straight.json | sort -u | wc -l) > 10)) || fail "the callus does not evolve"
 

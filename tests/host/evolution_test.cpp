@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "commands/run.hpp"
+#include "commands/run/run.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 #include "support/scratch.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "commands/run.hpp"
+#include "commands/run/run.hpp"
 #include "evodevo/helpers/rows.hpp"
 #include "evodevo/helpers/selection/memory.hpp"
 #include "evolution/evolution.hpp"

@@ -56,7 +56,7 @@ def run(program, out, ingredient, value, change, seed):
     folder = out / f"{ingredient.split(',')[0].split(' (')[0]} {value} {seed}".replace(" ", "-")
     if not (folder / "done").exists():
         subprocess.run(["rm", "-rf", folder], check=True)
-        words = [program, "run", *command(change), "--seed", str(seed), "--quiet", "--out", str(folder)]
+        words = [program, "run", *command(change), "--seed", str(seed), "--quiet", "--no-report", "--out", str(folder)]
         subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
         (folder / "done").touch()
     shown = subprocess.run([program, "show", str(folder), "--json"], check=True, capture_output=True, text=True)

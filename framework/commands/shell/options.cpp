@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iostream>
 #include <limits>
 #include <memory>
 #include <string_view>
@@ -184,6 +185,11 @@ std::vector<Override> given_machine(const Given& given) {
 Experiment given_experiment(const std::string& file, const Given& given) {
   return timed("reading " + printable(file) + " and loading its operators",
                [&] { return read_experiment(experiment_source(file, given)); });
+}
+
+void print_warnings(const Experiment& experiment) {
+  for (const std::string& warning : experiment.warnings)
+    std::cerr << "warning: " << printable(warning, InputError::longest_message) << '\n';
 }
 
 std::unique_ptr<Simulator> opened_simulator(const Experiment& experiment) {

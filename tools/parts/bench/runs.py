@@ -47,7 +47,7 @@ def run(program, device, experiment, values):
     with tempfile.TemporaryDirectory() as folder:
         out = f"{folder}/run"
         begin = time.monotonic()
-        command = [program, "run", experiment, "--device", device, "--out", out]
+        command = [program, "run", experiment, "--device", device, "--no-report", "--out", out]
         subprocess.run(
             command + setting({"experiment.verify": 0} | values),
             check=True,

@@ -228,12 +228,12 @@ class Runs:
 
     def _start(self, run, jobs):
         if self._has_begun(run):
-            arguments = ["resume", run.folder]
+            arguments = ["resume", "--no-report", run.folder]
         else:
             shutil.rmtree(run.folder, ignore_errors=True)
             threads = ["--threads", max(1, (os.cpu_count() or 1) // jobs)] if jobs > 1 else []
             options = [*overrides(run.variant), "--seed", run.seed, *threads]
-            arguments = ["run", run.variant.experiment, "--out", run.folder, *options]
+            arguments = ["run", run.variant.experiment, "--no-report", "--out", run.folder, *options]
         with open(run.log, "a") as log:
             # in a process group of its own, so that Ctrl-C reaches only this process, which then asks each run to stop
             command = [self._program, *map(str, arguments)]

@@ -1,4 +1,4 @@
-#include "commands/shell/progress.hpp"
+#include "commands/run/progress.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -26,7 +26,7 @@ double idle_percent(const Share& share, double whole) {
   return whole > 0 ? 100 * std::max(0.0, 1 - share.busy / whole) : 0;
 }
 
-/// Returns a text such as "  16 ranks idle 3 to 8 %".
+/// Returns a text such as "16 ranks idle 3 to 8 %".
 std::string ranks_text(const std::vector<Share>& shares, double whole) {
   double least = 100, most = 0;
   std::size_t present = 0;
@@ -36,7 +36,7 @@ std::string ranks_text(const std::vector<Share>& shares, double whole) {
     least = std::min(least, idle_percent(share, whole));
     most = std::max(most, idle_percent(share, whole));
   }
-  return fmt::format("  {} ranks idle {:.0f} to {:.0f} %", present, least, most);
+  return fmt::format("{} ranks idle {:.0f} to {:.0f} %", present, least, most);
 }
 
 }  // namespace
@@ -51,6 +51,7 @@ ProgressDisplay::ProgressDisplay(const Experiment& experiment, const std::vector
   if (past.empty()) return;
   last_ = past.back();
   evaluations_before_ = last_.evaluations;
+  evaluations_ = static_cast<double>(last_.evaluations);
   for (const Summary& summary : past) {
     diverged_ += summary.diverged;
     refused_ += summary.artefact + summary.passive;
@@ -76,44 +77,66 @@ double ProgressDisplay::seconds_left(double evaluations) const {
   return std::min(left, seconds() / springs * std::max(0.0, springs_left));
 }
 
-std::string ProgressDisplay::line(double evaluations) const {
+std::vector<LinePart> ProgressDisplay::parts(double evaluations) const {
   const double rate = (evaluations - static_cast<double>(evaluations_before_)) / seconds();
   const auto percent = [&](std::int64_t count) {
     return last_.evaluations > 0 ? 100.0 * static_cast<double>(count) / static_cast<double>(last_.evaluations) : 0.0;
   };
   const std::string of = experiment_.objectives.size() > 1 ? " of " + experiment_.objectives.front().name : "";
-  std::string text = fmt::format("generation {}  evaluations {:.0f}/{}  best {}  median {}{}  diverged {:.1f} %",
-                                 last_.generation, evaluations, experiment_.evaluations, optional_text(last_.best),
-                                 optional_text(last_.median), of, percent(diverged_));
-  if (experiment_.verify_front) text += fmt::format("  artefact or passive {:.1f} %", percent(refused_));
-  if (farm_) text += ranks_text(farm_->shares(), seconds());
-  if (rate > 0) text += fmt::format("  {:.3g} evaluations/s  {} left", rate, duration_text(seconds_left(evaluations)));
-  if (stop_) text += "  (stopping after this generation; Ctrl-C again stops now)";
-  return text;
+  std::vector<LinePart> parts;
+  const auto add = [&](int rank, std::string text) { parts.push_back({std::move(text), rank}); };
+  add(1, fmt::format("generation {}", last_.generation));
+  add(0, fmt::format("evaluations {:.0f}/{}", evaluations, experiment_.evaluations));
+  add(0, "best " + optional_text(last_.best));
+  add(3, "median " + optional_text(last_.median) + of);
+  add(5, fmt::format("diverged {:.1f} %", percent(diverged_)));
+  if (experiment_.verify_front) add(5, fmt::format("artefact or passive {:.1f} %", percent(refused_)));
+  if (farm_) add(5, ranks_text(farm_->shares(), seconds()));
+  if (rate > 0) add(4, fmt::format("{:.3g} evaluations/s", rate));
+  if (rate > 0) add(2, duration_text(seconds_left(evaluations)) + " left");
+  if (stop_) add(0, "(stopping after this generation; Ctrl-C again stops now)");
+  return parts;
 }
 
-void ProgressDisplay::show_live(double evaluations) { std::cout << "\r\x1b[K" << line(evaluations) << std::flush; }
+std::string ProgressDisplay::line(std::size_t columns) const {
+  std::string line;
+  for (const std::string& part : fitting_parts(parts(evaluations_), columns))
+    line += (line.empty() ? "" : "  ") + (live_ && part.starts_with("best ") ? bold(part) : part);
+  return line;
+}
+
+void ProgressDisplay::show_live(bool is_last) {
+  constexpr std::chrono::milliseconds least{200};
+  const auto now = std::chrono::steady_clock::now();
+  if (!is_last && now - shown_ < least) return;
+  shown_ = now;
+  // a line of full width would move the cursor to the next line
+  std::cout << "\r\x1b[K" << line(terminal_columns() - 1) << std::flush;
+}
 
 void ProgressDisplay::generation_done(const Summary& summary) {
   last_ = summary;
   diverged_ += summary.diverged;
   refused_ += summary.artefact + summary.passive;
   spring_evaluations_ += summary.spring_evaluations;
-  const auto evaluations = static_cast<double>(summary.evaluations);
+  evaluations_ = static_cast<double>(summary.evaluations);
   if (live_)
-    show_live(evaluations);
+    show_live();
   else
-    remarks() << line(evaluations) << std::endl;
+    remarks() << line(std::string::npos) << std::endl;
 }
 
 void ProgressDisplay::generation_progress(double done) {
   if (!live_) return;
   const auto batch = std::min(experiment_.newborns(), experiment_.evaluations - last_.evaluations);
-  show_live(static_cast<double>(last_.evaluations) + done * static_cast<double>(batch));
+  evaluations_ = static_cast<double>(last_.evaluations) + done * static_cast<double>(batch);
+  show_live();
 }
 
 void ProgressDisplay::finish() {
-  if (live_) std::cout << std::endl;
+  if (!live_) return;
+  show_live(true);
+  std::cout << std::endl;
 }
 
 void print_outcome(const Experiment& experiment, const Archive& archive, const ProgressDisplay& progress) {
@@ -125,9 +148,11 @@ void print_outcome(const Experiment& experiment, const Archive& archive, const P
       std::cout << ", " << experiment.objectives[i].name << ' '
                 << short_quantity(individual.result.objectives[i], experiment.objectives[i].unit);
     std::cout << std::endl;
-    remarks() << "      look at the run: " << program_name() << " show " << archive.folder().string()
-              << "\n      its body:        " << program_name() << " body " << archive.folder().string()
-              << " --individual " << individual.id << '\n';
+    const std::string call = program_name() + ' ', folder = ' ' + archive.folder().string();
+    remarks() << "      look at the run: " << call << "show" << folder << "\n      its body:        " << call << "body"
+              << folder << " --individual " << individual.id << "\n      a film of it:    " << call << "film" << folder
+              << " --out film.mp4"
+              << "\n      test others:     " << call << "verify" << folder << " --best 10\n";
   } else {
     std::cout << "no individual has a fitness; to see why: " << program_name() << " show " << archive.folder().string()
               << '\n';

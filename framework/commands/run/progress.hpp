@@ -5,11 +5,13 @@
 #include <chrono>
 
 #include "cluster/farm.hpp"
+#include "commands/shell/terminal.hpp"
 #include "evolution/evolution.hpp"
 
 namespace evodevo {
 
-/// Displays progress: on a terminal, as one line that is kept up to date; elsewhere, as one line for each generation.
+/// Displays progress: on a terminal, as one line that is kept up to date and is no wider than the terminal; elsewhere,
+/// as one line for each generation.
 class ProgressDisplay {
  public:
   /// `past` has the summaries of the generations that earlier processes made. If `stop` is set, the display says that
@@ -31,8 +33,10 @@ class ProgressDisplay {
   void generation_progress(double done);
   /// Estimates the time until the run has used up the evaluations that the experiment allows, s.
   double seconds_left(double evaluations) const;
-  std::string line(double evaluations) const;
-  void show_live(double evaluations);
+  std::vector<LinePart> parts(double evaluations) const;
+  std::string line(std::size_t columns) const;
+  /// Shows the line, but at most five times a second unless it is the last.
+  void show_live(bool is_last = false);
 
   const Experiment& experiment_;
   const std::atomic<bool>& stop_;
@@ -42,6 +46,8 @@ class ProgressDisplay {
   std::int64_t evaluations_before_ = 0;   ///< evaluations by earlier processes
   double spring_evaluations_before_ = 0;  ///< spring evaluations by earlier processes
   Summary last_;
+  double evaluations_ = 0;                         ///< including those of the generation under way
+  std::chrono::steady_clock::time_point shown_{};  ///< when the line was shown last
   std::int64_t diverged_ = 0, refused_ = 0;
   std::uint64_t spring_evaluations_ = 0;
 };

@@ -2,13 +2,21 @@
 #pragma once
 
 #include "cluster/farm.hpp"
+#include "commands/run/generation_log.hpp"
 #include "evolution/archive/archive.hpp"
 
 namespace evodevo {
 
+/// What a run writes besides its archive.
+struct RunOutput {
+  GenerationLog* log = nullptr;  ///< null: none
+  bool page = false;             ///< report.html in its folder, when it is finished
+};
+
 /// Evolves until the run is finished or interrupted, with the ranks of `farm` or, if it is null, alone. Prints the
 /// outcome and returns the exit code. Throws std::runtime_error if anything fails, for example the simulator's device.
 /// The message gives the cause, the last complete generation and the command that continues the run.
-int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive, Farm* farm = nullptr);
+int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive, Farm* farm = nullptr,
+                      const RunOutput& output = {});
 
 }  // namespace evodevo

@@ -1,8 +1,7 @@
-// evodevo run, resume and check.
-#include "commands/run.hpp"
+// evodevo run and resume.
+#include "commands/run/run.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <iostream>
 
@@ -10,18 +9,15 @@
 #include "cluster/farm.hpp"
 #include "cluster/ranks.hpp"
 #include "commands/commands.hpp"
+#include "commands/run/page.hpp"
+#include "commands/run/progress.hpp"
 #include "commands/shell/builds.hpp"
 #include "commands/shell/notices.hpp"
 #include "commands/shell/options.hpp"
-#include "commands/shell/progress.hpp"
 #include "commands/shell/verification_report.hpp"
-#include "evolution/breeding.hpp"
 #include "evolution/evolution.hpp"
 #include "evolution/record_check.hpp"
 #include "experiment/device.hpp"
-#include "life/birth.hpp"
-#include "life/measurement/top_speed.hpp"
-#include "life/measurement/windows.hpp"
 #include "operators/call_watch.hpp"
 #include "operators/plugin_folders.hpp"
 #include "threads/parallel.hpp"
@@ -145,22 +141,39 @@ std::unique_ptr<Farm> farm_of(const Ranks& ranks, const Experiment& experiment, 
                [&] { return std::make_unique<Farm>(experiment, simulator, *ranks.channel(), setup, options); });
 }
 
-void print_warnings(const Experiment& experiment) {
-  for (const std::string& warning : experiment.warnings)
-    std::cerr << "warning: " << printable(warning, InputError::longest_message) << '\n';
+void add_output_options(Options& options) {
+  options.add_options()("log", value<std::string>("FILE"), "append one JSON object for each generation to this file");
+  options.add_options()("no-report", "do not write report.html when the run is finished");
 }
+
+/// Opens the file of --log. Returns nothing without this option. Throws UsageError if it is a file of the run.
+std::unique_ptr<GenerationLog> given_log(const Given& given, const Experiment& experiment, const Archive& archive) {
+  if (!given.contains("log")) return nullptr;
+  const auto file = given["log"].as<std::string>();
+  refuse_to_overwrite("--log", file, files_of_run(archive.folder()));
+  refuse_to_overwrite("--log", file, libraries_of(experiment));
+  return std::make_unique<GenerationLog>(file);
+}
+
+RunOutput output_of(const Given& given, GenerationLog* log) { return {log, !given.contains("no-report")}; }
 
 }  // namespace
 
-int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive, Farm* farm) {
+int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive, Farm* farm,
+                      const RunOutput& output) {
   remarks() << experiment.name << " on " << simulator.device() << ", " << places_text(simulator, farm) << "; writing "
             << archive.folder().string() << std::endl;
   stop_on_interrupt();
   ProgressDisplay progress(experiment, archive.generations(), stop_requested, farm);
+  Observer observer = progress.observer();
+  observer.generation_done = [&output, display = observer.generation_done](const Summary& summary) {
+    display(summary);
+    if (output.log != nullptr) output.log->add(summary);
+  };
   TimeSpent time;
   try {
-    time = farm ? evolve(experiment, *farm, archive, stop_requested, progress.observer())
-                : evolve(experiment, simulator, archive, stop_requested, progress.observer());
+    time = farm ? evolve(experiment, *farm, archive, stop_requested, observer)
+                : evolve(experiment, simulator, archive, stop_requested, observer);
   } catch (const std::exception& error) {
     progress.finish();
     throw std::runtime_error(error.what() + remedy_for(error) + state_of(archive));
@@ -184,6 +197,7 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
     end_on_interrupt();
     for (const Verification& verification : verify_best(experiment, simulator, archive, count))
       print(verification, experiment.objectives.front());
+    if (output.page) show_run(experiment, simulator, archive);
     return 0;
   }
   std::cout << "interrupted; to continue: " << resume_command_for(archive) << std::endl;
@@ -205,7 +219,8 @@ int run(const Given& given) {
   const fs::path folder =
       given.contains("out") ? fs::path(given["out"].as<std::string>()) : new_run_folder(experiment.name);
   Archive archive = Archive::create(folder, experiment, simulator->device(), journal);
-  return evolve_and_report(experiment, *simulator, archive, farm.get());
+  const std::unique_ptr<GenerationLog> log = given_log(given, experiment, archive);
+  return evolve_and_report(experiment, *simulator, archive, farm.get(), output_of(given, log.get()));
 }
 
 int resume(const Given& given) {
@@ -223,97 +238,8 @@ int resume(const Given& given) {
   warn_of_another_device(*simulator, archive);
   warn_of_other_builds(experiment, *simulator, archive);
   const auto farm = farm_of(ranks, experiment, *simulator, true, given);
-  return evolve_and_report(experiment, *simulator, archive, farm.get());
-}
-
-/// Prints how much memory samples by mass and by spring take, if a fitness operator asks for any.
-void print_sample_memory(const Experiment& experiment) {
-  constexpr std::size_t masses = 1000, springs = 10'000;
-  const Windows windows(experiment, 0);
-  const double small = windows.bytes_after_maturing(0, 0) + windows.bytes_within_life(0, 0),
-               after = windows.bytes_after_maturing(masses, springs),
-               within = windows.bytes_within_life(masses, springs);
-  if (!(after + within > small)) return;
-  const auto megabytes = [](double bytes) { return short_number(bytes / 1e6) + " MB"; };
-  std::cout << "samples: " << megabytes(after) << " after maturing and " << megabytes(within)
-            << " within the life, for a robot of " << masses << " masses and " << springs << " springs; at most "
-            << megabytes(std::max(after, most_sample_bytes)) << " after maturing at once\n";
-}
-
-/// Returns the lengths at birth of those of the first random robots that have a length, m, in ascending order.
-std::vector<double> lengths_at_birth(const Experiment& experiment) {
-  constexpr std::int64_t most = 10;
-  std::vector<double> lengths;
-  const auto count = static_cast<std::size_t>(std::min(most, experiment.newborns()));
-  for (const Individual& robot : breed(experiment, {}, 0, 0, count)) {
-    const BuiltBody built = build_body(decoded(experiment, robot.genome, {.individual = robot.id}));
-    const double length = bounding_box(rest_positions(built.body)).longest_side();
-    if (built.failure.empty() && length > 0) lengths.push_back(length);
-  }
-  std::sort(lengths.begin(), lengths.end());
-  return lengths;
-}
-
-/// Returns a text such as "0.2" or "0.2 to 0.3".
-std::string range_text(double low, double high) {
-  const std::string from = short_number(low), to = short_number(high);
-  return from == to ? from : from + " to " + to;
-}
-
-/// Returns a text such as "0.24 m/s" or, on a slope, "0.3 m/s downhill, and 0.2 m/s uphill,".
-std::string top_speed_text(const Scene& scene) {
-  const auto [uphill, downhill] = std::minmax({top_speed(scene, -1), top_speed(scene, 1)});
-  const std::string fastest = short_number(downhill) + " m/s";
-  if (uphill == downhill) return fastest;
-  return fastest + " downhill, and " + (uphill > 0 ? short_number(uphill) + " m/s" : "nothing") + " uphill,";
-}
-
-/// Prints what limits the speed of robots that move by friction. `lengths` are those of some robots, m, in ascending
-/// order; `window` is the time during which the first objective is measured, s; 0: it is not a time in this scene.
-void print_top_speed(const Scene& scene, const std::vector<double>& lengths, double window) {
-  const double fastest = std::max(top_speed(scene, -1), top_speed(scene, 1));
-  if (std::isinf(fastest)) {
-    std::cout << "there is no damping, so only its muscles limit the speed of a robot\n";
-    return;
-  }
-  std::cout << "friction keeps up at most " << top_speed_text(scene) << " against the damping";
-  if (!lengths.empty()) {
-    const double low = fastest / lengths.back(), high = fastest / lengths.front();
-    std::cout << ": " << range_text(low, high) << " body lengths per second, ";
-    if (window > 0)
-      std::cout << "or " << range_text(low * window, high * window) << " in the window of " << short_number(window)
-                << " s, ";
-    std::cout << "for the first random robots, which are " << range_text(lengths.front(), lengths.back())
-              << " m long at birth";
-  }
-  std::cout << '\n';
-}
-
-/// Prints it for each scene in which robots are measured.
-void print_top_speeds(const Experiment& experiment) {
-  std::vector<std::pair<std::string, const Scene*>> scenes;
-  if (experiment.scenarios.empty()) scenes.emplace_back("", &experiment.scene);
-  for (const Scenario& scenario : experiment.scenarios)
-    scenes.emplace_back(" in scenario " + scenario.name, &scenario.scene);
-  std::erase_if(scenes, [](const auto& named) { return !moves_by_friction(*named.second); });
-  if (scenes.empty()) return;
-  const std::vector<double> lengths = lengths_at_birth(experiment);
-  const std::optional<Request> request = first_objective_request(experiment);
-  const double window = request && !request->cycle ? request->window : 0;
-  for (const auto& [where, scene] : scenes) {
-    std::cout << "top speed" << where << ": ";
-    print_top_speed(*scene, lengths, window);
-  }
-}
-
-int check(const Given& given) {
-  const auto file = given["EXPERIMENT.toml"].as<std::string>();
-  const Experiment experiment = given_experiment(file, given);
-  print_warnings(experiment);
-  print_sample_memory(experiment);
-  print_top_speeds(experiment);
-  std::cout << file << ": ok\n";
-  return 0;
+  const std::unique_ptr<GenerationLog> log = given_log(given, experiment, archive);
+  return evolve_and_report(experiment, *simulator, archive, farm.get(), output_of(given, log.get()));
 }
 
 }  // namespace
@@ -321,6 +247,7 @@ int check(const Given& given) {
 Command run_command() {
   Options options;
   options.add_options()("out", value<std::string>("DIR"), "folder of the run; default: a new one in runs/");
+  add_output_options(options);
   add_journal_option(options);
   add_mixed_option(options);
   add_experiment_options(options);
@@ -329,7 +256,8 @@ Command run_command() {
       .arguments = {{"EXPERIMENT.toml"}},
       .summary = "Evolve robots",
       .text = {"The run writes all individuals of all generations into its folder, and verifies its best individual "
-               "at the end. Ctrl-C ends it after the current generation, a second Ctrl-C ends it at once; `resume` "
+               "at the end. Then it shows its best robots on a page, if the viewer has been built. Ctrl-C ends it "
+               "after the current generation, a second Ctrl-C ends it at once; `resume` "
                "continues it. Results do not depend on the numbers of threads, GPUs and processes, except with "
                "--mixed. A run uses all equal GPUs, and all processes that mpirun or srun starts."},
       .examples = {"run experiments/quickstart.toml",
@@ -343,6 +271,7 @@ Command resume_command() {
   Options options;
   options.add_options()("allow-other-versions",
                         "continue even if an operator has another version than when the run began");
+  add_output_options(options);
   add_journal_option(options);
   add_mixed_option(options);
   add_machine_options(options);
@@ -356,19 +285,6 @@ Command resume_command() {
       .examples = {"resume runs/quickstart-1"},
       .options = options,
       .function = resume};
-}
-
-Command check_command() {
-  Options options;
-  add_experiment_options(options);
-  return {.name = "check",
-          .arguments = {{"EXPERIMENT.toml"}},
-          .summary = "Check an experiment without running it",
-          .text = {"It reads the experiment, loads its operators and checks all values. An error names the place, the "
-                   "value and the remedy. It also prints the top speed that friction and damping allow in the scene."},
-          .examples = {"check experiments/paper.toml", "check my.toml --set experiment.population=100"},
-          .options = options,
-          .function = check};
 }
 
 }  // namespace evodevo

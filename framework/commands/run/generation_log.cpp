@@ -1,0 +1,47 @@
+#include "commands/run/generation_log.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "base/json_text.hpp"
+#include "base/text.hpp"
+#include "commands/shell/command.hpp"
+
+namespace evodevo {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json optional_json(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+}  // namespace
+
+GenerationLog::GenerationLog(const std::filesystem::path& file) : file_(file), stream_(file, std::ios::app) {
+  if (!stream_)
+    throw UsageError("--log " + printable(file.string()) + ": " + std::strerror(errno) +
+                     "; give a file in a folder that can be written to");
+}
+
+void GenerationLog::add(const Summary& summary) {
+  if (failed_) return;
+  const Json line = {{"generation", summary.generation},
+                     {"evaluations", summary.evaluations},
+                     {"best", optional_json(summary.best)},
+                     {"median", optional_json(summary.median)},
+                     {"diverged", summary.diverged},
+                     {"invalid", summary.invalid},
+                     {"artefact", summary.artefact},
+                     {"passive", summary.passive},
+                     {"clones", summary.clones},
+                     {"spring_evaluations", summary.spring_evaluations},
+                     {"wall_time", summary.wall_time}};
+  stream_ << line.dump() << std::endl;
+  if (stream_) return;
+  failed_ = true;
+  std::cerr << "warning: --log " + printable(file_.string()) + ": " + std::strerror(errno) +
+                   "; it ends with the generation before " + std::to_string(summary.generation) + '\n';
+}
+
+}  // namespace evodevo

@@ -1,0 +1,27 @@
+// A log of a run for other programs.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+
+#include "evolution/population.hpp"
+
+namespace evodevo {
+
+/// Appends one line to a file for each generation: a JSON object with the members of Summary under the names that
+/// `show --json` uses. A missing value is null.
+class GenerationLog {
+ public:
+  /// Throws UsageError if the file cannot be opened.
+  explicit GenerationLog(const std::filesystem::path& file);
+
+  /// Adds a line. If it cannot be written, the log ends there: a warning says so once, and the run goes on.
+  void add(const Summary& summary);
+
+ private:
+  std::filesystem::path file_;
+  std::ofstream stream_;
+  bool failed_ = false;
+};
+
+}  // namespace evodevo

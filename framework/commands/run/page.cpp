@@ -1,0 +1,55 @@
+#include "commands/run/page.hpp"
+
+#include <fmt/format.h>
+
+#include <exception>
+#include <iostream>
+
+#include "base/output_file.hpp"
+#include "base/text.hpp"
+#include "commands/shell/notices.hpp"
+#include "report/page.hpp"
+#include "report/report.hpp"
+
+namespace evodevo {
+namespace {
+
+constexpr const char* page_of_run = "report.html";
+
+std::string report_command(const Archive& archive) {
+  const std::string folder = archive.folder().string();
+  return program_name() + " report " + folder + " --out " + (archive.folder() / page_of_run).string();
+}
+
+}  // namespace
+
+std::string link_to(const std::filesystem::path& file) {
+  std::string link = "file://";
+  for (const char c : std::filesystem::absolute(file).lexically_normal().string()) {
+    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                          std::string_view("-._~/").find(c) != std::string_view::npos;
+    link += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return link;
+}
+
+void show_run(const Experiment& experiment, Simulator& simulator, const Archive& archive) {
+  if (!has_viewer()) {
+    remarks() << "page:  none yet, because the viewer has not been built; make it with `" << report_command(archive)
+              << '`' << std::endl;
+    return;
+  }
+  try {
+    const std::filesystem::path file = archive.folder() / page_of_run;
+    remarks() << "page:  " << std::flush;
+    const std::string page =
+        filled_page(page_template(), report_data({reported_run(archive, experiment, simulator, Cast(), page_budget)}));
+    write_file(file, page);
+    remarks() << link_to(file) << std::endl;
+  } catch (const std::exception& error) {
+    std::cerr << "\nwarning: no page: " << printable(error.what()) << "; " << report_command(archive)
+              << " makes it later\n";
+  }
+}
+
+}  // namespace evodevo

@@ -1,0 +1,31 @@
+// The terminal to which a command prints.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace evodevo {
+
+/// Whether a file descriptor is a terminal that shows colours: not if the variable NO_COLOR is set to anything, or if
+/// TERM is "dumb".
+bool shows_colours(int descriptor);
+
+/// Returns `text` in bold if standard output shows colours.
+std::string bold(const std::string& text);
+
+/// The number of columns of the terminal on standard output: as the system says, otherwise as the variable COLUMNS
+/// says, otherwise 80.
+std::size_t terminal_columns();
+
+/// A part of a line.
+struct LinePart {
+  std::string text;  ///< one column for each character
+  int rank = 0;      ///< parts of the highest rank are left out first; those of rank 0 stay
+};
+
+/// Returns the parts that fit into `columns` together, separated by two spaces. Of parts of equal rank, the last is
+/// left out first. If those of rank 0 do not fit, the line is cut.
+std::vector<std::string> fitting_parts(std::vector<LinePart> parts, std::size_t columns);
+
+}  // namespace evodevo
