@@ -208,7 +208,9 @@ case_tests() {
   [ "$(times 'EVODEVO_TESTS=OFF')" = 1 ] || fail "a command has the tests configured"
   call tools/test -R some
   succeeded
-  for package in libgtest-dev libgmock-dev python3 python3-matplotlib python3-scipy; do has $package; done
+  for package in libgtest-dev libgmock-dev python3 python3-matplotlib python3-scipy python3-pandas; do
+    has $package
+  done
   [ "$(times 'EVODEVO_TESTS=ON')" = 1 ] || fail "the tests are not configured"
   grep -q '^ctest .*-R some' "$called" || fail "no test is run"
   call tools/test

@@ -1,0 +1,148 @@
+"""Tests the Python package: what it reads of a run is what the program says of it."""
+
+import json
+import sqlite3
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import numpy as np
+import pandas as pd
+from package import evodevo as call
+from package import make_run
+
+import evodevo
+
+
+class OfASmallRun(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.folder = make_run(cls.scratch.name)
+        cls.run_ = evodevo.Run(cls.folder)
+        cls.shown = json.loads(call("show", cls.folder, "--json"))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    def test_has_the_experiment_with_every_default(self):
+        self.assertEqual(self.run_.experiment["experiment"]["population"], 6)
+        self.assertEqual(self.run_.experiment["scene"]["floor"]["stiffness"], 1e6)
+        self.assertIn("small", repr(self.run_))
+
+    def test_generations_are_those_that_show_prints(self):
+        table = self.run_.generations
+        self.assertEqual(len(table), len(self.shown["generations"]))
+        for generation, row in zip(self.shown["generations"], table.reset_index().to_dict("records")):
+            for name, value in row.items():
+                self.assertEqual(value, generation[name], name)
+        self.assertEqual(table.attrs["units"]["best"], "body lengths")
+
+    def test_individuals_have_a_column_for_each_score(self):
+        table = self.run_.individuals
+        self.assertEqual(len(table), 24)
+        for name in ("distance", "actuation-work", "height"):
+            self.assertTrue(table.loc[table["status"] == "ok", name].notna().all(), name)
+        self.assertEqual(table.attrs["units"]["actuation-work"], self.run_.objectives.unit[1])
+        best = self.shown["best"]
+        self.assertEqual(self.run_.best().index[0], best["individual"] if "individual" in best else best["id"])
+        self.assertTrue(self.run_.best(24)["distance"].is_monotonic_decreasing)
+
+    def test_members_are_those_who_lived(self):
+        last = self.run_.members[self.run_.members["generation"] == 3]["individual"]
+        living = self.run_.individuals[self.run_.individuals["died"].isna()]
+        self.assertEqual(set(last), set(living.index))
+
+    def test_genes_are_those_that_the_program_prints(self):
+        self.compare_genes(self.run_, self.folder, 5)
+
+    def compare_genes(self, run, folder, individual):
+        printed = json.loads(call("genes", folder, "--individual", individual, "--json"))
+        wanted = [(section["owner"], number, block["type"], name)
+                  for section in printed["sections"]
+                  for number, block in enumerate(section["blocks"]) for name in block["genes"]]
+        table = run.genes(individual)
+        self.assertEqual([tuple(row) for row in table[["section", "block", "type", "gene"]].to_numpy()], wanted)
+        np.testing.assert_array_equal(table["value"], run.genome(individual))
+        first = next(iter(printed["sections"][0]["blocks"][0]["genes"].values()))
+        if isinstance(first, float):
+            self.assertAlmostEqual(first, table["value"][0], places=6)
+
+    def test_genes_of_genomes_whose_blocks_come_and_go(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = make_run(scratch, "neat", "add-node")
+            run = evodevo.Run(folder)
+            youngest = run.individuals[run.individuals["made_by"] != "random"].index[-1]
+            self.compare_genes(run, folder, youngest)
+            self.assertNotEqual(len(run.genome(youngest)), len(run.genome(0)))
+
+    def test_a_lineage_ends_with_a_founder(self):
+        line = self.run_.lineage(self.run_.individuals["parent"].last_valid_index())
+        self.assertGreater(len(line), 1)
+        self.assertTrue(pd.isna(line["parent"].iloc[-1]))
+        self.assertTrue((line["parent"].iloc[:-1].to_numpy() == line.index[1:].to_numpy()).all())
+
+    def test_a_life_leads_from_one_body_to_the_other(self):
+        champion = self.run_.best().index[0]
+        born, matured = self.run_.body(champion), self.run_.body(champion, matured=True)
+        self.assertEqual(born.positions.shape, (len(born.masses), 3))
+        self.assertEqual(born.springs.shape, (len(born.rest_lengths), 2))
+        self.assertGreater(born.size, 0)
+        self.assertEqual(born.time, 0)
+        self.assertAlmostEqual(matured.time, 0.1)
+        life = self.run_.life(champion)
+        changes = life["event"].value_counts()
+        self.assertEqual(len(matured.springs), len(born.springs) + changes.get("come", 0) - changes.get("gone", 0))
+        self.assertTrue((life["cause"].dropna() >= 0).all())
+
+    def test_motion_begins_with_the_matured_body(self):
+        champion = self.run_.best().index[0]
+        times, positions = self.run_.motion(champion, 0.1)
+        matured = self.run_.body(champion, matured=True)
+        self.assertEqual(positions.shape, (len(times), len(matured.masses), 3))
+        self.assertAlmostEqual(times[-1] - times[0], 0.1, places=2)
+        self.assertLess(np.abs(positions[0] - positions[1]).max(), 0.05)
+
+    def test_verifications_and_queries(self):
+        self.assertEqual(self.run_.verifications["trial"].iloc[0], "again")
+        counted = self.run_.query("SELECT count(*) AS n FROM individuals WHERE born = ?", 0)["n"][0]
+        self.assertEqual(counted, 6)
+
+    def test_what_is_not_there_is_named(self):
+        with self.assertRaisesRegex(evodevo.ArchiveError, "999.*0 to 23"):
+            self.run_.genes(999)
+        with self.assertRaisesRegex(evodevo.ArchiveError, "nowhere.*run.sqlite"):
+            evodevo.Run("/nowhere")
+        with self.assertRaisesRegex(evodevo.ProgramError, "999"):
+            self.run_.body(999)
+        with mock.patch.dict("os.environ", {"EVODEVO_PROGRAM": "/no/such/program"}):
+            with self.assertRaisesRegex(evodevo.ProgramError, "/no/such/program.*EVODEVO_PROGRAM"):
+                self.run_.body(0)
+
+    def test_another_format_is_refused(self):
+        with tempfile.TemporaryDirectory(prefix="odd #name? %41 ") as scratch:
+            folder = make_run(scratch)
+            self.assertEqual(len(evodevo.Run(folder).generations), 4)
+            with sqlite3.connect(folder / "run.sqlite") as connection:
+                connection.execute("UPDATE record SET value = '1' WHERE key = 'format'")
+            with self.assertRaisesRegex(evodevo.ArchiveError, "format 1, .*12"):
+                evodevo.Run(folder)
+            (folder / "run.sqlite").write_bytes(b"no database" * 500)
+            with self.assertRaisesRegex(evodevo.ArchiveError, "run.sqlite"):
+                evodevo.Run(folder)
+
+    def test_the_format_and_the_version_are_those_of_the_program(self):
+        from evodevo import run as module
+
+        root = Path(__file__).resolve().parents[2]
+        schema = (root / "framework/evolution/archive/README.md").read_text(encoding="utf-8")
+        self.assertIn(f"this page describes format {module.FORMAT}.", schema)
+        self.assertEqual(call("--version").split()[1], evodevo.__version__)
+        self.assertIn(f'version = "{evodevo.__version__}"',
+                      (root / "tools/python/pyproject.toml").read_text(encoding="utf-8"))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,218 @@
+"""The archive of a run. framework/evolution/archive/README.md describes its tables."""
+
+import functools
+import json
+import pathlib
+import sqlite3
+import tempfile
+import tomllib
+
+import numpy as np
+import pandas as pd
+
+from .body import Body
+from .errors import ArchiveError
+from .program import json_of, output_of
+
+FORMAT = 12  # of the archive
+
+
+def _gene_name(names, count, gene):
+    """Returns the name of a gene of a block of `count` genes, as `evodevo genes` does. The last name is that of all
+    further genes, too, which are counted."""
+    listed = len(names)
+    name = names.iloc[min(gene, listed - 1)]
+    if count <= listed or gene + 1 < listed:
+        return name or str(gene)
+    return f"{name} {gene + 1 - listed}".strip()
+
+
+class Run:
+    """A run. It may still be going on; each attribute is read when it is first used, and `Run` again reads it anew.
+
+    Columns have the names of the archive's tables. `DataFrame.attrs["units"]` has the units of those that are
+    quantities. Raises ArchiveError if the folder is no run, or is in another format.
+    """
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+        file = self.folder / "run.sqlite"
+        if not file.is_file():
+            raise ArchiveError(f"{folder}: is no run, since it has no file run.sqlite; give the folder of a run")
+        # a path may have characters that mean something in a URI
+        self._connection = sqlite3.connect(f"{file.resolve().as_uri()}?mode=ro", uri=True)
+        try:
+            self.record = dict(self._connection.execute("SELECT key, value FROM record"))
+        except sqlite3.DatabaseError as error:
+            raise ArchiveError(f"{file}: {error}; put back an undamaged copy of it") from error
+        found = self.record.get("format")
+        if found != str(FORMAT):
+            raise ArchiveError(f"{file}: has format {found}, and this package reads {FORMAT}; use that of evodevo "
+                               f"{self.record.get('evodevo')}")
+
+    def __repr__(self):
+        return f"Run({str(self.folder)!r}: {self.record['name']}, seed {self.record['seed']})"
+
+    def query(self, sql, *values):
+        """Returns the rows of an SQL query as a DataFrame. `values` stand in for the question marks."""
+        return pd.read_sql_query(sql, self._connection, params=values)
+
+    # ---- the whole run ----
+
+    @functools.cached_property
+    def experiment(self):
+        """The experiment with every default, as nested dictionaries like its TOML."""
+        return tomllib.loads(self.record["experiment"])
+
+    @functools.cached_property
+    def objectives(self):
+        """The objectives by position: name, unit, maximise."""
+        table = self.query("SELECT * FROM objectives ORDER BY position").set_index("position")
+        return table.astype({"maximise": bool})
+
+    @functools.cached_property
+    def measures(self):
+        """The scores that are not objectives by position: name, unit, role, low, high, bins."""
+        return self.query("SELECT * FROM measures ORDER BY position").set_index("position")
+
+    @functools.cached_property
+    def generations(self):
+        """A row for each generation: evaluations (so far), best and median of the first objective, numbers of newborns
+        by status, clones, spring_evaluations, wall_time (s)."""
+        table = self.query("SELECT * FROM generations ORDER BY generation").set_index("generation")
+        unit = self.objectives.unit.iloc[0]
+        table.attrs["units"] = {"best": unit, "median": unit, "wall_time": "s"}
+        return table
+
+    @functools.cached_property
+    def individuals(self):
+        """A row for each individual that ever lived, by id: born, died (missing while it lives), origin, parent, mate,
+        made_by, provenance, status, reason, ended_at (s), spring_evaluations, and a column for each objective and each
+        measure, under its name. Those without a fitness have no scores. If several have one name, the later ones
+        have their position behind it, as in distance_1."""
+        table = self.query("SELECT id, born, died, origin, parent, mate, made_by, provenance, status, reason, ended_at, "
+                           "spring_evaluations FROM individuals ORDER BY id").set_index("id")
+        table = table.astype({"died": "Int64", "parent": "Int64", "mate": "Int64", "ended_at": float})
+        units = {"ended_at": "s"}
+        for kinds, rows, key in ((self.objectives, "scores", "objective"), (self.measures, "measured", "measure")):
+            for position, kind in kinds.iterrows():
+                name = kind["name"] if kind["name"] not in table else f"{kind['name']}_{position}"
+                values = self.query(f"SELECT individual, value FROM {rows} WHERE {key} = ?", position)
+                table[name] = values.set_index("individual")["value"]
+                units[name] = kind["unit"]
+        table.attrs["units"] = units
+        return table
+
+    @functools.cached_property
+    def tests(self):
+        """The scores in each repeat of each scenario: individual, scenario, repeat, objective, value."""
+        return self.query("SELECT individual, scenarios.name AS scenario, repeat, objectives.name AS objective, value "
+                          "FROM tests JOIN scenarios USING (scenario) JOIN objectives ON position = objective "
+                          "ORDER BY individual, tests.scenario, repeat, tests.objective")
+
+    @functools.cached_property
+    def verifications(self):
+        """The trials of verified individuals: individual, trial, status, reason, value (of the first objective)."""
+        return self.query("SELECT individual, trial, status, reason, value FROM verifications "
+                          "ORDER BY individual, position")
+
+    @functools.cached_property
+    def members(self):
+        """The survivors of each generation: generation, individual, age (generations)."""
+        return self.query("SELECT * FROM members ORDER BY generation, individual")
+
+    def best(self, count=1):
+        """Returns the rows of `individuals` with the best first objective of the whole run, the best first. Of equal
+        ones, the older comes first."""
+        objective = self.objectives.iloc[0]
+        scored = self.individuals.dropna(subset=[objective["name"]])
+        return scored.sort_values(objective["name"], ascending=not objective["maximise"], kind="stable").head(count)
+
+    # ---- one individual ----
+
+    def _row(self, individual, columns):
+        row = self._connection.execute(f"SELECT {columns} FROM individuals WHERE id = ?", (int(individual),)).fetchone()
+        if row is None:
+            raise ArchiveError(f"{self.folder}: has no individual {individual}; ids go from 0 to "
+                               f"{len(self.individuals) - 1}")
+        return row
+
+    def genome(self, individual):
+        """Returns the genes of an individual as [genes] numpy.float32, section by section."""
+        return np.frombuffer(self._row(individual, "genes")[0], "<f4").copy()
+
+    def genes(self, individual):
+        """Returns a row for each gene of an individual, in the order of `genome`: section (the operator that owns it),
+        block (counted from 0 in its section), type (of the block), gene (its name, as `evodevo genes` gives it),
+        value, low, high (bounds of a real gene)."""
+        values = self.genome(individual)
+        types = self.query("SELECT type, section, owner, block_types.name FROM block_types JOIN sections USING (section)")
+        types = types.set_index("type")
+        kinds = dict(tuple(self.query("SELECT * FROM gene_types ORDER BY type, position").groupby("type")))
+        rows, first, blocks_in = [], 0, {}
+        for kind, count in self._blocks(individual):
+            section, owner, name = types.loc[kind]
+            block = blocks_in[section] = blocks_in.get(section, -1) + 1
+            genes = kinds[kind]
+            for i in range(count):
+                gene = genes.iloc[min(i, len(genes) - 1)]  # the last describes all further ones
+                rows.append((owner, block, name, _gene_name(genes["name"], count, i), values[first + i], gene["low"],
+                             gene["high"]))
+            first += count
+        return pd.DataFrame(rows, columns=["section", "block", "type", "gene", "value", "low", "high"])
+
+    def _blocks(self, individual):
+        """Returns the type and the number of genes of each block of a genome."""
+        fixed = self.query("SELECT block_types.section, type, genes FROM first_blocks JOIN block_types USING (type) "
+                           "ORDER BY block")
+        stored = self._row(individual, "blocks")[0]
+        if stored is None:
+            return list(zip(fixed["type"], fixed["genes"]))
+        types = self.query("SELECT type, section, least, most FROM block_types").set_index("type")
+        own = np.frombuffer(stored, np.dtype([("type", "<u4"), ("genes", "<u4"), ("id", "<u8")]))
+        blocks = []
+        for section, of_section in types.groupby("section"):
+            if (of_section["least"] == of_section["most"]).all():
+                rows = fixed[fixed["section"] == section]
+                blocks += zip(rows["type"], rows["genes"])
+            else:
+                blocks += [(int(one["type"]), int(one["genes"])) for one in own
+                           if types.at[int(one["type"]), "section"] == section]
+        return blocks
+
+    def lineage(self, individual):
+        """Returns the rows of `individuals` from this one back to the random individual that it descends from, through
+        parents whose copies were varied; the founder comes last."""
+        ids, at = [], individual
+        self._row(individual, "id")
+        while not pd.isna(at):
+            ids.append(int(at))
+            at = self.individuals.at[int(at), "parent"]
+        return self.individuals.loc[ids]
+
+    def life(self, individual):
+        """Returns the edits that development made to a robot, a row for each, in their order: cycle, operator, event,
+        spring (two numbers of masses) or mass, cause, measure, unit, and so on; the columns are those of `evodevo life
+        --json`. Simulates the development again with `program()`."""
+        told = json_of("life", self.folder, "--individual", individual, "--json")
+        return pd.DataFrame(told["edits"])
+
+    def body(self, individual, matured=False):
+        """Returns the Body of an individual, as it was born or, if `matured`, after its development, which is then
+        simulated again with `program()`."""
+        options = ["--matured"] if matured else []
+        return Body.from_json(json_of("body", self.folder, "--individual", individual, *options))
+
+    def motion(self, individual, seconds):
+        """Returns how a matured robot moves in the scene of the run for `seconds`: [frames] times since birth (s) and
+        [frames, masses, 3] positions (m), with a frame about every 0.01 s. Simulates it with `program()`."""
+        body = self.body(individual, matured=True)
+        with tempfile.TemporaryDirectory() as scratch:
+            scratch = pathlib.Path(scratch)
+            (scratch / "body.json").write_text(json.dumps(body.json), encoding="utf-8")
+            (scratch / "experiment.toml").write_text(self.record["experiment"], encoding="utf-8")
+            output_of("simulate", scratch / "body.json", scratch / "experiment.toml", "--duration", seconds,
+                      "--trajectory", scratch / "motion.csv", "--quiet")
+            table = pd.read_csv(scratch / "motion.csv")
+        times = table["time"].unique()
+        return times, table[["x", "y", "z"]].to_numpy().reshape(len(times), -1, 3)
