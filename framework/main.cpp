@@ -30,7 +30,7 @@ int dispatch(const Arguments& arguments) {
     return 0;
   }
   if (arguments.front() == "--version") {
-    std::cout << "evodevo " EVODEVO_VERSION "\n";
+    print_version(std::cout);
     return 0;
   }
   const Command& command = command_named(arguments.front());

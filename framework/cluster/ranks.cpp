@@ -20,9 +20,11 @@ namespace {
 
 constexpr const char* library_name = "libevodevo-mpi.so";
 
+std::filesystem::path mpi_library() { return builtin_plugin_folder().parent_path() / library_name; }
+
 /// The library stays loaded as long as the channel exists.
 std::shared_ptr<Channel> opened_channel(int processes) {
-  const std::filesystem::path file = builtin_plugin_folder().parent_path() / library_name;
+  const std::filesystem::path file = mpi_library();
   const std::string started = "started as " + std::to_string(processes) + " processes";
   if (!std::filesystem::exists(file))
     throw std::runtime_error(started + ", but this evodevo cannot use MPI, because " + file.string() +
@@ -60,6 +62,8 @@ std::pair<int, bool> usable_cores() {
 }
 
 }  // namespace
+
+bool has_mpi() { return std::filesystem::exists(mpi_library()); }
 
 int started_processes() {
   // Open MPI; MPICH, Intel MPI and Slurm's own PMI; Slurm's srun

@@ -33,6 +33,9 @@ class Ranks {
   std::shared_ptr<Channel> channel_;
 };
 
+/// Whether evodevo was built with MPI, so that a launcher can start several processes.
+bool has_mpi();
+
 /// Returns the number of processes that a launcher says it has started together, according to the environment of this
 /// process; 1 without a launcher.
 int started_processes();

@@ -1,6 +1,7 @@
 // The commands of `evodevo`.
 #pragma once
 
+#include <ostream>
 #include <string_view>
 #include <vector>
 
@@ -28,6 +29,9 @@ Command conform_command();
 Command help_command();
 Command completion_command();
 Command man_command();
+
+/// Prints the version, the build, the features and the devices that can be used.
+void print_version(std::ostream& stream);
 
 /// Returns all commands, in the order in which help lists them.
 const std::vector<Command>& commands();

@@ -4,9 +4,16 @@
 #include <iostream>
 
 #include "base/text.hpp"
+#include "cluster/ranks.hpp"
 #include "commands/commands.hpp"
 #include "commands/shell/completion.hpp"
 #include "commands/shell/manual.hpp"
+#include "cpu/simulator.hpp"
+#include "report/page.hpp"
+#include "threads/parallel.hpp"
+#ifdef EVODEVO_CUDA
+#include "cuda/runtime/cuda_simulator.hpp"
+#endif
 
 namespace evodevo {
 namespace {
@@ -39,7 +46,37 @@ int man(const Given&) {
   return 0;
 }
 
+/// Returns a text such as "cuda, NVIDIA H200, sm_90 (2 GPUs)", or why there is none.
+std::string gpu_text() {
+#ifdef EVODEVO_CUDA
+  if (const std::string obstacle = why_cuda_is_unusable(); !obstacle.empty()) return "no GPU: " + obstacle;
+  const std::size_t count = equal_gpus().size();
+  return make_cuda_group({}, {}, 1)->device() + (count > 1 ? " (" + std::to_string(count) + " GPUs)" : "");
+#else
+  return "no GPU: this program was built without CUDA";
+#endif
+}
+
 }  // namespace
+
+void print_version(std::ostream& stream) {
+  const auto whether = [](bool is_there) { return is_there ? "yes" : "no"; };
+#ifdef EVODEVO_CUDA
+  constexpr bool cuda = true;
+#else
+  constexpr bool cuda = false;
+#endif
+#ifdef __clang__
+  constexpr const char* compiler = __VERSION__;
+#else
+  constexpr const char* compiler = "GCC " __VERSION__;
+#endif
+  const int cores = thread_count(0);
+  stream << "evodevo " EVODEVO_VERSION "\nbuild: " EVODEVO_BUILD_TYPE ", " << compiler << "\nfeatures: CUDA "
+         << whether(cuda) << ", MPI " << whether(has_mpi()) << ", viewer " << whether(has_viewer())
+         << "\ndevices: " << make_cpu_simulator({}, {}, 1)->device() << " (" << cores
+         << (cores == 1 ? " core" : " cores") << "); " << gpu_text() << '\n';
+}
 
 Command help_command() {
   return {.name = "help",

@@ -12,6 +12,7 @@
 #include "commands/shell/topics.hpp"
 #include "core/slow_step.hpp"
 #include "support/experiments.hpp"
+#include "support/messages.hpp"
 #include "support/process.hpp"
 #include "support/scratch.hpp"
 
@@ -300,6 +301,16 @@ TEST(SlowSteps, AreToldToTheListenerFromBeginToEnd) {
   }
   set_slow_step_listener(nullptr);
   EXPECT_THAT(told, ElementsAre("compiling begins", "work", "compiling ends"));
+}
+
+TEST(Version, NamesTheBuildAndWhatItCanUse) {
+  const testing::Finished finished = testing::run({EVODEVO_PROGRAM, "--version"});
+  EXPECT_EQ(finished.exit_code, 0);
+  EXPECT_THAT(finished.output, testing::at_place("evodevo " EVODEVO_VERSION "\nbuild: ", "\nfeatures: CUDA ", ", MPI ",
+                                                 ", viewer ", "\ndevices: cpu, ", "core"));
+#ifndef EVODEVO_CUDA
+  EXPECT_THAT(finished.output, testing::naming("CUDA no", "no GPU: ", "without CUDA"));
+#endif
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ class Generated(unittest.TestCase):
 
     def test_a_part_that_has_changed_is_found(self):
         page = "before\n<!-- evodevo --version -->\nnothing\n<!-- end -->\nbehind\n"
-        now = r"before\n<!-- evodevo --version -->\nevodevo \d+\.\d+\.\d+\n<!-- end -->\nbehind\n"
+        now = r"before\n<!-- evodevo --version -->\nevodevo \d+\.\d+\.\d+\nbuild: [^\n]+\nfeatures: [^\n]+\ndevices: cpu, [^\n]+\n<!-- end -->\nbehind\n"
         self.assertRegex(renewed(page), now)
 
     def test_a_source_is_quoted_whole(self):
