@@ -108,7 +108,9 @@ class Group {
   }
   void add(const Event& event) {
     ++count_;
-    if (event.cause && std::isfinite(event.cause->number)) causes_.push_back(event.cause->number);
+    if (!event.cause || !std::isfinite(event.cause->number)) return;
+    list_ = event.cause->list;
+    causes_.push_back(event.cause->number);
   }
   const Event& first() const { return first_; }
 
@@ -118,7 +120,7 @@ class Group {
     std::string text = fmt::format("{} {}{} {}", count_, first_.is_spring() ? "spring" : "mass",
                                    count_ == 1 ? "" : (first_.is_spring() ? "s" : "es"), first_.what);
     if (causes_.empty()) return text;
-    const Measure measure = operators.at(*first_.op).measure(first_.cause->list);
+    const Measure measure = operators.at(*first_.op).measure(*list_);
     const auto [least, most] = std::minmax_element(causes_.begin(), causes_.end());
     text += " (" + measure.name + ' ' + short_number(*least);
     if (*most > *least) text += " to " + short_number(*most);
@@ -128,7 +130,8 @@ class Group {
  private:
   Event first_;
   std::size_t count_ = 0;
-  std::vector<double> causes_;
+  std::vector<double> causes_;        ///< those that are finite numbers
+  std::optional<Causes::List> list_;  ///< of these; the edits of a group have one list
 };
 
 /// Prints a line for each operator and cycle.

@@ -65,8 +65,8 @@ EVODEVO_HD T zero_unless_greater(T a, T threshold, T value) {
   return a > threshold ? value : T(0);
 }
 
-/// a/b where a > 0, 0 elsewhere. A GPU divides only where a thread of a warp needs it, because a division of 0 takes
-/// its longest.
+/// a/b where a > 0, 0 elsewhere; b > 0. A GPU divides only where a thread of a warp needs it, because a division of 0
+/// takes its longest.
 template <class T>
 EVODEVO_HD T quotient_if_positive(T a, T b) {
   return a > 0 ? a / b : T(0);

@@ -48,12 +48,13 @@ HWY_INLINE V square_root(V a) {
   return hn::Sqrt(a);
 }
 
-/// value where a > threshold, 0 elsewhere.
+/// a/b where a > 0, 0 elsewhere; b > 0.
 template <class V>
 HWY_INLINE V quotient_if_positive(V a, V b) {
   return maximum(a, constant<V>(0)) / b;
 }
 
+/// value where a > threshold, 0 elsewhere.
 template <class V>
 HWY_INLINE V zero_unless_greater(V a, V threshold, V value) {
   return hn::IfThenElseZero(hn::Gt(a, threshold), value);

@@ -53,12 +53,12 @@ class RunOutput : public ::testing::Test {
 };
 
 TEST_F(RunOutput, FitsTheTerminal) {
-  for (const int columns : {30, 57, 200}) {
+  for (const int columns : {30, 57, 250}) {
     const std::vector<std::string> lines = live_lines(run_on_terminal("TERM=xterm", columns));
     ASSERT_FALSE(lines.empty());
     for (const std::string& line : lines) EXPECT_LT(line.size(), static_cast<std::size_t>(columns)) << line;
     EXPECT_THAT(lines.back(), HasSubstr("evaluations 24/24")) << "the last line is always shown";
-    EXPECT_EQ(lines.back().find("diverged") != std::string::npos, columns == 200) << lines.back();
+    EXPECT_EQ(lines.back().find("diverged") != std::string::npos, columns == 250) << lines.back();
     fs::remove_all(folder_);
   }
 }
@@ -88,11 +88,17 @@ TEST_F(RunOutput, IsLoggedForOtherPrograms) {
     for (const auto& [name, value] : lines[i].items()) EXPECT_EQ(value, shown[i].at(name)) << name;
 }
 
-TEST_F(RunOutput, NeverGoesIntoTheRunsOwnFile) {
+TEST_F(RunOutput, NeverGoesIntoAFileThatTheCommandReads) {
+  const auto refused = [](const Finished& finished, const std::string& file) {
+    EXPECT_EQ(finished.exit_code, 2);
+    EXPECT_THAT(finished.output, testing::naming("--log", file));
+  };
+  refused(run({"--log", file_}), file_);
+  refused(run({"--log", (folder_ / "run.log").string()}), "run.log");
+  EXPECT_FALSE(fs::exists(folder_)) << "a fault costs no folder";
+  ASSERT_EQ(run({"--no-report"}).exit_code, 0);
   const std::string database = (folder_ / "run.sqlite").string();
-  const Finished finished = run({"--log", database, "--no-report"});
-  EXPECT_EQ(finished.exit_code, 2);
-  EXPECT_THAT(finished.output, testing::naming("--log", database));
+  refused(testing::run({EVODEVO_PROGRAM, "resume", folder_.string(), "--log", database}), database);
   EXPECT_EQ(testing::run({EVODEVO_PROGRAM, "resume", folder_.string(), "--no-report"}).exit_code, 0);
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <random>
 #include <set>
 
@@ -58,6 +59,11 @@ void expect_sound(const Arrangement& a, const Outline& outline, unsigned largest
       }
     }
     if (a.group_ends[first_warp * a.shape.chunks + of_kind / rows] >> of_kind % rows & 1) ++group;
+  }
+  // the kernel ends a warp's work with the last mark
+  for (unsigned warp = 0; a.shape.chunks == 1 && warp < a.shape.warps + a.shape.cut_warps; ++warp) {
+    const unsigned rows = warp < a.shape.warps ? a.shape.rows : a.shape.cut_rows;
+    EXPECT_EQ(static_cast<unsigned>(std::bit_width(a.group_ends[warp])), rows) << warp;
   }
   EXPECT_EQ(seen, std::vector<int>(springs, 1));
   for (std::size_t place = 0; place < terms.size(); ++place) EXPECT_EQ(terms[place], a.magic_numbers[place]) << place;

@@ -166,6 +166,11 @@ TEST(Resident, TheBlocksOfABodyComputeTheForcesOfAllItsSprings) {
   const Regions regions{input.data(), motion.data(), sums.data()};
   std::vector<ResidentBody<float>> blocks(resident->blocks());
   resident->pack(regions, regions, scene, blocks.data());
+  for (std::size_t i = 0; i < slots_read_ahead; ++i) {
+    const Record<float>& empty = blocks.front().records[resident->slots() + i];
+    EXPECT_EQ(empty.rest_length, 0);
+    EXPECT_EQ(empty.packed, 0u) << "a warp reads it, so it must lead to a mass and a material";
+  }
   const Chips chips(blocks);
   const Shape& shape = resident->arranged()->blocks().front().arrangement.shape;
 

@@ -18,14 +18,24 @@ class Concurrent final : public Simulator {
 
   void run(std::span<Task> tasks, Recording recording) override {
     ++runs;
+    const std::size_t now = announced;
+    for (std::size_t before = most; now > before && !most.compare_exchange_weak(before, now);) {
+    }
+    for (std::size_t before = fewest; now < before && !fewest.compare_exchange_weak(before, now);) {
+    }
     simulator_->run(tasks, recording);
   }
   NeighbourSearch& neighbours() override { return simulator_->neighbours(); }
   Workers& workers() override { return simulator_->workers(); }
   int concurrency() const override { return calls_; }
   std::string device() const override { return simulator_->device(); }
+  std::shared_ptr<const void> announce(std::size_t bodies) override {
+    announced += bodies;
+    return {this, [bodies](Concurrent* simulator) { simulator->announced -= bodies; }};
+  }
 
   std::atomic<int> runs = 0;
+  std::atomic<std::size_t> announced = 0, fewest = ~std::size_t{0}, most = 0;
 
  private:
   std::unique_ptr<Simulator> simulator_;
@@ -47,6 +57,9 @@ TEST(Cohorts, GiveTheResultsOfOneBatch) {
   });
   EXPECT_NEAR(before, 1, 1e-12);
   EXPECT_EQ(four.runs, 4 * one.runs);
+  EXPECT_EQ(four.most, 300u) << "all are announced before the first is simulated";
+  EXPECT_GE(four.fewest, 75u) << "the last cohort is announced until it has ended";
+  EXPECT_EQ(four.announced, 0u);
   ASSERT_EQ(apart.size(), together.size());
   for (std::size_t i = 0; i < together.size(); ++i) {
     EXPECT_EQ(apart[i].status, together[i].status);

@@ -1,8 +1,11 @@
 // What commands print on terminals.
 #include "commands/shell/terminal.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -65,6 +68,8 @@ TEST(Excerpt, IsEmptyIfThereIsNothingToShow) {
         std::string("/dev/zero:1:1: no file to read"), std::string()})
     EXPECT_EQ(excerpt_for(message), "") << message;
   EXPECT_EQ(excerpt_for(file + ":1:40: behind the end"), "  1 | a = 1\n    |      ^\n");
+  const std::string windows = scratch.write("b.toml", "a = 1\r\nb = 2\r\n");
+  EXPECT_EQ(excerpt_for(windows + ":1:5: small"), "  1 | a = 1\n    |     ^\n");
 }
 
 TEST(GenerationLog, HasALineForEachGenerationBehindThoseThatAreThere) {
@@ -91,6 +96,19 @@ TEST(GenerationLog, RefusesAFileThatCannotBeOpened) {
   } catch (const UsageError& error) {
     EXPECT_THAT(error.what(), testing::naming("--log", "/nowhere/run.log", "folder"));
   }
+}
+
+TEST(GenerationLog, EndsWithoutEndingTheRunWhenItsReaderHasEnded) {
+  const testing::Scratch scratch;
+  const std::string pipe = (scratch / "pipe").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  GenerationLog log(pipe);
+  log.add({.generation = 0});
+  close(reader);
+  ::testing::internal::CaptureStderr();
+  log.add({.generation = 1});
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), testing::naming("--log", "pipe", "generation before 1"));
 }
 
 TEST(GenerationLog, EndsWithoutEndingTheRunWhenTheDiskIsFull) {

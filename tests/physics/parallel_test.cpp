@@ -100,6 +100,22 @@ TEST(Workers, PassOnTheFirstExceptionAndStop) {
   EXPECT_EQ(calls, 6) << "they work on after a failure";
 }
 
+TEST(Workers, StopInTheMiddleOfTheirSharesAfterAnException) {
+  constexpr std::size_t many = 1'000'000;
+  Workers workers(4);
+  std::atomic<std::size_t> calls = 0;
+  EXPECT_THROW(workers.for_each(many,
+                                [&](std::size_t i) {
+                                  ++calls;
+                                  if (i == 100) throw std::range_error("hundred");
+                                }),
+               std::range_error);
+  EXPECT_LT(calls, many) << "the shares are not finished";
+  calls = 0;
+  workers.for_each(many, [&](std::size_t) { ++calls; });
+  EXPECT_EQ(calls, many);
+}
+
 TEST(Workers, DoWhatHasAnEarlierTurnFirst) {
   constexpr std::size_t many = 1'000'000;
   Workers workers(1);

@@ -52,9 +52,9 @@ def evodevo(*arguments):
     return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
 
 
-def make_run(folder, encoding='voxel"\nsize = [2, 2, 1]\nedge = 0.5\n#"', mutation="reset-weight"):
+def make_run(folder, encoding='voxel"\nsize = [2, 2, 1]\nedge = 0.5\n#"', mutation="reset-weight", options=()):
     """Makes a small run in folder/run and returns its folder."""
     file = Path(folder, "small.toml")
     file.write_text(SMALL.replace("ENCODING", encoding).replace("MUTATION", mutation), encoding="utf-8")
-    evodevo("run", file, "--out", Path(folder, "run"), "--device", "cpu", "--no-report", "--quiet")
+    evodevo("run", file, "--out", Path(folder, "run"), "--device", "cpu", "--no-report", "--quiet", *options)
     return Path(folder, "run")

@@ -14,6 +14,8 @@ from package import make_run
 
 import evodevo
 
+connect = sqlite3.connect
+
 
 class OfASmallRun(unittest.TestCase):
     @classmethod
@@ -104,6 +106,52 @@ class OfASmallRun(unittest.TestCase):
         self.assertEqual(positions.shape, (len(times), len(matured.masses), 3))
         self.assertAlmostEqual(times[-1] - times[0], 0.1, places=2)
         self.assertLess(np.abs(positions[0] - positions[1]).max(), 0.05)
+
+    def test_motion_of_a_run_with_files_and_another_device(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            Path(scratch, "points.obj").write_text("".join(f"v {x} {y} {z}\n" for x in (0, 0.5, 1) for y in (0, 0.4)
+                                                           for z in (0, 0.7)), encoding="utf-8")
+            folder = make_run(scratch, 'cloud"\nfile = "points.obj"\n#"')
+            with sqlite3.connect(folder / "run.sqlite") as connection:
+                connection.execute("UPDATE record SET value = replace(value, \"device = 'cpu'\", \"device = 'cuda'\") "
+                                   "WHERE key = 'experiment'")
+            Path(scratch, "points.obj").unlink()
+            run = evodevo.Run(folder)
+            self.assertIn("device = 'cuda'", run.record["experiment"])
+            times, positions = run.motion(run.best().index[0], 0.05)
+            self.assertEqual(positions.shape[1:], (12, 3))
+
+    def test_what_is_read_at_different_times_fits_together(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = make_run(scratch)
+            run = evodevo.Run(folder)
+            run.__dict__["individuals"] = run.individuals.head(20)  # as it was a generation before
+            line = run.lineage(23)
+            self.assertEqual(line.index[0], 23)
+            self.assertTrue(pd.isna(line["born"].iloc[0]))
+
+    def test_columns_of_equal_names_have_numbers(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = make_run(scratch)
+            with sqlite3.connect(folder / "run.sqlite") as connection:
+                connection.execute("UPDATE objectives SET name = 'born'")
+                connection.execute("UPDATE measures SET name = 'born'")
+            run = evodevo.Run(folder)
+            self.assertEqual(run.objective_columns, ["born_1", "born_2"])
+            self.assertIn("born_3", run.individuals)
+            np.testing.assert_array_equal(run.individuals["born_1"], self.run_.individuals["distance"])
+            self.assertEqual(list(run.best(3).index), list(self.run_.best(3).index))
+
+    def test_a_file_in_use_is_not_called_damaged(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = make_run(scratch, options=("--journal", "delete"))
+            writer = sqlite3.connect(folder / "run.sqlite", isolation_level=None)
+            writer.execute("BEGIN EXCLUSIVE")
+            with mock.patch("sqlite3.connect", lambda *a, **k: connect(*a, timeout=0, **k)):
+                with self.assertRaisesRegex(evodevo.ArchiveError, "locked; try again"):
+                    evodevo.Run(folder)
+            writer.execute("ROLLBACK")
+            writer.close()
 
     def test_verifications_and_queries(self):
         self.assertEqual(self.run_.verifications["trial"].iloc[0], "again")

@@ -4,7 +4,7 @@
   python3 experiments/study/ranks/scaling.py runs/ranks
 
 No such machine was measured. The simulation deals out jobs as framework/cluster/farm.cpp does, and takes its times from
-measurements of one GPU and of one core:
+measurements of one GPU and its host:
 
 - ROBOT_SECONDS: the life of a robot on an idle multiprocessor of an NVIDIA H200: 1.3e4 springs, 60,000 steps in the life
   of experiments/evo-devo.toml, 220,000 in that of experiments/paper.toml, and 3.3e11 spring evaluations per second of

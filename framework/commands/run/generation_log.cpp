@@ -1,6 +1,7 @@
 #include "commands/run/generation_log.hpp"
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -37,10 +38,15 @@ void GenerationLog::add(const Summary& summary) {
                      {"clones", summary.clones},
                      {"spring_evaluations", summary.spring_evaluations},
                      {"wall_time", summary.wall_time}};
+  // a pipe whose reader has ended is an error like any other, and does not end the run
+  const auto before = std::signal(SIGPIPE, SIG_IGN);
   stream_ << line.dump() << std::endl;
-  if (stream_) return;
-  failed_ = true;
-  std::cerr << "warning: --log " + printable(file_.string()) + ": " + std::strerror(errno) +
+  const int error = errno;
+  failed_ = !stream_;
+  if (failed_) stream_.close();  // otherwise its destructor would try to write again
+  std::signal(SIGPIPE, before);
+  if (!failed_) return;
+  std::cerr << "warning: --log " + printable(file_.string()) + ": " + std::strerror(error) +
                    "; it ends with the generation before " + std::to_string(summary.generation) + '\n';
 }
 

@@ -94,7 +94,7 @@ std::vector<LinePart> ProgressDisplay::parts(double evaluations) const {
   if (farm_) add(5, ranks_text(farm_->shares(), seconds()));
   if (rate > 0) add(4, fmt::format("{:.3g} evaluations/s", rate));
   if (rate > 0) add(2, duration_text(seconds_left(evaluations)) + " left");
-  if (stop_) add(0, "(stopping after this generation; Ctrl-C again stops now)");
+  if (stop_) add(0, "(stopping; Ctrl-C again: at once)");
   return parts;
 }
 

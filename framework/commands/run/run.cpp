@@ -146,13 +146,22 @@ void add_output_options(Options& options) {
   options.add_options()("no-report", "do not write report.html when the run is finished");
 }
 
-/// Opens the file of --log. Returns nothing without this option. Throws UsageError if it is a file of the run.
-std::unique_ptr<GenerationLog> given_log(const Given& given, const Experiment& experiment, const Archive& archive) {
+/// Opens the file of --log. Returns nothing without this option. Throws UsageError if it is one of `inputs`, or the
+/// library of an operator.
+std::unique_ptr<GenerationLog> given_log(const Given& given, const Experiment& experiment,
+                                         const std::vector<fs::path>& inputs) {
   if (!given.contains("log")) return nullptr;
   const auto file = given["log"].as<std::string>();
-  refuse_to_overwrite("--log", file, files_of_run(archive.folder()));
+  refuse_to_overwrite("--log", file, inputs);
   refuse_to_overwrite("--log", file, libraries_of(experiment));
   return std::make_unique<GenerationLog>(file);
+}
+
+/// Returns the file of an experiment and the files that its parameters name.
+std::vector<fs::path> files_of_experiment(const fs::path& file, const Experiment& experiment) {
+  std::vector<fs::path> files{file};
+  for (const auto& [name, content] : experiment.files) files.push_back(file.parent_path() / name);
+  return files;
 }
 
 RunOutput output_of(const Given& given, GenerationLog* log) { return {log, !given.contains("no-report")}; }
@@ -209,8 +218,10 @@ namespace {
 int run(const Given& given) {
   const Ranks ranks = Ranks::joined();
   if (served(ranks, given)) return 0;
-  Experiment experiment = given_experiment(given["EXPERIMENT.toml"].as<std::string>(), given);
+  const auto file = given["EXPERIMENT.toml"].as<std::string>();
+  Experiment experiment = given_experiment(file, given);
   const std::optional<Journal> journal = given_journal(given);
+  const std::unique_ptr<GenerationLog> log = given_log(given, experiment, files_of_experiment(file, experiment));
   print_warnings(experiment);
   if (ranks.channel()) share_host(experiment, *ranks.channel(), given.contains("mixed"));
   const auto simulator = opened_simulator(experiment);
@@ -219,7 +230,6 @@ int run(const Given& given) {
   const fs::path folder =
       given.contains("out") ? fs::path(given["out"].as<std::string>()) : new_run_folder(experiment.name);
   Archive archive = Archive::create(folder, experiment, simulator->device(), journal);
-  const std::unique_ptr<GenerationLog> log = given_log(given, experiment, archive);
   return evolve_and_report(experiment, *simulator, archive, farm.get(), output_of(given, log.get()));
 }
 
@@ -238,7 +248,7 @@ int resume(const Given& given) {
   warn_of_another_device(*simulator, archive);
   warn_of_other_builds(experiment, *simulator, archive);
   const auto farm = farm_of(ranks, experiment, *simulator, true, given);
-  const std::unique_ptr<GenerationLog> log = given_log(given, experiment, archive);
+  const std::unique_ptr<GenerationLog> log = given_log(given, experiment, files_of_run(archive.folder()));
   return evolve_and_report(experiment, *simulator, archive, farm.get(), output_of(given, log.get()));
 }
 

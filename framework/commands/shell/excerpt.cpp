@@ -24,6 +24,7 @@ std::optional<std::string> line_of(const std::string& file, unsigned long number
   std::string line;
   for (unsigned long i = 0; i < number; ++i)
     if (!std::getline(stream, line)) return std::nullopt;
+  if (line.ends_with('\r')) line.pop_back();
   return line;
 }
 

@@ -7,8 +7,8 @@
 
 namespace evodevo {
 
-/// Whether a file descriptor is a terminal that shows colours: not if the variable NO_COLOR is set to anything, or if
-/// TERM is "dumb".
+/// Whether a file descriptor is a terminal that shows colours: not if the variable NO_COLOR is set to
+/// anything but an empty text, or if TERM is "dumb".
 bool shows_colours(int descriptor);
 
 /// Returns `text` in bold if standard output shows colours.

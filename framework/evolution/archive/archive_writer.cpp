@@ -1,6 +1,7 @@
 #include "evolution/archive/archive_writer.hpp"
 
 #include <chrono>
+#include <memory>
 #include <system_error>
 #include <utility>
 
@@ -15,10 +16,11 @@ bool is_long(double commit, double generation) { return commit > 0.1 && commit >
 void ArchiveWriter::begin(FinishedGeneration generation) {
   wait();
   const auto when = is_long(last_, generation.summary.wall_time) ? std::launch::async : std::launch::deferred;
-  const auto commit = [&archive = archive_, finished = std::move(generation)] {
+  const auto finished = std::make_shared<const FinishedGeneration>(std::move(generation));
+  const auto commit = [&archive = archive_, finished] {
     const auto start = std::chrono::steady_clock::now();
-    archive.commit(finished.newborns, finished.dropped, finished.lives, finished.summary, finished.remembered,
-                   finished.refusals);
+    archive.commit(finished->newborns, finished->dropped, finished->lives, finished->summary, finished->remembered,
+                   finished->refusals);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
   try {

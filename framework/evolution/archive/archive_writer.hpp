@@ -19,10 +19,11 @@ struct FinishedGeneration {
   std::vector<Refusal> refusals;
 };
 
-/// Writes one generation at a time. If the one before took more than 0.1 s and more than a tenth of the time of a
-/// generation, it does so on a thread of its own. Until that ends, a crash or `kill -9` loses the generation, which has
-/// cost less than ten times the time of writing; so no long generation is ever at risk. Between begin() and wait(),
-/// nobody else may use the archive, which must outlive this object. The destructor waits as well, but does not throw.
+/// Writes one generation at a time. If writing the one before took more than 0.1 s, and more than a tenth of the time
+/// of this one, it writes on a thread of its own. Until that ends, a crash or `kill -9` loses this generation, whose
+/// evaluation has taken less than ten times as long as that writing; so generations that take long are not at risk.
+/// Between begin() and wait(), nobody else may use the archive, which must outlive this object. The destructor waits as
+/// well, but does not throw.
 class ArchiveWriter {
  public:
   explicit ArchiveWriter(Archive& archive) : archive_(archive) {}

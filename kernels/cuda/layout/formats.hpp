@@ -17,7 +17,9 @@ inline constexpr unsigned most_rows = 24;  ///< unrolled, if a warp has one chun
 /// Likewise, if stress is recorded and this is enough, because each unrolled row has a sum of its own in a register.
 inline constexpr unsigned rows_with_fast_stress = 16;
 inline constexpr unsigned rows_of_a_chunk = 8;  ///< unrolled, if it has several
-inline constexpr unsigned rows_read_ahead = 2;  ///< a warp reads the records of this many rows after its last
+/// A warp reads the records of this many rows after its last, and the position of a mass that one of them names. They
+/// may belong to another warp or another block; all blocks of a body have chips of one size, so they lie within it.
+inline constexpr unsigned rows_read_ahead = 2;
 
 /// Masses are in shared memory in groups of 32, one mass per bank. A group is six planes of 32 numbers: the positions
 /// x, y, z and the forces x, y, z; if the body has dashpots, three more planes have the velocities at which they act.
@@ -175,8 +177,9 @@ template <class T>
 struct ResidentBody {
   using Integer = typename FixedPoint<T>::Integer;
   StepConstants<T> constants;
-  CodeUnits<T> units;                ///< if materials are computed
-  const Record<T>* records;          ///< [warps][chunks][rows][lanes], then rows_read_ahead empty rows
+  CodeUnits<T> units;        ///< if materials are computed
+  const Record<T>* records;  ///< [warps][chunks][rows][lanes], [cut warps][chunks][cut rows][lanes], then the records
+                             ///< of the next block or, after the last, rows_read_ahead empty rows
   const std::uint32_t* waves;        ///< likewise, MaterialCode::wave; if materials are computed
   const std::uint32_t* first_group;  ///< [block's warps] the group of each warp's first row
   const std::uint32_t* group_ends;   ///< [block's warps][chunks] bit r: a group or the warp's work ends with row r

@@ -6,7 +6,8 @@ arrays.
     run.generations.plot(x="evaluations", y=["best", "median"])
 
 `Run` reads the archive of a run and needs no program. Its functions `life`, `body` and `motion` simulate a robot again
-with the program `evodevo`, which `program` finds. `save_mesh` writes a body as a surface. `evodevo.figures` has the usual figures; it needs matplotlib.
+with the program `evodevo`, which `program` finds. `save_mesh` writes a body as a surface. `evodevo.figures` has the
+usual figures; it needs matplotlib.
 """
 
 from .body import Body

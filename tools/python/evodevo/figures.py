@@ -23,7 +23,7 @@ def ages(run, generation=None, axes=None):
     objective = run.objectives.iloc[0]
     members = run.members
     members = members[members["generation"] == (members["generation"].max() if generation is None else generation)]
-    axes.plot(members["age"], run.individuals.loc[members["individual"], objective["name"]], "o")
+    axes.plot(members["age"], run.individuals[run.objective_columns[0]].reindex(members["individual"]), "o")
     axes.set(xlabel="age (generations)", ylabel=f"{objective['name']} ({objective['unit']})")
     return axes
 
@@ -33,7 +33,7 @@ def lineage(run, individual, axes=None):
     axes = axes or plt.figure().gca()
     objective = run.objectives.iloc[0]
     line = run.lineage(individual)
-    axes.plot(line["born"], line[objective["name"]], "o-")
+    axes.plot(line["born"], line[run.objective_columns[0]], "o-")
     axes.set(xlabel="generation", ylabel=f"{objective['name']} ({objective['unit']})")
     return axes
 

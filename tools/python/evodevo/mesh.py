@@ -10,7 +10,7 @@ MUSCLE, PASSIVE, MASS = (200, 60, 50), (150, 150, 150), (90, 90, 90)  # red, gre
 
 
 def mesh_of(body, thickness=None):
-    """Returns a body as closed surfaces: a prism for each spring and a ball for each mass, which overlap where they meet.
+    """Returns a body as closed surfaces: a prism for each spring and a ball for each mass, which overlap.
 
     `thickness` is the diameter of both, m; by default, a fiftieth of the size of the body. Returns the vertices
     ([v, 3], m), the triangles ([t, 3] indices of vertices, counterclockwise seen from outside) and the colours of the
@@ -42,7 +42,8 @@ def _prisms(ends, radius):
     first /= np.maximum(np.linalg.norm(first, axis=1, keepdims=True), 1e-300)
     second = np.cross(along, first)
     angles = 2 * np.pi * np.arange(SIDES) / SIDES
-    ring = radius * (np.cos(angles)[:, None] * first[:, None] + np.sin(angles)[:, None] * second[:, None])  # [m, SIDES, 3]
+    cosine, sine = np.cos(angles)[:, None], np.sin(angles)[:, None]
+    ring = radius * (cosine * first[:, None] + sine * second[:, None])  # [m, SIDES, 3]
     # both rings, then both ends
     vertices = np.concatenate([ends[:, :1] + ring, ends[:, 1:] + ring, ends], axis=1)
     i, j = np.arange(SIDES), (np.arange(SIDES) + 1) % SIDES

@@ -28,7 +28,7 @@ def _gene_name(names, count, gene):
 
 
 class Run:
-    """A run. It may still be going on; each attribute is read when it is first used, and `Run` again reads it anew.
+    """A run. It may still be going on; each attribute is read when it is first used, and another `Run` reads it anew.
 
     Columns have the names of the archive's tables. `DataFrame.attrs["units"]` has the units of those that are
     quantities. Raises ArchiveError if the folder is no run, or is in another format.
@@ -43,6 +43,10 @@ class Run:
         self._connection = sqlite3.connect(f"{file.resolve().as_uri()}?mode=ro", uri=True)
         try:
             self.record = dict(self._connection.execute("SELECT key, value FROM record"))
+        except sqlite3.OperationalError as error:
+            # a rollback journal: another process is writing, or was killed while it wrote
+            raise ArchiveError(f"{file}: {error}; try again in a moment, or if no process writes to it, let `evodevo show "
+                               f"{folder}` put it in order first") from error
         except sqlite3.DatabaseError as error:
             raise ArchiveError(f"{file}: {error}; put back an undamaged copy of it") from error
         found = self.record.get("format")
@@ -78,7 +82,8 @@ class Run:
     @functools.cached_property
     def generations(self):
         """A row for each generation: evaluations (so far), best and median of the first objective, numbers of newborns
-        by status, clones, spring_evaluations, wall_time (s)."""
+        that diverged, invalid, of individuals that became artefact or passive, clones, spring_evaluations, wall_time (s).
+        """
         table = self.query("SELECT * FROM generations ORDER BY generation").set_index("generation")
         unit = self.objectives.unit.iloc[0]
         table.attrs["units"] = {"best": unit, "median": unit, "wall_time": "s"}
@@ -88,20 +93,31 @@ class Run:
     def individuals(self):
         """A row for each individual that ever lived, by id: born, died (missing while it lives), origin, parent, mate,
         made_by, provenance, status, reason, ended_at (s), spring_evaluations, and a column for each objective and each
-        measure, under its name. Those without a fitness have no scores. If several have one name, the later ones
-        have their position behind it, as in distance_1."""
-        table = self.query("SELECT id, born, died, origin, parent, mate, made_by, provenance, status, reason, ended_at, "
-                           "spring_evaluations FROM individuals ORDER BY id").set_index("id")
+        measure, under its name. Those without a fitness have no scores. If a name is taken, a number follows it, as in
+        distance_1; `objective_columns` has the names for the objectives."""
+        table = self.query("SELECT id, born, died, origin, parent, mate, made_by, provenance, status, reason, "
+                           "ended_at, spring_evaluations FROM individuals ORDER BY id").set_index("id")
         table = table.astype({"died": "Int64", "parent": "Int64", "mate": "Int64", "ended_at": float})
-        units = {"ended_at": "s"}
+        units, columns = {"ended_at": "s"}, []
         for kinds, rows, key in ((self.objectives, "scores", "objective"), (self.measures, "measured", "measure")):
             for position, kind in kinds.iterrows():
-                name = kind["name"] if kind["name"] not in table else f"{kind['name']}_{position}"
+                name = kind["name"]
+                number = 0
+                while name in table:
+                    number += 1
+                    name = f"{kind['name']}_{number}"
                 values = self.query(f"SELECT individual, value FROM {rows} WHERE {key} = ?", position)
                 table[name] = values.set_index("individual")["value"]
                 units[name] = kind["unit"]
+                columns.append(name)
         table.attrs["units"] = units
+        table.attrs["scores"] = columns
         return table
+
+    @property
+    def objective_columns(self):
+        """The columns of `individuals` with the objectives, in their order."""
+        return self.individuals.attrs["scores"][:len(self.objectives)]
 
     @functools.cached_property
     def tests(self):
@@ -124,9 +140,9 @@ class Run:
     def best(self, count=1):
         """Returns the rows of `individuals` with the best first objective of the whole run, the best first. Of equal
         ones, the older comes first."""
-        objective = self.objectives.iloc[0]
-        scored = self.individuals.dropna(subset=[objective["name"]])
-        return scored.sort_values(objective["name"], ascending=not objective["maximise"], kind="stable").head(count)
+        column = self.objective_columns[0]
+        scored = self.individuals.dropna(subset=[column])
+        return scored.sort_values(column, ascending=not self.objectives["maximise"].iloc[0], kind="stable").head(count)
 
     # ---- one individual ----
 
@@ -146,7 +162,8 @@ class Run:
         block (counted from 0 in its section), type (of the block), gene (its name, as `evodevo genes` gives it),
         value, low, high (bounds of a real gene)."""
         values = self.genome(individual)
-        types = self.query("SELECT type, section, owner, block_types.name FROM block_types JOIN sections USING (section)")
+        types = self.query("SELECT type, section, owner, block_types.name FROM block_types "
+                           "JOIN sections USING (section)")
         types = types.set_index("type")
         kinds = dict(tuple(self.query("SELECT * FROM gene_types ORDER BY type, position").groupby("type")))
         rows, first, blocks_in = [], 0, {}
@@ -184,11 +201,10 @@ class Run:
         """Returns the rows of `individuals` from this one back to the random individual that it descends from, through
         parents whose copies were varied; the founder comes last."""
         ids, at = [], individual
-        self._row(individual, "id")
-        while not pd.isna(at):
+        while at is not None:
             ids.append(int(at))
-            at = self.individuals.at[int(at), "parent"]
-        return self.individuals.loc[ids]
+            (at,) = self._row(at, "parent")
+        return self.individuals.reindex(ids)
 
     def life(self, individual):
         """Returns the edits that development made to a robot, a row for each, in their order: cycle, operator, event,
@@ -211,8 +227,15 @@ class Run:
             scratch = pathlib.Path(scratch)
             (scratch / "body.json").write_text(json.dumps(body.json), encoding="utf-8")
             (scratch / "experiment.toml").write_text(self.record["experiment"], encoding="utf-8")
-            output_of("simulate", scratch / "body.json", scratch / "experiment.toml", "--duration", seconds,
-                      "--trajectory", scratch / "motion.csv", "--quiet")
+            for path, content in self._connection.execute("SELECT path, content FROM files"):
+                file = scratch / path
+                if not file.resolve().is_relative_to(scratch.resolve()):
+                    continue  # the program reads such a file where it was
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_bytes(content)
+            # whatever device the run had, this machine may lack it
+            output_of("simulate", scratch / "body.json", scratch / "experiment.toml", "--duration", seconds, "--device",
+                      "auto", "--trajectory", scratch / "motion.csv", "--quiet")
             table = pd.read_csv(scratch / "motion.csv")
         times = table["time"].unique()
         return times, table[["x", "y", "z"]].to_numpy().reshape(len(times), -1, 3)

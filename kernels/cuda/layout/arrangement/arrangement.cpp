@@ -26,7 +26,8 @@ unsigned block_for(unsigned warps, std::uint32_t groups, unsigned largest_block)
                            std::max(warps, std::min(divided(groups, 2), largest_block)));
 }
 
-/// The number of blocks that a multiprocessor simulates at once, as far as registers and shared memory go.
+/// The number of blocks that a multiprocessor simulates at once, as far as registers and shared memory go, in single
+/// precision and without dashpots.
 std::size_t blocks_at_once(unsigned block, std::size_t rows, std::uint32_t groups) {
   constexpr std::size_t chip = 227 << 10, others = 3 << 10;  // bytes; others: table, kernel and system
   const std::size_t bytes = rows * lanes * sizeof(Record<float>) + (groups + 1) * group_bytes<float, false> + others;
