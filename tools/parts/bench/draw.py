@@ -8,7 +8,7 @@ from common import charts
 from common.charts import BLUE, INK, ORANGE, SOFT, VERMILION, note
 
 # with knn1000, the pipe of shared memory is busy for this share of the time (kernels/cuda/README.md)
-PIPE_BUSY = 0.85
+PIPE_BUSY = 0.81
 
 
 def report_of(reports, study, **conditions):

@@ -52,6 +52,7 @@ Shape shape_for_block(const Needs& needs, unsigned largest_block) {
     const std::size_t busy = access * all + owner_access * warps + uneven * missing * rows;
     const std::size_t alone = std::max(busy, row_time * rows) + moving;
     std::size_t cost = busy + (alone - busy) / blocks_at_once(block, all, needs.groups);
+    // more rows slow a recording of stress by about 6 %; a body keeps its shape, and half of its steps record stress
     if (rows > rows_with_fast_stress) cost += cost / 32;
     if (cost >= best_cost) continue;
     best = {block, warps, 0, rows, 0, 1, 0};
