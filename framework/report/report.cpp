@@ -1,5 +1,7 @@
 #include "report/report.hpp"
 
+#include <toml++/toml.h>
+
 #include <algorithm>
 #include <numeric>
 
@@ -192,6 +194,17 @@ class FilmBudget {
   std::size_t left_, reserved_ = 0, elites_ = 0, others_ = 0;
 };
 
+/// Returns the parameter `direction` of the first fitness function, such as that of `distance`, for the page's track; null
+/// if it has none.
+Json direction_json(const std::string& experiment) {
+  const toml::table table = toml::parse(experiment);
+  const toml::array* direction = table["fitness"][0]["direction"].as_array();
+  if (!direction || direction->size() != 3) return nullptr;
+  Json components = Json::array();
+  for (const toml::node& component : *direction) components.push_back(component.value_or(0.0));
+  return components;
+}
+
 constexpr std::size_t filmed_together = 16;  ///< number of robots whose films are in memory at the same time
 
 }  // namespace
@@ -201,6 +214,7 @@ Json reported_run(const Archive& archive, const Experiment& experiment, Simulato
   const std::vector<Actor> actors = Casting(archive).choose(cast);
   Json run = run_json(archive, experiment);
   run["resolved"] = archive.record("experiment");
+  run["direction"] = direction_json(archive.record("experiment"));
   run["filmed_scenario"] = experiment.scenarios.empty() ? Json(nullptr) : Json(experiment.scenarios[scenario].name);
   run["material_names"] = experiment.context.material_names;
   run["population"] = population_json(

@@ -202,7 +202,7 @@ test("each colour mode looks different and says what it shows", async () => {
   await inPage(page, ({ viewer }) => viewer.seek(1.4));
   const seen = [];
   for (const [mode, words] of [
-    ["Material", "muscle"],
+    ["Material", materialName],
     ["Stress", " N"],
     ["Came in", "there from birth"],
   ]) {
@@ -242,7 +242,7 @@ test("the life slider goes to cycles, where vanished springs fade and new ones l
   }));
   assert.equal(edits.time, cycleTime);
   assert.ok(edits.gone >= 6 && edits.came >= 6, JSON.stringify(edits));
-  assert.ok((await page.locator(".caption").first().textContent()).includes(`−${edits.gone} +${edits.came}`));
+  assert.ok((await page.locator(".caption").first().textContent()).includes(`${edits.gone} removed, ${edits.came} new`));
   const at = await amber(await picture(page));
   await inPage(page, ({ viewer }) => viewer.seek(0.999));
   const later = await amber(await picture(page));

@@ -52,7 +52,7 @@ const optionsOf = (select) => select.locator("option").allTextContents();
 
 test("names, units and directions are as given, and nothing is complained of", async () => {
   assert.deepEqual(await page.locator(".robots th").allTextContents(), [
-    "",
+    "Robot",
     "Individual",
     `${far} (body lengths)`,
     "actuation-work (J)",
@@ -221,7 +221,7 @@ test("the scores by test are those of the robots shown", async () => {
 test("beside the film stand its test and how far the robot has moved in it", async () => {
   await inPage(page, ({ viewer }) => viewer.seek(viewer.end));
   const caption = page.locator(".caption").first();
-  assert.match(await caption.locator("span").textContent(), /^measured in flat · .* · moved [\d.]+ m$/);
+  assert.match(await caption.locator("span").textContent(), /^measured in flat · .* · (-?[\d.]+) of \1 body lengths \(-?[\d.]+ m\) along \+x$/);
   assert.match(await caption.locator("strong").textContent(), /far<\/b> \S+ body lengths, actuation-work \S+ J$/);
   evodevo("report", run, "--best", "1", "--scenario", "hurt", "--out", scratch.path("hurt.html"));
   const hurt = await opened(browser, scratch.path("hurt.html"));

@@ -78,9 +78,9 @@ export function archived(folder, query) {
   return JSON.parse(execFileSync("python3", ["-c", program, join(folder, "run.sqlite"), query], { encoding: "utf8" }));
 }
 
-/** Opens a page from its file; keeps the page's requests in `requests`, and its errors and warnings in `complaints`. */
-export async function opened(browser, file, options = {}) {
-  const page = await browser.newPage({ viewport: { width: 640, height: 600 }, ...options });
+/** Opens a page from its file. It does not play by itself, unless `options` say that motion is welcome; keeps the page's requests in `requests`, and its errors and warnings in `complaints`. */
+export async function opened(browser, file, options = {}, { hash = "", before: hidden } = {}) {
+  const page = await browser.newPage({ viewport: { width: 640, height: 600 }, reducedMotion: "reduce", ...options });
   page.requests = [];
   page.complaints = [];
   page.on("request", (request) => page.requests.push(request.url()));
@@ -90,7 +90,8 @@ export async function opened(browser, file, options = {}) {
       page.complaints.push(`${message.type()}: ${message.text()}`);
   });
   page.on("pageerror", (error) => page.complaints.push(error.message));
-  await page.goto(pathToFileURL(file).href, { timeout: patience });
+  if (hidden) await page.addInitScript(hidden);
+  await page.goto(pathToFileURL(file).href + hash, { timeout: patience });
   await page.evaluate(async () => void (await window.evodevo));
   return page;
 }

@@ -59,6 +59,15 @@ function expectMoment(option, moment, end) {
   if (moment < 0 || moment > end) throw new Error(`--${option} ${moment}: expected a time of the life, 0 to ${end} s`);
 }
 
+/** Returns a time as minutes and seconds, such as "2:05". */
+const minutes = (seconds) => `${Math.floor(seconds / 60)}:${String(Math.floor(seconds % 60)).padStart(2, "0")}`;
+
+/** Shows on a terminal how many frames there are of how many, and how long the others will take. */
+function showProgress(done, all, started) {
+  const left = ((performance.now() - started) / 1000 / done) * (all - done);
+  process.stderr.write(`\r${done} of ${all} frames, ${minutes(left)} left \x1b[K${done === all ? "\n" : ""}`);
+}
+
 async function film(tab, out, { from, to, quiet }) {
   const life = await tab.evaluate(async () => {
     const { viewer } = await window.evodevo;
@@ -80,8 +89,7 @@ async function film(tab, out, { from, to, quiet }) {
       const picture = { format: "jpeg", quality: 95, optimizeForSpeed: true };
       const { data } = await camera.send("Page.captureScreenshot", picture);
       if (!ffmpeg.stdin.write(Buffer.from(data, "base64"))) await Promise.race([once(ffmpeg.stdin, "drain"), closed]);
-      if (process.stderr.isTTY && !quiet)
-        process.stderr.write(`\r${i + 1} of ${frames + 1} frames${i === frames ? "\n" : ""}`);
+      if (process.stderr.isTTY && !quiet) showProgress(i + 1, frames + 1, started);
     }
   } finally {
     ffmpeg.stdin.end(); // an open pipe would keep this process alive

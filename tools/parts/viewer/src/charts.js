@@ -2,6 +2,8 @@
 import uPlot from "uplot";
 import { faded } from "./colours.js";
 import { element, short, style } from "./elements.js";
+import { csv, fileName, save } from "./share.js";
+import { chartSvg } from "./svg.js";
 import {
   age,
   directionOf,
@@ -15,6 +17,7 @@ import {
 } from "./scores.js";
 
 const height = 250;
+const reach = 12; // pixels from a point in which a click opens it
 const nothing = "Nothing to show: no individual has ended with a fitness.";
 
 /** Returns the Pareto front of points {x, y}, sorted by x. High values are good where a direction is 1, and low ones
@@ -29,7 +32,7 @@ function paretoFront(points, xBetter, yBetter) {
 /** Returns points sorted by x. A chart has one value for each x, but several points can have the same x. Such points are
 *  moved apart by an invisible distance. */
 function apart(points) {
-  const sorted = points.map(({ x, y }) => ({ x, y })).sort((a, b) => a.x - b.x);
+  const sorted = points.map((point) => ({ ...point })).sort((a, b) => a.x - b.x);
   const [low, high] = [sorted[0]?.x ?? 0, sorted.at(-1)?.x ?? 0];
   const step = Math.max(1e-9 * (high - low), 4 * Number.EPSILON * Math.max(-low, high)) || 1e-9;
   for (let i = 1; i < sorted.length; ++i) sorted[i].x = Math.max(sorted[i].x, sorted[i - 1].x + step);
@@ -50,6 +53,10 @@ function joined(series) {
 /** Formats a value in the legend, which shows values only while the mouse is over the chart. */
 const shown = (_, value, series, index) => (index === null ? "" : short(value));
 const counts = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4, 1e5, 2e5, 5e5, 1e6]; // steps of ticks
+
+/** Steps from value to value, at the end of each interval (1), so that a value holds until the next, or at its beginning
+ *  (-1). */
+const stepping = (steps) => ({ steps, paths: uPlot.paths.stepped({ align: steps }) });
 
 const line = (name, stroke, dash) => ({
   label: name,
@@ -83,8 +90,33 @@ class Chart {
       this.caption,
       choosers.length > 0 ? element("div", { className: "choosers" }, ...choosers) : null,
       this.box,
+      this.#saving(),
     );
     new ResizeObserver(() => this.plot?.setSize({ width: this.box.clientWidth, height })).observe(this.box);
+  }
+
+  /** Creates the buttons that save the chart as it is shown. */
+  #saving() {
+    const button = (ending, write) =>
+      element("button", {
+        type: "button",
+        textContent: `Save ${ending.toUpperCase()}`,
+        ariaLabel: `Save ${ending.toUpperCase()}: ${this.title}`,
+        onclick: () => save(fileName(this.caption.textContent, ending), write()),
+      });
+    this.saving = element(
+      "div",
+      { className: "save" },
+      button("svg", () => chartSvg(this.plot, this.caption.textContent, this.data)),
+      button("csv", () => csv(this.#rows())),
+    );
+    return this.saving;
+  }
+
+  /** Returns the chart's data as rows, the first of which has the names of the columns. */
+  #rows() {
+    const names = this.plot.series.map(({ label }) => label);
+    return [names, ...this.data[0].map((_, i) => this.data.map((column) => column[i]))];
   }
 
   #choose(i, score) {
@@ -95,11 +127,12 @@ class Chart {
   draw() {
     this.plot?.destroy();
     this.plot = undefined;
-    const { title, data, series, x, y, wholeX, options } = this.describe();
+    const { title, data, series, x, y, wholeX, options, points } = this.describe();
     this.caption.textContent = title ?? this.title;
     this.data = data;
     const isEmpty = data.slice(1).every((column) => column.every((value) => value === null));
     this.box.replaceChildren(...(isEmpty ? [element("p", { className: "note", textContent: nothing })] : []));
+    this.saving.hidden = isEmpty;
     if (isEmpty) return;
     const axis = (label, size) => ({
       label,
@@ -126,6 +159,18 @@ class Chart {
       data,
       this.box,
     );
+    if (!points) return;
+    this.plot.over.classList.add("pointed");
+    this.plot.over.addEventListener("click", ({ offsetX, offsetY }) => {
+      const near = points.map((point) => [this.#distance(point, offsetX, offsetY), point]);
+      const [distance, point] = near.reduce((a, b) => (b[0] < a[0] ? b : a));
+      if (distance <= reach) point.open();
+    });
+  }
+
+  /** Returns how far a point of the chart is from a place on it, in pixels. */
+  #distance({ x, y }, left, top) {
+    return Math.hypot(this.plot.valToPos(x, "x") - left, this.plot.valToPos(y, "y") - top);
   }
 }
 
@@ -137,7 +182,7 @@ function twoNumbers(runs, names, xOf, of) {
     const several = runs.length > 1;
     return names.map((name, k) => [
       column(name),
-      line(runName(run, runs) + name, runColour(several ? index : k), several && k > 0 ? [5, 4] : undefined),
+      { ...line(runName(run, runs) + name, runColour(several ? index : k), several && k > 0 ? [5, 4] : undefined), ...stepping(1) },
     ]);
   });
   return { data: joined(all.map(([values]) => values)), series: all.map(([, series]) => series) };
@@ -170,7 +215,7 @@ function niches(runs) {
         y: generations.map((g) => (g.map ? score.of(run, g.map) : null)),
       })),
     ),
-    series: mapped.map((run) => line(`${runName(run, runs)}${score.name}`, runColour(runs.indexOf(run)))),
+    series: mapped.map((run) => ({ ...line(`${runName(run, runs)}${score.name}`, runColour(runs.indexOf(run))), ...stepping(1) })),
     x: "evaluations",
     y: titled(score),
   });
@@ -245,7 +290,7 @@ function cumulative(numbers) {
 }
 
 /** The living as points, with a choice of what the axes show. There is a front where both axes say what is better. */
-function living(runs) {
+function living(runs, open) {
   const objectives = objectivesOf(runs);
   const scores = [...objectives, ...measuresOf(runs)];
   const all = [age, ...scores];
@@ -254,9 +299,13 @@ function living(runs) {
     return {
       title: scores.length > 1 ? `The living${hasFront(x, y) ? ", and the front of the best" : ""}` : undefined,
       data: joined(columns.map(([values]) => values)),
+      points: columns.flatMap(([{ x: xs, y: ys, who }]) =>
+        (who ?? []).map((one, i) => ({ x: xs[i], y: ys[i], open: () => open(one) })),
+      ),
       series: columns.map(([, series]) => series),
       x: axisText(x),
       wholeX: x === age,
+      options: { scales: { x: { time: false, range: padded } } },
       y: axisText(y),
     };
   };
@@ -267,12 +316,18 @@ function living(runs) {
   return new Chart("ages", "Age and fitness of the living, and the front of the best", describe, choices);
 }
 
+/** The range of an axis with room for the points at its ends. */
+const padded = (_, low, high) => {
+  const pad = 0.03 * (high - low) || 0.5;
+  return [low - pad, high + pad];
+};
+
 const hasFront = (x, y) => x.better !== 0 && y.better !== 0;
 
 /** Returns the columns and series of one run: its individuals, and their front if there is one. */
 function livingOf(run, x, y, colour, name) {
   const points = run.population
-    .map((individual) => ({ x: x.of(individual), y: y.of(individual) }))
+    .map((individual) => ({ x: x.of(individual), y: y.of(individual), who: { run, individual: individual.id } }))
     .filter((point) => Number.isFinite(point.x) && Number.isFinite(point.y));
   const column = (list) => ({ x: list.map((point) => point.x), y: list.map((point) => point.y) });
   const dots = {
@@ -281,12 +336,13 @@ function livingOf(run, x, y, colour, name) {
     fill: colour,
     points: { show: true, size: 7, fill: colour, stroke: "transparent" },
     paths: () => null,
+    dots: true,
   };
-  const individuals = [column(apart(points)), dots];
+  const separate = apart(points);
+  const individuals = [{ ...column(separate), who: separate.map(({ who }) => who) }, dots];
   if (!hasFront(x, y)) return [individuals];
   const front = paretoFront(points, x.better, y.better);
-  const steps = uPlot.paths.stepped({ align: x.better < 0 ? 1 : -1 });
-  return [individuals, [column(front), { ...line(`${name}front`, colour), paths: steps }]];
+  return [individuals, [column(front), { ...line(`${name}front`, colour), ...stepping(x.better < 0 ? 1 : -1) }]];
 }
 
 /** The statuses without a fitness, from the bottom of the chart to its top; the last two only if the run has any. */
@@ -364,7 +420,8 @@ function timeSpent(run, title) {
 
 /** The charts of runs, as figures. draw() draws them; `byName` finds them by their names. */
 export class Charts {
-  constructor(runs) {
+  /** `open` is called with {run, individual} when a point of a living individual is clicked. */
+  constructor(runs, open) {
     const titleOf = (title, run) => (runs.length > 1 ? `${title}: ${run.label}` : title);
     const shared = [
       ...niches(runs),
@@ -372,7 +429,7 @@ export class Charts {
       progress(runs, "springs", "Fitness over springs simulated", "spring evaluations", (g) =>
         cumulative(g.map((s) => s.spring_evaluations)),
       ),
-      living(runs),
+      living(runs, open),
       ...notedQuantities(runs),
     ];
     const grouped = runs.flatMap((run) =>

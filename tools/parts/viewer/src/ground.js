@@ -32,6 +32,18 @@ export class Ground {
     geometry.computeVertexNormals();
     return geometry;
   }
+
+  /** Returns the height at a point, m. Points beyond the edge have the height of the edge. */
+  heightAt(x, y) {
+    const { columns, rows, spacing, levels } = this;
+    const [u, v] = [
+      [(x - this.x) / spacing, columns],
+      [(y - this.y) / spacing, rows],
+    ].map(([at, count]) => Math.min(count - 1, Math.max(0, at)));
+    const [i, j] = [Math.min(columns - 2, Math.floor(u)), Math.min(rows - 2, Math.floor(v))];
+    const row = (k) => levels[k * columns + i] + (u - i) * (levels[k * columns + i + 1] - levels[k * columns + i]);
+    return this.roughness * ((row(j) + (v - j) * (row(j + 1) - row(j))) / level - 1);
+  }
 }
 
 const levelGround = { levels: Uint8Array.of(level), columns: 1, rows: 1, x: 0, y: 0, spacing: 1, roughness: 0 };

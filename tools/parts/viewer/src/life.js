@@ -4,8 +4,8 @@ import { changed, integers, Positions, Values } from "./unpack.js";
 const smoothing = 0.5; // s before and after a moment; averaged, so that the robot's steps do not shake the camera
 
 export class Life {
-  /** Unpacks the life of a robot from the page's data. */
-  static async of(robot) {
+  /** Unpacks the life of a robot from the page's data. Its way is measured in `direction`, if it is given. */
+  static async of(robot, direction) {
     const life = new Life();
     const film = robot.film;
     life.robot = robot;
@@ -17,6 +17,7 @@ export class Life {
     life.end = life.shots.at(-1)?.end ?? 0;
     life.#markArrivals();
     life.#follow();
+    life.way = life.#way(direction);
     return life;
   }
 
@@ -88,6 +89,28 @@ export class Life {
       const mean = (axis) => near.reduce((sum, { boxMiddle }) => sum + boxMiddle[axis], 0) / near.length;
       return { time, middle: [0, 1, 2].map(mean) };
     });
+  }
+
+  /** Returns how the robot moves in the shot in which its fitness is measured: where it is at the `begin` and its body
+   *  `length` (m) there, the level unit vector `direction` of the fitness or, if that has none, that in which it has moved
+   *  at the end, and the `total` way in that direction, in body lengths. Undefined if nothing is measured. */
+  #way(given) {
+    const index = this.shots.findIndex(({ name }) => name.startsWith("measured")); // the name also names a scenario
+    if (index < 0) return undefined;
+    const begin = this.path.findLast(({ time }) => time <= this.shots[index].begin);
+    const length = this.boxIn(index).size;
+    const moved = [0, 1].map((axis) => this.path.at(-1).middle[axis] - begin.middle[axis]);
+    const [x, y] = given && Math.hypot(given[0], given[1]) > 0 ? given : moved;
+    const norm = Math.hypot(x, y);
+    const direction = norm > 0 ? [x / norm, y / norm] : [1, 0];
+    return { begin, length, direction, total: (moved[0] * direction[0] + moved[1] * direction[1]) / length };
+  }
+
+  /** Returns how far the robot has moved in the direction of its way since the measurement began, m. */
+  movedAt(time) {
+    const { begin, direction } = this.way;
+    const now = this.middleAt(time);
+    return [0, 1].reduce((sum, axis) => sum + direction[axis] * (now[axis] - begin.middle[axis]), 0);
   }
 
   /** Returns the index of the shot at a time. If one shot ends and the next begins then, it is the next one. */

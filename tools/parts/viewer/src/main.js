@@ -7,8 +7,10 @@ import { element, short } from "./elements.js";
 import { Gallery } from "./gallery.js";
 import { NicheMaps } from "./niches.js";
 import { directionOf, hasUnit, listed, own, quantityText } from "./scores.js";
-import { robotTable, TestTable } from "./tables.js";
-import { Viewer } from "./viewer.js";
+import { linked } from "./share.js";
+import { stillOf } from "./still.js";
+import { robotTable, TestTable, VerificationTable } from "./tables.js";
+import { hasGraphics, Viewer } from "./viewer.js";
 
 const data = JSON.parse(document.getElementById("data").textContent);
 const { runs } = data;
@@ -128,6 +130,31 @@ const experiments = () =>
     ),
   );
 
+/** Shows what the address asks for, or the first robot that has lived, which then plays unless the reader prefers still
+ *  pages. */
+async function showFirst(viewer, isFilm) {
+  const link = linked(location.hash, robots);
+  if (link) return viewer.restore(link);
+  const first = robots.findIndex(({ robot }) => robot.film.shots.length > 0);
+  await viewer.show(Math.max(0, first));
+  const isStill = isFilm || isGallery || matchMedia("(prefers-reduced-motion: reduce)").matches;
+  if (!isStill && first >= 0) viewer.toggle();
+}
+
+/** Shows the robot of a point in a chart, if the page has its film. */
+function openPoint({ run, individual }, viewer) {
+  const index = robots.findIndex((one) => one.run === run && one.robot.individual === individual);
+  if (index >= 0) return viewer?.open(index);
+  notice(`The page does not hold individual ${individual}. To see it: evodevo report ${run.folder} --individual ${individual}`);
+}
+
+const notices = element("p", { className: "notice", role: "status", hidden: true });
+
+function notice(text) {
+  notices.textContent = text;
+  notices.hidden = false;
+}
+
 async function begin() {
   readPalette();
   document.body.classList.toggle("film", location.hash === "#film");
@@ -136,28 +163,28 @@ async function begin() {
   main.append(header());
   if (!isGallery) main.append(...runs.map(facts));
   const page = { data, film: location.hash === "#film" };
-  if (robots.length > 0) page.viewer = new Viewer(robots);
+  if (robots.length > 0 && hasGraphics()) page.viewer = new Viewer(robots);
   page.niches = new NicheMaps(runs, robots, page.viewer);
   if (page.viewer) {
-    const tests = new TestTable(robots);
+    const tests = [new TestTable(robots), new VerificationTable(robots)];
     page.viewer.onshow = (shown) => {
-      tests.show(shown);
+      tests.forEach((table) => table.show(shown));
       page.niches.show(shown);
     };
-    main.append(page.viewer.root, tests.root);
-    const first = robots.findIndex(({ robot }) => robot.film.shots.length > 0);
-    await page.viewer.show(Math.max(0, first));
-  }
-  if (isGallery) {
+    main.append(page.viewer.root, ...tests.map(({ root }) => root));
+    await showFirst(page.viewer, page.film);
+  } else if (robots.length > 0) main.append(await stillOf(robots[0]));
+  if (isGallery && page.viewer) {
     page.gallery = new Gallery(robots, page.viewer);
     main.append(page.gallery.root);
     await page.gallery.draw();
-  } else {
-    page.charts = new Charts(runs);
+  } else if (!isGallery) {
+    page.charts = new Charts(runs, (point) => openPoint(point, page.viewer));
     main.append(page.charts.root);
     page.charts.root.prepend(...page.niches.figures);
+    page.charts.root.after(notices);
     page.charts.draw();
-    if (page.viewer) main.append(robotTable(runs, robots, page.viewer));
+    main.append(robotTable(runs, robots, page.viewer));
   }
   main.append(experiments(), element("footer", { textContent: `evodevo ${data.evodevo}` }));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {

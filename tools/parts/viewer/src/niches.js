@@ -152,7 +152,7 @@ class NicheMap {
   #clicked(cell) {
     cell.button.focus(); // not every browser does so
     this.#explain(cell);
-    if (cell.robot !== undefined) this.viewer.open(cell.robot);
+    if (cell.robot !== undefined) this.viewer?.open(cell.robot);
   }
 
   /** Goes to another robot: left and right as one reads, up and down to the nearest one of the next row that has any. */

@@ -6,6 +6,7 @@ import * as THREE from "three";
 import { materialColour, springColours } from "./colours.js";
 import { style } from "./elements.js";
 import { heightUniforms } from "./ground.js";
+import { Track } from "./track.js";
 import {
   floorFragment,
   floorVertex,
@@ -87,6 +88,7 @@ export class Stage {
     if (scene.water) this.#addMotes();
     this.#addBody();
     if (scene.floor) this.#addShadow(ground);
+    if (life.way) this.#addTrack(scene, ground);
     this.readTheme();
   }
 
@@ -156,6 +158,12 @@ export class Stage {
     this.#add(this.springs, material(shadowVertex, shadowFragment, uniforms, shown), 1);
   }
 
+  #addTrack(scene, ground) {
+    const level = scene.floor ? () => 0 : undefined;
+    this.track = new Track(this.life, ground ? (x, y) => ground.heightAt(x, y) : level);
+    this.scene.add(this.track.root);
+  }
+
   #addSky() {
     this.sky = { near: { value: new THREE.Color() }, far: { value: new THREE.Color() } };
     this.#add(
@@ -211,6 +219,7 @@ export class Stage {
     this.world.earth.value.copy(colour("--earth"));
     const dark = colour("--shadow");
     this.shadow.value.set(dark.r, dark.g, dark.b, Number(style("--shadow-strength")));
+    this.track?.readTheme();
     this.#shown = undefined;
   }
 
@@ -282,6 +291,7 @@ export class Stage {
     if (index !== this.#shown) this.#fill(index);
     life.writePositions(time, this.positions.image.data);
     this.positions.needsUpdate = true;
+    this.track?.seek(time);
     this.#light(life.shots[index], time);
     this.lookAt(follow ? life.middleAt(time, life.smoothPath) : this.start);
   }

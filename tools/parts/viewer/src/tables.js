@@ -17,7 +17,7 @@ function table(name, title, heads, rows) {
   );
 }
 
-/** Lists all robots of the page with their scores. */
+/** Lists all robots of the page with their scores. They can be opened if there is a viewer. */
 export function robotTable(runs, robots, viewer) {
   const objectives = objectivesOf(runs);
   const measures = measuresOf(runs);
@@ -29,11 +29,9 @@ export function robotTable(runs, robots, viewer) {
       element(
         "td",
         {},
-        element("button", {
-          type: "button",
-          textContent: robot.role,
-          onclick: () => viewer.open(i),
-        }),
+        viewer
+          ? element("button", { type: "button", textContent: robot.role, onclick: () => viewer.open(i) })
+          : robot.role,
       ),
       ...(runs.length > 1 ? [cell(run.label)] : []),
       cell(String(robot.individual)),
@@ -47,7 +45,7 @@ export function robotTable(runs, robots, viewer) {
     ),
   );
   const heads = [
-    "",
+    "Robot",
     ...(runs.length > 1 ? ["Run"] : []),
     "Individual",
     ...[...objectives, ...measures, ...notes].map(titled),
@@ -101,6 +99,43 @@ export class TestTable {
   }
 }
 
+/** How the robots in the viewer kept their fitness in each trial of their verification; nothing if none was verified. */
+export class VerificationTable {
+  constructor(robots) {
+    this.robots = robots;
+    this.root = element("div");
+  }
+
+  /** Shows the verifications of the robots with these indices. */
+  show(indices) {
+    const verified = indices.map((i) => this.robots[i]).filter(({ robot }) => robot.verification);
+    this.root.replaceChildren(...(verified.length > 0 ? [this.#table(verified)] : []));
+  }
+
+  #table(verified) {
+    const names = [...new Set(verified.flatMap(({ robot }) => robot.verification.trials.map(({ trial }) => trial)))];
+    const head = ["Trial", ...verified.map(({ name }) => name)].map((text) => cell(text, "th"));
+    const row = (name) =>
+      element(
+        "tr",
+        {},
+        element("th", { textContent: name, scope: "row" }),
+        ...verified.map(({ robot }) => cell(trialText(robot.verification, name))),
+      );
+    return table("verification", "Verification", [element("tr", {}, ...head)], names.map(row));
+  }
+}
+
+/** Returns the fitness in a trial, its share of the fitness in percent, and whether it held. */
+function trialText({ fitness, trials }, name) {
+  const trial = trials.find((other) => other.trial === name);
+  if (!trial) return "–";
+  const held = trial.held ? "held" : name === "no-muscles" ? "not held, as it should be" : "not held";
+  if (trial.status !== "ok") return listed(trial.status, trial.reason, held);
+  const percent = fitness === 0 ? "" : `${Math.round((100 * trial.value) / fitness)} %`;
+  return listed(short(trial.value), percent, held);
+}
+
 function heads(tested) {
   const spans = tested.map(({ run, name }) =>
     element("th", { textContent: name, colSpan: run.objectives.length, scope: "colgroup" }),
@@ -108,7 +143,7 @@ function heads(tested) {
   const names = tested.flatMap(({ run }) =>
     run.objectives.map((o) => cell(listed(titled(o), directionOf(o)), "th")),
   );
-  return [element("tr", {}, cell("", "th"), ...spans), element("tr", {}, cell("Test", "th"), ...names)];
+  return [element("tr", {}, cell(""), ...spans), element("tr", {}, cell("Test", "th"), ...names)];
 }
 
 function rows(tested) {

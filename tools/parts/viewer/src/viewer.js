@@ -1,14 +1,34 @@
 // The 3D viewer: one or two robots, a clock, and the controls.
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { colourBar, css, cycleColour, developing, materialColour, readPalette, stressColour } from "./colours.js";
+import { developing, readPalette } from "./colours.js";
 import { element, short } from "./elements.js";
 import { Ground } from "./ground.js";
+import { legend } from "./legend.js";
 import { Life } from "./life.js";
+import { bodyJson, fileName, linkTo, save } from "./share.js";
 import { Stage } from "./stage.js";
 
 const speeds = [0.1, 0.25, 0.5, 1, 2, 4];
 const framing = 2.9; // distance of the camera, in multiples of the body's size
+const fieldOfView = 32; // degrees
+// Orthographic views are drawn by a camera that is this many times as far away, with a smaller field of view.
+const farAway = 200;
+
+/** The directions from which the views look at the robot. */
+const views = {
+  perspective: { label: "in perspective", from: [0.55, -1, 0.42] },
+  side: { label: "from the side", from: [0, -1, 0] },
+  front: { label: "from the front", from: [1, 0, 0] },
+  top: { label: "from above", from: [0, -1e-4, 1] },
+};
+
+/** Whether this browser can draw the viewer. */
+export function hasGraphics() {
+  const context = element("canvas").getContext("webgl2");
+  context?.getExtension("WEBGL_lose_context")?.loseContext(); // a browser allows few contexts
+  return context !== null;
+}
 
 export class Viewer {
   /** Creates a viewer of robots, each given as {label, robot, run}. */
@@ -22,6 +42,7 @@ export class Viewer {
     this.speed = 1;
     this.follow = true;
     this.mode = "material";
+    this.view = "perspective";
     this.onshow = () => {}; // called with the indices of the robots shown
     this.works = robots.some(({ robot }) => robot.film.most_stress > 0); // false if no robot was simulated
     this.#build();
@@ -33,10 +54,12 @@ export class Viewer {
   #build() {
     this.canvas = element("canvas", {
       tabIndex: 0,
-      ariaLabel: "The robot. Drag to turn, pinch or wheel to come nearer.",
+      ariaLabel: "The robot. Drag to turn it, pinch to come nearer; after a click, the wheel comes nearer, too.",
     });
+    this.ruler = element("div", { className: "ruler" }, element("i"), element("span"));
+    this.filmClock = element("div", { className: "film-clock" });
     this.captions = [0, 1].map(() => element("div", { className: "caption" }, element("strong"), element("span")));
-    this.stage = element("div", { className: "stage" }, this.canvas, ...this.captions);
+    this.stage = element("div", { className: "stage" }, this.canvas, ...this.captions, this.ruler, this.filmClock);
     this.note = element("p", { className: "note" });
     this.root = element(
       "section",
@@ -46,6 +69,7 @@ export class Viewer {
       this.#transport(),
       this.#lifeBar(),
       this.#looks(),
+      this.#leaving(),
       this.note,
       keys(),
     );
@@ -112,7 +136,63 @@ export class Viewer {
       element("label", {}, element("span", { textContent: "Life" }), this.cycle),
       this.cycleName,
       element("label", { className: "check" }, this.followBox, element("span", { textContent: "Follow" })),
+      this.#viewPicker(),
     );
+  }
+
+  #viewPicker() {
+    const option = ([value, { label }]) => element("option", { value, textContent: label });
+    this.viewSelect = element(
+      "select",
+      { onchange: (event) => this.setView(event.target.value) },
+      ...Object.entries(views).map(option),
+    );
+    return element("label", {}, element("span", { textContent: "View" }), this.viewSelect);
+  }
+
+  /** Creates the buttons that take something out of the page, or fill the screen. */
+  #leaving() {
+    const button = (text, onclick) => element("button", { type: "button", textContent: text, onclick });
+    this.linkButton = button("Copy link", () => this.#copyLink());
+    return element(
+      "div",
+      { className: "leaving" },
+      button("Full screen", () => this.#fillScreen()),
+      button("Save picture", () => this.#savePicture()),
+      button("Save body", () => this.#saveBodies()),
+      this.linkButton,
+    );
+  }
+
+  #fillScreen() {
+    if (document.fullscreenElement) document.exitFullscreen();
+    else this.root.requestFullscreen();
+  }
+
+  #savePicture() {
+    this.draw();
+    const name = `${this.#shownNames()}-${this.time.toFixed(2)}-s`;
+    this.canvas.toBlob((picture) => save(fileName(name, "png"), picture));
+  }
+
+  #saveBodies() {
+    this.stages
+      .filter(({ life }) => life.shots.length > 0)
+      .forEach(({ life }) => {
+        const name = `individual-${life.robot.individual}-${this.time.toFixed(2)}-s`;
+        save(fileName(name, "json"), bodyJson(life, this.time));
+      });
+  }
+
+  async #copyLink() {
+    history.replaceState(null, "", linkTo(this));
+    let text = "Link copied";
+    await navigator.clipboard?.writeText(location.href).catch(() => (text = "The link is in the address bar"));
+    this.linkButton.textContent = text;
+  }
+
+  #shownNames() {
+    return this.stages.map(({ life }) => `individual-${life.robot.individual}`).join("-");
   }
 
   /** Creates the choice of colours and their legend. */
@@ -144,10 +224,14 @@ export class Viewer {
     this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, stencil: true });
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace; // no conversion: colours as in the style sheet
     this.renderer.autoClear = false;
-    this.camera = new THREE.PerspectiveCamera(32, 1, 0.01, 1000);
+    this.camera = new THREE.PerspectiveCamera(fieldOfView, 1, 0.01, 1000);
     this.camera.up.set(0, 0, 1);
     this.orbit = new OrbitControls(this.camera, this.canvas);
     this.orbit.addEventListener("change", () => (this.dirty = true));
+    // the wheel scrolls the page until the robot has been clicked
+    this.orbit.enableZoom = false;
+    this.canvas.addEventListener("pointerdown", () => (this.orbit.enableZoom = true), { capture: true });
+    this.canvas.addEventListener("blur", () => (this.orbit.enableZoom = false));
     new ResizeObserver(() => this.#measure()).observe(this.stage);
   }
 
@@ -160,15 +244,9 @@ export class Viewer {
 
   #listen() {
     document.addEventListener("keydown", (event) => {
-      if (
-        event.target.closest?.("input:not([type=range]),select,textarea") ||
-        event.ctrlKey ||
-        event.metaKey ||
-        event.altKey
-      )
-        return;
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
       const action = this.#keys()[event.key];
-      if (!action || (event.target.closest?.("button,summary") && event.key === " ")) return;
+      if (!action || belongsTo(event.target, event.key)) return;
       event.preventDefault();
       action(event);
     });
@@ -188,7 +266,8 @@ export class Viewer {
       "-": speed(-1),
       c: () => this.works && this.setMode({ material: "stress", stress: "cycle", cycle: "material" }[this.mode]),
       f: () => this.setFollow(!this.follow),
-      r: () => this.#frameBody(),
+      r: () => this.setView(this.view),
+      v: () => this.#fillScreen(),
     };
   }
 
@@ -222,10 +301,23 @@ export class Viewer {
     this.scrub.max = String(this.end);
     this.cycle.max = String(Math.max(0, this.#leading().shots.length - 1));
     this.stages.forEach((stage) => stage.setMode(this.mode));
-    this.#frameBody();
+    this.setView(this.view);
     this.#explain();
     this.seek(this.begin);
     this.onshow(indices);
+  }
+
+  /** Shows what a link says, as linked() returns it. */
+  async restore({ robot, beside, time, colour, view, camera }) {
+    await this.show(robot, beside);
+    if (this.works && ["material", "stress", "cycle"].includes(colour)) this.setMode(colour);
+    if (Object.hasOwn(views, view)) this.setView(view);
+    if (camera) {
+      this.camera.position.fromArray(camera);
+      this.orbit.target.fromArray(camera, 3);
+      this.orbit.update();
+    }
+    if (Number.isFinite(time)) this.seek(time);
   }
 
   /** Shows a robot, and scrolls to the viewer. */
@@ -235,7 +327,7 @@ export class Viewer {
   }
 
   async #life(index) {
-    if (!this.lives.has(index)) this.lives.set(index, Life.of(this.robots[index].robot));
+    if (!this.lives.has(index)) this.lives.set(index, Life.of(this.robots[index].robot, this.robots[index].run.direction));
     return this.lives.get(index);
   }
 
@@ -248,15 +340,15 @@ export class Viewer {
     return Math.max(0, this.#leading().shotAt(this.time));
   }
 
-  #frameBody() {
+  /** Looks at the robots from a direction of `views`; all but "perspective" are orthographic. */
+  setView(view) {
+    this.view = this.viewSelect.value = view;
     const size = Math.max(...this.stages.map((stage) => stage.size));
     this.orbit.target.set(0, 0, 0);
     this.camera.position
-      .set(0.55, -1, 0.42)
+      .set(...views[view].from)
       .normalize()
       .multiplyScalar(framing * size);
-    this.camera.near = 0.01 * size;
-    this.camera.far = 60 * size;
     this.orbit.minDistance = 0.3 * size;
     this.orbit.maxDistance = 25 * size;
     this.orbit.update();
@@ -331,7 +423,7 @@ export class Viewer {
   /** Updates the legend of the colours and the note on the accuracy of the picture. */
   #explain() {
     const shown = this.stages.filter((stage) => stage.life.shots.length > 0);
-    this.legend.replaceChildren(...(shown.length > 0 ? this.#legend() : []));
+    this.legend.replaceChildren(...(shown.length > 0 ? legend(this.mode, shown, this.scale) : []));
     this.note.textContent = shown.length > 0 ? this.#exactness(shown.map((stage) => stage.life.robot.film.error)) : "";
   }
 
@@ -343,48 +435,17 @@ export class Viewer {
     return this.works ? `${within}; stress to within ${short(worst("stress"))} N.` : `${within}.`;
   }
 
-  #legend() {
-    const swatch = (colour, text) =>
-      element(
-        "span",
-        { className: "swatch" },
-        element("i", { style: `background:${css(colour)}` }),
-        element("span", { textContent: text }),
-      );
-    if (this.mode === "stress")
-      return colourBar(stressColour, "0 N", `${short(this.scale.stress)} N (root scale)`);
-    if (this.mode === "cycle") {
-      const { cycles } = this.scale;
-      const born = swatch(cycleColour(0, cycles), "there from birth");
-      return cycles > 1
-        ? [
-            born,
-            ...colourBar((t) => cycleColour(1 + t * (cycles - 2), cycles), "after cycle 1", `after cycle ${cycles - 1}`),
-          ]
-        : [born];
-    }
-    const materials = new Map();
-    for (const { life, materialNames } of this.stages)
-      materialNames.forEach((name, i) => {
-        const all = life.robot.film.materials ?? [];
-        if (all[i]?.stiffness > 0 && !materials.has(name)) materials.set(name, materialColour(all[i], all));
-      });
-    return [...materials].map(([name, colour]) => swatch(colour, name));
-  }
-
   /** Returns the name of a robot, and a line on its current state. */
   #caption(k) {
     const { life } = this.stages[k];
     const name = this.robots[this.chosen.filter((i) => i !== undefined)[k]].label;
     if (life.shots.length === 0) return [name, `${life.robot.status}: ${life.robot.reason}`];
     const shot = life.shots[life.shotAt(this.time)];
-    const measured = life.shots.find(({ name: n }) => n.startsWith("measured")); // and where, if there are scenarios
     const gone = shot.gone.length;
     const { springs, masses } = shot;
     const text = [shot.name, springs.length > 0 ? `${springs.length} springs` : `${masses.length} points`];
-    if (gone + shot.came > 0) text.push(`−${gone} +${shot.came}`);
-    if (measured && this.time > measured.begin)
-      text.push(`moved ${distance(life.middleAt(this.time), life.middleAt(measured.begin)).toFixed(2)} m`);
+    if (gone + shot.came > 0) text.push(`${gone} removed, ${shot.came} new`);
+    if (life.way && this.time > life.way.begin.time) text.push(wayText(life, this.time));
     return [name, text.join(" · ")];
   }
 
@@ -414,6 +475,19 @@ export class Viewer {
     this.stage.classList.toggle("stacked", stacked);
     this.stages.forEach((stage, k) => this.#drawStage(stage, this.#viewport(k, width, height, stacked), ratio));
     this.#writeCaptions();
+    this.#drawRuler(this.#viewport(0, width, height, stacked));
+    this.filmClock.textContent = `${this.time.toFixed(1)} s`;
+  }
+
+  /** Draws a bar that has a round length at the distance of the robot. */
+  #drawRuler([, , width, height]) {
+    const distance = this.camera.position.distanceTo(this.orbit.target);
+    const pixels = height / (2 * distance * Math.tan(widened(fieldOfView, width / height) / 2));
+    const most = 150 / pixels;
+    const power = 10 ** Math.floor(Math.log10(most));
+    const length = power * [5, 2, 1].find((digit) => digit * power <= most);
+    this.ruler.firstChild.style.width = `${length * pixels}px`;
+    this.ruler.lastChild.textContent = `${short(length)} m`;
   }
 
   #viewport(k, width, height, stacked) {
@@ -428,12 +502,14 @@ export class Viewer {
     this.renderer.clear();
     const camera = this.camera.clone();
     camera.aspect = width / height;
-    // widens the view of a narrow picture, so that it shows as much of the body as a wide one
-    camera.fov =
-      camera.aspect < 1
-        ? 2 * Math.atan(Math.tan((camera.fov * Math.PI) / 360) / camera.aspect) * (180 / Math.PI)
-        : camera.fov;
-    camera.position.add(stage.target);
+    const times = this.view === "perspective" ? 1 : farAway;
+    const angle = widened(fieldOfView, camera.aspect);
+    camera.fov = THREE.MathUtils.radToDeg(2 * Math.atan(Math.tan(angle / 2) / times));
+    const offset = this.camera.position.clone().sub(this.orbit.target);
+    const distance = times * offset.length();
+    camera.near = Math.max(0.01 * stage.size, distance - 60 * stage.size);
+    camera.far = distance + 60 * stage.size;
+    camera.position.copy(this.orbit.target).addScaledVector(offset, times).add(stage.target);
     camera.position.z += 0.05 * stage.size; // makes room for the caption above the body
     camera.updateProjectionMatrix();
     camera.updateMatrixWorld();
@@ -452,7 +528,30 @@ export class Viewer {
   }
 }
 
-const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+/** Returns a field of view (radians) of a picture, given that (degrees) of a wide one: a narrow picture shows as much of
+ *  the body. */
+function widened(angle, aspect) {
+  const half = Math.tan(THREE.MathUtils.degToRad(angle) / 2);
+  return 2 * Math.atan(aspect < 1 ? half / aspect : half);
+}
+
+/** Whether a key belongs to the control that has the focus, and not to the viewer. */
+function belongsTo(target, key) {
+  const control = target.closest?.("input,select,textarea,button,summary,a");
+  if (!control) return false;
+  if (control.matches("select,textarea,input:not([type=range],[type=radio],[type=checkbox])")) return true;
+  return key === " " || (key.startsWith("Arrow") && control.matches("[type=range],[type=radio]"));
+}
+
+/** Says how far a robot has moved, of how much in all, and where to: "0.41 of 0.58 body lengths (0.12 m) along +x". */
+function wayText(life, time) {
+  const { length, total, direction } = life.way;
+  const moved = life.movedAt(time);
+  const lengths = `${(moved / length).toFixed(2)} of ${total.toFixed(2)} body lengths (${moved.toFixed(2)} m)`;
+  const axes = direction.flatMap((part, axis) => (Math.abs(part) > 0.38 ? [`${part < 0 ? "−" : "+"}${"xy"[axis]}`] : []));
+  if (total < 0.005) return lengths;
+  return `${lengths} ${axes.length === 1 ? `along ${axes[0]}` : `between ${axes.join(" and ")}`}`;
+}
 
 const keys = () =>
   element(
@@ -461,6 +560,6 @@ const keys = () =>
     element("summary", { textContent: "Keys" }),
     element("p", {
       textContent:
-        "Space plays and pauses. ← and → step by a frame, with Shift by a second. [ and ] go from cycle to cycle. + and − change the speed. C changes the colour, F follows, R turns the camera back. Drag turns, the wheel or two fingers zoom, right drag or two fingers move.",
+        "Space plays and pauses. ← and → step by a frame, with Shift by a second. [ and ] go from cycle to cycle. + and − change the speed. C changes the colour, F follows, R turns the camera back, V fills the screen. Drag turns, the wheel (after a click) or two fingers zoom, right drag or two fingers move.",
     }),
   );

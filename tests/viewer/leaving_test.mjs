@@ -1,0 +1,147 @@
+// What leaves the report's page: files, links, and points in charts that open robots.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { after, before, test } from "node:test";
+import { archived, evodevo, inPage, launch, opened, Scratch, until } from "./support.mjs";
+
+const scratch = new Scratch();
+const report = scratch.path("report.html");
+let browser, page;
+
+before(async () => {
+  evodevo("run", scratch.file, "--out", scratch.run, "--set", "experiment.verify=0");
+  evodevo("report", scratch.run, "--out", report);
+  browser = await launch();
+  page = await opened(browser, report, { acceptDownloads: true });
+});
+after(async () => {
+  await browser?.close();
+  scratch.remove();
+});
+
+/** Clicks a button, and returns the name and the content of the file that it saves. */
+async function saved(button) {
+  const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
+  return { name: download.suggestedFilename(), content: readFileSync(await download.path()) };
+}
+
+const figure = (title) => page.locator("figure", { has: page.locator("figcaption", { hasText: title }) });
+
+test("a chart leaves as CSV with the archive's numbers", async () => {
+  const { name, content } = await saved(figure("Fitness over evaluations").getByRole("button", { name: "CSV" }));
+  assert.equal(name, "Fitness-over-evaluations.csv");
+  const [head, ...rows] = content.toString().trim().split("\n");
+  assert.equal(head, "evaluations,best,median");
+  const expected = archived(scratch.run, "SELECT evaluations, best, median FROM generations ORDER BY generation");
+  assert.deepEqual(rows.map((row) => row.split(",").map(Number)), expected);
+});
+
+test("a chart leaves as SVG that shows what the chart shows", async () => {
+  for (const [title, shapes] of [
+    ["Fitness over evaluations", "path[fill=none]"],
+    ["Age and fitness of the living", "circle"],
+    ["How evaluations ended", "path[d$=Z]"],
+  ]) {
+    const { content } = await saved(figure(title).getByRole("button", { name: "SVG" }));
+    const [error, count, outside] = await page.evaluate(
+      ([text, selector]) => {
+        const { documentElement: root } = new DOMParser().parseFromString(text, "image/svg+xml");
+        const numbers = [...root.querySelectorAll("circle")].flatMap((one) => ["cx", "cy"].map((key) => one.getAttribute(key)));
+        return [root.querySelector("parsererror"), root.querySelectorAll(selector).length, numbers.filter(Number.isNaN)];
+      },
+      [content.toString(), shapes],
+    );
+    assert.deepEqual([error, outside], [null, []]);
+    assert.ok(count > 0, title);
+  }
+  const living = archived(scratch.run, "SELECT count(*) FROM individuals WHERE died IS NULL AND status = 'ok'")[0][0];
+  const { content } = await saved(figure("Age and fitness of the living").getByRole("button", { name: "SVG" }));
+  assert.equal(content.toString().match(/<circle/g).length, living);
+});
+
+test("the stage leaves as a picture", async () => {
+  const { name, content } = await saved(page.getByRole("button", { name: "Save picture" }));
+  assert.match(name, /^individual-\d+-[\d.]+-s\.png$/);
+  assert.equal(content.subarray(1, 4).toString(), "PNG");
+  const colours = await page.evaluate(async (base64) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${base64}`;
+    await image.decode();
+    const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, image.width, image.height);
+    return new Set(Array.from({ length: data.length / 4 }, (_, i) => data.slice(4 * i, 4 * i + 3).join())).size;
+  }, content.toString("base64"));
+  assert.ok(colours > 50, `${colours} colours`);
+});
+
+test("the body leaves as JSON, as it is at that moment", async () => {
+  await inPage(page, ({ viewer }) => viewer.seek(1.5));
+  const { content } = await saved(page.getByRole("button", { name: "Save body" }));
+  const shown = JSON.parse(content);
+  const body = JSON.parse(evodevo("body", scratch.run, "--individual", String(shown.individual), "--matured"));
+  assert.equal(shown.time, 1.5);
+  assert.equal(shown.masses.length, body.masses.length);
+  assert.equal(shown.springs.length, body.springs.length);
+  const step = await inPage(page, ({ viewer }) => viewer.stages[0].life.robot.film.step);
+  shown.masses.forEach((place, i) =>
+    place.forEach((x, axis) => assert.ok(Math.abs(x - body.masses[i].position[axis]) <= 0.501 * step + 1e-5)),
+  );
+  const pair = ([a, b]) => `${Math.min(a, b)} ${Math.max(a, b)}`;
+  const pairs = (springs) => springs.map(({ masses, a, b }) => pair(masses ?? [a, b])).sort();
+  assert.deepEqual(pairs(shown.springs), pairs(body.springs));
+});
+
+test("a link restores the robots, the moment, the colour and the camera", async () => {
+  await inPage(page, async ({ viewer }) => {
+    await viewer.show(1, 0);
+    viewer.setMode("stress");
+    viewer.setView("front");
+    viewer.seek(1.25);
+  });
+  await page.getByRole("button", { name: "Copy link" }).click();
+  await until(page, () => location.hash.startsWith("#robot="));
+  const state = ({ viewer }) => ({
+    chosen: viewer.chosen,
+    time: viewer.time,
+    mode: viewer.mode,
+    view: viewer.view,
+    camera: viewer.camera.position.toArray().map((x) => x.toPrecision(3)),
+  });
+  const again = await opened(browser, report, {}, { hash: new URL(page.url()).hash });
+  const before = await inPage(page, state);
+  assert.deepEqual([before.chosen, before.time, before.mode, before.view], [[1, 0], 1.25, "stress", "front"]);
+  assert.deepEqual(await inPage(again, state), before);
+  await again.close();
+  const strange = await opened(browser, report, {}, { hash: "#robot=99&time=x&camera=1,2&colour=__proto__&view=constructor" });
+  assert.deepEqual(strange.complaints, []);
+  await strange.close();
+});
+
+test("a point of the living opens its robot, or says how to see it", async () => {
+  const living = await inPage(page, ({ data, viewer, charts }) => {
+    const { plot, data: columns } = charts.byName.ages;
+    const { population } = data.runs[0];
+    const shown = new Set(viewer.robots.map(({ robot }) => robot.individual));
+    return population
+      .filter(({ objectives }) => objectives.distance !== undefined)
+      .map(({ id, objectives: { distance } }) => {
+        const i = columns[1].indexOf(distance);
+        return { id, isShown: shown.has(id), left: plot.valToPos(columns[0][i], "x"), top: plot.valToPos(distance, "y") };
+      });
+  });
+  const over = figure("Age and fitness of the living").locator(".u-over");
+  const click = async ({ left, top }) => {
+    await over.click({ position: { x: left, y: top } });
+    await inPage(page, () => {});
+  };
+  const absent = living.find(({ isShown }) => !isShown);
+  await click(absent);
+  const notice = await page.locator(".notice").textContent();
+  assert.match(notice, /evodevo report .* --individual \d+$/);
+  assert.ok(living.some(({ id, isShown }) => !isShown && notice.endsWith(` ${id}`)), notice);
+  const present = living.find(({ isShown }) => isShown);
+  await inPage(page, ({ viewer }, id) => viewer.show(viewer.robots.findIndex(({ robot }) => robot.individual !== id)), present.id);
+  await click(present);
+  await until(page, ({ viewer }, id) => viewer.stages[0].life.robot.individual === id, present.id);
+});
