@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 
 #include "base/text.hpp"
 #include "report/genes_json.hpp"
@@ -43,6 +44,23 @@ std::vector<ArchivedIndividual> ancestry(const Archive& archive, std::uint32_t i
     next = line.back().parents.empty() ? std::nullopt : std::optional(line.back().parents.front());
   }
   return line;
+}
+
+Json lineage_json(const Archive& archive, const std::vector<std::uint32_t>& ids) {
+  std::map<std::uint32_t, ArchivedIndividual> all;
+  for (const std::uint32_t id : ids)
+    for (std::optional<std::uint32_t> next = id; next && !all.contains(*next);) {
+      const auto& [known, one] = *all.try_emplace(*next, archive.known_individual(*next)).first;
+      next = one.parents.empty() ? std::nullopt : std::optional(one.parents.front());
+    }
+  Json list = Json::array();
+  for (const auto& [id, one] : all)
+    list.push_back({{"individual", id},
+                    {"generation", one.born},
+                    {"parents", one.parents},
+                    {"made_by", one.made_by},
+                    {"value", one.result.status == Status::ok ? Json(one.result.objectives.front()) : Json(nullptr)}});
+  return list;
 }
 
 std::vector<BlockChange> block_changes(const Genome& parent, const Genome& child, const Layout& layout) {

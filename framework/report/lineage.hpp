@@ -12,6 +12,11 @@ namespace evodevo {
 /// Returns an individual, its parent, the parent's parent, and so on, back to a random individual. Mates are left out.
 std::vector<ArchivedIndividual> ancestry(const Archive& archive, std::uint32_t id);
 
+/// Returns the individuals with these ids and all their ancestors by first parents, in the order of birth, as a list of
+/// {"individual", "generation", "parents", "made_by", "value"}; the value is the first objective, or null without a
+/// fitness. By their first parents they form trees, the roots of which are random individuals.
+nlohmann::ordered_json lineage_json(const Archive& archive, const std::vector<std::uint32_t>& ids);
+
 /// The blocks of one type that only one of two genomes has.
 struct BlockChange {
   std::uint32_t type = 0;

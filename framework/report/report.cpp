@@ -244,6 +244,9 @@ Json reported_run(const Archive& archive, const Experiment& experiment, Simulato
     }
   }
   run["scene"] = scene_json(scene, region);
+  std::vector<std::uint32_t> ids;
+  for (const Actor& actor : actors) ids.push_back(actor.individual.id);
+  run["lineage"] = lineage_json(archive, ids);
   return run;
 }
 

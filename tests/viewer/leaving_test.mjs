@@ -118,6 +118,24 @@ test("a link restores the robots, the moment, the colour and the camera", async 
   await strange.close();
 });
 
+test("ancestors stand in a tree, whose pictures open robots", async () => {
+  const shown = await inPage(page, ({ viewer }) => viewer.robots.map(({ robot }) => robot.individual));
+  const line = archived(
+    scratch.run,
+    `WITH RECURSIVE line(id) AS (SELECT value FROM json_each('${JSON.stringify(shown)}') UNION
+       SELECT parent FROM individuals JOIN line USING (id) WHERE parent IS NOT NULL)
+     SELECT id, parent FROM line JOIN individuals USING (id) ORDER BY id`,
+  );
+  const labels = await page.locator(".tree button").evaluateAll((all) => all.map((one) => one.getAttribute("aria-label")));
+  assert.deepEqual(labels.map((label) => Number(/individual (\d+)/.exec(label)[1])), line.map(([id]) => id));
+  assert.equal(await page.locator(".tree path").count(), line.filter(([, parent]) => parent !== null).length);
+  const places = await page.locator(".tree button").evaluateAll((all) => all.map(({ style }) => style.left + style.top));
+  assert.equal(new Set(places).size, line.length, "two stand at one place");
+  const second = await inPage(page, ({ viewer }) => (viewer.show(0), viewer.robots[1].robot.individual));
+  await page.locator(`.tree button[aria-label^="individual ${second}:"]`).click();
+  await until(page, ({ viewer }, id) => viewer.stages[0].life.robot.individual === id, second);
+});
+
 test("a point of the living opens its robot, or says how to see it", async () => {
   const living = await inPage(page, ({ data, viewer, charts }) => {
     const { plot, data: columns } = charts.byName.ages;

@@ -117,10 +117,10 @@ test("axes have names, units and values at borders of cells; a name is never mar
 });
 
 test("the colours go from the lowest to the highest value, which the legend states", async () => {
-  const legend = await page.locator(".bar-of-colours span").allTextContents();
+  const legend = await page.locator(".niches .bar-of-colours span").allTextContents();
   assert.deepEqual(legend, ["-1", "1 body lengths"]);
   const colour = (individual) => niche(individual).locator("i").evaluate((i) => getComputedStyle(i).backgroundColor);
-  const bar = await page.locator(".bar-of-colours .scale").evaluate((i) => getComputedStyle(i).backgroundImage);
+  const bar = await page.locator(".niches .bar-of-colours .scale").evaluate((i) => getComputedStyle(i).backgroundImage);
   const stops = bar.match(/rgb\([^)]*\)/g);
   assert.equal(await colour(filmed), stops[0]);
   assert.equal(await colour(await best()), stops.at(-1));

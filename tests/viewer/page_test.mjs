@@ -156,7 +156,7 @@ test("it shows whom verification before the front has refused", async () => {
 
 test("a name with markup in it is shown as text", async () => {
   assert.equal(await page.locator("h1").textContent(), experimentName);
-  assert.ok((await page.locator(".legend").textContent()).includes(materialName));
+  assert.ok((await page.locator(".looks .legend").textContent()).includes(materialName));
   assert.ok((await page.locator("pre").textContent()).includes("[materials."));
   assert.equal(await page.evaluate(() => window.harmed), undefined);
   assert.equal(await page.locator("img").count(), 0);
@@ -208,7 +208,7 @@ test("each colour mode looks different and says what it shows", async () => {
   ]) {
     await page.locator(".modes label", { hasText: mode }).click();
     await inPage(page, () => {});
-    assert.ok((await page.locator(".legend").textContent()).includes(words));
+    assert.ok((await page.locator(".looks .legend").textContent()).includes(words));
     seen.push(await picture(page));
   }
   for (const [a, b] of [
@@ -265,7 +265,7 @@ test("two robots stand side by side, in step", async () => {
   for (const count of await differing(both, await picture(page))) assert.ok(count > 100);
   await page.locator(".modes label", { hasText: "Stress" }).click();
   const most = await inPage(page, ({ viewer }) => viewer.stages.map(({ life }) => life.robot.film.most_stress));
-  const legend = await page.locator(".legend").textContent();
+  const legend = await page.locator(".looks .legend").textContent();
   assert.equal(Number.parseFloat(legend.slice("0 N".length)), Number(Math.max(...most).toPrecision(4)), legend);
   await page.getByLabel("beside").selectOption("");
   await until(page, ({ viewer }) => viewer.stages.length === 1);
@@ -365,6 +365,14 @@ test("several runs give one page that compares them", async () => {
   const best = (folder) => archived(folder, "SELECT best FROM generations ORDER BY generation").map(([value]) => value);
   const data = await inPage(both, ({ charts }) => charts.byName.evaluations.data);
   assert.deepEqual([data[1], data[3]], [best(scratch.run), best(other)]);
+  assert.deepEqual(await both.locator(".facts-of-runs thead th").allTextContents(), [
+    "Fact",
+    `run ${experimentName}, seed 3`,
+    `other ${experimentName}, seed 8`,
+  ]);
+  const most = archived(other, "SELECT max(value) FROM scores")[0][0];
+  const row = both.locator(".facts-of-runs tbody tr", { hasText: "Best distance" });
+  assert.equal(Number.parseFloat(await row.locator("td").nth(1).textContent()), Number(most.toPrecision(4)));
   assert.deepEqual(both.complaints, []);
   await both.close();
 });

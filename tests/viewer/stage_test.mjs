@@ -146,6 +146,32 @@ test("the wheel scrolls the page until the robot is clicked, and again after it 
   await tab.close();
 });
 
+test("a click on a mass or a spring says what it is", async () => {
+  await inPage(page, ({ viewer }) => (viewer.setView("perspective"), viewer.seek(0.3)));
+  const texts = new Set();
+  const canvas = page.locator(".stage canvas");
+  const { width, height } = await canvas.boundingBox();
+  for (let x = 0.3; x < 0.7; x += 0.04)
+    for (let y = 0.3; y < 0.8; y += 0.05) {
+      await canvas.click({ position: { x: x * width, y: y * height } });
+      const picked = page.locator(".picked");
+      if (await picked.isVisible()) texts.add(await picked.textContent());
+    }
+  const springs = [...texts].filter((text) => text.startsWith("Spring between masses "));
+  const masses = [...texts].filter((text) => text.startsWith("Mass "));
+  assert.ok(springs.length > 3 && masses.length > 0, [...texts].join("\n"));
+  const { ends, count, stresses } = await inPage(page, ({ viewer }) => {
+    const { life } = viewer.stages[0];
+    const pairs = [...life.shots[0].springs].map((spring) => `${life.ends[2 * spring]} and ${life.ends[2 * spring + 1]}`);
+    return { ends: pairs, count: life.shots[0].masses.length, stresses: life.robot.film.most_stress };
+  });
+  for (const text of springs) {
+    assert.ok(ends.includes(/masses (\d+ and \d+):/.exec(text)[1]), text);
+    assert.ok(Number(/([\d.]+) N in this one/.exec(text)[1]) <= stresses * 1.001, text);
+  }
+  for (const text of masses) assert.ok(Number(/Mass (\d+)/.exec(text)[1]) < count, text);
+});
+
 test("arrows belong to the control that has the focus", async () => {
   await inPage(page, ({ viewer }) => viewer.seek(0));
   await page.getByLabel("Cycle of life").focus();

@@ -67,7 +67,7 @@ export const patience = 300_000;
 /** Opens a page of the viewer and waits until it is ready. `options` are those of Playwright's newPage; the page runs
  *  the function `before` before its own code. */
 export async function opened(browser, file, options, { hash = "", before } = {}) {
-  const tab = await browser.newPage(options);
+  const tab = await browser.newPage({ reducedMotion: "reduce", ...options }); // it does not play by itself
   if (before) await tab.addInitScript(before);
   tab.on("pageerror", (error) => console.error(`evodevo: the page says: ${error.message}`));
   await tab.goto(pathToFileURL(file) + hash, { timeout: patience });

@@ -1,6 +1,6 @@
 // The charts of a report.
 import uPlot from "uplot";
-import { faded } from "./colours.js";
+import { faded, runColour } from "./colours.js";
 import { element, short, style } from "./elements.js";
 import { csv, fileName, save } from "./share.js";
 import { chartSvg } from "./svg.js";
@@ -67,7 +67,6 @@ const line = (name, stroke, dash) => ({
   points: { show: false },
   value: shown,
 });
-const runColour = (index) => style("--series").split(/\s+/)[index % style("--series").split(/\s+/).length];
 const runName = (run, runs) => (runs.length > 1 ? `${run.label} ` : "");
 
 /** A figure with a chart that fills its width. `describe` returns the data, the series, the names of the axes, options

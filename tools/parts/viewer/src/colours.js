@@ -40,6 +40,12 @@ export const stressColour = (part) => ramp(palette.stress, part);
 export const cycleColour = (cameWith, shots) =>
   cameWith <= 0 ? palette.born : ramp(palette.cycles, shots > 2 ? (cameWith - 1) / (shots - 2) : 1);
 
+/** The colour of a run, or of another series, by its index. */
+export function runColour(index) {
+  const colours = style("--series").split(/\s+/);
+  return colours[index % colours.length];
+}
+
 /** Returns a colour of the style sheet, halfway to that of the page. */
 export const faded = (colour) => css(mix(rgb(colour), rgb(style("--paper")), 0.5));
 

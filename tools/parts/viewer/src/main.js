@@ -5,11 +5,12 @@ import { Charts } from "./charts.js";
 import { readPalette } from "./colours.js";
 import { element, short } from "./elements.js";
 import { Gallery } from "./gallery.js";
+import { Lineage } from "./lineage.js";
 import { NicheMaps } from "./niches.js";
 import { directionOf, hasUnit, listed, own, quantityText } from "./scores.js";
 import { linked } from "./share.js";
 import { stillOf } from "./still.js";
-import { robotTable, TestTable, VerificationTable } from "./tables.js";
+import { factTable, robotTable, TestTable, VerificationTable } from "./tables.js";
 import { hasGraphics, Viewer } from "./viewer.js";
 
 const data = JSON.parse(document.getElementById("data").textContent);
@@ -41,13 +42,7 @@ const robots = runs
 /** Formats a share in percent, which is shown as 100 only if it is exactly 100. */
 const share = (part, all) => (part === all ? "100" : Math.min(99.9, (100 * part) / all).toFixed(1));
 
-const fact = (label, value, note) =>
-  element(
-    "div",
-    { className: "fact" },
-    element("dt", { textContent: label }),
-    element("dd", {}, element("b", { textContent: value }), note ? element("span", { textContent: note }) : null),
-  );
+const fact = (label, value, note = "") => ({ label, value, note });
 
 function coverageFact({ map, generations }) {
   const score = generations.at(-1)?.map?.qd_score ?? null;
@@ -64,14 +59,12 @@ function topSpeedFact({ length, speed, limit }) {
   return fact("Top speed", `${short(limit)} m/s`, `is all that friction allows${lengths}${reached}`);
 }
 
-function facts(run) {
+/** Returns the facts of a run, each as {label, value, note}. */
+function factsOf(run) {
   const all = Object.values(run.statuses).reduce((sum, n) => sum + n, 0);
   const springs = run.generations.reduce((sum, g) => sum + g.spring_evaluations, 0);
   const marks = run.best?.verification?.marks;
-  return element(
-    "dl",
-    { className: "facts" },
-    runs.length > 1 ? fact("Run", run.label, `${run.experiment}, seed ${run.seed}`) : null,
+  return [
     ...run.objectives.map((o) =>
       fact(`Best ${o.name}`, short(o.best?.value), listed(hasUnit(o.unit) ? o.unit : "", directionOf(o))),
     ),
@@ -82,8 +75,8 @@ function facts(run) {
         ? `in ${run.generations.length} generation${run.generations.length === 1 ? "" : "s"}`
         : `of ${run.evaluations_asked.toLocaleString("en")}, not finished`,
     ),
-    run.map ? coverageFact(run) : null,
-    run.top_speed ? topSpeedFact(run.top_speed) : null,
+    ...(run.map ? [coverageFact(run)] : []),
+    ...(run.top_speed ? [topSpeedFact(run.top_speed)] : []),
     fact("Springs simulated", short(springs), "spring evaluations"),
     fact(
       "Ended well",
@@ -98,7 +91,20 @@ function facts(run) {
       marks === undefined ? "not yet" : marks.length > 0 ? marks.join(", ") : "held",
       marks === undefined ? "see evodevo verify" : marks.length > 0 ? "" : "neither artefact nor passive",
     ),
-  );
+  ];
+}
+
+/** The facts of a run as tiles, or those of several runs as a table with a column for each. */
+function facts() {
+  if (runs.length > 1) return factTable(runs, runs.map(factsOf));
+  const tile = ({ label, value, note }) =>
+    element(
+      "div",
+      { className: "fact" },
+      element("dt", { textContent: label }),
+      element("dd", {}, element("b", { textContent: value }), note ? element("span", { textContent: note }) : null),
+    );
+  return element("dl", { className: "facts" }, ...factsOf(runs[0]).map(tile));
 }
 
 function header() {
@@ -130,6 +136,14 @@ const experiments = () =>
     ),
   );
 
+function lineages(viewer) {
+  const titleOf = (run) => (runs.length > 1 ? `Where the robots come from: ${run.label}` : "Where the robots come from");
+  const open = (run) => (individual) => openIndividual({ run, individual }, viewer);
+  const all = runs.filter(({ lineage }) => lineage.length > 0).map((run) => new Lineage(run, titleOf(run), robots, open(run)));
+  all.forEach((one) => one.draw()); // pictures may come later than the page
+  return all.map(({ root }) => root);
+}
+
 /** Shows what the address asks for, or the first robot that has lived, which then plays unless the reader prefers still
  *  pages. */
 async function showFirst(viewer, isFilm) {
@@ -141,8 +155,8 @@ async function showFirst(viewer, isFilm) {
   if (!isStill && first >= 0) viewer.toggle();
 }
 
-/** Shows the robot of a point in a chart, if the page has its film. */
-function openPoint({ run, individual }, viewer) {
+/** Shows an individual, if the page has its film. */
+function openIndividual({ run, individual }, viewer) {
   const index = robots.findIndex((one) => one.run === run && one.robot.individual === individual);
   if (index >= 0) return viewer?.open(index);
   notice(`The page does not hold individual ${individual}. To see it: evodevo report ${run.folder} --individual ${individual}`);
@@ -161,7 +175,7 @@ async function begin() {
   const main = element("main");
   document.body.append(main);
   main.append(header());
-  if (!isGallery) main.append(...runs.map(facts));
+  if (!isGallery) main.append(facts());
   const page = { data, film: location.hash === "#film" };
   if (robots.length > 0 && hasGraphics()) page.viewer = new Viewer(robots);
   page.niches = new NicheMaps(runs, robots, page.viewer);
@@ -179,12 +193,12 @@ async function begin() {
     main.append(page.gallery.root);
     await page.gallery.draw();
   } else if (!isGallery) {
-    page.charts = new Charts(runs, (point) => openPoint(point, page.viewer));
+    page.charts = new Charts(runs, (point) => openIndividual(point, page.viewer));
     main.append(page.charts.root);
     page.charts.root.prepend(...page.niches.figures);
     page.charts.root.after(notices);
     page.charts.draw();
-    main.append(robotTable(runs, robots, page.viewer));
+    main.append(...lineages(page.viewer), robotTable(runs, robots, page.viewer));
   }
   main.append(experiments(), element("footer", { textContent: `evodevo ${data.evodevo}` }));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {

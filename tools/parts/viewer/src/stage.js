@@ -230,6 +230,11 @@ export class Stage {
 
   #shown; // the shot whose springs are in the buffers
 
+  /** The shot that is drawn. */
+  get shown() {
+    return this.#shown ?? 0;
+  }
+
   #fill(index) {
     const { life } = this;
     const shot = life.shots[index];

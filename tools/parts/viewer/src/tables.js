@@ -1,4 +1,5 @@
 // The tables of a report: the robots, and the scores of the robots shown in each test.
+import { runColour } from "./colours.js";
 import { element, short } from "./elements.js";
 import { directionOf, listed, measuresOf, notesOf, objectivesOf, own, titled } from "./scores.js";
 
@@ -15,6 +16,23 @@ function table(name, title, heads, rows) {
       element("table", {}, element("thead", {}, ...heads), element("tbody", {}, ...rows)),
     ),
   );
+}
+
+/** The facts of several runs, each {label, value, note}: a column for each run, a row for each fact that any has. */
+export function factTable(runs, facts) {
+  const labels = [...new Set(facts.flatMap((of) => of.map(({ label }) => label)))];
+  const ofRun = (of, label) => {
+    const fact = of.find((one) => one.label === label);
+    return element("td", {}, ...(fact ? [element("b", { textContent: fact.value }), ` ${fact.note}`] : ["–"]));
+  };
+  const rows = labels.map((label) =>
+    element("tr", {}, element("th", { textContent: label, scope: "row" }), ...facts.map((of) => ofRun(of, label))),
+  );
+  const swatch = (i) => element("i", { className: "run-colour", style: `background:${runColour(i)}` });
+  const heads = runs.map((run, i) =>
+    element("th", {}, swatch(i), run.label, element("span", { textContent: ` ${run.experiment}, seed ${run.seed}` })),
+  );
+  return table("facts-of-runs", "Runs", [element("tr", {}, cell("Fact", "th"), ...heads)], rows);
 }
 
 /** Lists all robots of the page with their scores. They can be opened if there is a viewer. */

@@ -6,6 +6,7 @@ import { element, short } from "./elements.js";
 import { Ground } from "./ground.js";
 import { legend } from "./legend.js";
 import { Life } from "./life.js";
+import { described, pick } from "./picking.js";
 import { bodyJson, fileName, linkTo, save } from "./share.js";
 import { Stage } from "./stage.js";
 
@@ -61,6 +62,7 @@ export class Viewer {
     this.captions = [0, 1].map(() => element("div", { className: "caption" }, element("strong"), element("span")));
     this.stage = element("div", { className: "stage" }, this.canvas, ...this.captions, this.ruler, this.filmClock);
     this.note = element("p", { className: "note" });
+    this.picked = element("p", { className: "picked", hidden: true, ariaLive: "polite" });
     this.root = element(
       "section",
       { className: "viewer" },
@@ -68,6 +70,7 @@ export class Viewer {
       this.stage,
       this.#transport(),
       this.#lifeBar(),
+      this.picked,
       this.#looks(),
       this.#leaving(),
       this.note,
@@ -231,6 +234,11 @@ export class Viewer {
     // the wheel scrolls the page until the robot has been clicked
     this.orbit.enableZoom = false;
     this.canvas.addEventListener("pointerdown", () => (this.orbit.enableZoom = true), { capture: true });
+    let pressed;
+    this.canvas.addEventListener("pointerdown", ({ clientX, clientY }) => (pressed = [clientX, clientY]));
+    this.canvas.addEventListener("pointerup", (event) => {
+      if (pressed && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 4) this.#pickAt(event);
+    });
     this.canvas.addEventListener("blur", () => (this.orbit.enableZoom = false));
     new ResizeObserver(() => this.#measure()).observe(this.stage);
   }
@@ -269,6 +277,27 @@ export class Viewer {
       r: () => this.setView(this.view),
       v: () => this.#fillScreen(),
     };
+  }
+
+  /** Describes the mass or the spring at the place of an event, if there is one. */
+  #pickAt({ offsetX, offsetY }) {
+    const { width, height } = this;
+    const stacked = this.stages.length > 1 && height > 1.1 * width;
+    this.pick = undefined;
+    this.stages.forEach((stage, k) => {
+      const [x, y, across, up] = this.#viewport(k, width, height, stacked);
+      const place = [offsetX - x, offsetY - (height - y - up)];
+      if (place[0] < 0 || place[1] < 0 || place[0] > across || place[1] > up) return;
+      const found = pick(stage, this.#cameraOf(stage, across / up), place, [across, up]);
+      if (found) this.pick = { stage, ...found };
+    });
+    this.#describePick();
+  }
+
+  #describePick() {
+    const isShown = this.pick !== undefined && this.stages.includes(this.pick.stage);
+    this.picked.hidden = !isShown;
+    if (isShown) this.picked.replaceChildren(...described(this.pick.stage, this.pick, this.time));
   }
 
   async #pick(which, value) {
@@ -360,6 +389,7 @@ export class Viewer {
     this.scrub.value = String(this.time);
     this.dirty = true;
     this.clock.value = `${this.time.toFixed(2)} s of ${this.end.toFixed(1)}`;
+    this.#describePick();
     const shots = this.#leading().shots;
     if (shots.length === 0) return;
     const index = this.#shotIndex();
@@ -500,8 +530,13 @@ export class Viewer {
     this.renderer.setViewport(x, y, width, height);
     this.renderer.setScissor(x, y, width, height);
     this.renderer.clear();
+    stage.draw(this.renderer, this.#cameraOf(stage, width / height), height * ratio);
+  }
+
+  /** Returns the camera of a stage in a picture with an aspect ratio. */
+  #cameraOf(stage, aspect) {
     const camera = this.camera.clone();
-    camera.aspect = width / height;
+    camera.aspect = aspect;
     const times = this.view === "perspective" ? 1 : farAway;
     const angle = widened(fieldOfView, camera.aspect);
     camera.fov = THREE.MathUtils.radToDeg(2 * Math.atan(Math.tan(angle / 2) / times));
@@ -513,7 +548,7 @@ export class Viewer {
     camera.position.z += 0.05 * stage.size; // makes room for the caption above the body
     camera.updateProjectionMatrix();
     camera.updateMatrixWorld();
-    stage.draw(this.renderer, camera, height * ratio);
+    return camera;
   }
 
   #tick(now) {
@@ -560,6 +595,6 @@ const keys = () =>
     element("summary", { textContent: "Keys" }),
     element("p", {
       textContent:
-        "Space plays and pauses. ← and → step by a frame, with Shift by a second. [ and ] go from cycle to cycle. + and − change the speed. C changes the colour, F follows, R turns the camera back, V fills the screen. Drag turns, the wheel (after a click) or two fingers zoom, right drag or two fingers move.",
+        "Space plays and pauses. ← and → step by a frame, with Shift by a second. [ and ] go from cycle to cycle. + and − change the speed. C changes the colour, F follows, R turns the camera back, V fills the screen. A click on a mass or a spring says what it is. Drag turns, the wheel (after a click) or two fingers zoom, right drag or two fingers move.",
     }),
   );
