@@ -4,7 +4,7 @@ import { execFileSync, spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readdirSync, readFileSync, rmdirSync, symlinkSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { chromiumProgram, cycles, cycleTime, differing, evodevo, inPage, launch, opened, picture, Scratch, sum } from "./support.mjs";
+import { chromiumProgram, cycles, cycleTime, differing, evodevo, experimentName, inPage, launch, opened, picture, Scratch, sum } from "./support.mjs";
 
 const scratch = new Scratch();
 let browser;
@@ -144,6 +144,17 @@ test("a gallery shows as many robots as asked for, and how balls become bodies",
   evodevo("gallery", scratch.file, "--count", "5", "--out", file);
   const page = await opened(browser, file);
   assert.equal(await page.locator(".tile").count(), 5);
+  const shown = await inPage(page, ({ gallery, viewer }) =>
+    gallery.texts.map(({ textContent }, i) => [textContent, viewer.robots[i].robot.film.shots.length > 0]),
+  );
+  const invalid = shown.filter(([, isBody]) => !isBody).length;
+  const title = `${experimentName} · seed 3 · 5 random robots, ${invalid} invalid`;
+  assert.equal(await page.locator(".sheet-title").textContent(), title);
+  for (const [text, isBody] of shown) {
+    if (!isBody) continue;
+    const [, size, masses] = /^([\d.]+) m, (\d+) masses, \d+ springs, \d+ materials?$/.exec(text);
+    assert.ok(Number(size) > 0 && Number(masses) > 3 && Number(masses) <= 40, text); // of 40 points
+  }
   assert.deepEqual(page.complaints, []);
   const far = await inPage(page, ({ viewer }) => {
     const { life } = viewer.stages[0];

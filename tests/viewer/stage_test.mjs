@@ -123,6 +123,16 @@ test("each view looks different, and orthographic ones keep parallels parallel",
   await page.getByLabel("View").selectOption("in perspective");
 });
 
+test("thick springs cover more of the picture", async () => {
+  await inPage(page, ({ viewer }) => viewer.seek(0.9));
+  const thin = await picture(page);
+  await page.getByLabel("Thick springs").check();
+  const covered = sum(await differing(thin, await picture(page)));
+  assert.ok(covered > 1000, `${covered} pixels`);
+  await page.getByLabel("Thick springs").uncheck();
+  assert.deepEqual(await differing(thin, await picture(page)), [0, 0]);
+});
+
 test("the wheel scrolls the page until the robot is clicked, and again after it has lost the focus", async () => {
   const tab = await opened(browser, report);
   const stage = tab.locator(".stage canvas");

@@ -11,6 +11,9 @@ export function element(tag, properties = {}, ...children) {
   return made;
 }
 
+/** Returns a number and the name of what is counted. */
+export const counted = (number, one, several = `${one}s`) => `${number.toLocaleString("en")} ${number === 1 ? one : several}`;
+
 /** Formats a number with four significant digits, without trailing zeros. */
 export function short(value) {
   if (value === null || value === undefined) return "–";

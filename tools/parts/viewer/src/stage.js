@@ -95,6 +95,7 @@ export class Stage {
   #makeUniforms(ground) {
     const springs = Math.max(1, ...this.life.shots.map((shot) => shot.springs.length));
     const radius = this.size * Math.min(0.0075, 0.09 / Math.sqrt(springs));
+    this.thin = radius;
     this.shared = {
       positions: { value: this.positions },
       radius: { value: radius },
@@ -221,6 +222,12 @@ export class Stage {
     this.shadow.value.set(dark.r, dark.g, dark.b, Number(style("--shadow-strength")));
     this.track?.readTheme();
     this.#shown = undefined;
+  }
+
+  /** Draws springs as thick as muscles rather than as wires, or thin again. */
+  setThick(thick) {
+    this.shared.radius.value = thick ? Math.max(3 * this.thin, 0.016 * this.size) : this.thin;
+    this.#shown = undefined; // the radius of masses depends on it
   }
 
   setMode(mode) {

@@ -133,12 +133,14 @@ export class Viewer {
       checked: true,
       onchange: (e) => this.setFollow(e.target.checked),
     });
+    this.thickBox = element("input", { type: "checkbox", onchange: (e) => this.setThick(e.target.checked) });
     return element(
       "div",
       { className: "life" },
       element("label", {}, element("span", { textContent: "Life" }), this.cycle),
       this.cycleName,
       element("label", { className: "check" }, this.followBox, element("span", { textContent: "Follow" })),
+      element("label", { className: "check" }, this.thickBox, element("span", { textContent: "Thick springs" })),
       this.#viewPicker(),
     );
   }
@@ -274,6 +276,7 @@ export class Viewer {
       "-": speed(-1),
       c: () => this.works && this.setMode({ material: "stress", stress: "cycle", cycle: "material" }[this.mode]),
       f: () => this.setFollow(!this.follow),
+      t: () => this.setThick(!this.thickBox.checked),
       r: () => this.setView(this.view),
       v: () => this.#fillScreen(),
     };
@@ -330,6 +333,7 @@ export class Viewer {
     this.scrub.max = String(this.end);
     this.cycle.max = String(Math.max(0, this.#leading().shots.length - 1));
     this.stages.forEach((stage) => stage.setMode(this.mode));
+    this.setThick(this.thickBox.checked);
     this.setView(this.view);
     this.#explain();
     this.seek(this.begin);
@@ -440,6 +444,13 @@ export class Viewer {
 
   setFollow(follow) {
     this.follow = this.followBox.checked = follow;
+    this.dirty = true;
+  }
+
+  /** Draws springs so thick that a network looks like a body. */
+  setThick(thick) {
+    this.thickBox.checked = thick;
+    this.stages.forEach((stage) => stage.setThick(thick));
     this.dirty = true;
   }
 
@@ -595,6 +606,6 @@ const keys = () =>
     element("summary", { textContent: "Keys" }),
     element("p", {
       textContent:
-        "Space plays and pauses. ← and → step by a frame, with Shift by a second. [ and ] go from cycle to cycle. + and − change the speed. C changes the colour, F follows, R turns the camera back, V fills the screen. A click on a mass or a spring says what it is. Drag turns, the wheel (after a click) or two fingers zoom, right drag or two fingers move.",
+        "Space plays and pauses. ← and → step by a frame, with Shift by a second. [ and ] go from cycle to cycle. + and − change the speed. C changes the colour, F follows, T makes springs thick, R turns the camera back, V fills the screen. A click on a mass or a spring says what it is. Drag turns, the wheel (after a click) or two fingers zoom, right drag or two fingers move.",
     }),
   );
