@@ -104,13 +104,13 @@ test("the legend names exactly the materials that the robot's springs have", asy
     return [...all].filter((i) => life.robot.film.materials[i].stiffness > 0).map((i) => materialNames[i] ?? null);
   });
   const named = await page.locator(".legend .swatch span").allTextContents();
-  const explained = named.filter((text) => /^(glows|thick|trail)/.test(text));
+  const explained = named.filter((text) => /^(glows|thick|trail|shown on the ground)/.test(text));
   const others = used.filter((name) => name === null).length;
   const mixtures = named.filter((text) => / mixtures? or changed materials?$/.test(text));
   assert.deepEqual(mixtures.map(Number.parseFloat), others > 0 ? [others] : []);
   const materials = named.filter((text) => !explained.includes(text) && !mixtures.includes(text));
   assert.deepEqual(materials.sort(), used.filter((name) => name !== null).sort());
-  assert.equal(explained.length, 3, explained.join());
+  assert.equal(explained.length, 4, explained.join());
 });
 
 test("each view looks different, and orthographic ones keep parallels parallel", async () => {
@@ -121,6 +121,34 @@ test("each view looks different, and orthographic ones keep parallels parallel",
   }
   for (let i = 1; i < seen.length; ++i) assert.ok(sum(await differing(seen[i - 1], seen[i])) > 200, String(i));
   await page.getByLabel("View").selectOption("in perspective");
+});
+
+test("masses on the ground have a colour of their own", async () => {
+  // in an orthographic view from the side, with everything but masses hidden, only those at the bottom have it
+  const heights = await inPage(page, ({ viewer }) => {
+    viewer.setView("side");
+    viewer.seek(viewer.end);
+    viewer.setThick(true);
+    const { life, masses, positions, scene } = viewer.stages[0];
+    scene.traverse((object) => object.isMesh && (object.visible = object.geometry === masses));
+    viewer.draw();
+    const shot = life.shots.at(-1);
+    const z = Array.from(shot.masses, (mass) => positions.image.data[4 * mass + 2]);
+    return { lowest: Math.min(...z), touch: life.touch, onGround: z.filter((height) => height <= life.touch).length };
+  });
+  assert.ok(heights.onGround > 0 && heights.onGround < 40, JSON.stringify(heights));
+  const rows = await (await picture(page)).evaluate(({ data, width }) => {
+    const found = [];
+    for (let i = 0; i < data.length; i += 4)
+      if (data[i + 1] > 1.5 * data[i] && data[i + 1] > 1.1 * data[i + 2]) found.push(Math.floor(i / 4 / width));
+    return { count: found.length, first: Math.min(...found), last: Math.max(...found) };
+  });
+  assert.ok(rows.count > 10 && rows.last - rows.first < 40, JSON.stringify(rows));
+  await inPage(page, ({ viewer }) => {
+    viewer.stages[0].scene.traverse((object) => (object.visible = true));
+    viewer.setThick(false);
+    viewer.setView("perspective");
+  });
 });
 
 test("thick springs cover more of the picture", async () => {

@@ -53,12 +53,14 @@ function mixtures(all) {
   return entry(`linear-gradient(90deg,${shown.map(css).join(",")})`, text);
 }
 
-/** What glows and fades when a cycle begins, if springs come or go, and the marks on the ground. */
+/** What glows and fades when a cycle begins, if springs come or go, which masses are on the ground, and its marks. */
 function changes(stages) {
   const shots = stages.flatMap(({ life }) => life.shots);
+  const ground = stages.map(({ touch }) => touch).filter(Number.isFinite);
   return [
     ...(shots.some(({ came }) => came > 0) ? [entry(style("--fresh"), "glows: new springs")] : []),
     ...(shots.some(({ gone }) => gone.length > 0) ? [entry("var(--faded)", "thick and fading: removed springs")] : []),
+    ...(ground.length > 0 ? [entry(style("--touch"), `shown on the ground, within ${short(1000 * Math.max(...ground))} mm`)] : []),
     ...(stages.some(({ track }) => track) ? [entry(style("--accent"), "trail; a line after each body length")] : []),
   ];
 }

@@ -113,6 +113,11 @@ export class Life {
     return [0, 1].reduce((sum, axis) => sum + direction[axis] * (now[axis] - begin.middle[axis]), 0);
   }
 
+  /** A mass that is shown at most this high above the ground is on it, m: positions are rounded to a multiple of a step. */
+  get touch() {
+    return 0.51 * this.robot.film.step;
+  }
+
   /** Returns the index of the shot at a time. If one shot ends and the next begins then, it is the next one. */
   shotAt(time) {
     let index = this.shots.length - 1;

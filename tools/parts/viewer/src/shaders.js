@@ -67,16 +67,21 @@ export const massVertex = /* glsl */ `
 in float mass;
 in vec3 colour;
 uniform float radius;
+uniform float touch; // a mass that is at most this high above the ground is on it, m; below -1e9 without ground
+uniform vec3 touchColour;
 out vec2 vAt;
 out vec3 vColour;
 out float vDepth;
 ${placeOf}
+${heightOf}
 void main() {
-  vec4 at = modelViewMatrix * vec4(placeOf(mass), 1.0);
+  vec3 place = placeOf(mass);
+  bool isOnGround = place.z - heightOf(place.xy) <= touch;
+  vec4 at = modelViewMatrix * vec4(place, 1.0);
   vAt = position.xy;
-  vColour = colour;
+  vColour = isOnGround ? touchColour : colour;
   vDepth = -at.z;
-  gl_Position = projectionMatrix * (at + vec4(position.xy * radius, 0.0, 0.0));
+  gl_Position = projectionMatrix * (at + vec4(position.xy * radius * (isOnGround ? 1.5 : 1.0), 0.0, 0.0));
 }`;
 
 export const massFragment = /* glsl */ `

@@ -86,6 +86,7 @@ export class Stage {
     this.#addSky();
     if (scene.floor) this.#addFloor(ground);
     if (scene.water) this.#addMotes();
+    this.touch = scene.floor ? life.touch : -Infinity;
     this.#addBody();
     if (scene.floor) this.#addShadow(ground);
     if (life.way) this.#addTrack(scene, ground);
@@ -112,6 +113,7 @@ export class Stage {
       reach: { value: (ground ? 3 : 6) * this.size }, // the data of rough ground reaches no further
     };
     this.massRadius = { value: 0 };
+    this.heights = heightUniforms(ground);
     this.shadow = { value: new THREE.Vector4() };
   }
 
@@ -140,11 +142,18 @@ export class Stage {
     );
     this.#add(this.gone, this.goneMaterial, 4);
     this.masses = new THREE.BufferGeometry();
-    this.#add(this.masses, material(massVertex, massFragment, { ...this.shared, radius: this.massRadius }), 3);
+    this.touchColour = { value: new THREE.Color() };
+    const uniforms = {
+      ...this.shared,
+      ...this.heights,
+      radius: this.massRadius,
+      touch: { value: Math.max(this.touch, -1e10) },
+      touchColour: this.touchColour,
+    };
+    this.#add(this.masses, material(massVertex, massFragment, uniforms), 3);
   }
 
   #addShadow(ground) {
-    this.heights = heightUniforms(ground);
     const shown = {
       transparent: true,
       depthWrite: false,
@@ -216,6 +225,7 @@ export class Stage {
     this.sky.near.value.copy(colour(this.pixels ? "--water" : "--stage"));
     this.sky.far.value.copy(colour(this.pixels ? "--water-low" : "--stage-low"));
     this.shared.freshColour.value.copy(colour("--fresh"));
+    this.touchColour.value.copy(colour("--touch"));
     this.world.line.value.copy(colour("--grid"));
     this.world.earth.value.copy(colour("--earth"));
     const dark = colour("--shadow");
@@ -325,6 +335,6 @@ export class Stage {
   dispose() {
     this.scene.traverse((object) => (object.geometry?.dispose(), object.material?.dispose()));
     this.positions.dispose();
-    this.heights?.heights.value.dispose();
+    this.heights.heights.value.dispose();
   }
 }
