@@ -54,9 +54,9 @@ function joined(series) {
 const shown = (_, value, series, index) => (index === null ? "" : short(value));
 const counts = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4, 1e5, 2e5, 5e5, 1e6]; // steps of ticks
 
-/** Steps from value to value, at the end of each interval (1), so that a value holds until the next, or at its beginning
- *  (-1). */
-const stepping = (steps) => ({ steps, paths: uPlot.paths.stepped({ align: steps }) });
+/** Returns a series with steps at the end of each interval (1), so that a value holds until the next, or at its
+ *  beginning (-1). */
+const stepped = (series, steps = 1) => ({ ...series, steps, paths: uPlot.paths.stepped({ align: steps }) });
 
 const line = (name, stroke, dash) => ({
   label: name,
@@ -70,8 +70,8 @@ const line = (name, stroke, dash) => ({
 const runName = (run, runs) => (runs.length > 1 ? `${run.label} ` : "");
 
 /** A figure with a chart that fills its width. `describe` returns the data, the series, the names of the axes, options
-*  and, if it depends on the scores chosen, the title. It is given one score of each of the `choices`, {label, scores, first}, which the user can change if there are
-*  several scores. */
+*  and, if they depend on the scores chosen, the title and the points that can be opened, {x, y, open}. It is given one
+*  score of each of the `choices`, {label, scores, first}, which the user can change if there are several scores. */
 class Chart {
   constructor(name, title, describe, choices = []) {
     this.name = name;
@@ -181,7 +181,7 @@ function twoNumbers(runs, names, xOf, of) {
     const several = runs.length > 1;
     return names.map((name, k) => [
       column(name),
-      { ...line(runName(run, runs) + name, runColour(several ? index : k), several && k > 0 ? [5, 4] : undefined), ...stepping(1) },
+      stepped(line(runName(run, runs) + name, runColour(several ? index : k), several && k > 0 ? [5, 4] : undefined)),
     ]);
   });
   return { data: joined(all.map(([values]) => values)), series: all.map(([, series]) => series) };
@@ -214,7 +214,7 @@ function niches(runs) {
         y: generations.map((g) => (g.map ? score.of(run, g.map) : null)),
       })),
     ),
-    series: mapped.map((run) => ({ ...line(`${runName(run, runs)}${score.name}`, runColour(runs.indexOf(run))), ...stepping(1) })),
+    series: mapped.map((run) => stepped(line(`${runName(run, runs)}${score.name}`, runColour(runs.indexOf(run))))),
     x: "evaluations",
     y: titled(score),
   });
@@ -341,7 +341,7 @@ function livingOf(run, x, y, colour, name) {
   const individuals = [{ ...column(separate), who: separate.map(({ who }) => who) }, dots];
   if (!hasFront(x, y)) return [individuals];
   const front = paretoFront(points, x.better, y.better);
-  return [individuals, [column(front), { ...line(`${name}front`, colour), ...stepping(x.better < 0 ? 1 : -1) }]];
+  return [individuals, [column(front), stepped(line(`${name}front`, colour), x.better < 0 ? 1 : -1)]];
 }
 
 /** The statuses without a fitness, from the bottom of the chart to its top; the last two only if the run has any. */

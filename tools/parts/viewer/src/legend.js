@@ -27,8 +27,8 @@ const colours = {
   },
 };
 
-/** The materials that the robots' springs, or masses if there are no springs, have at any time: those of the experiment by name, and the number of others,
- *  which are mixtures of them, or have changed in life. */
+/** The materials that the robots' springs, or masses if there are no springs, have at any time: those of the experiment
+ *  by name, and the number of others, which are mixtures of them, or have changed in life. */
 function materials(stages) {
   const named = new Map();
   const others = new Map();
@@ -53,6 +53,8 @@ function mixtures(all) {
   return entry(`linear-gradient(90deg,${shown.map(css).join(",")})`, text);
 }
 
+const onGround = (within) => entry(style("--touch"), `shown on the ground, within ${short(1000 * within)} mm`);
+
 /** What glows and fades when a cycle begins, if springs come or go, which masses are on the ground, and its marks. */
 function changes(stages) {
   const shots = stages.flatMap(({ life }) => life.shots);
@@ -60,7 +62,7 @@ function changes(stages) {
   return [
     ...(shots.some(({ came }) => came > 0) ? [entry(style("--fresh"), "glows: new springs")] : []),
     ...(shots.some(({ gone }) => gone.length > 0) ? [entry("var(--faded)", "thick and fading: removed springs")] : []),
-    ...(ground.length > 0 ? [entry(style("--touch"), `shown on the ground, within ${short(1000 * Math.max(...ground))} mm`)] : []),
+    ...(ground.length > 0 ? [onGround(Math.max(...ground))] : []),
     ...(stages.some(({ track }) => track) ? [entry(style("--accent"), "trail; a line after each body length")] : []),
   ];
 }

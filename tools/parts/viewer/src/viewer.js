@@ -1,6 +1,7 @@
 // The 3D viewer: one or two robots, a clock, and the controls.
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { stateText } from "./caption.js";
 import { developing, readPalette } from "./colours.js";
 import { element, short } from "./elements.js";
 import { Ground } from "./ground.js";
@@ -9,21 +10,9 @@ import { Life } from "./life.js";
 import { described, pick } from "./picking.js";
 import { bodyJson, fileName, linkTo, save } from "./share.js";
 import { Stage } from "./stage.js";
+import { cameraFor, pixelsOfMetre, place, views } from "./views.js";
 
 const speeds = [0.1, 0.25, 0.5, 1, 2, 4];
-const framing = 2.9; // distance of the camera, in multiples of the body's size
-const fieldOfView = 32; // degrees
-// Orthographic views are drawn by a camera that is this many times as far away, with a smaller field of view.
-const farAway = 200;
-
-/** The directions from which the views look at the robot. */
-const views = {
-  perspective: { label: "in perspective", from: [0.55, -1, 0.42] },
-  side: { label: "from the side", from: [0, -1, 0] },
-  front: { label: "from the front", from: [1, 0, 0] },
-  top: { label: "from above", from: [0, -1e-4, 1] },
-};
-
 /** Whether this browser can draw the viewer. */
 export function hasGraphics() {
   const context = element("canvas").getContext("webgl2");
@@ -229,7 +218,7 @@ export class Viewer {
     this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, stencil: true });
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace; // no conversion: colours as in the style sheet
     this.renderer.autoClear = false;
-    this.camera = new THREE.PerspectiveCamera(fieldOfView, 1, 0.01, 1000);
+    this.camera = new THREE.PerspectiveCamera(); // that the user turns; cameraFor() makes those that draw
     this.camera.up.set(0, 0, 1);
     this.orbit = new OrbitControls(this.camera, this.canvas);
     this.orbit.addEventListener("change", () => (this.dirty = true));
@@ -284,11 +273,10 @@ export class Viewer {
 
   /** Describes the mass or the spring at the place of an event, if there is one. */
   #pickAt({ offsetX, offsetY }) {
-    const { width, height } = this;
-    const stacked = this.stages.length > 1 && height > 1.1 * width;
+    const { height } = this;
     this.pick = undefined;
     this.stages.forEach((stage, k) => {
-      const [x, y, across, up] = this.#viewport(k, width, height, stacked);
+      const [x, y, across, up] = this.#viewport(k);
       const place = [offsetX - x, offsetY - (height - y - up)];
       if (place[0] < 0 || place[1] < 0 || place[0] > across || place[1] > up) return;
       const found = pick(stage, this.#cameraOf(stage, across / up), place, [across, up]);
@@ -378,10 +366,7 @@ export class Viewer {
     this.view = this.viewSelect.value = view;
     const size = Math.max(...this.stages.map((stage) => stage.size));
     this.orbit.target.set(0, 0, 0);
-    this.camera.position
-      .set(...views[view].from)
-      .normalize()
-      .multiplyScalar(framing * size);
+    place(this.camera, view, size);
     this.orbit.minDistance = 0.3 * size;
     this.orbit.maxDistance = 25 * size;
     this.orbit.update();
@@ -476,23 +461,10 @@ export class Viewer {
     return this.works ? `${within}; stress to within ${short(worst("stress"))} N.` : `${within}.`;
   }
 
-  /** Returns the name of a robot, and a line on its current state. */
-  #caption(k) {
-    const { life } = this.stages[k];
-    const name = this.robots[this.chosen.filter((i) => i !== undefined)[k]].label;
-    if (life.shots.length === 0) return [name, `${life.robot.status}: ${life.robot.reason}`];
-    const shot = life.shots[life.shotAt(this.time)];
-    const gone = shot.gone.length;
-    const { springs, masses } = shot;
-    const text = [shot.name, springs.length > 0 ? `${springs.length} springs` : `${masses.length} points`];
-    if (gone + shot.came > 0) text.push(`${gone} removed, ${shot.came} new`);
-    if (life.way && this.time > life.way.begin.time) text.push(wayText(life, this.time));
-    return [name, text.join(" · ")];
-  }
-
   #writeCaptions() {
+    const shown = this.chosen.filter((i) => i !== undefined).map((i) => this.robots[i]);
     this.captions.forEach((caption, k) => {
-      const texts = k < this.stages.length ? this.#caption(k) : ["", ""];
+      const texts = k < this.stages.length ? [shown[k].label, stateText(this.stages[k].life, this.time)] : ["", ""];
       texts.forEach((text, line) => {
         if (caption.children[line].textContent !== text) caption.children[line].textContent = text;
       });
@@ -512,18 +484,16 @@ export class Viewer {
       this.renderer.setSize(width, height, false);
     }
     this.renderer.setScissorTest(true);
-    const stacked = this.stages.length > 1 && height > 1.1 * width;
-    this.stage.classList.toggle("stacked", stacked);
-    this.stages.forEach((stage, k) => this.#drawStage(stage, this.#viewport(k, width, height, stacked), ratio));
+    this.stage.classList.toggle("stacked", this.#isStacked());
+    this.stages.forEach((stage, k) => this.#drawStage(stage, this.#viewport(k), ratio));
     this.#writeCaptions();
-    this.#drawRuler(this.#viewport(0, width, height, stacked));
+    this.#drawRuler(this.#viewport(0));
     this.filmClock.textContent = `${this.time.toFixed(1)} s`;
   }
 
   /** Draws a bar that has a round length at the distance of the robot. */
   #drawRuler([, , width, height]) {
-    const distance = this.camera.position.distanceTo(this.orbit.target);
-    const pixels = height / (2 * distance * Math.tan(widened(fieldOfView, width / height) / 2));
+    const pixels = pixelsOfMetre(width, height, this.camera, this.orbit.target);
     const most = 150 / pixels;
     const power = 10 ** Math.floor(Math.log10(most));
     const length = power * [5, 2, 1].find((digit) => digit * power <= most);
@@ -531,9 +501,16 @@ export class Viewer {
     this.ruler.lastChild.textContent = `${short(length)} m`;
   }
 
-  #viewport(k, width, height, stacked) {
+  /** Whether two robots are one above the other, as on a phone. */
+  #isStacked() {
+    return this.stages.length > 1 && this.height > 1.1 * this.width;
+  }
+
+  /** Returns the part of the picture in which the k-th robot is: x and y of its lower left corner, width and height. */
+  #viewport(k) {
+    const { width, height } = this;
     const n = this.stages.length;
-    return stacked ? [0, ((n - 1 - k) * height) / n, width, height / n] : [(k * width) / n, 0, width / n, height];
+    return this.#isStacked() ? [0, ((n - 1 - k) * height) / n, width, height / n] : [(k * width) / n, 0, width / n, height];
   }
 
   #drawStage(stage, [x, y, width, height], ratio) {
@@ -546,20 +523,7 @@ export class Viewer {
 
   /** Returns the camera of a stage in a picture with an aspect ratio. */
   #cameraOf(stage, aspect) {
-    const camera = this.camera.clone();
-    camera.aspect = aspect;
-    const times = this.view === "perspective" ? 1 : farAway;
-    const angle = widened(fieldOfView, camera.aspect);
-    camera.fov = THREE.MathUtils.radToDeg(2 * Math.atan(Math.tan(angle / 2) / times));
-    const offset = this.camera.position.clone().sub(this.orbit.target);
-    const distance = times * offset.length();
-    camera.near = Math.max(0.01 * stage.size, distance - 60 * stage.size);
-    camera.far = distance + 60 * stage.size;
-    camera.position.copy(this.orbit.target).addScaledVector(offset, times).add(stage.target);
-    camera.position.z += 0.05 * stage.size; // makes room for the caption above the body
-    camera.updateProjectionMatrix();
-    camera.updateMatrixWorld();
-    return camera;
+    return cameraFor(stage, aspect, this.view, this.camera, this.orbit.target);
   }
 
   #tick(now) {
@@ -574,29 +538,12 @@ export class Viewer {
   }
 }
 
-/** Returns a field of view (radians) of a picture, given that (degrees) of a wide one: a narrow picture shows as much of
- *  the body. */
-function widened(angle, aspect) {
-  const half = Math.tan(THREE.MathUtils.degToRad(angle) / 2);
-  return 2 * Math.atan(aspect < 1 ? half / aspect : half);
-}
-
 /** Whether a key belongs to the control that has the focus, and not to the viewer. */
 function belongsTo(target, key) {
   const control = target.closest?.("input,select,textarea,button,summary,a");
   if (!control) return false;
   if (control.matches("select,textarea,input:not([type=range],[type=radio],[type=checkbox])")) return true;
   return key === " " || (key.startsWith("Arrow") && control.matches("[type=range],[type=radio]"));
-}
-
-/** Says how far a robot has moved, of how much in all, and where to: "0.41 of 0.58 body lengths (0.12 m) along +x". */
-function wayText(life, time) {
-  const { length, total, direction } = life.way;
-  const moved = life.movedAt(time);
-  const lengths = `${(moved / length).toFixed(2)} of ${total.toFixed(2)} body lengths (${moved.toFixed(2)} m)`;
-  const axes = direction.flatMap((part, axis) => (Math.abs(part) > 0.38 ? [`${part < 0 ? "−" : "+"}${"xy"[axis]}`] : []));
-  if (total < 0.005) return lengths;
-  return `${lengths} ${axes.length === 1 ? `along ${axes[0]}` : `between ${axes.join(" and ")}`}`;
 }
 
 const keys = () =>
