@@ -15,6 +15,9 @@ function(evodevo_add_plugin name)
     EVODEVO_PLUGIN_VERSION="${arg_VERSION}" EVODEVO_PLUGIN_LICENSE="${arg_LICENSE}")
   # with GNU unique symbols, all libraries would use the class of whichever library was loaded first
   target_compile_options(${target} PRIVATE -ffp-contract=off $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)
+  if(evodevo_GCC_ABI AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)  # set by evodevoConfig.cmake
+    target_compile_options(${target} PRIVATE -fabi-version=${evodevo_GCC_ABI})
+  endif()
   # hidden visibility does not apply to instances of the standard library's templates; the version script hides these
   target_link_options(${target} PRIVATE -Wl,-z,defs
     -Wl,--version-script=${CMAKE_CURRENT_FUNCTION_LIST_DIR}/evodevo_plugin.map)

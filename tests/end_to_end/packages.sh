@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Packs the tarball, unpacks it elsewhere, and uses it with an empty environment.
+#
+#   packages.sh BUILD_FOLDER
+set -euo pipefail
+build=$(realpath "$1")
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+fail() {
+  echo "$*"
+  exit 1
+}
+
+cpack --config "$build/CPackConfig.cmake" -G TGZ -B "$scratch/packed" >"$scratch/log" || fail "$(<"$scratch/log")"
+mkdir "$scratch/a folder"
+tar -C "$scratch/a folder" -xzf "$scratch"/packed/evodevo-*.tar.gz
+mv "$scratch/a folder"/evodevo-* "$scratch/a folder/evodevo"
+package="$scratch/a folder/evodevo"
+evodevo() { env -i HOME="$scratch" PATH=/usr/bin:/bin "$package/bin/evodevo" "$@"; }
+cd "$scratch"
+
+# every library is in the package, except the C and the C++ runtime
+runtime='linux-vdso|ld-linux|lib(c|m|dl|rt|pthread|gcc_s|stdc\+\+)\.so'
+others=$(env -i ldd "$package/bin/evodevo" | grep -vE "$runtime" | grep -vF "/evodevo/bin/../lib/evodevo/libraries/" || true)
+[ -z "$others" ] || fail "the package lacks libraries: $others"
+[ -d "$package/share/doc/evodevo/licences" ] || ! command -v dpkg-query >/dev/null || fail "there are no licences"
+
+version=$(evodevo --version)
+diff <("$build/bin/evodevo" --version) <(echo "$version") || fail "the version differs"
+[[ $(evodevo operators) == *" spring-turnover "* ]] || fail "there are no operators"
+for experiment in "$package"/share/evodevo/experiments/*.toml; do evodevo check "$experiment" >/dev/null; done
+evodevo run "$package/share/evodevo/experiments/quickstart.toml" --out run --set experiment.evaluations=20 \
+  --set experiment.population=10 --set development.cycle_time=0.1 --set fitness.0.settle=0 --set fitness.0.window=0.2
+[ ! -d "$build/share/evodevo/viewer" ] || [ -s run/report.html ] || fail "the run has no page"
