@@ -31,4 +31,4 @@ diff <("$build/bin/evodevo" --version) <(echo "$version") || fail "the version d
 for experiment in "$package"/share/evodevo/experiments/*.toml; do evodevo check "$experiment" >/dev/null; done
 evodevo run "$package/share/evodevo/experiments/quickstart.toml" --out run --set experiment.evaluations=20 \
   --set experiment.population=10 --set development.cycle_time=0.1 --set fitness.0.settle=0 --set fitness.0.window=0.2
-[ ! -d "$build/share/evodevo/viewer" ] || [ -s run/report.html ] || fail "the run has no page"
+[ ! -e "$build/share/evodevo/viewer/page.html" ] || [ -s run/report.html ] || fail "the run has no page"

@@ -126,7 +126,7 @@ $(EVODEVO_COMMAND=@PROGRAM@ "$program" --help | sed "1s/$("$program" --version |
 
 case_tool_help() {
   local name
-  for name in bench accuracy stress; do
+  for name in bench accuracy stress release; do
     call tools/$name --help
     succeeded
     [[ $output == "tools/$name "*"  tools/$name "* ]] || fail "there is no page with an example"
