@@ -39,7 +39,7 @@ endforeach()
 # The viewer, if it was built, which requires Node.js. The packages that only bundle the page are left out.
 install(DIRECTORY ${PROJECT_BINARY_DIR}/${EVODEVO_VIEWER_DIR} DESTINATION share/evodevo OPTIONAL
   PATTERN .* EXCLUDE PATTERN .bin EXCLUDE PATTERN @esbuild EXCLUDE PATTERN esbuild EXCLUDE
-  PATTERN three EXCLUDE PATTERN uplot EXCLUDE)
+  PATTERN axe-core EXCLUDE PATTERN three EXCLUDE PATTERN uplot EXCLUDE)
 
 # before version 1.0, a new minor version may change the headers that plugins include
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/evodevoConfigVersion.cmake COMPATIBILITY SameMinorVersion)
