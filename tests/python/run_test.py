@@ -99,6 +99,14 @@ class OfASmallRun(unittest.TestCase):
         self.assertEqual(len(matured.springs), len(born.springs) + changes.get("come", 0) - changes.get("gone", 0))
         self.assertTrue((life["cause"].dropna() >= 0).all())
 
+    def test_bodies_read_back_as_they_were_printed(self):
+        champion = self.run_.best().index[0]
+        for options in ([], ["--matured"]):
+            printed = json.loads(call("body", self.folder, "--individual", champion, *options))
+            self.assertEqual(evodevo.Body.from_json(printed).json, printed)
+        self.assertIsNone(self.run_.body(champion).velocities)
+        self.assertEqual(self.run_.body(champion, matured=True).velocities.shape, (len(printed["masses"]), 3))
+
     def test_motion_begins_with_the_matured_body(self):
         champion = self.run_.best().index[0]
         times, positions = self.run_.motion(champion, 0.1)

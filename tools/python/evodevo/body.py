@@ -5,34 +5,104 @@ import dataclasses
 import numpy as np
 import pandas as pd
 
+MATERIAL = ["stiffness", "amplitude", "frequency", "phase", "damping"]  # the numbers of a material
 
-@dataclasses.dataclass(frozen=True)
+
+@dataclasses.dataclass(frozen=True, eq=False)
 class Body:
-    """A body as `evodevo body` prints it. n is the number of masses, m that of springs."""
+    """A body: point masses joined by springs. n is the number of masses, m that of springs.
 
-    positions: np.ndarray  #: [n, 3] rest positions, m
-    masses: np.ndarray  #: [n] kg
+    A body without `velocities` is not born yet: its positions are its rest positions, and at birth the scene adds its
+    payload and puts it on the ground. A body with velocities is in the middle of its life. Arguments may be lists;
+    `masses` may be one number for all, and `materials` anything of which pandas makes a DataFrame. Parameters of
+    materials that are left out are 0.
+    """
+
+    positions: np.ndarray  #: [n, 3] m
     springs: np.ndarray  #: [m, 2] indices of the masses that each spring joins
-    rest_lengths: np.ndarray  #: [m] m
+    masses: np.ndarray  #: [n] kg; `evodevo.core` holds masses of 0 kg in place
     materials: pd.DataFrame  #: stiffness (N/m), amplitude (1), frequency (Hz), phase (rad), damping (1), by index
-    material_of: np.ndarray  #: [m] the row of `materials` of each spring
-    time: float  #: since birth, s; 0 for a newborn
-    json: dict  #: all that the program prints
+    rest_lengths: np.ndarray = None  #: [m] m; by default, the distances of the masses
+    material_of: np.ndarray = 0  #: [m] the row of `materials` of each spring
+    velocities: np.ndarray = None  #: [n, 3] m/s; None if the body is not born yet
+    time: float = 0.0  #: since birth, s
+    start_energy: float = None  #: energy that the guard against divergence allows, J; None: that of the body
+    stiffness_factors: np.ndarray = 1.0  #: [m] stiffness of each spring relative to that of its material
+    mass_materials: np.ndarray = -1  #: [n] the row of `materials` of each mass; -1 if it has none
+
+    def __post_init__(self):
+        positions = _array("positions", self.positions, float, (None, 3))
+        springs = _array("springs", self.springs, int, (None, 2))
+        n, m = len(positions), len(springs)
+        materials = pd.DataFrame(self.materials).copy()
+        for name in MATERIAL:
+            materials[name] = materials[name].astype(float) if name in materials else 0.0
+        rest_lengths = self.rest_lengths
+        if rest_lengths is None:
+            rest_lengths = np.linalg.norm(positions[springs[:, 1]] - positions[springs[:, 0]], axis=1)
+        velocities = self.velocities
+        for name, value in {
+            "positions": positions,
+            "springs": springs,
+            "masses": _array("masses", self.masses, float, (n,)),
+            "materials": materials,
+            "rest_lengths": _array("rest_lengths", rest_lengths, float, (m,)),
+            "material_of": _array("material_of", self.material_of, int, (m,)),
+            "velocities": None if velocities is None else _array("velocities", velocities, float, (n, 3)),
+            "time": float(self.time),
+            "stiffness_factors": _array("stiffness_factors", self.stiffness_factors, float, (m,)),
+            "mass_materials": _array("mass_materials", self.mass_materials, int, (n,)),
+        }.items():
+            object.__setattr__(self, name, value)
 
     @staticmethod
     def from_json(json):
         """Makes a body of the JSON that `evodevo body` prints, or that `evodevo simulate` reads."""
         masses, springs = json["masses"], json["springs"]
+        is_alive = "time" in json
         return Body(
-            positions=np.array([mass["position"] for mass in masses], float).reshape(-1, 3),
-            masses=np.array([mass["mass"] for mass in masses], float),
-            springs=np.array([[spring["a"], spring["b"]] for spring in springs], int).reshape(-1, 2),
-            rest_lengths=np.array([spring["rest_length"] for spring in springs], float),
-            materials=pd.DataFrame(json["materials"]),
-            material_of=np.array([spring["material"] for spring in springs], int),
-            time=float(json.get("time", 0)),
-            json=json,
+            positions=[mass["position"] for mass in masses],
+            springs=[[spring["a"], spring["b"]] for spring in springs],
+            masses=[mass["mass"] for mass in masses],
+            materials=[{"damping": 0.0, **material} for material in json["materials"]],
+            rest_lengths=[spring["rest_length"] for spring in springs],
+            material_of=[spring["material"] for spring in springs],
+            velocities=[mass.get("velocity", [0, 0, 0]) for mass in masses] if is_alive else None,
+            time=json.get("time", 0),
+            start_energy=json.get("start_energy"),
+            stiffness_factors=[spring.get("stiffness_factor", 1) for spring in springs],
+            mass_materials=[mass.get("material", -1) for mass in masses],
         )
+
+    @property
+    def json(self):
+        """The body as JSON that `evodevo simulate` reads."""
+        masses = [{"position": position} for position in self.positions.tolist()]
+        if self.velocities is not None:
+            for mass, velocity in zip(masses, self.velocities.tolist()):
+                mass["velocity"] = velocity
+        for mass, weight, material in zip(masses, self.masses.tolist(), self.mass_materials.tolist()):
+            mass["mass"] = weight
+            if material >= 0:
+                mass["material"] = material
+        springs = [{"a": a, "b": b, "rest_length": length, "material": material}
+                   for (a, b), length, material in zip(self.springs.tolist(), self.rest_lengths.tolist(),
+                                                       self.material_of.tolist())]
+        for spring, factor in zip(springs, self.stiffness_factors.tolist()):
+            if factor != 1:
+                spring["stiffness_factor"] = factor
+        materials = self.materials.to_dict("records")
+        for material in materials:
+            if material["damping"] == 0:
+                del material["damping"]
+            if not isinstance(material.get("name"), str):  # a mixture of other materials
+                material.pop("name", None)
+        json = {"masses": masses, "springs": springs, "materials": materials}
+        if self.velocities is not None:
+            json["time"] = self.time
+            if self.start_energy is not None:
+                json["start_energy"] = self.start_energy
+        return json
 
     @property
     def size(self):
@@ -43,3 +113,19 @@ class Body:
     def is_muscle(self):
         """[m] whether the material of each spring has an amplitude."""
         return self.materials["amplitude"].to_numpy()[self.material_of] != 0
+
+
+def _array(name, values, kind, shape):
+    """Returns values as a new array of a shape, in which None stands for any number of rows; one number stands for a
+    whole list. Raises ValueError."""
+    values = np.array(values)
+    if values.size == 0 and shape[0] in (None, 0):
+        return np.zeros((0, *shape[1:]), kind)
+    if values.ndim == 0 and len(shape) == 1:
+        values = np.full(shape, values)
+    if values.ndim != len(shape) or any(wanted not in (None, size) for size, wanted in zip(values.shape, shape)):
+        expected = ", ".join("any" if size is None else str(size) for size in shape)
+        raise ValueError(f"{name}: has the shape {values.shape}; expected [{expected}]")
+    if kind is int and not np.issubdtype(values.dtype, np.integer):
+        raise ValueError(f"{name}: has numbers of the type {values.dtype}; expected whole numbers, which are indices")
+    return values.astype(kind)
