@@ -38,7 +38,8 @@ toml::table parse_toml_file(const std::string& file) {
 
 std::string location_of(const toml::source_region& source) {
   const std::string file = source.path ? printable(*source.path, longest_shown_path) : "";
-  if (!source.begin || file.starts_with("--")) return file;  // a command-line option has no line numbers
+  // neither a command-line option nor an argument of a function has line numbers
+  if (!source.begin || file.starts_with("--") || file.ends_with("()")) return file;
   return file + ":" + std::to_string(source.begin.line) + ":" + std::to_string(source.begin.column);
 }
 

@@ -23,7 +23,8 @@ toml::table parse_toml(std::string_view text, const std::string& origin);
 /// Reads and parses a file. Throws ConfigError like parse_toml(), and if the file cannot be read.
 toml::table parse_toml_file(const std::string& file);
 
-/// Returns "file:line:column" of a node or key. If a command-line option has set the value, returns the option.
+/// Returns "file:line:column" of a node or key. If a command-line option has set the value, returns the option; if an
+/// argument of a function has set it, returns the function, such as "simulate()".
 std::string location_of(const toml::source_region& source);
 
 /// Returns a node's value as messages show it: `"text"`, `3`, `[1, 2]`, `a table`.

@@ -317,7 +317,7 @@ void add_payload(Body& body, double share, double top) {
   std::vector<Mass*> carriers;
   for (Mass& mass : body.masses) {
     own += mass.mass;
-    if (mass.rest.z >= lowest) carriers.push_back(&mass);
+    if (mass.mass > 0 && mass.rest.z >= lowest) carriers.push_back(&mass);
   }
   for (Mass* mass : carriers) {
     mass->payload = share * own / static_cast<double>(carriers.size());

@@ -34,7 +34,7 @@ BuiltBody build_body(Blueprint blueprint);
 std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, Workers& workers);
 
 /// Adds a payload of `share` times the body's mass, spread evenly over the masses in the upper fraction `top` of the
-/// body's height.
+/// body's height. Masses of 0 kg, which never move, carry nothing.
 void add_payload(Body& body, double share, double top);
 
 std::vector<Vec3> rest_positions(const Body& body);

@@ -286,10 +286,22 @@ std::vector<std::string> Registry::names(std::string_view kind) const {
   return names;
 }
 
+namespace {
+
+fs::path& set_plugin_folder() {
+  static fs::path folder;
+  return folder;
+}
+
+}  // namespace
+
 fs::path builtin_plugin_folder() {
+  if (!set_plugin_folder().empty()) return set_plugin_folder();
   const fs::path program = boost::dll::program_location();
   return program.parent_path().parent_path() / EVODEVO_PLUGIN_DIR;
 }
+
+void set_builtin_plugin_folder(fs::path folder) { set_plugin_folder() = std::move(folder); }
 
 std::vector<fs::path> environment_plugin_folders() {
   const char* variable = std::getenv("EVODEVO_PLUGIN_PATH");

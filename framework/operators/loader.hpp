@@ -66,6 +66,8 @@ std::unique_ptr<T> create(const AvailableOperator& available) {
 
 /// The folder of the operators that come with this program.
 std::filesystem::path builtin_plugin_folder();
+/// Sets this folder, for code that runs in another program, such as Python. To be called before operators are loaded.
+void set_builtin_plugin_folder(std::filesystem::path folder);
 /// The folders that the environment variable EVODEVO_PLUGIN_PATH names, separated by colons.
 std::vector<std::filesystem::path> environment_plugin_folders();
 /// The paths to search for operators, in this order: `own`, EVODEVO_PLUGIN_PATH, and the program's own folder.

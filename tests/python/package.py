@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tools/python"))
+# the package with its compiled module, if there is one
+sys.path.insert(0, os.environ.get("EVODEVO_PYTHON", str(ROOT / "tools/python")))
 
 SMALL = """
 [experiment]

@@ -7,7 +7,8 @@ arrays.
 
 `Run` reads the archive of a run and needs no program. Its functions `life`, `body` and `motion` simulate a robot again
 with the program `evodevo`, which `program` finds. `save_mesh` writes a body as a surface. `evodevo.figures` has the
-usual figures; it needs matplotlib.
+usual figures; it needs matplotlib. `evodevo.core` simulates bodies of your own; it is compiled, and there only if
+evodevo was built with pybind11.
 """
 
 from .body import Body

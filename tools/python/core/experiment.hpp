@@ -1,0 +1,37 @@
+// Experiments in Python: their settings, and the bodies that their encoding makes from genomes.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "arrays.hpp"
+#include "evolution/archive/archive.hpp"
+#include "life/evaluation.hpp"
+
+namespace evodevo::python {
+
+/// Sets the folder of the operators that come with evodevo: lib/evodevo under the prefix to which this module belongs.
+void find_operators();
+
+/// An experiment and its operators. module.cpp describes its functions.
+class PythonExperiment {
+ public:
+  /// Reads an experiment from a file, or from the folder of a run.
+  explicit PythonExperiment(const std::filesystem::path& path);
+
+  py::object settings() const;
+  std::vector<Genome> random_genomes(std::uint32_t count, std::optional<std::uint64_t> seed) const;
+  Genome genome(std::uint32_t individual) const;
+  py::list decode(const std::vector<Genome>& genomes) const;
+
+ private:
+  std::filesystem::path path_;
+  std::optional<Archive> archive_;  ///< of a run
+  Experiment experiment_;
+  std::unique_ptr<Simulator> simulator_;
+  std::unique_ptr<Evaluation> evaluation_;
+};
+
+}  // namespace evodevo::python
