@@ -187,7 +187,7 @@ case_packages() {
   succeeded
   [ "$output" = "evodevo run some.toml" ] || fail "it does not run"
   for package in g++ cmake make ninja-build libhwy-dev; do has $package; done
-  for package in libgtest-dev libgmock-dev python3 nodejs npm ffmpeg chromium; do has_not $package; done
+  for package in libgtest-dev libgmock-dev python3 pybind11-dev nodejs npm ffmpeg chromium; do has_not $package; done
   : >"$called"
   call tools/evodevo run some.toml
   [ "$(times '^apt-get\|^cmake')" = 0 ] || fail "it sets up what is set up"
@@ -208,7 +208,8 @@ case_tests() {
   [ "$(times 'EVODEVO_TESTS=OFF')" = 1 ] || fail "a command has the tests configured"
   call tools/test -R some
   succeeded
-  for package in libgtest-dev libgmock-dev python3 python3-matplotlib python3-scipy python3-pandas; do
+  for package in libgtest-dev libgmock-dev python3 pybind11-dev python3-dev python3-matplotlib python3-scipy \
+    python3-pandas; do
     has $package
   done
   [ "$(times 'EVODEVO_TESTS=ON')" = 1 ] || fail "the tests are not configured"
@@ -216,6 +217,20 @@ case_tests() {
   call tools/test
   call tools/evodevo operators
   [ "$(times '^cmake --preset')" = 2 ] || fail "it is configured again and again"
+}
+
+case_no_module() {
+  stand_in apt-get <<'END'
+[[ " $* " != *" pybind11-dev "* ]] || { echo "E: Unable to locate package pybind11-dev"; exit 100; }
+END
+  call tools/test -R some
+  succeeded
+  [[ $errors == *"no compiled Python module"*"Unable to locate package pybind11-dev"* ]] || fail "it does not say why"
+  grep -q '^ctest .*-R some' "$called" || fail "no test is run"
+  printf '%s\n' pybind11-dev python3-dev >>"$installed"
+  call tools/evodevo operators
+  call tools/evodevo operators
+  [ "$(times '^cmake --preset')" = 2 ] || fail "it is not configured once more for the packages that are there now"
 }
 
 case_held_locks() {
