@@ -13,6 +13,7 @@
 #include "commands/shell/excerpt.hpp"
 #include "commands/shell/help.hpp"
 #include "commands/shell/terminal.hpp"
+#include "experiment/config_errors.hpp"
 #include "experiment/device.hpp"
 #include "operators/call_watch.hpp"
 #include "operators/crash.hpp"
@@ -53,6 +54,14 @@ int complain(const std::exception& error, int exit_code) {
   return exit_code;
 }
 
+/// Prints the errors of an experiment, each as complain() does, and their number if there are several.
+int complain_of_all(const ConfigErrors& errors) {
+  for (const ConfigError& error : errors.all) complain(error, 2);
+  const std::size_t count = errors.all.size();
+  if (count > 1) std::cerr << "evodevo: " << count << (errors.is_complete ? " errors\n" : " errors or more\n");
+  return 2;
+}
+
 }  // namespace
 
 }  // namespace evodevo
@@ -65,6 +74,8 @@ int main(int argc, char** argv) {
     const int code = evodevo::dispatch({argv + 1, argv + argc});
     evodevo::finish_standard_output();
     return code;
+  } catch (const evodevo::ConfigErrors& errors) {
+    return evodevo::complain_of_all(errors);
   } catch (const evodevo::InputError& error) {
     return evodevo::complain(error, 2);
   } catch (const std::exception& error) {

@@ -112,8 +112,9 @@ Command check_command() {
   return {.name = "check",
           .arguments = {{"EXPERIMENT.toml"}},
           .summary = "Check an experiment without running it",
-          .text = {"It reads the experiment, loads its operators and checks all values. An error names the place, the "
-                   "value and the remedy. It also prints the top speed that friction and damping allow in the scene."},
+          .text = {"It reads the experiment, loads its operators and checks all values. It reports all errors at once; "
+                   "each names the place, the value and the remedy. It also prints the top speed that friction and "
+                   "damping allow in the scene."},
           .examples = {"check experiments/paper.toml", "check my.toml --set experiment.population=100"},
           .options = options,
           .function = check};

@@ -36,7 +36,8 @@ Registry registry_of(const PluginsTable& plugins, Warnings& warnings) {
 
 Experiment compose(toml::table root, const ExperimentSource& source) {
   for (const Override& change : source.overrides) apply_override(change, root);
-  TomlReader top(root, "");
+  ErrorCollector errors;
+  TomlReader top(root, "", {}, &errors);
   top.expect({"experiment", "encoding", "mutation", "crossover", "scene", "simulation", "development", "fitness",
               "scenario", "selection", "materials", "plugins"});
   Experiment experiment;
@@ -58,7 +59,7 @@ Experiment compose(toml::table root, const ExperimentSource& source) {
   for (const fs::path& folder : experiment.plugin_folders) folders.push_back(folder.string());
   if (!folders.empty()) record.insert("plugins", toml::table{{"paths", std::move(folders)}});
   read_operators(top, OperatorFactory(registry, registry_faults, experiment), source, experiment, record);
-  top.finish();
+  errors.throw_errors();
   std::ostringstream text;
   text << record << '\n';
   experiment.resolved = text.str();

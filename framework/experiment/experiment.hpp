@@ -127,7 +127,8 @@ struct ExperimentSource {
 ///
 ///   file -> overrides -> settings (tables/*) -> libraries of operators -> operators (tables/operators) -> Experiment
 ///
-/// Throws ConfigError with the location, the value and a remedy.
+/// Throws ConfigErrors with all errors, each with the location, the value and a remedy. Throws ConfigError if the text
+/// is not valid TOML, or if an override cannot be applied.
 Experiment read_experiment(const ExperimentSource& source);
 /// Does the same with a text, such as Experiment::resolved in the record of a run.
 Experiment read_experiment(std::string_view text, const ExperimentSource& source);

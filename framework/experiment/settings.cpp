@@ -71,17 +71,11 @@ Settings read_settings(TomlReader& top, Bodies bodies, Warnings& warnings) {
   Settings settings;
   read_table(top, "experiment", true, [&](TomlReader& t) { declare_run(t, settings); });
   read_materials(top, settings, warnings);
-  if (const toml::table* encoding = top.table("encoding")) {
-    TomlReader t(*encoding, "encoding");
-    declare_mass(t, settings);
-  }
+  visit_table(top, "encoding", false, [&](TomlReader& t) { declare_mass(t, settings); });
   read_scene(top, settings);
   read_scenarios(top, settings);
   read_simulation(top, settings, bodies);
-  if (const toml::table* development = top.table("development")) {
-    TomlReader t(*development, "development");
-    read_development(t, settings);
-  }
+  visit_table(top, "development", false, [&](TomlReader& t) { read_development(t, settings); });
   return settings;
 }
 

@@ -36,11 +36,21 @@ toml::table parse_toml_file(const std::string& file) {
   return parse_toml(read_input_file(file, most_toml_file_bytes), file);
 }
 
+namespace {
+
+/// Returns the line and column of a node or key; 0 for a value that a command-line option or an argument of a function
+/// has set.
+toml::source_position position_of(const toml::source_region& source) {
+  const bool is_in_file = !source.path || !(source.path->starts_with("--") || source.path->ends_with("()"));
+  return is_in_file ? source.begin : toml::source_position{};
+}
+
+}  // namespace
+
 std::string location_of(const toml::source_region& source) {
   const std::string file = source.path ? printable(*source.path, longest_shown_path) : "";
-  // neither a command-line option nor an argument of a function has line numbers
-  if (!source.begin || file.starts_with("--") || file.ends_with("()")) return file;
-  return file + ":" + std::to_string(source.begin.line) + ":" + std::to_string(source.begin.column);
+  const toml::source_position at = position_of(source);
+  return at ? file + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) : file;
 }
 
 std::string value_text(const toml::node& node) {
@@ -72,9 +82,11 @@ std::string TomlReader::full_name(std::string_view name) const {
   return printable(path_.empty() ? std::string(name) : path_ + "." + std::string(name));
 }
 
-void TomlReader::fail_at(const toml::node& node, std::string_view name, const std::string& message) const {
-  throw ConfigError(location_of(node.source()) + ": " + full_name(name) + " = " + printable(value_text(node)) + ": " +
-                    message);
+void TomlReader::fail_at(const toml::node& node, std::string_view name, const std::string& message,
+                         std::vector<std::string> depends_on) const {
+  const std::string place = location_of(node.source()), key = full_name(name);
+  throw KeyError(place + ": " + key + " = " + printable(value_text(node)) + ": " + message, key,
+                 position_of(node.source()), std::move(depends_on));
 }
 
 std::string TomlReader::location(std::string_view name) const {
@@ -82,9 +94,19 @@ std::string TomlReader::location(std::string_view name) const {
   return location_of(node != nullptr ? node->source() : table_.source());
 }
 
-void TomlReader::fail(std::string_view name, const std::string& message) const {
-  if (const toml::node* node = table_.get(name)) fail_at(*node, name, message);
-  throw ConfigError(location(name) + ": " + full_name(name) + ": " + message);
+void TomlReader::fail(std::string_view name, const std::string& message, std::vector<std::string> depends_on) const {
+  if (const toml::node* node = table_.get(name)) fail_at(*node, name, message, std::move(depends_on));
+  const std::string key = full_name(name);
+  throw KeyError(location(name) + ": " + key + ": " + message, key, position_of(table_.source()),
+                 std::move(depends_on));
+}
+
+void TomlReader::report(std::string_view name, const std::string& message, std::vector<std::string> depends_on) const {
+  attempt([&] { fail(name, message, std::move(depends_on)); });
+}
+
+void TomlReader::stop_if_wrong() const {
+  if (errors_ != nullptr) errors_->throw_error_in(path_);
 }
 
 void TomlReader::know(std::string_view name) {
@@ -93,7 +115,7 @@ void TomlReader::know(std::string_view name) {
 
 void TomlReader::expect(std::initializer_list<std::string_view> names) {
   for (const std::string_view name : names) know(name);
-  refuse_unknown_keys();
+  report_unknown_keys();
 }
 
 void TomlReader::require_read_among(std::span<const std::string_view> names) const {
@@ -105,6 +127,11 @@ void TomlReader::require_read_among(std::span<const std::string_view> names) con
 const toml::node* TomlReader::look_up(std::string_view name) {
   know(name);
   return table_.get(name);
+}
+
+template <class Take>
+void TomlReader::read(std::string_view name, const Take& take) {
+  if (const toml::node* node = look_up(name)) attempt([&] { take(*node); });
 }
 
 double TomlReader::number(const toml::node& node, std::string_view name, Range range) const {
@@ -134,111 +161,133 @@ const toml::array& TomlReader::three(const toml::node& node, std::string_view na
 }
 
 void TomlReader::real(double& value, std::string_view name, Range range, std::string_view) {
-  if (const toml::node* node = look_up(name)) value = number(*node, name, range);
+  read(name, [&](const toml::node& node) { value = number(node, name, range); });
 }
 
 void TomlReader::integer(std::int64_t& value, std::string_view name, Range range, std::string_view) {
-  if (const toml::node* node = look_up(name)) value = whole_number(*node, name, range);
+  read(name, [&](const toml::node& node) { value = whole_number(node, name, range); });
 }
 
 void TomlReader::flag(bool& value, std::string_view name, std::string_view) {
-  if (const toml::node* node = look_up(name)) {
-    if (!node->is_boolean()) fail_at(*node, name, "expected true or false");
-    value = node->value<bool>().value();
-  }
+  read(name, [&](const toml::node& node) {
+    if (!node.is_boolean()) fail_at(node, name, "expected true or false");
+    value = node.value<bool>().value();
+  });
 }
 
 void TomlReader::choice(std::string& value, std::string_view name, std::initializer_list<std::string_view> options,
                         std::string_view) {
-  if (const toml::node* node = look_up(name)) {
+  read(name, [&](const toml::node& node) {
     const std::vector<std::string> names(options.begin(), options.end());
-    if (!node->is_string()) fail_at(*node, name, "expected one of " + joined(names));
-    value = node->value<std::string>().value();
-    if (std::find(names.begin(), names.end(), value) == names.end())
-      fail_at(*node, name, "is not an option" + suggestion(value, names));
-  }
+    if (!node.is_string()) fail_at(node, name, "expected one of " + joined(names));
+    const std::string chosen = node.value<std::string>().value();
+    if (std::find(names.begin(), names.end(), chosen) == names.end())
+      fail_at(node, name, "is not an option" + suggestion(chosen, names));
+    value = chosen;
+  });
 }
 
 void TomlReader::vector(Vec3& value, std::string_view name, Range range, std::string_view) {
-  if (const toml::node* node = look_up(name)) {
-    const toml::array& array = three(*node, name);
+  read(name, [&](const toml::node& node) {
+    const toml::array& array = three(node, name);
     value = {number(array[0], name, range), number(array[1], name, range), number(array[2], name, range)};
-  }
+  });
 }
 
 void TomlReader::counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view) {
-  if (const toml::node* node = look_up(name)) {
-    const toml::array& array = three(*node, name);
-    for (std::size_t i = 0; i < 3; ++i) value[i] = whole_number(array[i], name, range);
-  }
+  read(name, [&](const toml::node& node) {
+    const toml::array& array = three(node, name);
+    value = {whole_number(array[0], name, range), whole_number(array[1], name, range),
+             whole_number(array[2], name, range)};
+  });
 }
 
 void TomlReader::optional_real(std::optional<double>& value, std::string_view name, Range range, std::string_view) {
-  if (const toml::node* node = look_up(name)) value = number(*node, name, range);
+  read(name, [&](const toml::node& node) { value = number(node, name, range); });
 }
 
 void TomlReader::reals(std::vector<double>& value, std::string_view name, Range range, std::string_view) {
-  const toml::node* node = look_up(name);
-  if (node == nullptr) return;
-  const toml::array* array = node->as_array();
-  if (array == nullptr || array->size() > most_numbers)
-    fail_at(*node, name, expected("a list of at most " + std::to_string(most_numbers) + " numbers", range));
-  value.clear();
-  for (const toml::node& item : *array) value.push_back(number(item, name, range));
+  read(name, [&](const toml::node& node) {
+    const toml::array* array = node.as_array();
+    if (array == nullptr || array->size() > most_numbers)
+      fail_at(node, name, expected("a list of at most " + std::to_string(most_numbers) + " numbers", range));
+    std::vector<double> numbers;
+    for (const toml::node& item : *array) numbers.push_back(number(item, name, range));
+    value = std::move(numbers);
+  });
 }
 
 void TomlReader::text(std::string& value, std::string_view name, std::string_view) {
-  value = text(name, value.c_str());
-  if (value.size() > most_text_bytes)
-    fail(name, "expected a text of at most " + std::to_string(most_text_bytes) + " bytes");
+  read(name, [&](const toml::node&) {
+    const std::string given = text(name);
+    if (given.size() > most_text_bytes)
+      fail(name, "expected a text of at most " + std::to_string(most_text_bytes) + " bytes");
+    value = given;
+  });
 }
 
 void TomlReader::file(InputFile& value, std::string_view name, std::string_view) {
-  value.path = text(name, value.path.c_str());
-  if (value.path.empty()) return;
+  attempt([&] { value = named_file(text(name, value.path.c_str()), name); });
+}
+
+InputFile TomlReader::named_file(const std::string& path, std::string_view name) const {
+  InputFile file{path, ""};
+  if (path.empty()) return file;
   if (references_.recorded_files != nullptr) {
-    const auto recorded = references_.recorded_files->find(value.path);
+    const auto recorded = references_.recorded_files->find(path);
     if (recorded == references_.recorded_files->end()) fail(name, "is not among the files of the run");
-    value.content = recorded->second;
+    file.content = recorded->second;
   } else {
     try {
-      value.content = read_input_file((references_.folder / value.path).string(), most_file_bytes);
+      file.content = read_input_file((references_.folder / path).string(), most_file_bytes);
     } catch (const ConfigError& error) {
       fail(name, error.what());
     }
   }
-  if (references_.files != nullptr) (*references_.files)[value.path] = value.content;
+  if (references_.files != nullptr) (*references_.files)[path] = file.content;
+  return file;
 }
 
 void TomlReader::materials(std::vector<std::string>& value, std::string_view name, std::string_view) {
-  if (const auto named = texts(name); !named.empty()) value = named;
-  for (const std::string& material : value) {
-    if (std::find(references_.materials->begin(), references_.materials->end(), material) ==
-        references_.materials->end())
-      fail(name, "\"" + material + "\" is not a material" + suggestion(material, *references_.materials));
-    if (std::count(value.begin(), value.end(), material) > 1)
-      fail(name, "names \"" + material + "\" twice; remove one of the two");
-  }
+  attempt([&] {
+    std::vector<std::string> named = texts(name);
+    if (named.empty()) named = value;
+    for (const std::string& material : named) {
+      if (std::find(references_.materials->begin(), references_.materials->end(), material) ==
+          references_.materials->end())
+        fail(name, "\"" + material + "\" is not a material" + suggestion(material, *references_.materials),
+             {"materials"});
+      if (std::count(named.begin(), named.end(), material) > 1)
+        fail(name, "names \"" + material + "\" twice; remove one of the two");
+    }
+    value = std::move(named);
+  });
 }
 
 void TomlReader::require(bool holds, std::string_view name, std::string_view text) {
-  if (!holds) fail(name, std::string(text));
+  if (holds) return;
+  try {
+    fail(name, std::string(text));
+  } catch (const KeyError& error) {
+    if (errors_ == nullptr) throw;
+    failed_conditions_.push_back(error);
+  }
 }
 
 void TomlReader::real_or_auto(std::optional<double>& value, std::string_view name, Range range, std::string_view) {
-  if (const toml::node* node = look_up(name)) {
-    if (!node->is_string())
-      value = number(*node, name, range);
-    else if (node->value<std::string>() == "auto")
+  read(name, [&](const toml::node& node) {
+    if (!node.is_string())
+      value = number(node, name, range);
+    else if (node.value<std::string>() == "auto")
       value.reset();
     else
-      fail_at(*node, name, "expected a number or \"auto\"");
-  }
+      fail_at(node, name, "expected a number or \"auto\"");
+  });
 }
 
 std::string TomlReader::text(std::string_view name, const char* fallback) {
   const toml::node* node = look_up(name);
-  if (node == nullptr && fallback == nullptr) fail(name, "is missing; add it with a text in quotes");
+  if (node == nullptr && fallback == nullptr) fail(name, "is missing; add it with a text in quotes", {full_name(name)});
   if (node != nullptr && !node->is_string()) fail_at(*node, name, "expected a text in quotes");
   return node != nullptr ? node->value<std::string>().value() : fallback;
 }
@@ -287,20 +336,31 @@ std::vector<const toml::table*> TomlReader::tables(std::string_view name) {
   return found;
 }
 
-void TomlReader::refuse_unknown_keys() const {
-  for (auto&& [key, node] : table_) {
-    const std::string name(key.str());
-    if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
-    const auto renamed = renamed_keys.find(full_name(name));
-    if (renamed != renamed_keys.end())
-      throw ConfigError(location_of(key.source()) + ": " + full_name(name) + ": is now called " + renamed->second +
-                        "; rename it");
-    const std::string where = path_.empty() ? "an experiment" : "[" + printable(path_) + "]";
-    throw ConfigError(location_of(key.source()) + ": " + full_name(name) + ": is not a key of " + where +
-                      suggestion(name, known_));
-  }
+void TomlReader::report_unknown_keys() const {
+  for (auto&& [key, node] : table_)
+    if (std::find(known_.begin(), known_.end(), key.str()) == known_.end())
+      attempt([&, &unknown = key] { refuse_unknown_key(unknown); });
 }
 
-void TomlReader::finish() const { refuse_unknown_keys(); }
+/// The error counts as one in the key that is probably meant, or else in the table, so that no key is reported as
+/// missing because its name is misspelt.
+void TomlReader::refuse_unknown_key(const toml::key& key) const {
+  const std::string name(key.str()), place = location_of(key.source()) + ": " + full_name(name) + ": ";
+  const toml::source_position position = position_of(key.source());
+  if (const auto renamed = renamed_keys.find(full_name(name)); renamed != renamed_keys.end())
+    throw KeyError(place + "is now called " + renamed->second + "; rename it", renamed->second, position, {});
+  const std::string where = path_.empty() ? "an experiment" : "[" + printable(path_) + "]";
+  const std::string near = nearest(name, known_), or_else = path_.empty() ? full_name(name) : path_;
+  throw KeyError(place + "is not a key of " + where + suggestion(name, known_),
+                 near.empty() ? or_else : full_name(near), position, {});
+}
+
+void TomlReader::finish() const {
+  report_unknown_keys();
+  attempt([&] {
+    stop_if_wrong();
+    for (const KeyError& error : failed_conditions_) errors_->add(error);
+  });
+}
 
 }  // namespace evodevo

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/input_error.hpp"
+#include "experiment/config_errors.hpp"
 #include "experiment/settings_visitor.hpp"
 
 namespace evodevo {
@@ -42,12 +42,15 @@ struct References {
   FileContents* files = nullptr;  ///< gets the contents of files that are read, if not null
 };
 
-/// A visitor that reads variables from a TOML table. If a key is absent, its variable keeps the default.
+/// A visitor that reads variables from a TOML table. If a key is absent or wrong, its variable keeps the default. If
+/// errors are collected, reading goes on after an error; otherwise the first error is thrown. To report an error is to
+/// collect it, or to throw it if errors are not collected.
 class TomlReader final : public SettingsVisitor {
  public:
-  /// `path` is the table's name in messages, such as "scene.floor"; empty for the top level.
-  TomlReader(const toml::table& table, std::string path, References references = {})
-      : table_(table), path_(std::move(path)), references_(std::move(references)) {}
+  /// `path` is the table's name in messages, such as "scene.floor"; empty for the top level. `errors` is the collector
+  /// of errors, or null.
+  TomlReader(const toml::table& table, std::string path, References references = {}, ErrorCollector* errors = nullptr)
+      : table_(table), path_(std::move(path)), references_(std::move(references)), errors_(errors) {}
 
   void real(double& value, std::string_view name, Range range, std::string_view text) override;
   void integer(std::int64_t& value, std::string_view name, Range range, std::string_view text) override;
@@ -76,37 +79,65 @@ class TomlReader final : public SettingsVisitor {
   /// Returns the tables of the array `name`; empty if it is absent.
   std::vector<const toml::table*> tables(std::string_view name);
 
-  /// Throws ConfigError if the table has a key that is not one of `names`. To be called before the keys are read, so
-  /// that a misspelt key is not reported as a missing one.
+  /// Reports each key of the table that is not one of `names` and has not been read. To be called before the keys are
+  /// read, so that a misspelt key is not reported as a missing one.
   void expect(std::initializer_list<std::string_view> names);
 
   /// Throws std::logic_error if a key that is not one of `names` has been read so far.
   void require_read_among(std::span<const std::string_view> names) const;
 
-  /// Throws ConfigError if the table has a key that has not been read.
+  /// Reports each key of the table that has not been read and, if the table has no other error, the conditions that do
+  /// not hold.
   void finish() const;
+
+  /// Calls `read`, and reports the KeyError that it may throw.
+  template <class Read>
+  void attempt(const Read& read) const {
+    try {
+      read();
+    } catch (const KeyError& error) {
+      if (errors_ == nullptr) throw;
+      errors_->add(error);
+    }
+  }
+  /// Throws the first error that has been collected in this table, if there is one.
+  void stop_if_wrong() const;
+  ErrorCollector* errors() const { return errors_; }
 
   /// Returns the place of key `name`, or the place of the table if the key is absent.
   std::string location(std::string_view name) const;
-  /// Throws ConfigError with the place of key `name`, or the place of the table if the key is absent.
-  [[noreturn]] void fail(std::string_view name, const std::string& message) const;
+  /// Throws KeyError with the place of key `name`, or the place of the table if the key is absent. `depends_on` names
+  /// the keys and tables that, if they are wrong themselves, may have caused the error.
+  [[noreturn]] void fail(std::string_view name, const std::string& message,
+                         std::vector<std::string> depends_on = {}) const;
+  /// Like fail(), but returns if errors are collected.
+  void report(std::string_view name, const std::string& message, std::vector<std::string> depends_on = {}) const;
   /// Returns the name of a key with its path, such as "scene.floor.stiffness".
   std::string full_name(std::string_view name) const;
 
  private:
   const toml::node* look_up(std::string_view name);
   void know(std::string_view name);
-  void refuse_unknown_keys() const;
+  /// Calls `take` with the node of a key, if the table has it; collects an error that it throws.
+  template <class Take>
+  void read(std::string_view name, const Take& take);
+  void report_unknown_keys() const;
+  [[noreturn]] void refuse_unknown_key(const toml::key& key) const;
   double number(const toml::node& node, std::string_view name, Range range) const;
   /// Returns the value of an integer such as 3, or of a float without a fraction such as 3.0.
   std::int64_t whole_number(const toml::node& node, std::string_view name, Range range) const;
+  /// Returns the file that key `name` names by its path.
+  InputFile named_file(const std::string& path, std::string_view name) const;
   const toml::array& three(const toml::node& node, std::string_view name) const;
-  [[noreturn]] void fail_at(const toml::node& node, std::string_view name, const std::string& message) const;
+  [[noreturn]] void fail_at(const toml::node& node, std::string_view name, const std::string& message,
+                            std::vector<std::string> depends_on = {}) const;
 
   const toml::table& table_;
   std::string path_;
   References references_;
+  ErrorCollector* errors_;
   std::vector<std::string> known_;
+  std::vector<KeyError> failed_conditions_;
 };
 
 }  // namespace evodevo

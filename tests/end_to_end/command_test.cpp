@@ -415,6 +415,26 @@ TEST_F(Command, BadInputEndsWithTwoAndLeavesNothing) {
   EXPECT_EQ(evodevo({"check", file_, "--device", "cuda:0,2"}).exit_code, 0) << "check needs no GPU";
 }
 
+TEST_F(Command, AllErrorsOfAnExperimentAreToldWithTheirNumber) {
+  std::string text = small_experiment;
+  text.replace(text.find("seed = 7"), 8, "seed = -7");
+  text.replace(text.find("edge"), 4, "egde");
+  const std::string bad = scratch_.write("bad.toml", text);
+  for (const char* command : {"run", "check"}) {
+    const Finished finished = evodevo({command, bad, "--threads", "-1"});
+    EXPECT_EQ(finished.exit_code, 2);
+    std::istringstream lines(finished.output);
+    std::vector<std::string> told;
+    for (std::string line; std::getline(lines, line);) told.push_back(line);
+    EXPECT_THAT(
+        told, ::testing::ElementsAre(testing::at_place("evodevo: --threads -1: simulation.threads = -1: ", "0 to 4096"),
+                                     testing::at_place("evodevo: " + bad + ":3:8: experiment.seed = -7: "),
+                                     testing::at_place("evodevo: " + bad + ":11:1: encoding.egde: ", "\"edge\""),
+                                     "evodevo: 3 errors"));
+  }
+  EXPECT_FALSE(fs::exists("runs/bad-1"));
+}
+
 TEST_F(Command, TextsOfARecordDisturbNoTerminal) {
   run_small();
   {

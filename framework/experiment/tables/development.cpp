@@ -7,13 +7,14 @@
 namespace evodevo {
 namespace {
 
-/// Throws ConfigError if a cycle is too short for a tally.
+/// Reports if a cycle is too short for a tally.
 void check_skip(const TomlReader& t, const Settings& settings) {
   const DevelopmentSettings& development = settings.development;
   if (development.probe != Probe::skip_shift || !settings.step.fixed()) return;
   const double steps = std::round(development.cycle_time / *settings.step.fixed());
   if (static_cast<double>(development.skip) > steps)
-    t.fail("skip", "a cycle of " + to_text(steps) + " steps would have no tally; expected at most " + to_text(steps));
+    t.report("skip", "a cycle of " + to_text(steps) + " steps would have no tally; expected at most " + to_text(steps),
+             {"development", "simulation"});
 }
 
 }  // namespace
@@ -21,6 +22,7 @@ void check_skip(const TomlReader& t, const Settings& settings) {
 void read_development(TomlReader& t, Settings& settings) {
   settings.development.cycles = 100;
   declare_development(t, settings);
+  t.expect({"operator"});
   check_duration(t, "cycle_time", settings.development.cycle_time, settings.step);
   check_skip(t, settings);
 }

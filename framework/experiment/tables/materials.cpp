@@ -25,7 +25,7 @@ void read_materials(TomlReader& top, Settings& settings, Warnings& warnings) {
     if (names.size() > most_materials)
       top.fail("materials", "expected at most " + std::to_string(most_materials) + " materials");
     for (const std::string& name : names) {
-      if (const std::string fault = text_fault(name); !fault.empty()) materials.fail(name, "the name " + fault);
+      if (const std::string fault = text_fault(name); !fault.empty()) materials.report(name, "the name " + fault);
       if (!settings.materials.contains(name)) warn_of_near_material(name, warnings);
       read_table(materials, name, true, [&](TomlReader& t) { declare(t, settings.materials[name]); });
     }

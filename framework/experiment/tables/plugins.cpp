@@ -55,8 +55,10 @@ void PluginsTable::check(TomlReader& top, Warnings& warnings) const {
     t.texts("paths");
     for (const NamedPath& named : named_) {
       if (named.fault.empty()) continue;
-      if (!source_.is_record) t.fail("paths", named.fault);
-      warnings.push_back(named.fault);
+      if (source_.is_record)
+        warnings.push_back(named.fault);
+      else
+        t.report("paths", named.fault);
     }
   });
 }

@@ -25,8 +25,7 @@ class PluginsTable {
   /// The part of the search path that a record stores, so that the run can be resumed without the options and the
   /// environment that it was started with: everything except the program's own folder.
   std::vector<std::filesystem::path> recorded_path(const TomlReader& top) const;
-  /// Throws ConfigError if a path of the table is faulty; if the experiment is the record of a run, adds a warning
-  /// instead.
+  /// Reports paths of the table that are faulty; if the experiment is the record of a run, adds warnings instead.
   void check(TomlReader& top, Warnings& warnings) const;
 
  private:

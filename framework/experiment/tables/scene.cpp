@@ -30,8 +30,10 @@ void read_forces(TomlReader& table, AnySettings& settings) {
     });
   });
   if (settings.scene.friction && !settings.scene.floor)
-    table.fail("friction", "there is no floor for friction to act on; add [" + table.full_name("floor") +
-                               "] or remove [" + table.full_name("friction") + "]");
+    table.report("friction",
+                 "there is no floor for friction to act on; add [" + table.full_name("floor") + "] or remove [" +
+                     table.full_name("friction") + "]",
+                 {table.full_name("floor"), "scene.floor", "scene.friction"});
 }
 
 Scenario read_scenario(TomlReader& table, const Settings& settings) {
@@ -60,17 +62,14 @@ void read_scene(TomlReader& top, Settings& settings) {
 
 void read_scenarios(TomlReader& top, Settings& settings) {
   constexpr std::size_t most = 1000;
-  const auto tables = top.tables("scenario");
-  if (tables.size() > most) top.fail("scenario", "expected at most " + std::to_string(most) + " of these tables");
-  for (std::size_t i = 0; i < tables.size(); ++i) {
-    TomlReader table(*tables[i], "scenario." + std::to_string(i));
+  visit_tables(top, "scenario", most, {}, [&](TomlReader& table) {
     Scenario scenario = read_scenario(table, settings);
     table.finish();
     const auto is_same = [&](const Scenario& other) { return other.name == scenario.name; };
     if (std::any_of(settings.scenarios.begin(), settings.scenarios.end(), is_same))
       table.fail("name", "there is already a scenario \"" + scenario.name + "\"; give each its own name");
     settings.scenarios.push_back(std::move(scenario));
-  }
+  });
 }
 
 }  // namespace evodevo

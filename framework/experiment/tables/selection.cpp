@@ -35,28 +35,33 @@ void check_choice(const TomlReader& t, const Traits& traits, const Choice& choic
            "survivors has; name it in [selection] for both, or another one in [selection.parents]");
 }
 
-/// Throws ConfigError if an operator needs a larger population, or more children, than a generation has.
+/// Reports if an operator needs a larger population, or more children, than a generation has.
 void check_sizes(const TomlReader& t, const Traits& traits, const Experiment& experiment) {
   const auto check = [&](std::int64_t needed, std::int64_t given, const std::string& key, const std::string& trait) {
     if (given < needed)
-      t.fail("name", "this operator needs " + key + " = " + std::to_string(needed) + " or more (its trait " + trait +
-                         "), and the experiment has " + std::to_string(given) + "; raise " + key +
-                         " in [experiment], or choose another operator");
+      t.report("name",
+               "this operator needs " + key + " = " + std::to_string(needed) + " or more (its trait " + trait +
+                   "), and the experiment has " + std::to_string(given) + "; raise " + key +
+                   " in [experiment], or choose another operator",
+               {"experiment"});
   };
   check(traits.least_population, experiment.population, "population", "least_population");
   check(traits.least_children, experiment.newborns(), experiment.children > 0 ? "children" : "population",
         "least_children");
 }
 
-/// Throws ConfigError if fewer scores than an operator needs have a role.
+/// Reports if fewer scores than an operator needs have a role.
 void check_scores(const TomlReader& t, std::size_t needed, std::size_t given, const std::string& role) {
   if (given < needed)
-    t.fail("name", "this operator needs " + std::to_string(needed) + " " + role +
-                       "s or more, and the fitness operators give " + std::to_string(given) +
-                       "; add a table [[fitness]] with an operator that gives one, or choose another operator");
+    t.report("name",
+             "this operator needs " + std::to_string(needed) + " " + role +
+                 "s or more, and the fitness operators give " + std::to_string(given) +
+                 "; add a table [[fitness]] with an operator that gives one, or choose another operator",
+             {"fitness"});
 }
 
-/// Throws ConfigError if an operator cannot work in the experiment.
+/// Throws KeyError if an operator does not choose what it is to choose. Reports what else keeps it from working in the
+/// experiment.
 void check_traits(const TomlReader& t, const Traits& traits, const Choice& choice, const Experiment& experiment) {
   check_choice(t, traits, choice);
   check_sizes(t, traits, experiment);
@@ -65,10 +70,11 @@ void check_traits(const TomlReader& t, const Traits& traits, const Choice& choic
                                          [](const Objective& measure) { return measure.role == Role::descriptor; });
   check_scores(t, traits.least_descriptors, static_cast<std::size_t>(descriptors), name(Role::descriptor));
   if (const std::string type = unreal_type(experiment.layout); traits.needs_real_genes && !type.empty())
-    t.fail("name",
-           "this operator works on real genes alone, whose number is the same in all genomes (its trait "
-           "needs_real_genes), and the blocks " +
-               type + " are not such genes; choose another encoding, or another operator");
+    t.report("name",
+             "this operator works on real genes alone, whose number is the same in all genomes (its trait "
+             "needs_real_genes), and the blocks " +
+                 type + " are not such genes; choose another encoding, or another operator",
+             {"encoding", "development", "mutation"});
 }
 
 void check_notes(const TomlReader& t, const std::vector<NoteTitle>& notes) {
@@ -97,7 +103,7 @@ class SelectionTables {
         out_.parent_selection = read_one(t, "parents", {.survivors = false}, written);
       });
     else
-      read_table(
+      visit_table(
           top, "selection", true, [&](TomlReader& t) { out_.selection = read(t, {}, written); }, references_);
     record.insert_or_assign("selection", std::move(written));
   }
@@ -106,7 +112,7 @@ class SelectionTables {
   std::unique_ptr<Selection> read_one(TomlReader& parent, const char* name, const Choice& choice, toml::table& record) {
     std::unique_ptr<Selection> op;
     toml::table written;
-    read_table(
+    visit_table(
         parent, name, true, [&](TomlReader& t) { op = read(t, choice, written); }, references_);
     record.insert(name, std::move(written));
     return op;
@@ -141,10 +147,12 @@ bool asks_for_random_individuals(TomlReader& top) {
 
 void read_selection(TomlReader& top, const OperatorFactory& factory, const References& references,
                     Experiment& experiment, toml::table& record) {
-  SelectionTables(factory, references, experiment).read(top, record);
-  if (!experiment.makes_children() || asks_for_random_individuals(top)) return;
-  experiment.random_individuals = 0;
-  record["experiment"].as_table()->insert_or_assign("random_individuals", 0);
+  top.attempt([&] {
+    SelectionTables(factory, references, experiment).read(top, record);
+    if (!experiment.makes_children() || asks_for_random_individuals(top)) return;
+    experiment.random_individuals = 0;
+    record["experiment"].as_table()->insert_or_assign("random_individuals", 0);
+  });
 }
 
 }  // namespace evodevo

@@ -6,7 +6,7 @@
 namespace evodevo {
 
 /// Reads [selection] into an experiment whose other operators have been read. Writes the table, with every default,
-/// into `record`. Throws ConfigError if an operator does not fit the experiment.
+/// into `record`.
 void read_selection(TomlReader& top, const OperatorFactory& factory, const References& references,
                     Experiment& experiment, toml::table& record);
 

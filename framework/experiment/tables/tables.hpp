@@ -13,17 +13,45 @@ namespace evodevo {
 /// Warnings for the user, about settings that are allowed but may be unintended and libraries that cannot be used.
 using Warnings = std::vector<std::string>;
 
-/// Calls `read` with a reader of the table [name] of `parent`; does nothing if the table is absent. Throws ConfigError
-/// if the table is `required` and absent, or if it has a key that `read` has not read.
+/// Calls `read` with a reader of the table [name] of `parent`; does nothing if the table is absent. Reports the error
+/// that ends `read`, or that the table is `required` and absent. Does not check for unknown keys.
+template <class Read>
+void visit_table(TomlReader& parent, std::string_view name, bool required, const Read& read,
+                 const References& references = {}) {
+  parent.attempt([&] {
+    const toml::table* table = parent.table(name);
+    const std::string path = parent.full_name(name);
+    if (table == nullptr && required) parent.fail(name, "is missing; add a table [" + path + "]", {path});
+    if (table == nullptr) return;
+    TomlReader reader(*table, path, references, parent.errors());
+    read(reader);
+  });
+}
+
+/// Like visit_table(), and reports keys that `read` has not read, unless an error has ended it.
 template <class Read>
 void read_table(TomlReader& parent, std::string_view name, bool required, const Read& read,
                 const References& references = {}) {
-  const toml::table* table = parent.table(name);
-  if (table == nullptr && required) parent.fail(name, "is missing; add a table [" + parent.full_name(name) + "]");
-  if (table == nullptr) return;
-  TomlReader reader(*table, parent.full_name(name), references);
-  read(reader);
-  reader.finish();
+  const auto read_all = [&](TomlReader& reader) {
+    read(reader);
+    reader.finish();
+  };
+  visit_table(parent, name, required, read_all, references);
+}
+
+/// Calls `read` with a reader of each table of the array [[name]] in `parent`. Reports the error that ends a call of
+/// `read`, or that there are more than `most` tables. Does not check for unknown keys.
+template <class Read>
+void visit_tables(TomlReader& parent, std::string_view name, std::size_t most, const References& references,
+                  const Read& read) {
+  parent.attempt([&] {
+    const auto tables = parent.tables(name);
+    if (tables.size() > most) parent.fail(name, "expected at most " + std::to_string(most) + " of these tables");
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+      TomlReader reader(*tables[i], parent.full_name(name) + "." + std::to_string(i), references, parent.errors());
+      reader.attempt([&] { read(reader); });
+    }
+  });
 }
 
 void read_materials(TomlReader& top, Settings& settings, Warnings& warnings);
@@ -40,10 +68,11 @@ void read_simulation(TomlReader& top, Settings& settings, Bodies bodies);
 /// Reads [development] without its operators. Takes the reader of that table. To be called after read_simulation().
 void read_development(TomlReader& development, Settings& settings);
 
-/// Throws ConfigError if StepRule::dt is fixed and a duration (s) is not a whole number of such steps.
+/// Reports if StepRule::dt is fixed and a duration (s) is not a whole number of such steps.
 void check_duration(const TomlReader& table, std::string_view name, double duration, const StepRule& step);
 
-/// Reads all tables of settings in `top`. Does not check for unknown keys in tables that operators also read.
+/// Reads all tables of settings in `top`. Does not check for unknown keys in tables that operators also read. If
+/// errors are collected, settings that are wrong keep their defaults.
 Settings read_settings(TomlReader& top, Bodies bodies, Warnings& warnings);
 
 /// Writes the tables of settings. read_settings() reads them back as equal settings.
