@@ -429,7 +429,7 @@ TEST_F(Command, AllErrorsOfAnExperimentAreToldWithTheirNumber) {
     EXPECT_THAT(
         told, ::testing::ElementsAre(testing::at_place("evodevo: --threads -1: simulation.threads = -1: ", "0 to 4096"),
                                      testing::at_place("evodevo: " + bad + ":3:8: experiment.seed = -7: "),
-                                     testing::at_place("evodevo: " + bad + ":11:1: encoding.egde: ", "\"edge\""),
+                                     testing::at_place("evodevo: " + bad + ":11:1: encoding.egde: ", " edge,"),
                                      "evodevo: 3 errors"));
   }
   EXPECT_FALSE(fs::exists("runs/bad-1"));

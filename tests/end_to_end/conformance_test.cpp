@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -211,7 +212,10 @@ TEST(Conformance, AnExperimentHidesNoFaultOfALibrary) {
 
 TEST(Conformance, AnExperimentThatCannotBeReadIsACase) {
   const testing::Scratch folder;
-  const std::string experiment = folder.write("bad.toml", "[experiment]\nevaluations = 10\nspede = 1\n");
+  std::ifstream quickstart(EVODEVO_EXPERIMENTS "/quickstart.toml");
+  std::string text{std::istreambuf_iterator<char>(quickstart), {}};
+  text.insert(text.find("[experiment]\n") + std::string("[experiment]\n").size(), "spede = 1\n");
+  const std::string experiment = folder.write("bad.toml", text);
   const auto outcomes = verdicts(wrong("changes"), 1, {"--experiment", experiment, "--case", "changes"});
   ASSERT_EQ(outcomes.size(), 1u);
   EXPECT_THAT(outcomes.at("experiment"), testing::at_place("failed " + experiment, "spede"));

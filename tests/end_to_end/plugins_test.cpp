@@ -169,7 +169,10 @@ TEST_F(Plugins, TextsOfOperatorsReachNoTerminalAsTheyAre) {
     expect_clean(listed.output);
   }
   install("controls_in_objective");
-  const Finished refused = evodevo({"check", file_, "--plugin-path", own(), "--set", "fitness.1.name=way"});
+  std::string text = testing::small_experiment;  // whose second fitness has parameters that "way" does not have
+  const std::size_t second = text.rfind("[[fitness]]");
+  text.replace(second, text.find("\n[", second) - second, "[[fitness]]\nname = \"way\"\n");
+  const Finished refused = evodevo({"check", scratch_.write("way.toml", text), "--plugin-path", own()});
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.output, testing::naming("fitness.1.name = \"way\": ", "\"way\\x1b[31m\"", "control characters"));
   expect_clean(refused.output);
