@@ -125,6 +125,12 @@ export class Life {
     return index;
   }
 
+  /** Returns the stress of the i-th spring of a shot, N; null if none was recorded. */
+  stressOf(shot, i) {
+    const { most_stress, stress_levels } = this.robot.film;
+    return shot.stress.length > 0 ? most_stress * (shot.stress[i] / stress_levels) ** 2 : null;
+  }
+
   middleAt(time, path = this.path) {
     if (path.length === 0) return [0, 0, 0];
     const [i, part] = between(path.length, (k) => path[k].time, time);

@@ -19,7 +19,8 @@ function withLanes(lineage) {
     while (waiting.length > 0) {
       const [node, its] = waiting.pop();
       node.lane = its ?? lanes++;
-      node.children.toReversed().forEach((child, k, all) => waiting.push([child, k === all.length - 1 ? node.lane : undefined]));
+      // the last one that waits is placed first
+      for (let i = node.children.length - 1; i >= 0; --i) waiting.push([node.children[i], i === 0 ? node.lane : undefined]);
     }
   };
   roots.forEach((root) => place(root, undefined));

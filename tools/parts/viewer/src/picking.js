@@ -66,10 +66,9 @@ export function described({ life, materialNames }, { mass, spring }, time) {
 
 /** Returns the stress (N) of a spring in each cycle, as bars with the numbers; nothing if it was not recorded. */
 function stressOf(life, spring, now) {
-  const { most_stress, stress_levels } = life.robot.film;
   const values = life.shots.map((shot) => {
     const place = shot.springs.indexOf(spring);
-    return place < 0 || shot.stress.length === 0 ? null : most_stress * (shot.stress[place] / stress_levels) ** 2;
+    return place < 0 ? null : life.stressOf(shot, place);
   });
   const most = Math.max(...values);
   if (!(most > 0)) return [];

@@ -21,16 +21,16 @@ export const fileName = (text, ending) => `${text.replace(/[^\p{L}\p{N}.,_-]+/gu
  *  by their places in `masses`, its material and its stress (N) in the cycle. */
 export function bodyJson(life, time) {
   const shot = life.shots[life.shotAt(time)];
-  const { materials, most_stress, stress_levels } = life.robot.film;
+  const { materials } = life.robot.film;
   const all = new Float32Array(4 * life.massCount);
   life.writePositions(time, all);
-  const rounded = (x) => Number(x.toPrecision(6));
+  const rounded = (x) => (x === null ? null : Number(x.toPrecision(6)));
   const masses = Array.from(shot.masses, (mass) => Array.from(all.subarray(4 * mass, 4 * mass + 3), rounded));
   const placeOf = new Map(Array.from(shot.masses, (mass, i) => [mass, i]));
   const springs = Array.from(shot.springs, (spring, i) => ({
     masses: [placeOf.get(life.ends[2 * spring]), placeOf.get(life.ends[2 * spring + 1])],
     material: shot.materials[i],
-    stress: shot.stress.length > 0 ? rounded(most_stress * (shot.stress[i] / stress_levels) ** 2) : null,
+    stress: rounded(life.stressOf(shot, i)),
   }));
   return JSON.stringify({ individual: life.robot.individual, time, materials, masses, springs }, null, 1);
 }
