@@ -12,6 +12,7 @@
 #include "report/camera.hpp"
 #include "report/page.hpp"
 #include "report/report.hpp"
+#include "report/server/local_server.hpp"
 
 namespace evodevo {
 namespace {
@@ -54,19 +55,59 @@ Json reported(const std::string& folder, const Given& given, std::size_t budget)
   return filmed_run(archive, experiment, given, cast, budget);
 }
 
+/// Returns the page of all runs, with films of at most page_budget.
+std::string reported_page(const std::vector<std::string>& folders, const Given& given) {
+  const std::string page = page_template();
+  std::vector<Json> runs;
+  for (const std::string& folder : folders) runs.push_back(reported(folder, given, page_budget / folders.size()));
+  return filled_page(page, report_data(std::move(runs)));
+}
+
+/// Returns the number of generations of each run as JSON.
+std::string generations_of(const std::vector<std::string>& folders) {
+  Json counts = Json::array();
+  for (const std::string& folder : folders) counts.push_back(Archive::read(folder).generations().size());
+  return counts.dump();
+}
+
+/// Serves the page of runs. The page is made anew if a run has grown since.
+int serve_report(const std::vector<std::string>& folders, const Given& given) {
+  const auto port = given["serve"].as<std::int64_t>();
+  if (port < 0 || port > 65535)
+    throw UsageError("--serve " + std::to_string(port) + ": expected a port, 0 to 65535; 0: any free port");
+  if (!given["out"].defaulted())
+    throw UsageError("--out " + printable(given["out"].as<std::string>()) +
+                     ": --serve writes no file; leave one of the two out");
+  constexpr std::string_view place_of_page = "/", place_of_generations = "/generations";
+  std::string page, shown;
+  const auto document = [&](std::string_view path) -> std::optional<Document> {
+    if (path != place_of_page && path != place_of_generations) return std::nullopt;
+    const std::string generations = generations_of(folders);
+    if (path == place_of_generations) return Document{"application/json", generations};
+    if (generations != shown)
+      page = self_reloading(reported_page(folders, given), std::string(place_of_generations), generations);
+    shown = generations;
+    return Document{"text/html; charset=utf-8", page};
+  };
+  document(place_of_page);  // so that an error in a run ends the command at once
+  serve_locally(
+      static_cast<std::uint16_t>(port), [](const std::string& address) { std::cout << address << std::endl; },
+      document);
+  return 0;
+}
+
 int report(const Given& given) {
   const auto folders = given["DIR"].as<std::vector<std::string>>();
   const auto best = given["best"].as<std::int64_t>();
   if (best < 0 || best > 100) throw UsageError("--best " + std::to_string(best) + ": expected 0 to 100");
   const auto elites = given["elites"].as<std::int64_t>();
   if (elites < 0 || elites > 1000) throw UsageError("--elites " + std::to_string(elites) + ": expected 0 to 1000");
+  if (given.contains("serve")) return serve_report(folders, given);
   const auto file = given["out"].as<std::string>();
   for (const std::string& folder : folders) refuse_to_overwrite("--out", file, files_of_run(folder));
-  const std::string page = page_template();
+  viewer_folder();  // so that an unbuilt viewer is reported before a file is begun
   OutputFile output(file, file);
-  std::vector<Json> runs;
-  for (const std::string& folder : folders) runs.push_back(reported(folder, given, page_budget / folders.size()));
-  const std::string filled = filled_page(page, report_data(std::move(runs)));
+  const std::string filled = reported_page(folders, given);
   output.write(filled);
   output.finish();
   std::cout << file << '\n';
@@ -149,7 +190,9 @@ Command report_command() {
       "elites", value<std::int64_t>("N")->default_value(100),
       "how many elites of the map of niches of each run to show, the best first")(
       "individual", values<std::int64_t>("ID"), "another individual of each run to show; may be repeated")(
-      "out", value<std::string>("FILE")->default_value("report.html"), "the page to write");
+      "out", value<std::string>("FILE")->default_value("report.html"), "the page to write")(
+      "serve", value<std::int64_t>("PORT"),
+      "serve the page at http://127.0.0.1:PORT/ instead of writing it; 0: at any free port");
   add_scenario_option(options, "the scenario in which the films end; default: the first");
   add_plugin_option(options);
   return {
@@ -162,8 +205,10 @@ Command report_command() {
            "individuals in 3D. For several runs, it is one page that compares them.",
            "The best robots are those with the best first objective. If there are other objectives, the page also "
            "shows the best robot by each of them. If the experiment has descriptors, it shows the map of their niches, "
-           "whose cells open their robots."},
-      .examples = {"report runs/quickstart-1 --out report.html"},
+           "whose cells open their robots.",
+           "With --serve, only this machine can reach the page, which reloads itself when a run has grown; Ctrl-C ends "
+           "the command."},
+      .examples = {"report runs/quickstart-1 --out report.html", "report runs/quickstart-1 --serve 8080"},
       .options = options,
       .function = report};
 }

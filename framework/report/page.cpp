@@ -65,6 +65,21 @@ std::string filled_page(const std::string& page, const nlohmann::ordered_json& d
   return page.substr(0, at) + escaped(json) + page.substr(at + place_of_data.size());
 }
 
+std::string self_reloading(const std::string& page, const std::string& path, const std::string& shown) {
+  constexpr std::string_view policy = "default-src 'none';", end = "</body>";
+  const auto at_policy = page.find(policy), at_end = page.rfind(end);
+  if (at_policy == std::string::npos || at_end == std::string::npos)
+    throw std::runtime_error("the page of the viewer has no place for the program that reloads it; build it again");
+  const std::string program = "<script>setInterval(() => fetch(\"" + path +
+                              "\").then((answer) => answer.text()).then((text) => {"
+                              " if (text !== \"" +
+                              shown +
+                              "\") location.reload();"
+                              " }).catch(() => {}), 5000);</script>";
+  return page.substr(0, at_policy) + std::string(policy) + " connect-src 'self';" +
+         page.substr(at_policy + policy.size(), at_end - at_policy - policy.size()) + program + page.substr(at_end);
+}
+
 std::string size_note(const std::string& file, std::size_t bytes, const std::string& option) {
   if (bytes <= largest_page) return {};
   return "evodevo: " + file + ": has " + std::to_string(bytes / 1'000'000) + " MB, though only the beginning and the " +
