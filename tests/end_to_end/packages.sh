@@ -32,3 +32,12 @@ for experiment in "$package"/share/evodevo/experiments/*.toml; do evodevo check 
 evodevo run "$package/share/evodevo/experiments/quickstart.toml" --out run --set experiment.evaluations=20 \
   --set experiment.population=10 --set development.cycle_time=0.1 --set fitness.0.settle=0 --set fitness.0.window=0.2
 [ ! -e "$build/share/evodevo/viewer/page.html" ] || [ -s run/report.html ] || fail "the run has no page"
+
+# the Debian package has the Python package where Debian's Python looks, and the module finds its operators there
+module=("$build"/lib/python3.*/site-packages/evodevo)
+[ -d "${module[0]}" ] && command -v dpkg-shlibdeps >/dev/null && /usr/bin/python3 -c "import numpy, pandas" 2>/dev/null || exit 0
+cpack --config "$build/CPackConfig.cmake" -G DEB -B "$scratch/debian" >"$scratch/log" || fail "$(<"$scratch/log")"
+dpkg-deb -x "$scratch"/debian/evodevo*.deb "$scratch/root"
+env -i PYTHONPATH="$scratch/root/usr/lib/python3/dist-packages" /usr/bin/python3 -c \
+  "import sys; from evodevo import core; core.Experiment(sys.argv[1])" \
+  "$scratch/root/usr/share/evodevo/experiments/quickstart.toml" || fail "the Debian package's Python package does not work"

@@ -22,8 +22,8 @@ set(CPACK_DEBIAN_PACKAGE_NAME evodevo${variant})
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# to build plugins, and to draw and encode films
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, make, nodejs, chromium, ffmpeg")
+# to build plugins, to draw and encode films, and for the Python package
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, make, nodejs, chromium, ffmpeg, python3-numpy, python3-pandas")
 
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/bundle.cmake)
 include(CPack)
