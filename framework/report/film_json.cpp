@@ -16,6 +16,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t least_thinning = 2;  ///< at most every second frame is kept, because 30 frames/s look smooth
 constexpr std::size_t measured_finer = 4;  ///< ratio of the frame rate of measured shots to that of others
+constexpr double rests_finer = 8;  ///< ratio of the units of positions and rest lengths: forces depend on differences
 
 /// A level of detail: the precision of numbers, and how many frames may be left out at this precision.
 struct Detail {
@@ -220,13 +221,10 @@ class FilmWriter {
 
   /// Returns the JSON of the film without times and positions.
   Json still(const Detail& detail) const {
-    return {{"masses", mass_count(film_)},
-            {"mass_materials", packed_mass_materials(film_, materials_)},
-            {"ends", packed(springs_.ends())},
-            {"materials", materials_.json()},
-            {"most_stress", most_stress_},
-            {"stress_levels", detail.stress_levels},
-            {"shots", shots_json(detail.stress_levels)}};
+    return {{"masses", mass_count(film_)},     {"mass_materials", packed_mass_materials(film_, materials_)},
+            {"ends", packed(springs_.ends())}, {"materials", materials_.json()},
+            {"most_stress", most_stress_},     {"stress_levels", detail.stress_levels},
+            {"rest_step", rest_step(detail)},  {"shots", shots_json(detail)}};
   }
 
   /// Returns the motion. Leaves out only as many frames as necessary to fit into `budget` bytes, and no more than
@@ -234,7 +232,7 @@ class FilmWriter {
   Motion motion(const Detail& detail, std::size_t budget) const {
     std::size_t most = least_thinning;
     for (const Shot& shot : film_) most = std::max(most, std::min(shot.frames.size(), detail.most_thinning));
-    Motion motion{.step = size_ / detail.parts_of_length, .every = least_thinning};
+    Motion motion{.step = step(detail), .every = least_thinning};
     for (;;) {
       motion.shots = motion_json(motion);
       const std::size_t size = motion.shots.dump().size();
@@ -261,9 +259,14 @@ class FilmWriter {
   }
 
  private:
-  /// Returns, for each shot, the masses and springs that are present, and the springs' materials and stress.
-  Json shots_json(int stress_levels) const {
-    ValuePacking materials(springs_.count()), stress(springs_.count());
+  /// The unit of positions, m.
+  double step(const Detail& detail) const { return size_ / detail.parts_of_length; }
+  double rest_step(const Detail& detail) const { return step(detail) / rests_finer; }
+
+  /// Returns, for each shot, the masses and springs that are present, and the springs' materials, rest lengths and
+  /// stress.
+  Json shots_json(const Detail& detail) const {
+    ValuePacking materials(springs_.count()), rests(springs_.count()), stress(springs_.count());
     std::vector<std::uint32_t> masses_before, springs_before;
     Json shots = Json::array();
     for (std::size_t i = 0; i < film_.size(); ++i) {
@@ -272,7 +275,8 @@ class FilmWriter {
                        {"masses", packed_changes(masses_before, film_[i].numbers)},
                        {"springs", packed_changes(springs_before, numbers)},
                        {"materials", materials.next(numbers, materials_of(i, indices))},
-                       {"stress", stress.next(numbers, stress_of(film_[i], indices, stress_levels))}});
+                       {"rest_lengths", rests.next(numbers, rests_of(film_[i], indices, rest_step(detail)))},
+                       {"stress", stress.next(numbers, stress_of(film_[i], indices, detail.stress_levels))}});
       masses_before = film_[i].numbers;
       springs_before = numbers;
     }
@@ -283,6 +287,12 @@ class FilmWriter {
     std::vector<std::int64_t> materials;
     for (const std::size_t s : springs) materials.push_back(materials_.of_spring(shot, s));
     return materials;
+  }
+
+  static std::vector<std::int64_t> rests_of(const Shot& shot, std::span<const std::size_t> springs, double unit) {
+    std::vector<std::int64_t> rests;
+    for (const std::size_t s : springs) rests.push_back(std::llround(shot.body.springs[s].rest_length / unit));
+    return rests;
   }
 
   std::vector<std::int64_t> stress_of(const Shot& shot, std::span<const std::size_t> springs, int levels) const {

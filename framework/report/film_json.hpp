@@ -33,10 +33,12 @@ struct Title {
 ///   most_stress     largest stress in the film, N
 ///   stress_levels   number of levels of stress; level = stress_levels * sqrt(stress / most_stress)
 ///   step            unit of positions, m
+///   rest_step       unit of rest lengths, m
 ///   error           ViewError, with positions interpolated linearly between the frames kept
 ///   shots           for each shot: name; times (s); masses and springs: the numbers of those that were added or
-///                   removed since the previous shot; materials and stress: of the springs present, in the order of
-///                   their numbers; positions: those of the masses present
+///                   removed since the previous shot; materials, rest_lengths (those at the beginning of the shot) and
+///                   stress: of the springs present, in the order of their numbers; positions: those of the masses
+///                   present
 nlohmann::ordered_json film_json(const Film& film, const std::vector<Title>& titles, std::size_t budget);
 
 }  // namespace evodevo

@@ -194,8 +194,8 @@ class FilmBudget {
   std::size_t left_, reserved_ = 0, elites_ = 0, others_ = 0;
 };
 
-/// Returns the parameter `direction` of the first fitness function, such as that of `distance`, for the page's track; null
-/// if it has none.
+/// Returns the parameter `direction` of the first fitness function, such as that of `distance`, for the page's track;
+/// null if it has none.
 Json direction_json(const std::string& experiment) {
   const toml::table table = toml::parse(experiment);
   const toml::array* direction = table["fitness"][0]["direction"].as_array();
@@ -203,6 +203,36 @@ Json direction_json(const std::string& experiment) {
   Json components = Json::array();
   for (const toml::node& component : *direction) components.push_back(component.value_or(0.0));
   return components;
+}
+
+constexpr std::size_t most_champions = 40;  ///< number of champions that a page shows
+
+/// Returns the body of an individual at birth as a film of one shot, in the lowest precision; an empty film if it has
+/// no body.
+Json newborn_json(const Experiment& experiment, const Individual& individual) {
+  Blueprint blueprint = decoded(experiment, individual.genome, {.individual = individual.id});
+  blueprint.origins.clear();
+  BuiltBody built = build_body(blueprint);
+  return film_json(built.failure.empty() ? mapping_film(blueprint, std::move(built)) : Film{}, {{"birth"}}, 0);
+}
+
+/// Returns how many champions a run has had, and those shown: if there are too many, evenly spaced ones with the first
+/// and the last. Those that are no actors have their bodies at birth.
+Json champions_json(const Archive& archive, const Experiment& experiment, const std::vector<Actor>& actors) {
+  const std::vector<BestSoFar> all = best_over_generations(archive);
+  const std::size_t count = std::min(all.size(), most_champions);
+  Json shown = Json::array();
+  for (std::size_t i = 0; i < count; ++i) {
+    const BestSoFar& one = all[count < 2 ? 0 : i * (all.size() - 1) / (count - 1)];
+    const bool has_life =
+        std::ranges::any_of(actors, [&](const Actor& actor) { return actor.individual.id == one.individual; });
+    shown.push_back(
+        {{"individual", one.individual},
+         {"generation", one.born},
+         {"value", one.value},
+         {"film", has_life ? Json(nullptr) : newborn_json(experiment, archive.known_individual(one.individual))}});
+  }
+  return {{"count", all.size()}, {"shown", std::move(shown)}};
 }
 
 constexpr std::size_t filmed_together = 16;  ///< number of robots whose films are in memory at the same time
@@ -222,13 +252,14 @@ Json reported_run(const Archive& archive, const Experiment& experiment, Simulato
   run["labels"] = labels_json(archive.note_histories());
   run["time"] = time_json(archive);
   run["top_speed"] = nullptr;
+  run["champions"] = champions_json(archive, experiment, actors);
   run["robots"] = Json::array();
   const Scene& scene = experiment.scenarios.empty() ? experiment.scene : experiment.scenarios[scenario].scene;
   std::vector<const Individual*> individuals;
   for (const Actor& actor : actors) individuals.push_back(&actor.individual);
   const std::vector<Newborn> newborns = for_resimulation(archive, experiment, individuals, simulator.device());
   SeenRegion region;
-  FilmBudget films(budget, actors);
+  FilmBudget films(budget - std::min(budget, run["champions"].dump().size()), actors);
   for (std::size_t first = 0; first < actors.size(); first += filmed_together) {
     const std::size_t count = std::min(filmed_together, actors.size() - first);
     const std::vector<FilmedLife> lives =

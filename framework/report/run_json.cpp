@@ -152,6 +152,17 @@ std::vector<BestAndMedian> progress_in(const Archive& archive, const std::vector
   return progress;
 }
 
+std::vector<BestSoFar> best_over_generations(const Archive& archive) {
+  const bool maximise = archive.objectives().front().maximise;
+  std::vector<BestSoFar> all;
+  for (const Described& one : archive.described(0)) {
+    if (!all.empty() && !(maximise ? one.score > all.back().value : one.score < all.back().value)) continue;
+    if (!all.empty() && all.back().born == one.born) all.pop_back();
+    all.push_back({one.id, one.born, one.score});
+  }
+  return all;
+}
+
 Json objectives_json(const std::vector<Objective>& objectives, const Result& result) {
   Json values = Json::object();
   for (std::size_t i = 0; i < result.objectives.size(); ++i) values[objectives.at(i).name] = result.objectives[i];

@@ -18,6 +18,14 @@ std::uint32_t last_age(const ArchivedIndividual& individual, std::uint32_t last_
 std::vector<BestAndMedian> progress_in(const Archive& archive, const std::vector<Summary>& generations,
                                        std::size_t objective);
 
+/// An individual that was better in the first objective than all before it, and the best of its generation in it.
+struct BestSoFar {
+  std::uint32_t individual = 0, born = 0;
+  double value = 0;
+};
+/// Returns the best so far of each generation in which the best changed, in the order of birth.
+std::vector<BestSoFar> best_over_generations(const Archive& archive);
+
 /// Returns the objectives of an individual by their names; none if it has no fitness.
 nlohmann::ordered_json objectives_json(const std::vector<Objective>& objectives, const Result& result);
 /// Returns the scores of an individual that are not objectives, by their names.

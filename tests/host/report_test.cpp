@@ -260,6 +260,21 @@ TEST(FilmJson, KnowsMassesAndSpringsAgainAfterEdits) {
   EXPECT_THAT(unpacked(json["shots"][1]["springs"]), ElementsAre(0, 2));
 }
 
+TEST(FilmJson, KnowsTheRestLengthsOfEachShot) {
+  Shot before = shot_of({0, 1, 2}, {0, 1, 2}, {{0, 1}, {1, 2}}), after = before;
+  before.body.springs[0].rest_length = 0.7;
+  after.body.springs[0].rest_length = 0.73;
+  after.body.springs[1].rest_length = 1.9;
+  const auto json = film_json({before, after}, {{"before"}, {"after"}}, 1'000'000);
+  const double unit = json["rest_step"];
+  EXPECT_LE(unit, json["step"].get<double>() / 4);
+  const auto first = unpacked(json["shots"][0]["rest_lengths"]), changes = unpacked(json["shots"][1]["rest_lengths"]);
+  for (std::size_t s = 0; s < 2; ++s) {
+    EXPECT_NEAR(unit * static_cast<double>(first[s]), before.body.springs[s].rest_length, unit) << s;
+    EXPECT_NEAR(unit * static_cast<double>(first[s] + changes[s]), after.body.springs[s].rest_length, unit) << s;
+  }
+}
+
 TEST(FilmJson, KnowsMaterialsAgainThatABodyHasLost) {
   const Material bone{10000, 0, 0, 0}, muscle{5000, 0.14, 1, 0}, stiffer{10500, 0, 0, 0}, stiffest{11025, 0, 0, 0};
   Shot before = shot_of({0, 1}, {0, 1}, {{0, 1}}), between = before, after = before;

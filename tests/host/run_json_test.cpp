@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 
 #include "evolution/evolution.hpp"
 #include "report/diversity.hpp"
@@ -98,6 +100,29 @@ TEST_F(RunJson, HasTheBestOfEachObjective) {
   EXPECT_EQ(objectives[1]["best"]["value"], *std::min_element(works.begin(), works.end()));
   const auto best = objectives[1]["best"]["individual"].get<std::uint32_t>();
   EXPECT_EQ(archive_.known_individual(best).result.objectives[1], objectives[1]["best"]["value"]);
+}
+
+TEST_F(RunJson, HasTheBestSoFarOfEachGenerationInWhichItChanged) {
+  std::vector<std::uint32_t> ids;
+  double best = -std::numeric_limits<double>::infinity();
+  for (std::uint32_t g = 0; g < population_.size(); ++g) {
+    std::optional<std::uint32_t> better;
+    for (std::uint32_t id = 0; id < 24; ++id)
+      if (const auto one = archive_.known_individual(id);
+          one.born == g && one.result.status == Status::ok && one.result.objectives[0] > best) {
+        best = one.result.objectives[0];
+        better = id;
+      }
+    if (better) ids.push_back(*better);
+  }
+  ASSERT_GT(ids.size(), 1u);
+  std::vector<std::uint32_t> found;
+  for (const BestSoFar& one : best_over_generations(archive_)) {
+    found.push_back(one.individual);
+    EXPECT_EQ(one.born, archive_.known_individual(one.individual).born);
+    EXPECT_EQ(one.value, archive_.known_individual(one.individual).result.objectives[0]);
+  }
+  EXPECT_EQ(found, ids);
 }
 
 TEST_F(RunJson, NamesTheScoresThatAreNotObjectives) {

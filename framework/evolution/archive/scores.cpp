@@ -40,17 +40,21 @@ std::vector<Objective> Archive::descriptors() const {
 }
 
 std::vector<Described> Archive::described(std::size_t count) const {
-  Statement row(*run_, "measured",
-                "SELECT id, born, scores.value, measured.value FROM individuals JOIN scores ON scores.individual = id "
-                "LEFT JOIN measures ON role = 'descriptor' "
-                "LEFT JOIN measured ON measured.individual = id AND measured.measure = position "
-                "WHERE objective = 0 AND status = 'ok' ORDER BY id, position");
+  Statement row(
+      *run_, "measured",
+      "SELECT id, born, scores.value, measured.value, position FROM individuals JOIN scores ON scores.individual = id "
+      "LEFT JOIN measures ON role = 'descriptor' "
+      "LEFT JOIN measured ON measured.individual = id AND measured.measure = position "
+      "WHERE objective = 0 AND status = 'ok' ORDER BY id, position");
   std::vector<Described> described;
   while (row.step()) {
-    if (row.is_null(3)) refuse("individual " + std::to_string(row.index(0)) + ", which is ok, lacks a descriptor");
+    const bool has_descriptor = !row.is_null(4);  // of the experiment
+    if (has_descriptor && row.is_null(3))
+      refuse("individual " + std::to_string(row.index(0)) + ", which is ok, lacks a descriptor");
     if (described.empty() || described.back().id != row.index(0))
       described.push_back({row.index(0), row.index(1), row.number(2), {}});
-    if (described.back().descriptors.size() < count) described.back().descriptors.push_back(row.number(3));
+    if (has_descriptor && described.back().descriptors.size() < count)
+      described.back().descriptors.push_back(row.number(3));
   }
   return described;
 }

@@ -14,7 +14,7 @@ const swatch = (colour, text) => entry(css(colour), text);
 /** Returns the legend of the colours of `mode`. `scale` holds the stress (N) and the number of shots that correspond to
  *  the last colour. */
 export function legend(mode, stages, scale) {
-  return [...colours[mode](stages, scale), ...changes(stages)];
+  return [...colours[mode](stages, scale), ...faces(stages), ...changes(stages)];
 }
 
 const colours = {
@@ -32,9 +32,8 @@ const colours = {
 function materials(stages) {
   const named = new Map();
   const others = new Map();
-  for (const { life, materialNames } of stages) {
+  for (const { life, materialNames, materialsSeen: ofSprings } of stages) {
     const all = life.robot.film.materials ?? [];
-    const ofSprings = life.shots.flatMap((shot) => [...shot.materials]);
     const used = new Set(ofSprings.length > 0 ? ofSprings : life.massMaterials);
     for (const i of [...used].sort((a, b) => a - b)) {
       if (!(all[i]?.stiffness > 0)) continue;
@@ -52,6 +51,10 @@ function mixtures(all) {
   const text = all.length === 1 ? "1 mixture or changed material" : `${all.length} mixtures or changed materials`;
   return entry(`linear-gradient(90deg,${shown.map(css).join(",")})`, text);
 }
+
+/** Where the colours of faces come from, if there are any. */
+const faces = (stages) =>
+  stages.some(({ hasSkin }) => hasSkin) ? [entry("var(--faces)", "a face: as the springs inside its voxel")] : [];
 
 const onGround = (within) => entry(style("--touch"), `shown on the ground, within ${short(1000 * within)} mm`);
 

@@ -1,4 +1,5 @@
 // A robot's life: which masses and springs exist at a time, and where they are.
+import { voxelsOf } from "./skin.js";
 import { changed, integers, Positions, Values } from "./unpack.js";
 
 const smoothing = 0.5; // s before and after a moment; averaged, so that the robot's steps do not shake the camera
@@ -25,6 +26,7 @@ export class Life {
   async #unpacked(packed) {
     const springCount = this.ends.length / 2;
     const materials = new Values(springCount);
+    const rests = new Values(springCount);
     const stress = new Values(springCount);
     const positions = new Positions();
     const shots = [];
@@ -41,6 +43,7 @@ export class Life {
         masses,
         springs,
         materials: await materials.next(shot.materials, springs),
+        restLengths: await rests.next(shot.rest_lengths, springs),
         stress: await stress.next(shot.stress, springs),
         positions: await positions.next(shot.positions, masses, times.length),
       });
@@ -64,6 +67,13 @@ export class Life {
       shot.gone = [...before].filter(([spring]) => !now.has(spring)).map(([, i]) => i);
       before = now;
     });
+  }
+
+  #voxels;
+
+  /** The voxels of the body, as voxelsOf() returns them; found when they are first asked for. */
+  get voxels() {
+    return (this.#voxels ??= voxelsOf(this));
   }
 
   /** Computes the path of the mean position of all masses, and a smoothed path of the middle of their bounding box. */

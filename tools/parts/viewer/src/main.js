@@ -1,6 +1,7 @@
 // Builds the page from the data that it contains.
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
+import { Champions } from "./champions.js";
 import { Charts } from "./charts.js";
 import { readPalette } from "./colours.js";
 import { element, short } from "./elements.js";
@@ -136,12 +137,16 @@ const experiments = () =>
     ),
   );
 
-function lineages(viewer) {
-  const titleOf = (run) => (runs.length > 1 ? `Where the robots come from: ${run.label}` : "Where the robots come from");
+/** The figures with pictures of robots: the champions and the ancestors of each run. */
+function portraits(viewer) {
+  const titled = (title, run) => (runs.length > 1 ? `${title}: ${run.label}` : title);
   const open = (run) => (individual) => openIndividual({ run, individual }, viewer);
-  const all = runs.filter(({ lineage }) => lineage.length > 0).map((run) => new Lineage(run, titleOf(run), robots, open(run)));
-  all.forEach((one) => one.draw()); // pictures may come later than the page
-  return all.map(({ root }) => root);
+  const figures = (isThere, Figure, title) =>
+    runs.filter(isThere).map((run) => new Figure(run, titled(title, run), robots, open(run)));
+  return [
+    ...figures(({ champions }) => champions.count > 0, Champions, "The best robot over the generations"),
+    ...figures(({ lineage }) => lineage.length > 0, Lineage, "Where the robots come from"),
+  ];
 }
 
 /** Shows what the address asks for, or the first robot that has lived, which then plays unless the reader prefers still
@@ -198,7 +203,9 @@ async function begin() {
     page.charts.root.prepend(...page.niches.figures);
     page.charts.root.after(notices);
     page.charts.draw();
-    main.append(...lineages(page.viewer), robotTable(runs, robots, page.viewer));
+    page.portraits = portraits(page.viewer);
+    page.pictured = Promise.all(page.portraits.map((one) => one.draw())); // pictures may come later than the page
+    main.append(...page.portraits.map(({ root }) => root), robotTable(runs, robots, page.viewer));
   }
   main.append(experiments(), element("footer", { textContent: `evodevo ${data.evodevo}` }));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
@@ -206,6 +213,7 @@ async function begin() {
     page.viewer?.readTheme();
     page.gallery?.draw();
     page.charts?.draw();
+    page.portraits?.forEach((one) => one.draw());
   });
   return page;
 }

@@ -96,16 +96,69 @@ void main() {
   fragment = vec4(shade(vColour, vec3(vAt, sqrt(1.0 - r)), vDepth), 1.0);
 }`;
 
-// springs projected onto the floor along the light; the stencil buffer darkens each pixel only once
-export const shadowVertex = /* glsl */ `
-in vec2 ends;
-uniform float radius;
+// a face of a voxel: a square with four masses as corners, which lie in a plane only roughly
+const cornerOf = /* glsl */ `
+vec3 cornerOf(vec2 at, vec3 a, vec3 b, vec3 c, vec3 d) {
+  return at.y < 0.0 ? (at.x < 0.0 ? a : b) : (at.x < 0.0 ? d : c);
+}`;
+
+export const skinVertex = /* glsl */ `
+in vec4 corners;
+in vec3 colour;
+out vec3 vColour;
+out vec3 vNormal;
+out vec2 vAt;
+out float vDepth;
 ${placeOf}
+${cornerOf}
+vec3 seen(float mass) { return (modelViewMatrix * vec4(placeOf(mass), 1.0)).xyz; }
+void main() {
+  vec3 a = seen(corners.x), b = seen(corners.y), c = seen(corners.z), d = seen(corners.w);
+  vec3 at = cornerOf(position.xy, a, b, c, d);
+  vNormal = normalize(cross(c - a, d - b) + vec3(0.0, 0.0, 1e-12));
+  if (dot(vNormal, a + b + c + d) > 0.0) vNormal = -vNormal;
+  vAt = position.xy;
+  vColour = colour;
+  vDepth = -at.z;
+  gl_Position = projectionMatrix * vec4(at, 1.0);
+}`;
+
+export const skinFragment = /* glsl */ `
+in vec3 vColour;
+in vec3 vNormal;
+in vec2 vAt;
+in float vDepth;
+out vec4 fragment;
+${shade}
+void main() {
+  vec2 pixels = (1.0 - abs(vAt)) / fwidth(vAt); // from the edges of the face
+  float edge = 1.0 - clamp(min(pixels.x, pixels.y) - 0.4, 0.0, 1.0);
+  fragment = vec4(shade(vColour * (1.0 - 0.35 * edge), vNormal, vDepth), 1.0);
+}`;
+
+// places projected onto the floor along the light; the stencil buffer darkens each pixel only once
+const onFloor = /* glsl */ `
 ${heightOf}
 vec3 onFloor(vec3 p) {
   vec2 at = p.xy + max(0.0, p.z - heightOf(p.xy)) * vec2(-0.18, 0.3);
   return vec3(at, heightOf(at));
-}
+}`;
+
+export const skinShadowVertex = /* glsl */ `
+in vec4 corners;
+${placeOf}
+${cornerOf}
+${onFloor}
+void main() {
+  vec3 at = cornerOf(position.xy, placeOf(corners.x), placeOf(corners.y), placeOf(corners.z), placeOf(corners.w));
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(onFloor(at), 1.0);
+}`;
+
+export const shadowVertex = /* glsl */ `
+in vec2 ends;
+uniform float radius;
+${placeOf}
+${onFloor}
 void main() {
   vec3 a = onFloor(placeOf(ends.x)), b = onFloor(placeOf(ends.y));
   vec2 along = normalize(b.xy - a.xy + vec2(1e-9, 0.0));

@@ -6,6 +6,7 @@ import * as THREE from "three";
 import { materialColour, springColours } from "./colours.js";
 import { style } from "./elements.js";
 import { heightUniforms } from "./ground.js";
+import { skinOf } from "./skin.js";
 import { Track } from "./track.js";
 import {
   floorFragment,
@@ -16,6 +17,9 @@ import {
   moteVertex,
   shadowFragment,
   shadowVertex,
+  skinFragment,
+  skinShadowVertex,
+  skinVertex,
   skyFragment,
   skyVertex,
   springFragment,
@@ -151,6 +155,8 @@ export class Stage {
       touchColour: this.touchColour,
     };
     this.#add(this.masses, material(massVertex, massFragment, uniforms), 3);
+    this.skin = new THREE.BufferGeometry();
+    this.#add(this.skin, material(skinVertex, skinFragment, { ...this.shared }, { side: THREE.DoubleSide }), 2);
   }
 
   #addShadow(ground) {
@@ -166,6 +172,7 @@ export class Stage {
     };
     const uniforms = { ...this.shared, ...this.heights, shadow: this.shadow };
     this.#add(this.springs, material(shadowVertex, shadowFragment, uniforms, shown), 1);
+    this.#add(this.skin, material(skinShadowVertex, shadowFragment, uniforms, shown), 1);
   }
 
   #addTrack(scene, ground) {
@@ -240,6 +247,26 @@ export class Stage {
     this.#shown = undefined; // the radius of masses depends on it
   }
 
+  /** Covers voxels with their outer faces, in place of their springs, or uncovers them again. */
+  setSkin(isOn) {
+    this.hasSkin = isOn && this.life.voxels.length > 0;
+    this.#shown = undefined;
+  }
+
+  /** Returns, for each spring of the life, whether it is hidden in a shot because faces cover its voxels. */
+  #covered(shot) {
+    return this.hasSkin ? skinOf(this.life, shot, () => [0, 0, 0]).covered : [];
+  }
+
+  /** The materials that the springs seen at any time have, and those inside voxels, which give faces their colours. */
+  get materialsSeen() {
+    const inside = new Set(this.hasSkin ? this.life.voxels.flatMap((voxel) => voxel.inside) : []);
+    return this.life.shots.flatMap((shot) => {
+      const covered = this.#covered(shot);
+      return [...shot.materials].filter((_, i) => !covered[shot.springs[i]] || inside.has(shot.springs[i]));
+    });
+  }
+
   setMode(mode) {
     this.mode = mode;
     this.#shown = undefined;
@@ -256,10 +283,12 @@ export class Stage {
     const { life } = this;
     const shot = life.shots[index];
     const colourOf = springColours(life, this.mode, this.scale);
-    const there = shot.springs.map((_, i) => i);
+    const skin = this.hasSkin ? skinOf(life, shot, colourOf) : { corners: [], colours: [], covered: [] };
+    setSquares(this.skin, -1, skin.corners.length / 4, { corners: [4, skin.corners], colour: [3, skin.colours] });
+    const there = shot.springs.map((_, i) => i).filter((i) => !skin.covered[shot.springs[i]]);
     setSquares(this.springs, 0, there.length, {
       ...this.#squares(shot, there, colourOf),
-      fresh: [1, shot.isNew],
+      fresh: [1, Array.from(there, (i) => shot.isNew[i])],
     });
     setSquares(this.gone, 0, shot.gone.length, {
       ...this.#squares(life.shots[index - 1], shot.gone, colourOf),
@@ -270,7 +299,7 @@ export class Stage {
       colour: [3, this.#massColours(shot)],
     });
     // without springs, masses are drawn larger so that they are visible
-    const alone = there.length > 0 ? 0 : (0.09 * this.size) / Math.cbrt(shot.masses.length);
+    const alone = shot.springs.length > 0 ? 0 : (0.09 * this.size) / Math.cbrt(shot.masses.length);
     this.massRadius.value = Math.max(1.7 * this.shared.radius.value, alone);
     this.#shown = index;
   }

@@ -19,14 +19,15 @@ export async function stillOf({ robot, label, run }) {
   );
 }
 
-/** Draws a robot at the end of its life into the middle of a canvas, with lines of a width in pixels. */
-export function drawStill(life, context, lineWidth) {
+/** Draws a robot at a time [s], by default the end of its life, into the middle of a canvas, with lines of a width in
+ *  pixels. */
+export function drawStill(life, context, lineWidth, time = life.end) {
   const { width, height } = context.canvas;
-  const index = life.shots.length - 1;
+  const index = life.shotAt(time);
   const shot = life.shots[index];
   const places = new Float32Array(4 * life.massCount);
-  life.writePositions(life.end, places);
-  const [middle, size] = [life.middleAt(life.end, life.smoothPath), life.boxIn(index).size];
+  life.writePositions(time, places);
+  const [middle, size] = [life.middleAt(time, life.smoothPath), life.boxIn(index).size];
   const pixels = (0.8 * Math.min(width, height)) / size;
   const at = (mass) => [
     width / 2 + pixels * (places[4 * mass] - middle[0]),

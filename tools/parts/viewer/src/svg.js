@@ -52,13 +52,20 @@ const colourOf = (colour, plot) => (typeof colour === "function" ? colour(plot, 
 
 /** Returns a series as circles (`dots`), or as a line with `steps` at the end (1) or the beginning (-1) of an interval. */
 function shape(plot, series, xs, ys) {
-  const points = xs
-    .map((x, i) => [round(plot.valToPos(x, "x")), ys[i] === null ? null : round(plot.valToPos(ys[i], "y"))])
-    .filter(([, y]) => y !== null);
+  const all = xs.map((x, i) => [round(plot.valToPos(x, "x")), ys[i] === null ? null : round(plot.valToPos(ys[i], "y"))]);
+  const points = all.filter(([, y]) => y !== null);
   const fill = colourOf(series.fill, plot);
   if (series.dots) return node("g", { fill }, ...points.map(([cx, cy]) => node("circle", { cx, cy, r: 3.5 })));
   const next = { 1: ([x, y]) => `H${x}V${y}`, "-1": ([x, y]) => `V${y}H${x}` }[series.steps] ?? (([x, y]) => `L${x} ${y}`);
-  const d = points.map((point, i) => (i === 0 ? `M${point.join(" ")}` : next(point))).join("");
+  let isJoined = false; // whether a line leads to the next point
+  const d = all
+    .map((point) => {
+      if (point[1] === null) return (isJoined &&= series.spanGaps !== false), "";
+      const part = isJoined ? next(point) : `M${point.join(" ")}`;
+      isJoined = true;
+      return part;
+    })
+    .join("");
   if (!fill) return node("path", { d, fill: "none", stroke: colourOf(series.stroke, plot), "stroke-width": 2, ...dash(series) });
   const floor = round(plot.valToPos(plot.scales.y.min, "y"));
   return node("path", { d: `${d}V${floor}H${points[0]?.[0] ?? 0}Z`, fill });

@@ -3,6 +3,7 @@ import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { stateText } from "./caption.js";
 import { developing, readPalette } from "./colours.js";
+import { Controls, keys, speeds } from "./controls.js";
 import { element, short } from "./elements.js";
 import { Ground } from "./ground.js";
 import { legend } from "./legend.js";
@@ -10,9 +11,9 @@ import { Life } from "./life.js";
 import { described, pick } from "./picking.js";
 import { bodyJson, fileName, linkTo, save } from "./share.js";
 import { Stage } from "./stage.js";
+import { Traces } from "./traces.js";
 import { cameraFor, pixelsOfMetre, place, views } from "./views.js";
 
-const speeds = [0.1, 0.25, 0.5, 1, 2, 4];
 /** Whether this browser can draw the viewer. */
 export function hasGraphics() {
   const context = element("canvas").getContext("webgl2");
@@ -42,6 +43,8 @@ export class Viewer {
   }
 
   #build() {
+    this.controls = new Controls(this);
+    this.traces = new Traces();
     this.canvas = element("canvas", {
       tabIndex: 0,
       ariaLabel: "The robot. Drag to turn it, pinch to come nearer; after a click, the wheel comes nearer, too.",
@@ -55,121 +58,28 @@ export class Viewer {
     this.root = element(
       "section",
       { className: "viewer" },
-      this.#pickers(),
-      this.stage,
-      this.#transport(),
-      this.#lifeBar(),
+      ...this.controls.above,
+      element("div", { className: "scene" }, this.stage, this.traces.root),
+      ...this.controls.below,
       this.picked,
-      this.#looks(),
-      this.#leaving(),
+      ...this.controls.last,
       this.note,
       keys(),
     );
-    this.#showPlaying();
   }
 
-  /** Creates the controls that choose the robots shown. */
-  #pickers() {
-    const choose = (label, which, options) =>
-      element(
-        "label",
-        { className: "choice" },
-        element("span", { textContent: label }),
-        element("select", { onchange: (e) => this.#pick(which, e.target.value) }, ...options),
-      );
-    const options = () =>
-      this.robots.map(({ label }, i) => element("option", { value: String(i), textContent: label }));
-    this.first = choose("Robot", 0, options());
-    this.second = choose("beside", 1, [element("option", { value: "", textContent: "none" }), ...options()]);
-    return element("div", { className: "pickers" }, this.first, this.robots.length > 1 ? this.second : null);
-  }
-
-  /** Creates the controls of the clock. */
-  #transport() {
-    this.play = element("button", { className: "play", type: "button", onclick: () => this.toggle() });
-    this.scrub = element("input", {
-      type: "range",
-      min: "0",
-      max: "1",
-      step: "any",
-      value: "0",
-      ariaLabel: "Time",
-      oninput: (e) => this.#scrubbed(Number(e.target.value)),
-    });
-    this.clock = element("output", { className: "clock" });
-    this.speedSelect = element(
-      "select",
-      { ariaLabel: "Speed", onchange: (e) => (this.speed = Number(e.target.value)) },
-      ...speeds.map((s) => element("option", { value: String(s), textContent: `${s}×`, selected: s === 1 })),
-    );
-    return element("div", { className: "transport" }, this.play, this.scrub, this.clock, this.speedSelect);
-  }
-
-  /** Creates the controls that go from cycle to cycle. */
-  #lifeBar() {
-    this.cycle = element("input", {
-      type: "range",
-      min: "0",
-      max: "0",
-      step: "1",
-      value: "0",
-      ariaLabel: "Cycle of life",
-      oninput: (e) => this.#jumped(Number(e.target.value)),
-    });
-    this.cycleName = element("output", { className: "cycle-name" });
-    this.followBox = element("input", {
-      type: "checkbox",
-      checked: true,
-      onchange: (e) => this.setFollow(e.target.checked),
-    });
-    this.thickBox = element("input", { type: "checkbox", onchange: (e) => this.setThick(e.target.checked) });
-    return element(
-      "div",
-      { className: "life" },
-      element("label", {}, element("span", { textContent: "Life" }), this.cycle),
-      this.cycleName,
-      element("label", { className: "check" }, this.followBox, element("span", { textContent: "Follow" })),
-      element("label", { className: "check" }, this.thickBox, element("span", { textContent: "Thick springs" })),
-      this.#viewPicker(),
-    );
-  }
-
-  #viewPicker() {
-    const option = ([value, { label }]) => element("option", { value, textContent: label });
-    this.viewSelect = element(
-      "select",
-      { onchange: (event) => this.setView(event.target.value) },
-      ...Object.entries(views).map(option),
-    );
-    return element("label", {}, element("span", { textContent: "View" }), this.viewSelect);
-  }
-
-  /** Creates the buttons that take something out of the page, or fill the screen. */
-  #leaving() {
-    const button = (text, onclick) => element("button", { type: "button", textContent: text, onclick });
-    this.linkButton = button("Copy link", () => this.#copyLink());
-    return element(
-      "div",
-      { className: "leaving" },
-      button("Full screen", () => this.#fillScreen()),
-      button("Save picture", () => this.#savePicture()),
-      button("Save body", () => this.#saveBodies()),
-      this.linkButton,
-    );
-  }
-
-  #fillScreen() {
+  fillScreen() {
     if (document.fullscreenElement) document.exitFullscreen();
     else this.root.requestFullscreen();
   }
 
-  #savePicture() {
+  savePicture() {
     this.draw();
     const name = `${this.#shownNames()}-${this.time.toFixed(2)}-s`;
     this.canvas.toBlob((picture) => save(fileName(name, "png"), picture));
   }
 
-  #saveBodies() {
+  saveBodies() {
     this.stages
       .filter(({ life }) => life.shots.length > 0)
       .forEach(({ life }) => {
@@ -178,40 +88,15 @@ export class Viewer {
       });
   }
 
-  async #copyLink() {
+  async copyLink() {
     history.replaceState(null, "", linkTo(this));
     let text = "Link copied";
     await navigator.clipboard?.writeText(location.href).catch(() => (text = "The link is in the address bar"));
-    this.linkButton.textContent = text;
+    this.controls.linkButton.textContent = text;
   }
 
   #shownNames() {
     return this.stages.map(({ life }) => `individual-${life.robot.individual}`).join("-");
-  }
-
-  /** Creates the choice of colours and their legend. */
-  #looks() {
-    const choice = ([mode, label]) =>
-      element(
-        "label",
-        {},
-        element("input", {
-          type: "radio",
-          name: "colour",
-          value: mode,
-          checked: mode === this.mode,
-          onchange: () => this.setMode(mode),
-        }),
-        element("span", { textContent: label }),
-      );
-    this.modes = element(
-      "fieldset",
-      { className: "modes" },
-      element("legend", { textContent: "Colour" }),
-      ...Object.entries({ material: "Material", stress: "Stress", cycle: "Came in" }).map(choice),
-    );
-    this.legend = element("div", { className: "legend" });
-    return element("div", { className: "looks" }, this.works ? this.modes : null, this.legend);
   }
 
   #makeRenderer() {
@@ -259,15 +144,16 @@ export class Viewer {
       " ": () => this.toggle(),
       ArrowLeft: step(-1),
       ArrowRight: step(1),
-      "[": () => this.#jumped(this.#shotIndex() - 1),
-      "]": () => this.#jumped(this.#shotIndex() + 1),
+      "[": () => this.jump(this.#shotIndex() - 1),
+      "]": () => this.jump(this.#shotIndex() + 1),
       "+": speed(1),
       "-": speed(-1),
       c: () => this.works && this.setMode({ material: "stress", stress: "cycle", cycle: "material" }[this.mode]),
       f: () => this.setFollow(!this.follow),
-      t: () => this.setThick(!this.thickBox.checked),
+      t: () => this.setThick(!this.controls.thickBox.checked),
+      s: () => this.hasVoxels && this.setSkin(!this.controls.skinBox.checked),
       r: () => this.setView(this.view),
-      v: () => this.#fillScreen(),
+      v: () => this.fillScreen(),
     };
   }
 
@@ -288,10 +174,12 @@ export class Viewer {
   #describePick() {
     const isShown = this.pick !== undefined && this.stages.includes(this.pick.stage);
     this.picked.hidden = !isShown;
+    this.traces.show(isShown && this.works ? this.pick : undefined);
+    this.traces.seek(this.time);
     if (isShown) this.picked.replaceChildren(...described(this.pick.stage, this.pick, this.time));
   }
 
-  async #pick(which, value) {
+  async choose(which, value) {
     const chosen = [...this.chosen];
     chosen[which] = value === "" ? undefined : Number(value);
     await this.show(chosen[0], chosen[1]);
@@ -312,16 +200,19 @@ export class Viewer {
       cycles: Math.max(...lives.map(developing)),
     };
     this.stages.forEach((stage) => (stage.scale = this.scale));
-    this.first.querySelector("select").value = String(first);
-    this.second.querySelector("select").value = second === undefined ? "" : String(second);
+    this.controls.first.querySelector("select").value = String(first);
+    this.controls.second.querySelector("select").value = second === undefined ? "" : String(second);
     this.stage.classList.toggle("two", indices.length > 1);
     this.end = Math.max(...lives.map((life) => life.end));
     this.begin = Math.min(...lives.map((life) => life.begin));
-    this.scrub.min = String(this.begin);
-    this.scrub.max = String(this.end);
-    this.cycle.max = String(Math.max(0, this.#leading().shots.length - 1));
+    this.controls.scrub.min = String(this.begin);
+    this.controls.scrub.max = String(this.end);
+    this.controls.cycle.max = String(Math.max(0, this.#leading().shots.length - 1));
     this.stages.forEach((stage) => stage.setMode(this.mode));
-    this.setThick(this.thickBox.checked);
+    this.setThick(this.controls.thickBox.checked);
+    this.hasVoxels = lives.some(({ voxels }) => voxels.length > 0);
+    this.controls.skin.hidden = !this.hasVoxels;
+    this.setSkin(this.controls.skinBox.checked);
     this.setView(this.view);
     this.#explain();
     this.seek(this.begin);
@@ -363,7 +254,7 @@ export class Viewer {
 
   /** Looks at the robots from a direction of `views`; all but "perspective" are orthographic. */
   setView(view) {
-    this.view = this.viewSelect.value = view;
+    this.view = this.controls.viewSelect.value = view;
     const size = Math.max(...this.stages.map((stage) => stage.size));
     this.orbit.target.set(0, 0, 0);
     place(this.camera, view, size);
@@ -375,23 +266,23 @@ export class Viewer {
 
   seek(time) {
     this.time = Math.min(this.end, Math.max(this.begin, time));
-    this.scrub.value = String(this.time);
+    this.controls.scrub.value = String(this.time);
     this.dirty = true;
-    this.clock.value = `${this.time.toFixed(2)} s of ${this.end.toFixed(1)}`;
+    this.controls.clock.value = `${this.time.toFixed(2)} s of ${this.end.toFixed(1)}`;
     this.#describePick();
     const shots = this.#leading().shots;
     if (shots.length === 0) return;
     const index = this.#shotIndex();
-    this.cycle.value = String(index);
-    this.cycleName.value = shots[index].name;
+    this.controls.cycle.value = String(index);
+    this.controls.cycleName.value = shots[index].name;
   }
 
-  #scrubbed(time) {
+  scrub(time) {
     this.pause();
     this.seek(time);
   }
 
-  #jumped(index) {
+  jump(index) {
     const shots = this.#leading().shots;
     if (shots.length === 0) return;
     this.pause();
@@ -401,46 +292,50 @@ export class Viewer {
   toggle() {
     if (!this.playing && this.time >= this.end) this.seek(this.begin);
     this.playing = !this.playing;
-    this.#showPlaying();
+    this.controls.showPlaying(this.playing);
   }
 
   pause() {
     this.playing = false;
-    this.#showPlaying();
-  }
-
-  #showPlaying() {
-    this.play.textContent = this.playing ? "❚❚" : "▶";
-    this.play.ariaLabel = this.playing ? "Pause" : "Play";
+    this.controls.showPlaying(this.playing);
   }
 
   setSpeed(speed) {
     this.speed = speed;
-    this.speedSelect.value = String(speed);
+    this.controls.speedSelect.value = String(speed);
   }
 
   setMode(mode) {
     this.mode = mode;
-    this.modes.querySelector(`[value=${mode}]`).checked = true;
+    this.controls.modes.querySelector(`[value=${mode}]`).checked = true;
     this.stages.forEach((stage) => stage.setMode(mode));
     this.#explain();
     this.dirty = true;
   }
 
   setFollow(follow) {
-    this.follow = this.followBox.checked = follow;
+    this.follow = this.controls.followBox.checked = follow;
     this.dirty = true;
   }
 
   /** Draws springs so thick that a network looks like a body. */
   setThick(thick) {
-    this.thickBox.checked = thick;
+    this.controls.thickBox.checked = thick;
     this.stages.forEach((stage) => stage.setThick(thick));
+    this.dirty = true;
+  }
+
+  /** Shows bodies of voxels as surfaces. */
+  setSkin(isOn) {
+    this.controls.skinBox.checked = isOn;
+    this.stages.forEach((stage) => stage.setSkin(isOn));
+    this.#explain();
     this.dirty = true;
   }
 
   readTheme() {
     readPalette();
+    this.traces.draw();
     this.stages.forEach((stage) => stage.readTheme());
     if (this.stages.length > 0) this.#explain();
     this.dirty = true;
@@ -449,7 +344,7 @@ export class Viewer {
   /** Updates the legend of the colours and the note on the accuracy of the picture. */
   #explain() {
     const shown = this.stages.filter((stage) => stage.life.shots.length > 0);
-    this.legend.replaceChildren(...(shown.length > 0 ? legend(this.mode, shown, this.scale) : []));
+    this.controls.legend.replaceChildren(...(shown.length > 0 ? legend(this.mode, shown, this.scale) : []));
     this.note.textContent = shown.length > 0 ? this.#exactness(shown.map((stage) => stage.life.robot.film.error)) : "";
   }
 
@@ -545,14 +440,3 @@ function belongsTo(target, key) {
   if (control.matches("select,textarea,input:not([type=range],[type=radio],[type=checkbox])")) return true;
   return key === " " || (key.startsWith("Arrow") && control.matches("[type=range],[type=radio]"));
 }
-
-const keys = () =>
-  element(
-    "details",
-    { className: "keys" },
-    element("summary", { textContent: "Keys" }),
-    element("p", {
-      textContent:
-        "Space plays and pauses. ← and → step by a frame, with Shift by a second. [ and ] go from cycle to cycle. + and − change the speed. C changes the colour, F follows, T makes springs thick, R turns the camera back, V fills the screen. A click on a mass or a spring says what it is. Drag turns, the wheel (after a click) or two fingers zoom, right drag or two fingers move.",
-    }),
-  );
