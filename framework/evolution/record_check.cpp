@@ -1,6 +1,8 @@
 #include "evolution/record_check.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <sstream>
 
 #include "base/text.hpp"
 #include "evolution/breeding.hpp"
@@ -59,7 +61,45 @@ void check_notes(const Archive& archive, const Experiment& experiment) {
                    "; use the operator that made it");
 }
 
+/// Returns the lines of an experiment, each with its table, without those that say where the experiment is simulated.
+std::vector<std::string> lines_that_matter(const Experiment& experiment) {
+  std::vector<std::string> lines;
+  std::istringstream text(experiment.resolved);
+  std::string table;
+  for (std::string line; std::getline(text, line);) {
+    line.erase(0, line.find_first_not_of(' '));
+    if (line.starts_with("[")) table = line;
+    const bool is_of_machine =
+        table == "[simulation]" && (line.starts_with("device = ") || line.starts_with("threads = "));
+    if (!line.empty() && line != table && !is_of_machine) lines.push_back(table + " " + line);
+  }
+  return lines;
+}
+
+/// Returns the name of the first file whose contents differ, or that only one of the experiments has.
+std::optional<std::string> first_other_file(const FileContents& one, const FileContents& other) {
+  for (const auto* files : {&one, &other})
+    for (const auto& [name, content] : *files)
+      if (!one.contains(name) || !other.contains(name) || one.at(name) != other.at(name)) return name;
+  return std::nullopt;
+}
+
 }  // namespace
+
+void check_same_experiment(const Archive& archive, const Experiment& recorded, const Experiment& named) {
+  const auto refuse = [&](const std::string& what) {
+    throw ArchiveError(archive.folder().string() + ": is a run of another experiment: " + printable(what) +
+                       "; give another folder with --out, or continue that run with `" + program_name() + " resume " +
+                       archive.folder().string() + "`");
+  };
+  if (recorded.name != named.name) refuse("it is called " + recorded.name + ", not " + named.name);
+  const std::vector<std::string> there = lines_that_matter(recorded), here = lines_that_matter(named);
+  const auto [one, other] = std::mismatch(there.begin(), there.end(), here.begin(), here.end());
+  const auto shown = [](auto line, const auto& lines) { return line == lines.end() ? "nothing more" : *line; };
+  if (one != there.end() || other != here.end())
+    refuse("its record has " + shown(one, there) + ", but the given experiment has " + shown(other, here));
+  if (const auto file = first_other_file(recorded.files, named.files)) refuse("the file " + *file + " has changed");
+}
 
 void check_objectives(const Archive& archive, const Experiment& experiment) {
   const std::vector<Objective> recorded = archive.objectives();

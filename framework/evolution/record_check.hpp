@@ -10,6 +10,10 @@ namespace evodevo {
 /// Checks that the recorded objectives are those of the experiment's fitness operators.
 void check_objectives(const Archive& archive, const Experiment& experiment);
 
+/// Checks that `recorded`, the experiment in the record, is the experiment that the user names, with equal contents of
+/// its files. The message names the first line of both that differs.
+void check_same_experiment(const Archive& archive, const Experiment& recorded, const Experiment& named);
+
 /// Checks that the recorded layout of genomes is that of the experiment's operators.
 void check_layout(const Archive& archive, const Experiment& experiment);
 

@@ -34,7 +34,7 @@ struct Header {
 /// report a crash that is expected here, and would turn it into an exit.
 void become_silent() {
   leave_crashes_unnamed();
-  for (const int signal : {SIGALRM, SIGTERM, SIGINT}) std::signal(signal, SIG_DFL);
+  for (const int signal : {SIGALRM, SIGTERM, SIGINT, SIGUSR1}) std::signal(signal, SIG_DFL);
   const rlimit none{0, 0};
   setrlimit(RLIMIT_CORE, &none);
   const int nowhere = open("/dev/null", O_RDWR);

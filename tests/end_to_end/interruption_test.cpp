@@ -204,7 +204,7 @@ TEST_F(Interruption, CtrlCCommitsAndSaysHowToGoOn) {
   process.send(SIGINT);
   EXPECT_EQ(process.wait(), 130) << process.output();
   const std::string folder = (scratch_ / "stopped").string();
-  EXPECT_THAT(process.output(), testing::naming("interrupted", "evodevo resume " + folder));
+  EXPECT_THAT(process.output(), testing::naming("ended early", "evodevo resume " + folder));
   const auto finished = [&] {
     return nlohmann::json::parse(testing::run({EVODEVO_PROGRAM, "show", folder, "--json"}).output).at("finished");
   };
@@ -215,6 +215,65 @@ TEST_F(Interruption, CtrlCCommitsAndSaysHowToGoOn) {
   EXPECT_EQ(testing::run(resume_command("stopped")).exit_code, 0);
   EXPECT_EQ(finished(), true);
   testing::expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(folder));
+}
+
+class EndingSignal : public Interruption, public ::testing::WithParamInterface<int> {
+ protected:
+  std::vector<std::string> restartable_command(const std::string& folder) const {
+    std::vector<std::string> command = run_command(folder);
+    command.emplace_back("--resume");
+    return command;
+  }
+};
+
+TEST_P(EndingSignal, EndsARunAfterItsGenerationAndTheSameCommandFinishesIt) {
+  ASSERT_EQ(testing::run(run_command("straight")).exit_code, 0);
+  Process process(restartable_command("stopped"));
+  for (int line = 0; line < 2; ++line) process.read_line();
+  process.send(GetParam());
+  EXPECT_EQ(process.wait(), 130) << process.output();
+  const std::size_t done = Archive::read(scratch_ / "stopped").generations().size();
+  EXPECT_GE(done, 1u);
+  EXPECT_LT(done, 13u);
+  const testing::Finished finished = testing::run(restartable_command("stopped"));
+  EXPECT_EQ(finished.exit_code, 0) << finished.output;
+  testing::expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(scratch_ / "stopped"));
+  const testing::Finished again = testing::run(restartable_command("stopped"));
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_THAT(again.output, testing::naming((scratch_ / "stopped").string(), "complete", "75 evaluations"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, EndingSignal, ::testing::Values(SIGINT, SIGTERM, SIGUSR1),
+                         [](const auto& instance) { return std::string(sigabbrev_np(instance.param)); });
+
+/// The generation after the first takes hours, so only a second signal ends the run in time.
+TEST_F(Interruption, ASecondSignalEndsARunAtOnceAndKeepsWhatWasCommitted) {
+  std::vector<std::string> command = run_command("run");
+  command.insert(command.end(), {"--set", "experiment.population=2", "--set", "experiment.children=1000000", "--set",
+                                 "experiment.evaluations=3000000", "--threads", "1"});
+  Process process(command);
+  process.read_line();  // which names the folder
+  process.send(SIGUSR1);
+  process.send(SIGTERM);
+  EXPECT_EQ(process.wait(), 130) << process.output();
+  EXPECT_EQ(Archive::read(scratch_ / "run").generations().size(), 0u);
+}
+
+TEST_F(Interruption, TheSameCommandWithAnotherExperimentIsRefused) {
+  std::vector<std::string> command = run_command("run");
+  command.emplace_back("--resume");
+  ASSERT_EQ(testing::run(command).exit_code, 0);
+  command.insert(command.end(), {"--seed", "83"});
+  const testing::Finished finished = testing::run(command);
+  EXPECT_EQ(finished.exit_code, 2);
+  EXPECT_THAT(finished.output, testing::naming((scratch_ / "run").string(), "[experiment] seed = 7",
+                                               "[experiment] seed = 83", "--out"));
+}
+
+TEST_F(Interruption, ResumingAnUnnamedFolderIsRefused) {
+  const testing::Finished finished = testing::run({EVODEVO_PROGRAM, "run", file_, "--resume"});
+  EXPECT_EQ(finished.exit_code, 2);
+  EXPECT_THAT(finished.output, testing::naming("--resume", "--out"));
 }
 
 TEST_F(Interruption, ASecondProcessOnOneFolderIsRefused) {

@@ -123,6 +123,21 @@ void kill_rank(Process& launcher, int rank) {
 /// Of 40 generations, which take some seconds.
 const Words longer{"experiment.evaluations=240", "fitness.0.window=0.5", "fitness.1.window=0.5"};
 
+TEST_F(Ranks, SurviveASignalToAllOfThemAndEndWithRank0) {
+  expect_success(run_command("straight", longer));
+  Words run = run_command("stopped", longer);
+  run.emplace_back("--resume");
+  Process process(started(3, run));
+  while (const std::optional<std::string> line = process.read_line())
+    if (line->starts_with("generation 1 ")) break;
+  process.send(SIGUSR1);  // which mpirun forwards to all ranks
+  EXPECT_EQ(process.wait(), 130) << process.output();
+  EXPECT_THAT(process.output(), ::testing::HasSubstr("rank 2 on ")) << "rank 0 did not end in order";
+  EXPECT_LT(Archive::read(scratch_ / "stopped").generations().size(), 40u) << "it was done before it could be stopped";
+  expect_success(started(2, run));
+  expect_equal("straight", "stopped");
+}
+
 class KilledRank : public Ranks, public ::testing::WithParamInterface<int> {};
 
 TEST_P(KilledRank, EndsARunThatAnyNumberOfRanksResume) {

@@ -2,13 +2,13 @@
 #include "commands/run/run.hpp"
 
 #include <algorithm>
-#include <csignal>
 #include <iostream>
 
 #include "base/text.hpp"
 #include "cluster/farm.hpp"
 #include "cluster/ranks.hpp"
 #include "commands/commands.hpp"
+#include "commands/run/early_end.hpp"
 #include "commands/run/page.hpp"
 #include "commands/run/progress.hpp"
 #include "commands/shell/builds.hpp"
@@ -26,27 +26,6 @@ namespace evodevo {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int interrupted = 130;
-
-std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
-
-/// Sets what Ctrl-C does. The first Ctrl-C makes the run stop after the current generation, or ends the process if an
-/// operator does not return. The second one ends the process at once. Committed generations are kept in any case.
-void stop_on_interrupt() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { stop_requested = true; };
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  end_long_calls_after(stop_requested);
-}
-
-/// Makes Ctrl-C end the process at once, because the remaining work can be done later by another command.
-void end_on_interrupt() {
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
-}
 
 /// Creates and returns the folder runs/NAME-N, where N is the first number from 1 for which there is no folder yet.
 fs::path new_run_folder(const std::string& name) {
@@ -112,12 +91,8 @@ std::string places_text(Simulator& simulator, const Farm* farm) {
 /// Lets this rank work for rank 0, if it is another one. Returns whether that is so.
 bool served(const Ranks& ranks, const Given& given) {
   if (ranks.leads()) return false;
-  // rank 0 decides when the run stops; a second signal ends this rank
-  struct sigaction action {};
-  action.sa_handler = [](int) {};
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  // rank 0 decides when the run ends, so the first signal changes nothing here; a second one ends this rank
+  stop_on_signals();
   serve(*ranks.channel(), [&] {
     return RankOptions{given_plugin_path(given), given_gpus(given), given_machine(given), given.contains("mixed")};
   });
@@ -139,6 +114,11 @@ std::unique_ptr<Farm> farm_of(const Ranks& ranks, const Experiment& experiment, 
   const FarmOptions options{.mixed = given.contains("mixed")};
   return timed("waiting for the other ranks",
                [&] { return std::make_unique<Farm>(experiment, simulator, *ranks.channel(), setup, options); });
+}
+
+void add_versions_option(Options& options) {
+  options.add_options()("allow-other-versions",
+                        "continue even if an operator has another version than when the run began");
 }
 
 void add_output_options(Options& options) {
@@ -172,8 +152,9 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
                       const RunOutput& output) {
   remarks() << experiment.name << " on " << simulator.device() << ", " << places_text(simulator, farm) << "; writing "
             << archive.folder().string() << std::endl;
-  stop_on_interrupt();
-  ProgressDisplay progress(experiment, archive.generations(), stop_requested, farm);
+  stop_on_signals();
+  end_long_calls_after(stop_requested());
+  ProgressDisplay progress(experiment, archive.generations(), stop_requested(), farm);
   Observer observer = progress.observer();
   observer.generation_done = [&output, display = observer.generation_done](const Summary& summary) {
     display(summary);
@@ -181,8 +162,8 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
   };
   TimeSpent time;
   try {
-    time = farm ? evolve(experiment, *farm, archive, stop_requested, observer)
-                : evolve(experiment, simulator, archive, stop_requested, observer);
+    time = farm ? evolve(experiment, *farm, archive, stop_requested(), observer)
+                : evolve(experiment, simulator, archive, stop_requested(), observer);
   } catch (const std::exception& error) {
     progress.finish();
     throw std::runtime_error(error.what() + remedy_for(error) + state_of(archive));
@@ -203,23 +184,20 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
     if (count > 0)
       remarks() << "verifying the best " << count << "; Ctrl-C stops this, and it can be done later by `"
                 << program_name() << " verify " << archive.folder().string() << "`" << std::endl;
-    end_on_interrupt();
+    end_on_signals();
     for (const Verification& verification : verify_best(experiment, simulator, archive, count))
       print(verification, experiment.objectives.front());
     if (output.page) show_run(experiment, simulator, archive);
     return 0;
   }
-  std::cout << "interrupted; to continue: " << resume_command_for(archive) << std::endl;
-  return interrupted;
+  std::cout << "ended early; to continue: " << resume_command_for(archive) << std::endl;
+  return ended_early;
 }
 
 namespace {
 
-int run(const Given& given) {
-  const Ranks ranks = Ranks::joined();
-  if (served(ranks, given)) return 0;
-  const auto file = given["EXPERIMENT.toml"].as<std::string>();
-  Experiment experiment = given_experiment(file, given);
+/// Does what `evodevo run` does if the folder of the run holds no run yet.
+int begin(const Ranks& ranks, const std::string& file, Experiment experiment, const Given& given) {
   const std::optional<Journal> journal = given_journal(given);
   const std::unique_ptr<GenerationLog> log = given_log(given, experiment, files_of_experiment(file, experiment));
   print_warnings(experiment);
@@ -233,15 +211,33 @@ int run(const Given& given) {
   return evolve_and_report(experiment, *simulator, archive, farm.get(), output_of(given, log.get()));
 }
 
-int resume(const Given& given) {
-  const Ranks ranks = Ranks::joined();
-  if (served(ranks, given)) return 0;
-  Archive archive = Archive::resume(given["DIR"].as<std::string>(), given_journal(given));
+/// Says that a run is complete, so that there is nothing to do, and returns the exit code.
+int say_complete(const Archive& archive) {
+  const Summary last = archive.generations().back();
+  std::cout << archive.folder().string() << ": the run is complete: " << last.evaluations << " evaluations in "
+            << last.generation + 1 << " generations; to look at it: " << program_name() << " show "
+            << archive.folder().string() << std::endl;
+  return 0;
+}
+
+/// Whether the run has nothing left to do: neither evolution nor verification.
+bool is_complete(const Archive& archive, const Experiment& experiment) {
+  if (!is_finished(experiment, archive.generations())) return false;
+  if (!is_verifiable(experiment)) return true;
+  return std::ranges::all_of(archive.best(static_cast<std::size_t>(experiment.verify)),
+                             [&](std::uint32_t id) { return archive.verification(id).has_value(); });
+}
+
+/// Continues the run in `archive`. If the user names an `expected` experiment, throws ArchiveError unless the run is
+/// of that one.
+int go_on(const Ranks& ranks, Archive& archive, const Given& given, const Experiment* expected = nullptr) {
   Experiment experiment = timed("reading the record of the run and loading its operators", [&] {
     return recorded_experiment(archive, given_plugin_path(given), given_machine(given));
   });
+  if (expected) check_same_experiment(archive, experiment, *expected);
   experiment.gpus = given_gpus(given);
   timed("checking that the run can be continued", [&] { check_resumable(archive, experiment); });
+  if (is_complete(archive, experiment)) return say_complete(archive);
   if (!given.contains("allow-other-versions")) refuse_other_versions(experiment, archive);
   if (ranks.channel()) share_host(experiment, *ranks.channel(), given.contains("mixed"));
   const auto simulator = opened_simulator(experiment);
@@ -252,11 +248,44 @@ int resume(const Given& given) {
   return evolve_and_report(experiment, *simulator, archive, farm.get(), output_of(given, log.get()));
 }
 
+/// Whether --resume is given and the folder of --out holds a run. Throws UsageError for --resume without --out.
+bool is_to_go_on(const Given& given) {
+  if (!given.contains("resume")) return false;
+  if (!given.contains("out")) throw UsageError("--resume: give the folder of the run with --out");
+  std::error_code error;
+  return fs::exists(fs::path(given["out"].as<std::string>()) / database_name, error);
+}
+
+int run(const Given& given) {
+  end_on_signals();
+  const Ranks ranks = Ranks::joined();
+  if (served(ranks, given)) return 0;
+  const auto file = given["EXPERIMENT.toml"].as<std::string>();
+  const bool goes_on = is_to_go_on(given);
+  Experiment experiment = given_experiment(file, given);
+  if (!goes_on) return begin(ranks, file, std::move(experiment), given);
+  remember_folders_of(experiment);
+  Archive archive = Archive::resume(given["out"].as<std::string>(), given_journal(given));
+  return go_on(ranks, archive, given, &experiment);
+}
+
+int resume(const Given& given) {
+  end_on_signals();
+  const Ranks ranks = Ranks::joined();
+  if (served(ranks, given)) return 0;
+  Archive archive = Archive::resume(given["DIR"].as<std::string>(), given_journal(given));
+  return go_on(ranks, archive, given);
+}
+
 }  // namespace
 
 Command run_command() {
   Options options;
   options.add_options()("out", value<std::string>("DIR"), "folder of the run; default: a new one in runs/");
+  options.add_options()("resume",
+                        "continue the run in the folder of --out if there is one, and begin it otherwise, so that the "
+                        "same command can be given again; a run that is complete stays as it is");
+  add_versions_option(options);
   add_output_options(options);
   add_journal_option(options);
   add_mixed_option(options);
@@ -266,21 +295,21 @@ Command run_command() {
       .arguments = {{"EXPERIMENT.toml"}},
       .summary = "Evolve robots",
       .text = {"The run writes all individuals of all generations into its folder, and verifies its best individual "
-               "at the end. Then it shows its best robots on a page, if the viewer has been built. Ctrl-C ends it "
-               "after the current generation, a second Ctrl-C ends it at once; `resume` "
-               "continues it. Results do not depend on the numbers of threads, GPUs and processes, except with "
+               "at the end. Then it shows its best robots on a page, if the viewer has been built. Ctrl-C, SIGTERM and "
+               "SIGUSR1 end it after the current generation, a second one ends it at once, both with exit code 130; "
+               "`resume` continues it. Results do not depend on the numbers of threads, GPUs and processes, except with "
                "--mixed. A run uses all equal GPUs, and all processes that mpirun or srun starts."},
       .examples = {"run experiments/quickstart.toml",
                    "run experiments/quickstart.toml --seed 2 --set selection.name=elitist --out runs/elitist",
-                   "run experiments/evo-devo.toml --device cuda:0,2"},
+                   "run experiments/evo-devo.toml --device cuda:0,2",
+                   "run experiments/evo-devo.toml --out runs/evo-devo --resume"},
       .options = options,
       .function = run};
 }
 
 Command resume_command() {
   Options options;
-  options.add_options()("allow-other-versions",
-                        "continue even if an operator has another version than when the run began");
+  add_versions_option(options);
   add_output_options(options);
   add_journal_option(options);
   add_mixed_option(options);

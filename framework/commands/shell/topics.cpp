@@ -193,7 +193,9 @@ Topic exit_codes() {
                            "The command failed: a simulation or a run failed, output could not be written, or plugins "
                            "do not conform."},
                           {"2", "The command line, an experiment, a body or a run is not valid. Nothing was written."},
-                          {"130", "The run was interrupted, and `evodevo resume` can continue it."}},
+                          {"130",
+                           "The run ended early, because of Ctrl-C, SIGTERM or SIGUSR1, and `evodevo resume` can "
+                           "continue it."}},
           .example = ""};
 }
 

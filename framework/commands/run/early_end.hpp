@@ -1,0 +1,23 @@
+// How signals end a run early.
+#pragma once
+
+#include <atomic>
+
+namespace evodevo {
+
+/// The exit code of a run that ended early and can be continued.
+inline constexpr int ended_early = 130;
+
+/// Set once a signal has asked this process to end its run.
+const std::atomic<bool>& stop_requested();
+
+/// From now on, the first SIGINT, SIGTERM or SIGUSR1 sets stop_requested(), and a second one ends the process at once,
+/// with the exit code `ended_early`. SIGUSR1 within a second of the one before does not count, because a launcher may
+/// forward one that the scheduler has also sent to each process.
+void stop_on_signals();
+
+/// From now on, the first of these signals ends the process at once, with the exit code `ended_early`, because nothing
+/// that is under way has to be finished.
+void end_on_signals();
+
+}  // namespace evodevo
