@@ -246,7 +246,7 @@ TEST_P(EndingSignal, EndsARunAfterItsGenerationAndTheSameCommandFinishesIt) {
 INSTANTIATE_TEST_SUITE_P(Signals, EndingSignal, ::testing::Values(SIGINT, SIGTERM, SIGUSR1),
                          [](const auto& instance) { return std::string(sigabbrev_np(instance.param)); });
 
-/// The generation after the first takes hours, so only a second signal ends the run in time.
+/// The first generation takes hours, so only a second signal ends the run in time.
 TEST_F(Interruption, ASecondSignalEndsARunAtOnceAndKeepsWhatWasCommitted) {
   std::vector<std::string> command = run_command("run");
   command.insert(command.end(), {"--set", "experiment.population=2", "--set", "experiment.children=1000000", "--set",
@@ -266,8 +266,8 @@ TEST_F(Interruption, TheSameCommandWithAnotherExperimentIsRefused) {
   command.insert(command.end(), {"--seed", "83"});
   const testing::Finished finished = testing::run(command);
   EXPECT_EQ(finished.exit_code, 2);
-  EXPECT_THAT(finished.output, testing::naming((scratch_ / "run").string(), "[experiment] seed = 7",
-                                               "[experiment] seed = 83", "--out"));
+  EXPECT_THAT(finished.output,
+              testing::naming((scratch_ / "run").string(), "[experiment] seed = 7", "[experiment] seed = 83", "--out"));
 }
 
 TEST_F(Interruption, ResumingAnUnnamedFolderIsRefused) {

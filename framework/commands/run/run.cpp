@@ -150,10 +150,10 @@ RunOutput output_of(const Given& given, GenerationLog* log) { return {log, !give
 
 int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive, Farm* farm,
                       const RunOutput& output) {
-  remarks() << experiment.name << " on " << simulator.device() << ", " << places_text(simulator, farm) << "; writing "
-            << archive.folder().string() << std::endl;
   stop_on_signals();
   end_long_calls_after(stop_requested());
+  remarks() << experiment.name << " on " << simulator.device() << ", " << places_text(simulator, farm) << "; writing "
+            << archive.folder().string() << std::endl;
   ProgressDisplay progress(experiment, archive.generations(), stop_requested(), farm);
   Observer observer = progress.observer();
   observer.generation_done = [&output, display = observer.generation_done](const Summary& summary) {
@@ -294,11 +294,12 @@ Command run_command() {
       .name = "run",
       .arguments = {{"EXPERIMENT.toml"}},
       .summary = "Evolve robots",
-      .text = {"The run writes all individuals of all generations into its folder, and verifies its best individual "
-               "at the end. Then it shows its best robots on a page, if the viewer has been built. Ctrl-C, SIGTERM and "
-               "SIGUSR1 end it after the current generation, a second one ends it at once, both with exit code 130; "
-               "`resume` continues it. Results do not depend on the numbers of threads, GPUs and processes, except with "
-               "--mixed. A run uses all equal GPUs, and all processes that mpirun or srun starts."},
+      .text =
+          {"The run writes all individuals of all generations into its folder, and verifies its best individual "
+           "at the end. Then it shows its best robots on a page, if the viewer has been built. Ctrl-C, SIGTERM and "
+           "SIGUSR1 end it after the current generation, a second one ends it at once, both with exit code 130; "
+           "`resume` continues it. Results do not depend on the numbers of threads, GPUs and processes, except with "
+           "--mixed. A run uses all equal GPUs, and all processes that mpirun or srun starts."},
       .examples = {"run experiments/quickstart.toml",
                    "run experiments/quickstart.toml --seed 2 --set selection.name=elitist --out runs/elitist",
                    "run experiments/evo-devo.toml --device cuda:0,2",
