@@ -140,6 +140,8 @@ class Nursery {
   }
 
   std::uint32_t next_id() const { return next_id_; }
+  std::size_t count() const { return newborns_.size(); }
+  bool knows(const Genome& genome) const { return known_.contains(genome); }
 
   void add(Individual newborn) {
     newborns_.push_back(std::move(newborn));
@@ -208,6 +210,21 @@ void add_varied(const Brood& brood, std::uint32_t count, Nursery& nursery) {
   });
 }
 
+/// Adds at most `most` immigrants.
+void add_immigrants(const Brood& brood, std::span<const Migrant> migrants, std::size_t most, Nursery& nursery) {
+  for (const Migrant& migrant : migrants) {
+    if (nursery.count() == most || nursery.knows(migrant.genome)) continue;
+    Individual newborn;
+    newborn.id = nursery.next_id();
+    newborn.born = brood.generation;
+    newborn.origin = migrant.origin;
+    newborn.made_by = "migration";
+    newborn.genome = migrant.genome;
+    newborn.migrated = migrant.from;
+    nursery.add(std::move(newborn));
+  }
+}
+
 std::vector<Child> made_children(const Experiment& experiment, const SelectionContext& context, std::uint32_t count,
                                  Rng& rng) {
   auto children = experiment.breeder().children(context, count, rng);
@@ -268,13 +285,15 @@ Genome first_genome(const Experiment& experiment, const std::function<Rng(std::u
 
 std::vector<Individual> breed(const Experiment& experiment, const std::vector<Individual>& population,
                               std::uint32_t generation, std::uint32_t first_id, std::size_t count,
-                              std::span<const std::byte> memory, Workers* workers) {
+                              std::span<const std::byte> memory, Workers* workers, std::span<const Migrant> migrants) {
   const bool all_are_random = population.empty() && !experiment.makes_children();
-  const std::size_t random_individuals =
-      all_are_random ? count : std::min(count, static_cast<std::size_t>(experiment.random_individuals));
   const Brood brood{experiment, population, generation, first_id, memory, workers};
   Nursery nursery(brood, count);
-  if (const auto children = static_cast<std::uint32_t>(count - random_individuals); children > 0)
+  add_immigrants(brood, migrants, count, nursery);
+  const std::size_t places = count - nursery.count();
+  const std::size_t random_individuals =
+      all_are_random ? places : std::min(places, static_cast<std::size_t>(experiment.random_individuals));
+  if (const auto children = static_cast<std::uint32_t>(places - random_individuals); children > 0)
     experiment.makes_children() ? add_made(brood, children, nursery) : add_varied(brood, children, nursery);
   nursery.add_distinct(random_individuals, [&](std::size_t, std::uint32_t id, std::uint32_t repeat) {
     return random_individual(experiment, generation, id, repeat);

@@ -14,8 +14,10 @@ namespace evodevo {
 Genome first_genome(const Experiment& experiment, const std::function<Rng(std::uint32_t)>& stream,
                     CallSubject subject = {});
 
-/// Makes the `count` newborns of a generation, with ids from `first_id`: children of the population, and as many random
-/// individuals as the experiment asks for. `memory` is what the selection operator remembers.
+/// Makes the `count` newborns of a generation, with ids from `first_id`: first the immigrants, whose genomes are those
+/// of the migrants, then children of the population, and as many random individuals as the experiment asks for.
+/// `memory` is what the selection operator remembers. Migrants with genes that an individual of the population or an
+/// earlier immigrant has are left out.
 ///
 /// Children come from the experiment's variation. If the population is empty, all newborns are random individuals. A
 /// newborn that is genetically equal to a member of the population or to an earlier newborn is made again with other
@@ -26,6 +28,7 @@ Genome first_genome(const Experiment& experiment, const std::function<Rng(std::u
 /// them all.
 std::vector<Individual> breed(const Experiment& experiment, const std::vector<Individual>& population,
                               std::uint32_t generation, std::uint32_t first_id, std::size_t count,
-                              std::span<const std::byte> memory = {}, Workers* workers = nullptr);
+                              std::span<const std::byte> memory = {}, Workers* workers = nullptr,
+                              std::span<const Migrant> migrants = {});
 
 }  // namespace evodevo

@@ -12,6 +12,7 @@
 #include "evolution/breeding.hpp"
 #include "evolution/clones.hpp"
 #include "evolution/front_verification.hpp"
+#include "evolution/islands/migration.hpp"
 #include "evolution/selection_table.hpp"
 
 namespace evodevo {
@@ -241,7 +242,7 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
 }
 
 TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& archive, const std::atomic<bool>& stop,
-                 const Observer& observer) {
+                 const Observer& observer, Migration* migration) {
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -260,12 +261,14 @@ TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& ar
   ArchiveWriter writer(archive);
 
   for (; !is_finished(experiment, summaries) && !stop; ++generation) {
+    const auto migrants = migration ? migration->arrivals(generation, stop) : std::vector<Migrant>();
+    if (!migrants) break;
     const auto start = Clock::now();
     const std::int64_t count = std::min(experiment.newborns(), experiment.evaluations - evaluations);
     // each evaluation uses one id, so the next id is the number of evaluations so far
     std::vector<Individual> newborns =
         breed(experiment, population, generation, static_cast<std::uint32_t>(evaluations),
-              static_cast<std::size_t>(count), memory_of_breeder(experiment, remembered), &evaluator.workers());
+              static_cast<std::size_t>(count), memory_of_breeder(experiment, remembered), &evaluator.workers(), *migrants);
     time.breed += seconds_since(start);
     evaluate(newborns, evaluator, provenances, observer);
     evaluations += count;
@@ -277,7 +280,10 @@ TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& ar
     std::vector<std::uint32_t> dropped;
     if (!needs_all_children(experiment)) dropped = remove_copies(population);
     lives.keep_front(population, generation);
+    const std::vector<Individual> claimants =
+        migration ? migration->claimants(population, generation) : std::vector<Individual>();
     select(population, experiment, generation, dropped, remembered);
+    if (!claimants.empty()) migration->replace(claimants, generation, population, dropped);
     lives.keep_front(population, generation);
     const auto [best, median] = best_and_median(first_scores(population), experiment.objectives.front().maximise);
     summary.best = best;
@@ -285,10 +291,14 @@ TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& ar
     summary.evaluations = evaluations;
     summary.wall_time = seconds_since(start);
     time.select += seconds_since(selection);
-    writer.begin({std::move(newborns), std::move(dropped), lives.committed(), summary, remembered, refusals});
+    const auto departures = migration ? migration->departures(population, generation) : std::vector<Emigration>();
+    writer.begin(
+        {std::move(newborns), std::move(dropped), lives.committed(), summary, remembered, refusals, departures});
+    if (migration) migration->depart(departures, population, generation);
     observer.generation_done(summary);
     summaries.push_back(summary);
   }
+  if (migration && is_finished(experiment, summaries)) migration->end();
   writer.wait();
   time.archive = writer.seconds();
   time.whole = seconds_since(begin);

@@ -9,6 +9,8 @@
 
 namespace evodevo {
 
+class Migration;
+
 /// Functions that evolve() calls to report its progress.
 struct Observer {
   /// Called after each generation, which may still be being written into the archive (ArchiveWriter).
@@ -42,9 +44,10 @@ bool is_finished(const Settings& settings, const std::vector<Summary>& generatio
 
 /// Continues the run in the archive until the run is finished. If `stop` is set in the meantime, finishes and commits
 /// the current generation, then returns. A run that was interrupted and continued gives the same results as one that
-/// was not interrupted.
+/// was not interrupted. With a migration, the experiment is that of one island, and others have to evolve at the same
+/// time; while it waits for their migrants, `stop` ends it at once.
 TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& archive, const std::atomic<bool>& stop,
-                 const Observer& observer);
+                 const Observer& observer, Migration* migration = nullptr);
 /// Does the same in this process alone.
 TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& archive, const std::atomic<bool>& stop,
                  const Observer& observer);

@@ -9,6 +9,27 @@
 
 namespace evodevo {
 
+/// An individual of another island of the run.
+struct Migrated {
+  std::int64_t island = 0;       ///< its number, from 1
+  std::uint32_t individual = 0;  ///< id on that island
+
+  bool operator==(const Migrated&) const = default;
+};
+
+/// An individual on its way to another island. There it is born again, as a newborn with the same genome.
+struct Migrant {
+  Migrated from;
+  std::uint32_t origin = 0;  ///< Individual::origin, which is the same on all islands
+  Genome genome;
+};
+
+/// An individual that has left for another island. It also stays where it is.
+struct Emigration {
+  std::int64_t island = 0;  ///< number of the island that it goes to
+  std::uint32_t individual = 0;
+};
+
 struct Individual {
   std::uint32_t id = 0;      ///< consecutive number from 0, in the order of birth
   std::uint32_t born = 0;    ///< generation in which the individual was born
@@ -16,10 +37,11 @@ struct Individual {
   std::vector<std::uint32_t>
       parents;          ///< ids of the parent, which it may replace, and the mate, as far as there are any
   std::string made_by;  ///< names of the variation operators that made it, joined by '+', name of the selection
-                        ///< operator that made it, or "random"
+                        ///< operator that made it, "random", or "migration"
   Genome genome;
   Result result;
   std::uint32_t provenance = 0;  ///< of the result: index into Archive::provenances()
+  std::optional<Migrated> migrated = {};  ///< of an immigrant: where it comes from
 
   std::uint32_t age(std::uint32_t generation) const { return generation - origin; }
 };

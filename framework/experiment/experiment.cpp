@@ -6,6 +6,7 @@
 
 #include "base/philox.hpp"
 #include "base/text.hpp"
+#include "experiment/islands/island_tables.hpp"
 #include "experiment/tables/operators.hpp"
 #include "experiment/tables/plugins.hpp"
 #include "experiment/tables/tables.hpp"
@@ -34,12 +35,11 @@ Registry registry_of(const PluginsTable& plugins, Warnings& warnings) {
   return registry;
 }
 
-Experiment compose(toml::table root, const ExperimentSource& source) {
-  for (const Override& change : source.overrides) apply_override(change, root);
+Experiment compose(const toml::table& root, const ExperimentSource& source) {
   ErrorCollector errors;
   TomlReader top(root, "", {}, &errors);
   top.expect({"experiment", "encoding", "mutation", "crossover", "scene", "simulation", "development", "fitness",
-              "scenario", "selection", "materials", "plugins"});
+              "scenario", "selection", "materials", "islands", "island", "plugins"});
   Experiment experiment;
   const PluginsTable plugins(root, source);
   plugins.check(top, experiment.warnings);
@@ -49,6 +49,7 @@ Experiment compose(toml::table root, const ExperimentSource& source) {
 
   static_cast<Settings&>(experiment) =
       read_settings(top, source.grows_bodies ? Bodies::grown : Bodies::given, experiment.warnings);
+  check_island_tables(top, experiment);
   experiment.name = printable(fs::path(source.file).stem().string());
   experiment.device_location = top.location("simulation");
   experiment.gpus = source.gpus;
@@ -64,6 +65,20 @@ Experiment compose(toml::table root, const ExperimentSource& source) {
   text << record << '\n';
   experiment.resolved = text.str();
   return experiment;
+}
+
+toml::table with_overrides(toml::table root, const ExperimentSource& source) {
+  for (const Override& change : source.overrides) apply_override(change, root);
+  return root;
+}
+
+/// Throws ConfigError if the genomes of an island are not those of the first one, so that it could not migrate.
+void check_same_genomes(const Experiment& first, const Experiment& island, const ExperimentSource& source) {
+  if (island.layout == first.layout) return;
+  throw ConfigError(source.file + ": island " + std::to_string(island.island) +
+                    " has genomes with the sections " + joined(island.layout.sections) +
+                    ", but island 1 has genomes with " + joined(first.layout.sections) +
+                    ", or their genes differ; give all islands the same mutation operators with genes of their own");
 }
 
 }  // namespace
@@ -150,10 +165,28 @@ Recording recording(const RecordRequest& request) {
           .tension = request.tension};
 }
 
-Experiment read_experiment(const ExperimentSource& source) { return compose(parse_toml_file(source.file), source); }
+Experiment read_experiment(const ExperimentSource& source) {
+  return compose(with_overrides(parse_toml_file(source.file), source), source);
+}
 
 Experiment read_experiment(std::string_view text, const ExperimentSource& source) {
-  return compose(parse_toml(text, source.file), source);
+  return compose(with_overrides(parse_toml(text, source.file), source), source);
+}
+
+std::vector<Experiment> read_islands(const ExperimentSource& source) {
+  const toml::table root = with_overrides(parse_toml_file(source.file), source);
+  Experiment whole = compose(root, source);
+  std::vector<Experiment> islands;
+  if (whole.islands) {
+    for (const toml::table& one : island_roots(root, whole)) {
+      Experiment& island = islands.emplace_back(compose(one, source));
+      island.island = static_cast<std::int64_t>(islands.size());
+      check_same_genomes(islands.front(), island, source);
+    }
+  } else {
+    islands.push_back(std::move(whole));
+  }
+  return islands;
 }
 
 }  // namespace evodevo

@@ -48,6 +48,8 @@ struct Experiment : Settings {
   Experiment& operator=(Experiment&&) = default;
   ~Experiment();  ///< if the destructor of an operator crashes, the crash report names the operator
 
+  std::int64_t island = 0;  ///< number of the island of a run that this is, from 1; 0: it is a whole run
+
   EncodingContext context;  ///< settings that encodings can read
   std::unique_ptr<Encoding> encoding;
   Layout layout;                    ///< of whole genomes; its first section is that of the encoding
@@ -132,5 +134,8 @@ struct ExperimentSource {
 Experiment read_experiment(const ExperimentSource& source);
 /// Does the same with a text, such as Experiment::resolved in the record of a run.
 Experiment read_experiment(std::string_view text, const ExperimentSource& source);
+/// Reads the experiments of all islands of a run from a file, in the order of their numbers; without [islands], the one
+/// experiment of the run. Throws like read_experiment(), and ConfigError if the genomes of the islands differ.
+std::vector<Experiment> read_islands(const ExperimentSource& source);
 
 }  // namespace evodevo

@@ -2,6 +2,7 @@
 
 #include <ostream>
 
+#include "experiment/islands/island_tables.hpp"
 #include "experiment/tables/declarations.hpp"
 #include "experiment/tables/tables.hpp"
 #include "experiment/toml_writer.hpp"
@@ -61,6 +62,8 @@ toml::table to_toml(Settings settings) {
   toml::array scenarios;
   for (Scenario& scenario : settings.scenarios) scenarios.push_back(written_scenario(scenario));
   if (!scenarios.empty()) root.insert("scenario", std::move(scenarios));
+  if (settings.islands)
+    root.insert("islands", written([&](TomlWriter& writer) { declare(writer, *settings.islands); }));
   root.insert("development", written([&](TomlWriter& writer) { declare_development(writer, settings); }));
   return root;
 }
@@ -70,6 +73,7 @@ std::ostream& operator<<(std::ostream& stream, const Settings& settings) { retur
 Settings read_settings(TomlReader& top, Bodies bodies, Warnings& warnings) {
   Settings settings;
   read_table(top, "experiment", true, [&](TomlReader& t) { declare_run(t, settings); });
+  read_island_settings(top, settings);
   read_materials(top, settings, warnings);
   visit_table(top, "encoding", false, [&](TomlReader& t) { declare_mass(t, settings); });
   read_scene(top, settings);

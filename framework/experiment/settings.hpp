@@ -93,6 +93,38 @@ struct Scenario {
   bool operator==(const Scenario&) const = default;
 };
 
+/// Which islands send migrants to which others; see neighbours.hpp.
+enum class Topology { ring, torus, star, full };
+template <>
+inline constexpr std::array<std::string_view, 4> names_of<Topology>{"ring", "torus", "star", "full"};
+
+/// Which individuals of an island emigrate.
+enum class Emigrants { best, random };
+template <>
+inline constexpr std::array<std::string_view, 2> names_of<Emigrants>{"best", "random"};
+
+/// Whose place an immigrant takes if selection would drop it; nobody: it is dropped.
+enum class Replaced { nobody, worst, random };
+template <>
+inline constexpr std::array<std::string_view, 3> names_of<Replaced>{"nobody", "worst", "random"};
+
+inline constexpr std::int64_t most_islands = 10'000;
+
+/// The populations of a run with islands, and the migration between them.
+struct IslandSettings {
+  std::int64_t count = 4;
+  Topology topology = Topology::ring;
+  std::int64_t every = 10;    ///< generations from one migration to the next
+  std::int64_t migrants = 1;  ///< number of individuals that an island sends to each of its neighbours
+  Emigrants emigrants = Emigrants::best;
+  Replaced replaced = Replaced::nobody;
+
+  /// Whether individuals emigrate after the selection of a generation. They arrive in the next one.
+  bool migrate_after(std::uint32_t generation) const { return (generation + std::int64_t{1}) % every == 0; }
+
+  bool operator==(const IslandSettings&) const = default;
+};
+
 /// The five base materials (paper, Table I). The second muscle has the opposite phase, as in the paper's source code.
 std::map<std::string, Material> base_materials();
 
@@ -119,6 +151,8 @@ struct Settings {
   std::int64_t threads = 0;  ///< number of threads on the CPU; 0: one for each core
 
   DevelopmentSettings development;
+
+  std::optional<IslandSettings> islands;  ///< none: the run has one population
 
   std::vector<Scenario> scenarios;  ///< none: matured robots are measured in the scene alone
 

@@ -52,6 +52,9 @@ void require_empty(const fs::path& folder) {
 /// could block for ever.
 void require_run(const fs::path& folder) {
   std::error_code error;
+  if (has_islands(folder))
+    throw ArchiveError(folder.string() + ": is the folder of a run with islands; give the folder of one island, such as " +
+                       (folder / island_folder_prefix).string() + "1");
   if (!fs::is_regular_file(folder / database_name, error))
     throw ArchiveError(folder.string() + ": there is no run here (no " + database_name + "); give a folder that `" +
                        program_name() + " run` has written");
@@ -63,6 +66,12 @@ std::optional<Journal> recorded_wish(const Archive& archive) {
 }
 
 }  // namespace
+
+bool has_islands(const fs::path& folder) {
+  std::error_code error;
+  return !fs::exists(folder / database_name, error) &&
+         fs::is_directory(folder / (std::string(island_folder_prefix) + "1"), error);
+}
 
 Archive::Archive(std::unique_ptr<RunDatabase> run) : run_(std::move(run)) {}
 Archive::Archive(Archive&&) noexcept = default;
@@ -114,6 +123,7 @@ Archive Archive::create(const fs::path& folder, const Experiment& experiment, co
   archive.insert_record("name", experiment.name);
   archive.insert_record("seed", std::to_string(experiment.seed));
   archive.insert_record("experiment", experiment.resolved);
+  if (experiment.island > 0) archive.insert_record("island", std::to_string(experiment.island));
   if (journal) archive.insert_record(journal_key, name(*journal));
   transaction.commit();
   return archive;
@@ -177,6 +187,10 @@ Experiment recorded_experiment(const Archive& archive, std::vector<fs::path> plu
                                                      .is_record = true,
                                                      .files = archive.files()});
   experiment.name = printable(archive.record("name"));
+  experiment.island = archive.island();
+  if (experiment.island > (experiment.islands ? experiment.islands->count : 0))
+    archive.refuse("its entry \"island\" is " + std::to_string(experiment.island) +
+                   ", more than the count in [islands] of its experiment");
   check_objectives(archive, experiment);
   return experiment;
 }

@@ -18,6 +18,11 @@ namespace evodevo {
 
 class RunDatabase;
 
+/// The folders of the islands of a run, in the folder of the run, have this name and a number from 1.
+inline constexpr const char* island_folder_prefix = "island-";
+/// Returns whether a folder holds folders of islands, and so no archive itself.
+bool has_islands(const std::filesystem::path& folder);
+
 /// An individual with the generation in which it was dropped.
 struct ArchivedIndividual : Individual {
   std::optional<std::uint32_t> died;
@@ -96,13 +101,15 @@ class Archive {
   ~Archive();
 
   /// Adds one generation in one transaction: its newborns with their results, the ids of the individuals that selection
-  /// dropped, records of lives by id, its summary, and what the selection operator remembers and notes. An empty record
+  /// dropped, records of lives by id, its summary, what the selection operator remembers and notes, and who emigrates
+  /// after it. An empty record
   /// is stored too; it means that the individual was on the front and that its body did not change. The memory replaces
   /// that of the generation before; a note is added if it differs from the last one about the same individual. The
   /// refused, who may be newborns or older, get the status and the reason of the refusal, and lose their scores.
   void commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,
               const std::map<std::uint32_t, LifeRecord>& lives, const Summary& summary,
-              const Remembered& remembered = {}, const std::vector<Refusal>& refusals = {});
+              const Remembered& remembered = {}, const std::vector<Refusal>& refusals = {},
+              const std::vector<Emigration>& emigrations = {});
 
   /// Adds verifications. They replace earlier verifications of the same individuals. Leaves out those of individuals
   /// that have lost their fitness since they were chosen.
@@ -125,6 +132,10 @@ class Archive {
   void set_records(const std::map<std::string, std::string>& entries);
   /// Adds a provenance to those of the run, unless the run has it already, and returns its index.
   std::uint32_t add_provenance(const Provenance& provenance);
+  /// Returns the number of the island, from 1, of whose generations this is the archive; 0 if the run has no islands.
+  std::int64_t island() const;
+  /// Returns who emigrated to an island after generation `since` or later, by generation, in the order of their ids.
+  std::map<std::uint32_t, std::vector<std::uint32_t>> emigrants_to(std::int64_t island, std::uint32_t since) const;
   /// Returns the provenances of all processes that took part in the run, in the order in which they were added. They
   /// include the provenances of processes that ended before a generation was complete.
   std::vector<Provenance> provenances() const;

@@ -20,7 +20,7 @@ void ArchiveWriter::begin(FinishedGeneration generation) {
   const auto commit = [&archive = archive_, finished] {
     const auto start = std::chrono::steady_clock::now();
     archive.commit(finished->newborns, finished->dropped, finished->lives, finished->summary, finished->remembered,
-                   finished->refusals);
+                   finished->refusals, finished->emigrations);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
   try {

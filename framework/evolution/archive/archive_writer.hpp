@@ -17,6 +17,7 @@ struct FinishedGeneration {
   Summary summary;
   Remembered remembered;
   std::vector<Refusal> refusals;
+  std::vector<Emigration> emigrations;
 };
 
 /// Writes one generation at a time. If writing the one before took more than 0.1 s, and more than a tenth of the time

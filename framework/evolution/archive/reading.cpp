@@ -43,7 +43,7 @@ std::int64_t count_of(const RunDatabase& run, const std::string& table) {
 
 constexpr const char* individual_columns =
     "SELECT id, born, origin, parent, mate, made_by, genes, status, reason, ended_at, spring_evaluations, died, "
-    "blocks, provenance FROM individuals ";
+    "blocks, provenance, island, source FROM individuals LEFT JOIN immigrants ON individual = id ";
 
 /// Reads individuals and checks them against the run's generations and objectives.
 class Individuals {
@@ -83,6 +83,7 @@ class Individuals {
     individual.provenance = static_cast<std::uint32_t>(row_.integer(13, 0, provenances_ - 1));
     individual.genome = read_genome(row_, 6, 12, layout_);
     read_result(individual.result);
+    if (!row_.is_null(14)) individual.migrated = Migrated{row_.integer(14, 1, most_islands), row_.index(15)};
     if (!row_.is_null(11))
       individual.died = static_cast<std::uint32_t>(row_.integer(11, individual.born, *last_generation_));
     read_scores(individual);
@@ -95,7 +96,8 @@ class Individuals {
   /// Checks that no table has a row for an id that a later individual of the run will get.
   void check_ids(std::int64_t evaluations) {
     for (const char* column : {"individuals.id", "scores.individual", "lives.individual", "verifications.individual",
-                               "measured.individual", "tests.individual", "notes.individual"}) {
+                               "measured.individual", "tests.individual", "notes.individual", "immigrants.individual",
+                               "emigrants.individual"}) {
       const std::string_view name(column);
       const std::string table(name.substr(0, name.find('.'))), key(name.substr(table.size() + 1));
       Statement last(run_, table, "SELECT max(" + key + ") AS " + key + " FROM " + table);
@@ -228,6 +230,24 @@ std::vector<std::int64_t> Archive::evaluated_by_provenance() const {
   Statement row(*run_, "individuals", "SELECT provenance, count(*) FROM individuals GROUP BY provenance");
   while (row.step()) counts[row.index(0, static_cast<std::uint32_t>(counts.size() - 1))] = row.integer(1, 0, most);
   return counts;
+}
+
+std::int64_t Archive::island() const {
+  if (!find_record("island")) return 0;
+  Statement row(*run_, "record", "SELECT CAST(value AS INTEGER) AS value FROM record WHERE key = 'island'");
+  row.step();
+  return row.integer(0, 1, most_islands);
+}
+
+std::map<std::uint32_t, std::vector<std::uint32_t>> Archive::emigrants_to(std::int64_t island,
+                                                                         std::uint32_t since) const {
+  std::map<std::uint32_t, std::vector<std::uint32_t>> emigrants;
+  Statement row(*run_, "emigrants",
+                "SELECT generation, individual FROM emigrants WHERE island = ? AND generation >= ? "
+                "ORDER BY generation, individual");
+  row.bind(island, static_cast<std::int64_t>(since));
+  while (row.step()) emigrants[row.index(0)].push_back(row.index(1));
+  return emigrants;
 }
 
 std::vector<Objective> Archive::objectives() const {

@@ -68,6 +68,11 @@ CREATE TABLE generations(
   diverged INTEGER NOT NULL, invalid INTEGER NOT NULL, artefact INTEGER NOT NULL, passive INTEGER NOT NULL,
   clones INTEGER NOT NULL,
   spring_evaluations INTEGER NOT NULL, wall_time REAL NOT NULL);
+-- who came from, and left for, other islands of the run, which are numbered from 1
+CREATE TABLE immigrants(individual INTEGER PRIMARY KEY, island INTEGER NOT NULL, source INTEGER NOT NULL);
+CREATE TABLE emigrants(
+  generation INTEGER NOT NULL, island INTEGER NOT NULL, individual INTEGER NOT NULL,
+  PRIMARY KEY(generation, island, individual)) WITHOUT ROWID;
 CREATE TABLE verifications(
   individual INTEGER NOT NULL, trial TEXT NOT NULL, position INTEGER NOT NULL,
   status TEXT NOT NULL, reason TEXT, value REAL,  -- of the first objective

@@ -21,6 +21,7 @@ void insert_newborns(const RunDatabase& run, const std::vector<Individual>& newb
   Statement insert_score(run, "scores", "INSERT INTO scores VALUES(?, ?, ?)");
   Statement insert_measure(run, "measured", "INSERT INTO measured VALUES(?, ?, ?)");
   Statement insert_test(run, "tests", "INSERT INTO tests VALUES(?, ?, ?, ?, ?)");
+  Statement insert_immigrant(run, "immigrants", "INSERT INTO immigrants VALUES(?, ?, ?)");
   for (const Individual& individual : newborns) {
     const Result& result = individual.result;
     const auto parent = [&](std::size_t i) {
@@ -34,6 +35,8 @@ void insert_newborns(const RunDatabase& run, const std::vector<Individual>& newb
                    failed ? std::optional(result.reason) : std::nullopt,
                    diverged ? std::optional(result.ended_at) : std::nullopt,
                    static_cast<std::int64_t>(result.spring_evaluations));
+    if (const auto& from = individual.migrated)
+      insert_immigrant.execute(individual.id, from->island, from->individual);
     for (std::size_t i = 0; i < result.objectives.size(); ++i)
       insert_score.execute(individual.id, static_cast<std::uint32_t>(i), result.objectives[i]);
     for (std::size_t i = 0; i < result.measures.size(); ++i)
@@ -59,7 +62,8 @@ void write_refusals(const RunDatabase& run, const std::vector<Refusal>& refusals
 
 void Archive::commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,
                      const std::map<std::uint32_t, LifeRecord>& lives, const Summary& summary,
-                     const Remembered& remembered, const std::vector<Refusal>& refusals) {
+                     const Remembered& remembered, const std::vector<Refusal>& refusals,
+                     const std::vector<Emigration>& emigrations) {
   WriteTransaction transaction(*run_);
   insert_newborns(*run_, newborns, layout());
   write_refusals(*run_, refusals);
@@ -72,6 +76,8 @@ void Archive::commit(const std::vector<Individual>& newborns, const std::vector<
                summary.artefact, summary.passive, summary.clones, static_cast<std::int64_t>(summary.spring_evaluations),
                summary.wall_time);
   write_remembered(*run_, remembered, summary.generation);
+  Statement emigrate(*run_, "emigrants", "INSERT INTO emigrants VALUES(?, ?, ?)");
+  for (const auto& [island, individual] : emigrations) emigrate.execute(summary.generation, island, individual);
   transaction.commit();
 }
 

@@ -163,4 +163,27 @@ void declare(SettingsVisitor& v, Payload& payload) {
          "Fraction of the body's height at birth, from the top down, in which the masses carry the payload.");
 }
 
+void declare(SettingsVisitor& v, IslandSettings& s) {
+  v.integer(s.count, "count", {2, most_islands}, "Number of islands.");
+  choice(v, s.topology, "topology",
+         "Which islands send migrants to which: each to the next (ring), to its four neighbours on a grid that is "
+         "closed like a torus, to all others (full), or the first to all others and these to it (star).");
+  v.integer(s.every, "every", {1, 1e9}, "Number of generations from one migration to the next.");
+  v.integer(s.migrants, "migrants", {1, 1e6}, "Number of individuals that an island sends to each of its neighbours.");
+  choice(v, s.emigrants, "emigrants",
+         "Who emigrates: those with the best first objective, or individuals with a fitness, drawn at random.");
+  choice(v, s.replaced, "replaced",
+         "Whose place an immigrant takes if selection would drop it in the generation of its arrival: that of the "
+         "survivor with the worst first objective, or of a random one; nobody: it is dropped.");
+}
+
+void declare_island_number(SettingsVisitor& v, std::int64_t& number) {
+  v.integer(number, "number", {1, most_islands}, "Number of the island, from 1.");
+}
+
+void declare_island(SettingsVisitor& v, std::optional<double>& seed) {
+  v.optional_real(seed, "seed", {0, 0x1p53 - 1},
+                  "Seed of all random numbers of the island; by default it follows from the seed of the run.");
+}
+
 }  // namespace evodevo

@@ -93,6 +93,18 @@ std::string experiment_reference() {
                 Scenario scenario;
                 declare_scenario(v, scenario);
               });
+  text += section_of<IslandSettings>(
+      "`[islands]`", "Several populations in one run, between which individuals migrate. Without this table, there is "
+                     "one population.");
+  text += section("`[[island]]`",
+                  "What is different on one island. Tables such as `[island.selection]`, `[[island.mutation]]` and "
+                  "`[[island.crossover]]` replace all tables of this name.",
+                  [&](SettingsVisitor& v) {
+                    std::int64_t number = 1;
+                    std::optional<double> seed;
+                    declare_island_number(v, number);
+                    declare_island(v, seed);
+                  });
   text += section_of<Material>("`[materials.NAME]`",
                                "A material. The defaults apply to materials that evodevo does not know.");
   return text;

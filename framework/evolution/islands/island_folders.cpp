@@ -1,0 +1,39 @@
+#include "evolution/islands/island_folders.hpp"
+
+#include "base/text.hpp"
+
+namespace evodevo {
+
+namespace fs = std::filesystem;
+
+fs::path island_folder(const fs::path& run, std::int64_t island) {
+  return run / (island_folder_prefix + std::to_string(island));
+}
+
+std::vector<fs::path> island_folders(const fs::path& run) {
+  std::vector<fs::path> folders;
+  if (!has_islands(run)) return folders;
+  const Settings settings = recorded_settings(Archive::read(island_folder(run, 1)));
+  const std::int64_t count = settings.islands ? settings.islands->count : 1;
+  for (std::int64_t island = 1; island <= count; ++island) {
+    folders.push_back(island_folder(run, island));
+    if (std::error_code error; !fs::is_directory(folders.back(), error))
+      throw ArchiveError(folders.back().string() + ": is missing, but the run has " + std::to_string(count) +
+                         " islands; put the folder back, or begin the run again in another folder");
+  }
+  return folders;
+}
+
+std::vector<fs::path> archive_folders(const fs::path& run) {
+  std::vector<fs::path> folders = island_folders(run);
+  if (folders.empty()) folders.push_back(run);
+  return folders;
+}
+
+std::vector<std::uint32_t> next_generations(const std::vector<Archive>& archives) {
+  std::vector<std::uint32_t> next;
+  for (const Archive& archive : archives) next.push_back(static_cast<std::uint32_t>(archive.generations().size()));
+  return next;
+}
+
+}  // namespace evodevo

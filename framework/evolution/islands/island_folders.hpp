@@ -1,0 +1,25 @@
+// The folder of a run with islands. It holds a folder for each island, which is an ordinary folder of a run.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "evolution/archive/archive.hpp"
+
+namespace evodevo {
+
+/// Returns the folder of an island, numbered from 1, in the folder of its run.
+std::filesystem::path island_folder(const std::filesystem::path& run, std::int64_t island);
+
+/// Returns the folders of the islands of the run in a folder, in the order of their numbers. Returns nothing if there
+/// is no run with islands. Throws ArchiveError if folders of islands are missing.
+std::vector<std::filesystem::path> island_folders(const std::filesystem::path& run);
+
+/// Returns the folders in which there are archives: those of the islands of the run in a folder, or else the folder.
+std::vector<std::filesystem::path> archive_folders(const std::filesystem::path& run);
+
+/// Returns the next generation of each archive, which is the number of its complete ones.
+std::vector<std::uint32_t> next_generations(const std::vector<Archive>& archives);
+
+}  // namespace evodevo
