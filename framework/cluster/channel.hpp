@@ -14,8 +14,8 @@ struct Received {
 };
 
 /// Joins the processes of a run, which are called ranks and are numbered from 0. The rank 0 leads. Messages from one
-/// rank to another arrive in the order in which they were sent. All calls come from one thread, and none of them waits
-/// for another rank except leave().
+/// rank to another arrive in the order in which they were sent. Calls come from one thread at a time, and none of them
+/// waits for another rank except leave().
 class Channel {
  public:
   virtual ~Channel() = default;

@@ -68,6 +68,22 @@ void for_each_part(Wire& wire, Layout& layout) {
   wire(layout.types, layout.first_blocks, layout.sections, layout.own);
 }
 
+template <class Wire>
+void for_each_part(Wire& wire, Migrated& from) {
+  wire(from.island, from.individual);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, Migrant& migrant) {
+  wire(migrant.from, migrant.origin, migrant.genome);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, Summary& s) {
+  wire(s.generation, s.evaluations, s.best, s.median, s.diverged, s.invalid, s.artefact, s.passive, s.clones,
+       s.spring_evaluations, s.wall_time);
+}
+
 namespace message {
 
 template <class Wire>
@@ -115,6 +131,31 @@ void for_each_part(Wire& wire, Failure& failure) {
   wire(failure.host, failure.reason, failure.of_input);
 }
 
+template <class Wire>
+void for_each_part(Wire& wire, Lead& lead) {
+  wire(lead.protocol, lead.folder, lead.next);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, Generation& one) {
+  wire(one.island, one.summary);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, Done& done) {
+  wire(done.lost);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, Migrants& m) {
+  wire(m.from, m.to, m.generation, m.migrants);
+}
+
+template <class Wire>
+void for_each_part(Wire& wire, LastMigrants& last) {
+  wire(last.island);
+}
+
 template <class Message>
 std::string packed(const Message& message) {
   WireWriter writer;
@@ -130,10 +171,10 @@ std::string packed(Kind kind) {
 
 Kind kind_of(const std::string& bytes) { return WireReader(bytes).next<Kind>(); }
 
-std::string protocol() { return std::string("1.") + archive_format; }
+std::string protocol() { return std::string("2.") + archive_format; }
 
-std::string protocol_of(const std::string& setup) {
-  WireReader reader(setup);
+std::string protocol_of(const std::string& first) {
+  WireReader reader(first);
   reader.next<Kind>();
   return reader.next<std::string>();
 }
@@ -154,6 +195,11 @@ template std::string packed(const Answer&);
 template std::string packed(const Beat&);
 template std::string packed(const End&);
 template std::string packed(const Failure&);
+template std::string packed(const Lead&);
+template std::string packed(const Generation&);
+template std::string packed(const Done&);
+template std::string packed(const Migrants&);
+template std::string packed(const LastMigrants&);
 template Setup unpacked(const std::string&);
 template Hello unpacked(const std::string&);
 template Job unpacked(const std::string&);
@@ -161,6 +207,11 @@ template Answer unpacked(const std::string&);
 template Beat unpacked(const std::string&);
 template End unpacked(const std::string&);
 template Failure unpacked(const std::string&);
+template Lead unpacked(const std::string&);
+template Generation unpacked(const std::string&);
+template Done unpacked(const std::string&);
+template Migrants unpacked(const std::string&);
+template LastMigrants unpacked(const std::string&);
 
 }  // namespace message
 }  // namespace evodevo

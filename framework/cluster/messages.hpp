@@ -2,6 +2,12 @@
 //
 //   rank 0 ─► others   Setup once; then Job, forget; end
 //   others ─► rank 0   Hello once; then Answer, Beat; Failure
+//
+// With islands, the first rank of each group does what rank 0 does here, for the ranks of its group, and
+//
+//   rank 0 ─► others          Lead once; then stop
+//   first ranks ─► rank 0     Generation, Done; Failure
+//   first ranks ─► the others Migrants, LastMigrants, Beat
 #pragma once
 
 #include <cstdint>
@@ -9,6 +15,7 @@
 #include <vector>
 
 #include "evolution/evaluator.hpp"
+#include "evolution/population.hpp"
 #include "evolution/provenance.hpp"
 
 namespace evodevo::message {
@@ -20,7 +27,22 @@ std::string protocol();
 
 /// A rank with another protocol reads nothing but the beginning of Setup, and answers with Failure. So the numbers of
 /// the kinds, Failure and End never change.
-enum class Kind : std::uint8_t { setup, hello, job, answer, beat, forget, failure, end };
+enum class Kind : std::uint8_t {
+  setup,
+  hello,
+  job,
+  answer,
+  beat,
+  forget,
+  failure,
+  end,
+  lead,
+  generation,
+  done,
+  migrants,
+  last_migrants,
+  stop
+};
 
 /// The experiment of the run, from which each rank makes its own operators.
 struct Setup {
@@ -93,6 +115,46 @@ struct End {
   static constexpr auto kind = Kind::end;
 };
 
+/// The run has islands, whose archives exist. Each rank finds in groups.hpp to which group it belongs.
+struct Lead {
+  std::string protocol = message::protocol();
+  std::string folder;               ///< of the run; all first ranks read and write in it
+  std::vector<std::uint32_t> next;  ///< the next generation of each island
+
+  static constexpr auto kind = Kind::lead;
+};
+
+/// An island has completed a generation.
+struct Generation {
+  std::int64_t island = 0;
+  Summary summary;
+
+  static constexpr auto kind = Kind::generation;
+};
+
+/// A group has ended its work.
+struct Done {
+  std::vector<int> lost;  ///< ranks of the group that have been given up
+
+  static constexpr auto kind = Kind::done;
+};
+
+/// Those who emigrate from one island to another after a generation.
+struct Migrants {
+  std::int64_t from = 0, to = 0;
+  std::uint32_t generation = 0;
+  std::vector<Migrant> migrants;
+
+  static constexpr auto kind = Kind::migrants;
+};
+
+/// An island has come to its end, and sends nobody any more.
+struct LastMigrants {
+  std::int64_t island = 0;
+
+  static constexpr auto kind = Kind::last_migrants;
+};
+
 /// Why a rank cannot go on.
 struct Failure {
   std::string host, reason;
@@ -104,12 +166,12 @@ struct Failure {
 /// Returns a message as bytes.
 template <class Message>
 std::string packed(const Message& message);
-std::string packed(Kind kind);  ///< of a message without content: forget
+std::string packed(Kind kind);  ///< of a message without content: forget, stop
 
 /// Returns the kind of a message. Throws WireError if there is none.
 Kind kind_of(const std::string& bytes);
-/// Returns the protocol of a Setup.
-std::string protocol_of(const std::string& setup);
+/// Returns the protocol of a Setup or a Lead.
+std::string protocol_of(const std::string& first);
 /// Returns the content of a message of the kind Message::kind. Throws WireError if the bytes are not such a message.
 template <class Message>
 Message unpacked(const std::string& bytes);
@@ -121,6 +183,11 @@ extern template std::string packed(const Answer&);
 extern template std::string packed(const Beat&);
 extern template std::string packed(const End&);
 extern template std::string packed(const Failure&);
+extern template std::string packed(const Lead&);
+extern template std::string packed(const Generation&);
+extern template std::string packed(const Done&);
+extern template std::string packed(const Migrants&);
+extern template std::string packed(const LastMigrants&);
 extern template Setup unpacked(const std::string&);
 extern template Hello unpacked(const std::string&);
 extern template Job unpacked(const std::string&);
@@ -128,5 +195,10 @@ extern template Answer unpacked(const std::string&);
 extern template Beat unpacked(const std::string&);
 extern template End unpacked(const std::string&);
 extern template Failure unpacked(const std::string&);
+extern template Lead unpacked(const std::string&);
+extern template Generation unpacked(const std::string&);
+extern template Done unpacked(const std::string&);
+extern template Migrants unpacked(const std::string&);
+extern template LastMigrants unpacked(const std::string&);
 
 }  // namespace evodevo::message

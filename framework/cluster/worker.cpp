@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "base/input_error.hpp"
@@ -144,25 +145,18 @@ bool ends_run(const Received& received, Channel& channel) {
   return true;
 }
 
-/// Waits for a message that ends the run, or that is of the given kind. Returns nullopt in the first case.
-std::optional<std::string> awaited(Channel& channel, std::optional<message::Kind> kind, std::chrono::seconds patience) {
+/// Waits for a message that ends the run, or that is of one of the given kinds. Returns nullopt in the first case.
+std::optional<std::string> awaited(Channel& channel, std::initializer_list<message::Kind> kinds,
+                                   std::chrono::seconds patience) {
   Silence silence(patience);
   for (;; std::this_thread::sleep_for(between_looks)) {
     while (std::optional<Received> received = channel.receive()) {
       silence.broken();
       if (ends_run(*received, channel)) return std::nullopt;
-      if (kind && message::kind_of(received->bytes) == *kind) return std::move(received->bytes);
+      if (std::ranges::find(kinds, message::kind_of(received->bytes)) != kinds.end()) return std::move(received->bytes);
     }
     silence.check();
   }
-}
-
-/// Tells rank 0 why this rank cannot go on, and waits until it ends the run. If this process ended sooner, the launcher
-/// could end rank 0 before it has said so to the user.
-void report(const std::exception& error, Channel& channel, std::chrono::seconds patience) {
-  const bool of_input = dynamic_cast<const InputError*>(&error) != nullptr;
-  channel.send(0, message::packed(message::Failure{host_name(), error.what(), of_input}));
-  awaited(channel, std::nullopt, patience);
 }
 
 /// Takes all messages that are there. Returns false if one of them ends the run.
@@ -184,6 +178,16 @@ void send_answers(Channel& channel, Worker& worker) {
 
 }  // namespace
 
+std::optional<std::string> first_message(Channel& channel) {
+  return awaited(channel, {message::Kind::setup, message::Kind::lead}, patience_with_leader);
+}
+
+void report_failure(const std::exception& error, Channel& channel, std::chrono::seconds patience) {
+  const bool of_input = dynamic_cast<const InputError*>(&error) != nullptr;
+  channel.send(0, message::packed(message::Failure{host_name(), error.what(), of_input}));
+  awaited(channel, {}, patience);
+}
+
 void do_jobs(Channel& channel, Worker& worker, std::chrono::seconds patience) {
   Silence silence(patience);
   for (Clock::time_point next_beat = Clock::now(); take_messages(channel, worker, silence);
@@ -192,7 +196,7 @@ void do_jobs(Channel& channel, Worker& worker, std::chrono::seconds patience) {
     try {
       send_answers(channel, worker);
     } catch (const std::exception& error) {
-      return report(error, channel, patience);
+      return report_failure(error, channel, patience);
     }
     if (Clock::now() < next_beat) continue;
     channel.send(0, message::packed(worker.beat()));
@@ -200,17 +204,15 @@ void do_jobs(Channel& channel, Worker& worker, std::chrono::seconds patience) {
   }
 }
 
-void serve(Channel& channel, const std::function<RankOptions()>& options) {
-  const std::optional<std::string> bytes = awaited(channel, message::Kind::setup, patience_with_leader);
-  if (!bytes) return;
+void serve(Channel& channel, const std::string& bytes, const std::function<RankOptions()>& options) {
   Experiment experiment;
   std::unique_ptr<Simulator> simulator;
   std::unique_ptr<Worker> worker;
   try {
-    if (const std::string protocol = message::protocol_of(*bytes); protocol != message::protocol())
+    if (const std::string protocol = message::protocol_of(bytes); protocol != message::protocol())
       throw InputError("speaks protocol " + message::protocol() + ", but rank 0 speaks protocol " + protocol +
                        "; give all ranks evodevo programs of the same version");
-    const message::Setup setup = message::unpacked<message::Setup>(*bytes);
+    const message::Setup setup = message::unpacked<message::Setup>(bytes);
     RankOptions given = options();
     experiment = read_experiment(setup.text, {.file = setup.name,
                                               .overrides = std::move(given.overrides),
@@ -223,7 +225,7 @@ void serve(Channel& channel, const std::function<RankOptions()>& options) {
     simulator = make_simulator(experiment);
     worker = std::make_unique<Worker>(experiment, *simulator);
   } catch (const std::exception& error) {
-    return report(error, channel, patience_with_leader);
+    return report_failure(error, channel, patience_with_leader);
   }
   channel.send(0, message::packed(worker->hello()));
   do_jobs(channel, *worker);

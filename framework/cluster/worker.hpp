@@ -78,8 +78,17 @@ struct RankOptions {
   bool mixed = false;                              ///< see share_host()
 };
 
-/// Does the whole work of a rank other than 0: makes the experiment that rank 0 sends, introduces itself and does jobs.
-/// If it cannot, tells rank 0, which says so to the user. Throws like do_jobs().
-void serve(Channel& channel, const std::function<RankOptions()>& options);
+/// Waits for the message with which rank 0 begins: Setup, or Lead if the run has islands. Returns nullopt if it ends
+/// the run instead. Throws like do_jobs().
+std::optional<std::string> first_message(Channel& channel);
+
+/// Tells rank 0 why this rank cannot go on, and waits until it ends the run. If this process ended sooner, the launcher
+/// could end rank 0 before it has said so to the user.
+void report_failure(const std::exception& error, Channel& channel,
+                    std::chrono::seconds patience = patience_with_leader);
+
+/// Does the whole work of a rank other than 0, given the Setup that it has got: makes the experiment that rank 0 sends,
+/// introduces itself and does jobs. If it cannot, tells rank 0, which says so to the user. Throws like do_jobs().
+void serve(Channel& channel, const std::string& setup, const std::function<RankOptions()>& options);
 
 }  // namespace evodevo

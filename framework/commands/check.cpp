@@ -7,6 +7,7 @@
 #include "commands/commands.hpp"
 #include "commands/shell/options.hpp"
 #include "evolution/breeding.hpp"
+#include "experiment/islands/neighbours.hpp"
 #include "life/birth.hpp"
 #include "life/measurement/top_speed.hpp"
 #include "life/measurement/windows.hpp"
@@ -94,12 +95,43 @@ void print_top_speeds(const Experiment& experiment) {
   }
 }
 
+/// Returns a text such as "1, 2 and 3".
+std::string numbers_text(const std::vector<std::int64_t>& numbers) {
+  std::vector<std::string> texts;
+  for (const std::int64_t number : numbers) texts.push_back(std::to_string(number));
+  return joined(texts);
+}
+
+/// Prints who sends migrants to whom, and what is different on single islands.
+void print_islands(const std::vector<Experiment>& islands) {
+  constexpr std::size_t most = 20;
+  const std::optional<IslandSettings>& settings = islands.front().islands;
+  if (!settings) return;
+  const auto names = [](const Experiment& island) {
+    std::vector<std::string> texts;
+    for (const OperatorUse& use : island.uses)
+      if (use.kind == Selection::kind || use.kind == Mutation::kind || use.kind == Crossover::kind)
+        texts.push_back(use.name);
+    return joined(texts);
+  };
+  std::cout << settings->count << " islands, topology " << name_of(settings->topology) << '\n';
+  for (std::size_t i = 0; i < std::min(most, islands.size()); ++i) {
+    const Experiment& island = islands[i];
+    std::cout << "island " << island.island << ": seed " << island.seed << ", " << island.evaluations
+              << " evaluations, " << names(island) << "; sends to "
+              << numbers_text(destinations_of(island.island, *settings)) << '\n';
+  }
+  if (islands.size() > most) std::cout << "and " << islands.size() - most << " more\n";
+}
+
 int check(const Given& given) {
   const auto file = given["EXPERIMENT.toml"].as<std::string>();
-  const Experiment experiment = given_experiment(file, given);
+  const std::vector<Experiment> islands = given_islands(file, given);
+  const Experiment& experiment = islands.front();
   print_warnings(experiment);
   print_sample_memory(experiment);
   print_top_speeds(experiment);
+  print_islands(islands);
   std::cout << file << ": ok\n";
   return 0;
 }
@@ -114,7 +146,7 @@ Command check_command() {
           .summary = "Check an experiment without running it",
           .text = {"It reads the experiment, loads its operators and checks all values. It reports all errors at once; "
                    "each names the place, the value and the remedy. It also prints the top speed that friction and "
-                   "damping allow in the scene."},
+                   "damping allow in the scene, and the islands."},
           .examples = {"check experiments/paper.toml", "check my.toml --set experiment.population=100"},
           .options = options,
           .function = check};

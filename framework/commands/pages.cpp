@@ -9,6 +9,7 @@
 #include "commands/commands.hpp"
 #include "commands/shell/notices.hpp"
 #include "commands/shell/options.hpp"
+#include "evolution/islands/island_folders.hpp"
 #include "report/camera.hpp"
 #include "report/page.hpp"
 #include "report/report.hpp"
@@ -96,8 +97,16 @@ int serve_report(const std::vector<std::string>& folders, const Given& given) {
   return 0;
 }
 
+/// Returns the folders of the archives of runs: of a run with islands, those of all islands.
+std::vector<std::string> folders_of_archives(const std::vector<std::string>& runs) {
+  std::vector<std::string> folders;
+  for (const std::string& run : runs)
+    for (const fs::path& folder : archive_folders(run)) folders.push_back(folder.string());
+  return folders;
+}
+
 int report(const Given& given) {
-  const auto folders = given["DIR"].as<std::vector<std::string>>();
+  const std::vector<std::string> folders = folders_of_archives(given["DIR"].as<std::vector<std::string>>());
   const auto best = given["best"].as<std::int64_t>();
   if (best < 0 || best > 100) throw UsageError("--best " + std::to_string(best) + ": expected 0 to 100");
   const auto elites = given["elites"].as<std::int64_t>();
@@ -202,7 +211,7 @@ Command report_command() {
       .text =
           {"The page is one HTML file that needs neither network nor server. It shows the progress in each objective, "
            "the Pareto front, the experiment, and the best robots, some of their ancestors and the named "
-           "individuals in 3D. For several runs, it is one page that compares them.",
+           "individuals in 3D. For several runs, or the islands of a run, it is one page that compares them.",
            "The best robots are those with the best first objective. If there are other objectives, the page also "
            "shows the best robot by each of them. If the experiment has descriptors, it shows the map of their niches, "
            "whose cells open their robots.",

@@ -10,9 +10,11 @@
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "commands/commands.hpp"
+#include "commands/shell/notices.hpp"
 #include "commands/shell/options.hpp"
 #include "evolution/archive/archive.hpp"
 #include "evolution/evolution.hpp"
+#include "evolution/islands/island_folders.hpp"
 #include "experiment/toml_reader.hpp"
 #include "report/diversity.hpp"
 #include "report/lineage.hpp"
@@ -20,6 +22,8 @@
 
 namespace evodevo {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::size_t best_shown = 5;
 constexpr std::size_t best_of_others_shown = 1;  ///< by each objective after the first
@@ -60,6 +64,7 @@ class Report {
     const auto recorded = [&](const char* key) { return printable(archive_.record(key)); };
     std::cout << recorded("name") << ", seed " << recorded("seed") << ", " << devices() << ", evodevo "
               << recorded("evodevo") << ", begun " << recorded("created") << '\n';
+    print_island();
     const auto statuses = archive_.statuses();
     if (const Control control = recorded_settings(archive_).development.control; control != Control::off)
       std::cout << "development under the control \"" << name_of(control) << "\"\n";
@@ -94,6 +99,16 @@ class Report {
   }
 
  private:
+  void print_island() const {
+    const std::int64_t number = archive_.island();
+    if (number == 0) return;
+    const IslandSettings islands = recorded_settings(archive_).islands.value();
+    const std::vector<Immigrant> immigrants = archive_.immigrants();
+    const auto living = std::ranges::count_if(immigrants, [](const Immigrant& one) { return !one.died; });
+    std::cout << "island " << number << " of " << islands.count << ", topology " << name_of(islands.topology) << ", "
+              << immigrants.size() << " immigrants, of which " << living << " live\n";
+  }
+
   bool has_refusals() const {
     return std::ranges::any_of(generations_, [](const Summary& s) { return s.artefact + s.passive > 0; });
   }
@@ -236,6 +251,8 @@ class Report {
     std::string text;
     for (std::size_t i = 0; i < line.size(); ++i) {
       text += (i > 0 ? " < " : "") + std::to_string(line[i].id) + " (" + line[i].made_by;
+      if (const auto& from = line[i].migrated)
+        text += " of " + std::to_string(from->individual) + " from island " + std::to_string(from->island);
       if (i + 1 < line.size())
         text += changes_text(block_changes(line[i + 1].genome, line[i].genome, layout_), layout_);
       text += ")";
@@ -255,8 +272,50 @@ class Report {
   std::vector<Column> columns_;  ///< of the objectives
 };
 
+/// Prints a line for each island of a run.
+void print_islands(const fs::path& run) {
+  fmt::print(std::cout, "{:>6} {:>11} {:>12} {:>10} {:>10} {:>11} {:>12}\n", "island", "generations", "evaluations",
+             "best", "individual", "immigrants", "of them live");
+  for (const fs::path& folder : island_folders(run)) {
+    const Archive archive = Archive::read(folder);
+    const std::vector<Summary> generations = archive.generations();
+    const std::vector<std::uint32_t> best = archive.best(1);
+    std::int64_t immigrants = 0, living = 0;
+    for (const Immigrant& one : archive.immigrants()) {
+      ++immigrants;
+      living += !one.died;
+    }
+    fmt::print(std::cout, "{:>6} {:>11} {:>12} {:>10} {:>10} {:>11} {:>12}\n", archive.island(), generations.size(),
+               generations.empty() ? 0 : generations.back().evaluations,
+               best.empty() ? "-" : short_number(archive.known_individual(best.front()).result.objectives.front()),
+               best.empty() ? "-" : std::to_string(best.front()), immigrants, living);
+  }
+  remarks() << "to see more of an island: " << program_name() << " show " << island_folder(run, 1).string() << '\n';
+}
+
+/// Shows a run with islands.
+int show_islands(const fs::path& run, const Given& given) {
+  if (given.contains("individual"))
+    throw UsageError(option_text("individual", std::to_string(given["individual"].as<std::int64_t>())) +
+                     ": each island has its own individuals; give the folder of one, such as " +
+                     island_folder(run, 1).string());
+  if (!given.contains("json")) {
+    print_islands(run);
+    return 0;
+  }
+  nlohmann::ordered_json islands = nlohmann::ordered_json::array();
+  for (const fs::path& folder : island_folders(run)) {
+    const Archive archive = Archive::read(folder);
+    islands.push_back(run_json(archive, recorded_settings(archive)));
+  }
+  std::cout << json_text({{"islands", std::move(islands)}}) << '\n';
+  return 0;
+}
+
 int show(const Given& given) {
-  const Archive archive = Archive::read(given["DIR"].as<std::string>());
+  const fs::path folder = given["DIR"].as<std::string>();
+  if (has_islands(folder)) return show_islands(folder, given);
+  const Archive archive = Archive::read(folder);
   const bool is_one = given.contains("individual");
   if (is_one && given.contains("json"))
     std::cout << json_text(individual_json(archive, chosen_individual(archive, given))) << '\n';
@@ -284,7 +343,9 @@ Command show_command() {
            "map of niches if the experiment has descriptors, why individuals have no fitness, and the best individuals "
            "with their scores, their ancestors, and the blocks of genes that came and went from one to the next. The "
            "run may still be in progress. With --individual, it prints one individual: its scores, what the selection "
-           "operator has noted about it, and its ancestors."},
+           "operator has noted about it, and its ancestors. Of a run with islands, it prints a line for each; to see "
+           "more "
+           "of one, give its folder."},
       .examples = {"show runs/quickstart-1", "show runs/quickstart-1 --individual 531",
                    "show runs/quickstart-1 --json"},
       .options = options,

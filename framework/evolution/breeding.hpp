@@ -24,8 +24,8 @@ Genome first_genome(const Experiment& experiment, const std::function<Rng(std::u
 /// random numbers, at most 16 times; if it is equal even then, it is a clone. If the selection operator makes the
 /// children itself, they stay as they are, and it also makes those of an empty population.
 ///
-/// The result does not depend on `workers`, the threads that make the newborns if they are many; null: this thread makes
-/// them all.
+/// The result does not depend on `workers`, the threads that make the newborns if they are many; null: this thread
+/// makes them all.
 std::vector<Individual> breed(const Experiment& experiment, const std::vector<Individual>& population,
                               std::uint32_t generation, std::uint32_t first_id, std::size_t count,
                               std::span<const std::byte> memory = {}, Workers* workers = nullptr,

@@ -266,9 +266,9 @@ TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& ar
     const auto start = Clock::now();
     const std::int64_t count = std::min(experiment.newborns(), experiment.evaluations - evaluations);
     // each evaluation uses one id, so the next id is the number of evaluations so far
-    std::vector<Individual> newborns =
-        breed(experiment, population, generation, static_cast<std::uint32_t>(evaluations),
-              static_cast<std::size_t>(count), memory_of_breeder(experiment, remembered), &evaluator.workers(), *migrants);
+    std::vector<Individual> newborns = breed(
+        experiment, population, generation, static_cast<std::uint32_t>(evaluations), static_cast<std::size_t>(count),
+        memory_of_breeder(experiment, remembered), &evaluator.workers(), *migrants);
     time.breed += seconds_since(start);
     evaluate(newborns, evaluator, provenances, observer);
     evaluations += count;

@@ -40,7 +40,7 @@ struct Individual {
                         ///< operator that made it, "random", or "migration"
   Genome genome;
   Result result;
-  std::uint32_t provenance = 0;  ///< of the result: index into Archive::provenances()
+  std::uint32_t provenance = 0;           ///< of the result: index into Archive::provenances()
   std::optional<Migrated> migrated = {};  ///< of an immigrant: where it comes from
 
   std::uint32_t age(std::uint32_t generation) const { return generation - origin; }

@@ -75,9 +75,9 @@ toml::table with_overrides(toml::table root, const ExperimentSource& source) {
 /// Throws ConfigError if the genomes of an island are not those of the first one, so that it could not migrate.
 void check_same_genomes(const Experiment& first, const Experiment& island, const ExperimentSource& source) {
   if (island.layout == first.layout) return;
-  throw ConfigError(source.file + ": island " + std::to_string(island.island) +
-                    " has genomes with the sections " + joined(island.layout.sections) +
-                    ", but island 1 has genomes with " + joined(first.layout.sections) +
+  throw ConfigError(source.file + ": island " + std::to_string(island.island) + " has genomes with the sections " +
+                    joined(island.layout.sections) + ", but island 1 has genomes with " +
+                    joined(first.layout.sections) +
                     ", or their genes differ; give all islands the same mutation operators with genes of their own");
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "evolution/evolution.hpp"
+#include "experiment/islands/neighbours.hpp"
 #include "report/diversity.hpp"
 #include "report/lineage.hpp"
 
@@ -113,6 +114,24 @@ Json tests_json(const std::vector<ArchivedTest>& tests) {
   return list;
 }
 
+Json migrated_json(const Migrated& from) { return {{"island", from.island}, {"individual", from.individual}}; }
+
+/// The island whose run this is, and the individuals that came from others; null if the run has no islands.
+Json island_json(const Archive& archive, const Settings& settings) {
+  if (archive.island() == 0 || !settings.islands) return nullptr;
+  Json immigrants = Json::array();
+  for (const Immigrant& one : archive.immigrants())
+    immigrants.push_back({{"individual", one.id},
+                          {"generation", one.born},
+                          {"died", one.died ? Json(*one.died) : Json(nullptr)},
+                          {"from", migrated_json(one.from)}});
+  return {{"number", archive.island()},
+          {"count", settings.islands->count},
+          {"topology", name_of(settings.islands->topology)},
+          {"sources", sources_of(archive.island(), *settings.islands)},
+          {"immigrants", std::move(immigrants)}};
+}
+
 Json notes_json(const Archive& archive, std::uint32_t id) {
   Json notes = Json::object();
   for (const ArchivedNote& note : archive.notes(id)) notes[note.name] = note.value;
@@ -192,6 +211,7 @@ Json individual_json(const Archive& archive, const ArchivedIndividual& individua
           {"scenarios", tests_json(archive.tests(individual.id))},
           {"parents", individual.parents},
           {"made_by", individual.made_by},
+          {"migrated_from", individual.migrated ? migrated_json(*individual.migrated) : Json(nullptr)},
           {"provenance", individual.provenance},
           {"ancestry", std::move(ancestors)},
           {"block_changes", line_changes_json(line, archive.layout())},
@@ -219,6 +239,7 @@ Json run_json(const Archive& archive, const Settings& settings) {
   Json root = {{"folder", archive.folder().string()},
                {"experiment", archive.record("name")},
                {"seed", settings.seed},
+               {"island", island_json(archive, settings)},
                {"created", archive.record("created")},
                {"evaluations", generations.empty() ? 0 : generations.back().evaluations},
                {"evaluations_asked", settings.evaluations},

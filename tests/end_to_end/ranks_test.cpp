@@ -9,9 +9,9 @@
 #include "evolution/archive/archive.hpp"
 #include "operators/loader.hpp"
 #include "support/experiments.hpp"
+#include "support/islands.hpp"
 #include "support/messages.hpp"
 #include "support/process.hpp"
-#include "support/runs.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo {
@@ -47,7 +47,7 @@ class Ranks : public ::testing::Test {
     return {EVODEVO_PROGRAM, "resume", (scratch_ / folder).string()};
   }
   void expect_equal(const std::string& a, const std::string& b) const {
-    testing::expect_same_runs(Archive::read(scratch_ / a), Archive::read(scratch_ / b));
+    testing::expect_same_islands(scratch_ / a, scratch_ / b);
   }
   static void expect_success(const Words& command) {
     const Finished finished = testing::run(command);
@@ -87,6 +87,16 @@ TEST_F(Ranks, MakeTheSameRunOfEachExperiment) {
     expect_equal(alone, ranks);
   }
   EXPECT_GT(count, 30);
+}
+
+TEST_F(Ranks, OfIslandsMakeTheSameRunAsOneProcess) {
+  file_ = scratch_.write("islands.toml", testing::small_islands);
+  expect_success(run_command("alone"));
+  for (const int count : {1, 2, 3, 5, 7}) {
+    const std::string folder = std::to_string(count);
+    expect_success(started(count, run_command(folder)));
+    expect_equal("alone", folder);
+  }
 }
 
 TEST_F(Ranks, SayWhatEachOfThemHasDone) {
@@ -158,6 +168,33 @@ TEST_F(Ranks, GoOnWithoutAKilledOneIfTheLauncherLetsThem) {
   kill_rank(process, 2);
   EXPECT_EQ(process.wait(), 0);
   EXPECT_THAT(process.output(), testing::naming("warning: rank 2 on ", "lost on the way"));
+  expect_equal("straight", "killed");
+}
+
+/// Kills a rank of a run with islands when islands have completed about three generations.
+void kill_rank_of_islands(Process& launcher, int rank) {
+  while (const std::optional<std::string> line = launcher.read_line())
+    if (line->find("evaluations 4") != std::string::npos) break;
+  int killed = 0;
+  for (const pid_t child : children(launcher.id()))
+    if (variable(child, "OMPI_COMM_WORLD_RANK") == std::to_string(rank)) killed += kill(child, SIGKILL) == 0;
+  EXPECT_EQ(killed, 1);
+}
+
+/// Ranks 0 and 1 belong to island 1, rank 2 is the first one of island 2.
+TEST_P(KilledRank, EndsARunWithIslandsThatAnyNumberOfRanksResume) {
+  file_ = scratch_.write("islands.toml", testing::small_islands);
+  const Words slow{"fitness.0.window=2", "fitness.1.window=2"};
+  expect_success(run_command("straight", slow));
+  Process process(started(5, run_command("killed", slow)));
+  kill_rank_of_islands(process, GetParam());
+  EXPECT_NE(process.wait(), 0);
+  std::int64_t done = 0;
+  for (const fs::path& folder : island_folders(scratch_ / "killed"))
+    if (const auto generations = Archive::read(folder).generations(); !generations.empty())
+      done += generations.back().evaluations;
+  EXPECT_LT(done, 104) << "it was done before it could be killed";
+  expect_success(started(2, resume_command("killed")));
   expect_equal("straight", "killed");
 }
 

@@ -365,7 +365,7 @@ TEST(Serve, RefusesAnotherProtocol) {
   LocalChannel leader(boxes, 0), other(boxes, 1);
   leader.send(1, message::packed(message::Setup{.protocol = "2.99"}));
   end_run(leader);
-  serve(other, [] { return RankOptions(); });
+  serve(other, first_message(other).value(), [] { return RankOptions(); });
   const std::optional<Received> received = leader.receive();
   ASSERT_TRUE(received);
   EXPECT_THAT(message::unpacked<message::Failure>(received->bytes).reason,

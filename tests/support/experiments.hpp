@@ -69,6 +69,7 @@ inline std::vector<std::string> shrinking(const std::string& file) {
   std::vector<std::string> values = {"experiment.population=8", "experiment.children=8", "experiment.evaluations=16",
                                      "fitness.0.settle=0.1", "fitness.0.window=0.1"};
   const Experiment experiment = read_experiment({file, {}});
+  if (experiment.islands) values[2] = "experiment.evaluations=" + std::to_string(16 * experiment.islands->count);
   if (experiment.resolved.find("\npoints = ") != std::string::npos) values.push_back("encoding.points=60");
   if (experiment.random_individuals > 8) values.push_back("experiment.random_individuals=8");
   if (experiment.development.cycles > 0)

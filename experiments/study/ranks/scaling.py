@@ -13,6 +13,9 @@ measurements of one GPU and its host:
   65,536 robots on 16 cores of an Intel Xeon). It breeds on all threads, and writes a generation into the archive while
   the next one is evaluated.
 - Messages of 100 robots: packing and unpacking, measured by themselves, and a latency as between hosts.
+
+It also divides 10,000 GPUs among islands, of which each has a first rank that breeds, selects and writes for itself. An
+island waits for the one before it on a ring every EVERY generations.
 """
 
 import argparse
@@ -32,6 +35,8 @@ PACK = 5e-6  # s for each robot of a message, both directions together
 MESSAGE = 20e-6  # s for each message, for rank 0
 LATENCY = 50e-6  # s, of each message
 JOBS, FAST = 16, 100  # jobs that a rank with a GPU has at once, and robots in each: worker.cpp
+EVERY = 10  # generations from one migration to the next, the default
+GENERATIONS = 100  # of each island
 GENERATION = 1024  # robots for each GPU, if the population grows with the GPUs
 
 
@@ -61,12 +66,45 @@ def evaluation_seconds(gpus, robots, robot_seconds, rng):
     return max(last, leader_free)
 
 
+def generation_seconds(gpus, robots, robot_seconds, rng):
+    """Returns the time of one generation of one population."""
+    generation = robots * (BREED + SELECT) + evaluation_seconds(gpus, robots, robot_seconds, rng)
+    return max(generation, robots * ARCHIVE)
+
+
+def island_seconds(islands, times, rng):
+    """Returns the time in which all islands make GENERATIONS generations, each of which takes one of `times`."""
+    ends = [0.0] * islands
+    for generation in range(GENERATIONS):
+        begins = ends
+        if generation and generation % EVERY == 0:
+            begins = [max(ends[i], ends[i - 1] + LATENCY) for i in range(islands)]
+        ends = [begin + rng.choice(times) for begin in begins]
+    return max(ends)
+
+
+def island_rows(name, gpus, counts):
+    robot_seconds = SPRING_EVALUATIONS[name] / RATE * MULTIPROCESSORS
+    rng = random.Random(1)
+
+    def some_times(of_gpus):
+        samples = max(3, 200 // of_gpus)
+        return [generation_seconds(of_gpus, GENERATION * of_gpus, robot_seconds, rng) for _ in range(samples)]
+
+    alone = some_times(1)
+    rate_alone = GENERATION * len(alone) / sum(alone)
+    for islands in counts:
+        seconds = island_seconds(islands, some_times(gpus // islands), rng)
+        rate = GENERATION * gpus // islands * islands * GENERATIONS / seconds
+        yield {"case": name, "gpus": gpus, "islands": islands, "robots_per_island": GENERATION * gpus // islands,
+               "robots_per_second": f"{rate:.4g}", "of_single_gpus": f"{rate / rate_alone / gpus:.3f}"}
+
+
 def rows_of(name, gpu_counts, robots_for):
     robot_seconds = SPRING_EVALUATIONS[name.split(",")[0]] / RATE * MULTIPROCESSORS
     for gpus in gpu_counts:
         robots = robots_for(gpus)
-        generation = robots * (BREED + SELECT) + evaluation_seconds(gpus, robots, robot_seconds, random.Random(gpus))
-        seconds = max(generation, robots * ARCHIVE)
+        seconds = generation_seconds(gpus, robots, robot_seconds, random.Random(gpus))
         ideal = robots * robot_seconds / MULTIPROCESSORS / gpus
         yield {"case": name, "gpus": gpus, "robots": robots, "seconds": f"{seconds:.4g}",
                "robots_per_second": f"{robots / seconds:.4g}", "of_ideal": f"{ideal / seconds:.3f}"}
@@ -94,9 +132,36 @@ def draw(rows, file):
     figure.savefig(file)
 
 
+def draw_islands(rows, file):
+    import matplotlib
+
+    matplotlib.use("svg")
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(5, 4), layout="constrained")
+    for case in dict.fromkeys(row["case"] for row in rows):
+        of_case = [row for row in rows if row["case"] == case]
+        axes.semilogx([row["islands"] for row in of_case], [float(row["of_single_gpus"]) for row in of_case], "o-",
+                      markersize=3, label=case)
+    axes.axhline(0.9, color="grey", linewidth=0.5)
+    axes.set_xlabel(f"islands that share {rows[0]['gpus']:,} GPUs")
+    axes.set_ylabel("part of the rate of so many runs on one GPU (1)")
+    axes.set_ylim(0, 1)
+    axes.legend(fontsize=7)
+    axes.grid(linewidth=0.3)
+    figure.savefig(file)
+
+
+def write(rows, file):
+    with open(file, "w", newline="") as stream:
+        writer = csv.DictWriter(stream, rows[0].keys(), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("out", type=pathlib.Path, help="folder for scaling.csv and scaling.svg")
+    parser.add_argument("out", type=pathlib.Path, help="folder for the numbers and charts")
     parser.add_argument("--most", type=int, default=10_000, help="largest number of GPUs")
     given = parser.parse_args()
     counts = [n for n in (1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 10_000) if n <= given.most]
@@ -110,11 +175,12 @@ def main():
         *rows_of("evo-devo.toml, 16,384 robots", counts, lambda gpus: 16_384),
     ]
     given.out.mkdir(parents=True, exist_ok=True)
-    with open(given.out / "scaling.csv", "w", newline="") as file:
-        writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write(rows, given.out / "scaling.csv")
     draw(rows, given.out / "scaling.svg")
+    islands = [n for n in (1, 2, 5, 10, 20, 50, 80, 100, 125, 200, 250, 500, 1000, 2000, 5000, 10_000) if n <= given.most]
+    rows = [row for name in SPRING_EVALUATIONS for row in island_rows(name, given.most, islands)]
+    write(rows, given.out / "islands.csv")
+    draw_islands(rows, given.out / "islands.svg")
 
 
 if __name__ == "__main__":

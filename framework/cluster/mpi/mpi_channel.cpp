@@ -22,8 +22,8 @@ class MpiChannel final : public Channel {
  public:
   MpiChannel() {
     int provided = 0;
-    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
-    if (provided < MPI_THREAD_FUNNELED) throw std::runtime_error("this MPI does not work in programs with threads");
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
+    if (provided < MPI_THREAD_SERIALIZED) throw std::runtime_error("this MPI does not work in programs with threads");
     // a message to a lost rank fails, and ends no other rank
     MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);

@@ -45,7 +45,7 @@ void handle_signals(void (*handler)(int)) {
 
 }  // namespace
 
-const std::atomic<bool>& stop_requested() { return requested; }
+std::atomic<bool>& stop_requested() { return requested; }
 void stop_on_signals() { handle_signals(stop_or_end); }
 void end_on_signals() { handle_signals(end); }
 

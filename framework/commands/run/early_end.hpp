@@ -8,8 +8,9 @@ namespace evodevo {
 /// The exit code of a run that ended early and can be continued.
 inline constexpr int ended_early = 130;
 
-/// Set once a signal has asked this process to end its run.
-const std::atomic<bool>& stop_requested();
+/// Set once a signal has asked this process to end its run, or a part of the run has failed, so that the rest has to
+/// end.
+std::atomic<bool>& stop_requested();
 
 /// From now on, the first SIGINT, SIGTERM or SIGUSR1 sets stop_requested(), and a second one ends the process at once,
 /// with the exit code `ended_early`. SIGUSR1 within a second of the one before does not count, because a launcher may

@@ -25,19 +25,21 @@ GenerationLog::GenerationLog(const std::filesystem::path& file) : file_(file), s
                      "; give a file in a folder that can be written to");
 }
 
-void GenerationLog::add(const Summary& summary) {
+void GenerationLog::add(const Summary& summary, std::int64_t island) {
+  const std::lock_guard lock(mutex_);
   if (failed_) return;
-  const Json line = {{"generation", summary.generation},
-                     {"evaluations", summary.evaluations},
-                     {"best", optional_json(summary.best)},
-                     {"median", optional_json(summary.median)},
-                     {"diverged", summary.diverged},
-                     {"invalid", summary.invalid},
-                     {"artefact", summary.artefact},
-                     {"passive", summary.passive},
-                     {"clones", summary.clones},
-                     {"spring_evaluations", summary.spring_evaluations},
-                     {"wall_time", summary.wall_time}};
+  Json line = {{"generation", summary.generation},
+               {"evaluations", summary.evaluations},
+               {"best", optional_json(summary.best)},
+               {"median", optional_json(summary.median)},
+               {"diverged", summary.diverged},
+               {"invalid", summary.invalid},
+               {"artefact", summary.artefact},
+               {"passive", summary.passive},
+               {"clones", summary.clones},
+               {"spring_evaluations", summary.spring_evaluations},
+               {"wall_time", summary.wall_time}};
+  if (island > 0) line["island"] = island;
   // a pipe whose reader has ended is an error like any other, and does not end the run
   const auto before = std::signal(SIGPIPE, SIG_IGN);
   stream_ << line.dump() << std::endl;

@@ -16,9 +16,8 @@ namespace {
 
 constexpr const char* page_of_run = "report.html";
 
-std::string report_command(const Archive& archive) {
-  const std::string folder = archive.folder().string();
-  return program_name() + " report " + folder + " --out " + (archive.folder() / page_of_run).string();
+std::string report_command(const std::filesystem::path& folder) {
+  return program_name() + " report " + folder.string() + " --out " + (folder / page_of_run).string();
 }
 
 }  // namespace
@@ -33,21 +32,23 @@ std::string link_to(const std::filesystem::path& file) {
   return link;
 }
 
-void show_run(const Experiment& experiment, Simulator& simulator, const Archive& archive) {
+void show_runs(const std::filesystem::path& folder, std::span<const ShownRun> runs, Simulator& simulator) {
   if (!has_viewer()) {
-    remarks() << "page:  none yet, because the viewer has not been built; make it with `" << report_command(archive)
+    remarks() << "page:  none yet, because the viewer has not been built; make it with `" << report_command(folder)
               << '`' << std::endl;
     return;
   }
   try {
-    const std::filesystem::path file = archive.folder() / page_of_run;
+    const std::filesystem::path file = folder / page_of_run;
     remarks() << "page:  " << std::flush;
-    const std::string page =
-        filled_page(page_template(), report_data({reported_run(archive, experiment, simulator, Cast(), page_budget)}));
+    std::vector<nlohmann::ordered_json> data;
+    for (const auto& [experiment, archive] : runs)
+      data.push_back(reported_run(archive, experiment, simulator, Cast(), page_budget / runs.size()));
+    const std::string page = filled_page(page_template(), report_data(std::move(data)));
     write_file(file, page);
     remarks() << link_to(file) << std::endl;
   } catch (const std::exception& error) {
-    std::cerr << "\nwarning: no page: " << printable(error.what()) << "; " << report_command(archive)
+    std::cerr << "\nwarning: no page: " << printable(error.what()) << "; " << report_command(folder)
               << " makes it later\n";
   }
 }

@@ -14,13 +14,6 @@ namespace {
 
 std::string optional_text(const std::optional<double>& value) { return value ? short_number(*value) : "none"; }
 
-std::string duration_text(double seconds) {
-  const auto whole = static_cast<long>(seconds + 0.5);
-  if (whole < 60) return fmt::format("{} s", whole);
-  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
-  return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
-}
-
 /// The part of a time of `whole` seconds in which a rank had nothing to do, percent.
 double idle_percent(const Share& share, double whole) {
   return whole > 0 ? 100 * std::max(0.0, 1 - share.busy / whole) : 0;
@@ -40,6 +33,13 @@ std::string ranks_text(const std::vector<Share>& shares, double whole) {
 }
 
 }  // namespace
+
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<long>(seconds + 0.5);
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
+}
 
 ProgressDisplay::ProgressDisplay(const Experiment& experiment, const std::vector<Summary>& past,
                                  const std::atomic<bool>& stop, const Farm* farm)
@@ -139,7 +139,7 @@ void ProgressDisplay::finish() {
   std::cout << std::endl;
 }
 
-void print_outcome(const Experiment& experiment, const Archive& archive, const ProgressDisplay& progress) {
+void print_best(const Experiment& experiment, const Archive& archive) {
   if (const auto best = archive.best(1); !best.empty()) {
     const ArchivedIndividual individual = *archive.individual(best.front());
     std::cout << "best: individual " << individual.id << " of generation " << individual.born << " in "
@@ -157,9 +157,11 @@ void print_outcome(const Experiment& experiment, const Archive& archive, const P
     std::cout << "no individual has a fitness; to see why: " << program_name() << " show " << archive.folder().string()
               << '\n';
   }
-  const auto springs = static_cast<double>(progress.spring_evaluations());
-  remarks() << "speed: " << short_number(springs / progress.seconds()) << " spring evaluations/s ("
-            << short_number(springs) << " in " << duration_text(progress.seconds()) << ")" << std::endl;
+}
+
+void print_speed(double spring_evaluations, double seconds) {
+  remarks() << "speed: " << short_number(spring_evaluations / seconds) << " spring evaluations/s ("
+            << short_number(spring_evaluations) << " in " << duration_text(seconds) << ")" << std::endl;
 }
 
 void print_shares(const std::vector<Share>& shares, double whole) {

@@ -52,8 +52,14 @@ class ProgressDisplay {
   std::uint64_t spring_evaluations_ = 0;
 };
 
-/// Prints the best robot, the folder of the run, and the speed.
-void print_outcome(const Experiment& experiment, const Archive& archive, const ProgressDisplay& progress);
+/// Returns a time such as "3 min 20 s".
+std::string duration_text(double seconds);
+
+/// Prints the best robot and the folder of the run, or that no robot has a fitness.
+void print_best(const Experiment& experiment, const Archive& archive);
+
+/// Prints the speed at which a number of spring evaluations took some seconds.
+void print_speed(double spring_evaluations, double seconds);
 
 /// Prints what each rank has contributed to a run that took `whole` seconds.
 void print_shares(const std::vector<Share>& shares, double whole);

@@ -9,6 +9,8 @@
 #include "cluster/ranks.hpp"
 #include "commands/commands.hpp"
 #include "commands/run/early_end.hpp"
+#include "commands/run/island_ranks.hpp"
+#include "commands/run/islands.hpp"
 #include "commands/run/page.hpp"
 #include "commands/run/progress.hpp"
 #include "commands/shell/builds.hpp"
@@ -16,6 +18,7 @@
 #include "commands/shell/options.hpp"
 #include "commands/shell/verification_report.hpp"
 #include "evolution/evolution.hpp"
+#include "evolution/islands/island_folders.hpp"
 #include "evolution/record_check.hpp"
 #include "experiment/device.hpp"
 #include "operators/call_watch.hpp"
@@ -88,14 +91,20 @@ std::string places_text(Simulator& simulator, const Farm* farm) {
   return text;
 }
 
-/// Lets this rank work for rank 0, if it is another one. Returns whether that is so.
+/// Lets this rank work for rank 0, if it is another one, or lead a group of ranks. Returns whether that is so.
 bool served(const Ranks& ranks, const Given& given) {
   if (ranks.leads()) return false;
   // rank 0 decides when the run ends, so the first signal changes nothing here; a second one ends this rank
   stop_on_signals();
-  serve(*ranks.channel(), [&] {
+  const auto options = [&] {
     return RankOptions{given_plugin_path(given), given_gpus(given), given_machine(given), given.contains("mixed")};
-  });
+  };
+  const std::optional<std::string> first = first_message(*ranks.channel());
+  if (!first) return true;
+  if (message::kind_of(*first) == message::Kind::lead)
+    serve_islands(*ranks.channel(), *first, given, options);
+  else
+    serve(*ranks.channel(), *first, options);
   return true;
 }
 
@@ -148,6 +157,17 @@ RunOutput output_of(const Given& given, GenerationLog* log) { return {log, !give
 
 }  // namespace
 
+std::pair<Archive, Experiment> reopened(const fs::path& folder, const Given& given, const Experiment* expected) {
+  Archive archive = Archive::resume(folder, given_journal(given));
+  Experiment experiment = timed("reading the record of the run and loading its operators", [&] {
+    return recorded_experiment(archive, given_plugin_path(given), given_machine(given));
+  });
+  if (expected) check_same_experiment(archive, experiment, *expected);
+  experiment.gpus = given_gpus(given);
+  timed("checking that the run can be continued", [&] { check_resumable(archive, experiment); });
+  return {std::move(archive), std::move(experiment)};
+}
+
 int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive, Farm* farm,
                       const RunOutput& output) {
   stop_on_signals();
@@ -170,7 +190,8 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
   }
   progress.finish();
   record_time_spent(archive, time);
-  print_outcome(experiment, archive, progress);
+  print_best(experiment, archive);
+  print_speed(static_cast<double>(progress.spring_evaluations()), progress.seconds());
   print_time_spent(time, simulator);
   if (farm) {
     print_shares(farm->shares(), time.whole);
@@ -187,7 +208,10 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
     end_on_signals();
     for (const Verification& verification : verify_best(experiment, simulator, archive, count))
       print(verification, experiment.objectives.front());
-    if (output.page) show_run(experiment, simulator, archive);
+    if (output.page) {
+      const ShownRun shown{experiment, archive};
+      show_runs(archive.folder(), {&shown, 1}, simulator);
+    }
     return 0;
   }
   std::cout << "ended early; to continue: " << resume_command_for(archive) << std::endl;
@@ -196,19 +220,44 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
 
 namespace {
 
-/// Does what `evodevo run` does if the folder of the run holds no run yet.
-int begin(const Ranks& ranks, const std::string& file, Experiment experiment, const Given& given) {
+/// Begins a run with islands, or goes on with it.
+int evolve_and_report(Islands islands, Simulator& simulator, const Ranks& ranks, const Given& given,
+                      const RunOutput& output) {
+  std::atomic<bool>& stop = stop_requested();
+  stop_on_signals();
+  end_long_calls_after(stop);
+  remarks() << islands.experiments.front().name << " on " << simulator.device() << ", "
+            << places_text(simulator, nullptr) << "; writing " << islands.experiments.size() << " islands in "
+            << islands.folder.string() << std::endl;
+  return ranks.channel() ? evolve_and_report(islands, simulator, *ranks.channel(), given, stop, output)
+                         : evolve_and_report(islands, simulator, stop, output);
+}
+
+/// Does what `evodevo run` does if the folder of the run holds no run yet. `islands` has the experiments of all
+/// islands, or the only one of the run.
+int begin(const Ranks& ranks, const std::string& file, std::vector<Experiment> islands, const Given& given) {
+  Experiment& experiment = islands.front();
   const std::optional<Journal> journal = given_journal(given);
   const std::unique_ptr<GenerationLog> log = given_log(given, experiment, files_of_experiment(file, experiment));
   print_warnings(experiment);
   if (ranks.channel()) share_host(experiment, *ranks.channel(), given.contains("mixed"));
   const auto simulator = opened_simulator(experiment);
   remember_folders_of(experiment);
-  const auto farm = farm_of(ranks, experiment, *simulator, false, given);
+  const auto farm = islands.size() == 1 ? farm_of(ranks, experiment, *simulator, false, given) : nullptr;
   const fs::path folder =
       given.contains("out") ? fs::path(given["out"].as<std::string>()) : new_run_folder(experiment.name);
+  if (islands.size() > 1)
+    return evolve_and_report(created_islands(folder, std::move(islands), simulator->device(), journal), *simulator,
+                             ranks, given, output_of(given, log.get()));
   Archive archive = Archive::create(folder, experiment, simulator->device(), journal);
   return evolve_and_report(experiment, *simulator, archive, farm.get(), output_of(given, log.get()));
+}
+
+/// Says that a run with islands is complete, so that there is nothing to do, and returns the exit code.
+int say_complete(const fs::path& run) {
+  std::cout << run.string() << ": the run is complete on all islands; to look at it: " << program_name() << " show "
+            << run.string() << std::endl;
+  return 0;
 }
 
 /// Says that a run is complete, so that there is nothing to do, and returns the exit code.
@@ -228,15 +277,28 @@ bool is_complete(const Archive& archive, const Experiment& experiment) {
                              [&](std::uint32_t id) { return archive.verification(id).has_value(); });
 }
 
-/// Continues the run in `archive`. If the user names an `expected` experiment, throws ArchiveError unless the run is
-/// of that one.
-int go_on(const Ranks& ranks, Archive& archive, const Given& given, const Experiment* expected = nullptr) {
-  Experiment experiment = timed("reading the record of the run and loading its operators", [&] {
-    return recorded_experiment(archive, given_plugin_path(given), given_machine(given));
-  });
-  if (expected) check_same_experiment(archive, experiment, *expected);
-  experiment.gpus = given_gpus(given);
-  timed("checking that the run can be continued", [&] { check_resumable(archive, experiment); });
+/// Continues the run with islands in a folder. `expected` has the experiments of its islands if the user names them.
+int go_on_with_islands(const Ranks& ranks, const fs::path& folder, const Given& given,
+                       const std::vector<Experiment>* expected) {
+  Islands islands = reopened_islands(folder, given, expected);
+  Experiment& first = islands.experiments.front();
+  if (are_complete(islands)) return say_complete(folder);
+  if (ranks.channel()) share_host(first, *ranks.channel(), given.contains("mixed"));
+  const auto simulator = opened_simulator(first);
+  warn_of_another_device(*simulator, islands.archives.front());
+  warn_of_other_builds(first, *simulator, islands.archives.front());
+  const std::unique_ptr<GenerationLog> log = given_log(given, first, files_of_run(folder));
+  return evolve_and_report(std::move(islands), *simulator, ranks, given, output_of(given, log.get()));
+}
+
+/// Continues the run in a folder. `expected` has the experiment of the run, or those of its islands, if the user names
+/// it; throws ArchiveError if the run is of another one.
+int go_on(const Ranks& ranks, const fs::path& folder, const Given& given,
+          const std::vector<Experiment>* expected = nullptr) {
+  if (has_islands(folder)) return go_on_with_islands(ranks, folder, given, expected);
+  auto [archive, experiment] = reopened(folder, given, expected ? &expected->front() : nullptr);
+  if (archive.island() > 0)
+    throw ArchiveError(folder.string() + ": is an island, which cannot be continued alone; give the folder of its run");
   if (is_complete(archive, experiment)) return say_complete(archive);
   if (!given.contains("allow-other-versions")) refuse_other_versions(experiment, archive);
   if (ranks.channel()) share_host(experiment, *ranks.channel(), given.contains("mixed"));
@@ -252,8 +314,9 @@ int go_on(const Ranks& ranks, Archive& archive, const Given& given, const Experi
 bool is_to_go_on(const Given& given) {
   if (!given.contains("resume")) return false;
   if (!given.contains("out")) throw UsageError("--resume: give the folder of the run with --out");
+  const fs::path folder = given["out"].as<std::string>();
   std::error_code error;
-  return fs::exists(fs::path(given["out"].as<std::string>()) / database_name, error);
+  return has_islands(folder) || fs::exists(folder / database_name, error);
 }
 
 int run(const Given& given) {
@@ -262,19 +325,17 @@ int run(const Given& given) {
   if (served(ranks, given)) return 0;
   const auto file = given["EXPERIMENT.toml"].as<std::string>();
   const bool goes_on = is_to_go_on(given);
-  Experiment experiment = given_experiment(file, given);
-  if (!goes_on) return begin(ranks, file, std::move(experiment), given);
-  remember_folders_of(experiment);
-  Archive archive = Archive::resume(given["out"].as<std::string>(), given_journal(given));
-  return go_on(ranks, archive, given, &experiment);
+  std::vector<Experiment> islands = given_islands(file, given);
+  if (!goes_on) return begin(ranks, file, std::move(islands), given);
+  remember_folders_of(islands.front());
+  return go_on(ranks, given["out"].as<std::string>(), given, &islands);
 }
 
 int resume(const Given& given) {
   end_on_signals();
   const Ranks ranks = Ranks::joined();
   if (served(ranks, given)) return 0;
-  Archive archive = Archive::resume(given["DIR"].as<std::string>(), given_journal(given));
-  return go_on(ranks, archive, given);
+  return go_on(ranks, given["DIR"].as<std::string>(), given);
 }
 
 }  // namespace

@@ -1,8 +1,12 @@
 // The common part of `run` and `resume`.
 #pragma once
 
+#include <filesystem>
+#include <utility>
+
 #include "cluster/farm.hpp"
 #include "commands/run/generation_log.hpp"
+#include "commands/shell/command.hpp"
 #include "evolution/archive/archive.hpp"
 
 namespace evodevo {
@@ -12,6 +16,11 @@ struct RunOutput {
   GenerationLog* log = nullptr;  ///< null: none
   bool page = false;             ///< report.html in its folder, when it is finished
 };
+
+/// Opens an archive to continue its run, and reads its experiment, as the options of `run` or `resume` ask. Throws if
+/// the run cannot be continued.
+std::pair<Archive, Experiment> reopened(const std::filesystem::path& folder, const Given& given,
+                                        const Experiment* expected = nullptr);
 
 /// Evolves until the run is finished or interrupted, with the ranks of `farm` or, if it is null, alone. Prints the
 /// outcome and returns the exit code. Throws std::runtime_error if anything fails, for example the simulator's device.

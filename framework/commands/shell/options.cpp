@@ -187,6 +187,11 @@ Experiment given_experiment(const std::string& file, const Given& given) {
                [&] { return read_experiment(experiment_source(file, given)); });
 }
 
+std::vector<Experiment> given_islands(const std::string& file, const Given& given) {
+  return timed("reading " + printable(file) + " and loading its operators",
+               [&] { return read_islands(experiment_source(file, given)); });
+}
+
 void print_warnings(const Experiment& experiment) {
   for (const std::string& warning : experiment.warnings)
     std::cerr << "warning: " << printable(warning, InputError::longest_message) << '\n';

@@ -49,6 +49,8 @@ void add_experiment_options(Options& options);
 ExperimentSource experiment_source(const std::string& file, const Given& given);
 /// Reads the experiment from experiment_source(). Throws ConfigError.
 Experiment given_experiment(const std::string& file, const Given& given);
+/// Reads the experiments of all islands of a run (read_islands()).
+std::vector<Experiment> given_islands(const std::string& file, const Given& given);
 /// Prints the warnings of an experiment on standard error.
 void print_warnings(const Experiment& experiment);
 /// Returns a simulator for the experiment's device.

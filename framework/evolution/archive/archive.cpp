@@ -53,7 +53,8 @@ void require_empty(const fs::path& folder) {
 void require_run(const fs::path& folder) {
   std::error_code error;
   if (has_islands(folder))
-    throw ArchiveError(folder.string() + ": is the folder of a run with islands; give the folder of one island, such as " +
+    throw ArchiveError(folder.string() +
+                       ": is the folder of a run with islands; give the folder of one island, such as " +
                        (folder / island_folder_prefix).string() + "1");
   if (!fs::is_regular_file(folder / database_name, error))
     throw ArchiveError(folder.string() + ": there is no run here (no " + database_name + "); give a folder that `" +
@@ -77,13 +78,17 @@ Archive::Archive(std::unique_ptr<RunDatabase> run) : run_(std::move(run)) {}
 Archive::Archive(Archive&&) noexcept = default;
 Archive::~Archive() = default;
 
-Archive Archive::create(const fs::path& folder, const Experiment& experiment, const std::string& device,
-                        std::optional<Journal> journal) {
+void begin_run_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)
     throw ArchiveError(folder.string() + ": cannot be created: " + error.message() + "; give another place with --out");
-  require_empty(folder);  // checked before locked(), which creates a file, and again when no other process can write
+  require_empty(folder);
+}
+
+Archive Archive::create(const fs::path& folder, const Experiment& experiment, const std::string& device,
+                        std::optional<Journal> journal) {
+  begin_run_folder(folder);  // checked before locked(), which creates a file, and again when no other process can write
   auto lock = locked(folder);
   require_empty(folder);
   Archive archive(std::make_unique<RunDatabase>(folder, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, std::move(lock)));

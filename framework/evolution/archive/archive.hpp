@@ -22,6 +22,8 @@ class RunDatabase;
 inline constexpr const char* island_folder_prefix = "island-";
 /// Returns whether a folder holds folders of islands, and so no archive itself.
 bool has_islands(const std::filesystem::path& folder);
+/// Makes the folder of a new run. Throws ArchiveError if it exists and is not empty.
+void begin_run_folder(const std::filesystem::path& folder);
 
 /// An individual with the generation in which it was dropped.
 struct ArchivedIndividual : Individual {
@@ -64,6 +66,13 @@ struct Membership {
 struct ArchivedNote {
   std::string name, unit;
   double value = 0;
+};
+
+/// An individual that came from another island of the run.
+struct Immigrant {
+  std::uint32_t id = 0, born = 0;
+  std::optional<std::uint32_t> died;
+  Migrated from;
 };
 
 /// The numbers with one title that the selection operator has noted about the living, generation by generation.
@@ -134,6 +143,8 @@ class Archive {
   std::uint32_t add_provenance(const Provenance& provenance);
   /// Returns the number of the island, from 1, of whose generations this is the archive; 0 if the run has no islands.
   std::int64_t island() const;
+  /// Returns who came from other islands, in the order of birth.
+  std::vector<Immigrant> immigrants() const;
   /// Returns who emigrated to an island after generation `since` or later, by generation, in the order of their ids.
   std::map<std::uint32_t, std::vector<std::uint32_t>> emigrants_to(std::int64_t island, std::uint32_t since) const;
   /// Returns the provenances of all processes that took part in the run, in the order in which they were added. They

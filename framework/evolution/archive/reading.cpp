@@ -95,9 +95,9 @@ class Individuals {
  private:
   /// Checks that no table has a row for an id that a later individual of the run will get.
   void check_ids(std::int64_t evaluations) {
-    for (const char* column : {"individuals.id", "scores.individual", "lives.individual", "verifications.individual",
-                               "measured.individual", "tests.individual", "notes.individual", "immigrants.individual",
-                               "emigrants.individual"}) {
+    for (const char* column :
+         {"individuals.id", "scores.individual", "lives.individual", "verifications.individual", "measured.individual",
+          "tests.individual", "notes.individual", "immigrants.individual", "emigrants.individual"}) {
       const std::string_view name(column);
       const std::string table(name.substr(0, name.find('.'))), key(name.substr(table.size() + 1));
       Statement last(run_, table, "SELECT max(" + key + ") AS " + key + " FROM " + table);
@@ -239,8 +239,21 @@ std::int64_t Archive::island() const {
   return row.integer(0, 1, most_islands);
 }
 
+std::vector<Immigrant> Archive::immigrants() const {
+  std::vector<Immigrant> immigrants;
+  Statement row(
+      *run_, "immigrants",
+      "SELECT id, born, died, island, source FROM immigrants JOIN individuals ON id = individual ORDER BY id");
+  while (row.step()) {
+    Immigrant& one = immigrants.emplace_back(Immigrant{row.index(0), row.index(1), std::nullopt, {}});
+    if (!row.is_null(2)) one.died = row.index(2);
+    one.from = {row.integer(3, 1, most_islands), row.index(4)};
+  }
+  return immigrants;
+}
+
 std::map<std::uint32_t, std::vector<std::uint32_t>> Archive::emigrants_to(std::int64_t island,
-                                                                         std::uint32_t since) const {
+                                                                          std::uint32_t since) const {
   std::map<std::uint32_t, std::vector<std::uint32_t>> emigrants;
   Statement row(*run_, "emigrants",
                 "SELECT generation, individual FROM emigrants WHERE island = ? AND generation >= ? "

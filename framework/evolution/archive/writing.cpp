@@ -35,8 +35,7 @@ void insert_newborns(const RunDatabase& run, const std::vector<Individual>& newb
                    failed ? std::optional(result.reason) : std::nullopt,
                    diverged ? std::optional(result.ended_at) : std::nullopt,
                    static_cast<std::int64_t>(result.spring_evaluations));
-    if (const auto& from = individual.migrated)
-      insert_immigrant.execute(individual.id, from->island, from->individual);
+    if (const auto& from = individual.migrated) insert_immigrant.execute(individual.id, from->island, from->individual);
     for (std::size_t i = 0; i < result.objectives.size(); ++i)
       insert_score.execute(individual.id, static_cast<std::uint32_t>(i), result.objectives[i]);
     for (std::size_t i = 0; i < result.measures.size(); ++i)

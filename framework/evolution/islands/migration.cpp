@@ -37,7 +37,8 @@ std::optional<std::size_t> displaced(const std::vector<Individual>& survivors, c
   for (std::size_t i = 0; i < survivors.size(); ++i)
     if (is_resident(i)) residents.push_back(i);
   if (residents.empty()) return std::nullopt;
-  if (island.islands->replaced == Replaced::random) return residents[rng.below(static_cast<std::uint32_t>(residents.size()))];
+  if (island.islands->replaced == Replaced::random)
+    return residents[rng.below(static_cast<std::uint32_t>(residents.size()))];
   for (const std::size_t i : residents)
     if (survivors[i].result.status != Status::ok) return i;
   std::erase_if(ranked, [&](std::size_t i) { return !is_resident(i); });

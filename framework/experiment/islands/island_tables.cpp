@@ -98,8 +98,7 @@ std::vector<toml::table> island_roots(const toml::table& root, const Settings& s
     if (settings.spring_evaluations > 0)
       run.insert_or_assign("spring_evaluations", settings.spring_evaluations / static_cast<double>(count));
     for (const char* name : own_operators)
-      if (own && own->contains(name))
-        (*own)[name].visit([&](const auto& node) { one.insert_or_assign(name, node); });
+      if (own && own->contains(name)) (*own)[name].visit([&](const auto& node) { one.insert_or_assign(name, node); });
     one.erase("island");
     roots.push_back(std::move(one));
   }

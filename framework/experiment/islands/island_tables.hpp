@@ -20,8 +20,8 @@ std::int64_t island_seed(std::int64_t run_seed, std::int64_t island);
 
 /// Returns the text of the experiment of each island, numbered from 1: `root` with the tables of operators and the seed
 /// that the island has of its own, or else with a seed from the run's, and with its part of the run's evaluations and
-/// spring evaluations. `settings` are those of `root`, whose [[island]] tables have been checked. Throws ConfigError if there
-/// are fewer evaluations than islands.
+/// spring evaluations. `settings` are those of `root`, whose [[island]] tables have been checked. Throws ConfigError if
+/// there are fewer evaluations than islands.
 std::vector<toml::table> island_roots(const toml::table& root, const Settings& settings);
 
 }  // namespace evodevo

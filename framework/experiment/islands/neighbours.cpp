@@ -28,10 +28,14 @@ std::vector<std::int64_t> around(std::int64_t island, const Grid& grid) {
 std::vector<std::int64_t> neighbours(std::int64_t island, const IslandSettings& islands, std::int64_t step) {
   const std::int64_t count = islands.count;
   switch (islands.topology) {
-    case Topology::ring: return {(island - 1 + step + count) % count + 1};
-    case Topology::torus: return around(island, torus_grid(count));
-    case Topology::star: return island == 1 ? others(1, count) : std::vector<std::int64_t>{1};
-    case Topology::full: break;
+    case Topology::ring:
+      return {(island - 1 + step + count) % count + 1};
+    case Topology::torus:
+      return around(island, torus_grid(count));
+    case Topology::star:
+      return island == 1 ? others(1, count) : std::vector<std::int64_t>{1};
+    case Topology::full:
+      break;
   }
   return others(island, count);
 }

@@ -24,7 +24,7 @@ void declare(SettingsVisitor& visitor, Friction& friction);
 void declare(SettingsVisitor& visitor, Damping& damping);
 void declare(SettingsVisitor& visitor, Drag& drag);
 void declare(SettingsVisitor& visitor, Payload& payload);
-void declare(SettingsVisitor& visitor, IslandSettings& islands);  ///< [islands]
+void declare(SettingsVisitor& visitor, IslandSettings& islands);             ///< [islands]
 void declare_island_number(SettingsVisitor& visitor, std::int64_t& number);  ///< first key of [[island]] to read
 void declare_island(SettingsVisitor& visitor, std::optional<double>& seed);  ///< [[island]] without its operators
 

@@ -94,8 +94,9 @@ std::string experiment_reference() {
                 declare_scenario(v, scenario);
               });
   text += section_of<IslandSettings>(
-      "`[islands]`", "Several populations in one run, between which individuals migrate. Without this table, there is "
-                     "one population.");
+      "`[islands]`",
+      "Several populations in one run, between which individuals migrate. Without this table, there is "
+      "one population.");
   text += section("`[[island]]`",
                   "What is different on one island. Tables such as `[island.selection]`, `[[island.mutation]]` and "
                   "`[[island.crossover]]` replace all tables of this name.",

@@ -1,0 +1,193 @@
+#include "commands/run/islands.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include "base/text.hpp"
+#include "commands/run/early_end.hpp"
+#include "commands/run/islands_progress.hpp"
+#include "commands/run/page.hpp"
+#include "commands/run/progress.hpp"
+#include "commands/shell/builds.hpp"
+#include "commands/shell/notices.hpp"
+#include "commands/shell/verification_report.hpp"
+#include "evolution/islands/island_folders.hpp"
+#include "evolution/islands/island_runs.hpp"
+#include "experiment/device.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// An individual with a fitness.
+struct Ranked {
+  double score = 0;        ///< first objective, greater is better
+  std::size_t island = 0;  ///< its index
+  std::uint32_t id = 0;
+};
+
+/// Returns the `count` individuals with the best first objective of all islands, the best first.
+std::vector<Ranked> best_of_all(const Islands& islands, std::size_t count) {
+  std::vector<Ranked> best;
+  const double sign = islands.experiments.front().objectives.front().maximise ? 1 : -1;
+  for (std::size_t i = 0; i < islands.archives.size(); ++i)
+    for (const std::uint32_t id : islands.archives[i].best(count))
+      best.push_back({sign * islands.archives[i].known_individual(id).result.objectives.front(), i, id});
+  std::ranges::stable_sort(best, std::greater(), &Ranked::score);
+  best.resize(std::min(best.size(), count));
+  return best;
+}
+
+bool are_finished(const Islands& islands) {
+  for (std::size_t i = 0; i < islands.archives.size(); ++i)
+    if (!is_finished(islands.experiments[i], islands.archives[i].generations())) return false;
+  return true;
+}
+
+std::string resume_command_for(const fs::path& folder) { return program_name() + " resume " + folder.string(); }
+
+void verify_best_of_all(Islands& islands, Simulator& simulator, std::size_t count) {
+  std::vector<std::size_t> counts(islands.archives.size());  // of an island, its own best come first among all
+  for (const Ranked& one : best_of_all(islands, count)) ++counts[one.island];
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const Experiment& island = islands.experiments[i];
+    for (const Verification& verification : verify_best(island, simulator, islands.archives[i], counts[i])) {
+      std::cout << "island " << island.island << ": ";
+      print(verification, island.objectives.front());
+    }
+  }
+}
+
+void print_best(const Islands& islands) {
+  const std::vector<Ranked> best = best_of_all(islands, 1);
+  if (best.empty())
+    std::cout << "no individual has a fitness; to see why: " << program_name() << " show "
+              << islands.archives.front().folder().string() << '\n';
+  else
+    print_best(islands.experiments[best.front().island], islands.archives[best.front().island]);
+}
+
+void finish(Islands& islands, Simulator& simulator, const RunOutput& output) {
+  const Experiment& first = islands.experiments.front();
+  if (const auto count = static_cast<std::size_t>(first.verify); count > 0 && is_verifiable(first)) {
+    remarks() << "verifying the best " << count << "; Ctrl-C stops this, and `" << resume_command_for(islands.folder)
+              << "` does it later" << std::endl;
+    end_on_signals();
+    verify_best_of_all(islands, simulator, count);
+  }
+  if (!output.page) return;
+  std::vector<ShownRun> shown;
+  for (std::size_t i = 0; i < islands.archives.size(); ++i)
+    shown.push_back({islands.experiments[i], islands.archives[i]});
+  show_runs(islands.folder, shown, simulator);
+}
+
+}  // namespace
+
+Islands created_islands(const fs::path& folder, std::vector<Experiment> experiments, const std::string& device,
+                        std::optional<Journal> journal) {
+  begin_run_folder(folder);
+  Islands islands{folder, std::move(experiments), {}};
+  for (const Experiment& island : islands.experiments)
+    islands.archives.push_back(Archive::create(island_folder(folder, island.island), island, device, journal));
+  return islands;
+}
+
+std::string state_of(const Islands& islands) {
+  for (const Archive& archive : islands.archives)
+    if (!archive.is_in_place()) return "";
+  const std::vector<std::uint32_t> next = next_generations(islands.archives);
+  const auto [least, most] = std::ranges::minmax(next);
+  const std::string complete = least == 0 ? "an island has not completed any generation"
+                               : least == most
+                                   ? "the islands are complete up to generation " + std::to_string(least - 1)
+                                   : "the islands are complete up to generations " + std::to_string(least - 1) +
+                                         " to " + std::to_string(most - 1);
+  return "\n" + complete + "; continue the run with `" + resume_command_for(islands.folder) + "`";
+}
+
+Islands reopened_islands(const fs::path& folder, const Given& given, const std::vector<Experiment>* expected) {
+  Islands islands{folder, {}, {}};
+  const std::vector<fs::path> folders = island_folders(folder);
+  if (expected && expected->size() != folders.size())
+    throw ArchiveError(folder.string() + ": has " + std::to_string(folders.size()) +
+                       " islands, but the experiment asks for " + std::to_string(expected->size()) +
+                       "; give the experiment of the run, or another --out");
+  for (std::size_t i = 0; i < folders.size(); ++i) {
+    auto [archive, experiment] = reopened(folders[i], given, expected ? &(*expected)[i] : nullptr);
+    if (archive.island() != static_cast<std::int64_t>(i) + 1)
+      archive.refuse("it is island " + std::to_string(archive.island()) + " of a run; name its folder after that");
+    if (!given.contains("allow-other-versions")) refuse_other_versions(experiment, archive);
+    islands.archives.push_back(std::move(archive));
+    islands.experiments.push_back(std::move(experiment));
+  }
+  return islands;
+}
+
+bool are_complete(const Islands& islands) {
+  const Experiment& first = islands.experiments.front();
+  if (!are_finished(islands)) return false;
+  return !is_verifiable(first) ||
+         std::ranges::all_of(best_of_all(islands, static_cast<std::size_t>(first.verify)), [&](const Ranked& one) {
+           return islands.archives[one.island].verification(one.id).has_value();
+         });
+}
+
+std::unique_ptr<IslandsProgress> progress_of(const Islands& islands, const std::atomic<bool>& stop, bool is_live) {
+  std::int64_t evaluations = 0;
+  std::vector<std::vector<Summary>> past;
+  for (const Experiment& island : islands.experiments) evaluations += island.evaluations;
+  for (const Archive& archive : islands.archives) past.push_back(archive.generations());
+  return std::make_unique<IslandsProgress>(islands.experiments.front(), evaluations, past, stop, is_live);
+}
+
+Observer observer_of(const Experiment& island, std::function<void(std::int64_t, const Summary&)> tell) {
+  Observer observer;
+  observer.generation_done = [tell = std::move(tell), number = island.island](const Summary& summary) {
+    tell(number, summary);
+  };
+  return observer;
+}
+
+int report_outcome(Islands& islands, Simulator& simulator, const IslandsProgress& progress, const RunOutput& output) {
+  print_best(islands);
+  print_speed(static_cast<double>(progress.spring_evaluations()), progress.seconds());
+  if (!are_finished(islands)) {
+    std::cout << "ended early; to continue: " << resume_command_for(islands.folder) << std::endl;
+    return ended_early;
+  }
+  finish(islands, simulator, output);
+  return 0;
+}
+
+int evolve_and_report(Islands& islands, Simulator& simulator, std::atomic<bool>& stop, const RunOutput& output) {
+  const bool is_live = isatty(STDOUT_FILENO) == 1 && verbosity() != Verbosity::quiet;
+  const auto progress = progress_of(islands, stop, is_live);
+  const auto tell = [&](std::int64_t island, const Summary& summary) {
+    progress->generation_done(island, summary);
+    if (output.log != nullptr) output.log->add(summary, island);
+  };
+  std::vector<std::unique_ptr<LocalEvaluator>> evaluators;
+  std::vector<IslandRun> runs;
+  for (std::size_t i = 0; i < islands.archives.size(); ++i) {
+    const Experiment& island = islands.experiments[i];
+    evaluators.push_back(std::make_unique<LocalEvaluator>(island, simulator));
+    runs.push_back({island, islands.archives[i], *evaluators.back(), observer_of(island, tell)});
+  }
+  LocalExchange exchange;
+  try {
+    const std::vector<TimeSpent> times = evolve(runs, exchange, next_generations(islands.archives), stop);
+    for (std::size_t i = 0; i < times.size(); ++i) record_time_spent(islands.archives[i], times[i]);
+  } catch (const std::exception& error) {
+    progress->finish();
+    throw std::runtime_error(error.what() + remedy_for(error) + state_of(islands));
+  }
+  progress->finish();
+  return report_outcome(islands, simulator, *progress, output);
+}
+
+}  // namespace evodevo
