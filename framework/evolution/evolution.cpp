@@ -197,10 +197,14 @@ BestAndMedian best_and_median(std::vector<double> scores, bool maximise) {
 
 bool is_finished(const Settings& settings, const std::vector<Summary>& generations) {
   if (generations.empty()) return false;
-  double spring_evaluations = 0;
-  for (const Summary& summary : generations) spring_evaluations += static_cast<double>(summary.spring_evaluations);
+  double spring_evaluations = 0, seconds = 0;
+  for (const Summary& summary : generations) {
+    spring_evaluations += static_cast<double>(summary.spring_evaluations);
+    seconds += summary.wall_time;
+  }
+  const auto is_spent = [](double limit, double spent) { return limit > 0 && spent >= limit; };
   return generations.back().evaluations >= settings.evaluations ||
-         (settings.spring_evaluations > 0 && spring_evaluations >= settings.spring_evaluations);
+         is_spent(settings.spring_evaluations, spring_evaluations) || is_spent(settings.hours * 3600, seconds);
 }
 
 namespace {

@@ -39,7 +39,7 @@ std::optional<TimeSpent> recorded_time_spent(const Archive& archive);
 /// Returns the best and the median of some scores of one objective.
 BestAndMedian best_and_median(std::vector<double> scores, bool maximise);
 
-/// Returns whether a run with these generations has used up the experiment's evaluations or spring evaluations.
+/// Returns whether a run with these generations has used up the experiment's evaluations, spring evaluations or hours.
 bool is_finished(const Settings& settings, const std::vector<Summary>& generations);
 
 /// Continues the run in the archive until the run is finished. If `stop` is set in the meantime, finishes and commits

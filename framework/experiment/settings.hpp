@@ -133,6 +133,7 @@ struct Settings {
   std::int64_t seed = 1;
   std::int64_t evaluations = 1000;  ///< number of evaluations in the whole run
   double spring_evaluations = 0;    ///< number of spring evaluations after which the run ends early; 0: no limit
+  double hours = 0;                 ///< wall-clock time of all generations after which the run ends early; 0: no limit
   std::int64_t population = 50;
   std::int64_t children = 0;            ///< number of newborns of each generation; 0: as many as `population`
   std::int64_t random_individuals = 1;  ///< number of random individuals that enter each generation

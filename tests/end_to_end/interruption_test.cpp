@@ -71,6 +71,25 @@ TEST_P(InterruptedJournal, KilledAtEachLineAndResumedEndsTheSame) {
   testing::expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(scratch_ / "killed"));
 }
 
+TEST_F(Interruption, ByTheClockEndsVerifiedAndGoesOnAsIfItHadNotBeen) {
+  std::vector<std::string> command = run_command("limited");
+  command.insert(command.end(), {"--no-report", "--until", "2s", "--set", "experiment.evaluations=100000"});
+  const testing::Finished ended = testing::run(command);
+  EXPECT_EQ(ended.exit_code, 130) << ended.output;
+  EXPECT_THAT(ended.output, testing::naming("verifying the best 1", "resume " + (scratch_ / "limited").string()));
+  const Archive limited = Archive::read(scratch_ / "limited");
+  const std::size_t generations = limited.generations().size();
+  ASSERT_GE(generations, 1u);
+  EXPECT_TRUE(limited.verification(limited.best(1).front())) << ended.output;
+
+  const testing::Finished straight =
+      testing::run({EVODEVO_PROGRAM, "run", file_, "--no-report", "--out", (scratch_ / "straight").string(), "--set",
+                    "experiment.evaluations=" + std::to_string(6 * generations), "--set", "fitness.0.window=1", "--set",
+                    "fitness.1.window=1"});
+  ASSERT_EQ(straight.exit_code, 0) << straight.output;
+  testing::expect_same_runs(Archive::read(scratch_ / "straight"), limited);
+}
+
 INSTANTIATE_TEST_SUITE_P(Journals, InterruptedJournal, ::testing::Values("wal", "delete"),
                          [](const auto& instance) { return std::string(instance.param); });
 

@@ -126,5 +126,17 @@ TEST(SpringEvaluations, EndTheRunWithTheGenerationThatReachesThem) {
   EXPECT_EQ(run("never reached").size(), 4u);
 }
 
+TEST(Hours, EndTheRunWithTheGenerationThatReachesThem) {
+  Experiment experiment;
+  experiment.evaluations = 1000;
+  std::vector<Summary> generations;
+  for (const double seconds : {100.0, 250.0, 25.0}) generations.push_back({.evaluations = 10, .wall_time = seconds});
+  EXPECT_FALSE(is_finished(experiment, generations));
+  experiment.hours = 374.0 / 3600;
+  EXPECT_TRUE(is_finished(experiment, generations));
+  experiment.hours = 376.0 / 3600;
+  EXPECT_FALSE(is_finished(experiment, generations));
+}
+
 }  // namespace
 }  // namespace evodevo

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdint>
 #include <ctime>
@@ -48,5 +49,11 @@ void handle_signals(void (*handler)(int)) {
 std::atomic<bool>& stop_requested() { return requested; }
 void stop_on_signals() { handle_signals(stop_or_end); }
 void end_on_signals() { handle_signals(end); }
+
+void end_at(std::chrono::steady_clock::time_point time) {
+  std::signal(SIGALRM, end);
+  const auto left = std::chrono::ceil<std::chrono::seconds>(time - std::chrono::steady_clock::now());
+  alarm(static_cast<unsigned>(std::max<std::int64_t>(1, left.count())));
+}
 
 }  // namespace evodevo

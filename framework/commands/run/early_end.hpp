@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 
 namespace evodevo {
 
@@ -20,5 +21,8 @@ void stop_on_signals();
 /// From now on, the first of these signals ends the process at once, with the exit code `ended_early`, because nothing
 /// that is under way has to be finished.
 void end_on_signals();
+
+/// From now on, the process ends at this time, with the exit code `ended_early`; a second from now if it is past.
+void end_at(std::chrono::steady_clock::time_point time);
 
 }  // namespace evodevo

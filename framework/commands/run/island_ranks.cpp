@@ -102,7 +102,7 @@ int evolve_and_report(Islands& islands, Simulator& simulator, Channel& channel, 
   }
   const auto tell = [&](std::int64_t island, const Summary& summary) {
     progress->generation_done(island, summary);
-    if (output.log != nullptr) output.log->add(summary, island);
+    output.generation_done(summary, island);
   };
   std::optional<std::string> failure;
   {

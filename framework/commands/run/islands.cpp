@@ -77,6 +77,7 @@ void finish(Islands& islands, Simulator& simulator, const RunOutput& output) {
     remarks() << "verifying the best " << count << "; Ctrl-C stops this, and `" << resume_command_for(islands.folder)
               << "` does it later" << std::endl;
     end_on_signals();
+    if (output.limit != nullptr) end_at(output.limit->end());
     verify_best_of_all(islands, simulator, count);
   }
   if (!output.page) return;
@@ -156,12 +157,11 @@ Observer observer_of(const Experiment& island, std::function<void(std::int64_t, 
 int report_outcome(Islands& islands, Simulator& simulator, const IslandsProgress& progress, const RunOutput& output) {
   print_best(islands);
   print_speed(static_cast<double>(progress.spring_evaluations()), progress.seconds());
-  if (!are_finished(islands)) {
-    std::cout << "ended early; to continue: " << resume_command_for(islands.folder) << std::endl;
-    return ended_early;
-  }
-  finish(islands, simulator, output);
-  return 0;
+  const bool finished = are_finished(islands);
+  if (finished || output.ends_by_clock()) finish(islands, simulator, output);
+  if (finished) return 0;
+  std::cout << "ended early; to continue: " << resume_command_for(islands.folder) << std::endl;
+  return ended_early;
 }
 
 int evolve_and_report(Islands& islands, Simulator& simulator, std::atomic<bool>& stop, const RunOutput& output) {
@@ -169,7 +169,7 @@ int evolve_and_report(Islands& islands, Simulator& simulator, std::atomic<bool>&
   const auto progress = progress_of(islands, stop, is_live);
   const auto tell = [&](std::int64_t island, const Summary& summary) {
     progress->generation_done(island, summary);
-    if (output.log != nullptr) output.log->add(summary, island);
+    output.generation_done(summary, island);
   };
   std::vector<std::unique_ptr<LocalEvaluator>> evaluators;
   std::vector<IslandRun> runs;

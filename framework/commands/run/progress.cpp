@@ -56,6 +56,7 @@ ProgressDisplay::ProgressDisplay(const Experiment& experiment, const std::vector
     diverged_ += summary.diverged;
     refused_ += summary.artefact + summary.passive;
     spring_evaluations_before_ += static_cast<double>(summary.spring_evaluations);
+    seconds_before_ += summary.wall_time;
   }
 }
 
@@ -70,7 +71,9 @@ double ProgressDisplay::seconds() const {
 
 double ProgressDisplay::seconds_left(double evaluations) const {
   const double done = evaluations - static_cast<double>(evaluations_before_);
-  const double left = seconds() / done * (static_cast<double>(experiment_.evaluations) - evaluations);
+  double left = seconds() / done * (static_cast<double>(experiment_.evaluations) - evaluations);
+  if (experiment_.hours > 0)
+    left = std::min(left, std::max(0.0, experiment_.hours * 3600 - seconds_before_ - seconds()));
   if (experiment_.spring_evaluations == 0 || spring_evaluations_ == 0) return left;
   const auto springs = static_cast<double>(spring_evaluations_);
   const double springs_left = experiment_.spring_evaluations - spring_evaluations_before_ - springs;

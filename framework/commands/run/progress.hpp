@@ -45,6 +45,7 @@ class ProgressDisplay {
   const std::chrono::steady_clock::time_point start_;
   std::int64_t evaluations_before_ = 0;   ///< evaluations by earlier processes
   double spring_evaluations_before_ = 0;  ///< spring evaluations by earlier processes
+  double seconds_before_ = 0;             ///< time of their generations
   Summary last_;
   double evaluations_ = 0;                         ///< including those of the generation under way
   std::chrono::steady_clock::time_point shown_{};  ///< when the line was shown last

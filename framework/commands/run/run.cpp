@@ -133,6 +133,10 @@ void add_versions_option(Options& options) {
 void add_output_options(Options& options) {
   options.add_options()("log", value<std::string>("FILE"), "append one JSON object for each generation to this file");
   options.add_options()("no-report", "do not write report.html when the run is finished");
+  options.add_options()(
+      "until", value<std::string>("TIME"),
+      "be done after this time, such as 90m or 11.5h, or at a local time, such as 2030-01-31T18:30: begin no generation "
+      "that would not leave time to verify the best and to write the page; `resume` continues the run");
 }
 
 /// Opens the file of --log. Returns nothing without this option. Throws UsageError if it is one of `inputs`, or the
@@ -153,7 +157,15 @@ std::vector<fs::path> files_of_experiment(const fs::path& file, const Experiment
   return files;
 }
 
-RunOutput output_of(const Given& given, GenerationLog* log) { return {log, !given.contains("no-report")}; }
+RunOutput output_of(const Given& given, GenerationLog* log, TimeLimit* limit) {
+  return {log, !given.contains("no-report"), limit};
+}
+
+/// Returns the limit that --until gives, counted from now, or null.
+std::unique_ptr<TimeLimit> given_limit(const Given& given) {
+  if (!given.contains("until")) return nullptr;
+  return std::make_unique<TimeLimit>(TimeLimit::Clock::now(), end_given_by(given["until"].as<std::string>()));
+}
 
 }  // namespace
 
@@ -168,6 +180,35 @@ std::pair<Archive, Experiment> reopened(const fs::path& folder, const Given& giv
   return {std::move(archive), std::move(experiment)};
 }
 
+void RunOutput::generation_done(const Summary& summary, std::int64_t island) const {
+  if (log != nullptr) log->add(summary, island);
+  if (limit == nullptr) return;
+  limit->generation_done(summary.wall_time, TimeLimit::Clock::now());
+  if (limit->is_reached()) stop_requested() = true;
+}
+
+namespace {
+
+/// Verifies the best of a run, and shows them on a page, as far as the user asks for it.
+void verify_and_show(const Experiment& experiment, Simulator& simulator, Archive& archive, const RunOutput& output) {
+  const auto count = is_verifiable(experiment) ? static_cast<std::size_t>(experiment.verify) : 0;
+  if (count < static_cast<std::size_t>(experiment.verify))
+    remarks() << "not verified: " << experiment.objectives.front().name
+              << " is measured within the life, which verification does not repeat" << std::endl;
+  if (count > 0)
+    remarks() << "verifying the best " << count << "; Ctrl-C stops this, and it can be done later by `"
+              << program_name() << " verify " << archive.folder().string() << "`" << std::endl;
+  end_on_signals();
+  if (output.limit != nullptr) end_at(output.limit->end());
+  for (const Verification& verification : verify_best(experiment, simulator, archive, count))
+    print(verification, experiment.objectives.front());
+  if (!output.page) return;
+  const ShownRun shown{experiment, archive};
+  show_runs(archive.folder(), {&shown, 1}, simulator);
+}
+
+}  // namespace
+
 int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive, Farm* farm,
                       const RunOutput& output) {
   stop_on_signals();
@@ -178,7 +219,7 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
   Observer observer = progress.observer();
   observer.generation_done = [&output, display = observer.generation_done](const Summary& summary) {
     display(summary);
-    if (output.log != nullptr) output.log->add(summary);
+    output.generation_done(summary);
   };
   TimeSpent time;
   try {
@@ -197,23 +238,9 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
     print_shares(farm->shares(), time.whole);
     farm->finish();
   }
-  if (is_finished(experiment, archive.generations())) {
-    const auto count = is_verifiable(experiment) ? static_cast<std::size_t>(experiment.verify) : 0;
-    if (count < static_cast<std::size_t>(experiment.verify))
-      remarks() << "not verified: " << experiment.objectives.front().name
-                << " is measured within the life, which verification does not repeat" << std::endl;
-    if (count > 0)
-      remarks() << "verifying the best " << count << "; Ctrl-C stops this, and it can be done later by `"
-                << program_name() << " verify " << archive.folder().string() << "`" << std::endl;
-    end_on_signals();
-    for (const Verification& verification : verify_best(experiment, simulator, archive, count))
-      print(verification, experiment.objectives.front());
-    if (output.page) {
-      const ShownRun shown{experiment, archive};
-      show_runs(archive.folder(), {&shown, 1}, simulator);
-    }
-    return 0;
-  }
+  const bool finished = is_finished(experiment, archive.generations());
+  if (finished || output.ends_by_clock()) verify_and_show(experiment, simulator, archive, output);
+  if (finished) return 0;
   std::cout << "ended early; to continue: " << resume_command_for(archive) << std::endl;
   return ended_early;
 }
@@ -235,7 +262,8 @@ int evolve_and_report(Islands islands, Simulator& simulator, const Ranks& ranks,
 
 /// Does what `evodevo run` does if the folder of the run holds no run yet. `islands` has the experiments of all
 /// islands, or the only one of the run.
-int begin(const Ranks& ranks, const std::string& file, std::vector<Experiment> islands, const Given& given) {
+int begin(const Ranks& ranks, const std::string& file, std::vector<Experiment> islands, const Given& given,
+          TimeLimit* limit) {
   Experiment& experiment = islands.front();
   const std::optional<Journal> journal = given_journal(given);
   const std::unique_ptr<GenerationLog> log = given_log(given, experiment, files_of_experiment(file, experiment));
@@ -248,9 +276,9 @@ int begin(const Ranks& ranks, const std::string& file, std::vector<Experiment> i
       given.contains("out") ? fs::path(given["out"].as<std::string>()) : new_run_folder(experiment.name);
   if (islands.size() > 1)
     return evolve_and_report(created_islands(folder, std::move(islands), simulator->device(), journal), *simulator,
-                             ranks, given, output_of(given, log.get()));
+                             ranks, given, output_of(given, log.get(), limit));
   Archive archive = Archive::create(folder, experiment, simulator->device(), journal);
-  return evolve_and_report(experiment, *simulator, archive, farm.get(), output_of(given, log.get()));
+  return evolve_and_report(experiment, *simulator, archive, farm.get(), output_of(given, log.get(), limit));
 }
 
 /// Says that a run with islands is complete, so that there is nothing to do, and returns the exit code.
@@ -278,7 +306,7 @@ bool is_complete(const Archive& archive, const Experiment& experiment) {
 }
 
 /// Continues the run with islands in a folder. `expected` has the experiments of its islands if the user names them.
-int go_on_with_islands(const Ranks& ranks, const fs::path& folder, const Given& given,
+int go_on_with_islands(const Ranks& ranks, const fs::path& folder, const Given& given, TimeLimit* limit,
                        const std::vector<Experiment>* expected) {
   Islands islands = reopened_islands(folder, given, expected);
   Experiment& first = islands.experiments.front();
@@ -288,14 +316,14 @@ int go_on_with_islands(const Ranks& ranks, const fs::path& folder, const Given& 
   warn_of_another_device(*simulator, islands.archives.front());
   warn_of_other_builds(first, *simulator, islands.archives.front());
   const std::unique_ptr<GenerationLog> log = given_log(given, first, files_of_run(folder));
-  return evolve_and_report(std::move(islands), *simulator, ranks, given, output_of(given, log.get()));
+  return evolve_and_report(std::move(islands), *simulator, ranks, given, output_of(given, log.get(), limit));
 }
 
 /// Continues the run in a folder. `expected` has the experiment of the run, or those of its islands, if the user names
 /// it; throws ArchiveError if the run is of another one.
-int go_on(const Ranks& ranks, const fs::path& folder, const Given& given,
+int go_on(const Ranks& ranks, const fs::path& folder, const Given& given, TimeLimit* limit,
           const std::vector<Experiment>* expected = nullptr) {
-  if (has_islands(folder)) return go_on_with_islands(ranks, folder, given, expected);
+  if (has_islands(folder)) return go_on_with_islands(ranks, folder, given, limit, expected);
   auto [archive, experiment] = reopened(folder, given, expected ? &expected->front() : nullptr);
   if (archive.island() > 0)
     throw ArchiveError(folder.string() + ": is an island, which cannot be continued alone; give the folder of its run");
@@ -307,7 +335,7 @@ int go_on(const Ranks& ranks, const fs::path& folder, const Given& given,
   warn_of_other_builds(experiment, *simulator, archive);
   const auto farm = farm_of(ranks, experiment, *simulator, true, given);
   const std::unique_ptr<GenerationLog> log = given_log(given, experiment, files_of_run(archive.folder()));
-  return evolve_and_report(experiment, *simulator, archive, farm.get(), output_of(given, log.get()));
+  return evolve_and_report(experiment, *simulator, archive, farm.get(), output_of(given, log.get(), limit));
 }
 
 /// Whether --resume is given and the folder of --out holds a run. Throws UsageError for --resume without --out.
@@ -324,18 +352,19 @@ int run(const Given& given) {
   const Ranks ranks = Ranks::joined();
   if (served(ranks, given)) return 0;
   const auto file = given["EXPERIMENT.toml"].as<std::string>();
+  const std::unique_ptr<TimeLimit> limit = given_limit(given);
   const bool goes_on = is_to_go_on(given);
   std::vector<Experiment> islands = given_islands(file, given);
-  if (!goes_on) return begin(ranks, file, std::move(islands), given);
+  if (!goes_on) return begin(ranks, file, std::move(islands), given, limit.get());
   remember_folders_of(islands.front());
-  return go_on(ranks, given["out"].as<std::string>(), given, &islands);
+  return go_on(ranks, given["out"].as<std::string>(), given, limit.get(), &islands);
 }
 
 int resume(const Given& given) {
   end_on_signals();
   const Ranks ranks = Ranks::joined();
   if (served(ranks, given)) return 0;
-  return go_on(ranks, given["DIR"].as<std::string>(), given);
+  return go_on(ranks, given["DIR"].as<std::string>(), given, given_limit(given).get());
 }
 
 }  // namespace

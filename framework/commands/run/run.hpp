@@ -6,15 +6,23 @@
 
 #include "cluster/farm.hpp"
 #include "commands/run/generation_log.hpp"
+#include "commands/run/time_limit.hpp"
 #include "commands/shell/command.hpp"
 #include "evolution/archive/archive.hpp"
 
 namespace evodevo {
 
-/// What a run writes besides its archive.
+/// What a run writes besides its archive, and when it has to be done.
 struct RunOutput {
   GenerationLog* log = nullptr;  ///< null: none
   bool page = false;             ///< report.html in its folder, when it is finished
+  TimeLimit* limit = nullptr;    ///< null: none
+
+  /// Logs a generation that has ended, and asks for the end of the run if no further one fits into the time limit.
+  /// Several threads may call it. `island` is 0 if the run has no islands.
+  void generation_done(const Summary& summary, std::int64_t island = 0) const;
+  /// Whether the run ends because of the time limit. Then it is verified and shown, although it is not finished.
+  bool ends_by_clock() const { return limit != nullptr && limit->is_reached(); }
 };
 
 /// Opens an archive to continue its run, and reads its experiment, as the options of `run` or `resume` ask. Throws if

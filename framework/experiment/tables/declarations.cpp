@@ -27,6 +27,8 @@ void declare_run(SettingsVisitor& v, Settings& s) {
   v.integer(s.evaluations, "evaluations", {1, 1e9}, "Number of evaluations in the whole run.");
   v.real(s.spring_evaluations, "spring_evaluations", {0, 1e18},
          "The run also ends after the generation that reaches this number of spring evaluations; 0: no such limit.");
+  v.real(s.hours, "hours", {0, 1e6, "h"},
+         "The run also ends after the generation that completes this time of evolution, by the clock; 0: no such limit.");
   v.integer(s.population, "population", {1, 1e6}, "Number of individuals that survive each generation.");
   v.integer(
       s.children, "children", {0, 1e6},
