@@ -7,6 +7,7 @@
 #include "commands/commands.hpp"
 #include "commands/shell/options.hpp"
 #include "evolution/breeding.hpp"
+#include "evolution/founders.hpp"
 #include "experiment/islands/neighbours.hpp"
 #include "life/birth.hpp"
 #include "life/measurement/top_speed.hpp"
@@ -14,6 +15,13 @@
 
 namespace evodevo {
 namespace {
+
+/// Prints how many individuals of another run the experiment begins with, if it names one.
+void print_founders(const Experiment& experiment) {
+  if (const std::size_t count = founders(experiment).size(); count > 0)
+    std::cout << "start: " << count << (count == 1 ? " individual" : " individuals") << " of "
+              << printable(experiment.start) << ", and random ones in the places left\n";
+}
 
 /// Prints how much memory samples by mass and by spring take, if a fitness operator asks for any.
 void print_sample_memory(const Experiment& experiment) {
@@ -129,6 +137,7 @@ int check(const Given& given) {
   const std::vector<Experiment> islands = given_islands(file, given);
   const Experiment& experiment = islands.front();
   print_warnings(experiment);
+  print_founders(experiment);
   print_sample_memory(experiment);
   print_top_speeds(experiment);
   print_islands(islands);

@@ -218,7 +218,7 @@ void add_immigrants(const Brood& brood, std::span<const Migrant> migrants, std::
     newborn.id = nursery.next_id();
     newborn.born = brood.generation;
     newborn.origin = migrant.origin;
-    newborn.made_by = "migration";
+    newborn.made_by = migrant.from.island == 0 ? "start" : "migration";
     newborn.genome = migrant.genome;
     newborn.migrated = migrant.from;
     nursery.add(std::move(newborn));

@@ -11,6 +11,7 @@
 #include "evolution/archive/archive_writer.hpp"
 #include "evolution/breeding.hpp"
 #include "evolution/clones.hpp"
+#include "evolution/founders.hpp"
 #include "evolution/front_verification.hpp"
 #include "evolution/islands/migration.hpp"
 #include "evolution/selection_table.hpp"
@@ -265,7 +266,9 @@ TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& ar
   ArchiveWriter writer(archive);
 
   for (; !is_finished(experiment, summaries) && !stop; ++generation) {
-    const auto migrants = migration ? migration->arrivals(generation, stop) : std::vector<Migrant>();
+    const auto migrants = generation == 0 ? founders(experiment)
+                          : migration     ? migration->arrivals(generation, stop)
+                                          : std::vector<Migrant>();
     if (!migrants) break;
     const auto start = Clock::now();
     const std::int64_t count = std::min(experiment.newborns(), experiment.evaluations - evaluations);

@@ -9,15 +9,15 @@
 
 namespace evodevo {
 
-/// An individual of another island of the run.
+/// An individual of another population.
 struct Migrated {
-  std::int64_t island = 0;       ///< its number, from 1
-  std::uint32_t individual = 0;  ///< id on that island
+  std::int64_t island = 0;       ///< number of the island, from 1; 0: of the run that `[experiment] start` names
+  std::uint32_t individual = 0;  ///< id on that island or in that run
 
   bool operator==(const Migrated&) const = default;
 };
 
-/// An individual on its way to another island. There it is born again, as a newborn with the same genome.
+/// An individual on its way to another population. There it is born again, as a newborn with the same genome.
 struct Migrant {
   Migrated from;
   std::uint32_t origin = 0;  ///< Individual::origin, which is the same on all islands
@@ -37,11 +37,11 @@ struct Individual {
   std::vector<std::uint32_t>
       parents;          ///< ids of the parent, which it may replace, and the mate, as far as there are any
   std::string made_by;  ///< names of the variation operators that made it, joined by '+', name of the selection
-                        ///< operator that made it, "random", or "migration"
+                        ///< operator that made it, "random", "migration", or "start"
   Genome genome;
   Result result;
   std::uint32_t provenance = 0;           ///< of the result: index into Archive::provenances()
-  std::optional<Migrated> migrated = {};  ///< of an immigrant: where it comes from
+  std::optional<Migrated> migrated = {};  ///< of an immigrant or a founder: where it comes from
 
   std::uint32_t age(std::uint32_t generation) const { return generation - origin; }
 };

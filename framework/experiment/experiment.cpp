@@ -50,6 +50,8 @@ Experiment compose(const toml::table& root, const ExperimentSource& source) {
   static_cast<Settings&>(experiment) =
       read_settings(top, source.grows_bodies ? Bodies::grown : Bodies::given, experiment.warnings);
   check_island_tables(top, experiment);
+  if (!experiment.start.empty())  // absolute in the record of a run, so that it means the same elsewhere
+    experiment.start = (fs::absolute(source.file).parent_path() / experiment.start).lexically_normal().string();
   experiment.name = printable(fs::path(source.file).stem().string());
   experiment.device_location = top.location("simulation");
   experiment.gpus = source.gpus;

@@ -139,6 +139,7 @@ struct Settings {
   std::int64_t random_individuals = 1;  ///< number of random individuals that enter each generation
   std::int64_t verify = 1;              ///< number of best individuals to verify when the run ends
   bool verify_front = false;            ///< whether individuals are verified before they enter the front
+  std::string start;  ///< folder of the run with whose last population this one begins; empty: random individuals
 
   double mass = 0.2;  ///< mass of one point mass, kg
   std::map<std::string, Material> materials = base_materials();

@@ -18,6 +18,7 @@
 #include "commands/shell/options.hpp"
 #include "commands/shell/verification_report.hpp"
 #include "evolution/evolution.hpp"
+#include "evolution/founders.hpp"
 #include "evolution/islands/island_folders.hpp"
 #include "evolution/record_check.hpp"
 #include "experiment/device.hpp"
@@ -267,6 +268,7 @@ int begin(const Ranks& ranks, const std::string& file, std::vector<Experiment> i
   Experiment& experiment = islands.front();
   const std::optional<Journal> journal = given_journal(given);
   const std::unique_ptr<GenerationLog> log = given_log(given, experiment, files_of_experiment(file, experiment));
+  founders(experiment);  // so that a wrong start is reported before anything is written
   print_warnings(experiment);
   if (ranks.channel()) share_host(experiment, *ranks.channel(), given.contains("mixed"));
   const auto simulator = opened_simulator(experiment);

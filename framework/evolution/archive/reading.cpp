@@ -83,7 +83,7 @@ class Individuals {
     individual.provenance = static_cast<std::uint32_t>(row_.integer(13, 0, provenances_ - 1));
     individual.genome = read_genome(row_, 6, 12, layout_);
     read_result(individual.result);
-    if (!row_.is_null(14)) individual.migrated = Migrated{row_.integer(14, 1, most_islands), row_.index(15)};
+    if (!row_.is_null(14)) individual.migrated = Migrated{row_.integer(14, 0, most_islands), row_.index(15)};
     if (!row_.is_null(11))
       individual.died = static_cast<std::uint32_t>(row_.integer(11, individual.born, *last_generation_));
     read_scores(individual);

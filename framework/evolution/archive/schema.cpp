@@ -68,7 +68,8 @@ CREATE TABLE generations(
   diverged INTEGER NOT NULL, invalid INTEGER NOT NULL, artefact INTEGER NOT NULL, passive INTEGER NOT NULL,
   clones INTEGER NOT NULL,
   spring_evaluations INTEGER NOT NULL, wall_time REAL NOT NULL);
--- who came from, and left for, other islands of the run, which are numbered from 1
+-- who came from, and left for, other islands of the run, which are numbered from 1; those who came from island 0 are of
+-- the run that [experiment] start names
 CREATE TABLE immigrants(individual INTEGER PRIMARY KEY, island INTEGER NOT NULL, source INTEGER NOT NULL);
 CREATE TABLE emigrants(
   generation INTEGER NOT NULL, island INTEGER NOT NULL, individual INTEGER NOT NULL,

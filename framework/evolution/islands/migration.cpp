@@ -25,7 +25,7 @@ std::vector<std::size_t> by_fitness(const std::vector<Individual>& individuals, 
 }
 
 bool is_immigrant(const Individual& individual, std::uint32_t generation) {
-  return individual.migrated && individual.born == generation;
+  return individual.migrated && individual.migrated->island > 0 && individual.born == generation;
 }
 
 /// Returns the index of the survivor that leaves its place to an immigrant; none if all of them are immigrants of this

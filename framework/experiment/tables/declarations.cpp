@@ -39,6 +39,9 @@ void declare_run(SettingsVisitor& v, Settings& s) {
   v.integer(s.verify, "verify", {0, 1000}, "Number of best individuals that are verified when the run ends.");
   v.flag(s.verify_front, "verify_front",
          "Whether individuals are verified before they enter the front; those that do not hold lose their fitness.");
+  v.text(s.start, "start",
+         "Folder of a run, relative to this file: its last population is born again in the first generation of this run; "
+         "empty: all individuals of the first generation are random.");
   v.require(s.random_individuals <= s.newborns(), "random_individuals",
             std::string("expected at most the ") + (s.children > 0 ? "children" : "population") + ", " +
                 std::to_string(s.newborns()));
