@@ -6,6 +6,7 @@ import { Charts } from "./charts.js";
 import { readPalette } from "./colours.js";
 import { element, short } from "./elements.js";
 import { Gallery } from "./gallery.js";
+import { migrantTables } from "./islands.js";
 import { Lineage } from "./lineage.js";
 import { NicheMaps } from "./niches.js";
 import { directionOf, hasUnit, listed, own, quantityText } from "./scores.js";
@@ -205,7 +206,7 @@ async function begin() {
     page.charts.draw();
     page.portraits = portraits(page.viewer);
     page.pictured = Promise.all(page.portraits.map((one) => one.draw())); // pictures may come later than the page
-    main.append(...page.portraits.map(({ root }) => root), robotTable(runs, robots, page.viewer));
+    main.append(...page.portraits.map(({ root }) => root), robotTable(runs, robots, page.viewer), ...migrantTables(runs));
   }
   main.append(experiments(), element("footer", { textContent: `evodevo ${data.evodevo}` }));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {

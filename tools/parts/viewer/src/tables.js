@@ -5,7 +5,8 @@ import { directionOf, listed, measuresOf, notesOf, objectivesOf, own, titled } f
 
 const cell = (text, tag = "td") => element(tag, { textContent: text });
 
-function table(name, title, heads, rows) {
+/** A section with a title and a table. */
+export function table(name, title, heads, rows) {
   return element(
     "section",
     { className: `table ${name}` },
