@@ -24,6 +24,14 @@ class Failure(Exception):
     """The reason why a comparison cannot continue, with the remedy."""
 
 
+class RunFailure(Failure):
+    """The reason why a run failed. It would fail again; a run that was stopped raises a plain Failure."""
+
+    def __init__(self, run, reason):
+        super().__init__(reason)
+        self.run = run
+
+
 class Interrupted(Exception):
     """The user has asked the comparison to stop."""
 
@@ -254,7 +262,8 @@ class Runs:
             # again
             stopped = code < 0 or code == STOPPED
             remedy = "the same command goes on from there" if stopped else "mend that and give the same command again"
-            raise Failure(f"{run.folder}: the run ended with {code}:\n  {last}\n{remedy}")
+            reason = f"{run.folder}: the run ended with {code}:\n  {last}\n{remedy}"
+            raise Failure(reason) if stopped else RunFailure(run, reason)
 
 
 def stop(processes):

@@ -1,0 +1,120 @@
+"""Implements the command, from its arguments to the report."""
+
+import pathlib
+import shlex
+import signal
+import subprocess
+import sys
+
+from common import charts
+from compare.runs import Failure, Interrupted, has_table_of, parse_setting, read_toml
+
+from . import arguments, chart, edit, report, tables
+from .effects import effects
+from .ranges import parse_range
+from .trials import Trials
+from .tuning import Tuning, smallest_budget
+
+
+def value_at(experiment, key):
+    """Returns the value of a key in an experiment, or None if it is not written."""
+    node = experiment
+    for part in key.split("."):
+        if isinstance(node, list):
+            node = node[int(part)] if part.isdecimal() and int(part) < len(node) else None
+        else:
+            node = node.get(part) if isinstance(node, dict) else None
+    return node
+
+
+def refuse_keys(experiment, parameters, settings):
+    """Refuses a key that is given twice, or lies in another, or whose table is missing, or that is a table."""
+    given = [*((each.key, "--over") for each in parameters), *((key, "--set") for key, _ in settings)]
+    for i, (key, option) in enumerate(given):
+        for other, _ in given[:i]:
+            if f"{key}.".startswith(f"{other}.") or f"{other}.".startswith(f"{key}."):
+                raise Failure(f"{option} {key}: {other} is given as well; give one of them, once")
+        if not has_table_of(experiment, key):
+            raise Failure(f"{option} {key}: the experiment has no table [{key.rpartition('.')[0]}]; add it")
+        value = value_at(experiment, key)
+        tables = value if isinstance(value, list) else [value]
+        if option == "--over" and any(isinstance(table, dict) for table in tables):
+            raise Failure(f"--over {key}: this is a table; give one of its keys, such as {key}.name")
+
+
+def refuse_small_budget(budget, parameters):
+    least = smallest_budget(len(parameters))
+    if budget < least:
+        raise Failure(
+            f"--budget {budget}: too few runs to tune {len(parameters)} {'key' if len(parameters) == 1 else 'keys'}; "
+            f"give at least {least}"
+        )
+
+
+def write_best(program, out, experiment, variant):
+    """Writes best.toml, and returns what the program has against it, or an empty text."""
+    text = experiment.read_bytes().decode()
+    file = out / "best.toml"
+    file.write_bytes(edit.with_values(text, variant.swept).encode())
+    checked = subprocess.run([str(program), "check", str(file)], capture_output=True, text=True)
+    if checked.returncode == 0:
+        return ""
+    return (
+        f"{file} is not accepted where it lies; copy it to {experiment.parent}, from where its relative paths lead on:\n"
+        f"{checked.stderr.strip()}\n"
+    )
+
+
+def tune(words, program):
+    given = arguments.parse(words)
+    parameters = [parse_range(text) for text in given.over]
+    settings = tuple(parse_setting(text) for text in given.set)
+    experiment = read_toml(given.experiment)
+    refuse_keys(experiment, parameters, settings)
+    refuse_small_budget(given.budget, parameters)
+    own = tuple(parameter.find(value_at(experiment, parameter.key)) for parameter in parameters)
+    out = given.out or pathlib.Path("runs") / f"tune-{given.experiment.stem}"
+
+    def tell(line):
+        print(line, flush=True)
+
+    trials = Trials(program, out, given.experiment, settings, parameters, given.jobs, tell)
+    tuning = Tuning(parameters, own, given.budget, given.seed, trials.accept, trials.evaluate, tell)
+    tuning.run()
+    if not tuning.ranked:
+        raise Failure(f"{given.experiment}: no configuration is left, because a run of each failed; mend what is said above")
+    write(program, out, given, words, parameters, trials, tuning)
+
+
+def write(program, out, given, words, parameters, trials, tuning):
+    best = tuning.ranked[0]
+    objection = write_best(program, out, given.experiment, trials.variant(best))
+    scored = [each for each in tuning.configurations if each.scores]
+    found = effects(parameters, scored, lambda each: each.values)
+    setting = report.Setting(shlex.join(["tools/tune", *words]), given.budget, trials.made_by, trials.obstacles)
+    text = report.markdown(tuning, parameters, trials.objective, found, setting)
+    (out / "report.md").write_text(text)
+    tables.write_csv(
+        out / "results.csv", parameters, tuning.configurations, trials.results, lambda each: trials.variant(each).name
+    )
+    tried = [(each.values, trials.objective.upwards(each.scores), each is best) for each in scored]
+    charts.save(chart.figure(parameters, tried, trials.objective), out / "chart.svg")
+    print(f"\n{text}\n{objection}written to {out}; the best experiment is {out / 'best.toml'}")
+
+
+def interrupt(_signal, _frame):
+    raise Interrupted
+
+
+def main(words, program):
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, interrupt)
+    try:
+        tune(words, program)
+    except Failure as failure:
+        print(f"tune: {failure}", file=sys.stderr)
+        return 2
+    except Interrupted:
+        print("tune: interrupted; the same command goes on", file=sys.stderr)
+        return 130
+    return 0
