@@ -17,6 +17,7 @@ commands=$(while IFS= read -r page; do sed -n '/^```sh$/,/^```$/p' "$page"; done
 outputs=$(sed -nE -e 's/.*(--out|--trajectory|>) ([^ ]+).*/\2/p' -e 's/^tools\/figure .* ([^ ]+)$/\1/p' \
   -e 's/^tools\/(stress|accuracy) ([^ -][^ ]*).*/\2\/data.csv/p' -e 's/.*evodevo new [a-z]+ ([^ ]+).*/\1\/CMakeLists.txt/p' \
   -e 's/^tools\/evodevo run .*/runs\/some-1\/run.sqlite/p' -e 's/^tools\/compare .*/runs\/compare-some\/report.md/p' \
+  -e 's/^tools\/tune .*/runs\/tune-some\/report.md/p' \
   <<<"$commands" | sed 's/^walk\./my-lab.growth\/&/' | sort -u)
 [ "$(wc -l <<<"$outputs")" -ge 12 ] || { echo "pages have fewer outputs than they had: $outputs"; exit 1; }
 

@@ -131,7 +131,7 @@ case_tool_help() {
     succeeded
     [[ $output == "tools/$name "*"  tools/$name "* ]] || fail "there is no page with an example"
   done
-  for name in compare figure; do
+  for name in compare tune figure; do
     call tools/$name --help
     succeeded
     [ "$output" = "python3 -P -m $name --help" ] || fail "it does not show its help"
@@ -164,7 +164,7 @@ case_charts() {
 case_no_charts() {
   local name
   stand_in id <<<'echo 1000'
-  for name in compare figure parts/accuracy/draw parts/stress/draw; do
+  for name in compare tune figure parts/accuracy/draw parts/stress/draw; do
     call tools/$name some other.svg
     failed_in_a_line "needs root" "apt-get install python3 python3-matplotlib"
   done

@@ -51,6 +51,11 @@ def refuse_small_budget(budget, parameters):
         )
 
 
+def nothing_left(experiment, obstacles):
+    reason = next(iter(obstacles.values()), "all drawn values are those of the experiment")
+    return f"{experiment}: no configurations to compare are left; mend the first obstacle, or change --over:\n{reason}"
+
+
 def write_best(program, out, experiment, variant):
     """Writes best.toml, and returns what the program has against it, or an empty text."""
     text = experiment.read_bytes().decode()
@@ -82,7 +87,7 @@ def tune(words, program):
     tuning = Tuning(parameters, own, given.budget, given.seed, trials.accept, trials.evaluate, tell)
     tuning.run()
     if not tuning.ranked:
-        raise Failure(f"{given.experiment}: no configuration is left, because a run of each failed; mend what is said above")
+        raise Failure(nothing_left(given.experiment, trials.obstacles))
     write(program, out, given, words, parameters, trials, tuning)
 
 

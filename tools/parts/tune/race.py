@@ -34,7 +34,7 @@ def worse_of_many(scores):
     squares, level = (by_seed**2).sum(), seeds * configurations * (configurations + 1) ** 2 / 4
     if squares <= level:  # all scores of each seed are equal
         return numpy.zeros(configurations, dtype=bool)
-    statistic = (configurations - 1) * ((sums**2).sum() / seeds - level) / (squares - level)
+    statistic = (configurations - 1) * ((sums**2).sum() - seeds * level) / (squares - level)
     if stats.chi2.sf(statistic, configurations - 1) >= SIGNIFICANT:
         return numpy.zeros(configurations, dtype=bool)
     freedom = (seeds - 1) * (configurations - 1)

@@ -113,7 +113,7 @@ def parse_range(text):
         raise Failure(
             f"--over {text}: {key} cannot be tuned: it changes what the score means; tune keys of other tables"
         )
-    is_range = ".." in values and values[0] not in "\"'[{"
+    is_range = ".." in values and not any(mark in values for mark in "\"'[{")
     return parse_numbers(text, key, values) if is_range else parse_categories(text, key, values)
 
 

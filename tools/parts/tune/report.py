@@ -19,8 +19,8 @@ there are two. With p below 0.05, what is worse drops out. That a configuration 
 because a race makes many tests and does not correct for their number.
 
 The best configuration was chosen by the scores that the table shows, so its median is too favourable. To measure how
-much better than the experiment it is, compare both with new seeds (`tools/compare`, `--seeds`); the race used the first
-ones.
+much better than the experiment it is, compare both with `tools/compare` and many more seeds than the race used; it began
+with seed 1, too.
 
 The share of others that a configuration beats is the mean over its first {FIRST_TEST} seeds; ties count half.
 A main effect is the difference of this share between the best and the worst level of a key. Its interval is by the

@@ -8,7 +8,8 @@ import numpy
 
 from .race import FIRST_TEST, clearly_worse, mean_ranks
 
-TRIES = 100  # draws of one configuration until it is new and accepted
+TRIES = 100  # draws for each new configuration, most of which may be known already
+REFUSALS = 30  # refusals one after the other that end the drawing
 
 
 @dataclasses.dataclass(eq=False)
@@ -69,6 +70,8 @@ class Tuning:
                 spread *= max(count, 2) ** (-1 / len(self._parameters))
             elites, runs = self.ranked, self.runs
             drawn = self._draw(number, count, spread, (number - 1) / last)
+            if len(elites) + len(drawn) < 2:  # there is nothing to compare
+                break
             keep = 1 if number == last else last
             left = self._race(elites + drawn, set(elites), seen, share, keep)
             self.ranked = self._rank(left)[:last]
@@ -87,12 +90,12 @@ class Tuning:
 
     def _draw(self, iteration, count, spread, weight):
         """Draws `count` new configurations that are accepted, or fewer if there are no more."""
-        drawn, index = [], 0
+        drawn, index, refusals = [], 0, 0
         if iteration == 1:
             own = self._add(self._own, iteration, is_own=True)
             if own.fate == "left":
                 drawn.append(own)
-        while len(drawn) < count and index < TRIES * count:
+        while len(drawn) < count and index < TRIES * count and refusals < REFUSALS:
             index += 1
             values = self._values(numpy.random.default_rng([self._seed, iteration, index]), spread, weight)
             if any(values == known.values for known in self.configurations):
@@ -100,6 +103,9 @@ class Tuning:
             configuration = self._add(values, iteration)
             if configuration.fate == "left":
                 drawn.append(configuration)
+                refusals = 0
+            else:
+                refusals += 1
         return drawn
 
     def _add(self, values, iteration, is_own=False):
