@@ -28,12 +28,24 @@ std::uint32_t MaterialList::index(const Material& material) {
   return found->second;
 }
 
-void drop_unused_materials(Body& body) {
-  std::vector<std::uint8_t> used(body.materials.size(), 0);
-  for (const Spring& spring : body.springs) used[spring.material] = 1;
-  for (const Mass& mass : body.masses)
-    if (mass.material != no_material) used[static_cast<std::size_t>(mass.material)] = 1;
+namespace {
 
+/// Marks the materials that springs or masses use. Base materials are marked in any case.
+std::vector<std::uint8_t> used_materials(const Body& body) {
+  std::vector<std::uint8_t> used(body.materials.size(), 0);
+  std::fill_n(used.begin(), body.base_materials, 1);
+  std::size_t unused = used.size() - body.base_materials;
+  const auto use = [&](std::size_t material) { unused -= used[material] == 0, used[material] = 1; };
+  for (const Mass& mass : body.masses)
+    if (mass.material != no_material) use(static_cast<std::size_t>(mass.material));
+  for (auto spring = body.springs.begin(); spring != body.springs.end() && unused > 0; ++spring) use(spring->material);
+  return used;
+}
+
+}  // namespace
+
+void drop_unused_materials(Body& body) {
+  const std::vector<std::uint8_t> used = used_materials(body);
   std::vector<Material> kept(body.materials.begin(), body.materials.begin() + body.base_materials);
   MaterialList list(kept);
   std::vector<std::uint32_t> new_index;
