@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
@@ -33,6 +32,27 @@ std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) {
   return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
 }
 
+/// The pairs of masses that new springs join. There are few new springs and many others; hence the new ones are sorted,
+/// and each of the others is looked up among them.
+class NewPairs {
+ public:
+  /// `keys`: of the pairs, ascending.
+  NewPairs(std::vector<std::uint64_t> keys, std::size_t masses)
+      : keys_(std::move(keys)), is_lower_(masses, 0), is_upper_(masses, 0) {
+    for (const std::uint64_t key : keys_) is_lower_[key >> 32] = is_upper_[key & 0xffffffff] = 1;
+  }
+
+  bool contains(const Spring& spring) const {
+    // for most springs, one of their ends shows that no new spring joins the same pair
+    if (!is_lower_[std::min(spring.a, spring.b)] || !is_upper_[std::max(spring.a, spring.b)]) return false;
+    return std::binary_search(keys_.begin(), keys_.end(), pair_key(spring.a, spring.b));
+  }
+
+ private:
+  std::vector<std::uint64_t> keys_;
+  std::vector<std::uint8_t> is_lower_, is_upper_;  ///< [masses] whether the mass is that end of a new spring
+};
+
 std::string pair_text(const NewSpring& spring) {
   return "joins masses " + std::to_string(spring.a) + " and " + std::to_string(spring.b);
 }
@@ -41,8 +61,11 @@ std::string pair_text(const NewSpring& spring) {
 void put_in_order(std::vector<std::uint32_t>& indices, std::vector<double>& causes) {
   const bool have_causes = !causes.empty();
   if (have_causes && causes.size() != indices.size()) return;
-  std::map<std::uint32_t, double> ordered;
-  for (std::size_t i = 0; i < indices.size(); ++i) ordered.emplace(indices[i], have_causes ? causes[i] : 0);
+  std::vector<std::pair<std::uint32_t, double>> ordered;
+  for (std::size_t i = 0; i < indices.size(); ++i) ordered.emplace_back(indices[i], have_causes ? causes[i] : 0);
+  const auto index_of = [](const auto& item) { return item.first; };
+  std::ranges::stable_sort(ordered, {}, index_of);
+  ordered.erase(std::ranges::unique(ordered, {}, index_of).begin(), ordered.end());
   indices.clear();
   if (have_causes) causes.clear();
   for (const auto& [index, cause] : ordered) {
@@ -83,7 +106,6 @@ class Editor {
     check_new_springs();  // before the indices of masses change
     move_masses();
     move_springs();
-    refuse_joined_pairs();
     for (const NewSpring& spring : edits_.new_springs) add_spring(spring);
     drop_unused_materials(body_);
   }
@@ -107,30 +129,31 @@ class Editor {
     check(causes.new_springs.size(), edits_.new_springs.size(), "new springs");
   }
 
-  static void check_material(const std::string& what, const Material& material) {
+  // `what` makes the beginning of a message, which most springs do not need
+  static void check_material(const auto& what, const Material& material) {
     if (is_air(material) || !std::isfinite(material.stiffness))
-      refuse(what + " by a spring whose stiffness is " + to_text(material.stiffness) +
+      refuse(what() + " by a spring whose stiffness is " + to_text(material.stiffness) +
              "; expected a finite value above 0");
     if (!(material.amplitude >= 0 && material.amplitude < 1))
-      refuse(what + " by a spring whose amplitude is " + to_text(material.amplitude) + "; expected 0 to below 1");
+      refuse(what() + " by a spring whose amplitude is " + to_text(material.amplitude) + "; expected 0 to below 1");
     if (!std::isfinite(material.frequency) || !std::isfinite(material.phase))
-      refuse(what + " by a spring whose frequency or phase is not finite");
+      refuse(what() + " by a spring whose frequency or phase is not finite");
     if (!(material.damping >= 0) || !std::isfinite(material.damping))
-      refuse(what + " by a spring whose damping ratio is " + to_text(material.damping) +
+      refuse(what() + " by a spring whose damping ratio is " + to_text(material.damping) +
              "; expected a finite value, at least 0");
   }
 
   static bool is_rest_length(double length) { return length >= 0 && std::isfinite(length); }
 
-  static void check_rest_length(const std::string& what, double length) {
+  static void check_rest_length(const auto& what, double length) {
     if (!is_rest_length(length))
-      refuse(what + " by a spring whose rest length is " + to_text(length) + "; expected a finite value, at least 0");
+      refuse(what() + " by a spring whose rest length is " + to_text(length) + "; expected a finite value, at least 0");
   }
 
-  static void check_stiffness(const std::string& what, const Material& material, double factor) {
+  static void check_stiffness(const auto& what, const Material& material, double factor) {
     const double stiffness = factor * material.stiffness;
     if (!(stiffness > 0) || !std::isfinite(stiffness))
-      refuse(what + " by a spring with " + to_text(factor) + " times the stiffness of its material, " +
+      refuse(what() + " by a spring with " + to_text(factor) + " times the stiffness of its material, " +
              to_text(material.stiffness) + " N/m; expected a finite stiffness above 0");
   }
 
@@ -160,12 +183,12 @@ class Editor {
     Body& body = body_;
     std::vector<std::uint8_t> changed(body.springs.size(), 0);
     for (const ChangedSpring& change : edits_.changed_springs) {
-      const std::string what = "replaces spring " + std::to_string(change.spring);
+      const auto what = [&] { return "replaces spring " + std::to_string(change.spring); };
       if (change.spring >= body.springs.size())
-        refuse(what + ", but the body has only " + std::to_string(body.springs.size()) + ", numbered from 0");
+        refuse(what() + ", but the body has only " + std::to_string(body.springs.size()) + ", numbered from 0");
       Spring& spring = body.springs[change.spring];
-      if (spring_gone_[change.spring] || goes(spring)) refuse(what + ", which the same edits remove");
-      if (std::exchange(changed[change.spring], 1)) refuse(what + " twice");
+      if (spring_gone_[change.spring] || goes(spring)) refuse(what() + ", which the same edits remove");
+      if (std::exchange(changed[change.spring], 1)) refuse(what() + " twice");
       if (change.material) check_material(what, *change.material);
       if (change.rest_length) check_rest_length(what, *change.rest_length);
       spring.rest_length = change.rest_length.value_or(spring.rest_length);
@@ -187,13 +210,19 @@ class Editor {
       check_end(spring, spring.a);
       check_end(spring, spring.b);
       if (spring.a == spring.b) refuse(pair_text(spring) + ", which are the same mass");
-      check_material(pair_text(spring), spring.material);
-      check_stiffness(pair_text(spring), spring.material, spring.stiffness_factor);
-      check_rest_length(pair_text(spring), spring.rest_length.value());
+      const auto what = [&] { return pair_text(spring); };
+      check_material(what, spring.material);
+      check_stiffness(what, spring.material, spring.stiffness_factor);
+      check_rest_length(what, spring.rest_length.value());
     }
   }
 
   void move_masses() {
+    if (edits_.removed_masses.empty() && edits_.new_masses.empty()) {
+      new_index_.resize(old_masses());
+      std::iota(new_index_.begin(), new_index_.end(), 0u);
+      return;
+    }
     std::vector<Mass> masses;
     std::vector<Vec3> positions, velocities;
     std::vector<std::uint32_t> staying;
@@ -266,21 +295,26 @@ class Editor {
     }
   }
 
+  /// Removes the springs that go and lets the others follow their masses. Throws if a new spring joins the same pair of
+  /// masses as one of them. All in one pass, because large bodies do not fit into a core's cache.
   void move_springs() {
     std::vector<Spring>& springs = body_.springs;
     const bool masses_go = !edits_.removed_masses.empty();
+    const NewPairs new_pairs = pairs_of_new_springs();
     std::vector<std::uint32_t> staying;
     staying.reserve(springs.size());
-    for (std::uint32_t i = 0; i < springs.size(); ++i)
-      if (!spring_gone_[i] && !(masses_go && goes(springs[i]))) staying.push_back(i);
-    if (living_ != nullptr) move_numbers_of_springs(*living_, staying);
-    for (std::size_t i = 0; i < staying.size(); ++i) {
-      springs[i] = springs[staying[i]];
-      if (!masses_go) continue;  // all masses keep their indices
-      springs[i].a = new_index_[springs[i].a];
-      springs[i].b = new_index_[springs[i].b];
+    for (std::uint32_t i = 0; i < springs.size(); ++i) {
+      if (spring_gone_[i] || (masses_go && goes(springs[i]))) continue;
+      Spring& spring = springs[staying.size()] = springs[i];
+      staying.push_back(i);
+      if (masses_go) {  // otherwise, all masses keep their indices
+        spring.a = new_index_[spring.a];
+        spring.b = new_index_[spring.b];
+      }
+      if (new_pairs.contains(spring)) refuse_pair(pair_key(spring.a, spring.b));
     }
     springs.resize(staying.size());
+    if (living_ != nullptr) move_numbers_of_springs(*living_, staying);
   }
 
   /// Lets everything that is known about springs follow the edits.
@@ -293,36 +327,29 @@ class Editor {
 
   /// Keeps the values of the springs that stay, and adds the mean of these values for each new spring.
   void move_record(std::vector<double>& record, const std::vector<std::uint32_t>& staying) const {
-    for (std::size_t i = 0; i < staying.size(); ++i) record[i] = record[staying[i]];
+    double sum = 0;
+    for (std::size_t i = 0; i < staying.size(); ++i) sum += record[i] = record[staying[i]];
     record.resize(staying.size());
-    const double sum = std::accumulate(record.begin(), record.end(), 0.0);
     record.resize(staying.size() + edits_.new_springs.size(),
                   staying.empty() ? 0 : sum / static_cast<double>(staying.size()));
   }
 
   std::uint64_t new_key(const NewSpring& spring) const { return pair_key(new_index_[spring.a], new_index_[spring.b]); }
 
-  /// Throws if a new spring joins a pair that is joined already. There are few new springs and many others; hence the
-  /// new ones are sorted, and each of the others is looked up among them.
-  void refuse_joined_pairs() const {
-    const std::vector<NewSpring>& arrivals = edits_.new_springs;
-    if (arrivals.empty()) return;
+  /// The pairs of masses that new springs join. Throws if two of them are the same pair.
+  NewPairs pairs_of_new_springs() const {
     std::vector<std::uint64_t> keys;
-    for (const NewSpring& spring : arrivals) keys.push_back(new_key(spring));
+    for (const NewSpring& spring : edits_.new_springs) keys.push_back(new_key(spring));
     std::sort(keys.begin(), keys.end());
-    const auto refuse_pair = [&](std::uint64_t key) {
-      for (auto spring = arrivals.rbegin(); spring != arrivals.rend(); ++spring)
-        if (new_key(*spring) == key) refuse(pair_text(*spring) + ", which are joined already");
-    };
     if (const auto twin = std::adjacent_find(keys.begin(), keys.end()); twin != keys.end()) refuse_pair(*twin);
-    // for most of the other springs, one of their ends shows that no new spring joins the same pair
-    std::vector<std::uint8_t> is_lower(body_.masses.size(), 0), is_upper = is_lower;
-    for (const std::uint64_t key : keys) is_lower[key >> 32] = is_upper[key & 0xffffffff] = 1;
-    for (const Spring& spring : body_.springs) {
-      if (!is_lower[std::min(spring.a, spring.b)] || !is_upper[std::max(spring.a, spring.b)]) continue;
-      if (const auto key = pair_key(spring.a, spring.b); std::binary_search(keys.begin(), keys.end(), key))
-        refuse_pair(key);
-    }
+    return {std::move(keys), body_.masses.size()};
+  }
+
+  /// Says which new spring, the last of them, joins a pair that is joined already.
+  [[noreturn]] void refuse_pair(std::uint64_t key) const {
+    const auto joins_it = [&](const NewSpring& spring) { return new_key(spring) == key; };
+    refuse(pair_text(*std::find_if(edits_.new_springs.rbegin(), edits_.new_springs.rend(), joins_it)) +
+           ", which are joined already");
   }
 
   void add_spring(const NewSpring& spring) {
@@ -360,31 +387,6 @@ void apply(const Edits& resolved, LivingBody& living) {
 
 void apply(const Edits& resolved, Body& body) {
   if (!resolved.empty()) Editor(resolved, body, nullptr).apply();
-}
-
-void record_masses(const RecordRequest& request, LivingBody& living) {
-  const std::vector<Spring>& springs = living.body.springs;
-  const auto sum = [&](bool is_requested, const auto& of_spring) {
-    std::vector<double> sums(is_requested ? living.body.masses.size() : 0, 0.0);
-    for (std::size_t i = 0; is_requested && i < springs.size(); ++i)
-      for (const std::uint32_t end : {springs[i].a, springs[i].b}) sums[end] += of_spring(i);
-    return sums;
-  };
-  for (double& cycles : living.cycles_lived) ++cycles;
-  living.age = request.age ? living.cycles_lived : std::vector<double>();
-  living.degree = sum(request.degree, [](std::size_t) { return 1; });
-  living.load = sum(request.load, [&](std::size_t spring) { return living.stress[spring]; });
-}
-
-void show_records(const LivingBody& records, const RecordRequest& request, DevoContext& context) {
-  if (request.stress) context.stress.show(records.stress);
-  if (request.peak_force) context.peak_force.show(records.peak_force);
-  if (request.muscle_work) context.muscle_work.show(records.muscle_work);
-  if (request.tension) context.tension.show(records.tension);
-  if (request.contact) context.contact.show(records.contact);
-  if (request.age) context.age.show(records.age);
-  if (request.degree) context.degree.show(records.degree);
-  if (request.load) context.load.show(records.load);
 }
 
 }  // namespace evodevo

@@ -44,11 +44,4 @@ void apply(const Edits& resolved, LivingBody& living);
 /// Does the same for a body alone, without its state, its records and what operators remember.
 void apply(const Edits& resolved, Body& body);
 
-/// Makes the records of the masses that `request` asks for, at the end of a cycle. Contact is recorded during the
-/// cycle.
-void record_masses(const RecordRequest& request, LivingBody& living);
-
-/// Makes only those records visible in an operator's context that the operator asked for.
-void show_records(const LivingBody& records, const RecordRequest& request, DevoContext& context);
-
 }  // namespace evodevo

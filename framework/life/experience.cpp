@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "base/text.hpp"
+#include "life/edits.hpp"
 
 namespace evodevo {
 namespace {
@@ -64,6 +65,31 @@ void follow(std::vector<double>& values, std::size_t width, std::size_t items,
   for (const std::uint32_t item : staying) keep(item);
   for (std::size_t item = 0; item < added; ++item) keep(items + item);
   values = std::move(kept);
+}
+
+void record_masses(const RecordRequest& request, LivingBody& living) {
+  const std::vector<Spring>& springs = living.body.springs;
+  const auto sum = [&](bool is_requested, const auto& of_spring) {
+    std::vector<double> sums(is_requested ? living.body.masses.size() : 0, 0.0);
+    for (std::size_t i = 0; is_requested && i < springs.size(); ++i)
+      for (const std::uint32_t end : {springs[i].a, springs[i].b}) sums[end] += of_spring(i);
+    return sums;
+  };
+  for (double& cycles : living.cycles_lived) ++cycles;
+  living.age = request.age ? living.cycles_lived : std::vector<double>();
+  living.degree = sum(request.degree, [](std::size_t) { return 1; });
+  living.load = sum(request.load, [&](std::size_t spring) { return living.stress[spring]; });
+}
+
+void show_records(const LivingBody& records, const RecordRequest& request, DevoContext& context) {
+  if (request.stress) context.stress.show(records.stress);
+  if (request.peak_force) context.peak_force.show(records.peak_force);
+  if (request.muscle_work) context.muscle_work.show(records.muscle_work);
+  if (request.tension) context.tension.show(records.tension);
+  if (request.contact) context.contact.show(records.contact);
+  if (request.age) context.age.show(records.age);
+  if (request.degree) context.degree.show(records.degree);
+  if (request.load) context.load.show(records.load);
 }
 
 }  // namespace evodevo

@@ -11,6 +11,8 @@
 
 namespace evodevo {
 
+struct LivingBody;
+
 /// The records of a body's masses after a cycle, with one number for each mass. Lists that were not requested are
 /// empty.
 struct MassRecords {
@@ -52,5 +54,12 @@ void remember(const Edits& edits, const MemoryNames& names, const Body& body, Op
 /// are 0.
 void follow(std::vector<double>& values, std::size_t width, std::size_t items,
             const std::vector<std::uint32_t>& staying, std::size_t added);
+
+/// Makes the records of the masses that `request` asks for, at the end of a cycle. Contact is recorded during the
+/// cycle.
+void record_masses(const RecordRequest& request, LivingBody& living);
+
+/// Makes only those records visible in an operator's context that the operator asked for.
+void show_records(const LivingBody& records, const RecordRequest& request, DevoContext& context);
 
 }  // namespace evodevo
