@@ -109,10 +109,10 @@ RecordRequest devo_request(const Experiment& experiment, std::size_t index) {
   return call_operator(experiment.call_of(Devo::kind, index), [&] { return experiment.devo.at(index).op->observes(); });
 }
 
-RecordRequest cycle_request(const Experiment& experiment, std::int64_t cycle) {
+RecordRequest cycle_request(const Experiment& experiment, std::int64_t cycle, std::size_t first) {
   RecordRequest all;
   if (experiment.development.control == Control::no_change) return all;
-  for (std::size_t i = 0; i < experiment.devo.size(); ++i) {
+  for (std::size_t i = first; i < experiment.devo.size(); ++i) {
     if (!experiment.devo[i].schedule.contains(cycle)) continue;
     const RecordRequest request = devo_request(experiment, i);
     all.stress |= request.stress;

@@ -87,8 +87,9 @@ struct Experiment : Settings {
 
 /// Returns the records that the devo operator with this index (from 0) asks for.
 RecordRequest devo_request(const Experiment& experiment, std::size_t index);
-/// Returns the records that the devo operators which are applied after a cycle ask for, all together.
-RecordRequest cycle_request(const Experiment& experiment, std::int64_t cycle);
+/// Returns the records that the devo operators which are applied after a cycle ask for, all together: all of these
+/// operators, or those from index `first` on.
+RecordRequest cycle_request(const Experiment& experiment, std::int64_t cycle, std::size_t first = 0);
 /// The names of the numbers that a devo operator remembers about each mass and about each spring.
 struct MemoryNames {
   std::vector<std::string> masses, springs;

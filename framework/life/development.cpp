@@ -173,6 +173,8 @@ void DevelopmentLoop::apply_operator(Life& life, int cycle, std::size_t index) c
     Edits edits;
     op->develop(context, edits, rng);
     remember(edits, memory_names(*op), life.living.body, memory);
+    // records that no later operator of this cycle asks for need not follow the edits
+    life.living.keep(recording(cycle_request(experiment_, cycle, index + 1)));
     make(change_by(edits, static_cast<std::uint32_t>(index), context), life);
   };
   call_operator(experiment_.call_of(Devo::kind, index, {.individual = life.newborn.id, .cycle = cycle}), develop);

@@ -61,6 +61,14 @@ struct SpringRecords {
   static constexpr std::array lists{&SpringRecords::stress, &SpringRecords::peak_force, &SpringRecords::muscle_work,
                                     &SpringRecords::tension};
 
+  /// Empties each list that `recording` does not request.
+  void keep(Recording recording) {
+    if (!recording.stress) stress.clear();
+    if (!recording.peak_force) peak_force.clear();
+    if (!recording.muscle_work) muscle_work.clear();
+    if (!recording.tension) tension.clear();
+  }
+
   /// Sets each list that `recording` requests to `springs` zeros, and empties the other lists.
   void clear(Recording recording, std::size_t springs) {
     stress.assign(recording.stress ? springs : 0, 0.0);
