@@ -1,23 +1,46 @@
 // For devo operators: what counts as stress, and the choice of springs by it.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
 #include <tuple>
+#include <vector>
 
 #include "evodevo/devo.hpp"
 
 namespace evodevo {
+
+/// Returns the number at place `count` (from 1) of the ascending order of `numbers`; infinity if there are fewer.
+inline double nth_smallest(std::span<const double> numbers, std::size_t count) {
+  double bound = std::numeric_limits<double>::infinity();  // at least `count` numbers seen so far are not above it
+  std::vector<double> least;                               // below bounds so far
+  const auto nth = [&] { return least.begin() + static_cast<std::ptrdiff_t>(count - 1); };
+  const auto lower_bound = [&] {
+    std::nth_element(least.begin(), nth(), least.end());
+    least.resize(count);
+    bound = least.back();
+  };
+  for (const double number : numbers) {  // `count` is small, so most numbers are compared only once
+    if (!(number < bound)) continue;
+    least.push_back(number);
+    if (least.size() == 2 * count) lower_bound();
+  }
+  if (least.size() >= count) lower_bound();
+  return bound;
+}
 
 /// Returns the `count` springs with the smallest `key`, or all springs if there are fewer; smallest first, ties in
 /// random order. No key may be NaN.
 inline std::vector<std::uint32_t> springs_of_least(const std::vector<double>& key, std::size_t count, Rng& rng) {
   count = std::min(count, key.size());
   if (count == 0) return {};
-  std::vector<double> least(count);  // `count` is small, so most keys are compared only once
-  std::partial_sort_copy(key.begin(), key.end(), least.begin(), least.end());
+  const double bound = nth_smallest(key, count);
   using Ranked = std::tuple<double, std::uint32_t, std::uint32_t>;
   std::vector<Ranked> ranked;
   for (std::uint32_t s = 0; s < key.size(); ++s)
-    if (key[s] <= least.back()) ranked.emplace_back(key[s], rng(), s);
+    if (key[s] <= bound) ranked.emplace_back(key[s], rng(), s);
   std::sort(ranked.begin(), ranked.end());
   std::vector<std::uint32_t> springs;
   for (std::size_t i = 0; i < count; ++i) springs.push_back(std::get<2>(ranked[i]));
