@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <functional>
 #include <numeric>
 
@@ -363,14 +364,16 @@ std::vector<std::uint32_t> Arrangement::assign_slots(Members& members, std::size
 void Arrangement::fill_empty_slots() {
   const auto first_cut = slots.begin() + static_cast<std::ptrdiff_t>(32 * shape.rows_inside());
   for (auto row = slots.begin(); row != slots.end(); row += 32) {
-    if (std::none_of(row, row + 32, [](const Slot& slot) { return slot.spring == none; })) continue;
-    std::uint32_t busy = 0, bank = 0;
-    for (auto slot = row; slot != row + 32; ++slot)
-      if (slot->spring != none) busy |= 1u << slot->other % 32;
-    for (auto slot = row; slot != row + 32; ++slot) {
-      if (slot->spring != none) continue;
+    std::uint32_t empty = 0, busy = 0, bank = 0;
+    for (std::uint32_t lane = 0; lane < 32; ++lane) {  // without branches, because empty slots are hard to predict
+      const std::uint32_t is_empty = row[lane].spring == none;
+      empty |= is_empty << lane;
+      busy |= (is_empty ^ 1) << row[lane].other % 32;
+    }
+    const std::uint32_t first = row < first_cut ? 32 * groups : first_of_halo();
+    for (; empty != 0; empty &= empty - 1) {
       while (busy >> bank & 1) ++bank;
-      slot->other = (row < first_cut ? 32 * groups : first_of_halo()) + bank++;
+      row[std::countr_zero(empty)].other = first + bank++;
     }
   }
 }
