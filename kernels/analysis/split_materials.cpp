@@ -16,9 +16,12 @@ double dashpot_of(const Body& body, const Spring& spring) {
 
 /// Whether all springs of a material agree, and none has a stiffness factor.
 bool agree(const Body& body) {
+  const auto has_factor = [](const Spring& spring) { return spring.stiffness_factor != 1; };
+  if (std::ranges::all_of(body.materials, [](const Material& material) { return material.damping == 0; }))
+    return std::ranges::none_of(body.springs, has_factor);
   std::vector<std::optional<double>> dashpots(body.materials.size());
   return std::all_of(body.springs.begin(), body.springs.end(), [&](const Spring& spring) {
-    if (spring.stiffness_factor != 1) return false;
+    if (has_factor(spring)) return false;
     const double dashpot = dashpot_of(body, spring);
     std::optional<double>& first = dashpots[spring.material];
     if (!first) first = dashpot;
