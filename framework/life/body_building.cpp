@@ -97,6 +97,7 @@ std::vector<std::uint32_t> pieces(const Body& body) {
   };
   std::size_t count = leader.size();
   for (const Spring& spring : body.springs) {
+    if (leader[spring.a] == leader[spring.b]) continue;  // most masses know the leader of their piece
     const auto [low, high] = std::minmax({find(spring.a), find(spring.b)});
     if (low == high) continue;
     leader[high] = low;
