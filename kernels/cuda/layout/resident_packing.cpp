@@ -24,20 +24,17 @@ void Resident<T>::pack_records(Record<T>* to, const MaterialUnits& units) const 
   const std::vector<Integer> materials = materials_in_records(units);
   const std::span<const std::uint32_t> counted = arranged_->slot_of();
   for (const auto& [arrangement, springs, copies, first_mass, first_slot] : arranged_->blocks()) {
-    const auto place_of = [&](const Arrangement::Slot& slot) {
-      return static_cast<Integer>(offset_in_chip<T>(arrangement, slot.other, features_) / unit);
-    };
-    for (std::size_t slot = 0; slot < arrangement.slots.size(); ++slot)
-      if (arrangement.slots[slot].spring == Arrangement::none)
-        to[first_slot + slot] = {T(0), place_of(arrangement.slots[slot])};
+    std::ranges::transform(arrangement.slots, to + first_slot, [&](const Arrangement::Slot& slot) {
+      return Record<T>{T(0), static_cast<Integer>(offset_in_chip<T>(arrangement, slot.other, features_) / unit)};
+    });
     // in the order of the body's springs, which is twice as fast as the order of the slots
     for (std::size_t i = 0; i < arrangement.slot_of.size(); ++i) {
       const std::size_t number = springs.empty() ? i : springs[i];
       const Spring& spring = task_->body->springs[number];
-      const std::uint32_t slot = arrangement.slot_of[i];
+      const std::uint32_t slot = first_slot + arrangement.slot_of[i];
       const auto length = static_cast<T>(spring.rest_length);
-      to[first_slot + slot] = {counted[number] == first_slot + slot ? length : -length,
-                               place_of(arrangement.slots[slot]) | materials[spring.material] << 16};
+      to[slot].rest_length = counted[number] == slot ? length : -length;
+      to[slot].packed |= materials[spring.material] << 16;
     }
   }
   std::fill_n(to + slots(), slots_read_ahead, Record<T>{});
