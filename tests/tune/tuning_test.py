@@ -83,7 +83,7 @@ class Races(unittest.TestCase):
 
     def test_ties_do_not_drop(self):
         tuning = Race(flat, [REAL], 60, ("3.0",)).tuning
-        self.assertEqual({each.fate for each in tuning.configurations}, {"left"})
+        self.assertEqual({each.fate for each in tuning.configurations}, {"left", "outranked"})
         self.assertTrue(tuning.ranked[0].is_own)  # of equals, the experiment stays as it is
 
     def test_the_budget_is_never_exceeded_and_no_run_is_made_twice(self):
@@ -103,6 +103,13 @@ class Races(unittest.TestCase):
             tuning = race_on_the_hill(seed=seed).tuning
             longest = max(len(each.scores) for each in tuning.configurations)
             self.assertEqual({len(each.scores) for each in tuning.ranked}, {longest})
+
+    def test_few_are_handed_on_and_the_last_iteration_keeps_all_that_it_cannot_tell_apart(self):
+        tuning = Race(flat, [REAL, NAMES], 200, ("3.0", '"bad"')).tuning
+        *before, last = tuning.iterations
+        self.assertEqual(sum(each.fate == "outranked" for each in tuning.configurations), sum(i.left - 3 for i in before))
+        self.assertEqual(len(tuning.ranked), last.left)
+        self.assertGreater(last.left, 3)
 
     def test_the_same_scores_give_the_same_race(self):
         self.assertEqual(race_on_the_hill().summary(), race_on_the_hill().summary())

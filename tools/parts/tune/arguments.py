@@ -16,7 +16,7 @@ ranges:
   KEY=V,V,…           any values, such as names of operators
 
 example:
-  tools/tune experiments/quickstart.toml --over development.operator.0.springs=4..64:log --over 'selection.name="comma","elitist"' --budget 120"""
+  tools/tune experiments/quickstart.toml --over development.operator.0.springs=2..64:log --budget 108"""
 
 
 def positive(text):
@@ -37,7 +37,7 @@ def parse(words):
     add("experiment", metavar="EXPERIMENT.toml", type=pathlib.Path)
     add("--over", metavar="KEY=RANGE", action="append", required=True, help="tune KEY, whose table must exist")
     add("--budget", metavar="N", type=positive, required=True, help="largest number of runs, all of equal cost")
-    add("--set", metavar="KEY=VALUE", action="append", default=[], help="set a value in all runs, if KEY's table exists")
+    add("--set", metavar="KEY=VALUE", action="append", default=[], help="set a value in all runs; best.toml is without it")
     add("--seed", metavar="N", type=positive, default=1, help="seed of the drawn configurations (%(default)s)")
     add("--jobs", metavar="N", type=positive, default=1, help="runs in parallel, which share the cores (%(default)s)")
     add("--out", metavar="DIR", type=pathlib.Path, help="folder for results (runs/tune-EXPERIMENT)")

@@ -2,6 +2,8 @@
 
 import math
 
+from matplotlib.ticker import LogLocator, NullFormatter
+
 from common import charts
 from compare import inference
 
@@ -26,6 +28,9 @@ def draw_panel(axes, parameter, points, unit):
         axes.set_xlim(-0.5, len(parameter.values) - 0.5)
     elif parameter.log:
         axes.set_xscale("log")
+        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+        axes.xaxis.set_minor_formatter(NullFormatter())
         axes.set_xlim(parameter.low / 1.1, parameter.high * 1.1)
     else:
         room = 0.03 * (parameter.high - parameter.low)
@@ -40,7 +45,7 @@ def figure(parameters, tried, objective):
         min(3, len(parameters)),
         (3.2, 2.6),
         title=f"median {objective.name} ({objective.unit}) of each configuration",
-        legend="larger: more seeds; red: the best; configurations without a fitness are not shown",
+        legend="larger: more seeds; red: the best; not shown: configurations whose median run has no fitness",
         right=0.3,
     )
     for i, (axes, parameter) in enumerate(zip(panels, parameters)):

@@ -173,8 +173,10 @@ def insert(text, scanner, path, value):
     newline = "\r\n" if "\r\n" in text else "\n"
     table = next((table for table in scanner.tables if table.path == path[:-1]), None)
     if table and table.inline:
-        return f"{text[:table.end]}{' ' if table.empty else ', '}{path[-1]} = {value}{' ' if table.empty else ''}{text[table.end:]}"
-    beside = [entry for entry in scanner.entries if entry.path[: len(path) - 1] == path[:-1] and entry.table != path[:-1]]
+        before, after = (" ", " ") if table.empty else (", ", "")
+        return f"{text[:table.end]}{before}{written(path[-1:])} = {value}{after}{text[table.end:]}"
+    of_table = [entry for entry in scanner.entries if entry.path[: len(path) - 1] == path[:-1]]
+    beside = [entry for entry in of_table if entry.table != path[:-1]]
     if not table and beside and len(beside[-1].table) < len(path) - 1:
         end, key = line_end(text, beside[-1].end), path[len(beside[-1].table) :]
         return f"{text[:end].rstrip(chr(13))}{newline}{written(key)} = {value}{text[end:] or newline}"
@@ -217,5 +219,7 @@ def with_values(text, values):
         read = error
     if read != wanted:
         keys = ", ".join(key for key, _ in values)
-        raise Failure(f"best.toml: the values of {keys} cannot be put into the experiment; write each key on a line of its own")
+        raise Failure(
+            f"best.toml: the values of {keys} cannot be put into the experiment; write each key on a line of its own"
+        )
     return text

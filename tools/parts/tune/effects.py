@@ -6,8 +6,8 @@ import numpy
 
 from compare import inference
 
-from .ranges import Numbers
 from .race import FIRST_TEST, ranks
+from .ranges import Numbers
 
 PARTS = ("low", "middle", "high")  # thirds of a range, by number of configurations
 
@@ -43,7 +43,8 @@ def levels_of(parameter, texts, shares):
     """Returns the levels of a parameter, without those that no configuration has. `texts` has one value for each
     configuration."""
     if not isinstance(parameter, Numbers):
-        return [Level(value, tuple(shares[[text == value for text in texts]])) for value in parameter.values if value in texts]
+        found = [value for value in parameter.values if value in texts]
+        return [Level(value, tuple(shares[[text == value for text in texts]])) for value in found]
     values = numpy.array([float(text) for text in texts])
     low, high = numpy.quantile(values, [1 / 3, 2 / 3], method="inverted_cdf")
     third = numpy.where(values <= low, 0, numpy.where(values <= high, 1, 2))
@@ -61,7 +62,8 @@ def interval_of_difference(best, worst):
         return None
     random = numpy.random.default_rng(1)
     means = [random.choice(some, (inference.RESAMPLES, len(some))).mean(axis=1) for some in (best, worst)]
-    return tuple(map(float, numpy.quantile(means[0] - means[1], [(1 - inference.LEVEL) / 2, (1 + inference.LEVEL) / 2])))
+    tails = (1 - inference.LEVEL) / 2, (1 + inference.LEVEL) / 2
+    return tuple(map(float, numpy.quantile(means[0] - means[1], tails)))
 
 
 def effects(parameters, configurations, values):

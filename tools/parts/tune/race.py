@@ -1,5 +1,7 @@
-"""The tests of a race: which configurations are clearly worse. Scores have one row for each seed and one column for each
-configuration; more is better. They may be infinite, but never NaN."""
+"""The tests of a race: which configurations are clearly worse.
+
+Scores have one row for each seed and one column for each configuration; more is better. They may be infinite, but never
+NaN."""
 
 import numpy
 from scipy import stats

@@ -1,5 +1,6 @@
-"""The ranges of the keys that are tuned: their syntax, and values drawn from them. A value is a text in TOML, or None if
-it is not in the range or not known."""
+"""The ranges of the keys that are tuned: their syntax, and values drawn from them.
+
+A value is a text in TOML, or None if it is not in the range or not known."""
 
 import dataclasses
 import json

@@ -5,22 +5,22 @@ import dataclasses
 from compare import inference
 from compare.standings import INTERVAL, number, table
 
-from .race import FIRST_TEST
+from .race import FIRST_TEST, SIGNIFICANT
 from .tuning import smallest_budget
 
 METHOD = f"""\
 ## How to read this
 
 The score of a run is the first objective of its best robot. If that robot has no fitness, or if verification marked it
-as an artefact or as passive, the score is the worst possible one. All configurations get the same seeds, and all runs the
-same `evaluations` and `spring_evaluations`. From seed {FIRST_TEST} on, each seed ends with a test of all
+as an artefact or as passive, the score is the worst possible one. All configurations get the same seeds, and all runs
+the same `evaluations` and `spring_evaluations`. From seed {FIRST_TEST} on, each seed ends with a test of all
 configurations that are left: a Friedman test with Conover's comparison to the best, or a Wilcoxon signed-rank test if
-there are two. With p below 0.05, what is worse drops out. That a configuration dropped out is no proof that it is worse,
-because a race makes many tests and does not correct for their number.
+there are two. With p below {SIGNIFICANT}, what is worse drops out. That a configuration dropped out is no proof that it
+is worse, because a race makes many tests and does not correct for their number.
 
 The best configuration was chosen by the scores that the table shows, so its median is too favourable. To measure how
-much better than the experiment it is, compare both with `tools/compare` and many more seeds than the race used; it began
-with seed 1, too.
+much better than the experiment it is, compare both with `tools/compare` and many more seeds than the race used; it
+began with seed 1, too.
 
 The share of others that a configuration beats is the mean over its first {FIRST_TEST} seeds; ties count half.
 A main effect is the difference of this share between the best and the worst level of a key. Its interval is by the
@@ -79,8 +79,10 @@ def configurations(tuning, parameters, objective):
     keys = [f"`{parameter.key}`" for parameter in parameters]
     header = ["", *keys, "", "seeds", "mean rank", f"median {objective.name}", INTERVAL]
     return (
-        "## Configurations\n\nThe mean rank is that in the last test of the configuration, in which 1 is the best. A "
-        f"value - is that of the experiment, which is not in the range or not in the file. Intervals take {inference.INTERVAL_FROM} seeds.\n\n"
+        "## Configurations\n\nTests dropped some configurations; others were outranked, that is, not among the few that "
+        "an iteration hands on to the next. The mean rank is that in the last test of the configuration, in which 1 is "
+        "the best. A value - is that of the experiment, which is not in the range or not in the file. Intervals take "
+        f"{inference.INTERVAL_FROM} seeds.\n\n"
         + table(header, [row(each, tuning, objective) for each in order(tuning)])
     )
 
@@ -102,7 +104,7 @@ def obstacles(tuning, reasons):
 def main_effects(found):
     lines = ""
     for effect in sorted(found, key=lambda effect: -(effect.size or 0)):
-        bounds = "{:.2f} to {:.2f}".format(*effect.interval) if effect.interval else "no interval, too few configurations"
+        bounds = "{:.2f} to {:.2f}".format(*effect.interval) if effect.interval else "too few for an interval"
         size = "fewer than two levels" if effect.size is None else f"{effect.size:.2f} ({bounds})"
         lines += f"### `{effect.key}`: {size}\n\n"
         rows = [[level.name, str(len(level.shares)), f"{level.mean:.2f}"] for level in effect.levels]

@@ -21,7 +21,7 @@ class Configuration:
     iteration: int
     is_own: bool = False  # the values that the experiment has itself
     scores: list = dataclasses.field(default_factory=list)  # by seed, from 1; more is better
-    fate: str = "left"  # or "dropped", "failed", "refused"
+    fate: str = "left"  # or "dropped" by a test, "outranked" at the end of an iteration, "failed", "refused"
     mean_rank: float | None = None  # in the last test of its race
     rivals: int = 0  # number of configurations in that test, itself included
 
@@ -74,7 +74,10 @@ class Tuning:
                 break
             keep = 1 if number == last else last
             left = self._race(elites + drawn, set(elites), seen, share, keep)
-            self.ranked = self._rank(left)[:last]
+            ranked = self._rank(left)
+            self.ranked = ranked if number == last else ranked[:last]
+            for each in ranked[len(self.ranked) :]:
+                each.fate = "outranked"
             self.iterations.append(
                 Iteration(
                     number,
