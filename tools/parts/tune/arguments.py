@@ -7,7 +7,7 @@ DESCRIPTION = """\
 Tunes keys of an experiment by iterated racing (López-Ibáñez et al. 2016). Configurations, that is, values for the keys,
 are run with the same seeds. After five seeds, and after every further one, configurations that are clearly worse drop
 out; new ones are then drawn around the best. A run's score is the first objective of its best robot, or the worst
-possible one if verification marks that robot. Writes a report, charts, the scores of all runs, and best.toml: the
+possible one if verification marks that robot. Writes a report, a chart, the scores of all runs, and best.toml: the
 experiment with the best values in their place. The same command continues a race that was stopped."""
 EPILOG = """\
 ranges:

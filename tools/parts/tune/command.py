@@ -65,9 +65,13 @@ def write_best(program, out, experiment, variant):
     if checked.returncode == 0:
         return ""
     return (
-        f"{file} is not accepted where it lies; copy it to {experiment.parent}, from where its relative paths lead on:\n"
+        f"{file} is not accepted where it lies; copy it to {experiment.parent}, to which its relative paths belong:\n"
         f"{checked.stderr.strip()}\n"
     )
+
+
+def tell(line):
+    print(line, flush=True)
 
 
 def tune(words, program):
@@ -80,10 +84,10 @@ def tune(words, program):
     own = tuple(parameter.find(value_at(experiment, parameter.key)) for parameter in parameters)
     out = given.out or pathlib.Path("runs") / f"tune-{given.experiment.stem}"
 
-    def tell(line):
-        print(line, flush=True)
+    def make(runs):
+        runs.make(given.jobs, lambda line: tell(f"  {line}"))
 
-    trials = Trials(program, out, given.experiment, settings, parameters, given.jobs, tell)
+    trials = Trials(program, out, given.experiment, settings, parameters, make, tell)
     tuning = Tuning(parameters, own, given.budget, given.seed, trials.accept, trials.evaluate, tell)
     tuning.run()
     if not tuning.ranked:

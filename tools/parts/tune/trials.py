@@ -48,10 +48,11 @@ def result(shown, objective):
 
 
 class Trials:
-    """The runs of all configurations, and the reasons why some cannot be run."""
+    """The runs of all configurations, and the reasons why some cannot be run. `make(runs)` makes those of the runs that
+    are not finished; `tell(line)` shows the progress."""
 
-    def __init__(self, program, out, experiment, settings, parameters, jobs, tell):
-        self._program, self._out, self._jobs, self._tell = str(program), out, jobs, tell
+    def __init__(self, program, out, experiment, settings, parameters, make, tell):
+        self._program, self._out, self._make, self._tell = str(program), out, make, tell
         self._experiment, self._settings, self._parameters = experiment, settings, parameters
         self.results = {}  # by configuration, then by seed
         self.objective = None  # known after the first run
@@ -88,7 +89,7 @@ class Trials:
             runs = Runs(self._program, self._out, list(variants), seeds)
             runs.check()
             try:
-                runs.make(self._jobs, lambda line: self._tell(f"  {line}"))
+                self._make(runs)
                 break
             except RunFailure as failure:
                 failed = variants.pop(failure.run.variant)
