@@ -264,7 +264,7 @@ TEST(Configuration, UnknownKeys) {
       complaint(small_experiment + "\n[wind]\n"),
       testing::at_place("test.toml:50:2: wind: ",
                         "experiment, encoding, mutation, crossover, scene, simulation, development, fitness, scenario, "
-                        "selection, materials, plugins"));
+                        "selection, materials, islands, island, plugins"));
   EXPECT_THAT(complaint(with("[scene.floor]", "[scene.flor]")),
               testing::at_place("test.toml:22:8: scene.flor: ", "[scene]", "\"floor\""));
   EXPECT_THAT(complaint(with("edge = 0.5", "edgy = 0.5")),
