@@ -13,6 +13,7 @@
 #include "commands/run/islands.hpp"
 #include "commands/run/page.hpp"
 #include "commands/run/progress.hpp"
+#include "commands/run/run_options.hpp"
 #include "commands/shell/builds.hpp"
 #include "commands/shell/notices.hpp"
 #include "commands/shell/options.hpp"
@@ -57,23 +58,6 @@ std::string state_of(const Archive& archive) {
          "continue the run with `" + resume_command_for(archive) + "`";
 }
 
-void add_journal_option(Options& options) {
-  options.add_options()(
-      "journal", value<std::string>("wal|delete"),
-      "journal mode of SQLite: with wal, the run and its readers never wait for each other; delete also "
-      "works on network file systems; default: wal if the file system can do it");
-}
-
-/// Returns the value of --journal, or nullopt if the option is not given. Throws UsageError if the value is neither wal
-/// nor delete.
-std::optional<Journal> given_journal(const Given& given) {
-  if (!given.contains("journal")) return std::nullopt;
-  const auto text = given["journal"].as<std::string>();
-  const auto journal = journal_named(text);
-  if (!journal) throw UsageError("--journal " + text + ": expected wal or delete");
-  return journal;
-}
-
 /// Remembers the folders of the experiment's operators, so that `resume` and other commands may load these operators.
 void remember_folders_of(const Experiment& experiment) {
   if (const std::string fault = remember_plugin_folders(experiment.plugin_folders); !fault.empty())
@@ -109,12 +93,6 @@ bool served(const Ranks& ranks, const Given& given) {
   return true;
 }
 
-void add_mixed_option(Options& options) {
-  options.add_options()(
-      "mixed",
-      "let ranks have different devices and builds; the run records with which of them each individual was evaluated");
-}
-
 /// Returns the farm of all ranks; nothing if there is only this process. `is_record` is that of ExperimentSource.
 std::unique_ptr<Farm> farm_of(const Ranks& ranks, const Experiment& experiment, Simulator& simulator, bool is_record,
                               const Given& given) {
@@ -126,31 +104,6 @@ std::unique_ptr<Farm> farm_of(const Ranks& ranks, const Experiment& experiment, 
                [&] { return std::make_unique<Farm>(experiment, simulator, *ranks.channel(), setup, options); });
 }
 
-void add_versions_option(Options& options) {
-  options.add_options()("allow-other-versions",
-                        "continue even if an operator has another version than when the run began");
-}
-
-void add_output_options(Options& options) {
-  options.add_options()("log", value<std::string>("FILE"), "append one JSON object for each generation to this file");
-  options.add_options()("no-report", "do not write report.html when the run is finished");
-  options.add_options()(
-      "until", value<std::string>("TIME"),
-      "be done after this time, such as 90m or 11.5h, or at a local time, such as 2030-01-31T18:30: begin no generation "
-      "that would not leave time to verify the best and to write the page; `resume` continues the run");
-}
-
-/// Opens the file of --log. Returns nothing without this option. Throws UsageError if it is one of `inputs`, or the
-/// library of an operator.
-std::unique_ptr<GenerationLog> given_log(const Given& given, const Experiment& experiment,
-                                         const std::vector<fs::path>& inputs) {
-  if (!given.contains("log")) return nullptr;
-  const auto file = given["log"].as<std::string>();
-  refuse_to_overwrite("--log", file, inputs);
-  refuse_to_overwrite("--log", file, libraries_of(experiment));
-  return std::make_unique<GenerationLog>(file);
-}
-
 /// Returns the file of an experiment and the files that its parameters name.
 std::vector<fs::path> files_of_experiment(const fs::path& file, const Experiment& experiment) {
   std::vector<fs::path> files{file};
@@ -160,12 +113,6 @@ std::vector<fs::path> files_of_experiment(const fs::path& file, const Experiment
 
 RunOutput output_of(const Given& given, GenerationLog* log, TimeLimit* limit) {
   return {log, !given.contains("no-report"), limit};
-}
-
-/// Returns the limit that --until gives, counted from now, or null.
-std::unique_ptr<TimeLimit> given_limit(const Given& given) {
-  if (!given.contains("until")) return nullptr;
-  return std::make_unique<TimeLimit>(TimeLimit::Clock::now(), end_given_by(given["until"].as<std::string>()));
 }
 
 }  // namespace
