@@ -8,9 +8,9 @@
 namespace evodevo {
 
 /// Returns those who are alive in the run that `[experiment] start` names, to be born again in the first generation;
-/// nobody if it names none. If more are alive than are born, the best by the first objective of that run come, and those
-/// without a fitness last. They are in the order of their birth there. Throws ConfigError if the key is wrong: if there
-/// is no such run, if nobody lives in it, if its genomes are not those of the experiment, or if the experiment's
+/// nobody if it names none. If more are alive than are born, the best by the first objective of that run come, and
+/// those without a fitness last. They are in the order of their birth there. Throws ConfigError if the key is wrong: if
+/// there is no such run, if nobody lives in it, if its genomes are not those of the experiment, or if the experiment's
 /// selection operator makes all children itself, and would not know these.
 std::vector<Migrant> founders(const Experiment& experiment);
 

@@ -23,7 +23,8 @@ class Start : public ::testing::Test {
   /// Runs the small experiment into a folder, with values for keys.
   Finished run(const std::string& folder, const std::vector<std::string>& values, const char* command = "run") {
     std::vector<std::string> words{EVODEVO_PROGRAM, command, file_};
-    if (std::string(command) == "run") words.insert(words.end(), {"--no-report", "--out", (scratch_ / folder).string()});
+    if (std::string(command) == "run")
+      words.insert(words.end(), {"--no-report", "--out", (scratch_ / folder).string()});
     for (const std::string& value : values) words.insert(words.end(), {"--set", value});
     return testing::run(words);
   }

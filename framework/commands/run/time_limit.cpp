@@ -25,11 +25,16 @@ std::optional<double> duration_in(const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || text.data() + text.size() - end != 1) return std::nullopt;
   switch (*end) {
-    case 's': return number;
-    case 'm': return number * 60;
-    case 'h': return number * 3600;
-    case 'd': return number * 24 * 3600;
-    default: return std::nullopt;
+    case 's':
+      return number;
+    case 'm':
+      return number * 60;
+    case 'h':
+      return number * 3600;
+    case 'd':
+      return number * 24 * 3600;
+    default:
+      return std::nullopt;
   }
 }
 

@@ -13,8 +13,8 @@ namespace evodevo {
 ///   begin ── generations ── no further one fits ── verification, page ── end
 ///                                          └──────── reserve ─────────────┘
 ///
-/// A tenth of the time, at most half an hour, is the reserve for verification and the page. If a generation takes longer
-/// than all before it, it may use up the reserve, and even the time after the end, because it is not cut off.
+/// A tenth of the time, at most half an hour, is the reserve for verification and the page. If a generation takes
+/// longer than all before it, it may use up the reserve, and even the time after the end, because it is not cut off.
 ///
 /// Several threads may use it.
 class TimeLimit {
@@ -37,8 +37,8 @@ class TimeLimit {
   std::atomic<bool> is_reached_ = false;
 };
 
-/// Returns the end that the option --until gives: a duration from now, such as "90m" or "11.5h" (s, m, h, d), or a local
-/// time, such as "2026-11-24T18:30". Throws UsageError if it is neither, or not in the future.
+/// Returns the end that the option --until gives: a duration from now, such as "90m" or "11.5h" (s, m, h, d), or a
+/// local time, such as "2026-11-24T18:30". Throws UsageError if it is neither, or not in the future.
 TimeLimit::Clock::time_point end_given_by(const std::string& text);
 
 }  // namespace evodevo
