@@ -17,6 +17,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/sdk/evodevo ${PROJECT_SOURCE_D
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/template DESTINATION share/evodevo)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/experiments DESTINATION share/evodevo
   FILES_MATCHING PATTERN "*.toml" PATTERN "*.obj" PATTERN results EXCLUDE PATTERN study EXCLUDE)
+install(PROGRAMS ${PROJECT_SOURCE_DIR}/tools/cluster/run.sbatch DESTINATION share/evodevo)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION share/doc/evodevo RENAME copyright)
 
 # evodevo_install_page(FILE NAME): installs a page under another name, with links that lead to the installed files
