@@ -7,7 +7,7 @@ import sys
 
 from common import charts
 
-from . import arguments, chart, niches, report, tables
+from . import arguments, chart, launchers, niches, report, tables
 from .history import history, objective_of
 from .runs import Failure, Interrupted, Runs, make_variants, parse_setting, parse_sweep
 from .scenarios import shared
@@ -30,15 +30,26 @@ def tested_against(name, variants):
     return name or names[0]
 
 
+def tell(line):
+    print(line, flush=True)
+
+
 def compare(words, program):
     given = arguments.parse(words)
+    launchers.refuse_options(given)
     sweeps, settings = map(parse_sweep, given.sweep), map(parse_setting, given.set)
     variants = make_variants(given.experiments, list(sweeps), list(settings))
     against = tested_against(given.against, variants)
     out = given.out or pathlib.Path("runs") / f"compare-{given.experiments[0].stem}"
     runs = Runs(program, out, variants, given.seeds)
-    runs.check()
-    runs.make(given.jobs, lambda line: print(line, flush=True))
+    if given.launcher == "slurm":
+        runs.check()
+        if not launchers.make_in_array(runs, program, out, given.jobs, given.sbatch, tell):
+            return
+    else:
+        launcher = launchers.launcher(given)
+        runs.check()
+        runs.make(given.jobs or 1, launcher, tell)
 
     shown = {run: runs.shown(run) for run in runs.all}
     objective = first_objective(shown.values())

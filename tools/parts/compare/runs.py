@@ -199,15 +199,15 @@ class Runs:
                     f"{record.name} tells; give another --out, or remove this folder"
                 )
 
-    def make(self, jobs, tell):
-        """Makes or resumes all runs that are not finished, `jobs` at a time."""
+    def make(self, jobs, launcher, tell):
+        """Makes or resumes all runs that are not finished, `jobs` at a time, each with the launcher."""
         waiting = [run for run in self.all if not self.is_finished(run)]
         active = {}
         try:
             while waiting or active:
                 while waiting and len(active) < jobs:
                     run = waiting.pop(0)
-                    active[run] = self._start(run, jobs)
+                    active[run] = self._start(run, launcher)
                     tell(f"{run.variant.name}, seed {run.seed} ({len(waiting)} more to start)")
                 os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOWAIT)
                 for run in [run for run, process in active.items() if process.poll() is not None]:
@@ -234,18 +234,23 @@ class Runs:
         with contextlib.closing(sqlite3.connect(database)) as connection:
             return connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0] > 0
 
-    def _start(self, run, jobs):
-        if self._has_begun(run):
-            arguments = ["resume", "--no-report", run.folder]
-        else:
+    @staticmethod
+    def arguments(run):
+        """Returns the arguments of evodevo that begin a run or continue it."""
+        options = [*overrides(run.variant), "--seed", run.seed, "--out", run.folder]
+        return [run.variant.experiment, *options, "--no-report"]
+
+    def clear(self, run):
+        """Removes the folder of a run that was killed before it stored anything, so that it can be begun again."""
+        if not self._has_begun(run):
             shutil.rmtree(run.folder, ignore_errors=True)
-            threads = ["--threads", max(1, (os.cpu_count() or 1) // jobs)] if jobs > 1 else []
-            options = [*overrides(run.variant), "--seed", run.seed, *threads]
-            arguments = ["run", run.variant.experiment, "--no-report", "--out", run.folder, *options]
+
+    def _start(self, run, launcher):
+        self.clear(run)
+        command = [*launcher.command, self._program, "run", *self.arguments(run), "--resume", *launcher.options]
         with open(run.log, "a") as log:
             # in a process group of its own, so that Ctrl-C reaches only this process, which then asks each run to stop
-            command = [self._program, *map(str, arguments)]
-            return subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, process_group=0)
+            return subprocess.Popen([*map(str, command)], stdout=log, stderr=subprocess.STDOUT, process_group=0)
 
     def _evodevo(self, *arguments):
         command = [self._program, *map(str, arguments)]
@@ -272,7 +277,7 @@ def stop(processes):
     while alive := [process for process in processes if process.poll() is None]:
         try:
             for process in alive:
-                process.send_signal(signal.SIGTERM)
+                process.send_signal(signal.SIGUSR1)  # which mpirun and srun forward, unlike SIGTERM
             for process in alive:
                 process.wait()
         except Interrupted:

@@ -1,0 +1,146 @@
+"""Tests comparisons whose runs Slurm starts."""
+
+import csv
+import os
+import pathlib
+import subprocess
+import sys
+import unittest
+
+import slurm
+from slurm import run, wait_until
+
+COMPARE = [sys.executable, "-P", "-m", "compare"]
+
+PLAIN = """
+[experiment]
+evaluations = 65
+population = 7
+
+[encoding]
+name = "voxel"
+size = [2, 1, 1]
+edge = 0.5
+
+[[mutation]]
+name = "reset-weight"
+
+[scene.gravity]
+[scene.floor]
+[scene.friction]
+[scene.damping]
+
+[simulation]
+device = "cpu"
+
+[[fitness]]
+name = "distance"
+settle = 0.05
+window = 0.13
+
+[selection]
+name = "age-fitness-pareto"
+"""
+DEVELOPING = PLAIN + """
+[development]
+cycles = 2
+cycle_time = 0.07
+
+[[development.operator]]
+name = "spring-turnover"
+springs = 2
+"""
+
+
+def setUpModule():
+    global cluster
+    cluster = unittest.enterModuleContext(slurm.Cluster())
+
+
+class Comparison(unittest.TestCase):
+    def setUp(self):
+        self.folder = cluster.folder / self.id().split(".")[-1]
+        self.folder.mkdir()
+        os.chdir(self.folder)
+        self.addCleanup(run, "scancel", "--user=root")
+        pathlib.Path("a plain.toml").write_text(PLAIN)
+        pathlib.Path("developing.toml").write_text(DEVELOPING)
+
+    def compare(self, out, *more, before=()):
+        command = [*before, *COMPARE, "a plain.toml", "developing.toml", "--seeds", "2", "--out", out, *more]
+        done = subprocess.run(command, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def slurm(self, *more):
+        return self.compare("out", "--launcher", "slurm", "--sbatch=--time=10", *more)
+
+    def wait_until_idle(self):
+        wait_until(lambda: not run("squeue", "--noheader"), "no job is left", cluster.logs)
+
+    def expect_same_results(self, out):
+        self.compare("local")
+        results = []
+        for folder in ("local", out):
+            with open(f"{folder}/results.csv", newline="") as stream:
+                results.append([row[:-1] for row in csv.reader(stream)])  # without the wall time
+        self.assertEqual(*results)
+        self.assertEqual(len(results[0]), 1 + 2 * 2 * 10)  # a header; experiments, seeds, generations
+
+    def test_an_array_makes_all_runs(self):
+        said = self.slurm("--jobs", "3")
+        self.assertIn("0 of 4 runs are complete", said)
+        self.wait_until_idle()
+        self.assertIn("| `developing` |", self.slurm())
+        self.expect_same_results("out")
+
+    def test_what_is_in_the_queue_is_not_submitted_again(self):
+        self.slurm("--sbatch=--hold")
+        before = run("squeue", "--noheader", "--format=%i")
+        self.assertIn("0 of 4 runs are complete", self.slurm())
+        self.assertEqual(run("squeue", "--noheader", "--format=%i"), before)
+        self.assertFalse(pathlib.Path("out/report.md").exists())
+
+    def test_what_an_array_left_is_made_by_the_next(self):
+        self.slurm("--sbatch=--hold")
+        run("scancel", "--user=root")
+        self.wait_until_idle()
+        kept = pathlib.Path("out/slurm/run.sbatch")
+        kept.write_text(kept.read_text() + "# changed\n")
+        complete = "out/runs/developing/seed-2"
+        run(os.environ["EVODEVO_PROGRAM"], "run", "developing.toml", "--seed", 2, "--out", complete, "--no-report")
+        written = pathlib.Path(complete, "run.sqlite").stat().st_mtime_ns
+        self.assertIn("1 of 4 runs are complete", self.slurm())
+        self.wait_until_idle()
+        self.slurm()
+        self.assertEqual(pathlib.Path(complete, "run.sqlite").stat().st_mtime_ns, written)
+        self.assertTrue(kept.read_text().endswith("# changed\n"))
+        self.expect_same_results("out")
+
+    def test_runs_share_the_ranks_of_a_job(self):
+        job = ("salloc", "--quiet", "--nodes=2", "--ntasks=4", "--ntasks-per-node=2")
+        said = self.compare("out", "--launcher", "mpi", "--jobs", "2", before=job)
+        self.assertIn("| `developing` |", said)
+        log = pathlib.Path("out/runs/developing/seed-1.log").read_text()
+        self.assertRegex(log, "(?m)^rank 1 on ")
+        self.assertNotRegex(log, "(?m)^rank 2 on ")
+        self.expect_same_results("out")
+
+    def test_more_ranks_than_a_job_has_are_refused(self):
+        command = [*COMPARE, "a plain.toml", "--launcher", "mpi", "--jobs", "3", "--ranks", "2", "--out", "out"]
+        refused = subprocess.run(["salloc", "--quiet", "--ntasks=5", *command], capture_output=True, text=True)
+        self.assertEqual(refused.returncode, 2)
+        self.assertRegex(refused.stderr, "3 runs at once with 2 ranks each .* 5 tasks .*--ntasks")
+        self.assertFalse(pathlib.Path("out").exists())
+
+    def test_options_that_sbatch_refuses_are_named(self):
+        command = [*COMPARE, "a plain.toml", "--launcher", "slurm", "--sbatch=--partition=none-such", "--out", "out"]
+        refused = subprocess.run(command, capture_output=True, text=True)
+        self.assertEqual(refused.returncode, 2)
+        self.assertRegex(refused.stderr, "compare: sbatch .*--partition=none-such.*invalid partition")
+        self.assertEqual(run("squeue", "--noheader"), "")
+
+
+if __name__ == "__main__":
+    slurm.enter_namespaces()
+    unittest.main()
