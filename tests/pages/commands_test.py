@@ -15,7 +15,7 @@ from pages import PROGRAM, ROOT, SHRINK, PageTest, all_pages, blocks, evodevo, m
 
 # programs of other projects, whose options are not checked
 OTHERS = {"apt-get", "cd", "clang-format", "cmake", "cp", "ctest", "echo", "export", "g++", "gdb", "git", "man",
-          "mkdir", "ninja", "pip", "python3", "sed", "source", "sqlite3", "sudo", "tar"}
+          "mkdir", "ninja", "pip", "python3", "sbatch", "sed", "source", "sqlite3", "sudo", "tar"}
 # programs that start several processes of evodevo
 LAUNCHERS = {"mpirun", "srun"}
 # programs whose options go to another program, or that have none
