@@ -513,10 +513,10 @@ TEST(Configuration, Overrides) {
 
   EXPECT_THAT(complaint(small_experiment, {{"experiment.population", "-1", "--set experiment.population=-1"}}),
               testing::at_place("--set experiment.population=-1: experiment.population = -1: ", "1 to 1000000"));
-  EXPECT_THAT(
-      complaint(small_experiment, {{"experiment.size", "3", "--set experiment.size=3"}}),
-      testing::at_place("--set experiment.size=3: experiment.size: ", "[experiment]",
-                        "seed, evaluations, spring_evaluations, population, children, random_individuals, verify"));
+  EXPECT_THAT(complaint(small_experiment, {{"experiment.size", "3", "--set experiment.size=3"}}),
+              testing::at_place(
+                  "--set experiment.size=3: experiment.size: ", "[experiment]",
+                  "seed, evaluations, spring_evaluations, hours, population, children, random_individuals, verify"));
   EXPECT_THAT(complaint(small_experiment, {{"fitness.7.window", "3", "--set fitness.7.window=3"}}),
               testing::at_place("--set fitness.7.window=3: fitness.7.window: ", "item 7"));
   EXPECT_THAT(complaint(small_experiment, {{"fitness.0", "3", "--set fitness.0=3"}}),

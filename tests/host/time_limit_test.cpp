@@ -43,8 +43,9 @@ TEST(TimeLimit, StaysReached) {
 TEST(TimeLimit, IsADurationOrALocalTime) {
   const auto seconds_until = [](const std::string& text) {
     const Clock::time_point before = Clock::now();
-    return std::pair(std::chrono::duration<double>(end_given_by(text) - before).count(),
-                     std::chrono::duration<double>(Clock::now() - before).count());
+    const Clock::time_point end = end_given_by(text);
+    const auto seconds = [&](Clock::time_point time) { return std::chrono::duration<double>(time - before).count(); };
+    return std::pair(seconds(end), seconds(Clock::now()));
   };
   for (const auto& [text, seconds] : {std::pair("75s", 75.0), {"1.5m", 90.0}, {"0.25h", 900.0}, {"2d", 172800.0}}) {
     const auto [until, elapsed] = seconds_until(text);

@@ -27,8 +27,9 @@ void declare_run(SettingsVisitor& v, Settings& s) {
   v.integer(s.evaluations, "evaluations", {1, 1e9}, "Number of evaluations in the whole run.");
   v.real(s.spring_evaluations, "spring_evaluations", {0, 1e18},
          "The run also ends after the generation that reaches this number of spring evaluations; 0: no such limit.");
-  v.real(s.hours, "hours", {0, 1e6, "h"},
-         "The run also ends after the generation that completes this time of evolution, by the clock; 0: no such limit.");
+  v.real(
+      s.hours, "hours", {0, 1e6, "h"},
+      "The run also ends after the generation that completes this time of evolution, by the clock; 0: no such limit.");
   v.integer(s.population, "population", {1, 1e6}, "Number of individuals that survive each generation.");
   v.integer(
       s.children, "children", {0, 1e6},
@@ -39,9 +40,10 @@ void declare_run(SettingsVisitor& v, Settings& s) {
   v.integer(s.verify, "verify", {0, 1000}, "Number of best individuals that are verified when the run ends.");
   v.flag(s.verify_front, "verify_front",
          "Whether individuals are verified before they enter the front; those that do not hold lose their fitness.");
-  v.text(s.start, "start",
-         "Folder of a run, relative to this file: its last population is born again in the first generation of this run; "
-         "empty: all individuals of the first generation are random.");
+  v.text(
+      s.start, "start",
+      "Folder of a run, relative to this file: its last population is born again in the first generation of this run; "
+      "empty: all individuals of the first generation are random.");
   v.require(s.random_individuals <= s.newborns(), "random_individuals",
             std::string("expected at most the ") + (s.children > 0 ? "children" : "population") + ", " +
                 std::to_string(s.newborns()));

@@ -21,7 +21,7 @@ class Launcher:
 def refuse_options(given):
     """Refuses options that belong to another launcher."""
     for name, launcher in (("ranks", "mpi"), ("sbatch", "slurm")):
-        if getattr(given, name) and given.launcher != launcher:
+        if getattr(given, name, None) and given.launcher != launcher:
             raise Failure(f"--{name}: only for --launcher {launcher}, not for {given.launcher}; leave it out")
 
 

@@ -40,5 +40,13 @@ def parse(words):
     add("--set", metavar="KEY=VALUE", action="append", default=[], help="set a value in all runs; best.toml is without it")
     add("--seed", metavar="N", type=positive, default=1, help="seed of the drawn configurations (%(default)s)")
     add("--jobs", metavar="N", type=positive, default=1, help="runs in parallel, which share the cores (%(default)s)")
+    add(
+        "--launcher",
+        choices=("local", "mpi"),
+        default="local",
+        help="local: processes on this host; mpi: each run has several ranks, started by srun in a job of Slurm and by "
+        "mpirun elsewhere (%(default)s)",
+    )
+    add("--ranks", metavar="N", type=positive, help="with mpi: ranks of each run (the tasks of a job / --jobs)")
     add("--out", metavar="DIR", type=pathlib.Path, help="folder for results (runs/tune-EXPERIMENT)")
     return parser.parse_args(words)

@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 from common import charts
+from compare import launchers
 from compare.runs import Failure, Interrupted, has_table_of, parse_setting, read_toml
 
 from . import arguments, chart, edit, report, tables
@@ -76,6 +77,7 @@ def tell(line):
 
 def tune(words, program):
     given = arguments.parse(words)
+    launchers.refuse_options(given)
     parameters = [parse_range(text) for text in given.over]
     settings = tuple(parse_setting(text) for text in given.set)
     experiment = read_toml(given.experiment)
@@ -84,8 +86,10 @@ def tune(words, program):
     own = tuple(parameter.find(value_at(experiment, parameter.key)) for parameter in parameters)
     out = given.out or pathlib.Path("runs") / f"tune-{given.experiment.stem}"
 
+    launcher = launchers.launcher(given)
+
     def make(runs):
-        runs.make(given.jobs, lambda line: tell(f"  {line}"))
+        runs.make(given.jobs, launcher, lambda line: tell(f"  {line}"))
 
     trials = Trials(program, out, given.experiment, settings, parameters, make, tell)
     tuning = Tuning(parameters, own, given.budget, given.seed, trials.accept, trials.evaluate, tell)
