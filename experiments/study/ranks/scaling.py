@@ -3,7 +3,8 @@
 
   python3 experiments/study/ranks/scaling.py runs/ranks
 
-No such machine was measured. The simulation deals out jobs as framework/cluster/farm.cpp does, and takes its times from
+It assumes hosts whose cores feed their GPUs; experiments/results/README.md has what two GPUs did in one that does not.
+The simulation deals out jobs as framework/cluster/farm.cpp does, and takes its times from
 measurements of one GPU and its host:
 
 - ROBOT_SECONDS: the life of a robot on an idle multiprocessor of an NVIDIA H200: 1.3e4 springs, 60,000 steps in the life
