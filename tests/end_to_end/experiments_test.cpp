@@ -107,6 +107,27 @@ TEST(Experiments, TheStudiesOfDevelopmentDifferInDevelopmentAlone) {
             rest_of(read_experiment({experiment_file("evo.toml"), {}})));
 }
 
+TEST(Experiments, TheArmsOfThePlannedStudyDifferInDevelopmentAlone) {
+  const fs::path study = experiment_file("study/development");
+  const Experiment evo = read_experiment({study / "evo.toml", {}});
+  const Experiment sized = read_experiment({study / "evo.toml", {{"encoding.size_range", "0.6", ""}}});
+  EXPECT_EQ(evo.development.cycles, 0);
+  int arms = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(study)) {
+    if (entry.path().extension() != ".toml") continue;
+    SCOPED_TRACE(entry.path());
+    Experiment arm = read_experiment({entry.path(), {}});
+    const std::string name = arm.name;
+    if (name == "random-search") {
+      EXPECT_EQ(arm.random_individuals, arm.newborns());
+      arm.random_individuals = evo.random_individuals;
+    }
+    EXPECT_EQ(terms(arm), terms(name == "ballistic" || name == "sized" ? sized : evo));
+    ++arms;
+  }
+  EXPECT_EQ(arms, 9);
+}
+
 /// Returns the tables of an experiment with this name, as text.
 std::string table_of(const Experiment& experiment, const std::string& name) {
   const std::string& text = experiment.resolved;
@@ -133,14 +154,16 @@ TEST(Experiments, TheStudyOfSelectionHasTheRobotsOfEvoAndOneBudget) {
   EXPECT_EQ(selections.size(), 7u);
 }
 
-TEST(Experiments, TheStudysControlsDifferInTheControlAlone) {
-  const Experiment developed = read_experiment({experiment_file("study/neural/evo-devo.toml"), {}});
-  for (const std::string control : {"no-change", "random-places", "shuffled-stress"}) {
-    std::string text = read_experiment({experiment_file("study/neural/" + control + ".toml"), {}}).resolved;
-    const std::string line = "control = '" + control + "'";
-    ASSERT_NE(text.find(line), std::string::npos) << text;
-    text.replace(text.find(line), line.size(), "control = 'off'");
-    EXPECT_EQ(text, developed.resolved);
+TEST(Experiments, TheControlsOfStudiesDifferInTheControlAlone) {
+  for (const std::string study : {"study/neural/", "study/development/"}) {
+    const Experiment developed = read_experiment({experiment_file(study + "evo-devo.toml"), {}});
+    for (const std::string control : {"no-change", "random-places", "shuffled-stress"}) {
+      std::string text = read_experiment({experiment_file(study + control + ".toml"), {}}).resolved;
+      const std::string line = "control = '" + control + "'";
+      ASSERT_NE(text.find(line), std::string::npos) << text;
+      text.replace(text.find(line), line.size(), "control = 'off'");
+      EXPECT_EQ(text, developed.resolved);
+    }
   }
 }
 
