@@ -107,7 +107,9 @@ TEST_F(Plugins, TheRecordKeepsFileVersionAndHash) {
 
 TEST_F(Plugins, ResumeRefusesAnotherVersionUnlessTold) {
   install("sound");
-  ASSERT_EQ(run_with("nothing", {"--plugin-path", own()}).exit_code, 0);
+  const std::vector<std::string> endless{"--plugin-path", own(), "--set", "experiment.evaluations=1000000",
+                                         "--until",       "1s"};
+  ASSERT_EQ(run_with("nothing", endless).exit_code, 130) << "a run that is complete is not continued";
   install("newer");
   const std::string now = library_.lexically_normal().string();
   const Finished refused = evodevo({"resume", folder_});
@@ -115,8 +117,8 @@ TEST_F(Plugins, ResumeRefusesAnotherVersionUnlessTold) {
   EXPECT_THAT(refused.output,
               AllOf(HasSubstr(folder_ + ": "), HasSubstr("mutation operator \"nothing\" 1.0.0"), HasSubstr(now),
                     HasSubstr("2.0.0"), HasSubstr(library_.string()), HasSubstr("--allow-other-versions")));
-  const Finished allowed = evodevo({"resume", folder_, "--allow-other-versions"});
-  EXPECT_EQ(allowed.exit_code, 0) << allowed.output;
+  const Finished allowed = evodevo({"resume", folder_, "--allow-other-versions", "--until", "1s"});
+  EXPECT_EQ(allowed.exit_code, 130) << allowed.output;
   EXPECT_THAT(allowed.output,
               testing::naming("warning: ", "mutation operator \"nothing\" 1.0.0", "version 2.0.0", now));
 }

@@ -96,10 +96,10 @@ TEST_F(RunOutput, NeverGoesIntoAFileThatTheCommandReads) {
   refused(run({"--log", file_}), file_);
   refused(run({"--log", (folder_ / "run.log").string()}), "run.log");
   EXPECT_FALSE(fs::exists(folder_)) << "a fault costs no folder";
-  ASSERT_EQ(run({"--no-report"}).exit_code, 0);
+  ASSERT_EQ(run({"--no-report", "--set", "experiment.evaluations=1000000", "--until", "1s"}).exit_code, 130);
   const std::string database = (folder_ / "run.sqlite").string();
   refused(testing::run({EVODEVO_PROGRAM, "resume", folder_.string(), "--log", database}), database);
-  EXPECT_EQ(testing::run({EVODEVO_PROGRAM, "resume", folder_.string(), "--no-report"}).exit_code, 0);
+  EXPECT_EQ(testing::run({EVODEVO_PROGRAM, "resume", folder_.string(), "--no-report", "--until", "1s"}).exit_code, 130);
 }
 
 TEST_F(RunOutput, EndsWithAPageOrTheCommandThatMakesIt) {
