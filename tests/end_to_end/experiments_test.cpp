@@ -35,7 +35,7 @@ TEST(Experiments, EachRunsForTwoGenerationsWhenShrunk) {
       EXPECT_GT(archive.statuses().at("ok"), 0);
     }
   }
-  EXPECT_EQ(count, 43);
+  EXPECT_EQ(count, 52);
 }
 
 TEST(Experiments, TheEnvironmentsDifferInTheirSceneAlone) {
