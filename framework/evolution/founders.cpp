@@ -23,20 +23,15 @@ Archive opened(const Experiment& experiment) {
   }
 }
 
-/// Keeps the `count` best by the first objective of their run, in the order in which they are.
-void keep_best(std::vector<Individual>& population, std::size_t count, bool maximise) {
-  std::vector<const Individual*> line;
-  for (const Individual& individual : population) line.push_back(&individual);
-  std::stable_sort(line.begin(), line.end(), [&](const Individual* a, const Individual* b) {
-    const bool a_is_ok = a->result.status == Status::ok, b_is_ok = b->result.status == Status::ok;
-    if (!a_is_ok || !b_is_ok) return a_is_ok && !b_is_ok;
-    const double of_a = a->result.objectives.front(), of_b = b->result.objectives.front();
-    return maximise ? of_a > of_b : of_a < of_b;
-  });
-  line.resize(count);
-  std::vector<std::uint32_t> kept;
-  for (const Individual* individual : line) kept.push_back(individual->id);
-  std::erase_if(population, [&](const Individual& one) { return std::ranges::find(kept, one.id) == kept.end(); });
+/// Returns the places of those who come: of all, or of the `count` best by the first objective of their run. Those
+/// without a fitness come last. In ascending order.
+std::vector<std::size_t> chosen(const std::vector<Individual>& population, std::size_t count, bool maximise) {
+  std::vector<std::size_t> places = fittest_first(population, maximise);
+  for (std::size_t i = 0; i < population.size(); ++i)
+    if (population[i].result.status != Status::ok) places.push_back(i);
+  places.resize(std::min(count, places.size()));
+  std::ranges::sort(places);
+  return places;
 }
 
 }  // namespace
@@ -53,11 +48,11 @@ std::vector<Migrant> founders(const Experiment& experiment) {
            "the same operators with genes of their own");
   std::vector<Individual> population = archive.population();
   if (population.empty()) refuse(experiment, "no generation of that run is complete; continue it with `resume`");
-  const auto places = static_cast<std::size_t>(std::min(experiment.newborns(), experiment.evaluations));
-  if (population.size() > places) keep_best(population, places, archive.objectives().front().maximise);
+  const auto most = static_cast<std::size_t>(std::min(experiment.newborns(), experiment.evaluations));
   std::vector<Migrant> migrants;
-  for (Individual& individual : population)
-    migrants.push_back({.from = {.island = 0, .individual = individual.id}, .genome = std::move(individual.genome)});
+  for (const std::size_t place : chosen(population, most, archive.objectives().front().maximise))
+    migrants.push_back(
+        {.from = {.island = 0, .individual = population[place].id}, .genome = std::move(population[place].genome)});
   return migrants;
 }
 

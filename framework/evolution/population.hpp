@@ -46,6 +46,10 @@ struct Individual {
   std::uint32_t age(std::uint32_t generation) const { return generation - origin; }
 };
 
+/// Returns the indices of those individuals that have a fitness, the best first objective first; ties are in their
+/// order.
+std::vector<std::size_t> fittest_first(const std::vector<Individual>& individuals, bool maximise);
+
 /// The best and the median of the scores of several individuals; none without individuals.
 struct BestAndMedian {
   std::optional<double> best, median;

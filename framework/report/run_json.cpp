@@ -58,12 +58,6 @@ Json provenances_json(const Archive& archive) {
   return list;
 }
 
-/// Returns whether all of the best individuals that the experiment asks to verify have been verified.
-bool is_verified(const Archive& archive, const Settings& settings) {
-  const auto best = archive.best(static_cast<std::size_t>(settings.verify));
-  return std::all_of(best.begin(), best.end(), [&](std::uint32_t id) { return archive.verification(id).has_value(); });
-}
-
 Json generations_json(const Archive& archive, const std::vector<Summary>& generations, const NicheMap& map,
                       const std::vector<NoteHistory>& notes) {
   const std::vector<Objective> objectives = archive.objectives();
@@ -77,20 +71,11 @@ Json generations_json(const Archive& archive, const std::vector<Summary>& genera
       of_each[objectives[i].name] = {{"best", optional_json(best)}, {"median", optional_json(median)}};
     }
     const std::size_t i = list.size();
-    list.push_back({{"generation", s.generation},
-                    {"evaluations", s.evaluations},
-                    {"best", optional_json(s.best)},
-                    {"median", optional_json(s.median)},
-                    {"objectives", std::move(of_each)},
-                    {"map", map.axes.empty() ? Json(nullptr) : state_json(map, map.history.at(i))},
-                    {"notes", notes_json(notes, i)},
-                    {"diverged", s.diverged},
-                    {"invalid", s.invalid},
-                    {"artefact", s.artefact},
-                    {"passive", s.passive},
-                    {"clones", s.clones},
-                    {"spring_evaluations", s.spring_evaluations},
-                    {"wall_time", s.wall_time}});
+    Json generation = summary_json(s);
+    generation["objectives"] = std::move(of_each);
+    generation["map"] = map.axes.empty() ? Json(nullptr) : state_json(map, map.history.at(i));
+    generation["notes"] = notes_json(notes, i);
+    list.push_back(std::move(generation));
   }
   return list;
 }
@@ -139,6 +124,25 @@ Json notes_json(const Archive& archive, std::uint32_t id) {
 }
 
 }  // namespace
+
+Json summary_json(const Summary& summary) {
+  return {{"generation", summary.generation},
+          {"evaluations", summary.evaluations},
+          {"best", optional_json(summary.best)},
+          {"median", optional_json(summary.median)},
+          {"diverged", summary.diverged},
+          {"invalid", summary.invalid},
+          {"artefact", summary.artefact},
+          {"passive", summary.passive},
+          {"clones", summary.clones},
+          {"spring_evaluations", summary.spring_evaluations},
+          {"wall_time", summary.wall_time}};
+}
+
+bool is_verified(const Archive& archive, const Settings& settings) {
+  const auto best = archive.best(static_cast<std::size_t>(settings.verify));
+  return std::all_of(best.begin(), best.end(), [&](std::uint32_t id) { return archive.verification(id).has_value(); });
+}
 
 std::int64_t clones(const std::vector<Summary>& generations) {
   std::int64_t sum = 0;

@@ -66,7 +66,7 @@ TEST(TimeLimit, IsADurationOrALocalTime) {
 
 TEST(TimeLimit, RefusesWhatIsNoTimeInTheFuture) {
   for (const std::string text :
-       {"", "90", "m", "-5m", "0s",
+       {"", "90", "m", "-5m", "0s", "0.9s", "1e-12h",
         "nan"
         "h",
         "infh", "1e99d", "90 m", "5x", "2001-02-03T04:05", "2030-13-01T00:00", "tomorrow", "2030-01-31"}) {

@@ -4,21 +4,12 @@
 #include <csignal>
 #include <cstring>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
-#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "commands/shell/command.hpp"
+#include "report/run_json.hpp"
 
 namespace evodevo {
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json optional_json(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
-
-}  // namespace
-
 GenerationLog::GenerationLog(const std::filesystem::path& file) : file_(file), stream_(file, std::ios::app) {
   if (!stream_)
     throw UsageError("--log " + printable(file.string()) + ": " + std::strerror(errno) +
@@ -28,17 +19,7 @@ GenerationLog::GenerationLog(const std::filesystem::path& file) : file_(file), s
 void GenerationLog::add(const Summary& summary, std::int64_t island) {
   const std::lock_guard lock(mutex_);
   if (failed_) return;
-  Json line = {{"generation", summary.generation},
-               {"evaluations", summary.evaluations},
-               {"best", optional_json(summary.best)},
-               {"median", optional_json(summary.median)},
-               {"diverged", summary.diverged},
-               {"invalid", summary.invalid},
-               {"artefact", summary.artefact},
-               {"passive", summary.passive},
-               {"clones", summary.clones},
-               {"spring_evaluations", summary.spring_evaluations},
-               {"wall_time", summary.wall_time}};
+  nlohmann::ordered_json line = summary_json(summary);
   if (island > 0) line["island"] = island;
   // a pipe whose reader has ended is an error like any other, and does not end the run
   const auto before = std::signal(SIGPIPE, SIG_IGN);

@@ -72,14 +72,8 @@ void print_best(const Islands& islands) {
 }
 
 void finish(Islands& islands, Simulator& simulator, const RunOutput& output) {
-  const Experiment& first = islands.experiments.front();
-  if (const auto count = static_cast<std::size_t>(first.verify); count > 0 && is_verifiable(first)) {
-    remarks() << "verifying the best " << count << "; Ctrl-C stops this, and `" << resume_command_for(islands.folder)
-              << "` does it later" << std::endl;
-    end_on_signals();
-    if (output.limit != nullptr) end_at(output.limit->end());
-    verify_best_of_all(islands, simulator, count);
-  }
+  verify_best_of_all(islands, simulator,
+                     begin_ending(islands.experiments.front(), output, resume_command_for(islands.folder)));
   if (!output.page) return;
   std::vector<ShownRun> shown;
   for (std::size_t i = 0; i < islands.archives.size(); ++i)

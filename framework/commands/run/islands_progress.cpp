@@ -8,7 +8,6 @@
 #include "base/text.hpp"
 #include "commands/run/progress.hpp"
 #include "commands/shell/notices.hpp"
-#include "commands/shell/terminal.hpp"
 
 namespace evodevo {
 
@@ -35,8 +34,7 @@ void IslandsProgress::generation_done(std::int64_t island, const Summary& summar
 void IslandsProgress::finish() {
   const std::lock_guard lock(mutex_);
   if (!is_live_) return;
-  show(true);
-  std::cout << std::endl;
+  live_line_.finish([this](std::size_t columns) { return line(columns); });
 }
 
 double IslandsProgress::seconds() const {
@@ -82,13 +80,8 @@ std::string IslandsProgress::line(std::size_t columns) const {
   return joined(fitting_parts(parts, columns), "  ");
 }
 
-void IslandsProgress::show(bool is_last) {
-  constexpr std::chrono::milliseconds least{200};
-  const auto now = std::chrono::steady_clock::now();
-  if (!is_last && now - shown_ < least) return;
-  shown_ = now;
-  // a line of full width would move the cursor to the next line
-  std::cout << "\r\x1b[K" << line(terminal_columns() - 1) << std::flush;
+void IslandsProgress::show() {
+  live_line_.show([this](std::size_t columns) { return line(columns); });
 }
 
 }  // namespace evodevo

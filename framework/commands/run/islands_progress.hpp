@@ -6,6 +6,7 @@
 #include <mutex>
 #include <vector>
 
+#include "commands/shell/terminal.hpp"
 #include "evolution/evolution.hpp"
 
 namespace evodevo {
@@ -31,7 +32,7 @@ class IslandsProgress {
  private:
   std::int64_t evaluations_done() const;
   std::string line(std::size_t columns) const;
-  void show(bool is_last = false);
+  void show();
 
   const Experiment& island_;
   const std::int64_t evaluations_;
@@ -42,7 +43,7 @@ class IslandsProgress {
   std::vector<std::optional<Summary>> last_;  ///< of each island
   std::int64_t before_ = 0;                   ///< evaluations by earlier processes
   std::size_t generations_ = 0;               ///< completed since this object was made, on all islands
-  std::chrono::steady_clock::time_point shown_{};
+  LiveLine live_line_;
   std::uint64_t spring_evaluations_ = 0;
 };
 

@@ -108,13 +108,8 @@ std::string ProgressDisplay::line(std::size_t columns) const {
   return line;
 }
 
-void ProgressDisplay::show_live(bool is_last) {
-  constexpr std::chrono::milliseconds least{200};
-  const auto now = std::chrono::steady_clock::now();
-  if (!is_last && now - shown_ < least) return;
-  shown_ = now;
-  // a line of full width would move the cursor to the next line
-  std::cout << "\r\x1b[K" << line(terminal_columns() - 1) << std::flush;
+void ProgressDisplay::show_live() {
+  live_line_.show([this](std::size_t columns) { return line(columns); });
 }
 
 void ProgressDisplay::generation_done(const Summary& summary) {
@@ -138,8 +133,7 @@ void ProgressDisplay::generation_progress(double done) {
 
 void ProgressDisplay::finish() {
   if (!live_) return;
-  show_live(true);
-  std::cout << std::endl;
+  live_line_.finish([this](std::size_t columns) { return line(columns); });
 }
 
 void print_best(const Experiment& experiment, const Archive& archive) {

@@ -35,8 +35,7 @@ class ProgressDisplay {
   double seconds_left(double evaluations) const;
   std::vector<LinePart> parts(double evaluations) const;
   std::string line(std::size_t columns) const;
-  /// Shows the line, but at most five times a second unless it is the last.
-  void show_live(bool is_last = false);
+  void show_live();
 
   const Experiment& experiment_;
   const std::atomic<bool>& stop_;
@@ -47,8 +46,8 @@ class ProgressDisplay {
   double spring_evaluations_before_ = 0;  ///< spring evaluations by earlier processes
   double seconds_before_ = 0;             ///< time of their generations
   Summary last_;
-  double evaluations_ = 0;                         ///< including those of the generation under way
-  std::chrono::steady_clock::time_point shown_{};  ///< when the line was shown last
+  double evaluations_ = 0;  ///< including those of the generation under way
+  LiveLine live_line_;
   std::int64_t diverged_ = 0, refused_ = 0;
   std::uint64_t spring_evaluations_ = 0;
 };

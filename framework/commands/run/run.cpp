@@ -25,6 +25,7 @@
 #include "experiment/device.hpp"
 #include "operators/call_watch.hpp"
 #include "operators/plugin_folders.hpp"
+#include "report/run_json.hpp"
 #include "threads/parallel.hpp"
 
 namespace evodevo {
@@ -128,6 +129,20 @@ std::pair<Archive, Experiment> reopened(const fs::path& folder, const Given& giv
   return {std::move(archive), std::move(experiment)};
 }
 
+std::size_t begin_ending(const Experiment& experiment, const RunOutput& output, const std::string& later) {
+  end_on_signals();
+  if (output.limit != nullptr) end_at(output.limit->end());
+  if (experiment.verify == 0) return 0;
+  if (!is_verifiable(experiment)) {
+    remarks() << "not verified: " << experiment.objectives.front().name
+              << " is measured within the life, which verification does not repeat" << std::endl;
+    return 0;
+  }
+  remarks() << "verifying the best " << experiment.verify << "; Ctrl-C stops this, and it can be done later by `"
+            << later << "`" << std::endl;
+  return static_cast<std::size_t>(experiment.verify);
+}
+
 void RunOutput::generation_done(const Summary& summary, std::int64_t island) const {
   if (log != nullptr) log->add(summary, island);
   if (limit == nullptr) return;
@@ -139,15 +154,7 @@ namespace {
 
 /// Verifies the best of a run, and shows them on a page, as far as the user asks for it.
 void verify_and_show(const Experiment& experiment, Simulator& simulator, Archive& archive, const RunOutput& output) {
-  const auto count = is_verifiable(experiment) ? static_cast<std::size_t>(experiment.verify) : 0;
-  if (count < static_cast<std::size_t>(experiment.verify))
-    remarks() << "not verified: " << experiment.objectives.front().name
-              << " is measured within the life, which verification does not repeat" << std::endl;
-  if (count > 0)
-    remarks() << "verifying the best " << count << "; Ctrl-C stops this, and it can be done later by `"
-              << program_name() << " verify " << archive.folder().string() << "`" << std::endl;
-  end_on_signals();
-  if (output.limit != nullptr) end_at(output.limit->end());
+  const std::size_t count = begin_ending(experiment, output, program_name() + " verify " + archive.folder().string());
   for (const Verification& verification : verify_best(experiment, simulator, archive, count))
     print(verification, experiment.objectives.front());
   if (!output.page) return;
@@ -248,10 +255,8 @@ int say_complete(const Archive& archive) {
 
 /// Whether the run has nothing left to do: neither evolution nor verification.
 bool is_complete(const Archive& archive, const Experiment& experiment) {
-  if (!is_finished(experiment, archive.generations())) return false;
-  if (!is_verifiable(experiment)) return true;
-  return std::ranges::all_of(archive.best(static_cast<std::size_t>(experiment.verify)),
-                             [&](std::uint32_t id) { return archive.verification(id).has_value(); });
+  return is_finished(experiment, archive.generations()) &&
+         (!is_verifiable(experiment) || is_verified(archive, experiment));
 }
 
 /// Continues the run with islands in a folder. `expected` has the experiments of its islands if the user names them.

@@ -25,6 +25,11 @@ struct RunOutput {
   bool ends_by_clock() const { return limit != nullptr && limit->is_reached(); }
 };
 
+/// Begins the end of a run, when nothing is evolved any more: from now on, signals and the time limit end the process
+/// at once. Returns the number of best individuals to verify, and announces it; `later` is the command that does it
+/// later.
+std::size_t begin_ending(const Experiment& experiment, const RunOutput& output, const std::string& later);
+
 /// Opens an archive to continue its run, and reads its experiment, as the options of `run` or `resume` ask. Throws if
 /// the run cannot be continued.
 std::pair<Archive, Experiment> reopened(const std::filesystem::path& folder, const Given& given,

@@ -52,7 +52,8 @@ std::unique_ptr<GenerationLog> given_log(const Given& given, const Experiment& e
 
 std::unique_ptr<TimeLimit> given_limit(const Given& given) {
   if (!given.contains("until")) return nullptr;
-  return std::make_unique<TimeLimit>(TimeLimit::Clock::now(), end_given_by(given["until"].as<std::string>()));
+  const TimeLimit::Clock::time_point begin = TimeLimit::Clock::now();
+  return std::make_unique<TimeLimit>(begin, end_given_by(given["until"].as<std::string>()));
 }
 
 }  // namespace evodevo

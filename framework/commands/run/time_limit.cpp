@@ -17,6 +17,7 @@ using Seconds = std::chrono::duration<double>;
 
 constexpr double reserved_share = 0.1;
 constexpr Seconds most_reserve = std::chrono::minutes(30);
+constexpr double shortest_duration = 1;                      // s, which is what alarms are exact to
 constexpr double longest_duration = 10 * 365.0 * 24 * 3600;  // s; longer ones do not fit in all clocks
 
 /// Reads a duration such as "90m", s.
@@ -70,10 +71,11 @@ void TimeLimit::generation_done(double seconds, Clock::time_point now) {
 TimeLimit::Clock::time_point end_given_by(const std::string& text) {
   std::optional<double> seconds = duration_in(text);
   if (!seconds) seconds = time_until(text);
-  if (!seconds || !(*seconds > 0 && *seconds <= longest_duration))
-    throw UsageError("--until " + printable(text) +
-                     ": expected a duration, such as 90m, 11.5h or 2d, or a local time in the future, such as "
-                     "2030-01-31T18:30");
+  if (!seconds || !(*seconds >= shortest_duration && *seconds <= longest_duration))
+    throw UsageError(
+        "--until " + printable(text) +
+        ": expected a duration of a second or more, such as 90m, 11.5h or 2d, or a local time in the future, such as "
+        "2030-01-31T18:30");
   return TimeLimit::Clock::now() + std::chrono::duration_cast<TimeLimit::Clock::duration>(Seconds(*seconds));
 }
 

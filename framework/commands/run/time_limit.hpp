@@ -38,7 +38,8 @@ class TimeLimit {
 };
 
 /// Returns the end that the option --until gives: a duration from now, such as "90m" or "11.5h" (s, m, h, d), or a
-/// local time, such as "2026-11-24T18:30". Throws UsageError if it is neither, or not in the future.
+/// local time, such as "2026-11-24T18:30". Throws UsageError if it is neither, or if it
+/// is less than a second away.
 TimeLimit::Clock::time_point end_given_by(const std::string& text);
 
 }  // namespace evodevo

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iostream>
 #include <numeric>
 #include <string_view>
 
@@ -55,6 +56,22 @@ std::vector<std::string> fitting_parts(std::vector<LinePart> parts, std::size_t 
     used += part.text.size() + gap;
   }
   return fitting;
+}
+
+void LiveLine::show(const std::function<std::string(std::size_t columns)>& line) {
+  constexpr std::chrono::milliseconds least{200};
+  if (std::chrono::steady_clock::now() - shown_ >= least) write(line);
+}
+
+void LiveLine::finish(const std::function<std::string(std::size_t columns)>& line) {
+  write(line);
+  std::cout << std::endl;
+}
+
+void LiveLine::write(const std::function<std::string(std::size_t columns)>& line) {
+  shown_ = std::chrono::steady_clock::now();
+  // a line of full width would move the cursor to the next line
+  std::cout << "\r\x1b[K" << line(terminal_columns() - 1) << std::flush;
 }
 
 }  // namespace evodevo

@@ -1,7 +1,9 @@
 // The terminal to which a command prints.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,5 +29,19 @@ struct LinePart {
 /// Returns the parts that fit into `columns` together, separated by two spaces. Of parts of equal rank, the last is
 /// left out first. If those of rank 0 do not fit, the line is cut.
 std::vector<std::string> fitting_parts(std::vector<LinePart> parts, std::size_t columns);
+
+/// A line on the terminal of standard output that is kept up to date.
+class LiveLine {
+ public:
+  /// Shows `line(columns)` instead of what the line showed, but at most five times a second.
+  void show(const std::function<std::string(std::size_t columns)>& line);
+  /// Shows it for the last time, and goes to the next line.
+  void finish(const std::function<std::string(std::size_t columns)>& line);
+
+ private:
+  void write(const std::function<std::string(std::size_t columns)>& line);
+
+  std::chrono::steady_clock::time_point shown_{};
+};
 
 }  // namespace evodevo

@@ -13,17 +13,6 @@ Rng stream(const Experiment& island, std::uint32_t generation, std::uint32_t whe
   return Rng(philox, {static_cast<std::uint64_t>(island.seed), generation, 0, where});
 }
 
-/// Returns the indices of the individuals with a fitness, the best first objective first; ties are in their order.
-std::vector<std::size_t> by_fitness(const std::vector<Individual>& individuals, const Experiment& island) {
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < individuals.size(); ++i)
-    if (individuals[i].result.status == Status::ok) order.push_back(i);
-  const double sign = island.objectives.front().maximise ? 1 : -1;
-  const auto score = [&](std::size_t i) { return sign * individuals[i].result.objectives.front(); };
-  std::ranges::stable_sort(order, std::greater(), score);
-  return order;
-}
-
 bool is_immigrant(const Individual& individual, std::uint32_t generation) {
   return individual.migrated && individual.migrated->island > 0 && individual.born == generation;
 }
@@ -33,7 +22,7 @@ bool is_immigrant(const Individual& individual, std::uint32_t generation) {
 std::optional<std::size_t> displaced(const std::vector<Individual>& survivors, const Experiment& island,
                                      std::uint32_t generation, Rng& rng) {
   const auto is_resident = [&](std::size_t i) { return !is_immigrant(survivors[i], generation); };
-  std::vector<std::size_t> ranked = by_fitness(survivors, island), residents;
+  std::vector<std::size_t> ranked = fittest_first(survivors, island.objectives.front().maximise), residents;
   for (std::size_t i = 0; i < survivors.size(); ++i)
     if (is_resident(i)) residents.push_back(i);
   if (residents.empty()) return std::nullopt;
@@ -107,7 +96,7 @@ std::vector<Emigration> Migration::departures(const std::vector<Individual>& sur
                                               std::uint32_t generation) const {
   const IslandSettings& settings = *island_.islands;
   if (!settings.migrate_after(generation)) return {};
-  std::vector<std::size_t> chosen = by_fitness(survivors, island_);
+  std::vector<std::size_t> chosen = fittest_first(survivors, island_.objectives.front().maximise);
   if (settings.emigrants == Emigrants::random) {
     std::ranges::sort(chosen);
     stream(island_, generation, rng_stream::emigrants).shuffle(chosen);
