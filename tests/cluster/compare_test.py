@@ -9,47 +9,13 @@ import unittest
 
 import slurm
 from slurm import run, wait_until
+from small_experiment import small_experiment
 
 COMPARE = [sys.executable, "-P", "-m", "compare"]
 
-PLAIN = """
-[experiment]
-evaluations = 65
-population = 7
-
-[encoding]
-name = "voxel"
-size = [2, 1, 1]
-edge = 0.5
-
-[[mutation]]
-name = "reset-weight"
-
-[scene.gravity]
-[scene.floor]
-[scene.friction]
-[scene.damping]
-
-[simulation]
-device = "cpu"
-
-[[fitness]]
-name = "distance"
-settle = 0.05
-window = 0.13
-
-[selection]
-name = "age-fitness-pareto"
-"""
-DEVELOPING = PLAIN + """
-[development]
-cycles = 2
-cycle_time = 0.07
-
-[[development.operator]]
-name = "spring-turnover"
-springs = 2
-"""
+VALUES = {"evaluations": 65, "population": 7, "window": 0.13}
+PLAIN = small_experiment(**VALUES)
+DEVELOPING = small_experiment(development=True, cycle_time=0.07, **VALUES)
 
 
 def setUpModule():

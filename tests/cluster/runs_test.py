@@ -10,48 +10,15 @@ import unittest
 
 import slurm
 from slurm import run, wait_until
+from small_experiment import small_experiment
 
 PROGRAM = os.environ["EVODEVO_PROGRAM"]
 SCRIPT = pathlib.Path(__file__).parents[2] / "tools" / "cluster" / "run.sbatch"
 
 # about 60 generations, which take some seconds
-EXPERIMENT = """
-[experiment]
-evaluations = 427
-population = 7
-
-[encoding]
-name = "voxel"
-size = [3, 2, 2]
-edge = 0.5
-
-[[mutation]]
-name = "reset-weight"
-
-[scene.gravity]
-[scene.floor]
-[scene.friction]
-[scene.damping]
-
-[development]
-cycles = 2
-cycle_time = 0.31
-
-[[development.operator]]
-name = "spring-turnover"
-springs = 3
-
-[simulation]
-device = "cpu"
-
-[[fitness]]
-name = "distance"
-settle = 0.7
-window = 1.3
-
-[selection]
-name = "age-fitness-pareto"
-"""
+EXPERIMENT = small_experiment(
+    development=True, evaluations=427, population=7, size="[3, 2, 2]", cycle_time=0.31, springs=3, settle=0.7, window=1.3
+)
 TABLES = ("generations", "individuals", "scores", "lives", "memory", "verifications")
 
 
@@ -169,7 +136,7 @@ class Runs(unittest.TestCase):
                                   capture_output=True, text=True)
         job = finished.stdout.strip()
         self.assertEqual((finished.returncode, self.state(job)), (2, ("FAILED", 0)), self.said(job))
-        self.assertRegex(self.printed(job), "walk.toml:3:.*evaluation")
+        self.assertRegex(self.printed(job), "walk.toml:2:.*evaluation")
 
     def test_a_signal_before_the_time_limit_ends_a_run_that_the_requeued_job_continues(self):
         job = self.begin("--ntasks=2", "--nodes=2")

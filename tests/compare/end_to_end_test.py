@@ -14,49 +14,12 @@ import tempfile
 import unittest
 import xml.etree.ElementTree
 
+from small_experiment import small_experiment
+
 PROGRAM = os.environ["EVODEVO_PROGRAM"]
 COMPARE = [sys.executable, "-P", "-m", "compare"]
 
-PLAIN = """
-[experiment]
-evaluations = 20
-population = 5
-
-[encoding]
-name = "voxel"
-size = [2, 1, 1]
-edge = 0.5
-
-[[mutation]]
-name = "reset-weight"
-
-[scene.gravity]
-[scene.floor]
-[scene.friction]
-[scene.damping]
-
-[simulation]
-device = "cpu"
-threads = 1
-
-[[fitness]]
-name = "distance"
-settle = 0.05
-window = 0.1
-
-[selection]
-name = "age-fitness-pareto"
-"""
-
-DEVELOPING = PLAIN + """
-[development]
-cycles = 2
-cycle_time = 0.05
-
-[[development.operator]]
-name = "spring-turnover"
-springs = 2
-"""
+PLAIN, DEVELOPING = small_experiment(), small_experiment(development=True)
 
 
 class Comparison(unittest.TestCase):

@@ -5,7 +5,8 @@ import re
 import tempfile
 import unittest
 
-from compare.runs import Failure, make_variants, overrides, parse_setting, parse_sweep
+from common.command_line import Failure
+from compare.runs import make_variants, overrides, parse_setting, parse_sweep
 
 
 class Sweeps(unittest.TestCase):

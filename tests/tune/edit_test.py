@@ -4,7 +4,7 @@ import pathlib
 import tomllib
 import unittest
 
-from compare.runs import Failure
+from common.command_line import Failure
 from tune.edit import put, with_values
 
 TEXT = '''\

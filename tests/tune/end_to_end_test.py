@@ -12,40 +12,12 @@ import tomllib
 import unittest
 import xml.etree.ElementTree
 
+from small_experiment import small_experiment
+
 PROGRAM = os.environ["EVODEVO_PROGRAM"]
 TUNE = [sys.executable, "-P", "-m", "tune"]
 
-EXPERIMENT = """\
-# robots of two voxels
-[experiment]
-evaluations = 12
-population = 4  # individuals
-
-[encoding]
-name = "voxel"
-size = [2, 1, 1]
-edge = 0.5
-
-[[mutation]]
-name = "reset-weight"
-
-[scene.gravity]
-[scene.floor]
-[scene.friction]
-[scene.damping]
-
-[simulation]
-device = "cpu"
-threads = 1
-
-[[fitness]]
-name = "distance"
-settle = 0.05
-window = 0.1
-
-[selection]
-name = "age-fitness-pareto"
-"""
+EXPERIMENT = "# robots of two voxels\n" + small_experiment(evaluations=12, population="4  # individuals")
 
 
 class Tune(unittest.TestCase):

@@ -5,7 +5,7 @@ import unittest
 
 import numpy
 
-from compare.runs import Failure
+from common.command_line import Failure
 from tune.ranges import Categories, Numbers, parse_range
 
 

@@ -1,7 +1,9 @@
 """The command line. This module imports nothing that takes a long time to load."""
 
-import argparse
 import pathlib
+
+from common import command_line
+from common.command_line import positive
 
 DESCRIPTION = """\
 Runs each experiment with several seeds and compares the fitness of their best robots, after equal numbers of
@@ -17,20 +19,8 @@ example:
   tools/compare experiments/evo.toml experiments/evo-devo.toml --seeds 10 --sweep development.cycle_time=0.5,1,2"""
 
 
-def positive(text):
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text}: expected a whole number of at least 1")
-    return int(text)
-
-
 def parse(words):
-    parser = argparse.ArgumentParser(
-        "tools/compare",
-        description=DESCRIPTION,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog=EXAMPLE,
-        allow_abbrev=False,
-    )
+    parser = command_line.parser("compare", DESCRIPTION, EXAMPLE)
     add = parser.add_argument
     add("experiments", metavar="EXPERIMENT.toml", nargs="+", type=pathlib.Path)
     add("--seeds", metavar="N", type=positive, default=10, help="runs of each, with seeds 1 to N (%(default)s)")

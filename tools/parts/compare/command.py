@@ -2,14 +2,13 @@
 
 import pathlib
 import shlex
-import signal
-import sys
 
 from common import charts
+from common.command_line import Failure, ended
 
 from . import arguments, chart, launchers, niches, report, tables
 from .history import history, objective_of
-from .runs import Failure, Interrupted, Runs, make_variants, parse_setting, parse_sweep
+from .runs import Runs, make_variants, parse_setting, parse_sweep
 from .scenarios import shared
 
 
@@ -76,19 +75,5 @@ def compare(words, program):
     print(f"\n{text}\nwritten to {out}")
 
 
-def interrupt(_signal, _frame):
-    raise Interrupted
-
-
 def main(words, program):
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, interrupt)
-    try:
-        compare(words, program)
-    except Failure as failure:
-        print(f"compare: {failure}", file=sys.stderr)
-        return 2
-    except Interrupted:
-        print("compare: interrupted; the same command goes on", file=sys.stderr)
-        return 130
-    return 0
+    return ended("compare", lambda: compare(words, program))

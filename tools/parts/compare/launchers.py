@@ -7,7 +7,7 @@ import shlex
 import shutil
 import subprocess
 
-from .runs import Failure
+from common.command_line import Failure
 
 SCRIPT = pathlib.Path(__file__).parents[2] / "cluster" / "run.sbatch"
 

@@ -14,14 +14,12 @@ import subprocess
 import tomllib
 import urllib.parse
 
+from common.command_line import Failure, Interrupted
+
 STOPPED = 130  # exit status of a run that was asked to stop; it has finished its generation and can be resumed
 
 # Without these tables, their defaults apply. Any other table adds something to the experiment, such as an operator.
 TABLES_WITH_DEFAULTS = ("materials", "plugins", "simulation")
-
-
-class Failure(Exception):
-    """The reason why a comparison cannot continue, with the remedy."""
 
 
 class RunFailure(Failure):
@@ -30,10 +28,6 @@ class RunFailure(Failure):
     def __init__(self, run, reason):
         super().__init__(reason)
         self.run = run
-
-
-class Interrupted(Exception):
-    """The user has asked the comparison to stop."""
 
 
 @dataclasses.dataclass(frozen=True)

@@ -1,7 +1,9 @@
 """The command line. This module imports nothing that takes a long time to load."""
 
-import argparse
 import pathlib
+
+from common import command_line
+from common.command_line import positive
 
 DESCRIPTION = """\
 Tunes keys of an experiment by iterated racing (López-Ibáñez et al. 2016). Configurations, that is, values for the keys,
@@ -19,20 +21,8 @@ example:
   tools/tune experiments/quickstart.toml --over development.operator.0.springs=2..64:log --budget 108"""
 
 
-def positive(text):
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text}: expected a whole number of at least 1")
-    return int(text)
-
-
 def parse(words):
-    parser = argparse.ArgumentParser(
-        "tools/tune",
-        description=DESCRIPTION,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog=EPILOG,
-        allow_abbrev=False,
-    )
+    parser = command_line.parser("tune", DESCRIPTION, EPILOG)
     add = parser.add_argument
     add("experiment", metavar="EXPERIMENT.toml", type=pathlib.Path)
     add("--over", metavar="KEY=RANGE", action="append", required=True, help="tune KEY, whose table must exist")

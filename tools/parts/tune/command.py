@@ -2,13 +2,12 @@
 
 import pathlib
 import shlex
-import signal
 import subprocess
-import sys
 
 from common import charts
+from common.command_line import Failure, ended
 from compare import launchers
-from compare.runs import Failure, Interrupted, has_table_of, parse_setting, read_toml
+from compare.runs import has_table_of, parse_setting, read_toml
 
 from . import arguments, chart, edit, report, tables
 from .effects import effects
@@ -115,19 +114,5 @@ def write(program, out, given, words, parameters, trials, tuning):
     print(f"\n{text}\n{objection}written to {out}; the best experiment is {out / 'best.toml'}")
 
 
-def interrupt(_signal, _frame):
-    raise Interrupted
-
-
 def main(words, program):
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, interrupt)
-    try:
-        tune(words, program)
-    except Failure as failure:
-        print(f"tune: {failure}", file=sys.stderr)
-        return 2
-    except Interrupted:
-        print("tune: interrupted; the same command goes on", file=sys.stderr)
-        return 130
-    return 0
+    return ended("tune", lambda: tune(words, program))

@@ -8,7 +8,7 @@ import json
 import re
 import tomllib
 
-from compare.runs import Failure
+from common.command_line import Failure
 
 BARE = re.compile(r"[A-Za-z0-9_-]+")
 SPACE = " \t"

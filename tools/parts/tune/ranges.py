@@ -8,7 +8,8 @@ import math
 import re
 import tomllib
 
-from compare.runs import Failure, split_values
+from common.command_line import Failure
+from compare.runs import split_values
 
 # Keys that would give runs of unequal cost, or scores that mean different things
 REFUSED = {

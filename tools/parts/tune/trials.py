@@ -6,9 +6,10 @@ import json
 import math
 import subprocess
 
+from common.command_line import Failure
 from compare.history import history, objective_of
 from compare.report import parts_of, provenances_of
-from compare.runs import Failure, RunFailure, Runs, Variant, overrides
+from compare.runs import RunFailure, Runs, Variant, overrides
 
 
 @dataclasses.dataclass(frozen=True)
