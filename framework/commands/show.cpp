@@ -252,7 +252,8 @@ class Report {
     for (std::size_t i = 0; i < line.size(); ++i) {
       text += (i > 0 ? " < " : "") + std::to_string(line[i].id) + " (" + line[i].made_by;
       if (const auto& from = line[i].migrated)
-        text += " of " + std::to_string(from->individual) + " from island " + std::to_string(from->island);
+        text += " of " + std::to_string(from->individual) +
+                (from->island == 0 ? " in the other run" : " from island " + std::to_string(from->island));
       if (i + 1 < line.size())
         text += changes_text(block_changes(line[i + 1].genome, line[i].genome, layout_), layout_);
       text += ")";
@@ -344,8 +345,7 @@ Command show_command() {
            "with their scores, their ancestors, and the blocks of genes that came and went from one to the next. The "
            "run may still be in progress. With --individual, it prints one individual: its scores, what the selection "
            "operator has noted about it, and its ancestors. Of a run with islands, it prints a line for each; to see "
-           "more "
-           "of one, give its folder."},
+           "more of one, give its folder."},
       .examples = {"show runs/quickstart-1", "show runs/quickstart-1 --individual 531",
                    "show runs/quickstart-1 --json"},
       .options = options,

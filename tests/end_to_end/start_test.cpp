@@ -98,6 +98,29 @@ TEST_F(Start, ARunThatIsInterruptedAfterwardsNeedsTheOtherRunNoMore) {
   testing::expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(scratch_ / "killed"));
 }
 
+TEST_F(Start, FoundersAreNoImmigrants) {
+  ASSERT_EQ(run("islands", {start_, "islands.count=2", "islands.every=1", "islands.migrants=3",
+                            "islands.emigrants=\"random\"", "experiment.evaluations=132"})
+                .exit_code,
+            0);
+  const auto shown = [&](const std::vector<std::string>& words) {
+    std::vector<std::string> command{EVODEVO_PROGRAM, "show"};
+    command.insert(command.end(), words.begin(), words.end());
+    const Finished finished = testing::run(command);
+    EXPECT_EQ(finished.exit_code, 0) << finished.output;
+    return finished.output;
+  };
+  shown({(scratch_ / "islands").string()});
+  const std::string island = (scratch_ / "islands/island-2").string();
+  const Archive archive = Archive::read(island);
+  EXPECT_EQ(first_born("islands/island-2").front().migrated->island, 0);
+  for (const Immigrant& one : archive.immigrants()) EXPECT_EQ(one.from.island, 1);
+  EXPECT_FALSE(archive.immigrants().empty()) << "children of founders have migrated";
+  const Individual founder = *archive.individual(0);
+  EXPECT_THAT(shown({island, "--individual", "0"}),
+              testing::naming("start", std::to_string(founder.migrated->individual)));
+}
+
 TEST_F(Start, CheckSaysWhatComes) {
   const Finished finished = run("", {start_}, "check");
   EXPECT_EQ(finished.exit_code, 0);

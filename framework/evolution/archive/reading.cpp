@@ -243,7 +243,8 @@ std::vector<Immigrant> Archive::immigrants() const {
   std::vector<Immigrant> immigrants;
   Statement row(
       *run_, "immigrants",
-      "SELECT id, born, died, island, source FROM immigrants JOIN individuals ON id = individual ORDER BY id");
+      "SELECT id, born, died, island, source FROM immigrants JOIN individuals ON id = individual WHERE island > 0 "
+      "ORDER BY id");
   while (row.step()) {
     Immigrant& one = immigrants.emplace_back(Immigrant{row.index(0), row.index(1), std::nullopt, {}});
     if (!row.is_null(2)) one.died = row.index(2);
