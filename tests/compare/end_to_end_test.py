@@ -71,6 +71,42 @@ class Comparison(unittest.TestCase):
         self.assertEqual({file: file.stat().st_mtime_ns for file in files}, before)
         self.assertEqual(len(list((self.folder / "out").rglob("run.sqlite"))), 6)
 
+    def test_rows_are_enough_to_go_on(self):
+        self.assertEqual(self.compare("--seeds", "3", out="straight").returncode, 0)
+        self.assertEqual(self.compare().returncode, 0)
+        shutil.rmtree(self.folder / "out" / "runs")
+        kept = {file: file.read_bytes() for file in (self.folder / "out" / "rows").rglob("seed-*.json")}
+        self.assertEqual(len(kept), 4)
+        for row in kept.values():
+            self.assertNotIn(os.fsencode(pathlib.Path(PROGRAM).parent), row)  # rows are for other machines, too
+        done = self.compare("--seeds", "3")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.results(), self.results("straight"))
+        self.assertEqual({file.parent.name for file in (self.folder / "out").rglob("run.sqlite")}, {"seed-3"})
+        self.assertEqual({file: file.read_bytes() for file in kept}, kept)
+
+    def test_a_damaged_row_is_named(self):
+        self.assertEqual(self.compare().returncode, 0)
+        file = self.folder / "out" / "rows" / "plain" / "seed-2.json"
+        whole = file.read_text()
+        for damaged in (whole[:-37], "[]", whole.replace('"wall_time"', '"time"')):
+            file.write_text(damaged)
+            refused = self.compare()
+            self.assertEqual(refused.returncode, 2, damaged)
+            self.assertIn(f"{file}: cannot be read", refused.stderr)
+        file.unlink()
+        self.assertEqual(self.compare().returncode, 0)
+        self.assertEqual(file.read_text(), whole)
+
+    def test_seeds_may_begin_anywhere(self):
+        done = self.compare("--seeds", "101..103", "--question", "developing:plain")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual({row[1] for row in self.results()[1:]}, {"101", "102", "103"})
+        folders = {folder.name for folder in (self.folder / "out" / "runs" / "plain").iterdir() if folder.is_dir()}
+        self.assertEqual(folders, {"seed-101", "seed-102", "seed-103"})
+        self.assertIn("3 seeds of each experiment", done.stdout)
+        self.assertRegex(done.stdout, r"\| `developing`, beside `plain` \| . of 3 and . of 3 \|")
+
     def test_killed_runs_go_on(self):
         self.assertEqual(self.compare(out="straight").returncode, 0)
         for seed, lines in ((1, 1), (2, 3)):
@@ -93,6 +129,7 @@ class Comparison(unittest.TestCase):
         file = self.folder / "out/runs/plain/seed-2/run.sqlite"
         with contextlib.closing(sqlite3.connect(file)) as run, run:
             run.execute("DELETE FROM verifications")
+        (self.folder / "out/rows/plain/seed-2.json").unlink()
         others = [other for other in (self.folder / "out").rglob("run.sqlite") if other != file]
         before = {other: other.stat().st_mtime_ns for other in others}
         done = self.compare()
@@ -194,6 +231,7 @@ class Comparison(unittest.TestCase):
             run.execute("INSERT INTO provenances SELECT 1, device, evodevo, 'another' FROM provenances")
             run.execute("INSERT INTO operators SELECT 1, kind, name, version, file, hash FROM operators")
             run.execute("UPDATE individuals SET provenance = 1 WHERE born = 0")
+        shutil.rmtree(self.folder / "out" / "rows" / "plain")
         done = self.compare()
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("**Not all runs were made by the same builds", done.stdout)
@@ -207,7 +245,8 @@ class Comparison(unittest.TestCase):
         self.assertRegex(refused.stderr, "plain: its runs were made from another plain.toml or with another --set")
         self.plain.write_text(PLAIN.replace("population = 5", "population = 6"))
         self.assertEqual(self.compare().returncode, 2)
-        shutil.rmtree(self.folder / "out" / "runs" / "plain")
+        for kind in ("rows", "runs"):
+            shutil.rmtree(self.folder / "out" / kind / "plain")
         self.assertEqual(self.compare().returncode, 0)
 
     def test_faults_are_found_before_anything_runs(self):
@@ -219,7 +258,11 @@ class Comparison(unittest.TestCase):
         self.assertEqual(refused.returncode, 2)
         self.assertRegex(refused.stderr, r"\Acompare: --against evolving: .*plain, developing\n\Z")
         self.assertFalse((self.folder / "out").exists())
-        for seeds in ("0", "-1", "two", "1.5"):
+        for pair in ("plain", "plain:plain", "plain:developing:plain", "plain:grown"):
+            refused = self.compare("--question", pair)
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn(f"compare: --question {pair}: ", refused.stderr)
+        for seeds in ("0", "-1", "two", "1.5", "5..3", "..7", "3..", "1...4"):
             refused = self.compare(f"--seeds={seeds}")
             self.assertEqual(refused.returncode, 2)
             self.assertIn(f"--seeds: {seeds}: expected a whole number of at least 1", refused.stderr)

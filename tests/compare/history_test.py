@@ -188,7 +188,7 @@ class Reports(unittest.TestCase):
             return {"provenances": [{**one, "evaluations": count} for one, count in zip(provenances, counts)]}
 
         evo, devo = Variant(pathlib.Path("evo")), Variant(pathlib.Path("devo"))
-        runs = [Run(variant, seed, pathlib.Path()) for seed in (1, 2) for variant in (evo, devo)]
+        runs = [Run(variant, seed, pathlib.Path(), pathlib.Path()) for seed in (1, 2) for variant in (evo, devo)]
 
         def differences(*said):
             return report.differences(report.builds(dict(zip(runs, said))))

@@ -111,34 +111,35 @@ class Medians(unittest.TestCase):
 
 class Superiority(unittest.TestCase):
     def test_the_bounds_are_where_a_standard_deviation_of_hanley_and_mcneil_says(self):
-        for size, a12 in itertools.product((4, 10, 25), (0, 0.3, 0.5, 0.97)):
-            for bound in inference.superiority_interval(a12, size):
+        for (a, b), a12 in itertools.product(((4, 4), (10, 10), (25, 25), (7, 31)), (0, 0.3, 0.5, 0.97)):
+            self.assertEqual(inference.superiority_interval(a12, a, b), inference.superiority_interval(a12, b, a))
+            for bound in inference.superiority_interval(a12, a, b):
                 if bound in (0, 1):
                     self.assertEqual(bound, a12)  # A12 cannot be outside [0, 1]
                     continue
                 q1, q2 = bound / (2 - bound), 2 * bound**2 / (1 + bound)
-                others = (size - 1) * (q1 - bound**2) + (size - 1) * (q2 - bound**2)
-                deviation = math.sqrt(bound * (1 - bound) + others) / size
+                others = ((a + b) / 2 - 1) * (q1 - bound**2 + q2 - bound**2)
+                deviation = math.sqrt((bound * (1 - bound) + others) / (a * b))
                 self.assertAlmostEqual(abs(a12 - bound) / deviation, 1.959964, places=6)
 
     def test_at_no_difference_it_agrees_with_the_rank_sum_test(self):
         # without ties and without continuity correction, z of the rank test is (A12 - 0.5) / sqrt((2 n + 1) / (12 n^2))
         for size in (5, 10, 20):
             step = 1.959964 * math.sqrt((2 * size + 1) / (12 * size**2))
-            self.assertGreater(inference.superiority_interval(0.5 + 1.001 * step, size)[0], 0.5)
-            self.assertLess(inference.superiority_interval(0.5 + 0.999 * step, size)[0], 0.5)
+            self.assertGreater(inference.superiority_interval(0.5 + 1.001 * step, size, size)[0], 0.5)
+            self.assertLess(inference.superiority_interval(0.5 + 0.999 * step, size, size)[0], 0.5)
 
     def test_it_holds_the_truth_as_often_as_it_says(self):
         # exponential samples have a known A12: the rate of the second sample divided by the sum of both rates
         draw = random.Random(1)
-        size, samples = 10, 2000
-        for rate in (1, 3, 10):
+        samples = 2000
+        for rate, sizes in itertools.product((1, 3, 10), ((10, 10), (9, 12))):
             truth, held = rate / (1 + rate), 0
             for _ in range(samples):
-                a, b = ([draw.expovariate(r) for _ in range(size)] for r in (1, rate))
-                low, high = inference.superiority_interval(inference.superiority(a, b), size)
+                a, b = ([draw.expovariate(r) for _ in range(size)] for r, size in zip((1, rate), sizes))
+                low, high = inference.superiority_interval(inference.superiority(a, b), *sizes)
                 held += low <= truth <= high
-            self.assertAlmostEqual(held / samples, 0.95, delta=0.02, msg=f"rate {rate}")
+            self.assertAlmostEqual(held / samples, 0.95, delta=0.02, msg=f"rate {rate}, {sizes}")
 
 
 class FewRuns(unittest.TestCase):

@@ -193,12 +193,12 @@ class Files(unittest.TestCase):
         )
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "results.csv"
-            tables.write_csv(file, histories)
+            tables.write_csv(file, histories, [37])
             with open(file, newline="") as stream:
                 rows = list(csv.DictReader(stream))
-        columns = ["experiment", "coverage", "qd_score", "diverged", "seconds"]
+        columns = ["experiment", "seed", "coverage", "qd_score", "diverged", "seconds"]
         found = [" ".join(row[column] or "-" for column in columns) for row in rows]
-        self.assertEqual(found, ["a 0.25 2.5 1 0.500", "a 0.5 2 2 1.000", "b 0.25 - 1 0.500", "c - - 1 0.500"])
+        self.assertEqual(found, ["a 37 0.25 2.5 1 0.500", "a 37 0.5 2 2 1.000", "b 37 0.25 - 1 0.500", "c 37 - - 1 0.500"])
 
 
 class Charts(unittest.TestCase):

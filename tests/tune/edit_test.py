@@ -5,7 +5,7 @@ import tomllib
 import unittest
 
 from common.command_line import Failure
-from tune.edit import put, with_values
+from tune.edit import with_values
 
 TEXT = '''\
 # the first line
@@ -27,6 +27,8 @@ name = 'voxel'
 [scene.gravity]
 [scene]
 floor = { stiffness = 1e6, }
+[development]
+cycles = 4
 [[development.operator]]
 name = "first"
 springs = 8 # after each cycle
@@ -35,9 +37,6 @@ name = "second"
 springs=9
 [development.operator.options]
 rate = 0.5
-
-[development]
-cycles = 4
 '''.replace("1e6, }", "1e6 }")
 
 
@@ -83,14 +82,14 @@ class Edits(unittest.TestCase):
             added = f"{key.split('.')[-1]} = 0.75"
             self.assertEqual(lines[lines.index(added) - 1], before)
             self.assertEqual(len(lines), len(TEXT.split("\n")) + 1)
-        self.assertEqual(put("", "points", "3"), "points = 3\n")
-        self.assertEqual(put("# none\n[a]\n", "points", "3"), "points = 3\n# none\n[a]\n")
+        self.assertEqual(with_values("", [("points", "3")]), "points = 3\n")
+        self.assertEqual(tomllib.loads(with_values("# none\n[a]\n", [("points", "3")])), {"points": 3, "a": {}})
 
     def test_a_missing_key_is_added_to_an_inline_table(self):
         for text, key, new in (
-            ("a = { b = 1 }\n", "a.c", "a = { b = 1, c = 7 }\n"),
-            ("a = {}\n", "a.c", "a = { c = 7 }\n"),
-            ("a = [{ b = 1 }, {b=2}] # two\n", "a.1.c", "a = [{ b = 1 }, {b=2, c = 7}] # two\n"),
+            ("a = { b = 1 }\n", "a.c", "a = { b = 1, c = 7}\n"),
+            ("a = {}\n", "a.c", "a = {c = 7}\n"),
+            ("a = [{ b = 1 }, {b=2}] # two\n", "a.1.c", "a = [{ b = 1 }, {b=2,c = 7}] # two\n"),
         ):
             self.assertEqual(with_values(text, [(key, "7")]), new)
 
@@ -103,7 +102,7 @@ class Edits(unittest.TestCase):
         self.assertEqual(with_values("a.b = 1", [("a.c", "2")]), "a.b = 1\na.c = 2\n")
 
     def test_a_missing_table_is_added_at_the_end(self):
-        self.assertEqual(with_values("[a]\nb = 1", [("simulation.dt", "0.0005")]), "[a]\nb = 1\n\n[simulation]\ndt = 0.0005\n")
+        self.assertEqual(with_values("[a]\nb = 1", [("simulation.dt", "0.0005")]), "[a]\nb = 1\n[simulation]\ndt = 0.0005\n")
 
     def test_lines_keep_their_ends(self):
         text = "[a]\r\nb = 1 # one\r\n[c]\r\n"
@@ -135,10 +134,35 @@ class Edits(unittest.TestCase):
                 keys += 1
         self.assertGreater(keys, 300)
 
+    def test_keys_can_be_added_to_every_table_of_the_experiments(self):
+        folder = pathlib.Path(__file__).parents[2] / "experiments"
+        count = 0
+        for file in folder.rglob("*.toml"):
+            text = file.read_text()
+            for table in tables(tomllib.loads(text)):
+                with_values(text, [(f"{table}.first", "0.75"), (f"{table}.second", '"x"')])
+                count += 1
+        self.assertGreater(count, 300)
+
     def test_what_cannot_be_put_in_is_said(self):
-        # keys with dots within an inline table
-        with self.assertRaisesRegex(Failure, "^best.toml: the values of a.b.c cannot be put into the experiment; write"):
-            with_values("a = {b.d = 1}\n", [("a.b.c", "2")])
+        for text, key in (
+            ("[[a.b]]\nc = 1\n[a]\nd = 1\n", "a.e"),  # a table after one that it contains
+            ("a = [[1, 2], [3]]\n", "a.5.0"),
+        ):
+            with self.assertRaisesRegex(Failure, f"^best.toml: the values of {key} cannot .*; write its tables before"):
+                with_values(text, [(key, "2")])
+
+
+def tables(node, path=""):
+    """Yields the keys of all tables of parsed TOML, except the root."""
+    if isinstance(node, dict):
+        if path:
+            yield path
+        for name, value in node.items():
+            yield from tables(value, f"{path}.{name}" if path else name)
+    elif isinstance(node, list):
+        for i, value in enumerate(node):
+            yield from tables(value, f"{path}.{i}")
 
 
 def leaves(node, path=""):

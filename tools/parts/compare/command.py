@@ -6,7 +6,7 @@ import shlex
 from common import charts
 from common.command_line import Failure, ended
 
-from . import arguments, chart, launchers, niches, report, tables
+from . import arguments, chart, launchers, niches, questions, report, tables
 from .history import history, objective_of
 from .runs import Runs, make_variants, parse_setting, parse_sweep
 from .scenarios import shared
@@ -39,6 +39,7 @@ def compare(words, program):
     sweeps, settings = map(parse_sweep, given.sweep), map(parse_setting, given.set)
     variants = make_variants(given.experiments, list(sweeps), list(settings))
     against = tested_against(given.against, variants)
+    pairs = [questions.parse(text, [variant.name for variant in variants]) for text in given.question]
     out = given.out or pathlib.Path("runs") / f"compare-{given.experiments[0].stem}"
     runs = Runs(program, out, variants, given.seeds)
     if given.launcher == "slurm":
@@ -57,19 +58,20 @@ def compare(words, program):
     }
     setting = report.Setting(
         command=shlex.join(["tools/compare", *map(str, words)]),
-        seeds=given.seeds,
+        seeds=len(given.seeds),
         against=against,
+        questions=pairs,
         builds=report.builds(shown),
     )
     text = report.markdown(histories, objective, setting)
     (out / "report.md").write_text(text)
-    tables.write_csv(out / "results.csv", histories)
+    tables.write_csv(out / "results.csv", histories, given.seeds)
     charts.save(chart.best_figure(histories, objective), out / "chart.svg")
     maps = niches.shared(histories, objective, against)
     if maps.histories:
         charts.save(chart.map_figure(maps.histories, [objective, *maps.quantities]), out / "map.svg")
     if in_scenarios := shared(histories, objective).scores:
-        tables.write_scenarios_csv(out / "scenarios.csv", histories)
+        tables.write_scenarios_csv(out / "scenarios.csv", histories, given.seeds)
         if all(in_scenarios.values()):
             charts.save(chart.scenario_figure(in_scenarios, objective), out / "scenarios.svg")
     print(f"\n{text}\nwritten to {out}")

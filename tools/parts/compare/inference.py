@@ -76,18 +76,19 @@ def superiority(a, b):
     return float(u) / (len(a) * len(b))
 
 
-def superiority_interval(a12, size):
-    """Returns the interval of A12 for two samples of `size` values each: all values from which the observed `a12`
-    differs by at most z times the standard deviation that belongs to that value.
+def superiority_interval(a12, size_a, size_b):
+    """Returns the interval of A12 for samples of these sizes: all values from which the observed `a12` differs by at most
+    z times the standard deviation that belongs to that value.
 
-    The standard deviation is that of Hanley & McNeil 1982, and the interval is method 5 of Newcombe 2006 (Statistics in
-    Medicine 25:559).
+    The standard deviation is that of Hanley & McNeil 1982, with the mean of both sizes in place of each, and the interval
+    is method 5 of Newcombe 2006 (Statistics in Medicine 25:559).
     """
     z = stats.norm.ppf((1 + LEVEL) / 2)
+    others = (size_a + size_b) / 2 - 1
 
     def excess(value):
-        spread = 1 + (size - 1) * ((1 - value) / (2 - value) + value / (1 + value))
-        return (a12 - value) ** 2 - z * z * value * (1 - value) * spread / size**2
+        spread = 1 + others * ((1 - value) / (2 - value) + value / (1 + value))
+        return (a12 - value) ** 2 - z * z * value * (1 - value) * spread / (size_a * size_b)
 
     def bound(end):
         return a12 if a12 == end else optimize.brentq(excess, end, a12 + 1e-9 * (end - a12))

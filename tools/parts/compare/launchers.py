@@ -114,7 +114,7 @@ def make_in_array(runs, program, out, jobs, options, tell):
     """Submits those runs that are not complete, unless they are in the queue. Returns whether all are complete."""
     array = Array(program, out)
     queued = array.is_queued()  # first, since a run may be completed meanwhile
-    waiting = [run for run in runs.all if not runs.is_finished(run)]
+    waiting = runs.waiting()
     if not waiting:
         return True
     complete = f"{len(runs.all) - len(waiting)} of {len(runs.all)} runs are complete"

@@ -3,7 +3,7 @@
 import collections
 import dataclasses
 
-from . import inference, niches, scenarios
+from . import inference, niches, questions, scenarios
 from .standings import AXES, common_cost, comparison, number, table, too_few_seeds
 
 METHOD = f"""\
@@ -52,6 +52,7 @@ class Setting:
     seeds: int
     against: str  # the name of the variant that the others are tested against
     builds: dict  # for the device, evodevo and each operator: runs of each variant by build
+    questions: list = dataclasses.field(default_factory=list)  # pairs of names of variants
 
 
 def builds(shown):
@@ -198,8 +199,8 @@ def differences(made):
             lines += f"  - {build}: " + ", ".join(f"{count} of `{name}`" for name, count in runs.items()) + "\n"
     return lines and (
         "**Not all runs were made by the same builds and devices.** What the experiments differ in may come from that. "
-        "A run that was resumed by another counts with each. To make runs anew, remove their folders and give the same "
-        f"command.\n\n{lines}"
+        "A run that was resumed by another counts with each. To make runs anew, remove their files in `rows` and their "
+        f"folders in `runs`, and give the same command.\n\n{lines}"
     )
 
 
@@ -217,6 +218,7 @@ def markdown(histories, objective, setting):
         differences(setting.builds),
         too_few_seeds(setting.seeds, len(histories)),
         "![Best so far over spring evaluations and over evaluations](chart.svg)\n",
+        questions.section(histories, objective, setting.questions),
         *(section(histories, objective, axis, setting.against) for axis in AXES),
         maps,
         in_scenarios(histories, objective),

@@ -16,6 +16,8 @@ import urllib.parse
 
 from common.command_line import Failure, Interrupted
 
+from . import rows
+
 STOPPED = 130  # exit status of a run that was asked to stop; it has finished its generation and can be resumed
 
 # Without these tables, their defaults apply. Any other table adds something to the experiment, such as an operator.
@@ -55,6 +57,7 @@ class Run:
     variant: Variant
     seed: int
     folder: pathlib.Path
+    row: pathlib.Path  # file with the row of the run, which is there once the run is complete
 
     @property
     def log(self):
@@ -164,38 +167,45 @@ def overrides(variant):
 
 
 class Runs:
-    """The runs of a comparison. Each variant has a folder for its runs. Runs that exist are not made again."""
+    """The runs of a comparison. Each variant has a folder for its runs, and one for their rows. Runs that have a row are
+    not made again."""
 
     def __init__(self, program, out, variants, seeds):
         self._program = str(program)
         self._variants = variants
+        self._rows = out / "rows"
         # seed by seed, so that at any time there are about as many runs of one variant as of another
         self.all = [
-            Run(variant, seed, out / "runs" / variant.name / f"seed-{seed}")
-            for seed in range(1, seeds + 1)
+            Run(
+                variant,
+                seed,
+                out / "runs" / variant.name / f"seed-{seed}",
+                self._rows / variant.name / f"seed-{seed}.json",
+            )
+            for seed in seeds
             for variant in variants
         ]
 
     def check(self):
-        """Refuses experiments that cannot be run, and folders with runs of other experiments or settings."""
+        """Refuses experiments that cannot be run, and rows of other experiments or settings."""
         for variant in self._variants:
             self._evodevo("check", variant.experiment, *overrides(variant))
-        for variant, folder in {run.variant: run.folder.parent for run in self.all}.items():
+        for variant in self._variants:
             settings = [f"{key}={value}" for key, value in variant.settings]
             made_from = {"experiment": variant.experiment.read_text(), "set": settings}
-            record = folder / "made-from.json"
+            record = self._rows / variant.name / "made-from.json"
             if not record.exists():
-                folder.mkdir(parents=True, exist_ok=True)
+                record.parent.mkdir(parents=True, exist_ok=True)
                 record.write_text(json.dumps(made_from, indent=1) + "\n")
             elif json.loads(record.read_text()) != made_from:
                 raise Failure(
-                    f"{folder}: its runs were made from another {variant.experiment.name} or with another --set, as "
-                    f"{record.name} tells; give another --out, or remove this folder"
+                    f"{record.parent}: its runs were made from another {variant.experiment.name} or with another --set, "
+                    f"as {record.name} tells; give another --out, or remove this folder and the runs of that name"
                 )
 
     def make(self, jobs, launcher, tell):
         """Makes or resumes all runs that are not finished, `jobs` at a time, each with the launcher."""
-        waiting = [run for run in self.all if not self.is_finished(run)]
+        waiting = self.waiting()
         active = {}
         try:
             while waiting or active:
@@ -206,17 +216,30 @@ class Runs:
                 os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOWAIT)
                 for run in [run for run, process in active.items() if process.poll() is not None]:
                     self._require_success(run, active.pop(run).returncode)
+                    rows.write(run.row, self._shown(run))
         finally:
             stop(active.values())
 
-    def is_finished(self, run):
+    def waiting(self):
+        """Returns the runs that are not complete, after writing the rows of those that are and have none yet."""
+        return [run for run in self.all if not self._is_complete(run)]
+
+    def _is_complete(self, run):
         """Returns whether a run has reached its end and, if the experiment asks for verification, has been verified."""
+        if run.row.exists():
+            return True
         if not self._has_begun(run):
             return False
-        shown = self.shown(run)
-        return shown["finished"] and shown["verified"]
+        shown = self._shown(run)
+        if complete := shown["finished"] and shown["verified"]:
+            rows.write(run.row, shown)
+        return complete
 
     def shown(self, run):
+        """Returns what comparisons use of the output of `evodevo show --json` for a run that is complete."""
+        return rows.read(run.row)
+
+    def _shown(self, run):
         return json.loads(self._evodevo("show", run.folder, "--json"))
 
     @staticmethod
@@ -241,6 +264,7 @@ class Runs:
 
     def _start(self, run, launcher):
         self.clear(run)
+        run.log.parent.mkdir(parents=True, exist_ok=True)
         command = [*launcher.command, self._program, "run", *self.arguments(run), "--resume", *launcher.options]
         with open(run.log, "a") as log:
             # in a process group of its own, so that Ctrl-C reaches only this process, which then asks each run to stop

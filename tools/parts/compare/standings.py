@@ -43,7 +43,7 @@ class Standing:
         return [f"`{self.name}`", middle, interval, *costs]
 
     def interval(self):
-        return "{:.2f} to {:.2f}".format(*inference.superiority_interval(self.a12, len(self.values)))
+        return "{:.2f} to {:.2f}".format(*inference.superiority_interval(self.a12, len(self.values), len(self.values)))
 
     def tests(self, judged):
         """Returns the remaining cells of the variant's row: the comparison with the variant that it is tested

@@ -4,6 +4,8 @@ import pathlib
 import shlex
 import subprocess
 
+import numpy
+
 from common import charts
 from common.command_line import Failure, ended
 from compare import launchers
@@ -51,16 +53,25 @@ def refuse_small_budget(budget, parameters):
         )
 
 
+def refuse_text(experiment, parameters):
+    """Refuses an experiment whose text the best values could not be written to."""
+    random = numpy.random.default_rng(1)
+    edit.with_values(read_text(experiment), [(each.key, each.draw(random)) for each in parameters])
+
+
 def nothing_left(experiment, obstacles):
     reason = next(iter(obstacles.values()), "all drawn values are those of the experiment")
     return f"{experiment}: no configurations to compare are left; mend the first obstacle, or change --over:\n{reason}"
 
 
+def read_text(file):
+    return file.read_bytes().decode()  # with its ends of lines as they are
+
+
 def write_best(program, out, experiment, variant):
     """Writes best.toml, and returns what the program has against it, or an empty text."""
-    text = experiment.read_bytes().decode()
     file = out / "best.toml"
-    file.write_bytes(edit.with_values(text, variant.swept).encode())
+    file.write_bytes(edit.with_values(read_text(experiment), variant.swept).encode())
     checked = subprocess.run([str(program), "check", str(file)], capture_output=True, text=True)
     if checked.returncode == 0:
         return ""
@@ -82,6 +93,7 @@ def tune(words, program):
     experiment = read_toml(given.experiment)
     refuse_keys(experiment, parameters, settings)
     refuse_small_budget(given.budget, parameters)
+    refuse_text(given.experiment, parameters)
     own = tuple(parameter.find(value_at(experiment, parameter.key)) for parameter in parameters)
     out = given.out or pathlib.Path("runs") / f"tune-{given.experiment.stem}"
 

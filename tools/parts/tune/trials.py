@@ -87,7 +87,7 @@ class Trials:
         it failed."""
         variants = {self.variant(configuration): configuration for configuration in configurations}
         while variants:
-            runs = Runs(self._program, self._out, list(variants), seeds)
+            runs = Runs(self._program, self._out, list(variants), range(1, seeds + 1))
             runs.check()
             try:
                 self._make(runs)
