@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+r"""Measures what the plan of this study describes besides distance: how the best robots fare in other scenes, and how
+fast evolution goes on when it moves to another scene.
+
+  tools/compare experiments/study/development/evo.toml experiments/study/development/evo-devo.toml --seeds 101..150 \
+    --out runs/study
+  EVODEVO_PROGRAM=build/cpu/bin/evodevo python3 experiments/study/development/outcomes.py runs/study
+
+The best robot of each run is born again, LIVES times with other random numbers, in the scenarios of scenarios.txt. The
+last population of each run goes on to evolve on a slope. Each measurement is a run of its own in the folder `outcomes`,
+whose row is kept in `outcomes/rows`; what has a row is not measured again. Prints medians over the runs with their
+intervals. Needs SciPy.
+"""
+
+import argparse
+import collections
+import json
+import math
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.append(str(HERE.parents[2] / "tools/parts"))
+
+from compare import inference, rows  # noqa: E402
+from compare.history import history, objective_of  # noqa: E402
+from compare.scenarios import by_scenario  # noqa: E402
+from compare.standings import number, table  # noqa: E402
+
+LIVES = 3
+ALONE = ("population=1", "random_individuals=0", "evaluations=1", "verify=0")
+MOVE = "scene.gravity.slope=-10"  # degrees, uphill
+GENERATIONS = (1, 4, 12)  # after which the distance on the slope is told
+
+
+def measured(program, out, name, experiment, settings, start, seed):
+    """Makes a run that begins with the population of the run in `start`, unless it has a row. Returns the row."""
+    row = out / "rows" / f"{name}.json"
+    if not row.exists():
+        file, folder = out / "experiments" / f"{name}.toml", out / "runs" / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(experiment)
+        words = [word for setting in (*settings, f"experiment.start={start.resolve()}") for word in ("--set", setting)]
+        command = ["run", file, *words, "--seed", seed, "--out", folder, "--resume", "--no-report", "--quiet"]
+        subprocess.run([program, *map(str, command)], check=True, stdout=subprocess.DEVNULL)
+        shown = subprocess.run([program, "show", folder, "--json"], check=True, capture_output=True, text=True)
+        rows.write(row, json.loads(shown.stdout))
+    return rows.read(row)
+
+
+class Arm:
+    """The runs of one experiment in the folder of a comparison."""
+
+    def __init__(self, folder):
+        made_from = json.loads((folder / "made-from.json").read_text())
+        self.name, self.experiment, self._settings = folder.name, made_from["experiment"], made_from["set"]
+        self._rows = folder
+        runs = folder.parents[1] / "runs" / folder.name
+        self.runs = [runs / file.stem for file in sorted(folder.glob("seed-*.json")) if (runs / file.stem).exists()]
+
+    def row(self, run):
+        return self._rows / f"{run.name}.json"
+
+    def settings(self, *more):
+        return [*self._settings, *more]
+
+
+def in_scenarios(program, out, arm, run):
+    """Returns the distances of the best robot of a run by scenario, each the mean of several lives."""
+    experiment = f"{arm.experiment}\n{(HERE / 'scenarios.txt').read_text()}"
+    settings = arm.settings(*(f"experiment.{setting}" for setting in ALONE))
+    lives = collections.defaultdict(list)
+    for life in range(1, LIVES + 1):
+        name = f"scenarios/{arm.name}/{run.name}-life-{life}"
+        shown = measured(program, out, name, experiment, settings, run, life)
+        for scenario, score in by_scenario(shown["best"], objective_of(shown["objectives"][0])).items():
+            lives[scenario].append(score)
+    return {scenario: statistics.fmean(scores) for scenario, scores in lives.items()}
+
+
+def on_the_slope(program, out, arm, run):
+    """Returns the best distance so far after each of GENERATIONS on the slope."""
+    population = rows.read(arm.row(run))["generations"][0]["evaluations"]
+    settings = arm.settings(MOVE, f"experiment.evaluations={GENERATIONS[-1] * population}", "experiment.verify=0")
+    shown = measured(program, out, f"slope/{arm.name}/{run.name}", arm.experiment, settings, run, int(run.name.split("-")[1]))
+    past = history(shown, objective_of(shown["objectives"][0]))
+    return {f"after {count * population} evaluations": past.at("generations", count, "best") for count in GENERATIONS}
+
+
+def report(title, of_arms):
+    """Returns a table of medians over the runs. `of_arms`: for each arm a list with a dictionary for each run."""
+    columns = list(dict.fromkeys(column for runs in of_arms.values() for run in runs for column in run))
+
+    def cell(scores):
+        bounds = inference.median_interval(scores)
+        return number(inference.median(scores)) + (" ({} to {})".format(*map(number, bounds)) if bounds else "")
+
+    rows = [
+        [f"`{arm}`", str(len(runs)), *(cell([run.get(column, -math.inf) for run in runs]) for column in columns)]
+        for arm, runs in of_arms.items()
+    ]
+    return f"## {title}\n\n{table(['', 'runs', *columns], rows)}"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=pathlib.Path, help="of the comparison, that is, --out of tools/compare")
+    folder = parser.parse_args().folder
+    program, out = os.environ.get("EVODEVO_PROGRAM", "evodevo"), folder / "outcomes"
+    arms = [Arm(file.parent) for file in sorted(folder.glob("rows/*/made-from.json"))]
+    arms = [arm for arm in arms if arm.runs]
+    if not arms:
+        sys.exit(f"{folder}: has no complete runs; give the folder that tools/compare wrote, which holds rows/ and runs/")
+    scenarios = {arm.name: [in_scenarios(program, out, arm, run) for run in arm.runs] for arm in arms}
+    slope = {arm.name: [on_the_slope(program, out, arm, run) for run in arm.runs] for arm in arms}
+    text = "\n".join((report("Distance in other scenes", scenarios), report("Distance on a slope to which evolution moved", slope)))
+    (out / "report.md").write_text(text)
+    print(text)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,57 @@
+"""Tests the script that measures the outcomes of experiments/study/development, with short runs of small robots."""
+
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from small_experiment import small_experiment
+
+SCRIPT = pathlib.Path(__file__).parents[2] / "experiments" / "study" / "development" / "outcomes.py"
+
+
+class Outcomes(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+
+    def compare(self):
+        files = [self.folder / "plain.toml", self.folder / "developing.toml"]
+        for file in files:
+            file.write_text(small_experiment(development=file.stem == "developing"))
+        command = [sys.executable, "-P", "-m", "compare", *files, "--seeds", "101..102", "--out", self.folder / "out"]
+        return subprocess.run(command, capture_output=True, text=True)
+
+    def measure(self):
+        return subprocess.run([sys.executable, SCRIPT, self.folder / "out"], capture_output=True, text=True)
+
+    def test_best_robots_are_measured_in_all_scenes_and_only_once(self):
+        self.assertEqual(self.compare().returncode, 0)
+        done = self.measure()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        scenes, slope = done.stdout.split("## Distance on a slope")
+        scenarios = re.findall(r'(?m)^name = "(.*)"', (SCRIPT.parent / "scenarios.txt").read_text())
+        self.assertGreater(len(scenarios), 5)
+        self.assertIn(f"|  | runs | {' | '.join(scenarios)} |", scenes)
+        self.assertIn("after 5 evaluations | after 20 evaluations | after 60 evaluations", slope)
+        for text in (scenes, slope):
+            cells = {row[0]: row[1:] for row in re.findall(r"(?m)^\| `(plain|developing)` \| 2 \| (.*) \|$", text)}
+            self.assertEqual(cells.keys(), {"plain", "developing"})
+            self.assertNotEqual(cells["plain"], cells["developing"])
+        files = {file: file.stat().st_mtime_ns for file in (self.folder / "out" / "outcomes" / "rows").rglob("*.json")}
+        self.assertEqual(len(files), 2 * 2 * (3 + 1))  # arms, runs, lives in the scenarios and the slope
+        again = self.measure()
+        self.assertEqual(again.stdout, done.stdout)
+        self.assertEqual({file: file.stat().st_mtime_ns for file in files}, files)
+
+    def test_a_folder_without_runs_is_refused(self):
+        done = self.measure()
+        self.assertEqual(done.returncode, 1)
+        self.assertIn(f"{self.folder / 'out'}: has no complete runs", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
