@@ -131,6 +131,21 @@ TEST_F(Misbehaviour, WhatItChangesForAllIsPutBackAndNamed) {
   }
 }
 
+TEST_F(Misbehaviour, OnlyOneProcessGoesOnAfterAFork) {
+  ASSERT_EQ(testing::run(mutating("well")).exit_code, 0);
+  const double best = *Archive::read(folder_).generations().back().best;
+  for (const char* how : {"fork", "fork-and-throw"}) {
+    fs::remove_all(folder_);
+    const Finished finished = testing::run(mutating(how));
+    EXPECT_EQ(finished.exit_code, 0) << how << finished.output;
+    EXPECT_THAT(finished.output, HasSubstr("warning: " + named("mutation") + ", individual 6, seed 7: it called fork()"));
+    const std::size_t line = finished.output.find("\ngeneration 2 ");
+    EXPECT_NE(line, std::string::npos) << how << finished.output;
+    EXPECT_EQ(finished.output.find("\ngeneration 2 ", line + 1), std::string::npos) << how << finished.output;
+    EXPECT_EQ(*Archive::read(folder_).generations().back().best, best) << how;
+  }
+}
+
 TEST_F(Misbehaviour, WhatNoLifeCanBeMeasuredByIsRefused) {
   const std::pair<const char*, const char*> cases[] = {
       {"no-window", "settle = 0 s and window = 0 s; expected"},

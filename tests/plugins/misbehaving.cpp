@@ -8,8 +8,10 @@
 #include <cstdlib>
 #include <limits>
 #include <locale>
+#include <stdexcept>
 #include <string_view>
 #include <thread>
+#include <utility>
 
 #include "evodevo/plugin.hpp"
 
@@ -28,6 +30,12 @@ int deeper(int depth) {
   volatile char room[4096] = {};
   room[0] = static_cast<char>(depth);
   return endless ? deeper(depth + 1) + room[0] : depth;
+}
+
+/// Forks at the first call in a process and in all that descend from it. Returns what fork() does, or -1 at later calls.
+pid_t fork_once() {
+  static bool forked = false;
+  return std::exchange(forked, true) ? -1 : fork();
 }
 
 /// Prints a line for which tests wait, and never returns.
@@ -57,7 +65,7 @@ struct Mutation final : evodevo::Mutation {
   void parameters(Parameters& p) override {
     p.choice(how, "how",
              {"well", "hang", "exit", "exit-at-once", "quick-exit", "overflow", "crash-at-end", "round", "flush",
-              "locale", "thread-locale", "global-locale"},
+              "locale", "thread-locale", "global-locale", "fork", "fork-and-throw"},
              "What it does.");
   }
   void mutate(evodevo::Genome&, const evodevo::Layout&, evodevo::Rng&) const override {
@@ -75,6 +83,8 @@ struct Mutation final : evodevo::Mutation {
     static const OtherLocale other;
     if (how == "thread-locale") uselocale(other.handle);
     if (how == "global-locale") std::locale::global(std::locale("C.UTF-8"));
+    if (how == "fork" && fork_once() == 0) return;
+    if (how == "fork-and-throw" && fork_once() == 0) throw std::runtime_error("in the child");
   }
 };
 
