@@ -29,8 +29,9 @@ void require_sound(const Blueprint& blueprint, const EncodingContext& context) {
 
 bool springs_grow(const Blueprint& blueprint) {
   const std::vector<Spring>& springs = blueprint.body.springs;
-  return !blueprint.sizes.empty() ||
-         std::any_of(springs.begin(), springs.end(), [](const Spring& spring) { return spring.growth != 1; });
+  return !blueprint.sizes.empty() || std::any_of(springs.begin(), springs.end(), [](const Spring& spring) {
+    return spring.growth != 1 || spring.phase_growth != 0;
+  });
 }
 
 /// Checks that every genome gives a sound body or a reason why there is none, and that not all fail.

@@ -37,7 +37,8 @@ void append(Numbers& numbers, const Body& body) {
     append(numbers, {m.mass, double(m.material), double(m.air_contacts)});
   }
   for (const Spring& s : body.springs)
-    append(numbers, {double(s.a), double(s.b), s.rest_length, double(s.material), s.growth, s.stiffness_factor});
+    append(numbers,
+           {double(s.a), double(s.b), s.rest_length, double(s.material), s.growth, s.phase_growth, s.stiffness_factor});
   for (const Material& m : body.materials) append(numbers, m);
 }
 
@@ -224,7 +225,9 @@ DevoContext SampleLife::context(const RecordRequest& request) const {
                       .layout = layout,
                       .own = own,
                       .mass_memory = living.memory.front().masses.view("mass"),
-                      .spring_memory = living.memory.front().springs.view("spring")};
+                      .spring_memory = living.memory.front().springs.view("spring"),
+                      .first_time = 0.5,
+                      .last_time = 10};
   show_records(living, request, context);
   return context;
 }
@@ -289,6 +292,7 @@ SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t see
   add_experience(op, input % 4 >= 2, experience_rng, life.living);
   if (input % 4 >= 2)
     for (Spring& spring : body.springs) spring.stiffness_factor = experience_rng.uniform(0.5, 2);
+  for (Spring& spring : body.springs) spring.phase_growth = static_cast<float>(experience_rng.uniform(-1, 1));
   return life;
 }
 

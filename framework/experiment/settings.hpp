@@ -26,6 +26,8 @@ struct Schedule {
     const std::int64_t last = std::min(cycle, to);
     return last < from ? 0 : (last - from) / every + 1;
   }
+  /// Returns the last of the cycles 1 to `cycles` after which the operator is applied; if it is not, one before `from`.
+  std::int64_t last(std::int64_t cycles) const { return from + (applications(cycles) - 1) * every; }
 };
 
 /// The controls. Each replaces the development by operators with something else, so that the two can be compared.

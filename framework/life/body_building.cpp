@@ -269,6 +269,7 @@ void check_blueprint(const Blueprint& blueprint, const EncodingContext& context)
     require_below(materials, spring.material, "spring", i, "has material", "materials");
     require(spring.growth > 0 && std::isfinite(spring.growth), "spring", i,
             "has a growth that is not finite or not above 0");
+    require(std::isfinite(spring.phase_growth), "spring", i, "has a phase_growth that is not finite");
     require(spring.stiffness_factor > 0 && std::isfinite(body.stiffness(spring)), "spring", i,
             "has a stiffness_factor that is not above 0, or a stiffness that is not finite");
   }

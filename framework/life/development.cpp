@@ -209,7 +209,9 @@ DevoContext DevelopmentLoop::context_of(const Life& life, int cycle, const Sched
                       .resets = development.reset,
                       .genome = genome,
                       .layout = experiment_.own_layouts.front(),
-                      .own = own};
+                      .own = own,
+                      .first_time = static_cast<double>(schedule.from) * development.cycle_time,
+                      .last_time = static_cast<double>(schedule.last(development.cycles)) * development.cycle_time};
   show_records(living, request, context);
   return context;
 }

@@ -6,10 +6,11 @@ namespace {
 
 using evodevo::Material;
 
-/// Each voxel has one block of genes: its material and, if `size_range` is above 0, its size at birth and its size at
-/// the end of development (Kriegman et al. 2017; in the paper's words, "a start and end volume"). Voxels of air are
-/// absent. A spring that belongs to several voxels has the mean of their materials and sizes. The positions of the
-/// masses at birth are those of a lattice of equal voxels.
+/// Each voxel has one block of genes: its material, if `size_range` is above 0 its size, and if `phase_range` is above
+/// 0 the phase of its muscles, the last two at birth and at the end of development (Kriegman et al. 2017 and 2018; in
+/// the paper's words, "a start and end volume"). Voxels of air are absent. A spring that belongs to several voxels has
+/// the mean of their materials, sizes and phases. The positions of the masses at birth are those of a lattice of equal
+/// voxels. If genes are mirrored, only the voxels of the half with the smaller x have them.
 class Voxel final : public evodevo::LatticeEncoding {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -17,17 +18,30 @@ class Voxel final : public evodevo::LatticeEncoding {
     p.real(size_range_, "size_range", {0, 0.9, "1"},
            "Largest fraction by which a voxel can be larger or smaller than its edge, at birth and, with "
            "ballistic-growth, at the end of development; 0: no genes for this.");
+    p.real(phase_range_, "phase_range", {0, 1, "turns"},
+           "Largest phase that a voxel adds to that of its material, forwards or backwards, at birth and, with "
+           "ballistic-phase, at the end of development; 0: no genes for this.");
+    p.flag(grows_, "grows",
+           "Whether voxels have genes of their own for size and phase at the end of development; otherwise both stay "
+           "as at birth.");
+    p.choice(mirrored_, "mirrored", {"nothing", "body", "all"},
+             "Which genes voxels share with their mirror images across the plane through the middle at right angles to "
+             "x: none, those of material and size, or those of the phase, too.");
   }
 
   evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
-    std::vector<evodevo::GeneSpec> voxel = {choice(context)};
-    if (size_range_ > 0) {
-      const auto range = static_cast<float>(size_range_);
-      voxel.insert(voxel.end(), 2, {1 - range, 1 + range});
-    }
+    const auto size = static_cast<float>(size_range_), phase = static_cast<float>(phase_range_);
     evodevo::Layout layout;
-    for (std::uint32_t v = 0; v < lattice().voxels(); ++v) layout.add_block(voxel, "voxel");
-    layout.types.front().gene_names = {"material", "size at birth", "size at the end"};
+    std::vector<evodevo::GeneSpec> phases(phase > 0 ? moments() : 0, {-phase, phase}), all = phases;
+    all.push_back(choice(context));
+    all.insert(all.end(), size > 0 ? moments() : 0, {1 - size, 1 + size});
+    for (std::uint32_t v = 0; v < lattice().voxels(); ++v) {
+      if (owns_body(v))
+        layout.add_block(all, "voxel");
+      else if (owns_phase(v) && !phases.empty())
+        layout.add_block(phases, "mirrored voxel");
+    }
+    for (evodevo::BlockType& type : layout.types) type.gene_names = gene_names();
     return layout;
   }
 
@@ -36,40 +50,93 @@ class Voxel final : public evodevo::LatticeEncoding {
     const auto materials = chosen(context);
     if (auto reason = why_no_body(context, materials); !reason.empty()) return {{}, 0, reason};
     const evodevo::Lattice& lattice = this->lattice();
-    const std::size_t genes = size_range_ > 0 ? 3 : 1;
+    const std::vector<Traits> voxels = traits_of_voxels(genome, materials);
     evodevo::Blueprint blueprint{masses(lattice, context), 0, {}};
     for (const evodevo::LatticeSpring& spring : lattice.springs) {
       std::vector<std::int32_t> around;
-      Sizes sizes;
+      Course size, phase;
       for (const std::uint32_t v : spring.voxels) {
-        const float* voxel = &genome[genes * v];
-        around.push_back(materials[static_cast<std::size_t>(voxel[0])]);
-        if (size_range_ > 0 && !is_air(context.materials[around.back()])) sizes.add(voxel[1], voxel[2]);
+        around.push_back(voxels[v].material);
+        if (is_air(context.materials[around.back()])) continue;
+        size.add(voxels[v].size);
+        phase.add(voxels[v].phase);
       }
-      if (join(blueprint.body, spring, mean_of_solid(context.materials, std::move(around))) && size_range_ > 0)
-        sizes.apply(blueprint.body.springs.back());
+      Material material = mean_of_solid(context.materials, std::move(around));
+      const bool is_muscle = material.amplitude != 0;
+      if (is_muscle) material.phase += phase.birth / size.count * full_turn;
+      if (!join(blueprint.body, spring, material)) continue;
+      evodevo::Spring& joined = blueprint.body.springs.back();
+      joined.rest_length *= size.birth / size.count;
+      joined.growth = static_cast<float>(size.end / size.birth);
+      if (is_muscle) joined.phase_growth = static_cast<float>((phase.end - phase.birth) / phase.count * full_turn);
     }
     return blueprint;
   }
 
-  bool sets_growth() const override { return size_range_ > 0; }
+  bool sets_growth() const override { return grows_ && (size_range_ > 0 || phase_range_ > 0); }
 
  private:
-  /// The sum of the sizes of the solid voxels that a spring belongs to.
-  struct Sizes {
-    double start = 0, end = 0;
-    int count = 0;
+  static constexpr double full_turn = 2 * 3.14159265358979323846;
 
-    void add(float voxel_start, float voxel_end) {
-      start += voxel_start;
-      end += voxel_end;
+  /// A size or a phase at birth and at the end of development, or the sum of several.
+  struct Course {
+    double birth = 0, end = 0;
+    int count = 0;  ///< of those that were added
+
+    void add(const Course& other) {
+      birth += other.birth;
+      end += other.end;
       ++count;
     }
-    void apply(evodevo::Spring& spring) const {
-      spring.rest_length *= start / count;
-      spring.growth = static_cast<float>(end / start);
-    }
   };
+
+  struct Traits {
+    std::int32_t material = 0;
+    Course size{1, 1}, phase;  ///< relative to the edge; turns
+  };
+
+  /// The number of genes for a size or a phase.
+  std::size_t moments() const { return grows_ ? 2 : 1; }
+  /// Whether a voxel has genes of its own for material and size, and for its phase.
+  bool owns_body(std::uint32_t v) const { return mirrored_ == "nothing" || v <= lattice().mirrored_voxel(v); }
+  bool owns_phase(std::uint32_t v) const { return mirrored_ != "all" || v <= lattice().mirrored_voxel(v); }
+
+  std::vector<std::string> gene_names() const {
+    std::vector<std::string> names;
+    const auto add = [&](const std::string& name) {
+      names.push_back(name + " at birth");
+      if (grows_) names.push_back(name + " at the end");
+    };
+    if (phase_range_ > 0) add("phase");
+    names.push_back("material");
+    if (size_range_ > 0) add("size");
+    return names;
+  }
+
+  std::vector<Traits> traits_of_voxels(const evodevo::Genome& genome,
+                                       const std::vector<std::int32_t>& materials) const {
+    const float* gene = genome.data();
+    const auto read = [&](Course& course) {
+      course.birth = *gene++;
+      course.end = grows_ ? *gene++ : course.birth;
+    };
+    std::vector<Traits> voxels(lattice().voxels());
+    for (std::uint32_t v = 0; v < voxels.size(); ++v) {
+      const Traits& image = voxels[lattice().mirrored_voxel(v)];
+      if (!owns_phase(v))
+        voxels[v].phase = image.phase;
+      else if (phase_range_ > 0)
+        read(voxels[v].phase);
+      if (!owns_body(v)) {
+        voxels[v].material = image.material;
+        voxels[v].size = image.size;
+        continue;
+      }
+      voxels[v].material = materials[static_cast<std::size_t>(*gene++)];
+      if (size_range_ > 0) read(voxels[v].size);
+    }
+    return voxels;
+  }
 
   /// Returns the mean of the materials that are not air, or air if there are none. `indices` has one entry for each
   /// voxel. The same mixture always gives the same bits, and the mean of a single material is exactly that material, so
@@ -92,7 +159,9 @@ class Voxel final : public evodevo::LatticeEncoding {
     return mean;
   }
 
-  double size_range_ = 0;
+  double size_range_ = 0, phase_range_ = 0;
+  bool grows_ = true;
+  std::string mirrored_ = "nothing";
 };
 
 }  // namespace

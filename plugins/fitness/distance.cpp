@@ -7,19 +7,28 @@
 
 namespace {
 
-/// The body length is the longest side of the bounding box when the window opens. In the paper, bodies settle for 3 s;
-/// the default here is 10 s because some bodies topple for longer than 3 s. Bodies that swim need not settle.
+/// The body length is the longest side of the bounding box when the window opens, or the same number for all bodies,
+/// so that bodies do not gain from being short. In the paper, bodies settle for 3 s; the default here is 10 s because
+/// some bodies topple for longer than 3 s. Bodies that swim need not settle.
 class Distance final : public evodevo::Fitness {
  public:
   void parameters(evodevo::Parameters& p) override {
     p.vector(direction_, "direction", {-1000, 1000, "1"},
              "Direction in which the distance is measured: a vector of any length above 0.");
+    p.optional_real(length_, "length", {1e-6, 1e6, "m"},
+                    "Body length in which distances are measured; without it, the longest side of each body when the "
+                    "window opens.");
+    p.flag(developing_, "developing",
+           "Whether bodies settle from birth on and are measured while they develop, instead of after they have "
+           "matured; development must last until the window closes.");
     window_.declare(p);
   }
 
   evodevo::Request observes() const override {
     if (!(norm(direction_) > 0)) throw std::invalid_argument("direction must be longer than 0");
-    return window_.request();
+    evodevo::Request request = window_.request();
+    if (developing_) request.cycle = 0;
+    return request;
   }
 
   std::vector<evodevo::Objective> objectives() const override { return {{"distance", "body lengths", true}}; }
@@ -29,11 +38,13 @@ class Distance final : public evodevo::Fitness {
     // a body whose masses all lie at one point has no length, and neither does a body with a NaN position
     if (!(norm(box.high - box.low) > 0)) return {std::numeric_limits<double>::quiet_NaN()};
     const evodevo::Vec3 way = observation.centre_after - observation.centre_before;
-    return {dot(way, direction_) / norm(direction_) / box.longest_side()};
+    return {dot(way, direction_) / norm(direction_) / length_.value_or(box.longest_side())};
   }
 
  private:
   evodevo::Vec3 direction_ = {1, 0, 0};
+  std::optional<double> length_;
+  bool developing_ = false;
   evodevo::MeasuringWindow window_;
 };
 

@@ -525,9 +525,9 @@ TEST_F(Command, FaultyBodiesAreRefusedByPlace) {
 
 TEST_F(Command, OperatorsDescribeThemselves) {
   const auto json = nlohmann::json::parse(evodevo({"operators", "--kind", "devo", "--json"}).output);
-  ASSERT_EQ(json.size(), 9u);
-  EXPECT_EQ(json[7].at("name"), "spring-turnover") << "in alphabetical order";
-  EXPECT_EQ(json[7].at("parameters")[0].at("default"), "125");
+  ASSERT_EQ(json.size(), 10u);
+  EXPECT_EQ(json[8].at("name"), "spring-turnover") << "in alphabetical order";
+  EXPECT_EQ(json[8].at("parameters")[0].at("default"), "125");
   const Finished described = evodevo({"describe", "spring-turnover"});
   EXPECT_EQ(described.exit_code, 0);
   EXPECT_THAT(described.output, HasSubstr("springs = 125"));

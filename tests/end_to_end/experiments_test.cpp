@@ -35,7 +35,7 @@ TEST(Experiments, EachRunsForTwoGenerationsWhenShrunk) {
       EXPECT_GT(archive.statuses().at("ok"), 0);
     }
   }
-  EXPECT_EQ(count, 52);
+  EXPECT_EQ(count, 54);
 }
 
 TEST(Experiments, TheEnvironmentsDifferInTheirSceneAlone) {
@@ -126,6 +126,23 @@ TEST(Experiments, TheArmsOfThePlannedStudyDifferInDevelopmentAlone) {
     ++arms;
   }
   EXPECT_EQ(arms, 9);
+}
+
+TEST(Experiments, TheArmsOfThePublishedResultDifferInDevelopmentAlone) {
+  const fs::path folder = experiment_file("published/kriegman-2018");
+  const Experiment evo = read_experiment({folder / "evo.toml", {}});
+  // without development there is one size and one phase, so that there are half as many maps of genes
+  const std::vector<Override> still{
+      {"encoding.grows", "false", ""}, {"mutation.0.share", "0.5", ""}, {"fitness.0.developing", "false", ""}};
+  const Experiment devo = read_experiment({folder / "evo-devo.toml", {}});
+  EXPECT_EQ(terms(read_experiment({folder / "evo-devo.toml", still})), terms(evo));
+  EXPECT_EQ(evo.development.cycles, 0);
+  const Request request = devo.fitness.at(0).op->observes();
+  EXPECT_NEAR(request.settle + request.window,
+              static_cast<double>(devo.development.cycles) * devo.development.cycle_time, 1e-9)
+      << "robots develop until the way has been measured";
+  EXPECT_EQ(devo.layout.first_size(), 48u * 2 + 24 * 3 + 48) << "phases, materials and mirrored sizes, rates";
+  EXPECT_EQ(evo.layout.first_size(), 48u + 24 * 2 + 48);
 }
 
 /// Returns the tables of an experiment with this name, as text.

@@ -369,6 +369,39 @@ TEST(Evaluation, BallisticSpringsHaveTheLengthsThatANetworkGivesThem) {
       }
 }
 
+TEST(Evaluation, PhasesGoFromThoseAtBirthToThoseAtTheEndWhateverTheSchedule) {
+  const std::pair<const char*, std::set<std::uint32_t>> schedules[] = {
+      {"", {1, 4}}, {"to = 3", {1, 3}}, {"every = 2", {1, 3}}, {"from = 2\nto = 2", {2}}};
+  for (const auto& [schedule, cycles] : schedules) {
+    SCOPED_TRACE(schedule);
+    std::string text = testing::small_experiment;
+    const std::string operator_before = "name = \"spring-turnover\"\nsprings = 2";
+    text.replace(text.find(operator_before), operator_before.size(),
+                 std::string("name = 'ballistic-phase'\n") + schedule);
+    const Experiment experiment = testing::read(text, {{"development.cycles", "4", ""},
+                                                       {"encoding.phase_range", "1.0", ""},
+                                                       {"encoding.materials", "[\"muscle\"]", ""}});
+    const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+    const Genome genome{0.25f, -0.5f, 0, 0.75f, 1.0f, 0};  // of two voxels: phases in turns, material
+    const Evaluation evaluation(experiment, *simulator);
+    std::vector<Life> lives = evaluation.birth.of(std::vector<Newborn>{{0, 0, &genome}});
+    const Body newborn = lives[0].living.body;
+    evaluation.development.run(lives, unwatched);
+    ASSERT_TRUE(lives[0].alive()) << lives[0].result.reason;
+    const Body& matured = lives[0].living.body;
+    ASSERT_EQ(matured.springs.size(), newborn.springs.size());
+    for (std::size_t s = 0; s < matured.springs.size(); ++s) {
+      const Spring& spring = matured.springs[s];
+      const Material &before = newborn.materials[newborn.springs[s].material],
+                     &after = matured.materials[spring.material];
+      EXPECT_NE(spring.phase_growth, 0);
+      EXPECT_NEAR(after.phase, before.phase + spring.phase_growth, 1e-6);
+      EXPECT_NEAR(after.frequency, before.frequency, 1e-9);
+    }
+    EXPECT_EQ(cycles_of_change(lives[0]), cycles);
+  }
+}
+
 /// Removes every spring.
 struct Destroyer final : Devo {
   void develop(const DevoContext& context, Edits& edits, Rng&) const override {

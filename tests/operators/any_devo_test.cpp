@@ -20,6 +20,7 @@ const std::vector<std::pair<const char*, const char*>> uses = {
     {"ballistic-growth", ""},
     {"regulated-growth", "min_distance = 0.0\nsprings = 4"},
     {"hebbian", ""},
+    {"ballistic-phase", ""},
 };
 
 /// A life of 60 masses and 400 springs with random stress and growth.
@@ -34,9 +35,11 @@ Life busy_life() {
     if (a == b || !pairs.insert(ordered(a, b)).second) continue;
     life.add_spring(a, b, static_cast<std::uint32_t>(bone + pairs.size() % 4), rng.uniform(0, 100));
     life.living.body.springs.back().growth = static_cast<float>(rng.uniform(0.8, 1.2));
+    life.living.body.springs.back().phase_growth = static_cast<float>(rng.uniform(-1, 1));
     life.living.tension.push_back(rng.uniform(-50, 100));
     life.living.muscle_work.push_back(rng.uniform(0, 10));
   }
+  life.application = 1;  // at which every operator changes something
   life.applications = 5;
   return life;
 }

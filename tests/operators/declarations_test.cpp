@@ -76,12 +76,12 @@ TEST(BuiltIn, AllOperatorsLoad) {
   using testing::ElementsAre;
   EXPECT_THAT(registry().names("encoding"),
               ElementsAre("cloud", "cppn", "direct", "neat", "neural", "regulatory", "voxel"));
-  EXPECT_THAT(registry().names("mutation"), ElementsAre("add-block", "add-link", "add-node", "duplicate-block",
-                                                        "gaussian", "remove-block", "reset-weight"));
+  EXPECT_THAT(registry().names("mutation"), ElementsAre("add-block", "add-link", "add-node", "block-rates",
+                                                        "duplicate-block", "gaussian", "remove-block", "reset-weight"));
   EXPECT_THAT(registry().names("crossover"), ElementsAre("sbx", "swap-neuron", "two-point", "uniform"));
-  EXPECT_THAT(registry().names("devo"),
-              ElementsAre("amplitude-adaptation", "ballistic-growth", "hebbian", "length-adaptation", "mass-growth",
-                          "mass-turnover", "regulated-growth", "spring-turnover", "stiffness-adaptation"));
+  EXPECT_THAT(registry().names("devo"), ElementsAre("amplitude-adaptation", "ballistic-growth", "ballistic-phase",
+                                                    "hebbian", "length-adaptation", "mass-growth", "mass-turnover",
+                                                    "regulated-growth", "spring-turnover", "stiffness-adaptation"));
   EXPECT_THAT(registry().names("fitness"),
               ElementsAre("actuation-work", "descriptor", "distance", "efficiency", "jump", "reach", "straightness"));
   EXPECT_THAT(registry().names("selection"),

@@ -423,6 +423,113 @@ TEST(Voxel, SpringsTakeTheSizesOfTheirVoxels) {
   }
 }
 
+TEST(Voxel, WithoutGrowthThereIsOneGeneForEachSizeAndPhase) {
+  const auto encoding = make<Encoding>("voxel", "size = [1, 1, 1]\nsize_range = 0.5\nphase_range = 1.0\ngrows = false");
+  const Layout layout = encoding->layout(context());
+  EXPECT_EQ(layout.first_size(), 3u);
+  EXPECT_THAT(layout.types[0].gene_names, testing::ElementsAre("phase at birth", "material", "size at birth"));
+  EXPECT_FALSE(encoding->sets_growth());
+  for (const Spring& spring : decoded(*encoding, {0.25f, muscle, 1.5f}).body.springs) {
+    EXPECT_EQ(spring.growth, 1);
+    EXPECT_EQ(spring.phase_growth, 0);
+  }
+}
+
+TEST(Voxel, SpringsTakeThePhasesOfTheirVoxelsInTurns) {
+  const auto encoding = make<Encoding>("voxel", "size = [3, 1, 1]\nedge = 0.5\nphase_range = 1.0");
+  EXPECT_TRUE(encoding->sets_growth());
+  // the last voxel is air, whose phases have no effect
+  const Genome genome{0.25f, -0.5f, muscle2, 0.5f, 1.0f, muscle2, 0.75f, 0.0f, air};
+  const Body body = decoded(*encoding, genome).body;
+  ASSERT_EQ(body.springs.size(), 50u);
+  const double pi = 3.14159265358979323846;
+  for (const Spring& spring : body.springs) {
+    const double x = (body.masses[spring.a].rest.x + body.masses[spring.b].rest.x) / 2 + 0.75;
+    const double birth = x < 0.49 ? 0.25 : x < 0.51 ? 0.375 : 0.5, end = x < 0.49 ? -0.5 : x < 0.51 ? 0.25 : 1;
+    EXPECT_NEAR(body.materials[spring.material].phase, pi + 2 * pi * birth, 1e-9) << "muscle2 has the phase pi";
+    EXPECT_NEAR(spring.phase_growth, 2 * pi * (end - birth), 1e-5);
+  }
+}
+
+TEST(Voxel, PassiveSpringsHaveNoPhase) {
+  const auto encoding = make<Encoding>("voxel", "size = [1, 1, 1]\nphase_range = 1.0");
+  const Body body = decoded(*encoding, {0.25f, 1.0f, bone}).body;
+  EXPECT_EQ(body.materials.size(), context().materials.size());
+  for (const Spring& spring : body.springs) EXPECT_EQ(spring.phase_growth, 0);
+}
+
+/// Returns the springs of a body by the middle of their masses and their direction: material, length, growth, phases.
+std::map<std::vector<long>, std::vector<double>> springs_by_place(const Body& body, bool is_mirrored) {
+  std::map<std::vector<long>, std::vector<double>> springs;
+  for (const Spring& spring : body.springs) {
+    std::vector<std::vector<long>> ends;
+    for (const std::uint32_t end : {spring.a, spring.b}) {
+      const Vec3& rest = body.masses[end].rest;
+      ends.push_back(
+          {std::lround((is_mirrored ? -1e4 : 1e4) * rest.x), std::lround(1e4 * rest.y), std::lround(1e4 * rest.z)});
+    }
+    std::sort(ends.begin(), ends.end());
+    ends[0].insert(ends[0].end(), ends[1].begin(), ends[1].end());
+    const Material& material = body.materials[spring.material];
+    springs[ends[0]] = {material.stiffness, material.amplitude, spring.rest_length,
+                        spring.growth,      material.phase,     spring.phase_growth};
+  }
+  return springs;
+}
+
+/// How many properties of a body's springs differ from those of their mirror images: of material and size, of phases.
+std::pair<int, int> asymmetries(const Body& body) {
+  const auto springs = springs_by_place(body, false), images = springs_by_place(body, true);
+  std::pair<int, int> differ{0, 0};
+  for (const auto& [place, spring] : springs)
+    for (std::size_t i = 0; i < spring.size(); ++i)
+      (i < 4 ? differ.first : differ.second) += std::abs(spring[i] - images.at(place)[i]) > 1e-5;
+  return differ;
+}
+
+TEST(Voxel, MirroredGenesMakeSymmetricBodies) {
+  Rng rng = stream(6);
+  const auto body = [&](const std::string& mirrored) {
+    const auto encoding =
+        make<Encoding>("voxel",
+                       "size = [5, 2, 2]\nmaterials = ['bone', 'muscle', 'tissue']\nsize_range = 0.5\n"
+                       "phase_range = 1.0\nmirrored = '" +
+                           mirrored + "'");
+    return decoded(*encoding, encoding->random(encoding->layout(context()), rng)).body;
+  };
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_GT(asymmetries(body("nothing")).first, 0);
+    const auto [of_bodies, of_phases] = asymmetries(body("body"));
+    EXPECT_EQ(of_bodies, 0);
+    EXPECT_GT(of_phases, 0) << "phases are not mirrored";
+    EXPECT_EQ(asymmetries(body("all")), (std::pair{0, 0}));
+  }
+}
+
+TEST(Voxel, MirroredGenesExistOnce) {
+  const auto genes = [](const std::string& mirrored) {
+    const std::string toml = "size = [4, 4, 3]\nsize_range = 0.5\nphase_range = 1.0\nmirrored = '" + mirrored + "'";
+    return make<Encoding>("voxel", toml)->layout(context()).first_size();
+  };
+  EXPECT_EQ(genes("nothing"), 48u * 5);
+  EXPECT_EQ(genes("body"), 48u * 2 + 24 * 3);
+  EXPECT_EQ(genes("all"), 24u * 5);
+}
+
+TEST(Direct, MirroredSpringsShareAGene) {
+  const auto encoding = make<Encoding>("direct", "size = [3, 2, 1]\nmirrored = true");
+  const Layout layout = encoding->layout(context());
+  expect_blocks_cover_genes_once(layout);
+  const std::size_t all = make<Encoding>("direct", "size = [3, 2, 1]")->layout(context()).first_size();
+  EXPECT_GT(layout.first_size(), all / 2) << "springs that are their own image have a gene, too";
+  EXPECT_LT(layout.first_size(), 2 * all / 3);
+  Rng rng = stream(8);
+  for (int i = 0; i < 3; ++i) {
+    const Body body = decoded(*encoding, encoding->random(layout, rng)).body;
+    EXPECT_EQ(asymmetries(body), (std::pair{0, 0}));
+  }
+}
+
 TEST(Direct, EverySpringHasAGene) {
   const Layout one = make<Encoding>("direct", "size = [1, 1, 1]")->layout(context());
   EXPECT_EQ(one.first_size(), 28u);

@@ -24,6 +24,13 @@ TEST(Distance, IsTheWayInBodyLengths) {
   EXPECT_DOUBLE_EQ(distance("direction = [1, 1, 0]", moved()), 7 / std::sqrt(2.0) / 2);
 }
 
+TEST(Distance, IsInTheSameLengthForAllBodiesIfOneIsGiven) {
+  EXPECT_DOUBLE_EQ(distance("length = 0.5", moved()), 6);
+  Observation longer = moved();
+  longer.box.high.z += 10;
+  EXPECT_DOUBLE_EQ(distance("length = 0.5", longer), 6);
+}
+
 TEST(Distance, DoesNotDependOnTheDirectionsLength) {
   for (const auto* toml : {"direction = [1, 0, 0]", "direction = [0.001, 0, 0]", "direction = [900, 0, 0]"})
     EXPECT_NEAR(distance(toml, moved()), 1.5, 1e-12);
@@ -56,6 +63,10 @@ TEST(Distance, AsksForItsWindow) {
   const Request paper = make<Fitness>("distance", "settle = 3.0\nwindow = 5.0")->observes();
   EXPECT_EQ(paper.settle, 3);
   EXPECT_EQ(paper.window, 5);
+  EXPECT_FALSE(paper.cycle.has_value()) << "after maturing";
+  const Request growing = make<Fitness>("distance", "developing = true\nsettle = 0.5")->observes();
+  EXPECT_EQ(growing.cycle, 0) << "from birth on";
+  EXPECT_EQ(growing.settle, 0.5);
 }
 
 TEST(Distance, RefusesNoDirection) {

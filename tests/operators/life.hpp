@@ -19,6 +19,7 @@ struct Life {
   double mass = 0.35;  // differs from the mass of each of the body's masses
   bool resets = false;
   int application = 3, applications = 100;
+  double first_time = 1.1, last_time = 110;
   Genome genome;
   Layout layout;
   Genome own;                                      ///< genes of the operator
@@ -36,6 +37,8 @@ struct Life {
     context.load.show(load);
     context.mass_memory = Memory(mass_memory, mass_width, "mass");
     context.spring_memory = Memory(spring_memory, spring_width, "spring");
+    context.first_time = first_time;
+    context.last_time = last_time;
     return context;
   }
 

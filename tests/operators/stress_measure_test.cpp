@@ -116,6 +116,7 @@ TEST_P(StressMeasure, IsWhatTheyAskFor) {
     expect_request(make<Devo>(name, by())->observes(), {});
   }
   expect_request(make<Devo>("ballistic-growth")->observes(), {});
+  expect_request(make<Devo>("ballistic-phase")->observes(), {});
 }
 
 INSTANTIATE_TEST_SUITE_P(Operators, StressMeasure,

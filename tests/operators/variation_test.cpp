@@ -1,3 +1,4 @@
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -106,6 +107,132 @@ TEST(ResetWeight, DependsOnItsKeyAlone) {
   };
   const Genome one = from_eight_threads([&] { return child(1); });
   EXPECT_NE(one, child(2));
+}
+
+// block-rates --------------------------------------------------------------------------------------------------------
+
+/// Returns the layout of genomes with the genes that a mutation owns behind others.
+Layout with_own_genes(const Mutation& mutation, const Layout& others) {
+  Layout whole;
+  whole.sections.clear();
+  add_section(whole, "others", others);
+  whole.own = add_section(whole, "own", mutation.layout(others));
+  return whole;
+}
+
+/// The layout of 40 voxels with two real genes each, a choice between them, and a rate for each voxel.
+Layout voxels_with_rates(const Mutation& mutation) {
+  Layout layout;
+  for (int i = 0; i < 40; ++i) layout.add_block({{-1, 1}, {0, 0, 3}, {2, 6}}, "voxel");
+  return with_own_genes(mutation, layout);
+}
+
+TEST(BlockRates, ChangesGenesWithTheRateOfTheirBlock) {
+  const auto mutation = make<Mutation>("block-rates", "share = 1.0\nrate_sigma = 0.0\nleast_rate = 0.1\nsigma = 0.01");
+  const Layout layout = voxels_with_rates(*mutation);
+  Rng rng = stream(1);
+  Genome parent = random_genome(layout, rng);
+  const std::size_t own = parent.size() - 40;
+  for (std::size_t i = 0; i < 40; ++i) parent[own + i] = i < 20 ? 0.25f : 0.75f;
+  int slow = 0, fast = 0;
+  constexpr int rounds = 500;
+  for (int i = 0; i < rounds; ++i) {
+    Genome child = parent;
+    mutation->mutate(child, layout, rng);
+    expect_within(child, layout);
+    for (const std::size_t gene : differences(parent, child)) {
+      EXPECT_NE(gene % 3, 1u) << "a choice";
+      EXPECT_LT(gene, own) << "rates are fixed";
+      ++(gene < own / 2 ? slow : fast);
+    }
+  }
+  // of 20 blocks with two real genes each; five standard deviations are below 0.02 of the genes
+  EXPECT_NEAR(slow / (40.0 * rounds), 0.25, 0.02);
+  EXPECT_NEAR(fast / (40.0 * rounds), 0.75, 0.02);
+}
+
+TEST(BlockRates, StepsAreRelativeToTheRangeOfAGene) {
+  const auto mutation = make<Mutation>("block-rates", "share = 1.0\nleast_rate = 1.0\nsigma = 0.01");
+  const Layout layout = voxels_with_rates(*mutation);
+  Rng rng = stream(2);
+  Genome parent = random_genome(layout, rng);
+  for (std::size_t i = 0; i < 120; ++i)
+    if (i % 3 != 1) parent[i] = i % 3 == 0 ? 0.0f : 4.0f;
+  double narrow = 0, wide = 0;
+  constexpr int rounds = 100;
+  for (int i = 0; i < rounds; ++i) {
+    Genome child = parent;
+    mutation->mutate(child, layout, rng);
+    for (std::size_t voxel = 0; voxel < 40; ++voxel) {
+      narrow += std::pow(child[3 * voxel] - parent[3 * voxel], 2);
+      wide += std::pow(child[3 * voxel + 2] - parent[3 * voxel + 2], 2);
+    }
+  }
+  EXPECT_NEAR(std::sqrt(narrow / (40 * rounds)), 0.01 * 2, 0.0015);
+  EXPECT_NEAR(std::sqrt(wide / (40 * rounds)), 0.01 * 4, 0.003);
+}
+
+TEST(BlockRates, VariesOnePositionOrMoreOfAllBlocks) {
+  const auto mutation = make<Mutation>("block-rates", "share = 0.2\nrate_sigma = 0.0\nleast_rate = 1.0\nsigma = 0.01");
+  const Layout layout = voxels_with_rates(*mutation);
+  Rng rng = stream(3);
+  const Genome parent = random_genome(layout, rng);
+  std::map<std::set<std::size_t>, int> seen;
+  constexpr int rounds = 3000;
+  for (int i = 0; i < rounds; ++i) {
+    Genome child = parent;
+    mutation->mutate(child, layout, rng);
+    std::set<std::size_t> positions;
+    for (const std::size_t gene : differences(parent, child)) positions.insert(gene % 3);
+    ++seen[positions];
+  }
+  // of two positions, one alone with 0.16 each and both with 0.04; never none, so that these add up to 1
+  ASSERT_EQ(seen.size(), 3u);
+  EXPECT_NEAR((seen[{0, 2}]) / double(rounds), 0.04 / 0.36, 0.03);
+  EXPECT_NEAR((seen[{0}]) / double(rounds), 0.16 / 0.36, 0.05);
+  EXPECT_NEAR((seen[{2}]) / double(rounds), 0.16 / 0.36, 0.05);
+}
+
+TEST(BlockRates, RatesWalkAtRandomAboveTheLeast) {
+  const auto mutation = make<Mutation>("block-rates", "rate_sigma = 0.1\nleast_rate = 0.05");
+  Layout own = mutation->layout(mixed_layout());
+  ASSERT_EQ(own.first_size(), 3u) << "one for each block";
+  EXPECT_EQ(own.gene({}, 0).low, 0.05f);
+  EXPECT_EQ(own.gene({}, 0).high, 1.0f);
+  Rng rng = stream(4);
+  int at_least = 0;
+  double squares = 0;
+  constexpr int rounds = 2000;
+  for (int i = 0; i < rounds; ++i)
+    for (const float rate : mutation->random(own, rng)) {
+      ASSERT_GE(rate, 0.05f);
+      at_least += rate == 0.05f;
+      squares += std::pow(rate - 0.05, 2);
+    }
+  // half of the first steps go down, and so nowhere; the others have half of the variance
+  EXPECT_NEAR(at_least / (3.0 * rounds), 0.5, 0.035);
+  EXPECT_NEAR(squares / (3.0 * rounds), 0.1 * 0.1 / 2, 0.0006);
+}
+
+TEST(BlockRates, BlocksThatCameLaterHaveTheLeastRate) {
+  const auto mutation = make<Mutation>("block-rates", "share = 1.0\nrate_sigma = 0.0\nleast_rate = 0.01");
+  Layout others;
+  const std::uint32_t type = others.add_type({"node", {{-1, 1}}, 1, 100});
+  others.add_block_of(type);
+  const Layout layout = with_own_genes(*mutation, others);
+  Rng rng = stream(5);
+  Genome parent = random_genome(layout, rng);
+  parent[1] = 1;  // the rate of the first block
+  for (int i = 0; i < 50; ++i) add_block(parent, layout, type, std::vector<float>{0.5f}, fresh_id(rng));
+  int first = 0, later = 0;
+  for (int i = 0; i < 200; ++i) {
+    Genome child = parent;
+    mutation->mutate(child, layout, rng);
+    expect_within(child, layout);
+    for (const std::size_t gene : differences(parent, child)) ++(gene == 0 ? first : later);
+  }
+  EXPECT_EQ(first, 200);
+  EXPECT_NEAR(later / (50.0 * 200), 0.01, 0.005);
 }
 
 // crossovers ---------------------------------------------------------------------------------------------------------

@@ -217,7 +217,8 @@ class OperatorTables {
     if (out_.encoding && factory_.ask(t, [&] { return op.uses_growth() && !out_.encoding->sets_growth(); }))
       out_.warnings.push_back(t.full_name("name") + " = \"" + out_.uses.back().name +
                               "\": the encoding lets no spring grow, so this operator changes nothing; set "
-                              "encoding.size_range, or choose an encoding that has this key");
+                              "encoding.size_range (for phases, encoding.phase_range), or choose an encoding that has "
+                              "this key");
   }
 
   /// Reads the schedule of a devo operator; by default the operator is applied after every cycle.

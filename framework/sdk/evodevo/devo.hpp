@@ -143,6 +143,8 @@ struct DevoContext {
   RequestedRecord load{"load", "mass"};        ///< sum of the stress of the springs at each mass, in the unit of stress
   Memory mass_memory = {};    ///< what this operator remembers about each mass of `body`; see Devo::mass_memory()
   Memory spring_memory = {};  ///< what this operator remembers about each spring of `body`
+  double first_time = 0;      ///< simulated time from birth to the first application of this operator, s
+  double last_time = 0;       ///< simulated time from birth to its last application, s
 
   /// Returns the position from which a mass continues, m: its rest position if `resets`, else its present position.
   Vec3 position(std::uint32_t mass_index) const {
@@ -232,7 +234,8 @@ class Devo : public Operator {
   virtual RecordRequest observes() const { return {.stress = true}; }
   /// Returns the name and unit of the causes in a list. If the probe is skip-shift, the host reports points, not N.
   virtual Measure measure([[maybe_unused]] Causes::List list) const { return {"stress", "N"}; }
-  /// Returns whether the operator sets Edits::growth. Growth has an effect only if Encoding::sets_growth() is true.
+  /// Returns whether the operator sets Edits::growth or follows Spring::phase_growth. Growth has an effect only if
+  /// Encoding::sets_growth() is true.
   virtual bool uses_growth() const { return false; }
   /// Returns the names of the numbers that the operator remembers about each mass. The host keeps them from cycle to
   /// cycle and through all edits. At birth they are those that the encoding gives under the same names

@@ -65,7 +65,8 @@ class Encoding : public Operator {
   /// Turns a genome into a blueprint, or into the reason why there is no body (Blueprint::failure). `layout` is what
   /// layout() returned.
   virtual Blueprint decode(const Genome& genome, const Layout& layout, const EncodingContext& context) const = 0;
-  /// Returns whether springs may grow, that is, whether decode() sets Blueprint::sizes or Spring::growth.
+  /// Returns whether springs may grow, that is, whether decode() sets Blueprint::sizes, Spring::growth or
+  /// Spring::phase_growth.
   virtual bool sets_growth() const { return false; }
 };
 

@@ -80,6 +80,7 @@ struct Spring {
   float growth = 1;             ///< rest length at the end of ballistic development relative to that at birth, 1
   double first_length = 0;      ///< L0 when the spring was made, at birth or later, m; set by the host
   double stiffness_factor = 1;  ///< stiffness relative to that of the material, 1; above 0
+  float phase_growth = 0;       ///< phase at the end of ballistic development minus that at birth, rad
 };
 
 /// A body without its motion. No two springs join the same pair of masses.

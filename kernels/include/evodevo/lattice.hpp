@@ -24,6 +24,17 @@ struct Lattice {
   std::vector<LatticeSpring> springs;  ///< ascending by (a, b)
 
   std::uint32_t voxels() const { return size[0] * size[1] * size[2]; }
+  /// Returns the voxel that is the mirror image of a voxel across the plane through the middle of the block at right
+  /// angles to x.
+  std::uint32_t mirrored_voxel(std::uint32_t voxel) const { return mirrored(voxel, size[0]); }
+  /// Returns the corner that is the mirror image of a corner across the same plane.
+  std::uint32_t mirrored_corner(std::uint32_t corner) const { return mirrored(corner, size[0] + 1); }
+
+ private:
+  /// Returns the mirror image of one of several items that are numbered with x fastest, `along_x` in a row.
+  static std::uint32_t mirrored(std::uint32_t item, std::uint32_t along_x) {
+    return item + along_x - 1 - 2 * (item % along_x);
+  }
 };
 
 /// The lattice of size[0] x size[1] x size[2] voxels with edges of `edge` metres. Ten voxels per side give the body of

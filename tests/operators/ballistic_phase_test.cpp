@@ -1,0 +1,89 @@
+#include "life.hpp"
+
+namespace evodevo::test {
+namespace {
+
+/// A chain of four muscles, of which the first turns forwards and the second backwards, and a passive spring that would
+/// turn, too.
+Life chain() {
+  Life life = life_of_masses(6, false);
+  for (std::uint32_t s = 0; s < 5; ++s) life.add_spring(s, s + 1, s < 4 ? muscle : bone, 1);
+  life.living.body.springs[0].phase_growth = 2.5f;
+  life.living.body.springs[1].phase_growth = -40;  // backwards even in absolute terms, within 10 s at 1 Hz
+  life.living.body.springs[4].phase_growth = 1;
+  life.first_time = 2;
+  life.last_time = 7;
+  return life;
+}
+
+/// Applies the operator as in the middle of a life: at `time`, as the `application`-th of six.
+void apply_at(double time, int application, Life& life) {
+  life.time = time;
+  life.application = application;
+  life.applications = 6;
+  life.living = after(life, develop(*make<Devo>("ballistic-phase"), life, 1));
+}
+
+/// Expects the relative length of a spring at a time to be that of a muscle with this phase.
+void expect_phase(const Life& life, std::uint32_t spring, double time, double phase) {
+  const Body& body = life.living.body;
+  Material expected = context().materials[muscle];
+  expected.phase = phase;
+  EXPECT_NEAR(body.materials[body.springs[spring].material].relative_length(time), expected.relative_length(time), 1e-7)
+      << "spring " << spring << " at " << time << " s";
+}
+
+TEST(BallisticPhase, GoesLinearlyFromTheFirstApplicationToTheLast) {
+  Life life = chain();
+  apply_at(2, 1, life);
+  for (const double time : {2.0, 2.3, 4.75, 6.9, 7.0}) {
+    expect_phase(life, 0, time, 2.5 * (time - 2) / 5);
+    expect_phase(life, 1, time, -40 * (time - 2) / 5);
+    expect_phase(life, 2, time, 0);
+  }
+}
+
+TEST(BallisticPhase, EndsWithTheFirstFrequencyAndTheLastPhase) {
+  Life life = chain();
+  apply_at(2, 1, life);
+  apply_at(7, 6, life);
+  for (const double time : {7.0, 8.1, 30.2}) {
+    expect_phase(life, 0, time, 2.5);
+    expect_phase(life, 1, time, -40);
+  }
+  const Body& body = life.living.body;
+  EXPECT_NEAR(body.materials[body.springs[1].material].frequency, context().materials[muscle].frequency, 1e-12);
+}
+
+TEST(BallisticPhase, ChangesMusclesTwiceAndNothingElse) {
+  Life life = chain();
+  const auto devo = make<Devo>("ballistic-phase");
+  for (int application = 1; application <= 6; ++application) {
+    life.application = application;
+    life.applications = 6;
+    const Edits edits = develop(*devo, life, 1);
+    EXPECT_EQ(edits.changed_springs.size(), application == 1 || application == 6 ? 2u : 0u) << application;
+    for (const ChangedSpring& changed : edits.changed_springs) EXPECT_LT(changed.spring, 2u);
+    EXPECT_FALSE(edits.growth);
+  }
+}
+
+TEST(BallisticPhase, OneApplicationChangesPhasesAtOnce) {
+  Life life = chain();
+  life.last_time = life.first_time;
+  life.application = life.applications = 1;
+  life.living = after(life, develop(*make<Devo>("ballistic-phase"), life, 1));
+  expect_phase(life, 0, 2.2, 2.5);
+  expect_phase(life, 1, 9.7, -40);
+}
+
+TEST(BallisticPhase, BodiesWithoutPhasesStayAsTheyAre) {
+  const auto devo = make<Devo>("ballistic-phase");
+  Life life = two_chains();
+  life.application = 1;
+  EXPECT_TRUE(digest(develop(*devo, life, 1)).empty());
+  EXPECT_TRUE(digest(develop(*devo, Life{}, 1)).empty());
+}
+
+}  // namespace
+}  // namespace evodevo::test

@@ -1,0 +1,121 @@
+// A lattice of voxels as an elastic material: the modulus, the bending stiffness and the mass that its springs and
+// masses stand for. experiments/published uses this to map voxels of a given modulus and density to springs and masses.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analysis/energy.hpp"
+#include "evodevo/lattice.hpp"
+#include "support.hpp"
+
+namespace evodevo::test {
+namespace {
+
+// those of experiments/published/kriegman-2018
+constexpr double edge = 0.01, mass = 0.48, stiffness = 13590, ratio = 1, rate = 4.47;  // m, kg, N/m, 1, 1/s
+
+constexpr Steps fine{Method::velocity_verlet, Precision::float64, 1e-4};
+
+Body voxels(std::array<std::uint32_t, 3> size, double damping) {
+  const Lattice lattice = make_lattice(size, edge);
+  Body body;
+  body.materials = {{stiffness, 0, 0, 0, damping}};
+  for (const Vec3& corner : lattice.corners) body.masses.push_back({corner, mass});
+  for (const LatticeSpring& s : lattice.springs)
+    body.springs.push_back({s.a, s.b, norm(lattice.corners[s.b] - lattice.corners[s.a]), 0});
+  return body;
+}
+
+/// The mean height of the masses that began at the height `z` (m).
+double height(const Body& body, const State& state, double z) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < body.masses.size(); ++i)
+    if (std::abs(body.masses[i].rest.z - z) < edge / 2) {
+      sum += state.position[i].z;
+      ++count;
+    }
+  return sum / count;
+}
+
+/// Lets a column with a section of `x` by `y` voxels sag under its weight on a floor without friction; returns the
+/// modulus of its middle layer (Pa), which is far from the ends: the pressure of the sections above it, by the share by
+/// which it is thinner than a voxel. Gravity is weak, so that this is less than 0.1 %.
+double modulus(std::uint32_t x, std::uint32_t y) {
+  constexpr std::uint32_t layers = 13, below = 6;
+  Scene scene{Gravity{0.01}, Floor{}, {}, {}, {}};
+  scene.floor->restitution = 0;
+  const Body body = voxels({x, y, layers}, ratio);
+  const Answer a = simulate(body, resting(body, scene), scene, fine, 40000);
+  EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+  const double thinner = 1 - (height(body, a.state, (below + 1) * edge) - height(body, a.state, below * edge)) / edge;
+  EXPECT_LT(thinner, 1e-3);
+  const double above = (x + 1) * (y + 1) * (layers - below) * mass * scene.gravity->acceleration;
+  return above / (x * y * edge * edge) / thinner;
+}
+
+TEST(VoxelLattice, AColumnOfSingleVoxelsHasTheModulusOfItsSprings) {
+  // four edges, and the diagonals of four sides and of the inside, which the springs of the sections hold: 88/13 k/h
+  EXPECT_NEAR(modulus(1, 1) / (stiffness / edge), 88.0 / 13, 0.001 * 88 / 13);
+}
+
+TEST(VoxelLattice, ASectionOfFourByThreeHasThePublishedModulus) { EXPECT_NEAR(modulus(4, 3), 5e6, 0.001 * 5e6); }
+
+TEST(VoxelLattice, ABodyHasThePublishedWeight) {
+  EXPECT_NEAR(mass * static_cast<double>(make_lattice({4, 4, 3}, edge).corners.size()), 1e6 * 48 * std::pow(edge, 3),
+              1e-9);
+}
+
+/// The first frequency (Hz) of a cantilever of single voxels along x, without damping. It starts with velocities in the
+/// shape of the first mode, of which `root` is the root of cos x cosh x = -1.
+double first_frequency(std::uint32_t levels, double root, double expected) {
+  Body beam = voxels({levels, 1, 1}, 0);
+  const double length = levels * edge;
+  State start = resting(beam, {});
+  const double part = (std::cosh(root) + std::cos(root)) / (std::sinh(root) + std::sin(root));
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < beam.masses.size(); ++i) {
+    const double x = beam.masses[i].rest.x, at = root * x / length;
+    if (x < edge / 2) beam.masses[i].mass = 0;                        // held
+    if (x > length - edge / 2) beam.masses[end = i].mass = mass / 2;  // half a section
+    start.velocity[i].z =
+        1e-3 * length * expected * (std::cosh(at) - std::cos(at) - part * (std::sinh(at) - std::sin(at)));
+  }
+  start.start_energy = total_energy(beam, start, {});
+  const std::uint64_t interval = 50;
+  double before = 0, first = 0, last = 0;
+  int passes = 0;
+  State state = start;
+  for (int i = 1; passes < 5; ++i) {
+    const Answer a = simulate(beam, state, {}, fine, interval);
+    state = a.state;
+    const double now = state.position[end].z - start.position[end].z;
+    if (before * now < 0) {
+      last = (i - now / (now - before)) * static_cast<double>(interval) * fine.dt;
+      if (passes++ == 0) first = last;
+    }
+    before = now;
+  }
+  return (passes - 1) / (last - first) / 2;
+}
+
+TEST(VoxelLattice, ABeamSwingsAsEulerAndBernoulliSay) {
+  // EI = 5/4 k h^3: four edges at the distance h/2 from the middle, and the diagonals of two sides and of the inside
+  constexpr std::uint32_t levels = 20;
+  const double root = 1.8751040687119611, bending = 1.25 * stiffness * std::pow(edge, 3);  // 1, N m^2
+  const double theory = root * root / (2 * pi) * std::sqrt(bending / (4 * mass / edge * std::pow(levels * edge, 4)));
+  EXPECT_NEAR(first_frequency(levels, root, theory), theory, 0.01 * theory);
+}
+
+TEST(VoxelLattice, ABodyFallsAsGravityAndGroundDampingSay) {
+  const Scene scene{Gravity{}, {}, {}, Damping{rate}, {}};
+  const Body body = voxels({4, 4, 3}, ratio);
+  const State start = resting(body, scene);
+  const double t = 0.5, g = 9.81;
+  const Answer a = simulate(body, start, scene, fine, 5000);
+  EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+  const double fallen = centre_of_mass(body, start.position).z - centre_of_mass(body, a.state.position).z;
+  EXPECT_NEAR(fallen, g / rate * (t - (1 - std::exp(-rate * t)) / rate), 1e-7);
+}
+
+}  // namespace
+}  // namespace evodevo::test

@@ -1,0 +1,74 @@
+"""Tests the analyses of experiments/published: the lives that they let robots live again are those of the runs."""
+
+import importlib.util
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+from package import ROOT, evodevo
+
+if importlib.util.find_spec("evodevo.core") is None:
+    print("skipped: the module evodevo.core is not built for this Python; apt-get install pybind11-dev python3-dev, "
+          "and configure again")
+    sys.exit(77)
+
+FOLDER = ROOT / "experiments/published/kriegman-2018"
+spec = importlib.util.spec_from_file_location("analyses", FOLDER / "analyses.py")
+analyses = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(analyses)
+
+SHORT = ["experiment.evaluations=24", "experiment.population=8", "fitness.0.settle=0.1", "fitness.0.window=0.6"]
+SHORT_DEVELOPMENT = ["development.cycles=14", "development.operator.0.from=3", "development.operator.1.from=2"]
+
+
+def make_run(name, folder):
+    """Makes a short run of an experiment in folder/runs, as tools/compare does, and returns its folder."""
+    out = Path(folder, "runs", name, "seed-1")
+    out.parent.mkdir(parents=True, exist_ok=True)
+    settings = SHORT + (SHORT_DEVELOPMENT if name == "evo-devo" else [])
+    evodevo("run", FOLDER / f"{name}.toml", "--out", out, "--device", "cpu", "--no-report", "--quiet",
+            *(word for setting in settings for word in ("--set", setting)))
+    return out
+
+
+class Rotations(unittest.TestCase):
+    def test_are_about_the_axis_at_right_angles_to_the_way(self):
+        cloud = np.random.default_rng(1).normal(size=(30, 3))
+        for angle in (0.3, -1.2):
+            c, s = np.cos(angle), np.sin(angle)
+            turned = cloud @ np.array([[1, 0, 0], [0, c, -s], [0, s, c]]).T + [0.2, 3, 1]
+            self.assertAlmostEqual(analyses.rotation(cloud, turned), angle)
+        spun = cloud @ np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]]).T
+        self.assertAlmostEqual(analyses.rotation(cloud, spun), 0)
+
+
+class Lives(unittest.TestCase):
+    def test_are_those_of_the_runs(self):
+        for name in ("evo", "evo-devo"):
+            with self.subTest(name), tempfile.TemporaryDirectory() as scratch:
+                rows = analyses.lives_of_champion(make_run(name, scratch), 2)
+                lives = {life: distance for _, _, _, life, distance, _ in rows}
+                # in steps of the same length, but with the length of a spring rounded in another way
+                self.assertAlmostEqual(lives["as it is"], lives["in the run"], places=4)
+                self.assertGreater(lives["in the run"], 0.01)
+                frozen = [lives[f"as {moment}"] for moment in analyses.MOMENTS]
+                if name == "evo":
+                    self.assertEqual(frozen, 3 * [lives["as it is"]])
+                else:
+                    self.assertEqual(len({lives["as it is"], *frozen}), 4)
+                self.assertEqual(len(rows), 1 + 1 + 3 + 2 * 2)
+
+    def test_mutants_differ_in_one_voxel(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            run = analyses.evodevo.Run(make_run("evo-devo", scratch))
+            table, genes = run.genes(3), analyses.Genes(run, 3)
+            for kind in ("size", "phase"):
+                changed = table[genes.mutant(run.genome(3), kind, np.random.default_rng(2)) != run.genome(3)]
+                self.assertEqual(set(changed["gene"]), {f"{kind} at birth", f"{kind} at the end"})
+                self.assertEqual(changed["block"].nunique(), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
