@@ -106,6 +106,11 @@ class WireReader {
     else
       for_each_part(*this, value);
   }
+  void read(bool& value) {
+    const auto byte = next<std::uint8_t>();
+    if (byte > 1) throw WireError("a message between ranks has " + std::to_string(byte) + " where it says yes or no");
+    value = byte == 1;
+  }
   void read(std::string& text) {
     const auto size = next<std::size_t>();
     text.assign(take(size), size);
@@ -116,7 +121,8 @@ class WireReader {
     if constexpr (std::is_arithmetic_v<Value>) {
       if (size > bytes_.size() / sizeof(Value)) throw WireError("a message between ranks is too short");
       values.resize(size);
-      std::memcpy(values.data(), take(size * sizeof(Value)), size * sizeof(Value));
+      if (size > 0)  // memcpy() must not get the null pointer that data() may return
+        std::memcpy(values.data(), take(size * sizeof(Value)), size * sizeof(Value));
     } else {
       values.clear();
       for (std::size_t i = 0; i < size; ++i) values.push_back(next<Value>());

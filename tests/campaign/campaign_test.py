@@ -1,0 +1,120 @@
+"""Tests campaigns with parts and targets that stand in for real ones."""
+
+import contextlib
+import io
+import pathlib
+import stat
+import tempfile
+import unittest
+
+from campaign.command import campaign
+from campaign.fuzz import Fuzz
+from campaign.outcomes import Outcome, Record
+from common.command_line import Failure
+
+SOUND = """\
+#!/bin/sh
+echo "#7 NEW cov: 31 ft: 40"
+echo "#977 DONE cov: 43 ft: 51"
+echo "stat::number_of_executed_units: 977"
+"""
+FAULTY = """\
+#!/bin/sh
+for argument; do
+  case $argument in -artifact_prefix=*) echo bad >"${argument#*=}crash-7" ;; esac
+done
+echo "wire.hpp:99:12: runtime error: load of value 2, which is not a valid value for type 'bool'"
+echo "stat::number_of_executed_units: 13"
+exit 1
+"""
+
+
+class Counting:
+    """A part that finds a fault in every third case."""
+
+    name = "counting"
+
+    def __init__(self, cases, stops_after=None):
+        self._cases, self._stops_after = cases, stops_after
+        self.seconds = []
+
+    def sitting(self, seconds, past):
+        self.seconds.append(seconds)
+        for number in range(len(past), len(past) + self._cases):
+            if number == self._stops_after:
+                raise KeyboardInterrupt
+            yield Outcome(self.name, "number", 5, (f"number {number}",) if number % 3 == 2 else (), 30)
+
+
+class Campaigns(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def sit(self, *parts):
+        with contextlib.redirect_stdout(io.StringIO()) as told:
+            campaign(60, self.folder / "out", parts)
+        self.assertEqual(told.getvalue().strip(), str(self.folder / "out" / "report.md"))
+        return self.page()
+
+    def page(self):
+        return (self.folder / "out" / "report.md").read_text()
+
+    def target(self, name, text):
+        program = self.folder / f"fuzz_{name}"
+        program.write_text(text)
+        program.chmod(program.stat().st_mode | stat.S_IXUSR)
+
+    def test_sittings_add_up(self):
+        self.assertIn("| counting | 20 | 19 | 1 | 2.0 |", self.sit(Counting(4)))
+        page = self.sit(Counting(3))
+        self.assertIn("| counting | 35 | 33 | 2 | 3.5 |", page)
+        self.assertIn("\n- number 5\n", page)
+
+    def test_parts_share_the_time(self):
+        parts = [Counting(1), Counting(1)]
+        self.sit(*parts)
+        self.assertEqual([part.seconds for part in parts], [[30], [30]])
+
+    def test_what_was_tried_before_an_interruption_counts(self):
+        with self.assertRaises(KeyboardInterrupt), contextlib.redirect_stdout(io.StringIO()):
+            campaign(60, self.folder / "out", [Counting(4, stops_after=2)])
+        self.assertIn("| counting | 10 | 10 | 0 | 1.0 |", self.page())
+
+    def test_a_line_that_was_cut_is_dropped(self):
+        self.sit(Counting(2))
+        file = self.folder / "out" / "outcomes.jsonl"
+        file.write_text(file.read_text() + '{"part": "coun')
+        self.assertIn("| counting | 15 | 14 | 1 | 1.5 |", self.sit(Counting(1)))
+        self.assertEqual(len(Record(self.folder / "out").outcomes), 3)
+
+    def test_a_line_that_is_no_outcome_is_refused_by_its_place(self):
+        self.sit(Counting(1))
+        file = self.folder / "out" / "outcomes.jsonl"
+        for line in ("[]", "{}", "7", '{"part": "a", "found": 3}', "part"):
+            file.write_text(file.read_text().splitlines()[0] + f"\n{line}\n")
+            with self.assertRaisesRegex(Failure, f"{file}:2: .*--out"):
+                Record(self.folder / "out")
+
+    def test_a_faulty_target_is_found_and_others_hold(self):
+        self.target("faulty", FAULTY)
+        self.target("sound", SOUND)
+        page = self.sit(Fuzz(self.folder, self.folder / "out"))
+        self.assertIn("| fuzz | 990 | 989 | 1 |", page)
+        self.assertRegex(page, r"\| sound \| 977 \| 977 \| 0 \| [\d.]+ \| 43 \|")
+        crash = (self.folder / "out" / "found" / "faulty-crash-7").resolve()
+        self.assertIn(f"- {crash}: wire.hpp:99:12: runtime error: load of value 2", page)
+        self.assertTrue(crash.exists())
+
+    def test_a_target_that_makes_no_inputs_is_no_success(self):
+        self.target("silent", "#!/bin/sh\necho this is no fuzzer\n")
+        with self.assertRaisesRegex(Failure, "fuzz_silent.*this is no fuzzer"):
+            self.sit(Fuzz(self.folder, self.folder / "out"))
+
+    def test_a_folder_without_targets_is_refused(self):
+        with self.assertRaisesRegex(Failure, f"{self.folder}: .*fuzz_targets"):
+            Fuzz(self.folder, self.folder / "out")
+
+
+unittest.main()

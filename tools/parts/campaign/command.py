@@ -1,0 +1,38 @@
+"""Runs the parts of a campaign in turn.
+
+A part has a `name`, and `sitting(seconds, past)`, which tries cases for about so many seconds and yields an Outcome as
+soon as it has one. `past` are the part's outcomes of earlier sittings.
+"""
+
+import pathlib
+import subprocess
+
+from common.command_line import Failure, ended
+
+from .fuzz import Fuzz
+from .outcomes import Record
+from .page import page
+
+
+def main(given):
+    return ended("campaign", lambda: campaign(given.minutes * 60, given.out, [Fuzz(built_targets(), given.out)]))
+
+
+def built_targets():
+    """Builds the targets of fuzzing, and returns the folder of their programs."""
+    build = subprocess.run([pathlib.Path(__file__).parent / "build"], stdout=subprocess.PIPE, text=True)
+    if build.returncode != 0:
+        raise Failure("the targets of fuzzing were not built; see above")
+    return pathlib.Path(build.stdout.strip())
+
+
+def campaign(seconds, folder, parts):
+    record = Record(folder)
+    try:
+        for part in parts:
+            for outcome in part.sitting(seconds / len(parts), record.of(part.name)):
+                record.add(outcome)
+    finally:
+        report = folder / "report.md"
+        report.write_text(page(record.outcomes))
+        print(report)
