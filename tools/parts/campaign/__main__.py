@@ -1,5 +1,10 @@
+import os
 import sys
 
-from . import arguments, command
+from . import arguments
 
-sys.exit(command.main(arguments.parse(sys.argv[1:])))
+given = arguments.parse(sys.argv[1:])  # answers --help before loading tomlkit, which may be missing
+
+from . import command  # noqa: E402
+
+sys.exit(command.main(given, os.environ["EVODEVO_PROGRAM"]))

@@ -9,13 +9,20 @@ import subprocess
 
 from common.command_line import Failure, ended
 
+from .experiments import Experiments, listed_operators
 from .fuzz import Fuzz
+from .laws import Laws
 from .outcomes import Record
 from .page import page
 
 
-def main(given):
-    return ended("campaign", lambda: campaign(given.minutes * 60, given.out, [Fuzz(built_targets(), given.out)]))
+def main(given, program):
+    return ended("campaign", lambda: campaign(given.minutes * 60, given.out, parts(program, given.out)))
+
+
+def parts(program, folder):
+    laws = Laws(program, folder.resolve() / "experiments")
+    return [Experiments(listed_operators(program), laws, folder), Fuzz(built_targets(), folder)]
 
 
 def built_targets():
