@@ -33,7 +33,7 @@ function(evodevo_install_page file name)
 endfunction()
 evodevo_install_page(plugins/README.md operators.md)
 evodevo_install_page(framework/sdk/README.md plugins.md)
-foreach(page encoding variation devo fitness selection helpers)
+foreach(page encoding variation devo fitness selection helpers trust)
   evodevo_install_page(framework/sdk/${page}.md ${page}.md)
 endforeach()
 
