@@ -38,7 +38,9 @@ HWY_INLINE hn::Vec<D> load_blocks(D d, const T* positions, const std::uint32_t* 
   constexpr std::size_t blocks = hn::MaxLanes(D()) * sizeof(T) / 16;
   const auto block = [&](std::size_t b) HWY_ATTR {
     auto x = hn::LoadDup128(d, positions + offset[b * stride]);
+#if !defined(__clang__)  // which knows this kind of operand only with AVX-512
     asm("" : "+v"(x.raw));
+#endif
     return x;
   };
   if constexpr (blocks == 1) {
