@@ -108,8 +108,8 @@ class Programs(unittest.TestCase):
 
 
 class Shrinking(unittest.TestCase):
-    class NoDevelopment:
-        """Laws that experiments with bodies that return to rest break."""
+    class NothingRests:
+        """Laws that every experiment breaks whose bodies return to rest."""
 
         def hold(self, file):
             tables = tomllib.loads(file.read_text())
@@ -120,7 +120,7 @@ class Shrinking(unittest.TestCase):
     def test_only_what_breaks_the_law_is_left(self):
         with tempfile.TemporaryDirectory() as scratch:
             folder = pathlib.Path(scratch)
-            part = Experiments(listed_operators(PROGRAM), self.NoDevelopment(), folder)
+            part = Experiments(listed_operators(PROGRAM), self.NothingRests(), folder)
             outcomes = []
             while not any(each.found for each in outcomes):
                 outcomes += part.sitting(1e-9, outcomes)  # one experiment

@@ -124,10 +124,8 @@ class Edits(unittest.TestCase):
         self.assertEqual(new["development"]["cycles"], 2)
 
     def test_every_key_of_the_experiments_can_be_replaced(self):
-        folder = pathlib.Path(__file__).parents[2] / "experiments"
         keys = 0
-        for file in folder.rglob("*.toml"):
-            text = file.read_text()
+        for text in experiments():
             for key in leaves(tomllib.loads(text)):
                 new = with_values(text, [(key, "[-17.25]")])
                 self.assertEqual(new.count("#"), text.count("#"))
@@ -135,10 +133,8 @@ class Edits(unittest.TestCase):
         self.assertGreater(keys, 300)
 
     def test_keys_can_be_added_to_every_table_of_the_experiments(self):
-        folder = pathlib.Path(__file__).parents[2] / "experiments"
         count = 0
-        for file in folder.rglob("*.toml"):
-            text = file.read_text()
+        for text in experiments():
             for table in tables(tomllib.loads(text)):
                 with_values(text, [(f"{table}.first", "0.75"), (f"{table}.second", '"x"')])
                 count += 1
@@ -151,6 +147,12 @@ class Edits(unittest.TestCase):
         ):
             with self.assertRaisesRegex(Failure, f"^best.toml: the values of {key} cannot .*; write its tables before"):
                 with_values(text, [(key, "2")])
+
+
+def experiments():
+    """Yields the texts of all experiments."""
+    for file in (pathlib.Path(__file__).parents[2] / "experiments").rglob("*.toml"):
+        yield file.read_text()
 
 
 def tables(node, path=""):

@@ -27,7 +27,7 @@ try:
     import pandas as pd
 
     import evodevo
-    from compare import inference
+    from compare.standings import median_with_interval
     from evodevo import core
 except ImportError as error:
     sys.exit(f"analyses: {error}; this needs NumPy, pandas, SciPy and evodevo's Python package with its compiled module, "
@@ -163,9 +163,7 @@ def lives_of_champion(folder, mutants):
 
 def text(values):
     """Returns the median of values and its interval, in which failed lives count as lives without a way."""
-    values = [0.0 if np.isnan(value) else float(value) for value in values]
-    interval = inference.median_interval(values)
-    return f"{inference.median(values):.2f}" + (f" ({interval[0]:.2f} to {interval[1]:.2f})" if interval else "")
+    return median_with_interval([0.0 if np.isnan(value) else float(value) for value in values])
 
 
 def report(table):

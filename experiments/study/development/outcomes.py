@@ -25,10 +25,10 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.append(str(HERE.parents[2] / "tools/parts"))
 
-from compare import inference, rows  # noqa: E402
+from compare import rows  # noqa: E402
 from compare.history import history, objective_of  # noqa: E402
 from compare.scenarios import by_scenario  # noqa: E402
-from compare.standings import number, table  # noqa: E402
+from compare.standings import median_with_interval, table  # noqa: E402
 
 LIVES = 3
 ALONE = ("population=1", "random_individuals=0", "evaluations=1", "verify=0")
@@ -94,15 +94,11 @@ def report(title, of_arms):
     """Returns a table of medians over the runs. `of_arms`: for each arm a list with a dictionary for each run."""
     columns = list(dict.fromkeys(column for runs in of_arms.values() for run in runs for column in run))
 
-    def cell(scores):
-        bounds = inference.median_interval(scores)
-        return number(inference.median(scores)) + (" ({} to {})".format(*map(number, bounds)) if bounds else "")
+    def cell(runs, column):
+        return median_with_interval([run.get(column, -math.inf) for run in runs])
 
-    rows = [
-        [f"`{arm}`", str(len(runs)), *(cell([run.get(column, -math.inf) for run in runs]) for column in columns)]
-        for arm, runs in of_arms.items()
-    ]
-    return f"## {title}\n\n{table(['', 'runs', *columns], rows)}"
+    lines = [[f"`{arm}`", str(len(runs)), *(cell(runs, column) for column in columns)] for arm, runs in of_arms.items()]
+    return f"## {title}\n\n{table(['', 'runs', *columns], lines)}"
 
 
 def main():

@@ -4,7 +4,7 @@ import collections
 import dataclasses
 
 from . import inference, niches, questions, scenarios
-from .standings import AXES, common_cost, comparison, number, table, too_few_seeds
+from .standings import AXES, common_cost, comparison, median_with_interval, number, table, too_few_seeds
 
 METHOD = f"""\
 ## How to read this
@@ -142,11 +142,7 @@ def in_scenarios(histories, objective):
     if not found.names:
         return f"{title}{said}The experiments share no scenario.\n"
 
-    def cell(scores):
-        bounds = inference.median_interval(scores)
-        return number(inference.median(scores)) + (" ({} to {})".format(*map(number, bounds)) if bounds else "")
-
-    rows = [[name, *(cell(scores[name]) for scores in found.scores.values())] for name in found.names]
+    rows = [[name, *(median_with_interval(scores[name]) for scores in found.scores.values())] for name in found.names]
     header = ["scenario", *(f"`{variant.name}`" for variant in found.scores)]
     chart = "![The best robots in each scenario](scenarios.svg)\n"
     return title + "\n".join(part for part in (SCENARIOS, said, table(header, rows), chart) if part)

@@ -24,6 +24,12 @@ def table(header, rows):
     return "".join("| " + " | ".join(line) + " |\n" for line in lines)
 
 
+def median_with_interval(values):
+    """Returns the median and, if there are enough values, its interval."""
+    bounds = inference.median_interval(values)
+    return number(inference.median(values)) + (" ({} to {})".format(*map(number, bounds)) if bounds else "")
+
+
 @dataclasses.dataclass(frozen=True)
 class Standing:
     """One variant at one cost, compared with the variant that it is tested against."""
