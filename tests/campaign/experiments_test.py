@@ -68,16 +68,16 @@ class Programs(unittest.TestCase):
         self.file = self.folder / "experiment.toml"
         self.file.write_text(EXPERIMENT)
 
-    def laws(self, program):
-        return Laws(program, self.folder / "runs")
+    def laws(self, program, **limits):
+        return Laws(program, self.folder / "runs", **limits)
 
-    def broken(self, lines):
+    def broken(self, lines, **limits):
         """Returns the law that a program breaks. `lines`: what it does before it does what evodevo does."""
         program = self.folder / "program"
         program.write_text(f"#!/bin/sh\n{lines}\nexec {shlex.quote(PROGRAM)} \"$@\"\n")
         program.chmod(0o755)
         with self.assertRaises(Broken) as caught:
-            self.laws(program).hold(self.file)
+            self.laws(program, **limits).hold(self.file)
         return str(caught.exception)
 
     def test_a_sound_program_holds_all(self):
@@ -93,6 +93,14 @@ class Programs(unittest.TestCase):
     def test_crashes(self):
         self.assertRegex(self.broken("[ $1 != check ] || kill -SEGV $$"), "^check: exit code -11")
         self.assertRegex(self.broken("[ $1 != run ] || exit 7"), "^run: exit code 7")
+
+    def test_commands_that_do_not_end(self):
+        self.assertRegex(self.broken("[ $1 != check ] || exec sleep 1000", seconds=1), "^check: not done after 1 s")
+        fault = 'case "$*" in *parts*) echo generation 0; trap "" INT; exec >/dev/null; exec sleep 1000 ;; esac'
+        self.assertRegex(self.broken(fault, seconds=9), "^run, interrupted: not done after 9 s")
+
+    def test_what_cannot_be_shown(self):
+        self.assertRegex(self.broken("[ $1 != show ] || exit 7"), "^show: exit code 7")
 
     def test_results_that_depend_on_threads(self):
         fault = 'case "$*" in *"--threads 3"*) set -- "$@" --seed 99 ;; esac'

@@ -9,7 +9,6 @@ import signal
 import sqlite3
 import subprocess
 
-SECONDS = 60  # for any command; what takes longer counts as a fault
 STOPPED = 130  # exit code of a run that was asked to stop
 NOT_COMPARED = ("record", "provenances", "operators", "files")  # tables that tell where and how a run was made
 OTHERWISE = {"generations": ("wall_time",), "individuals": ("provenance",)}  # columns that do, too
@@ -20,10 +19,11 @@ class Broken(Exception):
 
 
 class Laws:
-    """Tries experiments with a program, in a folder whose content it removes."""
+    """Tries experiments with a program, in a folder whose content it removes. A command that takes more than `seconds`
+    breaks a law, too."""
 
-    def __init__(self, program, folder):
-        self._program, self._folder = program, folder
+    def __init__(self, program, folder, seconds=60):
+        self._program, self._folder, self._seconds = program, folder, seconds
 
     def hold(self, file):
         """Returns whether the program accepts the experiment in a file; raises Broken if it does, and a law does not
@@ -36,7 +36,7 @@ class Laws:
         require(checked, "check")
         one, three, parts = (self._folder / name for name in ("one", "three", "parts"))
         require(self._evodevo("run", file, *made(one, 1)), "run")
-        self._is_finite(one)
+        self._makes_sense(one)
         require(self._evodevo("run", file, *made(three, 3)), "run --threads 3")
         same_rows(one, three, "with 3 threads instead of 1")
         self._run_in_parts(file, parts)
@@ -46,9 +46,9 @@ class Laws:
     def _evodevo(self, *words):
         command = [self._program, *map(str, words)]
         try:
-            return subprocess.run(command, capture_output=True, text=True, timeout=SECONDS, stdin=subprocess.DEVNULL)
+            return subprocess.run(command, capture_output=True, text=True, timeout=self._seconds, stdin=subprocess.DEVNULL)
         except subprocess.TimeoutExpired:
-            raise Broken(f"{words[0]}: not done after {SECONDS} s") from None
+            raise Broken(f"{words[0]}: not done after {self._seconds} s") from None
 
     def _run_in_parts(self, file, folder):
         """Makes the run, asks it to stop after the first generation, and resumes it."""
@@ -56,14 +56,19 @@ class Laws:
         with subprocess.Popen([*map(str, command)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as run:
             next((line for line in run.stdout if line.startswith("generation ")), None)
             run.send_signal(signal.SIGINT)
-            run.communicate(timeout=SECONDS)
+            try:
+                run.communicate(timeout=self._seconds)
+            except subprocess.TimeoutExpired:
+                run.kill()
+                raise Broken(f"run, interrupted: not done after {self._seconds} s") from None
         if run.returncode not in (0, STOPPED):
             raise Broken(f"run, interrupted: exit code {run.returncode}")
         if run.returncode == STOPPED:
             require(self._evodevo("resume", folder, "--no-report"), "resume")
 
-    def _is_finite(self, folder):
-        shown = json.loads(self._evodevo("show", folder, "--json").stdout)
+    def _makes_sense(self, folder):
+        shown = self._evodevo("show", folder, "--json")
+        require(shown, "show")
         with contextlib.closing(sqlite3.connect(folder / "run.sqlite")) as run:
             for table in ("scores", "measured", "tests", "notes"):
                 for (value,) in run.execute(f"SELECT value FROM {table}"):
@@ -72,7 +77,7 @@ class Laws:
             statuses = {status for (status,) in run.execute("SELECT DISTINCT status FROM individuals")}
         if not statuses <= {"ok", "invalid", "diverged", "artefact", "passive"}:
             raise Broken(f"statuses: {statuses}")
-        self._is_replayed(shown["best"])
+        self._is_replayed(json.loads(shown.stdout)["best"])
 
     @staticmethod
     def _is_replayed(best):
