@@ -39,7 +39,7 @@ class Laws:
         self._makes_sense(one)
         require(self._evodevo("run", file, *made(three, 3)), "run --threads 3")
         same_rows(one, three, "with 3 threads instead of 1")
-        self._run_in_parts(file, parts)
+        self.run_in_parts(file, parts)
         same_rows(one, parts, "with an interruption")
         return True
 
@@ -50,7 +50,7 @@ class Laws:
         except subprocess.TimeoutExpired:
             raise Broken(f"{words[0]}: not done after {self._seconds} s") from None
 
-    def _run_in_parts(self, file, folder):
+    def run_in_parts(self, file, folder):
         """Makes the run, asks it to stop after the first generation, and resumes it."""
         command = [self._program, "run", file, *made(folder, 1)]
         with subprocess.Popen([*map(str, command)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as run:
