@@ -4,6 +4,7 @@ cluster are in tests/cluster/."""
 import csv
 import os
 import pathlib
+import shlex
 import shutil
 import signal
 import subprocess
@@ -75,6 +76,22 @@ class Launchers(unittest.TestCase):
         done = self.compare("ranks", "--launcher", "mpi", "--ranks", "2")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(self.results("ranks"), self.results("local"))
+
+    def test_runs_at_once_have_one_gpu_each(self):
+        self.assertEqual(self.gpus_of_runs("--jobs", "2"), {"7", "9"})
+        self.assertEqual(self.gpus_of_runs("--jobs", "3"), {"7", "9"})
+        self.assertEqual(self.gpus_of_runs("--jobs", "1"), {"7,9"})
+
+    def gpus_of_runs(self, *words):
+        """Returns the GPUs that the runs of a comparison see on a host that has the GPUs 7 and 9."""
+        seen, program = self.folder / "seen", self.folder / "program"
+        seen.write_text("")
+        record = f'[ "$1" != run ] || echo "$CUDA_VISIBLE_DEVICES" >>{shlex.quote(str(seen))}'
+        program.write_text(f'#!/bin/sh\n{record}\nexec {shlex.quote(os.environ["EVODEVO_PROGRAM"])} "$@"\n')
+        program.chmod(0o755)
+        done = self.compare(f"{words[-1]}-at-once", *words, EVODEVO_PROGRAM=str(program), CUDA_VISIBLE_DEVICES="7,9")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return set(seen.read_text().split())
 
     def test_options_of_another_launcher_are_refused(self):
         self.assertRegex(self.refused("--ranks", "3"), "--ranks: .*--launcher mpi.*local")

@@ -53,7 +53,7 @@ def parse(words):
         "--jobs",
         metavar="N",
         type=positive,
-        help="runs in parallel, which share the cores or the ranks (1; with --launcher slurm as many as Slurm starts)",
+        help="runs in parallel, which share cores, GPUs or ranks (1; with --launcher slurm as many as Slurm starts)",
     )
     add(
         "--launcher",

@@ -204,14 +204,17 @@ class Runs:
                 )
 
     def make(self, jobs, launcher, tell):
-        """Makes or resumes all runs that are not finished, `jobs` at a time, each with the launcher."""
+        """Makes or resumes all runs that are not finished, `jobs` at a time, each with the launcher and, if
+        the launcher has GPUs, on the one that the fewest runs use."""
         waiting = self.waiting()
-        active = {}
+        active, gpus = {}, {}
         try:
             while waiting or active:
                 while waiting and len(active) < jobs:
                     run = waiting.pop(0)
-                    active[run] = self._start(run, launcher)
+                    in_use = [gpus[other] for other in active]
+                    gpus[run] = min(launcher.gpus, key=in_use.count, default=None)
+                    active[run] = self._start(run, launcher, gpus[run])
                     tell(f"{run.variant.name}, seed {run.seed} ({len(waiting)} more to start)")
                 os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOWAIT)
                 for run in [run for run, process in active.items() if process.poll() is not None]:
@@ -262,13 +265,19 @@ class Runs:
         if not self._has_begun(run):
             shutil.rmtree(run.folder, ignore_errors=True)
 
-    def _start(self, run, launcher):
+    def _start(self, run, launcher, gpu):
         self.clear(run)
         run.log.parent.mkdir(parents=True, exist_ok=True)
         command = [*launcher.command, self._program, "run", *self.arguments(run), "--resume", *launcher.options]
         with open(run.log, "a") as log:
             # in a process group of its own, so that Ctrl-C reaches only this process, which then asks each run to stop
-            return subprocess.Popen([*map(str, command)], stdout=log, stderr=subprocess.STDOUT, process_group=0)
+            return subprocess.Popen(
+                [*map(str, command)],
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                process_group=0,
+                env=os.environ | ({"CUDA_VISIBLE_DEVICES": gpu} if gpu else {}),
+            )
 
     def _evodevo(self, *arguments):
         command = [self._program, *map(str, arguments)]

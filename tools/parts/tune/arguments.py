@@ -29,7 +29,7 @@ def parse(words):
     add("--budget", metavar="N", type=positive, required=True, help="largest number of runs, all of equal cost")
     add("--set", metavar="KEY=VALUE", action="append", default=[], help="set a value in all runs; best.toml is without it")
     add("--seed", metavar="N", type=positive, default=1, help="seed of the drawn configurations (%(default)s)")
-    add("--jobs", metavar="N", type=positive, default=1, help="runs in parallel, which share the cores (%(default)s)")
+    add("--jobs", metavar="N", type=positive, default=1, help="runs in parallel, which share cores and GPUs (%(default)s)")
     add(
         "--launcher",
         choices=("local", "mpi"),
