@@ -25,12 +25,12 @@ class Outcomes(unittest.TestCase):
         command = [sys.executable, "-P", "-m", "compare", *files, "--seeds", "101..102", "--out", self.folder / "out"]
         return subprocess.run(command, capture_output=True, text=True)
 
-    def measure(self):
-        return subprocess.run([sys.executable, SCRIPT, self.folder / "out"], capture_output=True, text=True)
+    def measure(self, *words):
+        return subprocess.run([sys.executable, SCRIPT, self.folder / "out", *words], capture_output=True, text=True)
 
     def test_best_robots_are_measured_in_all_scenes_and_only_once(self):
         self.assertEqual(self.compare().returncode, 0)
-        done = self.measure()
+        done = self.measure("--jobs", "3")
         self.assertEqual(done.returncode, 0, done.stderr)
         scenes, slope = done.stdout.split("## Distance on a slope")
         scenarios = re.findall(r'(?m)^name = "(.*)"', (SCRIPT.parent / "scenarios.txt").read_text())

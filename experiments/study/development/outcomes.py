@@ -8,16 +8,20 @@ fast evolution goes on when it moves to another scene.
 
 The best robot of each run is born again, LIVES times with other random numbers, in the scenarios of scenarios.txt. The
 last population of each run goes on to evolve on a slope. Each measurement is a run of its own in the folder `outcomes`,
-whose row is kept in `outcomes/rows`; what has a row is not measured again. Prints medians over the runs with their
-intervals. Needs SciPy.
+whose row is kept in `outcomes/rows`; what has a row is not measured again. `--jobs N` makes N measurements at once.
+Prints medians over the runs with their intervals. Needs SciPy.
 """
 
 import argparse
 import collections
+import concurrent.futures
+import functools
+import itertools
 import json
 import math
 import os
 import pathlib
+import queue
 import statistics
 import subprocess
 import sys
@@ -25,7 +29,8 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.append(str(HERE.parents[2] / "tools/parts"))
 
-from compare import rows  # noqa: E402
+from common.command_line import positive  # noqa: E402
+from compare import launchers, rows  # noqa: E402
 from compare.history import history, objective_of  # noqa: E402
 from compare.scenarios import by_scenario  # noqa: E402
 from compare.standings import median_with_interval, table  # noqa: E402
@@ -36,6 +41,29 @@ MOVE = "scene.gravity.slope=-10"  # degrees, uphill
 GENERATIONS = (1, 4, 12)  # after which the distance on the slope is told
 
 
+class Program:
+    """The program evodevo, of which at most `jobs` run at once, and share the cores and GPUs of this host."""
+
+    def __init__(self, path, jobs):
+        self._path, self._threads = path, launchers.threads(jobs)
+        self._gpus = queue.Queue()  # those that are free; one GPU is there as many times as runs may use it
+        for gpu in itertools.islice(itertools.cycle(launchers.gpus(jobs) or (None,)), jobs):
+            self._gpus.put(gpu)
+
+    def run(self, *words):
+        gpu = self._gpus.get()
+        try:
+            environment = os.environ | ({"CUDA_VISIBLE_DEVICES": gpu} if gpu else {})
+            command = [self._path, "run", *map(str, (*words, *self._threads))]
+            subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=environment)
+        finally:
+            self._gpus.put(gpu)
+
+    def show(self, folder):
+        shown = subprocess.run([self._path, "show", folder, "--json"], check=True, capture_output=True, text=True)
+        return json.loads(shown.stdout)
+
+
 def measured(program, out, name, experiment, settings, start, seed):
     """Makes a run that begins with the population of the run in `start`, unless it has a row. Returns the row."""
     row = out / "rows" / f"{name}.json"
@@ -44,10 +72,8 @@ def measured(program, out, name, experiment, settings, start, seed):
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(experiment)
         words = [word for setting in (*settings, f"experiment.start={start.resolve()}") for word in ("--set", setting)]
-        command = ["run", file, *words, "--seed", seed, "--out", folder, "--resume", "--no-report", "--quiet"]
-        subprocess.run([program, *map(str, command)], check=True, stdout=subprocess.DEVNULL)
-        shown = subprocess.run([program, "show", folder, "--json"], check=True, capture_output=True, text=True)
-        rows.write(row, json.loads(shown.stdout))
+        program.run(file, *words, "--seed", seed, "--out", folder, "--resume", "--no-report", "--quiet")
+        rows.write(row, program.show(folder))
     return rows.read(row)
 
 
@@ -104,14 +130,22 @@ def report(title, of_arms):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=pathlib.Path, help="of the comparison, that is, --out of tools/compare")
-    folder = parser.parse_args().folder
-    program, out = os.environ.get("EVODEVO_PROGRAM", "evodevo"), folder / "outcomes"
+    parser.add_argument("--jobs", metavar="N", type=positive, default=1, help="measurements at once (1)")
+    given = parser.parse_args()
+    folder, out = given.folder, given.folder / "outcomes"
+    program = Program(os.environ.get("EVODEVO_PROGRAM", "evodevo"), given.jobs)
     arms = [Arm(file.parent) for file in sorted(folder.glob("rows/*/made-from.json"))]
     arms = [arm for arm in arms if arm.runs]
     if not arms:
         sys.exit(f"{folder}: has no complete runs; give the folder that tools/compare wrote, which holds rows/ and runs/")
-    scenarios = {arm.name: [in_scenarios(program, out, arm, run) for run in arm.runs] for arm in arms}
-    slope = {arm.name: [on_the_slope(program, out, arm, run) for run in arm.runs] for arm in arms}
+    with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
+
+        def begin(measure):
+            """Returns for each arm what is measured of its runs, each as soon as it is known."""
+            return {arm.name: pool.map(functools.partial(measure, program, out, arm), arm.runs) for arm in arms}
+
+        begun = [begin(measure) for measure in (in_scenarios, on_the_slope)]
+        scenarios, slope = ({arm: list(runs) for arm, runs in of_arms.items()} for of_arms in begun)
     text = "\n".join((report("Distance in other scenes", scenarios), report("Distance on a slope to which evolution moved", slope)))
     (out / "report.md").write_text(text)
     print(text)
