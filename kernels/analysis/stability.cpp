@@ -20,52 +20,74 @@ struct Resistance {
   }
 };
 
+bool is_damped(const Body& body) {
+  // a look at the few materials saves one at the many springs
+  const auto damps = [](const Material& material) { return material.damping != 0; };
+  return std::ranges::any_of(body.materials, damps) &&
+         std::any_of(body.springs.begin(), body.springs.end(),
+                     [&](const Spring& spring) { return body.materials[spring.material].damping != 0; });
+}
+
 /// The mass-weighted matrix A = M^-1/2 K M^-1/2 of a body; K is the sum of k e e^T over the springs, with k the
 /// resistance and e the direction of a spring. If k is the stiffness, the eigenvalues are the squares of the body's
-/// angular frequencies, 1/s^2.
+/// angular frequencies, 1/s^2. The resistance can be changed, since directions take longest to compute.
 class StiffnessMatrix {
  public:
-  StiffnessMatrix(const Body& body, std::span<const Vec3> positions, Resistance resistance)
+  StiffnessMatrix(const Body& body, std::span<const Vec3> positions)
       : size_(3 * static_cast<Eigen::Index>(body.masses.size())) {
-    for (const Mass& mass : body.masses) weight_.push_back(mass.mass > 0 ? 1 / std::sqrt(mass.mass) : 0);
+    const bool damped = is_damped(body);
     for (const Spring& spring : body.springs) {
       const Vec3 d = positions[spring.b] - positions[spring.a];
       const double length = norm(d);
-      const double stiffness = resistance(body, spring);
-      const Eigen::Vector3d direction =
-          Eigen::Vector3d(d.x, d.y, d.z).normalized();  // zero for a spring of zero length
-      links_.push_back({spring.a, spring.b, stiffness, length != 0, direction});
+      if (length != 0) {
+        add(body, spring, {d.x / length, d.y / length, d.z / length}, damped);
+        continue;
+      }
+      // a spring without a direction is treated as resisting in every direction: an upper bound for any direction
+      for (int axis = 0; axis < 3; ++axis) add(body, spring, Eigen::Vector3d::Unit(axis), damped);
     }
   }
 
   Eigen::Index size() const { return size_; }
 
+  const StiffnessMatrix& with(Resistance resistance) {
+    for (std::size_t i = 0; i < links_.size(); ++i)
+      links_[i].resistance = resistance.of_length * stiffness_[i] + resistance.of_rate * damping_[i];
+    return *this;
+  }
+
   /// A v
   Eigen::VectorXd times(const Eigen::VectorXd& v) const {
     Eigen::VectorXd result = Eigen::VectorXd::Zero(size_);
     for (const Link& link : links_) {
-      const double wa = weight_[link.a], wb = weight_[link.b];
-      const Eigen::Vector3d across = wb * v.segment<3>(3 * link.b) - wa * v.segment<3>(3 * link.a);
-      // a spring without a direction is treated as resisting in every direction: an upper bound for any direction
-      const Eigen::Vector3d force =
-          link.stiffness * (link.directed ? (link.direction.dot(across) * link.direction).eval() : across);
-      result.segment<3>(3 * link.a) -= wa * force;
-      result.segment<3>(3 * link.b) += wb * force;
+      const auto at_a = v.segment<3>(link.a), at_b = v.segment<3>(link.b);
+      const double force = link.resistance * (link.of_b.dot(at_b) - link.of_a.dot(at_a));
+      result.segment<3>(link.a) -= force * link.of_a;
+      result.segment<3>(link.b) += force * link.of_b;
     }
     return result;
   }
 
  private:
   struct Link {
-    Eigen::Index a, b;
-    double stiffness;  ///< N/m
-    bool directed;     ///< whether the spring has a length and so a direction
-    Eigen::Vector3d direction;
+    std::uint32_t a, b;          ///< index of the first coordinate of the masses
+    double resistance;           ///< N/m
+    Eigen::Vector3d of_a, of_b;  ///< direction / sqrt(mass)
   };
 
+  void add(const Body& body, const Spring& spring, const Eigen::Vector3d& direction, bool damped) {
+    const auto weight = [&](std::uint32_t i) {
+      const double mass = body.masses[i].mass;
+      return mass > 0 ? 1 / std::sqrt(mass) : 0;
+    };
+    links_.push_back({3 * spring.a, 3 * spring.b, 0, weight(spring.a) * direction, weight(spring.b) * direction});
+    stiffness_.push_back(body.stiffness(spring));
+    damping_.push_back(damped ? body.damping(spring) : 0);
+  }
+
   Eigen::Index size_;
-  std::vector<double> weight_;  ///< 1/sqrt(mass)
   std::vector<Link> links_;
+  std::vector<double> stiffness_, damping_;  ///< of each link, N/m and N s/m
 };
 
 /// An upper bound of the matrix's largest eigenvalue, 1/s^2. Because |xb - xa|^2 <= 2 |xa|^2 + 2 |xb|^2, K is at most
@@ -188,14 +210,6 @@ double fastest_muscle(const Body& body) {
   return fastest;
 }
 
-bool is_damped(const Body& body) {
-  // a look at the few materials saves one at the many springs
-  const auto damps = [](const Material& material) { return material.damping != 0; };
-  return std::ranges::any_of(body.materials, damps) &&
-         std::any_of(body.springs.begin(), body.springs.end(),
-                     [&](const Spring& spring) { return body.materials[spring.material].damping != 0; });
-}
-
 /// The rate of uniform damping that acts as a force, 1/s; the other methods damp exactly.
 double uniform_damping(const Scene& scene, Method method) {
   return method == Method::rk4 && scene.damping ? scene.damping->rate : 0;
@@ -232,15 +246,23 @@ struct Limit {
   }
 };
 
-/// The largest stable dt of a body with dashpots, s. The first one follows from the largest eigenvalues of K and of C;
-/// it is safe, because the largest eigenvalue of their sum is at most the sum of both. The second one is nearer to the
-/// limit, and still safe.
+/// The largest stable dt of a body with dashpots, s.
+///
+/// With f(dt) = dt^2 lambda, a dt is stable if f(dt) <= oscillation^2. Because K and C have no negative eigenvalues,
+/// f(s dt) <= s f(dt) if s < 1, and f(s dt) <= s^2 f(dt) if s > 1. So lambda at any dt leads to a dt that is safe, and
+/// the nearer the first one was to the limit, the nearer is the second.
 double largest_damped_dt(const Body& body, std::span<const Vec3> positions, const Limit& limit) {
-  const auto eigenvalue = [&](Resistance resistance) {
-    return largest_eigenvalue(StiffnessMatrix(body, positions, resistance), infinity);
-  };
-  const double first = limit.dt(eigenvalue({1, 0}), eigenvalue({0, 1}));
-  return limit.oscillation / std::sqrt(eigenvalue(limit.at(first)));
+  constexpr int looks = 10;
+  constexpr double near_enough = 0.05;
+  StiffnessMatrix matrix(body, positions);
+  double dt = limit.dt(eigenvalue_bound(body, positions, {1, 0}), eigenvalue_bound(body, positions, {0, 1}));
+  for (int i = 0; i < looks; ++i) {
+    const double reach = limit.eigenvalue(dt) / largest_eigenvalue(matrix.with(limit.at(dt)), infinity);
+    const double factor = reach < 1 ? reach : std::sqrt(reach);
+    dt *= factor;
+    if (!(std::abs(factor - 1) > near_enough)) break;
+  }
+  return dt;
 }
 
 }  // namespace
@@ -299,7 +321,7 @@ double largest_dt(const Body& body, std::span<const Vec3> positions, Method meth
   if (bound == 0 || wanted * std::sqrt(bound) <= limit.oscillation) return wanted;
   const double largest =
       damped ? largest_damped_dt(body, positions, limit)
-             : limit.oscillation / std::sqrt(largest_eigenvalue(StiffnessMatrix(body, positions, {}), infinity));
+             : limit.oscillation / std::sqrt(largest_eigenvalue(StiffnessMatrix(body, positions).with({}), infinity));
   return largest >= wanted ? wanted : largest;  // NaN stays NaN
 }
 
@@ -322,7 +344,7 @@ bool is_stable(const Body& body, std::span<const Vec3> positions, const Scene& s
   const double limit = of_method.eigenvalue(dt);
   const Resistance resistance = of_method.at(dt);
   return disc_bound(body, positions, resistance) <= limit || eigenvalue_bound(body, positions, resistance) <= limit ||
-         largest_eigenvalue(StiffnessMatrix(body, positions, resistance), limit) <= limit;
+         largest_eigenvalue(StiffnessMatrix(body, positions).with(resistance), limit) <= limit;
 }
 
 }  // namespace evodevo

