@@ -5,6 +5,8 @@
 
 namespace evodevo {
 
+constexpr Status last_of(Status) { return Status::passive; }
+
 template <class Wire>
 void for_each_part(Wire& wire, Block& block) {
   wire(block.type, block.first, block.count, block.id);
@@ -85,6 +87,9 @@ void for_each_part(Wire& wire, Summary& s) {
 }
 
 namespace message {
+
+constexpr Kind last_of(Kind) { return Kind::stop; }
+constexpr Work last_of(Work) { return Work::verify; }
 
 template <class Wire>
 void for_each_part(Wire& wire, Setup& setup) {

@@ -23,7 +23,8 @@ class WireError : public std::runtime_error {
 };
 
 /// Types other than numbers, enumerations, texts and containers say of what they consist in a function
-/// for_each_part(wire, value), which both ends call.
+/// for_each_part(wire, value), which both ends call. For each enumeration, whose values are numbered from 0, a function
+/// last_of(value) returns the last one.
 class WireWriter {
  public:
   /// Appends values.
@@ -101,10 +102,23 @@ class WireReader {
   }
   template <class Value>
   void read(Value& value) {
-    if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>)
+    if constexpr (std::is_arithmetic_v<Value>)
       std::memcpy(&value, take(sizeof value), sizeof value);
+    else if constexpr (std::is_enum_v<Value>)
+      read_enumerator(value);
     else
       for_each_part(*this, value);
+  }
+  template <class Enumeration>
+  void read_enumerator(Enumeration& value) {
+    using Number = std::underlying_type_t<Enumeration>;
+    static_assert(std::is_unsigned_v<Number>);
+    const auto number = next<Number>();
+    constexpr auto last = static_cast<Number>(last_of(Enumeration{}));
+    if (number > last)
+      throw WireError("a message between ranks has " + std::to_string(number) + " where it names one of " +
+                      std::to_string(last + 1) + " values");
+    value = static_cast<Enumeration>(number);
   }
   void read(bool& value) {
     const auto byte = next<std::uint8_t>();
