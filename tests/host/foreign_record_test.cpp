@@ -174,7 +174,10 @@ TEST_F(ForeignRecord, WhatDoesNotFitTogetherIsNamed) {
       {"INSERT INTO measured SELECT id, 0, 1 FROM individuals WHERE died IS NULL", "1 measures"},
   };
   ASSERT_TRUE(change("DELETE FROM provenances; DELETE FROM verifications"));
-  EXPECT_THAT(refusal([&] { call(command_named("show"), {folder_.string(), "--json"}); }), HasSubstr("provenances"));
+  const auto show = [&] { call(command_named("show"), {folder_.string(), "--json"}); };
+  EXPECT_THAT(refusal(show), HasSubstr("provenances"));
+  ASSERT_TRUE(change("DELETE FROM scores; INSERT INTO measures VALUES(0, 'taste', '1', 'flavour', NULL, NULL, NULL)"));
+  EXPECT_THAT(refusal(show), testing::naming("measures.role", "\"flavour\"", "\"descriptor\""));
   for (const auto& [sql, named] : cases) {
     ASSERT_TRUE(change(sql)) << sql;
     const std::string said = refusal([&] { call(command_named("resume"), {folder_.string()}); });

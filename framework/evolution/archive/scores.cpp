@@ -6,6 +6,17 @@
 #include "evolution/archive/database.hpp"
 
 namespace evodevo {
+namespace {
+
+/// Reads the role of a score that is not an objective.
+std::string role_in(const Statement& row, int column) {
+  std::string role = row.text(column);
+  for (const Role known : {Role::descriptor, Role::constraint, Role::measure})
+    if (role == name(known)) return role;
+  row.refuse(column, "\"descriptor\", \"constraint\" or \"measure\"");
+}
+
+}  // namespace
 
 std::vector<ArchivedMeasure> Archive::measures(std::uint32_t id) const {
   Statement row(*run_, "measured",
@@ -13,14 +24,14 @@ std::vector<ArchivedMeasure> Archive::measures(std::uint32_t id) const {
                 "WHERE individual = ? ORDER BY position");
   row.bind(id);
   std::vector<ArchivedMeasure> measures;
-  while (row.step()) measures.push_back({{row.line(0), row.line(1), row.line(2)}, row.number(3)});
+  while (row.step()) measures.push_back({{row.line(0), row.line(1), role_in(row, 2)}, row.number(3)});
   return measures;
 }
 
 std::vector<MeasureKind> Archive::measures() const {
   Statement row(*run_, "measures", "SELECT name, unit, role FROM measures ORDER BY position");
   std::vector<MeasureKind> measures;
-  while (row.step()) measures.push_back({row.line(0), row.line(1), row.line(2)});
+  while (row.step()) measures.push_back({row.line(0), row.line(1), role_in(row, 2)});
   return measures;
 }
 

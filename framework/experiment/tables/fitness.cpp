@@ -153,6 +153,10 @@ class FitnessTables {
     for (const std::string& text : {objective.name, objective.unit})
       if (const std::string fault = text_fault(text); !fault.empty())
         t.fail("name", "its objective's name or unit " + fault);
+    if (objective.role > Role::measure)
+      t.fail("name", "its score \"" + objective.name + "\" has the role " +
+                         std::to_string(static_cast<int>(objective.role)) +
+                         ", which this evodevo does not know; give it one of evodevo::Role");
     if (objective.role == Role::descriptor &&
         !(objective.low < objective.high && std::isfinite(objective.low) && std::isfinite(objective.high)))
       t.fail("name", "its descriptor \"" + objective.name + "\" has the range " + to_text(objective.low) + " to " +
