@@ -169,6 +169,7 @@ TEST_F(ForeignRecord, WhatDoesNotFitTogetherIsNamed) {
       {"UPDATE individuals SET provenance = 7", "individuals.provenance"},
       {"UPDATE individuals SET origin = born + 1", "individuals.origin"},
       {"INSERT INTO memory VALUES(0, x'00')", "memory.generation"},
+      {"INSERT INTO record VALUES('journal', 'of travels')", "\"of travels\""},
       {"INSERT INTO note_titles VALUES(0, 'novelty', 'm', 0)", "novelty in m"},
       {"INSERT INTO notes VALUES(999, 0, 0, 1)", "notes.individual"},
       {"INSERT INTO measured SELECT id, 0, 1 FROM individuals WHERE died IS NULL", "1 measures"},

@@ -63,7 +63,12 @@ void require_run(const fs::path& folder) {
 
 std::optional<Journal> recorded_wish(const Archive& archive) {
   const auto wish = archive.find_record(journal_key);
-  return wish ? journal_named(*wish) : std::nullopt;
+  if (!wish) return std::nullopt;
+  const auto journal = journal_named(*wish);
+  if (!journal)
+    archive.refuse(std::string("its entry \"") + journal_key + "\" is \"" + printable(*wish) +
+                   "\", expected \"wal\" or \"delete\"");
+  return journal;
 }
 
 }  // namespace
