@@ -5,6 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/json_text.hpp"
+
 namespace evodevo {
 namespace {
 
@@ -61,8 +63,7 @@ std::string page_template() {
 std::string filled_page(const std::string& page, const nlohmann::ordered_json& data) {
   const auto at = page.find(place_of_data);
   if (at == std::string::npos) throw std::runtime_error("the page of the viewer has no place for data; build it again");
-  const std::string json = data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-  return page.substr(0, at) + escaped(json) + page.substr(at + place_of_data.size());
+  return page.substr(0, at) + escaped(json_text(data, -1)) + page.substr(at + place_of_data.size());
 }
 
 std::string self_reloading(const std::string& page, const std::string& path, const std::string& shown) {

@@ -69,5 +69,12 @@ TEST(JsonText, IsJsonWithoutControlCharacters) {
   EXPECT_EQ(nlohmann::json::parse(text).at("name"), "\x1b\x7f\u0080\u009bÄ\u00a0\ufffd\n");
 }
 
+TEST(JsonText, IsOneLineIfAskedForWhateverALineIs) {
+  const nlohmann::ordered_json json{{"name", "a\u2027\u2028\u2029\u202ab\u0085\n"}};
+  const std::string text = json_text(json, -1);
+  EXPECT_EQ(text, "{\"name\":\"a\u2027\\u2028\\u2029\u202ab\\u0085\\n\"}");
+  EXPECT_EQ(nlohmann::ordered_json::parse(text), json);
+}
+
 }  // namespace
 }  // namespace evodevo
