@@ -69,9 +69,9 @@ class MapElites final : public evodevo::Selection {
     evodevo::MemoryReader reader(context.memory);
     const auto centres = reader.read_lists<double>();
     reader.finish();
-    const auto fits = [&](const Coordinates& centre) { return centre.size() == dimension; };
+    const auto fits = [&](const Coordinates& centre) { return evodevo::is_place(centre, dimension); };
     if (centres.empty() || !std::all_of(centres.begin(), centres.end(), fits))
-      reader.fail("has no centres of " + std::to_string(dimension) + " descriptors");
+      reader.fail("does not have centres of " + std::to_string(dimension) + " descriptors from -1e6 to 1e6");
     return centres;
   }
 

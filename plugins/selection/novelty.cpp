@@ -75,10 +75,11 @@ class NoveltySearch final : public evodevo::Selection {
       scores_ = reader.read_list<double>();
       places_ = reader.read_lists<double>();
       reader.finish();
-      const auto fits = [&](const auto& place) { return place.size() == context.descriptors.size(); };
+      const auto fits = [&](const auto& place) { return evodevo::is_place(place, context.descriptors.size()); };
       if (scores_.size() != ids_.size() || places_.size() != ids_.size() ||
           !std::all_of(places_.begin(), places_.end(), fits))
-        reader.fail("does not have " + std::to_string(context.descriptors.size()) + " descriptors for each individual");
+        reader.fail("does not have " + std::to_string(context.descriptors.size()) +
+                    " descriptors from -1e6 to 1e6 for each individual");
     }
 
     /// Forgets those in the table who have lost their fitness since they were archived.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "commands/run/run.hpp"
@@ -78,6 +79,18 @@ class Remembering : public ::testing::Test {
   Counting* counting_;
   int faults_ = 0;
 };
+
+TEST(Memory, HoldsFiniteNumbersAlone) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  MemoryWriter writer;
+  writer.write(std::vector<double>{0.5, 1e300});
+  EXPECT_THROW(writer.write(infinity), std::runtime_error);
+  EXPECT_THROW(writer.write(std::vector<float>{0, std::nanf("")}), std::runtime_error);
+  EXPECT_EQ(MemoryReader(writer.bytes()).read_list<double>(), (std::vector<double>{0.5, 1e300}));
+  std::vector<std::byte> bytes = writer.bytes();
+  std::memcpy(bytes.data() + sizeof(std::uint64_t), &infinity, sizeof infinity);
+  EXPECT_THROW(MemoryReader(bytes).read_list<double>(), std::runtime_error);
+}
 
 TEST_F(Remembering, IsCommittedWithTheGenerationAndGivenBack) {
   {

@@ -54,6 +54,26 @@ TEST(MapElites, TheBestOfEachCellOfAGridSurvives) {
   }
 }
 
+TEST(MapElites, AMemoryOfImpossiblePlacesIsRefused) {
+  const auto selection = make<Selection>("map-elites", "cells = \"centroidal\"\ncount = 12");
+  Table table = random_table(1, 8);
+  const auto is_refused = [&](const std::vector<Coordinates>& centres) {
+    MemoryWriter writer;
+    writer.write(centres);
+    table.memory = writer.bytes();
+    try {
+      table.survive(*selection, 8);
+      return false;
+    } catch (const std::runtime_error&) {
+      return true;
+    }
+  };
+  EXPECT_FALSE(is_refused({{0.5, 0.5}, {0.2, 0.1}}));
+  EXPECT_TRUE(is_refused({}));
+  EXPECT_TRUE(is_refused({{0.5, 0.5}, {0.2}}));
+  EXPECT_TRUE(is_refused({{0.5, 1e200}})) << "its distances are not finite";
+}
+
 TEST(MapElites, TheBestOfTheCellWithTheNearestCentreSurvives) {
   const auto selection = make<Selection>("map-elites", "cells = \"centroidal\"\ncount = 12");
   Table table = random_table(1, 80);

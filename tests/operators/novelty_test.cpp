@@ -43,6 +43,24 @@ TEST(NoveltySearch, TheMostDistantSurviveWhateverTheirScores) {
   EXPECT_NEAR(noted[4], (7 + 7.5) / 2 / 10, 1e-12);
 }
 
+TEST(NoveltySearch, AMemoryOfImpossiblePlacesIsRefused) {
+  const auto selection = make<Selection>("novelty", "neighbours = 1\narchived = 100");
+  Table table = at({9, 9.1});
+  const auto remember = [&](const std::vector<double>& place) {
+    MemoryWriter writer;
+    writer.write(std::vector<std::uint32_t>{70});
+    writer.write(std::vector<double>{0});
+    writer.write(std::vector<std::vector<double>>{place});
+    table.memory = writer.bytes();
+  };
+  remember({0.9});
+  EXPECT_NO_THROW(table.survive(*selection, 2));
+  for (const std::vector<double>& place : {std::vector<double>{}, {0.9, 0.9}, {-1e200}}) {
+    remember(place);
+    EXPECT_THROW(table.survive(*selection, 2), std::runtime_error);
+  }
+}
+
 TEST(NoveltySearch, WhatIsInTheArchiveIsNotNovel) {
   const auto selection = make<Selection>("novelty", "neighbours = 1\narchived = 100");
   Table table = at({9, 9.1});

@@ -1,7 +1,9 @@
-// The memory of selection operators as bytes: numbers, lists of numbers and lists of such lists, written and read in
-// the same order.
+// The memory of selection operators as bytes: finite numbers, lists of numbers and lists of such lists, written and
+// read in the same order.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -13,19 +15,20 @@
 
 namespace evodevo {
 
-/// Writes numbers, lists of numbers and lists of such lists as bytes.
+/// Writes numbers, lists of numbers and lists of such lists as bytes. Throws std::runtime_error if a number is not
+/// finite.
 class MemoryWriter {
  public:
   template <class T>
   void write(T number) {
     static_assert(std::is_arithmetic_v<T>, "only numbers have the same bytes in every process");
-    append(&number, sizeof number);
+    append(&number, 1);
   }
   template <class T>
   void write(const std::vector<T>& numbers) {
     static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>, "a list of numbers");
     write(static_cast<std::uint64_t>(numbers.size()));
-    append(numbers.data(), numbers.size() * sizeof(T));
+    append(numbers.data(), numbers.size());
   }
   template <class T>
   void write(const std::vector<std::vector<T>>& lists) {
@@ -35,16 +38,27 @@ class MemoryWriter {
 
   const std::vector<std::byte>& bytes() const { return bytes_; }
 
+  /// Whether all of `count` numbers are finite, as whole numbers always are.
+  template <class T>
+  static bool are_finite(const T* numbers, std::size_t count) {
+    if constexpr (std::is_floating_point_v<T>)
+      return std::all_of(numbers, numbers + count, [](T number) { return std::isfinite(number); });
+    return true;
+  }
+
  private:
-  void append(const void* from, std::size_t count) {
-    const auto* first = static_cast<const std::byte*>(from);
-    bytes_.insert(bytes_.end(), first, first + count);
+  template <class T>
+  void append(const T* numbers, std::size_t count) {
+    if (!are_finite(numbers, count)) throw std::runtime_error("remembers a number that is not finite");
+    const auto* first = reinterpret_cast<const std::byte*>(numbers);
+    bytes_.insert(bytes_.end(), first, first + count * sizeof(T));
   }
 
   std::vector<std::byte> bytes_;
 };
 
-/// Reads what MemoryWriter has written, in the same order. Throws std::runtime_error if there are too few bytes.
+/// Reads what MemoryWriter has written, in the same order. Throws std::runtime_error if there are too few bytes, or if
+/// a number is not finite.
 class MemoryReader {
  public:
   explicit MemoryReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -53,7 +67,7 @@ class MemoryReader {
   T read() {
     static_assert(std::is_arithmetic_v<T>, "a number");
     T number{};
-    take(&number, 1, sizeof number);
+    take(&number, 1);
     return number;
   }
   template <class T>
@@ -61,7 +75,7 @@ class MemoryReader {
     const auto count = read<std::uint64_t>();
     require(count, sizeof(T));  // before memory is allocated for them
     std::vector<T> numbers(count);
-    take(numbers.data(), count, sizeof(T));
+    take(numbers.data(), count);
     return numbers;
   }
   template <class T>
@@ -90,10 +104,13 @@ class MemoryReader {
       fail("ends after " + std::to_string(bytes_.size()) + " bytes; expected " + std::to_string(count) +
            " numbers of " + std::to_string(size) + " bytes at byte " + std::to_string(next_));
   }
-  void take(void* to, std::uint64_t count, std::size_t size) {
-    require(count, size);
-    if (count > 0) std::memcpy(to, bytes_.data() + next_, count * size);
-    next_ += count * size;
+  template <class T>
+  void take(T* to, std::uint64_t count) {
+    require(count, sizeof(T));
+    if (count > 0) std::memcpy(to, bytes_.data() + next_, count * sizeof(T));
+    if (!MemoryWriter::are_finite(to, count))
+      fail("has a number that is not finite before byte " + std::to_string(next_ + count * sizeof(T)));
+    next_ += count * sizeof(T);
   }
 
   std::span<const std::byte> bytes_;

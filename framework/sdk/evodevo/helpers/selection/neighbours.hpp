@@ -16,17 +16,25 @@ namespace evodevo {
 /// The coordinates of a place in a space of any dimension, such as the space of the descriptors.
 using Coordinates = std::vector<double>;
 
+/// Largest coordinate, and smallest one if negated, of a place in the space of the descriptors.
+inline constexpr double farthest = 1e6;
+
 /// Returns where an individual that did not fail lies in the space of the descriptors. The range of each descriptor
 /// becomes [0, 1]. A value that lies outside by more than a million ranges counts as that far outside, so that
 /// distances are finite, and those to different cells differ.
 inline Coordinates place_of(const Candidate& row, std::span<const Objective> descriptors) {
-  const double most = 1e6;
   Coordinates place;
   for (std::size_t i = 0; i < descriptors.size(); ++i) {
     const double low = descriptors[i].low / 2, range = descriptors[i].high / 2 - low;  // half, so that none overflows
-    place.push_back(std::clamp((row.descriptors[i] / 2 - low) / range, -most, most));
+    place.push_back(std::clamp((row.descriptors[i] / 2 - low) / range, -farthest, farthest));
   }
   return place;
+}
+
+/// Whether a place, such as a remembered one, lies in a space of so many descriptors.
+inline bool is_place(const Coordinates& place, std::size_t descriptors) {
+  return place.size() == descriptors &&
+         std::all_of(place.begin(), place.end(), [](double x) { return x >= -farthest && x <= farthest; });
 }
 
 /// Finds the nearest of many fixed places by Euclidean distance, with a k-d tree (nanoflann).
