@@ -18,7 +18,7 @@ void fuzz(std::string_view input);
 /// Ends the program if a law does not hold.
 inline void require(bool holds, const char* what) {
   if (holds) return;
-  std::fprintf(stderr, "%s\n", what);
+  std::fprintf(stderr, "fault: %s\n", what);
   std::abort();
 }
 
