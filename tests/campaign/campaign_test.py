@@ -14,19 +14,31 @@ from common.command_line import Failure
 
 SOUND = """\
 #!/bin/sh
-echo "#7 NEW cov: 31 ft: 40"
-echo "#977 DONE cov: 43 ft: 51"
-echo "stat::number_of_executed_units: 977"
+echo "#7: cov: 31 ft: 40 corp: 2 exec/s: 7 oom/timeout/crash: 0/0/0 time: 1s job: 1 dft_time: 0"
+echo "#977: cov: 43 ft: 51 corp: 5 exec/s: 400 oom/timeout/crash: 0/0/0 time: 2s job: 2 dft_time: 0"
 """
+# finds one fault twice, others once, and one that it does not show again
 FAULTY = """\
 #!/bin/sh
 for argument; do
-  case $argument in -artifact_prefix=*) echo bad >"${argument#*=}crash-7" ;; esac
+  case $argument in -artifact_prefix=*) prefix=${argument#*=} ;; esac
+  last=$argument
 done
-echo "wire.hpp:99:12: runtime error: load of value 2, which is not a valid value for type 'bool'"
-echo "stat::number_of_executed_units: 13"
-exit 1
+if [ -z "$prefix" ]; then
+  case $(cat "$last") in
+    bool*) echo "wire.hpp:99:12: runtime error: load of value $(wc -c <"$last"), which is no value for type 'bool'" ;;
+    other) echo "wire.hpp:11:3: runtime error: load of value 5, which is no value for type 'bool'" ;;
+    law) echo "fault: what was written reads back as something else" ;;
+  esac
+  exit 77
+fi
+for input in bool-long bool other law again; do printf $input >"${prefix}crash-$input"; done
+echo "#13: cov: 9 ft: 9 corp: 1 exec/s: 1 oom/timeout/crash: 0/0/4 time: 1s job: 3 dft_time: 0"
 """
+OPERATORS = [
+    {"name": "voxel", "parameters": [{"name": "edge", "type": "number", "allowed": "0 to 1"}]},
+    {"name": "neural", "parameters": [{"name": "pairing", "type": "option", "allowed": '"before", "after-mapping"'}]},
+]
 
 
 class Counting:
@@ -60,6 +72,9 @@ class Campaigns(unittest.TestCase):
 
     def page(self):
         return (self.folder / "out" / "report.md").read_text()
+
+    def fuzz(self):
+        return Fuzz(self.folder, OPERATORS, self.folder / "out")
 
     def target(self, name, text):
         program = self.folder / f"fuzz_{name}"
@@ -100,21 +115,36 @@ class Campaigns(unittest.TestCase):
     def test_a_faulty_target_is_found_and_others_hold(self):
         self.target("faulty", FAULTY)
         self.target("sound", SOUND)
-        page = self.sit(Fuzz(self.folder, self.folder / "out"))
-        self.assertIn("| fuzz | 990 | 989 | 1 |", page)
+        page = self.sit(self.fuzz())
+        self.assertIn("| fuzz | 990 | 986 | 4 |", page)
         self.assertRegex(page, r"\| sound \| 977 \| 977 \| 0 \| [\d.]+ \| 43 \|")
-        crash = (self.folder / "out" / "found" / "faulty-crash-7").resolve()
-        self.assertIn(f"- {crash}: wire.hpp:99:12: runtime error: load of value 2", page)
-        self.assertTrue(crash.exists())
+        found = (self.folder / "out" / "found").resolve()
+        self.assertIn(f"- {found}/faulty-crash-bool: wire.hpp:99:12: runtime error: load of value 4, ", page)
+        self.assertIn(f"- {found}/faulty-crash-law: what was written reads back as something else\n", page)
+        self.assertIn(f"- {found}/faulty-crash-again: it is not shown again\n", page)
+        self.assertIn(f"- {found}/faulty-crash-other: wire.hpp:11:3: ", page)
+        names = {each.name.removeprefix("faulty-crash-") for each in found.iterdir()}
+        self.assertEqual(names, {"bool", "other", "law", "again"}, "the smallest of each")
+
+    def test_names_of_operators_and_parameters_are_given_to_the_target_that_reads_them(self):
+        words = self.folder / "words"
+        given = f'for argument; do case $argument in -dict=*) cp "${{argument#*=}}" "{words}" ;; esac; done\n'
+        self.target("body", SOUND + given)
+        self.sit(self.fuzz())
+        self.assertFalse(words.exists())
+        self.target("experiment", SOUND + given)
+        self.sit(self.fuzz())
+        expected = ["after-mapping", "before", "edge", "neural", "pairing", "voxel"]
+        self.assertEqual(words.read_text().split(), [f'"{word}"' for word in expected])
 
     def test_a_target_that_makes_no_inputs_is_no_success(self):
         self.target("silent", "#!/bin/sh\necho this is no fuzzer\n")
         with self.assertRaisesRegex(Failure, "fuzz_silent.*this is no fuzzer"):
-            self.sit(Fuzz(self.folder, self.folder / "out"))
+            self.sit(self.fuzz())
 
     def test_a_folder_without_targets_is_refused(self):
         with self.assertRaisesRegex(Failure, f"{self.folder}: .*fuzz_targets"):
-            Fuzz(self.folder, self.folder / "out")
+            self.fuzz()
 
 
 unittest.main()

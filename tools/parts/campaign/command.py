@@ -21,8 +21,8 @@ def main(given, program):
 
 
 def parts(program, folder):
-    laws = Laws(program, folder.resolve() / "experiments")
-    return [Experiments(listed_operators(program), laws, folder), Fuzz(built_targets(), folder)]
+    operators, laws = listed_operators(program), Laws(program, folder.resolve() / "experiments")
+    return [Experiments(operators, laws, folder), Fuzz(built_targets(), operators, folder)]
 
 
 def built_targets():
